@@ -1,5 +1,5 @@
-//! The table of doc/leave-out.md: what each feature of a scene costs when it is there, and that it
-//! costs nothing when it is not. `cargo bench -p dem-tests --bench features`. A minute.
+//! The table of doc/leave-out.md: the cost of each feature of a scene when it is used, and the
+//! absence of a cost when it is not. `cargo bench -p dem-tests --bench features`. A minute.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
@@ -31,16 +31,15 @@ const SHAPE: &str = concat!(
     "/../data/shapes/bending-sample.stl"
 );
 
-/// Rounds of which the median is taken, and steps of each.
+/// Number of rounds, of which the median is taken, and steps of each.
 const ROUNDS: usize = 15;
 const STEPS: u32 = 60;
 
-/// What is compared: a free, turning body without anything else; or what a feature is compared
-/// with.
+/// The reference of other cases: a free, rotating body without any feature.
 const PLAIN: &str = "a free body";
 
-/// A scene: its name, what it is compared with, what it does more, and its text in place of run,
-/// bonds and tables.
+/// A scene: its name, its reference, its additional feature, and its text in place of run, bonds
+/// and tables.
 struct Case {
     name: &'static str,
     beside: &'static str,
@@ -166,7 +165,7 @@ angular_velocity = [1, 0, 0]
     }
 }
 
-/// ns for each of some steps.
+/// Time per step over some steps, ns.
 fn time_ns(state: &mut State) -> f64 {
     let clock = Instant::now();
     for _ in 0..STEPS {
@@ -187,7 +186,7 @@ fn main() {
     for state in &mut states {
         time_ns(state);
     }
-    // In turns, so that a machine that becomes slower is so for all.
+    // In turns, so that a slowdown of the machine affects all equally.
     for _ in 0..ROUNDS {
         for (state, times) in states.iter_mut().zip(&mut times) {
             times.push(time_ns(state));
@@ -207,7 +206,7 @@ fn main() {
     for (at, case) in CASES.iter().enumerate().skip(1) {
         let beside = CASES.iter().position(|other| other.name == case.beside);
         let base = beside.expect("one of the cases");
-        // Round by round, so that what disturbs a round disturbs both.
+        // Round by round, so that a disturbance of a round affects both.
         let pairs = times[at].iter().zip(&times[base]);
         let more_ns = median(
             pairs

@@ -1,8 +1,8 @@
-//! The time step of dem-run on free bodies packed by dem-pack, on one thread and on all: `cargo
+//! The time step of dem-run for free bodies packed by dem-pack, on one thread and on all: `cargo
 //! bench -p dem-tests`.
 //!
-//! "bonds" is the pass over the bonds alone; "step" the whole step with failure, without damping;
-//! "damped" the same with damping of the bonds.
+//! "bonds" is the pass over the bonds alone; "step" the complete step with failure, without
+//! damping; "damped" the same with damping of the bonds.
 #![allow(
     missing_docs,
     clippy::expect_used,
@@ -25,7 +25,7 @@ const SHAPE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../data/shapes/bending-sample.stl"
 );
-/// Diameters and what they give, about.
+/// Diameters, and the approximate numbers of particles and bonds.
 const BODIES: [(&str, &str); 2] = [
     ("5mm..6mm", "1,100 particles, 5,400 bonds"),
     ("1.22mm..1.53mm", "78,000 particles, 380,000 bonds"),

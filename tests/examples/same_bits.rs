@@ -1,5 +1,5 @@
-//! Runs scenes and packs bodies and prints a hash of the numbers that each gives: two versions of
-//! the programs compute the same to the last bit where they print the same lines.
+//! Runs scenes and packs bodies and prints a hash of the resulting numbers: two versions of the
+//! programs give the same results to the last bit if they print the same lines.
 //!
 //! ```sh
 //! cargo build --release --bins
@@ -9,11 +9,10 @@
 //! cargo run --release -p dem-tests --example same_bits | diff before.txt -
 //! ```
 //!
-//! Hashed are the numbers of the time series, the events, the fragments and the summary, and of
-//! the particles and bonds of a packed body, in the order in which they stand there: names and
-//! sentences may change. What differs from run to run (times, speeds, the machine) is left out.
-//! Another processor or system may give other numbers. A word after `--` runs only the cases whose
-//! name contains it.
+//! The hash covers the numbers of the time series, the events, the fragments and the summary, and
+//! of the particles and bonds of a packed body, in their order: names and sentences may change.
+//! Values that differ from run to run (times, speeds, the machine) are excluded. Another processor
+//! or system may give other numbers. A word after `--` runs only the cases whose name contains it.
 #![allow(clippy::print_stdout, reason = "it prints a table")]
 
 use std::error::Error;
@@ -22,7 +21,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-/// Scenes of data/scenes, and what is set in them.
+/// Scenes of data/scenes, and their settings.
 const SCENES: [(&str, &[&str]); 14] = [
     ("cantilever", &["run.end_time=\"0.1 s\""]),
     ("chute", &["run.end_time=\"0.5 s\""]),
@@ -40,10 +39,10 @@ const SCENES: [(&str, &[&str]); 14] = [
     ("four-point-bending", &[SAMPLE, "test.rate_check=false"]),
 ];
 
-/// Of the scenes whose sample is packed first.
+/// Setting for the scenes whose sample is packed first.
 const SAMPLE: &str = "bodies.sample.file=\"data/bodies/sample.vtp\"";
 
-/// Shapes of data/shapes, and how they are packed.
+/// Shapes of data/shapes, and their packing options.
 const PACKINGS: [(&str, &[&str]); 5] = [
     ("tablet", &["--diameter", "1mm..1.4mm"]),
     (
@@ -118,7 +117,7 @@ fn main() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The hash of what a scene gives.
+/// The hash of the results of a scene.
 fn run(scene: &Path, sets: &[&str], results: &Path, threads: usize) -> Result<u64, Failed> {
     let mut command = program("dem-run")?;
     command.arg(scene).arg("--output").arg(results);
@@ -152,7 +151,7 @@ fn pack(stl: &Path, options: &[&str], folder: &Path) -> Result<u64, Failed> {
     Ok(hash.0)
 }
 
-/// A program that was built beside this one.
+/// A program built in the same target folder as this one.
 fn program(name: &str) -> Result<Command, Failed> {
     let own = std::env::current_exe()?;
     // target/release/examples/same_bits
@@ -176,7 +175,7 @@ impl Hash {
         }
     }
 
-    /// Words that are numbers.
+    /// Adds the words that are numbers.
     fn text(&mut self, text: &str) {
         let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || "+-.".contains(c)));
         for word in words.filter(|word| word.parse::<f64>().is_ok()) {

@@ -1,4 +1,4 @@
-//! Both programs together, the README, the shapes of the repository, and the page of verification.
+//! Both programs together, the README, the shapes of the repository, and the pages of verification.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

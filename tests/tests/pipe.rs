@@ -1,4 +1,4 @@
-//! Bodies from dem-pack straight into dem-run.
+//! Bodies piped from dem-pack into dem-run.
 
 use std::process::Stdio;
 

@@ -1,5 +1,4 @@
-//! README.md says what is true: its commands run, and the files, options and shapes that it names
-//! exist.
+//! README.md is correct: its commands run, and the files, options and shapes that it names exist.
 
 use std::fs;
 use std::process::Command;
@@ -10,7 +9,7 @@ fn readme() -> String {
     fs::read_to_string(root().join("README.md")).unwrap()
 }
 
-/// The lines of all blocks of this language.
+/// The lines of all code blocks in this language.
 fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
     let fence = format!("```{language}");
     let mut inside = false;
@@ -25,9 +24,8 @@ fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
     found
 }
 
-/// Every command runs, in order, in a folder that holds a copy of the shapes, scenes and bodies. So
-/// that it takes little time, spheres are larger, the chute ends sooner, and a shape with few
-/// facets stands in for the rock.
+/// Every command runs, in order, in a folder with a copy of the shapes, scenes and bodies. To save
+/// time, spheres are larger, the chute ends sooner, and a shape with few facets replaces the rock.
 #[test]
 fn commands_run_as_pasted() {
     let folder = tempfile::tempdir().unwrap();
@@ -131,7 +129,7 @@ fn files_exist() {
     assert!(files >= 10, "{files} files");
 }
 
-/// Every option outside of commands of cargo is one that a program knows.
+/// Every option outside cargo commands is an option of one of the programs.
 #[test]
 fn options_exist() {
     let help: String = [

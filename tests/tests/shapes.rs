@@ -1,5 +1,5 @@
-//! The shapes of `data/shapes`: as the generator writes them, closed, turned outwards, not crossing
-//! themselves, and of the volume that their closed forms have.
+//! The shapes of `data/shapes`: equal to the generator's output, closed, oriented outwards, not
+//! self-intersecting, and with the volume of their closed forms.
 
 // The generator (`cargo run --example make_shapes`) itself.
 #[path = "../../crates/io/examples/make_shapes/shapes/mod.rs"]
@@ -74,7 +74,7 @@ fn length(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Six times the volume of the tetrahedron `a b c d`: positive where `d` lies behind the facet `a b
+/// Six times the volume of the tetrahedron `a b c d`: positive if `d` lies behind the facet `a b
 /// c`.
 fn six_volumes(a: Point, b: Point, c: Point, d: Point) -> f64 {
     dot(sub(a, d), cross(sub(b, d), sub(c, d)))
@@ -94,14 +94,13 @@ fn area(facets: &[[Point; 3]]) -> f64 {
         .sum()
 }
 
-/// The numbers of a corner's coordinates as they stand in the file.
+/// The coordinates of a corner as numbers in the file.
 fn key(point: Point) -> [u32; 3] {
     point.map(|x| (x as f32).to_bits())
 }
 
-/// The largest distance between a smooth surface and the flat facets that have their corners on it,
-/// where the surface's radii of curvature are at least `radius`: the sagitta of the largest facet's
-/// circumcircle.
+/// The largest distance between a smooth surface and flat facets with their corners on it, for
+/// radii of curvature of at least `radius`: the sagitta of the largest facet's circumcircle.
 fn sagitta(facets: &[[Point; 3]], radius: f64) -> f64 {
     let around = facets.iter().map(|&[a, b, c]| {
         let [u, v, w] = [sub(b, a), sub(c, b), sub(a, c)];
@@ -195,7 +194,7 @@ fn no_surface_crosses_itself() {
     }
 }
 
-/// Whether an edge of `f` that has no corner in common with `g` goes through `g`.
+/// True if an edge of `f` that has no corner in common with `g` passes through `g`.
 fn pierces(f: &[Point; 3], g: &[Point; 3]) -> bool {
     let [a, b, c] = *g;
     (0..3).map(|i| (f[i], f[(i + 1) % 3])).any(|(p, q)| {
@@ -227,7 +226,7 @@ fn crossing_facets_would_be_noticed() {
 fn flat_sided_shapes_have_their_exact_volume() {
     assert_eq!(volume(&facets("bending-sample.stl")), 180.0 * 30.0 * 35.0);
     assert_eq!(volume(&facets("bar.stl")), 30.0 * 30.0 * 60.0);
-    // A plate 20 thick, and eight ribs before it, 20 wide and 8 deep.
+    // A plate 20 thick, with eight ribs in front of it, 20 wide and 8 deep.
     let jaw = 160.0 * 20.0 + 8.0 * 0.5 * 20.0 * 8.0;
     // A sum of many terms, each rounded.
     assert!((volume(&facets("jaw.stl")) / (jaw * 200.0) - 1.0).abs() < 1e-13);
@@ -238,9 +237,9 @@ fn flat_sided_shapes_have_their_exact_volume() {
         "{} {exact}",
         volume(&disc)
     );
-    // A ring of n sections whose sides are plane has the volume of Pappus' theorem times sin(a)/a,
-    // a = 2 pi/n; the polygon in the torus' section has m corners. Coordinates are rounded to 1e-4
-    // mm: the volume to that times the area.
+    // A ring of n sections with plane sides has the volume of Pappus' theorem times sin(a)/a, a = 2
+    // pi/n; the polygon in the torus' section has m corners. Coordinates are rounded to 1e-4 mm:
+    // the volume to that times the area.
     let section = |m: f64, radius: f64| m / 2.0 * radius * radius * (2.0 * PI / m).sin();
     let torus = facets("torus.stl");
     let exact = 120.0 * (2.0 * PI / 120.0).sin() * 20.0 * section(48.0, 6.0);
@@ -277,7 +276,7 @@ fn round_shapes_miss_their_volume_by_no_more_than_flat_facets_must() {
         "{missing} of {round}"
     );
 
-    // The block's volume is exact; the ball lacks some, and so does the cavity.
+    // The block's volume is exact; that of the ball is smaller, and so is that of the cavity.
     let pair = facets("hollow-pair.stl");
     let (ball, rest) = pair.split_at(20 << 8);
     let (cavity, block) = rest.split_at(20 << 6);
@@ -303,8 +302,8 @@ fn the_rock_is_fine_and_star_shaped() {
 
 #[test]
 fn the_knot_is_as_thick_as_it_should_be_and_clears_itself() {
-    // Rings of 30 corners lie about the points of the curve; strands that cross are more than half
-    // a loop apart.
+    // Rings of 30 corners around the points of the curve; strands that cross are more than half a
+    // loop apart.
     let corners: Vec<Point> = facets("infinity-knot.stl").into_iter().flatten().collect();
     let on_curve = |t: f64| [45.0 * t.sin(), 20.0 * (2.0 * t).sin(), 8.0 * t.cos()];
     let curve: Vec<Point> = (0..24_000)

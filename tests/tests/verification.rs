@@ -1,4 +1,4 @@
-//! Pages of verification: what the solver and the packer give against closed forms and other
+//! Pages of verification: results of the solver and the packer compared with closed forms and other
 //! references.
 
 mod cantilevers;

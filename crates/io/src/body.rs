@@ -1,7 +1,7 @@
-//! A body: spheres, the bonds between them, and what is known of both.
+//! A body: spheres, the bonds between them, and information on both.
 //!
-//! [`check`] holds the rules that every body keeps, [`files`] reads and writes bodies by the ending
-//! of the file's name, [`summary`] says what a body holds, [`mass`] what it weighs.
+//! [`check`] contains the rules for every body, [`files`] reads and writes bodies by the ending of
+//! the file's name, [`summary`] lists the contents of a body, [`mass`] computes its mass.
 
 pub mod check;
 pub mod csv;

@@ -1,10 +1,10 @@
-//! An error as a person wants to read it: place, what is wrong with which value, and what to do.
+//! An error for the user: its place, the wrong value, and the remedy.
 
 use std::fmt;
 
 use crate::text::visible;
 
-/// Whose fault it is, which decides the exit code of the programs.
+/// The origin of an error, which determines the exit code of the programs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Bad input: exit code 2.
@@ -17,20 +17,20 @@ pub enum Kind {
     Unstable,
 }
 
-/// One message: where, what, and the remedy.
+/// One message: place, problem and remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Whose fault it is.
+    /// Origin of the error.
     pub kind: Kind,
-    /// File, line, facet, option: as precise as is known. May be empty.
+    /// File, line, facet or option, as precise as known. May be empty.
     pub place: String,
-    /// What is wrong, with the value and the limit.
+    /// The problem, with the value and the limit.
     pub problem: String,
-    /// What the user can do. May be empty.
+    /// The remedy. May be empty.
     pub remedy: String,
 }
 
-/// Result of everything that can fail because of what a user gave.
+/// Result of every function that can fail because of the user's input.
 pub type Result<T> = std::result::Result<T, Diagnostic>;
 
 impl Diagnostic {
@@ -86,7 +86,7 @@ impl Diagnostic {
         }
     }
 
-    /// The same message, said of a place in a larger thing (a facet of a file).
+    /// The same message, placed within a larger object (a facet of a file).
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {
         self.place = if self.place.is_empty() {
@@ -97,9 +97,8 @@ impl Diagnostic {
         self
     }
 
-    /// 2 for bad input, 1 for work that failed, 3 for a run that went unstable, 130 for one that
-    /// was
-    /// interrupted.
+    /// 2 for bad input, 1 for work that failed, 3 for a run that went unstable, 130 for an
+    /// interrupted one.
     pub fn exit_code(&self) -> u8 {
         match self.kind {
             Kind::Input => 2,
@@ -110,7 +109,7 @@ impl Diagnostic {
     }
 }
 
-/// On one line: names of files and what they say are shown as by [`visible`].
+/// On one line: file names and their contents are shown as by [`visible`].
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.place.is_empty() {

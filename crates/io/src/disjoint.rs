@@ -1,7 +1,7 @@
-//! Disjoint sets (union-find), such as the pieces that bonds hold together, in a plain array: each
-//! element names another one of its set, and the smallest names itself.
+//! Disjoint sets (union-find), such as the pieces connected by bonds, in a plain array: each
+//! element refers to another one of its set, and the smallest to itself.
 
-/// The smallest element of the set of `x`. Halves the way to it.
+/// The smallest element of the set of `x`. Halves the path to it.
 pub fn find(names: &mut [u32], mut x: u32) -> u32 {
     while names[x as usize] != x {
         let next = names[x as usize];
@@ -11,8 +11,8 @@ pub fn find(names: &mut [u32], mut x: u32) -> u32 {
     x
 }
 
-/// Makes one set of the sets of `a` and `b`. Their smallest elements before, the smaller first;
-/// None if they were one set already.
+/// Merges the sets of `a` and `b`. Returns their previous smallest elements, the smaller first;
+/// None if they were already one set.
 pub fn join(names: &mut [u32], a: u32, b: u32) -> Option<[u32; 2]> {
     let (a, b) = (find(names, a), find(names, b));
     if a == b {
@@ -43,8 +43,8 @@ impl DisjointSets {
         find(&mut self.names, a)
     }
 
-    /// Joins the sets of two members; the sizes of the smaller and the larger before, or None if
-    /// they were one already.
+    /// Joins the sets of two members. Returns the previous sizes of the smaller and the larger set,
+    /// or None if they were already one.
     pub fn join(&mut self, a: u32, b: u32) -> Option<(u32, u32)> {
         let [root, joined] = join(&mut self.names, a, b)?;
         let sizes = [root, joined].map(|root| self.size(root));
@@ -52,7 +52,7 @@ impl DisjointSets {
         Some((sizes[0].min(sizes[1]), sizes[0].max(sizes[1])))
     }
 
-    /// Number of members in the set that `root` stands for.
+    /// Number of members in the set represented by `root`.
     pub fn size(&self, root: u32) -> u32 {
         self.sizes[root as usize]
     }

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// Hash of what has been written to it.
+/// Hash of the bytes written to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fnv1a(pub u64);
 
@@ -44,7 +44,7 @@ pub fn fnv1a_of_parts(parts: &[&[u8]]) -> u64 {
     hash.0
 }
 
-/// Hash of the bytes of a file. None: it cannot be read.
+/// Hash of the bytes of a file. None if it cannot be read.
 pub fn file_hash(path: &std::path::Path) -> Option<u64> {
     std::fs::read(path).ok().map(|bytes| fnv1a(&bytes))
 }

@@ -1,7 +1,7 @@
-//! Values between points.
+//! Interpolated values.
 
-/// The value at `x` on the lines that join points (x, y), rising in x; before the first point and
-/// after the last one the value of that. None: there are none.
+/// The value at `x` by linear interpolation between points (x, y) with ascending x. Before the
+/// first point and after the last one, the value is that of the point. None if there are no points.
 pub fn interpolated(points: &[[f64; 2]], x: f64) -> Option<f64> {
     let after = points.partition_point(|point| point[0] <= x);
     match (points[..after].last(), points.get(after)) {

@@ -15,7 +15,7 @@ pub struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The lines that `input` has left.
+    /// The remaining lines of `input`.
     pub fn new(input: &'a mut dyn BufRead) -> Self {
         Self {
             input,
@@ -27,8 +27,8 @@ impl<'a> Lines<'a> {
     /// The next line without the white space around it, and its number, counted from 1.
     ///
     /// # Errors
-    /// It cannot be read, is no text, or is cut off: the last line of a whole file ends with a line
-    /// break, too.
+    /// It cannot be read, is not text, or is cut off: the last line of a complete file also ends
+    /// with a line break.
     pub fn next_line(&mut self) -> Result<Option<(u64, &str)>> {
         self.bytes.clear();
         let mut some = Read::take(&mut *self.input, LONGEST_LINE);
@@ -54,7 +54,7 @@ impl<'a> Lines<'a> {
                 ),
             ));
         }
-        // Spreadsheets put this mark at the beginning of a text.
+        // Spreadsheets put this mark (BOM) at the beginning of a text.
         let start = if self.number == 1 && self.bytes.starts_with(b"\xEF\xBB\xBF") {
             3
         } else {
@@ -70,15 +70,15 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The same message, said of a line.
+/// The same message, with a line as its place.
 pub fn on_line(number: u64, error: Diagnostic) -> Diagnostic {
     error.within(&format!("line {number}"))
 }
 
-/// The number that `word` is; `what` it is, says the message.
+/// The number in `word`; `what` is its name in messages.
 ///
 /// # Errors
-/// No word, or one that is no number (exit code 2).
+/// No word, or not a number (exit code 2).
 pub fn float(word: Option<&str>, what: &str) -> Result<f64> {
     let word = word.ok_or_else(|| missing(what))?;
     word.parse()

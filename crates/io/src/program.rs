@@ -1,4 +1,4 @@
-//! What both programs do alike: signals, completions of shells, man pages.
+//! Functions common to both programs: signals, shell completions, man pages.
 
 use std::ffi::OsString;
 
@@ -8,19 +8,19 @@ pub use clap_complete::Shell;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::write_standard_output;
 
-/// Lets a file that grows beyond a limit of the shell (`ulimit -f`) be an error of the write, as a
-/// full disk is, and not the end of the program.
+/// Turns a file size limit of the shell (`ulimit -f`) into a write error, like a full disk, instead
+/// of the end of the program.
 pub fn take_size_limits_as_errors() {
     #[cfg(unix)]
     {
-        // Once it is caught, the write fails; nobody looks at the flag. Without the handler the
-        // program would be ended and leave an unfinished file, no more.
+        // Once it is caught, the write fails; the flag is not used. Without the handler the program
+        // would be ended and leave an unfinished file, nothing worse.
         let caught = std::sync::Arc::default();
         let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, caught);
     }
 }
 
-/// Refuses options that have another name now: each an old name and the new one.
+/// Refuses options that have been renamed: each an old name and the new one.
 ///
 /// # Errors
 /// One of the arguments is an old name.
@@ -39,7 +39,7 @@ pub fn refuse_renamed(
     Ok(())
 }
 
-/// Prints a script with which a shell completes the options of a program.
+/// Prints a script for completing the options of a program in a shell.
 ///
 /// # Errors
 /// As [`write_standard_output`].

@@ -1,5 +1,5 @@
-//! Numbers that look random and depend on nothing but names: no state has to be kept, and they are
-//! the same in whatever order they are asked for.
+//! Numbers that look random and depend only on their keys: no state is needed, and the order of the
+//! calls does not matter.
 
 /// A hash of a seed and words, in their order.
 pub fn hash(seed: u64, words: impl IntoIterator<Item = u64>) -> u64 {
@@ -15,7 +15,7 @@ pub fn uniform(seed: u64, words: &[u64]) -> f64 {
     ((hash >> 11) as f64 + 0.5) * (0.5 * f64::EPSILON)
 }
 
-/// What SplitMix64 adds in each step.
+/// Increment of SplitMix64 in each step.
 const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// Number `n` of the sequence of SplitMix64 that starts at 0.

@@ -1,9 +1,9 @@
-//! Files that appear whole or not at all: written under a temporary name in the same folder, then
-//! renamed.
+//! Files that appear complete or not at all: written under a temporary name in the same folder,
+//! then renamed.
 //!
-//! A temporary file is locked as long as its writer lives. What a killed writer has left is
-//! therefore known by its name and by being
-//! free, and the next writer in the folder removes it.
+//! A temporary file is locked as long as its writer lives. The remains of a killed writer are
+//! therefore recognised by their name and the missing lock, and the next writer in the folder
+//! removes them.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, Metadata, Permissions, TryLockError};
@@ -19,35 +19,37 @@ use crate::text::{visible_json, visible_lines};
 
 const BUFFER_BYTES: usize = 1 << 16;
 
-/// How the names of temporary files begin.
+/// Prefix of the names of temporary files.
 pub const UNFINISHED_PREFIX: &str = ".unfinished-";
 
-/// Letters and digits after it.
+/// Number of letters and digits after it.
 const RANDOM: usize = 6;
-/// A new temporary file may be taken for an abandoned one before it is locked: it is made again, at
-/// most so often.
+/// Largest number of attempts: a new temporary file may be taken for an abandoned one before it is
+/// locked, and is then made again.
 const TRIES: usize = 16;
 
 /// Temporary files that exist at this moment.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Folders in which this process has looked for abandoned files.
+/// Folders in which this process has searched for abandoned files.
 static CLEANED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// A file written in full under a temporary name. Dropped without [`PendingFile::publish`], it
-/// vanishes.
+/// A file written in full under a temporary name. If it is dropped without
+/// [`PendingFile::publish`], it is removed.
 #[derive(Debug)]
 pub struct PendingFile {
     target: PathBuf,
-    /// None for what cannot be renamed onto (a device, a named pipe): it was written to directly.
+    /// None for targets that cannot be renamed onto (a device, a named pipe): they are written
+    /// directly.
     temporary: Option<NamedTempFile>,
 }
 
 impl PendingFile {
-    /// Writes what will become the file `path`, in the same folder. An existing file stays as it is
-    /// until `publish`.
+    /// Writes the later file `path` under its temporary name, in the same folder. An existing file
+    /// stays unchanged until `publish`.
     ///
-    /// A device or a named pipe is written to directly; a reader that closes it early is no error.
+    /// A device or a named pipe is written to directly; a reader that closes it early is not an
+    /// error.
     ///
     /// # Errors
     /// Missing folder, no permission, full disk, `path` is a folder (all exit code 1). Nothing is
@@ -72,7 +74,7 @@ impl PendingFile {
                     .map_err(|error| explain(path, &error));
             }
         }
-        // Through a link, to the file that it names.
+        // A link is followed to its target.
         let target = if existing.is_some() {
             fs::canonicalize(path)
         } else {
@@ -102,17 +104,17 @@ impl PendingFile {
             temporary
                 .as_file()
                 .set_permissions(existing.permissions())?;
-            // What stood there is lost with the rename, so the new bytes have to be on the disk
+            // The previous content is lost with the rename, so the new bytes must be on the disk
             // before.
             temporary.as_file().sync_all()?;
         }
         Ok(())
     }
 
-    /// Gives the file its name, replacing what stood there.
+    /// Renames the file to its final name, replacing an existing file.
     ///
     /// # Errors
-    /// The rename failed (exit code 1). What stood there is unchanged.
+    /// The rename failed (exit code 1). An existing file is unchanged.
     pub fn publish(mut self) -> Result<()> {
         let Some(temporary) = self.temporary.take() else {
             return Ok(());
@@ -134,7 +136,7 @@ impl Drop for PendingFile {
     }
 }
 
-/// Writes the file `path`, which appears whole or not at all.
+/// Writes the file `path`, which appears complete or not at all.
 ///
 /// # Errors
 /// As [`PendingFile::write`].
@@ -142,9 +144,8 @@ pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
     PendingFile::write(path, write)?.publish()
 }
 
-/// Writes lines of text to standard output, without what a terminal would obey ([`crate::text`]). A
-/// reader that closes
-/// the pipe early has what it wanted: no error.
+/// Writes lines of text to standard output, without characters that control a terminal
+/// ([`crate::text`]). A reader that closes the pipe early is not an error.
 ///
 /// # Errors
 /// Standard output cannot be written to, such as a full disk behind it (exit code 1).
@@ -159,7 +160,7 @@ pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()
     })
 }
 
-/// Passes lines on once they are whole, without what a terminal would obey.
+/// Passes complete lines on, without characters that control a terminal.
 struct VisibleLines<'a> {
     out: &'a mut dyn Write,
     last: Vec<u8>,
@@ -189,23 +190,23 @@ impl Write for VisibleLines<'_> {
 /// Writes `value` to standard output as indented JSON. Numbers that are not finite become `null`.
 ///
 /// # Errors
-/// As [`write_standard_output`]; `value` cannot be put as JSON (exit code 1).
+/// As [`write_standard_output`]; `value` cannot be represented as JSON (exit code 1).
 pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
     write_standard_output(|out| write_json_text(out, value))
 }
 
-/// Writes `value` as indented JSON for a terminal, without what that would obey. Numbers that are
-/// not finite become `null`.
+/// Writes `value` as indented JSON for a terminal, without characters that control it. Numbers that
+/// are not finite become `null`.
 ///
 /// # Errors
-/// Those of `out`; `value` cannot be put as JSON.
+/// Those of `out`; `value` cannot be represented as JSON.
 pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
     let json = serde_json::to_string_pretty(value)?;
     write_visible_json(out, &json)?;
     out.write_all(b"\n")
 }
 
-/// Writes a text that is JSON for a terminal, without what that would obey; it means the same.
+/// Writes a JSON text for a terminal, without characters that control it; its meaning is unchanged.
 ///
 /// # Errors
 /// Those of `out`.
@@ -213,7 +214,7 @@ pub fn write_visible_json(out: &mut dyn Write, json: &str) -> io::Result<()> {
     out.write_all(visible_json(json).as_bytes())
 }
 
-/// Writes to standard output what is no text, and is written as it is.
+/// Writes bytes that are not text unchanged to standard output.
 ///
 /// # Errors
 /// As [`write_standard_output`].
@@ -224,16 +225,16 @@ pub(crate) fn write_standard_bytes(
         .map_err(|error| explain(Path::new("standard output"), &error))
 }
 
-/// Says on standard error what went wrong. One that is full or closed leaves nobody to tell.
+/// Prints an error on standard error. If that is full or closed, there is nowhere to report it.
 pub fn write_standard_error(error: &Diagnostic) {
     let _ = io::stderr().write_all(format!("error: {error}\n").as_bytes());
 }
 
-/// Removes the temporary files of writes that are under way: for a program that is interrupted and
-/// about to leave.
+/// Removes the temporary files of unfinished writes: for a program that is interrupted and about to
+/// end.
 pub fn remove_unfinished() {
     for path in unfinished().drain(..) {
-        // Nothing is left to be done about a file that cannot be removed.
+        // Nothing can be done about a file that cannot be removed.
         let _ = fs::remove_file(path);
     }
 }
@@ -280,8 +281,8 @@ fn check_target(path: &Path, metadata: &Metadata) -> Result<()> {
     Ok(())
 }
 
-/// Whether two names are those of one file, also through links of both kinds. A device is none, and
-/// so is what is not there.
+/// True if two names refer to the same file, also through links of both types. False for a device
+/// or a missing file.
 pub fn is_same_file(one: &Path, other: &Path) -> bool {
     let (Ok(a), Ok(b)) = (fs::metadata(one), fs::metadata(other)) else {
         return false;
@@ -301,8 +302,8 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
     }
 }
 
-/// Refuses to write `target`, an option or a file as messages name it by `place`, where it is one
-/// of the files that are read.
+/// Refuses to write `target`, called `place` in messages (an option or a file), if it is one of the
+/// files that are read.
 ///
 /// # Errors
 /// It is the same file as one of `inputs`, also through a link (exit code 2).
@@ -320,10 +321,10 @@ pub fn refuse_input(place: &str, target: &Path, inputs: &[PathBuf]) -> Result<()
     }
 }
 
-/// Finds out before the work whether there is a folder for a file.
+/// Checks before the work that the folder for a file exists.
 ///
 /// # Errors
-/// There is none: bad input, as the name was given so.
+/// It does not exist: bad input, as the name was given so.
 pub fn need_folder_of(target: &Path) -> Result<()> {
     if folder_of(target).is_dir() {
         return Ok(());
@@ -336,7 +337,7 @@ pub fn need_folder_of(target: &Path) -> Result<()> {
     ))
 }
 
-/// Refuses to write over files that are read, under whatever name.
+/// Refuses to overwrite files that are read, under whatever name.
 ///
 /// # Errors
 /// One of `written` is one of `read` (bad input): the same path, or a link to it.
@@ -396,18 +397,18 @@ fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
     Err(io::Error::other("temporary files vanish"))
 }
 
-/// Locks a new temporary file. False if another process has taken it for abandoned in between.
+/// Locks a new temporary file. False if another process has taken it for abandoned in the meantime.
 fn is_ours(temporary: &NamedTempFile) -> bool {
     match temporary.as_file().try_lock() {
         Ok(()) => fs::symlink_metadata(temporary.path()).is_ok(),
         Err(TryLockError::WouldBlock) => false,
-        // This disk knows no locks: nobody removes files from it.
+        // This disk does not support locks: nobody removes files from it.
         Err(TryLockError::Error(_)) => true,
     }
 }
 
-/// Removes what killed writers have left in a folder, once per process. What cannot be removed
-/// stays.
+/// Removes the remains of killed writers in a folder, once per process. Files that cannot be
+/// removed stay.
 fn remove_abandoned_files(folder: &Path) {
     let mut cleaned = CLEANED.lock().unwrap_or_else(PoisonError::into_inner);
     if !cleaned.insert(folder.to_owned()) {
@@ -428,7 +429,7 @@ fn remove_abandoned_files(folder: &Path) {
     }
 }
 
-/// Removes a temporary file unless its writer lives.
+/// Removes a temporary file unless its writer is still running.
 ///
 /// # Errors
 /// Those of removing it. A file that cannot be opened or locked stays, without an error.
@@ -443,7 +444,7 @@ pub fn remove_if_abandoned(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Readable by others as far as the user's own settings allow, as for any new file.
+/// Readable by others as far as the user's settings (umask) allow, as for any new file.
 #[cfg(unix)]
 fn usual_permissions() -> Option<Permissions> {
     Some(std::os::unix::fs::PermissionsExt::from_mode(0o666))
@@ -454,7 +455,7 @@ fn usual_permissions() -> Option<Permissions> {
     None
 }
 
-/// What went wrong when writing to `path`, for a person.
+/// The error for a failed write to `path`.
 pub fn explain(path: &Path, error: &io::Error) -> Diagnostic {
     let folder = folder_of(path).display();
     let (problem, remedy) = match error.kind() {
@@ -596,8 +597,8 @@ mod tests {
         );
     }
 
-    /// Remnants are looked for once per folder and process: each part of the test has its own
-    /// folder.
+    /// Abandoned files are searched for once per folder and process: each part of the test has its
+    /// own folder.
     #[test]
     fn the_next_write_removes_what_a_killed_one_left() {
         let folder = tempfile::tempdir().unwrap();
@@ -634,7 +635,7 @@ mod tests {
         drop(writer);
         remove_if_abandoned(&live).unwrap();
         assert!(!live.exists());
-        // Our own are locked until they have their name.
+        // Our own are locked until they have their final name.
         let pending = PendingFile::write(&folder.path().join("b.csv"), |_| Ok(())).unwrap();
         let temporary = pending.temporary.as_ref().unwrap().path().to_owned();
         remove_if_abandoned(&temporary).unwrap();

@@ -1,9 +1,9 @@
 //! STL bytes -> facets, behind our own checks.
 //!
 //! Binary or ASCII is decided by the length (a binary file of n facets has 84 + 50 n bytes),
-//! because binary headers may begin with "solid" too. The single facets of a binary file are read
-//! by stl_io, once the length and the header are checked here. ASCII is read by our own code:
-//! stl_io stops after the first `solid` block and names no line.
+//! because binary headers may begin with "solid" too. The facets of a binary file are read by
+//! stl_io, after the length and the header have been checked here. ASCII is read by our own code:
+//! stl_io stops after the first `solid` block and gives no line numbers.
 
 mod ascii;
 mod facets;
@@ -17,18 +17,17 @@ use std::io::{Cursor, Read, Seek, SeekFrom};
 const BINARY_START: usize = 84;
 /// Bytes of one facet of a binary file.
 const BINARY_FACET: usize = 50;
-/// Most facets that are read: three corners each must be numbered with 32 bits.
+/// Largest number of facets: three corners each must be numbered with 32 bits.
 const MOST_FACETS: usize = 1_000_000_000;
 
-/// What is wrong with a file that is not cut off but is something else.
+/// The remedy for a file that is not truncated but of another type.
 const REMEDY_OTHER: &str = "give an ASCII or binary STL file";
 /// Reads an ASCII or binary STL.
 ///
-/// # Errors
-/// Not an STL, no facet, missing or too many bytes (bytes after the last facet of a binary are let
-/// pass when all are zeros or blanks), a coordinate that is not a finite number (with the facet
-/// counted from 1, and the line of an ASCII file), or ASCII that does not follow the grammar (with
-/// the line). The place does not name the file.
+/// # Errors Not an STL, no facet, missing or too many bytes (bytes after the last facet of a binary
+/// file are accepted if all are zeros or blanks), a coordinate that is not a finite number (with
+/// the facet counted from 1, and the line of an ASCII file), or ASCII that does not follow the
+/// grammar (with the line). The place does not name the file.
 pub fn read_facets(bytes: &[u8]) -> Result<Facets> {
     if bytes.is_empty() {
         return Err(Diagnostic::input(
@@ -70,15 +69,15 @@ pub fn read_facets(bytes: &[u8]) -> Result<Facets> {
     Ok(facets)
 }
 
-/// Length that the header of a binary file promises; `None` for fewer bytes than a header.
+/// Length according to the header of a binary file; `None` for fewer bytes than a header.
 fn binary_length(bytes: &[u8]) -> Option<usize> {
     let count: [u8; 4] = bytes.get(80..BINARY_START)?.try_into().ok()?;
     Some(BINARY_START + BINARY_FACET * u32::from_le_bytes(count) as usize)
 }
 
-/// Whether the beginning holds nothing that text does not have. The count and the numbers of a
-/// binary file always do. Only a file that begins with "solid" may have letters beyond ASCII (in
-/// names), in any encoding.
+/// True if the beginning contains only bytes that occur in text. The count and the numbers of a
+/// binary file always contain others. Only a file that begins with "solid" may have letters beyond
+/// ASCII (in names), in any encoding.
 fn is_text(bytes: &[u8]) -> bool {
     let beginning = &bytes[..bytes.len().min(4096)];
     let has_control = beginning
@@ -87,7 +86,7 @@ fn is_text(bytes: &[u8]) -> bool {
     !has_control && (beginning.is_ascii() || starts_with_word(bytes, b"solid"))
 }
 
-/// Whether the first word is `word`, in upper or lower case.
+/// True if the first word is `word`, in upper or lower case.
 fn starts_with_word(text: &[u8], word: &[u8]) -> bool {
     let text = text.trim_ascii_start();
     text.len() >= word.len()
@@ -95,8 +94,8 @@ fn starts_with_word(text: &[u8], word: &[u8]) -> bool {
         && text.get(word.len()).is_none_or(u8::is_ascii_whitespace)
 }
 
-/// The part of a binary file with the length that its header promises. An error for another kind of
-/// file, missing bytes, or bytes too many that are more than padding.
+/// The part of a binary file with the length given in its header. An error for another type of
+/// file, missing bytes, or surplus bytes that are not padding.
 fn checked_binary(bytes: &[u8]) -> Result<&[u8]> {
     let length = bytes.len();
     let Some(promised) = binary_length(bytes) else {
@@ -127,7 +126,7 @@ fn checked_binary(bytes: &[u8]) -> Result<&[u8]> {
     Ok(&bytes[..promised])
 }
 
-/// The facets of a binary file of exactly the promised length.
+/// The facets of a binary file of exactly that length.
 fn read_binary(bytes: &[u8]) -> Result<Facets> {
     let count = (bytes.len() - BINARY_START) / BINARY_FACET;
     if count > MOST_FACETS {
@@ -171,8 +170,8 @@ fn read_binary(bytes: &[u8]) -> Result<Facets> {
     })
 }
 
-/// A binary STL with a line feed for its first byte, so that stl_io cannot take it for ASCII. The
-/// header means nothing.
+/// A binary STL with a line feed as its first byte, so that stl_io cannot take it for ASCII. The
+/// header has no meaning.
 struct NeverAscii<'a>(Cursor<&'a [u8]>);
 
 impl Read for NeverAscii<'_> {

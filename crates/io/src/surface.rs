@@ -1,6 +1,6 @@
 //! The closed surface of a solid, ready for use: welded, oriented, repaired, checked.
 //!
-//! # What is inside
+//! # Inside
 //! The signed crossings of a ray from a point with all triangles (+1 where it leaves the solid
 //! through one, -1 where it enters) add up to the winding number of the surface around the point.
 //! The solid is where it is positive. For shells that do not cross, this is "inside an outer shell

@@ -1,12 +1,10 @@
-//! Text of others on a terminal and on a page. Names of files and what scenes say may hold
-//! anything: nothing in them
-//! may move a cursor, begin a line, turn the direction of writing or open a tag.
+//! Text from outside on a terminal or a page. File names and texts of scenes may contain anything:
+//! nothing in them may move a cursor, start a line, change the direction of writing or open a tag.
 
 use std::borrow::Cow;
 
-/// Whether a terminal would obey this character instead of showing it: control characters,
-/// separators of lines, and
-/// those that turn the direction of writing.
+/// True if a terminal would obey this character instead of showing it: control characters, line
+/// separators, and characters that change the direction of writing.
 fn is_obeyed(letter: char) -> bool {
     let turns_or_separates = matches!(
         letter,
@@ -15,12 +13,12 @@ fn is_obeyed(letter: char) -> bool {
     letter.is_control() || turns_or_separates
 }
 
-/// `text` on one line, with each character that a terminal would obey as `\u{1b}`.
+/// `text` on one line, with each character that controls a terminal as `\u{1b}`.
 pub fn visible(text: &str) -> Cow<'_, str> {
     escape(text, is_obeyed)
 }
 
-/// The same of several lines, which stay lines, with tabs in them.
+/// The same for several lines, which stay lines, with tabs in them.
 pub(crate) fn visible_lines(text: &str) -> Cow<'_, str> {
     escape(text, |letter| {
         !matches!(letter, '\n' | '\t') && is_obeyed(letter)
@@ -42,7 +40,7 @@ fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// JSON with the characters that a terminal would obey as `\u001b`, which mean the same there.
+/// JSON with the characters that control a terminal as `\u001b`, which has the same meaning.
 pub(crate) fn visible_json(json: &str) -> Cow<'_, str> {
     let is_escaped = |letter: char| letter != '\n' && is_obeyed(letter);
     if !json.chars().any(is_escaped) {

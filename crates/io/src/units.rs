@@ -1,5 +1,5 @@
-//! Numbers with units, as people write them: "2 mm", "2.05 g/cm3". Inside the program everything is
-//! SI.
+//! Numbers with units, as written by users: "2 mm", "2.05 g/cm3". Inside the program all values are
+//! in SI.
 
 use std::f64::consts::PI;
 
@@ -19,16 +19,16 @@ pub const LENGTH_UNITS: [(&str, f64); 7] = [
 /// Units of density and their size in kg/m3.
 pub const DENSITY_UNITS: [(&str, f64); 3] = [("kg/m3", 1.0), ("g/cm3", 1e3), ("t/m3", 1e3)];
 
-/// A physical dimension and the units in which people write it.
+/// A physical dimension and its usual units.
 #[derive(Debug, Clone, Copy)]
 pub struct Dimension {
-    /// What a value of it is called.
+    /// The name of a value of it.
     pub name: &'static str,
-    /// The unit of its values, which is that of SI but for [`ANGLE_DEG`]; empty for plain numbers.
+    /// The unit of its values, the SI unit except for [`ANGLE_DEG`]; empty for plain numbers.
     pub si: &'static str,
     /// Units and their size in the SI unit.
     pub units: &'static [(&'static str, f64)],
-    /// A value as people write it.
+    /// An example value.
     pub example: &'static str,
 }
 
@@ -92,7 +92,7 @@ pub const ANGLE: Dimension = Dimension {
     example: "45 deg",
 };
 
-/// An angle that is given and told in degrees.
+/// An angle that is given and shown in degrees.
 pub const ANGLE_DEG: Dimension = Dimension {
     name: "angle",
     si: "deg",
@@ -326,7 +326,7 @@ pub fn length_unit_m(name: &str) -> Result<f64> {
 /// A value in SI from a number with a unit of `dimension`, or from a plain number in SI.
 ///
 /// # Errors
-/// Not a number, not finite, or a unit of something else, with the units that fit.
+/// Not a number, not finite, or a unit of another dimension, with the units that fit.
 pub fn quantity(text: &str, dimension: &Dimension) -> Result<f64> {
     let text = text.trim();
     let number_end = number_length(text);
@@ -363,7 +363,7 @@ pub fn quantity(text: &str, dimension: &Dimension) -> Result<f64> {
     Ok(value)
 }
 
-/// Length in bytes of the number that `text` begins with.
+/// Length in bytes of the number at the beginning of `text`.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut end = 0;
@@ -414,7 +414,7 @@ fn unit_letters(name: &str) -> String {
         .collect()
 }
 
-/// A length for a person: three to four digits in the unit that suits its size.
+/// A human-readable length: three to four digits in a suitable unit.
 pub fn show_length(metres: f64) -> String {
     let size = metres.abs();
     let (name, unit) = match size {
@@ -426,7 +426,7 @@ pub fn show_length(metres: f64) -> String {
     format!("{} {name}", significant(metres / unit, 4))
 }
 
-/// `value` with so many significant digits, without trailing zeros.
+/// `value` with this number of significant digits, without trailing zeros.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -472,13 +472,13 @@ mod tests {
         }
     }
 
-    /// A dimension that is declared above is known to studies, too.
+    /// Every dimension declared above is also known to studies.
     #[test]
     fn all_dimensions_are_in_the_list() {
         let declared = include_str!("units.rs")
             .matches(": Dimension = Dimension {")
             .count();
-        // This test names the words once itself, and `ANGLE_DEG` has the units of `ANGLE`.
+        // This test itself contains the names once, and `ANGLE_DEG` has the units of `ANGLE`.
         let names = |dimension: &Dimension| -> Vec<&str> {
             let mut names: Vec<&str> = dimension.units.iter().map(|(unit, _)| *unit).collect();
             names.sort_unstable();

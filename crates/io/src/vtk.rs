@@ -1,11 +1,10 @@
-//! Writing VTK XML PolyData (.vtp): what the files of bodies and the frames of a run have in
-//! common.
+//! Writing of VTK XML PolyData (.vtp), shared by the files of bodies and the frames of a run.
 //!
-//! The header is text; the arrays follow it as numbers in binary (appended raw, little endian), so
-//! that nothing is lost. Each value is computed when its turn comes to be written, so that no array
-//! has to be held in memory, and there is one for every point or line. Points are particles, lines
-//! are bonds of two points each. There are no vertex cells: cell data would have to cover them too.
-//! Connectivity and offsets are signed: ParaView refuses unsigned ones.
+//! The header is text. The arrays follow it as binary numbers (appended raw, little endian), so
+//! that nothing is lost. Each value is computed when it is written, so that no array is held in
+//! memory, and there is one value for every point or line. Points are particles, lines are bonds of
+//! two points each. There are no vertex cells: cell data would have to include them. Connectivity
+//! and offsets are signed: ParaView refuses unsigned ones.
 //!
 //! [VTK XML formats](https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html)
 
@@ -14,7 +13,7 @@ use std::io::{self, Write};
 
 use crate::xml::escaped;
 
-/// An array with a name that ParaView shows.
+/// An array with its name in ParaView.
 #[derive(Clone, Copy)]
 pub struct NamedArray<'a> {
     /// Its name, with the unit if it has one: `velocity_m_s`.
@@ -45,7 +44,7 @@ impl Values<'_> {
         }
     }
 
-    /// Bytes of each value.
+    /// Number of bytes of each value.
     fn bytes(&self) -> u64 {
         match self {
             Self::Scalars(_) => 8,
@@ -69,7 +68,7 @@ impl Values<'_> {
 pub struct PolyData<'a> {
     /// Number of points.
     pub points: usize,
-    /// Place of each point.
+    /// Position of each point.
     pub place: &'a dyn Fn(usize) -> [f64; 3],
     /// Number of lines.
     pub lines: usize,
@@ -115,7 +114,7 @@ impl PolyData<'_> {
         write_array(out, lines, |line| {
             (self.ends)(line).map(|end| i64::from(end).to_le_bytes())
         })?;
-        // Where each line ends in the connectivity: 2, 4, 6, ...
+        // The end of each line in the connectivity: 2, 4, 6, ...
         write_array(out, lines, |line| [(2 * (line as i64 + 1)).to_le_bytes()])?;
         for (arrays, count) in [(self.point_data, points), (self.cell_data, lines)] {
             for array in arrays {
@@ -125,7 +124,7 @@ impl PolyData<'_> {
         writeln!(out, "\n  </AppendedData>\n</VTKFile>")
     }
 
-    /// Says in the header which arrays there are, and where in the appended data each begins.
+    /// Declares the arrays in the header, and their offsets in the appended data.
     fn declare(&self, out: &mut dyn Write) -> io::Result<()> {
         let lines = self.lines as u64;
         let mut end = 0;
@@ -166,7 +165,7 @@ impl PolyData<'_> {
     }
 }
 
-/// What the header says of an array.
+/// The declaration of an array in the header.
 struct Declaration<'a> {
     kind: &'static str,
     name: &'a str,
@@ -198,7 +197,7 @@ pub fn exact(value: f64) -> String {
     format!("{value:e}")
 }
 
-/// A field of one number, unless it is not known.
+/// A field of one number, unless it is unknown.
 pub fn write_number(
     out: &mut dyn Write,
     kind: &str,
@@ -213,7 +212,7 @@ pub fn write_number(
     )
 }
 
-/// A field of text, unless it is not known: an array of signed bytes with a zero at its end.
+/// A field of text, unless it is unknown: an array of signed bytes with a zero at its end.
 pub(crate) fn write_text(out: &mut dyn Write, name: &str, text: Option<&str>) -> io::Result<()> {
     text.map_or(Ok(()), |text| write_texts(out, name, &[text]))
 }
@@ -241,11 +240,11 @@ pub(crate) fn write_texts(
     writeln!(out, "</Array>")
 }
 
-/// Values that are gathered before they are written, and the most bytes that each may have.
+/// Number of values collected before they are written, and the largest number of bytes of each.
 const AT_ONCE: usize = 1024;
 const MOST_BYTES: usize = 24;
 
-/// One array: its size in bytes, then its values, each of so many numbers.
+/// One array: its size in bytes, then its values, each of this number of numbers.
 fn write_array<const NUMBERS: usize, const BYTES: usize>(
     out: &mut dyn Write,
     count: usize,

@@ -1,7 +1,7 @@
-//! Text inside XML that we write.
+//! Text inside XML that the programs write.
 
-/// `text` as it may stand in an attribute or between tags. White space becomes blanks; what XML
-/// cannot hold is left out.
+/// `text` in a form that is valid in an attribute or between tags. White space becomes blanks;
+/// characters that XML does not allow are left out.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {

@@ -1,4 +1,4 @@
-//! Bodies through every file format, and damaged, foreign and hostile files.
+//! Bodies in every file format, and damaged, foreign and hostile files.
 
 mod bodies;
 mod damaged;

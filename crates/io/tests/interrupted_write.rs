@@ -1,13 +1,13 @@
-//! What an interrupted program does.
+//! The behaviour of an interrupted program.
 
 use std::process::Command;
 
 use dem_io::safe_write::{PendingFile, remove_unfinished};
 
-/// Set where the test runs alone in a process.
+/// Set if the test runs alone in a process.
 const ALONE: &str = "DEM_IO_TEST_ALONE";
 
-/// In a process of its own, since it removes every unfinished file of the process.
+/// Runs in a process of its own, since it removes every unfinished file of the process.
 #[test]
 fn an_interrupted_program_leaves_no_half_file() {
     if std::env::var_os(ALONE).is_some() {

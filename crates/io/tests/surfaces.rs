@@ -1,4 +1,4 @@
-//! Every kind of STL file, good or bad: what comes of it.
+//! The results for every kind of STL file, good or bad.
 
 #[path = "fuzz_bodies/read_stl.rs"]
 mod body;

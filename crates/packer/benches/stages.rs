@@ -1,8 +1,8 @@
-//! The stages of dem-pack apart, in the bending sample with 14,000 and 87,000 spheres, on one
+//! The individual stages of dem-pack for the bending sample with 14,000 and 87,000 spheres, on one
 //! thread and on all: `cargo bench -p dem-pack`.
 //!
-//! The stages between the surface and the body are timed by the program's own clock, as the report
-//! of dem-pack tells it: whole bodies are made, and each stage has its times from all of them. The
+//! The stages between the surface and the body are timed by the program's own clock, as in the
+//! report of dem-pack: complete bodies are made, and each stage has its times from all of them. The
 //! rest is timed from outside.
 #![allow(
     missing_docs,
@@ -26,7 +26,7 @@ use rayon::ThreadPool;
 
 const SAMPLES: usize = 10;
 const SHAPES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/shapes");
-/// Diameters and how many spheres they give, about.
+/// Diameters, and the approximate numbers of spheres.
 const SIZES: [(&str, &str); 2] = [
     ("2.2mm..2.75mm", "14,000 spheres"),
     ("1.2mm..1.5mm", "87,000 spheres"),
@@ -57,7 +57,7 @@ fn stages(criterion: &mut Criterion) {
             let name = format!("{size}, {threads} of {all} threads");
             let mut group = criterion.benchmark_group(&name);
             group.sample_size(SAMPLES).sampling_mode(SamplingMode::Flat);
-            // So short that criterion asks for each time once.
+            // So short that criterion asks only once for each time.
             group
                 .warm_up_time(Duration::from_nanos(1))
                 .measurement_time(Duration::from_nanos(1));
@@ -85,8 +85,8 @@ fn surface_reading(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Each stage with its times from the same `SAMPLES` bodies, which are made when the first stage is
-/// asked for.
+/// Measures each stage by its times from the same `SAMPLES` bodies, which are made for the first
+/// stage.
 fn by_own_clock(
     group: &mut BenchmarkGroup<WallTime>,
     surface: &Surface,
@@ -113,7 +113,7 @@ fn by_own_clock(
     }
 }
 
-/// A body as a .vtp into memory and out of it.
+/// Writes a body as .vtp into memory and reads it back.
 fn body_files(criterion: &mut Criterion, body: &Body) {
     let mut bytes = Vec::new();
     vtp::write(body, &mut bytes).expect("memory can be written to");

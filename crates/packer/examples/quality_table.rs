@@ -6,8 +6,8 @@
 //! cargo run --release -p dem-pack --example quality_table -- growth 5000000
 //! ```
 //!
-//! Each packing of the second table is made in a process of its own, whose memory is its own (Linux
-//! only).
+//! Each packing of the second table is made in a process of its own, to measure its memory
+//! separately (Linux only).
 
 use std::io::{Error, Write};
 use std::process::Command;
@@ -18,13 +18,13 @@ use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
 use dem_io::{Diagnostic, Result};
 use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
 
-/// The shares of the first table.
+/// Values of `--densify` in the first table.
 const SETTLE: [f64; 10] = [
     0.0, 0.01, 0.02, 0.025, 0.03, 0.033, 0.036, 0.039, 0.041, 0.043,
 ];
-/// Each line of the first table is the mean over these seeds.
+/// Seeds over which each line of the first table is averaged.
 const SEEDS: [u64; 3] = [1, 2, 3];
-/// Spheres in the bending sample when their diameters are 1.2 mm to 1.5 mm, about.
+/// Approximate number of spheres in the bending sample for diameters of 1.2 mm to 1.5 mm.
 const SPHERES_OF_1_35_MM: f64 = 87_000.0;
 
 fn main() -> std::result::Result<(), Error> {
@@ -44,7 +44,7 @@ fn number(text: &str) -> std::result::Result<usize, Error> {
         .map_err(|_| Error::other(format!("'{text}' is not a whole number")))
 }
 
-/// Density, isotropy and time on one thread, diameters 2 mm to 3 mm without overlap.
+/// Density, isotropy and time on one thread, for diameters of 2 mm to 3 mm without overlap.
 fn quality_table() -> std::result::Result<(), Error> {
     let surface = bending_sample()?;
     let mut out = std::io::stdout();
@@ -86,7 +86,7 @@ fn quality_table() -> std::result::Result<(), Error> {
     Ok(())
 }
 
-/// Time and memory by number of spheres, on one thread and on two.
+/// Time and memory over the number of spheres, on one thread and on two.
 fn growth_table(counts: &[usize]) -> std::result::Result<(), Error> {
     let mut out = std::io::stdout();
     writeln!(
@@ -167,8 +167,8 @@ fn make(surface: &Surface, diameter: &str, settle: Option<f64>, seed: u64) -> Re
     make_body(surface, &settings(diameter, settle, seed)?, &|_, _| Ok(())).map(|(_, made)| made)
 }
 
-/// Spheres without overlap; bonds join those that touch, so that the fabric is that of the
-/// contacts.
+/// Settings for spheres without overlap. Bonds join those that touch, so that the fabric is that of
+/// the contacts.
 fn settings(diameter: &str, settle: Option<f64>, seed: u64) -> Result<BodySettings> {
     Ok(BodySettings {
         packing: PackSettings {
@@ -186,7 +186,7 @@ fn settings(diameter: &str, settle: Option<f64>, seed: u64) -> Result<BodySettin
     })
 }
 
-/// The most memory that this process has held, as Linux counts it.
+/// Peak memory of this process, as Linux counts it.
 fn peak_memory_bytes() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status

@@ -18,29 +18,29 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Spheres whose distance to the wall one task measures.
+/// Number of spheres whose distance to the wall one task measures.
 const SPHERES_PER_TASK: usize = 256;
 
 /// Settings of a body.
 #[derive(Debug, Clone)]
 pub struct BodySettings {
-    /// The spheres.
+    /// Settings of the sphere packing.
     pub packing: PackSettings,
     /// Bonds join pairs with distance <= this * (R_a + R_b), unless `bonds_per_particle` is given.
     pub bond_range: f64,
-    /// Choose the bond range so that bonds / particles is this.
+    /// Target number of bonds per particle, for which the bond range is chosen.
     pub bonds_per_particle: Option<f64>,
     /// Bond radius / smaller particle radius.
     pub bond_radius_factor: f64,
     /// Density of the particles' material, kg/m3.
     pub particle_density_kg_m3: Option<f64>,
-    /// Choose the overlap so that mass of the particles / volume of the shape is this, kg/m3.
+    /// Target mass of the particles / volume of the shape, kg/m3, for which the overlap is chosen.
     pub solid_density_kg_m3: Option<f64>,
 }
 
 impl BodySettings {
-    /// Bonds between spheres up to 1.1 times the sum of their radii apart, as thick as the smaller
-    /// of the two, as the program makes them unless told otherwise.
+    /// The program's defaults: bonds between spheres up to 1.1 times the sum of their radii apart,
+    /// as thick as the smaller of the two.
     pub fn new(packing: PackSettings) -> Self {
         Self {
             packing,
@@ -53,33 +53,34 @@ impl BodySettings {
     }
 }
 
-/// More spheres than this fraction taken out are worth a warning.
+/// Fraction of spheres taken out above which a warning is given.
 const MANY_TAKEN_OUT: f64 = 0.005;
 
 /// Times of the stages, s.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct StageSeconds {
-    /// Front, settling, filling, and every packing of a density search.
+    /// Time for the front, settling and filling, for every packing of a density search.
     pub packing: f64,
-    /// Finding the bonds.
+    /// Time to find the bonds.
     pub bonds: f64,
-    /// Distances to the wall, checking and judging.
+    /// Time for distances to the wall, checks and the report.
     pub report: f64,
 }
 
-/// All that is known of a new body.
+/// Results of making a body.
 #[derive(Debug, Clone, Serialize)]
 pub struct BodyReport {
     /// Its quality.
     pub quality: Report,
-    /// Its mass, beside that of its shape filled with the density of the particles, if that is
-    /// given.
+    /// Its mass, and the mass of its shape filled with the density of the particles. None without
+    /// that density.
     pub mass: Option<BodyMass>,
-    /// Mass of the particles over that of the shape filled with their density, whatever it is.
+    /// Mass of the particles / mass of the shape filled with their density; independent of that
+    /// density.
     pub mass_over_shape: f64,
     /// Centre of mass, m. Length 3.
     pub centre_m: [f64; 3],
-    /// The course of its packing. Its seconds are those of all packings of a density search.
+    /// History of its packing. The times are the sums over all packings of a density search.
     pub history: PackHistory,
     /// The bond range that was used.
     pub bond_range: f64,
@@ -91,7 +92,7 @@ pub struct BodyReport {
     pub seconds: StageSeconds,
 }
 
-/// Packs, bonds and judges.
+/// Packs a shape with spheres, bonds them and assesses the body.
 ///
 /// # Errors
 /// As [`crate::pack()`] and [`find_bonds`]; a density that no overlap gives.
@@ -126,7 +127,7 @@ pub fn make_body(
     progress("bonds", 0.0)?;
     let crosses = |a: u32, b: u32| {
         let (p, q) = (spheres.positions[a as usize], spheres.positions[b as usize]);
-        // Balls that clear the surface and cover the line between their centres.
+        // Spheres that clear the surface and cover the line between their centres.
         let clear = wall_distance[a as usize] + wall_distance[b as usize];
         clear <= centre_distance(spheres, a, b) && crosses_surface(&solid.boundary, p, q)
     };
@@ -174,17 +175,18 @@ pub fn make_body(
     Ok((body, report))
 }
 
-/// Distances to the wall as far as the report needs them, in cells two mean diameters wide.
+/// Map of distances to the wall as far as the report needs them, with cells two mean diameters
+/// wide.
 fn depth_map<'a>(solid: &'a Solid, spheres: &Spheres) -> DepthMap<'a> {
     let mean_radius = spheres.radii.iter().sum::<f64>() / spheres.radii.len() as f64;
     let reach = depth_needed(spheres);
     DepthMap::new(solid.surface, &solid.boundary, reach, 4.0 * mean_radius)
 }
 
-/// Spheres, and how they were packed.
+/// Spheres and the history of their packing.
 struct Packed {
     packing: Packing,
-    /// With the overlap that was found, if it was looked for.
+    /// Settings, with the overlap found by a density search.
     settings: PackSettings,
     density_search: Option<DensitySearch>,
 }
@@ -263,7 +265,7 @@ fn spheres_volume_m3(body: &Body) -> f64 {
     body.radii.iter().map(|radius| volume_m3(*radius)).sum()
 }
 
-/// Separate parts of the solid; parts that cross each other are taken for one.
+/// Number of separate parts of the solid. Parts that cross each other count as one.
 fn parts(surface: &Surface) -> usize {
     if surface.repairs.self_intersections > 0 {
         1
@@ -285,7 +287,7 @@ fn jam_warning(history: &PackHistory, particles: usize) -> Option<String> {
     })
 }
 
-/// A warning if voids are left although the sizes would not forbid to fill them.
+/// A warning if voids remain although the sizes would allow filling them.
 fn void_warning(history: &PackHistory, sizes: &Sizes) -> Option<String> {
     (can_fill_voids(sizes) && history.voids_left > 0).then(|| {
         format!(

@@ -1,8 +1,8 @@
-//! Bonds: which pairs of spheres are joined.
+//! Bonds: the pairs of spheres that are joined.
 //!
 //! A pair is joined when the distance of its centres is at most `bond_range * (R_a + R_b)`, true
-//! radii (Platzer 2022, section 4.1: 1.0 and 1.1), and no surface lies between: two fingers of one
-//! shape stay two.
+//! radii (Platzer 2022, section 4.1: 1.0 and 1.1), and no surface lies between them: two fingers of
+//! one shape stay separate.
 
 use crate::spheres::Spheres;
 use dem_io::{Diagnostic, Result};
@@ -15,17 +15,16 @@ pub type CrossesSurface<'a> = &'a (dyn Fn(u32, u32) -> bool + Sync);
 
 /// Beyond this bond range a bond would pass through other spheres.
 pub(crate) const LARGEST_BOND_RANGE: f64 = 2.0;
-/// Bonds per particle of a body that is well bonded (Platzer 2022: 377,052 bonds of 77,487 spheres,
-/// 4.87).
+/// Bonds per particle of a well bonded body (Platzer 2022: 377,052 bonds of 77,487 spheres, 4.87).
 pub(crate) const WELL_BONDED: f64 = 5.0;
-/// Spheres whose neighbours are counted to advise a bond range: enough for 1 % of the number of
-/// bonds.
+/// Number of spheres whose neighbours are counted to suggest a bond range: enough to know the
+/// number of bonds to 1 %.
 const SPHERES_TO_ADVISE: usize = 5000;
-/// Spheres that one task searches around: fixed, so that the order of results is the same for any
-/// number of threads.
+/// Number of spheres that one task searches around. Fixed, so that the order of results does not
+/// depend on the number of threads.
 const CHUNK: usize = 4096;
 
-/// The bonds of a packing, the smaller index first, sorted. `crosses_surface` is asked only for
+/// The bonds of a packing, the smaller index first, sorted. `crosses_surface` is only called for
 /// pairs farther apart than the sum of their radii: a closer pair has its line of centres inside
 /// its two balls, which lie in the solid.
 ///
@@ -58,8 +57,9 @@ pub fn close_pairs(spheres: &Spheres, ratio: f64) -> Result<Vec<[u32; 2]>> {
     Ok(sorted(parts, spheres.radii.len()))
 }
 
-/// The bond range that gives `wanted` bonds per particle (bonds divided by particles), as near
-/// as whole bonds allow: half-way between the last pair that is joined and the first that is not.
+/// The bond range that gives `wanted` bonds per particle (bonds divided by particles) as closely as
+/// a whole number of bonds allows: half-way between the last pair that is joined and the first that
+/// is not.
 ///
 /// # Errors
 /// `wanted` not positive, or not reached with a bond range of 2; more spheres than 2^32.
@@ -104,9 +104,9 @@ pub fn bond_range_for(
     }
 }
 
-/// A bond range to advise when a packing has too few bonds: gives 5 bonds per
-/// particle, rounded up to two decimals. None where no bond range does. Of many spheres, the
-/// neighbours of some are counted.
+/// The bond range to suggest when a packing has too few bonds: it gives 5 bonds per particle,
+/// rounded up to two decimals. None if no bond range does. In large packings only the neighbours of
+/// a sample of spheres are counted.
 pub fn suggested_bond_range(spheres: &Spheres, crosses_surface: CrossesSurface) -> Option<f64> {
     let radii = &spheres.radii;
     let stride = radii.len().div_ceil(SPHERES_TO_ADVISE).max(1);
@@ -147,8 +147,8 @@ pub fn suggested_bond_range(spheres: &Spheres, crosses_surface: CrossesSurface) 
     }
 }
 
-/// Distances of the centres of bonded spheres: the initial lengths of the bonds, local units. One
-/// per bond.
+/// Distances between the centres of bonded spheres, which are the initial lengths of the bonds,
+/// local units. One per bond.
 pub fn bond_lengths(spheres: &Spheres, bonds: &[[u32; 2]]) -> Vec<f64> {
     bonds
         .par_iter()
@@ -173,10 +173,10 @@ pub(crate) fn centre_distance(spheres: &Spheres, a: u32, b: u32) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 
-/// No surface between two spheres. A point of the line of centres at distance t from a is in ball a
-/// if t <= R_a, and in ball b if distance - t <= R_b; if it were in neither, distance > R_a + R_b.
-/// The balls lie inside the solid, so only pairs farther apart than R_a + R_b can have surface
-/// between them.
+/// True if no surface lies between two spheres. A point of the line of centres at distance t from a
+/// is in ball a if t <= R_a, and in ball b if distance - t <= R_b; if it were in neither,
+/// distance > R_a + R_b. The balls lie inside the solid, so only pairs farther apart than R_a + R_b
+/// can have surface between them.
 fn is_joined(
     spheres: &Spheres,
     a: u32,
@@ -187,12 +187,12 @@ fn is_joined(
     distance <= spheres.radii[a as usize] + spheres.radii[b as usize] || !crosses_surface(a, b)
 }
 
-/// `keep(a, b, distance)` of every pair with distance <= ratio (R_a + R_b), a the larger sphere of
-/// the two: once each, in chunks, in no particular order, which depends on the spheres alone.
+/// `keep(a, b, distance)` for every pair with distance <= ratio (R_a + R_b), where a is the larger
+/// sphere. Each pair occurs once. The pairs come in chunks whose order depends only on the spheres.
 ///
-/// Each sphere looks for its smaller neighbours only, all of them within 2 ratio R_a. A point lies
-/// within that distance of at most about 8 ratio^3 centres of spheres that do not overlap much,
-/// whatever their sizes: no distribution is slow.
+/// Each sphere searches only for its smaller neighbours, all of them within 2 ratio R_a. For
+/// spheres that do not overlap much, at most about 8 ratio^3 of them have a given point within that
+/// distance, whatever their sizes, so no distribution is slow.
 fn search<T: Send>(
     spheres: &Spheres,
     ratio: f64,
@@ -203,13 +203,14 @@ fn search<T: Send>(
         return Ok(Vec::new());
     }
     let tree = tree_of(spheres)?;
-    // In the order of the tree's leaves, so that what one sphere reads is at hand for the next.
+    // In the order of the tree's leaves, so that the data of one sphere are still in the cache for
+    // the next.
     let order: Vec<u32> = tree.iter().map(|(item, _)| item).collect();
     let search_around = |chunk: &[u32]| {
         let mut found = Vec::with_capacity(6 * chunk.len());
         for &a in chunk {
             let radius_a = radii[a as usize];
-            // A shade more, so that rounding in the tree drops no pair; the exact test follows.
+            // Slightly more, so that rounding in the tree drops no pair; the exact test follows.
             let reach = 2.0 * ratio * radius_a * (1.0 + 1e-9);
             let neighbours = tree
                 .query(&spheres.positions[a as usize])
@@ -241,8 +242,8 @@ fn tree_of(spheres: &Spheres) -> Result<ImmutableKdTree<f64, 3>> {
     })
 }
 
-/// The pairs sorted: counted and dealt out by their first index, each sphere's few then sorted by
-/// the second.
+/// The pairs, sorted: distributed by their first index (counting sort), then each sphere's few
+/// pairs sorted by the second.
 fn sorted(parts: Vec<Vec<[u32; 2]>>, spheres: usize) -> Vec<[u32; 2]> {
     let mut starts = vec![0_u32; spheres + 1];
     for [a, _] in parts.iter().flatten() {
@@ -262,7 +263,7 @@ fn sorted(parts: Vec<Vec<[u32; 2]>>, spheres: usize) -> Vec<[u32; 2]> {
             *slot += 1;
         }
     }
-    // Each slot now stands at the end of its row.
+    // Each slot now points to the end of its row.
     let mut begin = 0;
     for end in &next[..spheres] {
         pairs[begin..*end as usize].sort_unstable();

@@ -22,10 +22,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-/// Does what was asked for.
+/// Runs the command given by the arguments.
 ///
 /// # Errors
-/// Bad input, or work that failed; a reader that closes standard output early is no error.
+/// Bad input, or work that failed; a reader that closes standard output early is not an error.
 pub fn run(arguments: &Arguments) -> Result<()> {
     match &arguments.command {
         Some(Command::Info {
@@ -57,8 +57,8 @@ fn pack_command(arguments: &PackArguments) -> Result<()> {
         ));
     }
     let settings = arguments.checked()?;
-    // The whole job runs in the pool: a parallel loop that is begun outside it puts the beginner to
-    // sleep and wakes it again.
+    // The complete job runs in the pool: a parallel loop started outside it puts the calling thread
+    // to sleep and wakes it again.
     thread_pool(arguments.threads)?.install(|| pack_and_write(stl, arguments, &settings, output))
 }
 
@@ -107,14 +107,15 @@ fn pack_and_write(
         }
     } else {
         if let Some(mut person) = person {
-            // Standard error that cannot be written to leaves nobody to tell.
+            // If standard error cannot be written to, there is nowhere to report that.
             let _ = person.write_all(text.as_bytes());
         }
         Ok(())
     }
 }
 
-/// A diameter without a unit that is larger than the shape was hardly meant as metres.
+/// Refuses a diameter without a unit that is larger than the shape, which was hardly meant in
+/// metres.
 fn check_unit_of_diameter(text: Option<&str>, sizes: &Sizes, surface: &Surface) -> Result<()> {
     let text = text.unwrap_or_default();
     let numbers = text.rsplit(':').next().unwrap_or(text);
@@ -136,7 +137,7 @@ fn check_unit_of_diameter(text: Option<&str>, sizes: &Sizes, surface: &Surface) 
     ))
 }
 
-/// As many threads as asked for, or one per core.
+/// The requested number of threads, or one per core.
 fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if let Some(threads @ (0 | 1025..)) = threads {
         return Err(Diagnostic::input(
@@ -157,7 +158,7 @@ fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
         })
 }
 
-/// Finds out before the work whether the body can be written at all.
+/// Checks before the work whether the body can be written.
 fn check_output(output: &Path, stl: &Path, diameter: Option<&str>) -> Result<()> {
     let files = body_files(output)?;
     for file in &files {

@@ -1,4 +1,4 @@
-//! The overlap that gives a wanted solid density (Platzer 2022, section 4.5.1.5): a root search
+//! The overlap that gives a target solid density (Platzer 2022, section 4.5.1.5): a root search
 //! over packings.
 
 use crate::pack::{PackSettings, Packing, Progress, Solid, pack_if};
@@ -8,27 +8,27 @@ use serde::Serialize;
 use std::cell::Cell;
 use std::time::Instant;
 
-/// The search ends when the density is as near as this, relative.
+/// Relative error of the density at which the search ends.
 pub(crate) const NEAR_ENOUGH: f64 = 1e-3;
-/// Densities are near the wanted one up to this, relative: more than chance makes.
+/// Relative error up to which a density is near the target: more than chance causes.
 const NEAR: f64 = 0.01;
-/// Packings begun at most.
+/// Largest number of packings begun.
 const MOST_PACKINGS: usize = 30;
-/// Overlaps nearer to each other than this are not tried twice: they change the density by less
-/// than chance does.
+/// Smallest difference between two overlaps that are both tried: smaller ones change the density by
+/// less than chance does.
 const FINEST_STEP: f64 = 1e-5;
-/// Overlaps are below this: a sphere must not swallow its neighbour's centre.
+/// Limit of the overlap: a sphere must not contain the centre of its neighbour.
 pub(crate) const LARGEST_OVERLAP: f64 = 1.0;
-/// The largest overlap that is tried: so near to the limit that the density is nearly the largest
-/// there is.
+/// Largest overlap that is tried: so close to the limit that the density is almost the largest
+/// possible.
 const LARGEST_TRIED: f64 = 0.999;
 
-/// The density that was wanted, and the one found.
+/// The target density and the one found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DensitySearch {
-    /// Wanted mass of the particles / volume of the shape, kg/m3.
+    /// Target mass of the particles / volume of the shape, kg/m3.
     pub wanted_kg_m3: f64,
-    /// Found, kg/m3.
+    /// Value found, kg/m3.
     pub found_kg_m3: f64,
     /// found / wanted - 1.
     pub relative_error: f64,
@@ -36,7 +36,7 @@ pub struct DensitySearch {
     pub overlap: f64,
     /// Number of packings begun.
     pub packings: usize,
-    /// Number of them made to the end: those whose front was of nearly the density wanted.
+    /// Number of packings completed: those whose front had nearly the target density.
     pub finished: usize,
 }
 
@@ -59,8 +59,8 @@ impl DensitySearch {
 #[derive(Debug, Clone, Copy)]
 struct Try {
     overlap: f64,
-    /// Sum of the spheres' volumes over that of the shape; expected if the packing was not made to
-    /// the end.
+    /// Sum of the spheres' volumes / volume of the shape; the expected value if the packing was not
+    /// completed.
     filled: f64,
 }
 
@@ -68,14 +68,13 @@ struct Try {
 #[derive(Debug, Clone, Copy)]
 struct Begun {
     overlap: f64,
-    /// Sum of the spheres' volumes over that of the shape, as the front filled it.
+    /// Sum of the spheres' volumes / volume of the shape after the front.
     front: f64,
-    /// The same of the packing, if it was made to the end.
+    /// The same fraction after settling and filling, if the packing was completed.
     filled: Option<f64>,
 }
 
-/// Final fraction over that of the front, as expected: the mean of the packings that were made to
-/// the end.
+/// Expected ratio of the final fraction to that of the front: the mean over the completed packings.
 fn gain(begun: &[Begun]) -> f64 {
     let gains = begun.iter().filter_map(|b| Some(b.filled? / b.front));
     let (sum, count) = gains.fold((0.0, 0.0), |(sum, count), gain| (sum + gain, count + 1.0));
@@ -92,26 +91,27 @@ fn judged(begun: &[Begun]) -> Vec<Try> {
     begun.iter().map(judge).collect()
 }
 
-/// Largest relative error of a front that is settled and filled, when the nearest finished packing
-/// is off by this: the first shows what settling and filling do to the density, each later one must
-/// promise to be twice as near, if not near enough.
+/// Largest relative error of a front that is worth settling and filling, given the error of the
+/// nearest completed packing. The first packing shows how settling and filling change the density.
+/// Each later one must promise half the error of the nearest one, or an error small enough to end
+/// the search.
 fn largest_promising(nearest: Option<f64>) -> f64 {
     nearest.map_or(NEAR, |off| (0.5 * off).max(NEAR_ENOUGH))
 }
 
-/// A search for the overlap of a wanted density.
+/// A search for the overlap of a target density.
 struct Search {
-    /// Wanted sum of the spheres' volumes over that of the shape.
+    /// Target sum of the spheres' volumes / volume of the shape.
     target: f64,
     begun: Vec<Begun>,
     /// The packing that came nearest.
     best: Option<(Try, Packing)>,
-    /// Times of all packings for front, settling and filling, s.
+    /// Times of all packings for the front, settling and filling, s. Length 3.
     seconds: [f64; 3],
 }
 
 impl Search {
-    /// Relative error of a fraction against the target.
+    /// Relative error of a fraction compared with the target.
     fn off(&self, filled: f64) -> f64 {
         (filled / self.target - 1.0).abs()
     }
@@ -126,8 +126,8 @@ impl Search {
             || self.off(front * gain(&self.begun)) <= largest_promising(nearest)
     }
 
-    /// Packs with an overlap, as far as the front promises. Returns the fraction filled, if the
-    /// packing was made to the end.
+    /// Packs with an overlap, and stops after the front if it is not promising. Returns the
+    /// fraction filled if the packing was completed.
     fn try_overlap(
         &mut self,
         solid: &Solid,
@@ -170,11 +170,11 @@ impl Search {
     }
 }
 
-/// Packs with the overlap that gives `wanted_kg_m3` for particles of `particle_kg_m3`; sets it in
-/// `settings`. Two packings of nearly the same overlap differ by chance, so that the search goes on
+/// Packs with the overlap that gives `wanted_kg_m3` for particles of `particle_kg_m3`, and sets it
+/// in `settings`. Two packings of nearly the same overlap differ by chance, so the search continues
 /// around the root of their mean until one is near enough, and keeps the nearest of all. The front
-/// tells the density nearly: most tries end with it. The seconds in the history of the packing are
-/// those of all tries.
+/// predicts the density well, so most tries end after it. The times in the history of the packing
+/// are the sums over all tries.
 ///
 /// # Errors
 /// As [`crate::pack::pack`]; a density that no overlap from 0 to below 1 gives.
@@ -235,9 +235,9 @@ pub(crate) fn pack_to_density(
     Ok((packing, found))
 }
 
-/// The overlap to try after these: a Newton step on the mean of the tries near the target, so that
-/// chance averages out, or else on the nearest. The fraction filled in r_gen hardly changes, so
-/// that the density goes with (1 + overlap)^3.
+/// The next overlap to try: a Newton step on the mean of the tries near the target, so that chance
+/// averages out, or else on the nearest one. The fraction filled in r_gen hardly changes, so the
+/// density is proportional to (1 + overlap)^3.
 fn next_overlap(tries: &[Try], target: f64) -> f64 {
     let off = |t: &Try| (t.filled / target - 1.0).abs();
     let least = tries.iter().map(off).fold(f64::INFINITY, f64::min);
@@ -257,15 +257,16 @@ fn next_overlap(tries: &[Try], target: f64) -> f64 {
     next
 }
 
-/// Fraction of the shape that spheres reduced to r_gen fill, about. Volumes of true radii are (1 +
-/// overlap)^3 as large.
+/// Approximate fraction of the shape that spheres reduced to r_gen fill. Volumes of true radii are
+/// (1 + overlap)^3 times as large.
 const USUAL_FRACTION: f64 = 0.59;
 
 fn overlap_for(target: f64, reduced: f64) -> f64 {
     (target / reduced).cbrt() - 1.0
 }
 
-/// The error for a density that lies beyond the packing of the least or the largest overlap.
+/// The error for a density outside the range between the packings of the smallest and the largest
+/// overlap.
 fn unreachable(wanted: f64, particle: f64, limit: Try) -> Diagnostic {
     let has = particle * limit.filled;
     let most_or_least = if limit.overlap == 0.0 {
@@ -286,8 +287,8 @@ fn unreachable(wanted: f64, particle: f64, limit: Try) -> Diagnostic {
 mod tests {
     use super::*;
 
-    /// Overlaps tried for a body whose fraction in r_gen falls with the overlap and scatters by up
-    /// to `scatter`.
+    /// The overlaps tried for a body whose fraction in r_gen falls with the overlap and scatters by
+    /// up to `scatter`.
     fn search(target: f64, scatter: f64) -> Vec<Try> {
         let mut tries = vec![];
         let mut overlap = overlap_for(target, USUAL_FRACTION).max(0.0);
@@ -338,7 +339,7 @@ mod tests {
 
     #[test]
     fn no_overlap_is_tried_twice() {
-        // Nothing is near enough: a step in the density at the target.
+        // No packing is near enough: the density has a step at the target.
         let mut tries: Vec<Try> = Vec::new();
         let mut overlap = 0.3;
         for _ in 0..MOST_PACKINGS {

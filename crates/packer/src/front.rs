@@ -1,18 +1,18 @@
 //! The advancing front (Lozano et al. 2016; Platzer 2022, algorithm 1; see [`algorithm`]).
 //!
-//! Front spheres are taken from a queue, nearest to the seed first. Beside a front sphere a new
+//! Front spheres are taken from a queue, nearest to the seed first. Next to a front sphere a new
 //! sphere is placed where it touches the front sphere and two neighbours (or one neighbour and the
 //! wall), overlaps none and stays inside the surface; of all such places the one nearest to the
-//! seed is taken. A front sphere beside which nothing fits any more leaves the queue.
+//! seed is taken. A front sphere leaves the queue when nothing more fits next to it.
 //!
 //! Deviations from the sources:
 //! - A size that does not fit waits until it does, so that the sizes placed are the sizes drawn.
 //! - The front may begin at many seeds at once: each grows outwards, and the directions of growth,
 //!   along which a front puts more contacts, average out.
-//! - The bare front, which is not settled, fills its voids as it goes (see [`fillers`]).
+//! - The bare front, which is not settled, fills its voids as it advances (see [`fillers`]).
 //! - The queue is worked off in shells around the seeds and, within a shell, in blocks of space in
 //!   eight colours: blocks of one colour are too far apart to disturb each other and run on several
-//!   threads; what comes out does not depend on how many.
+//!   threads. The result does not depend on the number of threads.
 
 mod algorithm;
 mod assembly;
@@ -41,7 +41,8 @@ use dem_io::Result;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// The queue of the front: indices of spheres by the shell around their seed that they lie in.
+/// The queue of the front: the indices of spheres, by the shell around their seed in which they
+/// lie.
 type Shells = BTreeMap<u32, Vec<u32>>;
 
 /// A packing while it grows.
@@ -54,15 +55,15 @@ pub(crate) struct Front<'a> {
     seeds: Vec<Vector3>,
     /// Draws, as quantiles of the radius, that have found no place yet.
     pub(crate) waiting: Vec<f64>,
-    /// Seed of the random numbers, and how many streams of them have been used.
+    /// Seed of the random numbers, and the number of their streams used so far.
     random_seed: u64,
     streams: u64,
-    /// The fillers of voids as the front goes; none before settling.
+    /// The fillers of voids during the front; none before settling.
     fillers: Option<Fillers>,
 }
 
 impl<'a> Front<'a> {
-    /// A front that has not begun.
+    /// A front that has not started.
     pub(crate) fn new(
         assembly: Assembly<'a>,
         random_seed: u64,
@@ -79,8 +80,8 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// The three smallest draws (quantiles, ascending) that wait for a place, made as far as fewer
-    /// wait. They wait no longer.
+    /// The three smallest waiting draws (quantiles, ascending), which then wait no longer. New
+    /// draws are made if fewer than three wait.
     pub(crate) fn next_draws(&mut self) -> [f64; 3] {
         while self.waiting.len() < 3 {
             self.waiting
@@ -106,8 +107,8 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Begins at a seed with spheres that are known to fit: centres and (not reduced) radii.
-    /// Returns their indices.
+    /// Starts at a seed with spheres that are known to fit, given by centres and (not reduced)
+    /// radii. Returns their indices.
     pub(crate) fn begin(
         &mut self,
         seed: &Vector3,
@@ -122,11 +123,11 @@ impl<'a> Front<'a> {
         before..self.assembly.spheres.len() as u32
     }
 
-    /// Advances the front from the spheres `queue` (indices), until nothing fits beside any of them
-    /// and their followers.
+    /// Advances the front from the spheres `queue` (indices), until nothing fits next to any of
+    /// them or their followers.
     ///
     /// # Errors
-    /// What `progress` returns.
+    /// Errors of `progress`.
     pub(crate) fn advance(
         &mut self,
         queue: &[u32],
@@ -150,7 +151,7 @@ impl<'a> Front<'a> {
         Ok(())
     }
 
-    /// Works off spheres of the front, colour by colour.
+    /// Processes spheres of the front, colour by colour.
     fn work_off(&mut self, front: Vec<FrontSphere>, work: Work, shells: &mut Shells) {
         for blocks in by_colour(&self.assembly.grid.lattice, front) {
             let mut tasks = self.tasks(blocks, work).into_iter();
@@ -180,7 +181,7 @@ impl<'a> Front<'a> {
         blocks.into_iter().zip(stream..).map(task).collect()
     }
 
-    /// Works off blocks in parallel.
+    /// Processes blocks in parallel.
     fn work_at_once(&self, tasks: Vec<Task>, work: Work) -> Vec<BlockResult> {
         let front_spheres = tasks.iter().map(|task| task.queue.len()).sum();
         let filling = (self.fillers.as_ref())
@@ -201,7 +202,8 @@ impl<'a> Front<'a> {
             .collect()
     }
 
-    /// Adds what a block did; spheres beside which there may be room are put into their shells.
+    /// Adds the result of a block. Spheres that may still have room next to them are put into their
+    /// shells.
     fn merge(&mut self, result: BlockResult, work: Work, shells: &mut Shells) {
         self.waiting.extend(result.waiting);
         for placed in result.placed {
@@ -240,17 +242,16 @@ impl<'a> Front<'a> {
     }
 }
 
-/// Of a front that fills voids.
+/// Methods of a front that fills voids.
 impl Front<'_> {
-    /// Fills the voids that were left some shells and more behind `shell`.
+    /// Fills the voids left at least some shells behind `shell`.
     fn fill_voids_behind(&mut self, shell: u32, shells: &mut Shells) {
         while let Some(front) = (self.fillers.as_mut()).and_then(|f| f.next_behind(shell)) {
             self.work_off(front, Work::Voids, shells);
         }
     }
 
-    /// Fills all voids that were left, as far as small spheres have become fewer than expected
-    /// meanwhile.
+    /// Fills all voids left, as far as small spheres are meanwhile fewer than expected.
     fn fill_last_voids(&mut self, shells: &mut Shells) {
         self.fill_voids_behind(u32::MAX, shells);
         if let Some(fillers) = &mut self.fillers {
@@ -264,12 +265,12 @@ impl Front<'_> {
         self.fillers.as_ref().map(|fillers| &fillers.quota)
     }
 
-    /// True if voids were left that take the smallest sphere.
+    /// True if voids remain that take the smallest sphere.
     pub(crate) fn has_left_voids(&self) -> bool {
         (self.fillers.as_ref()).is_some_and(|fillers| !fillers.left_open.is_empty())
     }
 
-    /// Ends the front.
+    /// Ends the front and returns its result.
     pub(crate) fn finish(mut self) -> FinishedFront {
         let spheres = std::mem::take(&mut self.assembly.spheres);
         let mut finished = FinishedFront {
@@ -291,10 +292,10 @@ impl Front<'_> {
 pub(crate) struct FinishedFront {
     /// The spheres in order of placement.
     pub(crate) spheres: Vec<ReducedSphere>,
-    /// Spheres that were chosen to fill voids.
+    /// Number of spheres chosen to fill voids.
     pub(crate) fillers: usize,
-    /// Those of them that touch no three others or walls.
+    /// Number of fillers that touch fewer than three other spheres or walls.
     pub(crate) loose_fillers: usize,
-    /// Voids that would still take the smallest sphere, about.
+    /// Approximate number of voids that would still take the smallest sphere.
     pub(crate) voids_left: usize,
 }

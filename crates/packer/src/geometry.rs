@@ -1,4 +1,4 @@
-//! The solid that a surface bounds: its wall, what lies inside, and how deep.
+//! The solid that a surface bounds: its wall, its inside, and the depth below the wall.
 //!
 //! [`tree`] <- [`winding`] <- [`union`] <- [`boundary`] <- [`inside`] <- [`depth_map`].
 

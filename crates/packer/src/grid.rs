@@ -1,4 +1,4 @@
-//! A dense grid of cells over a box: which spheres lie near a point.
+//! A dense grid of cells over a box, to find the spheres near a point.
 
 use crate::spheres::{ReducedSphere, Vector3};
 use std::ops::Range;

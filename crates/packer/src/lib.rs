@@ -1,7 +1,7 @@
 //! Fills the solid of an STL file with overlapping spheres and joins them by bonds.
 //!
-//! [`pack()`] gives the spheres of a [`dem_io::Surface`] in its local units, [`make_body`] a whole
-//! body in metres with its bonds and a report of how good it is. The spheres are placed by an
+//! [`pack()`] gives the spheres of a [`dem_io::Surface`] in its local units, [`make_body`] a
+//! complete body in metres with its bonds and a report on its quality. The spheres are placed by an
 //! advancing front (Lozano et al. 2016; Platzer 2022) and settled.
 //!
 //! ```
@@ -38,7 +38,7 @@ pub use quality::{Contacts, Fabric, Fraction, Layer, Pieces, Report, Thinnest};
 pub use sizes::{Basis, Fit, Sizes, ks_distance_by_mass, ks_distance_by_number};
 pub use spheres::Spheres;
 
-/// Stages one by one, for the tests of this crate: they may change at any time.
+/// The individual stages, for the tests of this crate. They may change at any time.
 #[doc(hidden)]
 pub mod internals {
     pub use crate::bonds::{close_pairs, suggested_bond_range};

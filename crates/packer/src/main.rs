@@ -9,7 +9,7 @@ fn main() -> ExitCode {
         std::process::exit(130);
     };
     dem_io::program::take_size_limits_as_errors();
-    // Without the handler an interrupted run could leave a temporary file behind, no more.
+    // Without the handler an interrupted run could leave a temporary file behind, nothing worse.
     let _ = ctrlc::set_handler(at_interrupt);
     match Arguments::parsed().and_then(|arguments| run(&arguments)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,4 +1,4 @@
-//! From a solid and sizes to spheres, in four acts: [`shrink`], [`grow`], [`settle`] and [`fill`].
+//! From a solid and sizes to spheres, in four steps: [`shrink`], [`grow`], [`settle`] and [`fill`].
 
 mod attempt;
 mod fill;
@@ -29,7 +29,7 @@ use std::time::Instant;
 /// Fills the solid inside a surface with spheres.
 ///
 /// # Errors
-/// Sizes that do not fit the shape; a seed point outside; what `progress` returns.
+/// Sizes that do not fit the shape; a seed point outside; errors of `progress`.
 pub fn pack(surface: &Surface, settings: &PackSettings, progress: Progress) -> Result<Packing> {
     let started = Instant::now();
     let solid = Solid::new(surface)?;
@@ -52,9 +52,9 @@ pub(crate) fn pack_solid(
     packing.ok_or_else(|| Diagnostic::failed(solid.surface.source.clone(), "given up", ""))
 }
 
-/// Fills a solid with spheres, unless the front shows that the packing is not wanted: `is_wanted`
-/// is told the sum of the spheres' volumes over the volume of the solid before settling and
-/// filling, which take most of the time and change it little. None if it was not.
+/// Fills a solid with spheres, but stops after the front if the packing is not wanted: `is_wanted`
+/// is called with the sum of the spheres' volumes / volume of the solid before settling and
+/// filling, which take most of the time and change it little. None if the packing was not wanted.
 ///
 /// # Errors
 /// As [`pack`].

@@ -25,13 +25,13 @@ use crate::bonds::suggested_bond_range;
 use crate::sizes::{ks_distance_by_mass, ks_distance_by_number};
 use dem_io::Result;
 
-/// Judges a packing. Same result to the last bit for any number of threads.
+/// Assesses a packing. The result is the same to the last bit for any number of threads.
 ///
 /// # Errors
 /// More spheres than the search tree can number (2^32).
 pub fn assess(packing: &BondedPacking) -> Result<Report> {
     let far = depth_needed(packing.spheres);
-    // Finite, a distance also bounds those of the points around.
+    // A finite distance also bounds those of the points around.
     let distance_inside = |point| (packing.distance_inside)(point).clamp(-far, far);
     let packing = &BondedPacking {
         distance_inside: &distance_inside,

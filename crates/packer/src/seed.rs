@@ -1,5 +1,5 @@
-//! The beginning of a front: the deepest point of the solid, and the first three spheres (Platzer
-//! 2022, section 4.1.1).
+//! The start of a front: the deepest point of the solid, and the first three spheres (Platzer 2022,
+//! section 4.1.1).
 
 use crate::geometry::boundary::Boundary;
 use crate::geometry::inside::{first_hit, is_inside};
@@ -18,9 +18,9 @@ pub struct InscribedSphere {
     pub radius: f64,
 }
 
-/// At most this many facets are probed for the thickness of the solid behind them.
+/// Largest number of facets probed for the thickness of the solid behind them.
 const MOST_PROBES: usize = 4_000;
-/// Grid points along the longest edge of the bounding box.
+/// Number of grid points along the longest edge of the bounding box.
 const GRID_POINTS: f64 = 16.0;
 
 /// Points spread over the inside of the solid with their distances to the surface, deepest first:
@@ -72,7 +72,7 @@ pub fn inner_points(boundary: &Boundary, surface: &Surface) -> Vec<InscribedSphe
 }
 
 /// One random point in each cell of a lattice of about `spacing` over the box from the origin to
-/// `extent`, local units, none nearer to another than a third of a cell.
+/// `extent`, local units, at least a third of a cell apart.
 pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3> {
     let counts = extent.map(|e| (e / spacing).round().max(1.0) as usize);
     let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -92,8 +92,8 @@ pub fn spread_points(extent: &[f64; 3], spacing: f64, seed: u64) -> Vec<Vector3>
         .collect()
 }
 
-/// Moves a ball inside the solid to where `clearance` (local units, negative where forbidden) is
-/// largest nearby, by steps that halve from `first_step` to `last_step`.
+/// Moves a ball inside the solid to the nearby maximum of `clearance` (local units, negative where
+/// forbidden), by steps that halve from `first_step` to `last_step`.
 pub(crate) fn climb(
     start: &Vector3,
     first_step: f64,
@@ -121,7 +121,8 @@ pub(crate) fn climb(
     best
 }
 
-/// To the neighbours of a point in a cubic lattice, scaled so that those at the corners are 1 away.
+/// Directions to the neighbours of a point in a cubic lattice, scaled so that those at the corners
+/// have length 1.
 fn directions() -> impl Iterator<Item = Vector3> {
     let diagonal = 1.0 / 3.0_f64.sqrt();
     (0..27).filter(|at| *at != 13).map(move |at| {
@@ -135,12 +136,12 @@ fn directions() -> impl Iterator<Item = Vector3> {
 
 /// The triangles of the wall that may be nearest to a point within `reach` of `base`.
 ///
-/// A distance changes by no more than the way between two points, so that those farther away than
-/// the nearest one by twice the reach are none.
+/// A distance changes by no more than the distance between two points, so triangles farther away
+/// than the nearest one by twice the reach are excluded.
 struct NearestAround {
     base: Vector3,
     reach: f64,
-    /// Distance from `base` and number; nearest first.
+    /// Distance from `base` and index; nearest first.
     triangles: Vec<(f64, u32)>,
 }
 
@@ -173,7 +174,7 @@ impl NearestAround {
         }
     }
 
-    /// The same around another ball, or nearer to this one.
+    /// The same around another ball, or with a smaller reach around this one.
     fn moved(&self, boundary: &Boundary, ball: &InscribedSphere, reach: f64) -> Self {
         if (ball.centre - self.base).norm() + reach > self.reach {
             return Self::new(boundary, ball, reach);
@@ -199,8 +200,8 @@ impl NearestAround {
     }
 }
 
-/// As [`climb`], to where the wall is farthest. The steps are never longer than the distance to the
-/// wall, so that the climb stays inside.
+/// As [`climb`], to the place farthest from the wall. The steps are never longer than the distance
+/// to the wall, so that the climb stays inside.
 fn climb_from_wall(boundary: &Boundary, start: &InscribedSphere) -> InscribedSphere {
     let mut best = *start;
     let mut step = 0.5 * start.radius;
@@ -221,8 +222,8 @@ fn climb_from_wall(boundary: &Boundary, start: &InscribedSphere) -> InscribedSph
     best
 }
 
-/// The largest ball that fits into the solid, as well as climbing from the deepest of
-/// `inner_points` finds it; of several equal ones the nearest to the middle of the bounding box.
+/// The largest ball that fits into the solid, as found by climbing from the deepest of
+/// `inner_points`; of several equal ones the nearest to the middle of the bounding box.
 pub fn deepest_point(
     boundary: &Boundary,
     surface: &Surface,
@@ -240,7 +241,7 @@ pub fn deepest_point(
     });
     let mut found: Vec<InscribedSphere> = Vec::new();
     for start in deep.into_iter().take(4).chain(inner.first()) {
-        // From beside a place that is known the climb would end there again.
+        // A climb that starts next to a known place would end there again.
         let known =
             |ball: &InscribedSphere| (ball.centre - start.centre).norm() < 0.5 * ball.radius;
         if !found.iter().any(known) {
@@ -272,7 +273,7 @@ pub fn first_spheres(
     ];
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let mut best: Vec<(Vector3, f64)> = Vec::new();
-    // Around the centre first, then with the first sphere on it, each in a fixed set of
+    // First around the centre, then with the first sphere on it, each in a fixed set of
     // orientations.
     for origin in [middle, Vector3::zeros()] {
         for turn in 0..64 {

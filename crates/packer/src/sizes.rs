@@ -1,4 +1,4 @@
-//! Particle sizes: what a user asks for, as a distribution function by number and by mass.
+//! Particle sizes: the user's text as a distribution function by number and by mass.
 //!
 //! | text | distribution of the diameter |
 //! |---|---|
@@ -9,10 +9,9 @@
 //! | `weibull:SCALE,SHAPE,MIN..MAX`, `rosin-rammler:...` | F(d) = 1 - exp(-(d/SCALE)^SHAPE), cut |
 //! | `sieve:FILE.csv`, `FILE.csv` | opening and cumulative passing, linear between the openings |
 //!
-//! MEAN, STD, SCALE and SHAPE are those of the whole distribution, before it is cut. Without
-//! MIN..MAX it is cut at the diameters that 0.1 % and 99.9 % of it lie below. The distribution
-//! counts particles or their mass, as [`Basis`] says; the two are converted into each other with
-//! the third power of the diameter.
+//! MEAN, STD, SCALE and SHAPE describe the complete distribution, before it is cut. Without
+//! MIN..MAX it is cut at its 0.1 % and 99.9 % quantiles. The distribution counts particles or their
+//! mass, see [`Basis`]; the two are converted into each other with the third power of the diameter.
 
 mod curve;
 mod distribution;

@@ -1,4 +1,4 @@
-//! Bonds against lattices with known neighbours and against a comparison of all pairs.
+//! Bonds compared with lattices of known neighbours and with a comparison of all pairs.
 
 use crate::helpers::lattice::cubic;
 use crate::helpers::random::Random;
@@ -12,7 +12,7 @@ fn open(_: u32, _: u32) -> bool {
     false
 }
 
-/// The same by looking at every pair.
+/// The same, by testing every pair.
 fn all_pairs(spheres: &Spheres, ratio: f64) -> Vec<[u32; 2]> {
     let mut pairs = Vec::new();
     for a in 0..spheres.radii.len() {
@@ -27,7 +27,7 @@ fn all_pairs(spheres: &Spheres, ratio: f64) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// Places with radii over a wide range.
+/// Random positions with radii over a wide range.
 fn scattered(count: usize, ratio: f64, seed: u64) -> Spheres {
     let mut generator = Random(seed);
     let mut random = || generator.next();
@@ -89,8 +89,8 @@ fn bond_radius_is_a_share_of_the_smaller_sphere() {
 
 #[test]
 fn two_fingers_stay_two() {
-    // Two columns side by side, a wall between them at x = 1.15, spheres on both sides 0.3 from
-    // each other.
+    // Two columns next to each other, a wall between them at x = 1.15, spheres on both sides 0.3
+    // apart.
     let mut spheres = Spheres::default();
     for i in 0..20 {
         for x in [0.0, 2.3] {
@@ -113,7 +113,7 @@ fn two_fingers_stay_two() {
         20,
         "touching pairs are bonded without a question"
     );
-    // With every pair across refused, the second neighbours along a finger (distance 4, ratio 2)
+    // If every pair across is refused, the second neighbours along a finger (distance 4, ratio 2)
     // are the next.
     let radius = bond_range_for(&spheres, 38.0 / 40.0, &wall).unwrap();
     assert_eq!(find_bonds(&spheres, radius, &wall).unwrap(), bonds);

@@ -1,4 +1,5 @@
-//! The packer from the inside: each stage by itself, and all together on shapes of many kinds.
+//! Tests of the packer's internals: each stage separately, and all together on shapes of many
+//! kinds.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

@@ -1,4 +1,5 @@
-//! dem-pack as a person meets it: shapes and options in; bodies, reports and messages out.
+//! dem-pack from the user's side: shapes and options as input; bodies, reports and messages as
+//! output.
 
 mod bad_input;
 mod bonds;
@@ -32,7 +33,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// A difficult STL file, by the beginning of its name.
+/// A difficult STL file, by the start of its name.
 fn shape(name: &str) -> PathBuf {
     let folder = root().join("crates/io/tests/shapes");
     fs::read_dir(folder)
@@ -48,7 +49,7 @@ fn shape(name: &str) -> PathBuf {
         .unwrap()
 }
 
-/// Facets of a binary STL file, without those that have no area or stand there already.
+/// Facets of a binary STL file, without duplicates and those without area.
 fn read_stl(path: &Path) -> Facets {
     let bytes = fs::read(path).unwrap();
     let mut seen = std::collections::BTreeSet::new();
@@ -69,12 +70,12 @@ fn read_stl(path: &Path) -> Facets {
         .collect()
 }
 
-/// A folder that vanishes after the test, and what was made in it.
+/// A folder that is removed after the test, with the files made in it.
 struct Bench {
     folder: TempDir,
 }
 
-/// A body with the report on it.
+/// A body and its report.
 struct Made {
     body: Body,
     report: Value,
@@ -103,7 +104,7 @@ impl Bench {
         dem_testing::names_in(self.folder.path())
     }
 
-    /// dem-pack STL OPTIONS, in the folder.
+    /// Runs dem-pack STL OPTIONS in the folder.
     fn run(&self, stl: &Path, options: &[&str]) -> Output {
         dem_pack()
             .current_dir(self.folder.path())
@@ -155,7 +156,7 @@ impl Made {
     }
 }
 
-/// Positions and radii to the last bit.
+/// Positions and radii as bits.
 fn bits(body: &Body) -> (Vec<[u64; 3]>, Vec<u64>) {
     (
         body.positions.iter().map(|p| p.map(f64::to_bits)).collect(),
@@ -163,7 +164,7 @@ fn bits(body: &Body) -> (Vec<[u64; 3]>, Vec<u64>) {
     )
 }
 
-/// The one message of a run that was refused: exit code 2, nothing on standard output.
+/// The only message of a refused run: exit code 2, nothing on standard output.
 fn refusal(output: &Output, what: &dyn AsRef<OsStr>) -> String {
     let what = what.as_ref().display();
     let said = String::from_utf8(output.stderr.clone()).unwrap();

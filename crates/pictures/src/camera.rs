@@ -1,4 +1,4 @@
-//! From where the scene is seen: without perspective, so that one scale holds in the whole picture.
+//! The camera: without perspective, so that one scale applies to the entire picture.
 
 use dem_io::Bounds;
 use nalgebra::Vector3;
@@ -6,18 +6,18 @@ use nalgebra::Vector3;
 use super::image::MAX_SIDE_PX;
 use super::vector::unit;
 
-/// Free margin at the left and the right, as a share of the width.
+/// Free margin at the left and the right, as a fraction of the width.
 const SIDE: f64 = 0.04;
-/// Free margin at the top, for the time, as a share of the height.
+/// Free margin at the top, for the time, as a fraction of the height.
 const TOP: f64 = 0.10;
-/// Free margin at the bottom, for the scale bar, as a share of the height.
+/// Free margin at the bottom, for the scale bar, as a fraction of the height.
 const BOTTOM: f64 = 0.12;
 
-/// Where the three-quarter view looks when x lies across the picture: from the front, the right and
+/// Direction of the three-quarter view if x runs across the picture: from the front, the right and
 /// above.
 const THREE_QUARTER: Vector3<f64> = Vector3::new(-0.42, 0.80, -0.43);
 
-/// Points farther away than this are taken for nonsense, m.
+/// Points farther away than this are taken to be invalid, m.
 const FARTHEST_M: f64 = 1e12;
 
 /// A camera without perspective.
@@ -29,21 +29,21 @@ pub struct Camera {
     middle_m: Vector3<f64>,
     px_per_m: f64,
     size_px: [u32; 2],
-    /// Depths of the nearest and the farthest point that it was fitted to, px.
+    /// Depths of the nearest and the farthest point to which it was fitted, px.
     depth_px: [f64; 2],
 }
 
 impl Camera {
-    /// The camera that looks in this direction and shows all of a box, with `up` upwards in the
+    /// The camera that looks in this direction and shows an entire box, with `up` upwards in the
     /// picture.
     ///
-    /// Directions may have any length. Where they say nothing, the three-quarter view is taken.
+    /// Directions may have any length. If they are invalid, the three-quarter view is used.
     /// `size_px`: width and height.
     pub fn looking(direction: [f64; 3], up: [f64; 3], at: &Bounds, size_px: [u32; 2]) -> Self {
         Self::around(direction, up, &at.corners(), size_px)
     }
 
-    /// As [`Camera::looking`], around points, m. Shape n x 3. Tighter than a box where walls are
+    /// As [`Camera::looking`], around points, m. Shape n x 3. Tighter than a box if walls are
     /// tilted.
     pub fn around(
         direction: [f64; 3],
@@ -99,7 +99,7 @@ impl Camera {
         self.px_per_m
     }
 
-    /// Where a point, m, lies in the picture, px: from the left, from the top, and from the middle
+    /// Position of a point, m, in the picture, px: from the left, from the top, and from the middle
     /// of the scene towards the viewer. Length 3.
     pub fn project(&self, point_m: [f64; 3]) -> [f64; 3] {
         let from = Vector3::from(point_m) - self.middle_m;
@@ -108,7 +108,7 @@ impl Camera {
         [0.5 * width + x, 0.5 * height - y, z]
     }
 
-    /// Depths of the farthest and the nearest point that it was fitted to, px.
+    /// Depths of the farthest and the nearest point to which it was fitted, px.
     pub(crate) fn depth_px(&self) -> [f64; 2] {
         self.depth_px
     }

@@ -1,12 +1,13 @@
-//! Colours of particles by the piece that they belong to.
+//! Colours of particles by their fragment.
 //!
-//! Hues are told apart with any colour vision, and neighbouring numbers differ in hue as well as in
-//! lightness. A number has one colour for ever.
+//! Hues are distinguishable with any colour vision, and neighbouring numbers differ in hue as well
+//! as in lightness. A number always has the same colour.
 
 /// A single particle: light grey.
 pub const SINGLE: [u8; 3] = [196, 198, 201];
 
-/// After Okabe and Ito 2008, without the yellow, which is hardly seen on white, and with wine red.
+/// After Okabe and Ito 2008, without the yellow, which is hardly visible on white, and with wine
+/// red.
 const VIVID: [[u8; 3]; 7] = [
     [0, 114, 178],
     [230, 140, 0],
@@ -17,7 +18,7 @@ const VIVID: [[u8; 3]; 7] = [
     [205, 120, 170],
 ];
 
-/// Steel and slate, from blue to green grey, dark beside light.
+/// Steel and slate, from blue to green grey, dark and light in turn.
 const CALM: [[u8; 3]; 7] = [
     [96, 125, 156],
     [157, 175, 190],
@@ -28,7 +29,7 @@ const CALM: [[u8; 3]; 7] = [
     [172, 182, 176],
 ];
 
-/// How much lighter (+) or darker (-) the colours are, round after round.
+/// Lightening (+) or darkening (-) of the colours, round after round.
 const ROUNDS: [f64; 3] = [0.0, 0.38, -0.35];
 
 /// The colour of a bonded cluster or a fragment: vivid. Red, green, blue.
@@ -41,10 +42,10 @@ pub fn of_clump(id: u32) -> [u8; 3] {
     pick(&CALM, id)
 }
 
-/// The colour of a fragment by its number and its share of the body that it comes from.
+/// The colour of a fragment by its number and its fraction of the original body.
 ///
-/// The whole body (1) is calm, and the smaller the piece, the more vivid. A share that is not a
-/// number counts as 0. Red, green, blue.
+/// The complete body (1) is calm, and the smaller the piece, the more vivid. A fraction that is not
+/// a number counts as 0. Red, green, blue.
 pub fn of_fragment(id: u32, fraction: f64) -> [u8; 3] {
     let calm = if fraction > 0.0 {
         fraction.min(1.0)
@@ -55,7 +56,7 @@ pub fn of_fragment(id: u32, fraction: f64) -> [u8; 3] {
 }
 
 fn pick(palette: &[[u8; 3]; 7], id: u32) -> [u8; 3] {
-    // Digit sums, so that equal steps do not fall on one colour all the time.
+    // Digit sums, so that equal steps do not always give the same colour.
     let colour = palette[digit_sum(id, 7) as usize % 7];
     match ROUNDS[digit_sum(id / 7, 3) as usize % ROUNDS.len()] {
         lighter if lighter > 0.0 => mixed(colour, [255; 3], lighter),

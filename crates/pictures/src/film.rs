@@ -5,23 +5,24 @@ use png::{BlendOp, Compression, DisposeOp, EncodingError, Writer};
 use super::image::{Image, MAX_SIDE_PX};
 use super::png_file::{encoder, fault};
 
-/// Pictures of a film strip, at most.
+/// Largest number of pictures of a film strip.
 pub const OF_STRIP: usize = 8;
-/// Pictures in a row of it.
+/// Number of pictures in a row of it.
 pub const COLUMNS: usize = 4;
-/// How much smaller than the pictures those of the strip are.
+/// Factor by which the pictures of the strip are reduced.
 pub const SMALLER: u32 = 2;
 
-/// Pictures of a film, at most and but for the last one.
+/// Largest number of pictures of a film, without the last one.
 pub const OF_FILM: usize = 200;
-/// How long a film takes, if that is neither too fast nor too slow for a picture, ms.
+/// Duration of a film, if that is neither too fast nor too slow for a picture, ms.
 const FILM_MS: usize = 8000;
 const PICTURE_MS: [usize; 2] = [40, 400];
 
 /// Lines between the frames of a film strip.
 const RULE: [u8; 3] = [222, 225, 229];
 
-/// At most [`OF_STRIP`] of so many pictures: the first, the last and others evenly between them.
+/// At most [`OF_STRIP`] of this number of pictures: the first, the last and others evenly between
+/// them.
 pub fn chosen_for_strip(count: usize) -> Vec<usize> {
     match count {
         0..=OF_STRIP => (0..count).collect(),
@@ -31,7 +32,7 @@ pub fn chosen_for_strip(count: usize) -> Vec<usize> {
     }
 }
 
-/// Every one or every second, third, ... of so many pictures, and the last one.
+/// Every one or every second, third, ... of this number of pictures, and the last one.
 pub fn chosen_for_film(count: usize) -> Vec<usize> {
     let every = count.div_ceil(OF_FILM).max(1);
     let mut chosen: Vec<usize> = (0..count).step_by(every).collect();
@@ -43,17 +44,17 @@ pub fn chosen_for_film(count: usize) -> Vec<usize> {
     chosen
 }
 
-/// How long each of so many pictures is seen, ms.
+/// Time for which each of this number of pictures is shown, ms.
 pub fn delay_ms(count: usize) -> u16 {
     let [least, most] = PICTURE_MS;
     (FILM_MS / count.max(1)).clamp(least, most) as u16
 }
 
-/// The pictures in rows of so many columns, thin lines between them. All as large as the first one:
-/// the others are cut off or have a white margin.
+/// The pictures in rows of this number of columns, with thin lines between them. All have the size
+/// of the first one: the others are cut off or padded in white.
 ///
-/// Where it would be larger than a picture may be, the frames are reduced by a whole factor.
-/// Without frames it has no pixels.
+/// A strip that would be larger than a picture may be is reduced by a whole factor. Without frames
+/// it has no pixels.
 pub fn film_strip(frames: &[Image], columns: usize) -> Image {
     let Some(first) = frames.first() else {
         return Image::new(0, 0, RULE);
@@ -80,11 +81,12 @@ pub fn film_strip(frames: &[Image], columns: usize) -> Image {
     strip
 }
 
-/// Pictures as the bytes of an animated PNG file, which browsers play over and over again.
-/// `delay_ms`: how long each is seen.
+/// Pictures as the bytes of an animated PNG file, which browsers play repeatedly. `delay_ms`: time
+/// for which each is shown.
 ///
-/// `frame` gives each of the `count` pictures in turn. All as large as the first one: the others
-/// are cut off or have a white margin. Of each only what differs from the one before is stored.
+/// `frame` gives each of the `count` pictures in turn. All have the size of the first one: the
+/// others are cut off or padded in white. For each, only the difference from the previous one is
+/// stored.
 ///
 /// # Errors
 /// Those of `frame`; no frames, or frames without pixels.
@@ -119,7 +121,7 @@ fn begun<'a>(
     delay_ms: u16,
 ) -> Result<Writer<&'a mut Vec<u8>>, EncodingError> {
     let mut encoder = encoder(bytes, first, Compression::Balanced);
-    // Without frames as well, so that the header is what is refused.
+    // Without frames as well, so that the header is refused.
     encoder.set_animated(count.max(1), 0)?;
     encoder.set_frame_delay(delay_ms, 1000)?;
     encoder.set_blend_op(BlendOp::Source)?;
@@ -141,8 +143,8 @@ fn add(
     writer.write_image_data(next.part([x, y], [width, height]).rgb())
 }
 
-/// The smallest rectangle that holds all pixels that differ, or one pixel: left, top, width,
-/// height. The pictures are of one size.
+/// The smallest rectangle that contains all pixels that differ, or one pixel: left, top, width,
+/// height. The pictures have the same size.
 fn difference(a: &Image, b: &Image) -> [u32; 4] {
     let wide = a.width().max(1);
     let mut low = [u32::MAX; 2];

@@ -1,9 +1,9 @@
 //! A picture in memory.
 
-/// No side of a picture is longer, px.
+/// Largest side of a picture, px.
 pub const MAX_SIDE_PX: u32 = 16_384;
 
-/// A picture: rows from the top, three bytes (red, green, blue) a pixel.
+/// A picture: rows from the top, three bytes (red, green, blue) per pixel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
     width: u32,
@@ -23,8 +23,8 @@ impl Image {
         }
     }
 
-    /// A picture of these pixels, as [`Image::rgb`] gives them. None where they are not as many as
-    /// it has, or too many along a side.
+    /// A picture of these pixels, in the form of [`Image::rgb`]. None if their number is wrong, or
+    /// a side is too long.
     pub fn of_rgb(width: u32, height: u32, rgb: Vec<u8>) -> Option<Self> {
         let fits =
             width.max(height) <= MAX_SIDE_PX && rgb.len() == 3 * width as usize * height as usize;
@@ -50,13 +50,13 @@ impl Image {
         &mut self.rgb
     }
 
-    /// The colour of a pixel, where there is one.
+    /// The colour of a pixel, if it exists.
     pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 3]> {
         let at = self.place(i64::from(x), i64::from(y))?;
         self.rgb.get(at..at + 3)?.try_into().ok()
     }
 
-    /// Lays a colour over a pixel, from 0 (nothing changes) to 1. Pixels outside are ignored.
+    /// Blends a colour over a pixel, from 0 (no change) to 1. Pixels outside are ignored.
     pub fn blend(&mut self, x: i64, y: i64, colour: [u8; 3], opacity: f64) {
         let Some(at) = self.place(x, y) else { return };
         let opacity = opacity.clamp(0.0, 1.0);
@@ -66,7 +66,7 @@ impl Image {
         }
     }
 
-    /// Copies a picture into this one, its top left pixel to `x`, `y`. What reaches over is cut
+    /// Copies a picture into this one, with its top left pixel at `x`, `y`. Parts outside are cut
     /// off.
     pub fn paste(&mut self, from: &Self, x: u32, y: u32) {
         if x >= self.width {
@@ -80,7 +80,7 @@ impl Image {
         }
     }
 
-    /// A rectangle of this picture, its top left pixel at `x`, `y`. What lies outside is white.
+    /// A rectangle of this picture, with its top left pixel at `x`, `y`. Parts outside are white.
     #[must_use]
     pub fn part(&self, [x, y]: [u32; 2], [width, height]: [u32; 2]) -> Self {
         let mut part = Self::new(width, height, [255; 3]);
@@ -96,8 +96,8 @@ impl Image {
         part
     }
 
-    /// The picture with sides shorter by a whole factor: each pixel is the mean of a square. Rests
-    /// at the right and below are cut off.
+    /// The picture with sides shorter by a whole factor: each pixel is the mean of a square.
+    /// Remainders at the right and below are cut off.
     #[must_use]
     pub fn reduced(&self, factor: u32) -> Self {
         if factor <= 1 {

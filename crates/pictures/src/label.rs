@@ -7,22 +7,22 @@ use super::image::Image;
 /// Colour of labels.
 const INK: [u8; 3] = [38, 42, 48];
 
-/// Height of digits, as a share of the height of the picture, and the least, px.
+/// Height of digits as a fraction of the height of the picture, and the smallest height, px.
 const TEXT: f64 = 0.030;
 const LEAST_TEXT_PX: f64 = 10.0;
 
-/// Length of the scale bar at most, as a share of the width of the picture.
+/// Largest length of the scale bar, as a fraction of the width of the picture.
 const BAR: f64 = 0.20;
 
 /// Units of length with their size, m.
 const LENGTHS: [(&str, f64); 4] = [("km", 1e3), ("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)];
 
-/// A time as a label: `t = 0.125 s`, with as many decimals as frames that are `step_s` apart need.
+/// A time as a label: `t = 0.125 s`, with as many decimals as needed for frames `step_s` apart.
 /// Both in s.
 pub fn time_text(time_s: f64, step_s: f64) -> String {
     let mut decimals = 0;
     let mut rest = step_s.abs();
-    // Up to the first step that is whole but for rounding, and three digits of it.
+    // Up to the first step that is whole except for rounding, and three digits of it.
     while decimals < 9
         && rest.is_normal()
         && (rest < 1.0 || (rest - rest.round()).abs() > 1e-6 * rest)
@@ -36,7 +36,7 @@ pub fn time_text(time_s: f64, step_s: f64) -> String {
     format!("t = {time_s:.decimals$} s")
 }
 
-/// Writes a label into the top left corner. Signs without a glyph are blanks.
+/// Writes a label into the top left corner. Characters without a glyph become blanks.
 pub fn label(image: &mut Image, text: &str) {
     let size = text_px(image);
     font::write(image, text, [1.1 * size, 1.0 * size], size, INK);
@@ -45,7 +45,7 @@ pub fn label(image: &mut Image, text: &str) {
 /// Draws a bar of a round length with its label into the bottom right corner. `px_per_m`: the scale
 /// of the picture.
 ///
-/// Nothing is drawn where the scale is not a positive number.
+/// Nothing is drawn if the scale is not a positive number.
 pub fn scale_bar(image: &mut Image, px_per_m: f64) {
     let most_m = BAR * f64::from(image.width()) / px_per_m;
     let Some((length_m, text)) = round_length(most_m) else {
@@ -71,7 +71,7 @@ fn text_px(image: &Image) -> f64 {
     (TEXT * f64::from(image.height())).max(LEAST_TEXT_PX)
 }
 
-/// The longest of 1, 2 and 5 times a power of ten up to a length, m, and how it is written.
+/// The longest of 1, 2 and 5 times a power of ten up to a length, m, and its text.
 fn round_length(most_m: f64) -> Option<(f64, String)> {
     let decade = (-9..=9).rev().find(|k| 10f64.powi(*k) <= most_m)?;
     if most_m > 1e10 {

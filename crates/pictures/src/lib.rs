@@ -1,10 +1,9 @@
-//! Pictures of spheres and surfaces, drawn without any other program, and films of them.
+//! Pictures of spheres and surfaces, drawn without other programs, and films of them.
 //!
-//! [`Camera`] says from where the scene is seen, [`render()`] draws [`Ball`]s and [`Surface`]s into
-//! an [`Image`], [`label`] writes the time and a scale into it, [`png_file`] and [`film`] make
-//! files.
+//! [`Camera`] defines the view, [`render()`] draws [`Ball`]s and [`Surface`]s into an [`Image`],
+//! [`label`] writes the time and a scale into it, [`png_file`] and [`film`] make files.
 //!
-//! Equal input gives equal bytes. Nothing here panics: what is not finite is left out.
+//! Equal input gives equal bytes. Nothing here panics: values that are not finite are ignored.
 
 pub mod camera;
 pub mod colours;

@@ -26,10 +26,10 @@ pub fn to_png(image: &Image, compression: Compression) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The picture in a file that [`to_png`] has made the bytes of.
+/// The picture in a file whose bytes were made by [`to_png`].
 ///
 /// # Errors
-/// There is no such file, or it holds something else (exit code 1).
+/// The file does not exist, or contains something else (exit code 1).
 pub fn read_png(path: &Path) -> Result<Image> {
     let refuse = |problem: String| {
         Diagnostic::failed(
@@ -54,7 +54,7 @@ pub fn read_png(path: &Path) -> Result<Image> {
         .ok_or_else(|| refuse("it is not of this program".to_owned()))
 }
 
-/// Writes pictures as large as this one, RGB.
+/// Encoder for pictures of this size, RGB.
 pub(super) fn encoder<'a>(
     bytes: &'a mut Vec<u8>,
     image: &Image,
@@ -68,7 +68,7 @@ pub(super) fn encoder<'a>(
     encoder
 }
 
-/// What went wrong while a picture was put into bytes.
+/// The error for a failed conversion of a picture to bytes.
 pub(super) fn fault(error: &EncodingError) -> Diagnostic {
     Diagnostic::failed(
         "picture",

@@ -1,11 +1,11 @@
 //! Draws shaded balls and light-grey walls.
 //!
-//! Balls are exact spheres: each of four samples a pixel has its own depth. Walls let balls behind
-//! them shine through. Two lights: a lamp from the upper left, which casts shadows of the balls,
-//! and a sky, which balls in the depth of a heap see less of.
+//! Balls are exact spheres: each of four samples per pixel has its own depth. Walls are translucent
+//! for balls behind them. Two lights: a lamp from the upper left, which casts shadows of the balls,
+//! and a sky, of which balls deep in a heap see less.
 //!
-//! All is done in view space: px from the left, from the top, and from the middle of the scene
-//! towards the viewer.
+//! All computations are in view space: px from the left, from the top, and from the middle of the
+//! scene towards the viewer.
 
 mod band;
 mod light;
@@ -20,15 +20,15 @@ use super::surface::{Surface, Triangle};
 use band::{Band, ROWS};
 use light::Lights;
 
-/// Coordinates beyond this are left out, px.
+/// Objects with coordinates beyond this are ignored, px.
 const FARTHEST_PX: f64 = 1e7;
 
-/// A ball as it is drawn.
+/// A ball to draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     /// Centre, m. Length 3.
     pub centre_m: [f64; 3],
-    /// Radius, m. Balls without one are left out.
+    /// Radius, m. Balls without a positive radius are ignored.
     pub radius_m: f64,
     /// Its colour: red, green, blue.
     pub colour: [u8; 3],
@@ -40,7 +40,7 @@ struct Body {
     centre: Vector3<f32>,
     radius: f32,
     colour: [f32; 3],
-    /// How much of the sky it sees: the mean, and how that grows along each axis.
+    /// Visible fraction of the sky: the mean, and its gradient along each axis.
     sky: [f32; 4],
 }
 
@@ -48,7 +48,7 @@ struct Body {
 #[derive(Debug, Clone, Copy)]
 struct Face {
     corners: [[f64; 3]; 3],
-    /// How depth grows to the right and downwards.
+    /// Change of depth to the right and downwards.
     slope: [f64; 2],
     /// Unit vector towards the viewer.
     normal: Vector3<f32>,
@@ -59,7 +59,7 @@ struct Face {
 /// A line in view space, px.
 type Line = [[f64; 3]; 2];
 
-/// All that is to be drawn.
+/// All objects to draw.
 struct Scene {
     bodies: Vec<Body>,
     faces: Vec<Face>,
@@ -69,7 +69,7 @@ struct Scene {
     depth: [f32; 2],
 }
 
-/// The picture that a camera takes. What is not finite, or absurdly far away, is left out.
+/// The picture taken by a camera. Objects that are not finite or absurdly far away are ignored.
 ///
 /// A camera without width or height gives a picture without pixels.
 pub fn render(camera: &Camera, balls: &[Ball], walls: &[Surface]) -> Image {
@@ -151,7 +151,7 @@ fn corners(camera: &Camera, triangle: &Triangle) -> Option<[[f64; 3]; 3]> {
 fn face(wall: &Surface, corners: [[f64; 3]; 3]) -> Option<Face> {
     let [a, b, c] = corners;
     let [u, v] = [b, c].map(|p| Vector3::from(p) - Vector3::from(a));
-    // Positive where it is seen from outside: y points downwards.
+    // Positive if seen from outside: y points downwards.
     let area = u[1] * v[0] - u[0] * v[1];
     if area.abs() < 1e-9 || (wall.solid && area < 0.0) {
         return None;
@@ -161,7 +161,7 @@ fn face(wall: &Surface, corners: [[f64; 3]; 3]) -> Option<Face> {
         (u[2] * v[0] - u[0] * v[2]) / area,
     ];
     let length = (slope[0] * slope[0] + slope[1] * slope[1] + 1.0).sqrt();
-    // Not so either where a slope is not finite.
+    // Also not if a slope is not finite.
     length.is_finite().then(|| Face {
         corners,
         slope,
@@ -188,7 +188,7 @@ fn lines(camera: &Camera, wall: &Surface) -> impl Iterator<Item = Line> {
 
 fn projected(camera: &Camera, point_m: [f64; 3]) -> Option<[f64; 3]> {
     let point = camera.project(point_m);
-    // Not so either where it is not a number.
+    // Also not if it is NaN.
     let is_near = point.iter().all(|x| x.abs() < FARTHEST_PX);
     is_near.then_some(point)
 }
@@ -199,12 +199,12 @@ fn range<const N: usize>(values: [f64; N]) -> [f64; 2] {
     [low, high]
 }
 
-/// For each band of rows which of these reach into it, in their order.
+/// For each band of rows, the items that reach into it, in their order.
 fn by_band<T>(all: &[T], bands: usize, rows: impl Fn(&T) -> [f64; 2]) -> Vec<Vec<u32>> {
     let mut of_bands = vec![Vec::new(); bands];
     for (number, one) in (0..).zip(all) {
         let [low, high] = rows(one);
-        // Lines are wider than nothing.
+        // Lines have a finite width.
         let first = ((low - 2.0) / ROWS as f64).floor().max(0.0) as usize;
         let last = ((high + 2.0) / ROWS as f64).floor();
         if last >= 0.0 {

@@ -7,25 +7,25 @@ use nalgebra::Vector3;
 
 use super::vector::{across, unit};
 
-/// Sides of a polygon that stands for a circle.
+/// Number of sides of a polygon that represents a circle.
 const ROUND: u32 = 96;
 
-/// A fold between two triangles is drawn from this angle on: the cosine of 155 degrees between the
+/// Threshold for drawing a fold between two triangles: the cosine of 155 degrees between the
 /// triangles.
 const FOLD: f64 = -0.906;
-/// And below this one there is none: the cosine of 179.9 degrees.
+/// Threshold below which there is no fold: the cosine of 179.9 degrees.
 const FLAT: f64 = -0.999_998;
 
-/// How far a plane reaches over the scene, as a share of its size.
+/// Distance by which a plane extends beyond the scene, as a fraction of its size.
 const OVER: f64 = 0.06;
 
-/// Within this share of its size a plane is in another one.
+/// Distance within which two planes coincide, as a fraction of the size.
 const SAME: f64 = 1e-9;
 
 /// Light grey.
 const GREY: [u8; 3] = [205, 209, 214];
 
-/// How much of the balls behind a wall it hides.
+/// Fraction of the balls behind a wall that it hides.
 const OPACITY: f32 = 0.40;
 
 /// A triangle of a wall.
@@ -40,38 +40,38 @@ pub struct Triangle {
 pub struct Edge {
     /// Its ends, m. Shape 2 x 3.
     pub ends_m: [[f64; 3]; 2],
-    /// Of an edge on a round surface, which is drawn only where it is an outline: the third corners
-    /// of the two triangles beside it, m. Shape 2 x 3.
+    /// For an edge on a round surface, which is drawn only where it is an outline: the third
+    /// corners of the two adjacent triangles, m. Shape 2 x 3.
     pub beside_m: Option<[[f64; 3]; 2]>,
 }
 
-/// Half of space behind a plane.
+/// The half-space behind a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfSpace {
     /// A point of the plane, m. Length 3.
     pub point_m: [f64; 3],
-    /// Out of the wall, of any length. Length 3.
+    /// Outward normal of the wall, of any length. Length 3.
     pub normal: [f64; 3],
 }
 
-/// A wall as it is drawn.
+/// A wall to draw.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Its surface.
     pub triangles: Vec<Triangle>,
     /// Its lines.
     pub edges: Vec<Edge>,
-    /// Triangles are seen from outside only.
+    /// True if triangles are visible from outside only.
     pub solid: bool,
     /// Its colour: red, green, blue.
     pub colour: [u8; 3],
-    /// How much of the balls behind it it hides: 0 nothing, 1 all.
+    /// Fraction of the balls behind it that it hides: 0 none, 1 all.
     pub opacity: f32,
 }
 
 impl Surface {
-    /// The surface of half of space: the part of the plane that lies around a scene and in none of
-    /// the other `solids`.
+    /// The surface of a half-space: the part of the plane around a scene and outside the other
+    /// `solids`.
     pub fn plane(plane: &HalfSpace, around: &Bounds, solids: &[HalfSpace]) -> Self {
         let point_m = Vector3::from(plane.point_m);
         let Some(normal) = unit(plane.normal.into()) else {
@@ -126,7 +126,7 @@ impl Surface {
         }
     }
 
-    /// A solid cylinder between the middles of its two flat ends, m, shape 2 x 3.
+    /// A solid cylinder between the centres of its two flat ends, m, shape 2 x 3.
     pub fn cylinder(ends_m: [[f64; 3]; 2], radius_m: f64) -> Self {
         let ends = ends_m.map(Vector3::from);
         let Some(axis) = unit(ends[1] - ends[0]) else {
@@ -158,11 +158,11 @@ impl Surface {
         }
     }
 
-    /// A surface with two sides: vertices, m, shape n x 3, and triangles of three of them each,
-    /// shape m x 3.
+    /// A two-sided surface: vertices, m, shape n x 3, and triangles of three of them each, shape m
+    /// x 3.
     ///
-    /// Lines are its borders and folds, and where it is round its outline. Triangles that are not
-    /// finite or of vertices that do not exist are left out.
+    /// Lines are its borders and folds, and its outline where it is round. Triangles that are not
+    /// finite or whose vertices do not exist are ignored.
     pub fn mesh(vertices_m: &[[f64; 3]], triangles: &[[u32; 3]]) -> Self {
         let corners = |t: &[u32; 3]| -> Option<Triangle> {
             let [a, b, c] = t.map(|v| vertices_m.get(v as usize).copied());
@@ -180,7 +180,7 @@ impl Surface {
         }
     }
 
-    /// The wall at another place: `place` takes each point of it, m, to where it is now, m.
+    /// The wall at another place: `place` moves each of its points, m, to its present position, m.
     #[must_use]
     pub fn moved(&self, place: &dyn Fn([f64; 3]) -> [f64; 3]) -> Self {
         let triangle = |t: &Triangle| Triangle {
@@ -203,7 +203,7 @@ impl Surface {
     }
 }
 
-/// A unit vector across a unit vector, as near to one of the axes as possible.
+/// A unit vector perpendicular to a unit vector, as close to one of the axes as possible.
 fn along_an_axis(normal: Vector3<f64>) -> Vector3<f64> {
     let least = (0..3)
         .min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs()))
@@ -213,8 +213,8 @@ fn along_an_axis(normal: Vector3<f64>) -> Vector3<f64> {
     unit(axis + -normal[least] * normal).unwrap_or(axis)
 }
 
-/// The part of a convex polygon, m, shape n x 3, that is not in a solid. One that lies in its plane
-/// is left as it is.
+/// The part of a convex polygon, m, shape n x 3, that is not in a solid. A polygon in its plane is
+/// unchanged.
 fn outside(polygon: &[[f64; 3]], solid: &HalfSpace) -> Vec<[f64; 3]> {
     let Some(normal) = unit(solid.normal.into()) else {
         return polygon.to_vec();
@@ -237,11 +237,11 @@ fn outside(polygon: &[[f64; 3]], solid: &HalfSpace) -> Vec<[f64; 3]> {
     left
 }
 
-/// A side of a triangle: numbers of its ends in rising order, the ends, and the third corner of the
-/// triangle.
+/// A side of a triangle: numbers of its ends in ascending order, the ends, and the third corner of
+/// the triangle.
 type Side = ([usize; 2], [[f64; 3]; 2], [f64; 3]);
 
-/// Borders, folds and possible outlines. Corners at equal places are one.
+/// Borders, folds and possible outlines. Corners at equal places count as one.
 fn edges(triangles: &[Triangle]) -> Vec<Edge> {
     let mut numbers = BTreeMap::new();
     let mut sides: Vec<Side> = Vec::with_capacity(3 * triangles.len());
@@ -276,7 +276,7 @@ fn edges(triangles: &[Triangle]) -> Vec<Edge> {
     sides.chunk_by(|a, b| a.0 == b.0).filter_map(edge).collect()
 }
 
-/// The cosine of the angle between two triangles on one edge: -1 where they are one flat part.
+/// The cosine of the angle between two triangles on one edge: -1 if they form one flat part.
 fn fold(ends: [[f64; 3]; 2], beside: [[f64; 3]; 2]) -> f64 {
     let ends = ends.map(Vector3::from);
     let Some(along) = unit(ends[1] - ends[0]) else {

@@ -1,14 +1,14 @@
-//! Directions, which may be nonsense.
+//! Directions, which may be invalid.
 
 use nalgebra::Vector3;
 
-/// The unit vector, where there is one.
+/// The unit vector, if it exists.
 pub(crate) fn unit(a: Vector3<f64>) -> Option<Vector3<f64>> {
     let length = a.norm();
     length.is_normal().then(|| a / length)
 }
 
-/// A unit vector across a unit vector: horizontal where that is possible.
+/// A unit vector perpendicular to a unit vector: horizontal if possible.
 pub(crate) fn across(a: Vector3<f64>) -> Vector3<f64> {
     unit(Vector3::z().cross(&a))
         .filter(|_| a.x.abs().max(a.y.abs()) > 1e-9)

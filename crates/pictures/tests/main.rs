@@ -1,4 +1,4 @@
-//! Whole pictures.
+//! Complete pictures.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -32,7 +32,7 @@ fn plane(point_m: [f64; 3], normal: [f64; 3]) -> Surface {
     Surface::plane(&HalfSpace { point_m, normal }, &AROUND, &[])
 }
 
-/// Along y, with x to the right and z up.
+/// View along y, with x to the right and z up.
 fn front() -> Camera {
     Camera::looking([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], &AROUND, [320, 200])
 }

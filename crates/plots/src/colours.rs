@@ -1,4 +1,4 @@
-//! Colours, told apart with any colour vision, and shapes.
+//! Colours that can be distinguished with any colour vision, and shapes.
 
 use maud::{Markup, html};
 
@@ -7,10 +7,10 @@ use crate::numbers::{places, px};
 pub(crate) const INK: &str = "#222222";
 pub(crate) const GREY: &str = "#888888";
 
-/// Lines of a plot that each have a colour of their own.
+/// Number of lines of a plot that each have a colour of their own.
 pub const MOST_LINES: usize = 7;
 
-/// Of lines and kinds of marks, after Okabe and Ito 2008.
+/// Colours of lines and kinds of marks, after Okabe and Ito 2008.
 const COLOURS: [&str; MOST_LINES] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555",
 ];
@@ -20,16 +20,16 @@ pub(crate) fn colour(number: usize) -> &'static str {
     COLOURS[number % COLOURS.len()]
 }
 
-/// How a line is drawn.
+/// The stroke of a line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stroke {
     pub(crate) colour: &'static str,
-    /// px
+    /// Width, px.
     pub(crate) width: f64,
     pub(crate) dashes: Option<&'static str>,
 }
 
-/// Of a value to compare with.
+/// For a reference value.
 pub(crate) const REFERENCE: Stroke = Stroke {
     colour: GREY,
     width: 1.2,
@@ -37,8 +37,7 @@ pub(crate) const REFERENCE: Stroke = Stroke {
 };
 
 impl Stroke {
-    /// Of the line with this number. When the colours are used up, they come again with other
-    /// dashes.
+    /// For the line with this number. When the colours are used up, they repeat with other dashes.
     pub(crate) fn of_line(number: usize, dashed: bool) -> Self {
         let dashes = match (dashed, number / COLOURS.len() % 3) {
             (false, 0) => None,
@@ -54,7 +53,7 @@ impl Stroke {
     }
 }
 
-/// A mark of a kind at a place, px, in the colour of its kind.
+/// A mark of a kind at a position, px, in the colour of its kind.
 pub(crate) fn shape(kind: usize, [x, y]: [f64; 2], fill: &str) -> Markup {
     let corners: &[[f64; 2]] = match kind % 5 {
         0 => &[],
@@ -73,7 +72,7 @@ pub(crate) fn shape(kind: usize, [x, y]: [f64; 2], fill: &str) -> Markup {
     }
 }
 
-/// Viridis, from dark violet (0) to yellow (1), in five steps with straight lines between them.
+/// Viridis, from dark violet (0) to yellow (1), in five steps with linear interpolation.
 pub(crate) fn viridis(fraction: f64) -> String {
     const STEPS: [[f64; 3]; 5] = [
         [68.0, 1.0, 84.0],

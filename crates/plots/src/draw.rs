@@ -17,7 +17,7 @@ const HEIGHT: f64 = 400.0;
 const GRID: &str = "#e4e4e4";
 const FINE_GRID: &str = "#f2f2f2";
 
-/// The part of the picture where lines are drawn, px, and the axes along it.
+/// The part of the picture in which lines are drawn, px, and the axes along it.
 struct Area {
     left: f64,
     top: f64,
@@ -75,7 +75,7 @@ fn svg(plot: &Plot) -> Svg {
     Svg::new(HEIGHT + below, &plot.title, &content)
 }
 
-/// Room for all lines, marks and the reference.
+/// The area for all lines, marks and the reference.
 fn area(plot: &Plot, reference: Option<f64>) -> Area {
     let of_lines = || {
         let points = plot.lines.iter().flat_map(|line| &line.points);
@@ -99,7 +99,7 @@ fn area(plot: &Plot, reference: Option<f64>) -> Area {
     }
 }
 
-/// Marks that have a place.
+/// Marks with a valid position.
 fn seen(marks: &Marks) -> impl Iterator<Item = &Point> {
     let points = marks.points.iter();
     points.filter(|point| point.at.into_iter().all(|value| is_drawn(value, false)))
@@ -122,13 +122,13 @@ impl Area {
         [self.across(self.x.fraction(x)), self.height_of(y)]
     }
 
-    /// Where the point of a line stands. None: it is a gap.
+    /// Position of the point of a line. None for a gap.
     fn drawn(&self, plot: &Plot, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let is_drawn = is_drawn(x, plot.x.log) && is_drawn(y, plot.y.log);
         is_drawn.then(|| self.place([x, y]))
     }
 
-    /// The ends of a mark's error bar, as far as they have a place.
+    /// The ends of a mark's error bar, limited to the axis.
     fn bar(&self, point: &Point) -> [[f64; 2]; 2] {
         let [x, y] = point.at;
         [-0.5, 0.5].map(|side| self.place([x + side * point.x_spread, y]))
@@ -148,7 +148,7 @@ impl Area {
         corners
     }
 
-    /// What the legend may not cover, as lines.
+    /// The parts that the legend may not cover, as lines.
     fn covered(
         &self,
         plot: &Plot,

@@ -1,4 +1,4 @@
-//! The legend: in the plot where it covers nothing, or else below it.
+//! The legend: in the plot if it covers nothing there, otherwise below it.
 
 use maud::{Markup, html};
 
@@ -9,13 +9,13 @@ use crate::text::{shortened, width};
 
 const FONT: f64 = 12.0;
 const ROW: f64 = 17.0;
-/// Width of the sample beside a name.
+/// Width of the sample next to a name.
 const SAMPLE: f64 = 24.0;
-/// Between a frame and what is in it, and between the sample and its name.
+/// Gap between a frame and its content, and between the sample and its name.
 const ROOM: f64 = 7.0;
 /// Names are cut off at this width.
 const NAME: f64 = 260.0;
-/// Of rows below the plot: where they begin, px, and how many there are at most.
+/// For rows below the plot: their left end, px, and their largest number.
 const LEFT: f64 = 46.0;
 const ROWS_BELOW: u32 = 9;
 
@@ -26,32 +26,32 @@ pub(crate) struct Entry {
     pub(crate) sample: Sample,
 }
 
-/// What stands before a name.
+/// The sample in front of a name.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Sample {
-    /// Nothing: it is above other names.
+    /// None: it is the heading of other names.
     Heading,
     Line(Stroke),
-    /// A mark: its kind, colour and filling.
+    /// A mark: its kind, colour and fill.
     Mark(usize, &'static str, &'static str),
 }
 
-/// Where everything of a legend stands.
+/// The layout of a legend.
 #[derive(Debug, Clone)]
 pub(crate) struct Legend {
-    /// Left, top, width and height of the frame in the plot. None: it stands below.
+    /// Left, top, width and height of the frame in the plot. None if it is below.
     frame: Option<[f64; 4]>,
-    /// Left end and middle of the entries that are shown.
+    /// Left end and middle of the entries shown.
     places: Vec<[f64; 2]>,
-    /// How many entries are not, and where that is said.
+    /// Number of entries not shown, and the position of the note.
     more: Option<(usize, [f64; 2])>,
-    /// How much higher the whole plot is because of it, px.
+    /// Height that it adds to the plot, px.
     pub(crate) height: f64,
 }
 
 impl Legend {
-    /// A legend that covers nothing: within the area (left, top, right, bottom) that `drawn` lines
-    /// leave free, or else below `bottom`. All in px.
+    /// A legend that covers nothing: within the part of the area (left, top, right, bottom) that
+    /// the `drawn` lines leave free, or else below `bottom`. All in px.
     pub(crate) fn new(
         entries: &[Entry],
         drawn: &[Vec<[f64; 2]>],
@@ -100,8 +100,8 @@ impl Legend {
         })
     }
 
-    /// In rows, a new one for each heading. If there are too many names, it says how many are left
-    /// out.
+    /// In rows, a new one for each heading. If there are too many names, a note gives the number
+    /// left out.
     fn below(entries: &[Entry], top: f64) -> Self {
         let (mut x, mut row) = (LEFT, 0);
         let mut places = Vec::new();
@@ -173,7 +173,7 @@ fn name_width(entry: &Entry) -> f64 {
     }
 }
 
-/// Whether a line, or its only point, comes into a box: left, top, right, bottom.
+/// True if a line, or its only point, crosses a box: left, top, right, bottom.
 fn crosses(line: &[[f64; 2]], frame: [f64; 4]) -> bool {
     match line {
         [point] => segment_crosses([*point; 2], frame),
@@ -181,7 +181,8 @@ fn crosses(line: &[[f64; 2]], frame: [f64; 4]) -> bool {
     }
 }
 
-/// Whether the bounds of the segment and the box overlap, and the box does not lie on one side.
+/// True if the bounds of the segment and the box overlap, and the box is not entirely on one side
+/// of it.
 fn segment_crosses([a, b]: [[f64; 2]; 2], [left, top, right, bottom]: [f64; 4]) -> bool {
     let overlap = |k: usize, low, high| a[k].min(b[k]) <= high && a[k].max(b[k]) >= low;
     let corners = [[left, top], [right, top], [left, bottom], [right, bottom]];

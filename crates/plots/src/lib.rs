@@ -1,9 +1,9 @@
-//! Plots as SVG and pages as HTML: each is one file that needs no other, and shows in every
-//! browser, editor and word processor.
+//! Plots as SVG and pages as HTML: each is a self-contained file for every browser, editor and word
+//! processor.
 //!
-//! A [`Plot`] has lines, marks with error bars or both over a pair of axes; a [`Map`] shows places
-//! to scale; a [`Page`] holds text, tables and both of them. All are plain data, and equal data
-//! gives equal bytes. Tags are written by `maud` alone, so that no text can be taken for one.
+//! A [`Plot`] has lines, marks with error bars or both over a pair of axes; a [`Map`] shows
+//! positions to scale; a [`Page`] contains text, tables, plots and maps. All are plain data, and
+//! equal data gives equal bytes. Only `maud` writes tags, so that no text can be taken for one.
 
 mod colours;
 mod draw;

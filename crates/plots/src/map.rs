@@ -1,4 +1,4 @@
-//! Places to scale, such as the broken bonds of a body seen from the side.
+//! Positions to scale, such as the broken bonds of a body seen from the side.
 
 use maud::{Markup, html};
 
@@ -6,29 +6,29 @@ use crate::colours::{GREY, INK, viridis};
 use crate::numbers::px;
 use crate::svg::{Svg, WIDTH};
 
-/// Room around what is shown, px.
+/// Margin around the content, px.
 const SIDE: f64 = 24.0;
 const ABOVE: f64 = 44.0;
 const BELOW: f64 = 64.0;
-/// Largest height of what is shown, px.
+/// Largest height of the content, px.
 const HIGHEST: f64 = 420.0;
 /// Radius of a dot, px.
 const DOT: f64 = 2.2;
 
-/// Coloured dots over faint circles, with a bar of a round length, 640 px wide.
+/// Coloured dots over faint circles, with a scale bar of a round length, 640 px wide.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Map {
-    /// What it shows.
+    /// Title.
     pub title: String,
-    /// The lower left and the upper right corner of what it shows, m.
+    /// The lower left and the upper right corner of the content, m.
     pub corners_m: [[f64; 2]; 2],
-    /// Faint, the first below the others.
+    /// Faint circles, the first below the others.
     pub circles: Vec<Circle>,
     /// Dots, from early and dark violet to late and yellow.
     pub dots: Vec<Dot>,
     /// Dashed lines from edge to edge.
     pub guides: Vec<Guide>,
-    /// Where a triangle below points at, m along x.
+    /// Position of a triangle that points upwards from below, m along x.
     pub pointer_m: Option<f64>,
 }
 
@@ -41,31 +41,31 @@ pub struct Circle {
     pub radius_m: f64,
 }
 
-/// A dot of a size that says nothing.
+/// A dot of fixed size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
     /// x to the right and y upwards, m.
     pub at_m: [f64; 2],
-    /// By this it has its colour, s.
+    /// Time that determines its colour, s.
     pub time_s: f64,
 }
 
-/// A straight line through the whole map.
+/// A straight line across the entire map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Guide {
-    /// Upright, at this x, m.
+    /// Vertical, at this x, m.
     Upright(f64),
-    /// Level, at this y, m.
+    /// Horizontal, at this y, m.
     Level(f64),
 }
 
-/// From places to pixels.
+/// The transformation from positions to pixels.
 struct View {
-    /// Along x.
+    /// Middle along x.
     middle_m: f64,
     bottom_m: f64,
     px_per_m: f64,
-    /// Of what is shown, px.
+    /// Height of the content, px.
     height: f64,
 }
 
@@ -139,7 +139,7 @@ impl Map {
     }
 }
 
-/// Where a time stands between the first and the last one, 0 to 1.
+/// Position of a time between the first and the last one, 0 to 1.
 fn fraction(time_s: f64, [first_s, last_s]: [f64; 2]) -> f64 {
     if last_s > first_s {
         (time_s - first_s) / (last_s - first_s)
@@ -148,7 +148,7 @@ fn fraction(time_s: f64, [first_s, last_s]: [f64; 2]) -> f64 {
     }
 }
 
-/// What the colours mean.
+/// The colour bar with its times.
 fn colour_bar([first_s, last_s]: [f64; 2], y: f64) -> Markup {
     const CELLS: u32 = 24;
     let (left, width) = (WIDTH - SIDE - 200.0, 120.0);

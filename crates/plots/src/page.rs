@@ -1,11 +1,11 @@
-//! Pages that need no other file.
+//! Self-contained pages.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::svg::Svg;
 use crate::text::shown;
 
-/// The one style of all pages.
+/// The common style of all pages.
 const STYLE: &str = "body{font-family:Helvetica,Arial,sans-serif;color:#222;background:#fff;max-width:860px;\
 margin:2em auto;padding:0 1em;line-height:1.4}\
 table{border-collapse:collapse;margin:.6em 0 1.6em;font-size:14px}\
@@ -21,7 +21,7 @@ pub struct Page {
     content: Vec<Markup>,
 }
 
-/// A table. Without names of columns it has no head.
+/// A table. Without column names it has no header.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Table {
     /// The columns, from the left.
@@ -35,21 +35,21 @@ pub struct Table {
 pub struct Column {
     /// Its name.
     pub name: String,
-    /// It holds numbers, which end at one line.
+    /// True if it contains numbers, which are right-aligned.
     pub is_number: bool,
 }
 
 /// A row of a table.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Row {
-    /// What stands in its columns; those at the end may be missing.
+    /// The texts of its columns; those at the end may be missing.
     pub cells: Vec<String>,
-    /// Of something that failed: red.
+    /// True for a failure, shown in red.
     pub is_bad: bool,
 }
 
 impl From<Vec<String>> for Row {
-    /// A row of nothing that failed.
+    /// A row without failures.
     fn from(cells: Vec<String>) -> Self {
         let is_bad = false;
         Self { cells, is_bad }
@@ -79,7 +79,7 @@ impl Column {
 }
 
 impl Page {
-    /// A page of nothing but its title.
+    /// A page with only its title.
     pub fn new(title: &str) -> Self {
         Self {
             title: shown(title),

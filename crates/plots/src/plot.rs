@@ -1,11 +1,12 @@
-//! What a plot shows.
+//! The content of a plot.
 
 /// A plot of lines and marks over one pair of axes, 640 px wide.
 ///
-/// Values that are not finite are gaps, and so are those of no logarithm on an axis that has one.
+/// Values that are not finite are gaps, and so are values without a logarithm on a logarithmic
+/// axis.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plot {
-    /// What it shows.
+    /// Title.
     pub title: String,
     /// The horizontal axis.
     pub x: Axis,
@@ -15,29 +16,29 @@ pub struct Plot {
     pub lines: Vec<Line>,
     /// Kinds of marks, drawn above the lines.
     pub marks: Vec<Marks>,
-    /// What the kinds of marks have in common, such as the setting in which they differ: above
-    /// their names in the legend.
+    /// The common property of the kinds of marks, such as the setting in which they differ: a
+    /// heading above their names in the legend.
     pub kinds: String,
-    /// What a filled mark says and what a hollow one. None: it says nothing.
+    /// Meanings of a filled and of a hollow mark. None: no meaning.
     pub filled: Option<[String; 2]>,
-    /// Points `[x, y]` of a front, rising in x and falling in y: nothing lies below and left of the
-    /// stairs through them.
+    /// Points `[x, y]` of a front, ascending in x and descending in y: nothing lies below and left
+    /// of the stairs through them.
     pub front: Vec<[f64; 2]>,
-    /// A value on the vertical axis to compare with, and its name.
+    /// A reference value on the vertical axis, and its name.
     pub reference: Option<(f64, String)>,
-    /// What is said where there is nothing to draw. Empty: `no data`.
+    /// Text if there is nothing to draw. Empty: `no data`.
     pub if_empty: String,
 }
 
 /// An axis.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Axis {
-    /// Quantity and SI unit: `time (s)`. On a linear axis the unit gets a prefix that suits the
-    /// values: `time (ms)`.
+    /// Quantity and SI unit: `time (s)`. On a linear axis the unit gets a suitable prefix: `time
+    /// (ms)`.
     pub label: String,
-    /// Logarithmic.
+    /// True if logarithmic.
     pub log: bool,
-    /// Of counts: there are no numbers between whole ones. Not for an axis with logarithms.
+    /// True for counts: there are no ticks between whole numbers. Not for a logarithmic axis.
     pub whole: bool,
 }
 
@@ -66,31 +67,31 @@ pub struct Line {
     pub name: String,
     /// Points `[x, y]` in the units of the axes.
     pub points: Vec<[f64; 2]>,
-    /// Broken, such as for a reference solution.
+    /// True if dashed, for example for a reference solution.
     pub dashed: bool,
 }
 
-/// Marks of one kind, which have one colour and one shape.
+/// Marks of one kind, with a common colour and shape.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Marks {
     /// Its name in the legend; empty: it is not in the legend.
     pub name: String,
     /// The marks.
     pub points: Vec<Point>,
-    /// Thin lines through some of them: points `[x, y]` of each.
+    /// Thin lines through some of the marks: points `[x, y]` of each.
     pub chains: Vec<Vec<[f64; 2]>>,
 }
 
 /// A mark.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Point {
-    /// x and y in the units of the axes. On an axis with logarithms what is not positive stands at
-    /// its lower end.
+    /// x and y in the units of the axes. On a logarithmic axis values that are not positive are
+    /// placed at its lower end.
     pub at: [f64; 2],
     /// Width of its error bar, which lies along x, in the unit of x.
     pub x_spread: f64,
-    /// Filled, or hollow.
+    /// True if filled, false if hollow.
     pub filled: bool,
-    /// What is told to who points at it.
+    /// Tooltip.
     pub title: String,
 }

@@ -1,48 +1,48 @@
-//! From values to places along an axis, and the ticks of it.
+//! From values to positions along an axis, and its ticks.
 
 use crate::plot::Axis;
 use crate::text::width;
 
-/// Values beyond this are gaps: sums of them are not finite.
+/// Values beyond this are gaps: their sums are not finite.
 const LARGEST: f64 = 1e300;
 
-/// Room for the numbers below a plot, px.
+/// Space for the numbers below a plot, px.
 const LABELS: f64 = 400.0;
 
-/// Most numbers at an axis with logarithms.
+/// Largest number of labels at a logarithmic axis.
 const MOST_LOG_NUMBERS: usize = 7;
 
-/// Where values stand along an axis.
+/// Positions of values along an axis.
 #[derive(Debug, Clone)]
 pub(crate) struct Scale {
     /// Ends of the axis: values, or their decimal logarithms.
     low: f64,
     high: f64,
     log: bool,
-    /// What stands at the axis.
+    /// Label of the axis.
     pub(crate) label: String,
     /// Lines of the grid with their numbers.
     pub(crate) ticks: Vec<Tick>,
-    /// Shares of the axis at which finer lines of the grid stand.
+    /// Positions of finer grid lines, as fractions of the axis.
     pub(crate) fine: Vec<f64>,
 }
 
 /// A number at an axis.
 #[derive(Debug, Clone)]
 pub(crate) struct Tick {
-    /// Share of the axis, 0 to 1.
+    /// Position as a fraction of the axis, 0 to 1.
     pub(crate) fraction: f64,
     pub(crate) label: String,
 }
 
-/// Whether a value has a place on an axis.
+/// True if a value can be drawn on an axis.
 pub(crate) fn is_drawn(value: f64, log: bool) -> bool {
     value.abs() <= LARGEST && (!log || value > 0.0)
 }
 
 impl Scale {
-    /// An axis on which all of these values have a place, as far as they [are drawn](is_drawn);
-    /// `rounded`: a linear one begins and ends at ticks.
+    /// An axis that contains all of these values that [can be drawn](is_drawn); `rounded`: a linear
+    /// one begins and ends at ticks.
     pub(crate) fn new(axis: &Axis, values: impl Iterator<Item = f64>, rounded: bool) -> Self {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in values.filter(|value| is_drawn(*value, axis.log)) {
@@ -57,7 +57,7 @@ impl Scale {
         }
         let largest = low.abs().max(high.abs());
         if high - low <= 1e-10 * largest || high - low < 1e-290 {
-            // A constant, as far as can be told.
+            // A constant, as far as can be distinguished.
             let room = if largest < 1e-290 { 1.0 } else { 0.1 * largest };
             (low, high) = (low - room, high + room);
         }
@@ -77,11 +77,11 @@ impl Scale {
         }
     }
 
-    /// Numbers at round values, at most `intervals` and one more, or two if the axis is `rounded`.
+    /// Numbers at round values: at most `intervals` plus one, or plus two if the axis is `rounded`.
     fn with_ticks(axis: &Axis, low: f64, high: f64, intervals: f64, rounded: bool) -> Self {
         let step = nice_step((high - low) / intervals);
         let step = if axis.whole { step.max(1.0) } else { step };
-        // A little more than a whole step is one, not two.
+        // A little more than a whole step counts as one, not two.
         let (from, to, first, last);
         if rounded {
             (first, last) = ((low / step + 1e-6).floor(), (high / step - 1e-6).ceil());
@@ -114,7 +114,7 @@ impl Scale {
         scale
     }
 
-    /// With room around the values, a factor of two at least.
+    /// With a margin around the values, at least a factor of two.
     fn logarithmic(axis: &Axis, low: f64, high: f64) -> Self {
         let (low, high) = if low > high {
             (0.0, 1.0)
@@ -158,7 +158,7 @@ impl Scale {
         scale
     }
 
-    /// Numbers at equal steps, where the ends of the axis are less than a factor of four apart.
+    /// Numbers at equal steps, if the ends of the axis differ by less than a factor of four.
     fn steps(&self) -> Option<Vec<Tick>> {
         let [from, to] = [self.low, self.high].map(|log| 10_f64.powf(log));
         if to > 4.0 * from || from < 1e-3 || to > 1e4 {
@@ -177,7 +177,7 @@ impl Scale {
         Some((0..=(last - first) as u32).map(tick).collect())
     }
 
-    /// Digits and decades that have a number: as many as fit.
+    /// Digits and decades with a number: as many as fit.
     fn numbers(&self) -> Vec<(u32, i32)> {
         let few = [
             &[1, 2, 3, 4, 5, 6, 7, 8, 9][..],
@@ -191,7 +191,7 @@ impl Scale {
         fitting.next().unwrap_or_else(|| self.within(&[1], 100))
     }
 
-    /// These digits of every so manyth decade, as far as they have a place.
+    /// These digits of every `every`th decade, as far as they lie on the axis.
     fn within(&self, digits: &[u32], every: i32) -> Vec<(u32, i32)> {
         let decades = self.low.floor() as i32..=self.high.floor() as i32;
         decades
@@ -209,8 +209,8 @@ impl Scale {
         (log - self.low) / (self.high - self.low)
     }
 
-    /// The share of the axis at which a value stands: 0 to 1 for those that the axis was made for,
-    /// 0 for what has no logarithm.
+    /// The position of a value as a fraction of the axis: 0 to 1 for those for which the axis was
+    /// made, 0 for values without a logarithm.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let value = match self.log {
             true if value > 0.0 => value.log10(),
@@ -256,7 +256,7 @@ fn with_prefix(label: &str, largest: f64) -> (String, i32) {
     }
 }
 
-/// `time (s)` in two, if the unit is one that takes a prefix.
+/// `time (s)` in two parts, if the unit takes a prefix.
 fn unit_of(label: &str) -> Option<(&str, &str)> {
     const UNITS: [&str; 10] = ["s", "m", "N", "J", "Pa", "W", "Hz", "rad", "V", "A"];
     let open = label.rfind('(')?;
@@ -265,7 +265,7 @@ fn unit_of(label: &str) -> Option<(&str, &str)> {
     UNITS.contains(&first).then_some((&label[..open], unit))
 }
 
-/// A number with this many decimals and a minus of the width of a plus.
+/// A number with this many decimals and a minus sign as wide as a plus.
 fn decimal(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -290,7 +290,7 @@ fn power_of_ten(exponent: i32) -> String {
 mod tests {
     use super::*;
 
-    /// Of a plot, px.
+    /// Width of a plot area, px.
     const AREA: f64 = 500.0;
 
     #[test]

@@ -1,4 +1,4 @@
-//! The frame of every plot: size, font, title and white paper.
+//! The frame of every plot: size, font, title and white background.
 
 use maud::{Markup, html};
 
@@ -11,15 +11,15 @@ pub(crate) const WIDTH: f64 = 640.0;
 const SPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
 const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
-/// Elements without content, which XML closes short.
+/// Elements without content, which XML closes in short form.
 const EMPTY: [&str; 5] = ["circle", "path", "polygon", "polyline", "rect"];
 
-/// A plot as it stands in a file or on a page.
+/// A plot as the text of a file or as an element of a page.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Svg(String);
 
 impl Svg {
-    /// `height`, px. `title`: in bold letters above, and for who points at the plot.
+    /// `height`, px. `title`: in bold above the plot, and as its tooltip.
     pub(crate) fn new(height: f64, title: &str, content: &Markup) -> Self {
         let size = format!("0 0 {WIDTH} {height:.0}");
         let whole = html! {
@@ -38,7 +38,7 @@ impl Svg {
         let short = EMPTY.iter().fold(whole.into_string(), |text, name| {
             text.replace(&format!("></{name}>"), "/>")
         });
-        // An element a line. Within texts `>` is escaped.
+        // One element per line. Within texts `>` is escaped.
         Self(short.replace("><", ">\n<") + "\n")
     }
 

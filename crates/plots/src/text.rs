@@ -1,7 +1,7 @@
-//! Text in plots, and how wide it is. The fonts of the viewer are not known, so the width is an
-//! estimate on the wide side.
+//! Text in plots, and its width. The fonts of the viewer are unknown, so the width is an estimate
+//! on the wide side.
 
-/// `text` with control characters made visible and without what XML cannot hold.
+/// `text` with control characters made visible and without characters that XML does not allow.
 pub(crate) fn shown(text: &str) -> String {
     dem_io::text::visible(text).replace(['\u{fffe}', '\u{ffff}'], "")
 }
@@ -23,7 +23,7 @@ pub(crate) fn width(text: &str, font_size: f64) -> f64 {
         * font_size
 }
 
-/// `text` as it is [`shown`], or as much of its beginning as fits, with an ellipsis.
+/// `text` as [`shown`], or as much of its beginning as fits, with an ellipsis.
 pub(crate) fn shortened(text: &str, font_size: f64, limit: f64) -> String {
     let text = shown(text);
     if width(&text, font_size) <= limit {

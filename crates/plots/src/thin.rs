@@ -1,12 +1,12 @@
-//! Long lines with no more points than can be seen.
+//! Thinning of long lines to the visible points.
 
-/// Lines of up to this many points are drawn as they are.
+/// Lines up to this number of points are drawn unchanged.
 const DRAWN_POINTS: usize = 1000;
-/// Columns of a long line: two points each.
+/// Number of columns of a long line: two points each.
 const COLUMNS: usize = 480;
 
 /// The pieces of a line between its gaps (None), thinned so that it looks the same: of the points
-/// that share a narrow column, the lowest and the highest are kept.
+/// in a narrow column, the lowest and the highest are kept.
 pub(crate) fn segments(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<Vec<[f64; 2]>> {
     let mut points: Vec<Option<[f64; 2]>> = points.collect();
     if points.len() > DRAWN_POINTS {
@@ -23,7 +23,8 @@ fn thinned(points: &[Option<[f64; 2]>]) -> Vec<Option<[f64; 2]>> {
     let xs = || points.iter().flatten().map(|point| point[0]);
     let low = xs().fold(f64::INFINITY, f64::min);
     let width = (xs().fold(f64::NEG_INFINITY, f64::max) - low).max(f64::MIN_POSITIVE);
-    // A curve that turns back: as many points in a row share a column as there are for each.
+    // A curve that turns back: a number of successive points, the average for each column, share a
+    // column.
     let (is_rising, in_a_row) = (xs().is_sorted(), points.len().div_ceil(COLUMNS));
     let column = |index: usize, [x, _]: [f64; 2]| match is_rising {
         true => ((x - low) * COLUMNS as f64 / width) as usize,
@@ -36,7 +37,7 @@ fn thinned(points: &[Option<[f64; 2]>]) -> Vec<Option<[f64; 2]>> {
     let mut kept = Vec::new();
     let mut next = 0;
     for shared in placed.chunk_by(|a, b| a.0 == b.0) {
-        // Gaps within a column cannot be seen.
+        // Gaps within a column are invisible.
         if shared[0].1 > next {
             kept.push(None);
         }

@@ -1,4 +1,4 @@
-//! Plots and pages as others read them.
+//! Plots and pages as read by other programs.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

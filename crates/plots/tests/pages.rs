@@ -1,4 +1,4 @@
-//! Pages of anything.
+//! Pages with arbitrary content.
 
 use dem_plots::{Axis, Column, Page, Plot, Row, Table};
 
@@ -29,7 +29,7 @@ fn pages_hold_neither_tags_nor_control_characters_of_others() {
     assert_eq!(html.matches(SHOWN).count(), 11, "{html}");
     assert!(!html.contains("<script>") && html.contains("<td class=\"n\">7</td>"));
     assert!(!html.chars().any(|c| c.is_control() && c != '\n'));
-    // Nothing is asked of other places.
+    // No other address is requested.
     assert!(!html.contains("http"));
     assert!(html.starts_with("<!DOCTYPE html>") && html.ends_with("</html>\n"));
 }

@@ -1,22 +1,22 @@
-//! Plots of anything: well-formed, nothing outside, nothing hidden by the legend.
+//! Plots with arbitrary content: well-formed, nothing outside, nothing hidden by the legend.
 
 use dem_plots::{Axis, Line, Marks, Plot, Point};
 use proptest::prelude::*;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-/// What is drawn.
+/// The content of a drawing.
 #[derive(Debug, Default)]
 struct Picture {
     height: f64,
     /// Left, top, width and height.
     area: [f64; 4],
     legend: Option<[f64; 4]>,
-    /// Of each line its pieces; a dot is a piece of one point.
+    /// The pieces of each line; a dot is a piece of one point.
     lines: Vec<Vec<Vec<[f64; 2]>>>,
     marks: usize,
     reference: Option<f64>,
-    /// Every text with its place; those that are turned stand at [0, 0].
+    /// Every text with its position; rotated ones are at [0, 0].
     texts: Vec<([f64; 2], String)>,
     titles: Vec<String>,
 }
@@ -50,7 +50,7 @@ fn svg(plot: &Plot) -> String {
     plot.svg().file()
 }
 
-/// Reads a plot back. Everything must be closed, every number finite.
+/// Reads a plot back. Checks that everything is closed and every number finite.
 fn read(text: &str) -> Picture {
     for word in ["NaN", "inf", "\u{0}"] {
         let drawn: String = text
@@ -445,7 +445,7 @@ fn marks_have_kinds_error_bars_and_a_front() {
     assert!(picture.titles.contains(&"<run> 1.5".to_owned()));
     assert_eq!(text.matches("class=\"chain\"").count(), 2);
     assert_eq!(text.matches("class=\"front\"").count(), 1);
-    // Two are filled, and the sample of them; the legend covers none of them.
+    // Two are filled, and so is their sample; the legend covers none of them.
     let [left, top, wide, high] = picture.area;
     assert!(!text.contains("no data") && left + wide < 640.0 && top + high < 400.0);
     plot.marks[1].name.clear();

@@ -1,7 +1,7 @@
-//! Checkpoints: the state of a run in one file that is whole or refused.
+//! Checkpoints: the state of a run in one file that is either complete or refused.
 //!
-//! What the state's bytes mean, only the program knows that writes them. Layout, numbers little
-//! endian:
+//! The meaning of the state's bytes is known only to the program that writes them. Layout, numbers
+//! little endian:
 //!
 //! | bytes | what |
 //! |---|---|
@@ -13,9 +13,9 @@
 //! | ... | the state |
 //! | 8 | FNV-1a, 64 bit, of all bytes before |
 //!
-//! FNV-1a is good enough here: it notices every change of a single byte (each of its steps can be
-//! undone), and misses any other damage once in 2^64 times. It takes a nanosecond a byte, less than
-//! the disk.
+//! FNV-1a is good enough here: it detects every change of a single byte (each of its steps is
+//! reversible), and misses any other damage once in 2^64 times. It takes a nanosecond per byte,
+//! less than the disk.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -25,7 +25,7 @@ use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::hash::fnv1a_of_parts;
 use dem_io::safe_write::write_file;
 
-/// Version of the layout and of the state in it: raised when either changes. Other versions are
+/// Version of the layout and of the state in it: increased when either changes. Other versions are
 /// refused.
 pub const FORMAT_VERSION: u32 = 7;
 
@@ -36,11 +36,10 @@ const MAGIC: &[u8; 16] = b"dem checkpoint\r\n";
 
 const START_AGAIN: &str = "take an older checkpoint, or start the run again without --resume";
 
-/// Writes the state of a run, `payload`, to the file `path`, which appears whole or not at all.
+/// Writes the state of a run, `payload`, to the file `path`, which appears complete or not at all.
 ///
 /// # Errors
-/// Missing folder, no permission, full disk (all exit code 1). A checkpoint that stood there is
-/// unchanged.
+/// Missing folder, no permission, full disk (all exit code 1). An existing checkpoint is unchanged.
 pub fn write_checkpoint(path: &Path, payload: &[u8]) -> Result<()> {
     let mut head = MAGIC.to_vec();
     head.extend(FORMAT_VERSION.to_le_bytes());
@@ -58,8 +57,8 @@ pub fn write_checkpoint(path: &Path, payload: &[u8]) -> Result<()> {
 /// The state that [`write_checkpoint`] wrote to the file `path`.
 ///
 /// # Errors
-/// There is no such file, it is no checkpoint, of another version, cut off or damaged (all exit
-/// code 2).
+/// The file does not exist, is not a checkpoint, is of another version, truncated or damaged (all
+/// exit code 2).
 pub fn read_checkpoint(path: &Path) -> Result<Vec<u8>> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let mut bytes = fs::read(path).map_err(|error| {
@@ -81,7 +80,7 @@ pub fn read_checkpoint(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Where the state stands in a checkpoint.
+/// The range of the state in a checkpoint.
 fn payload_of(bytes: &[u8]) -> Result<std::ops::Range<usize>> {
     let known = bytes.len().min(MAGIC.len());
     if bytes[..known] != MAGIC[..known] || bytes.is_empty() {
@@ -138,14 +137,14 @@ fn payload_of(bytes: &[u8]) -> Result<std::ops::Range<usize>> {
     Ok(payload)
 }
 
-/// What has not been read yet.
+/// The bytes not read yet.
 struct Rest<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
 impl Rest<'_> {
-    /// Where the next `length` bytes stand, which are `what`.
+    /// The range of the next `length` bytes, called `what` in messages.
     fn take(&mut self, length: u64, what: &str) -> Result<std::ops::Range<usize>> {
         let end = usize::try_from(length)
             .ok()

@@ -1,8 +1,8 @@
-//! Events of a run (bonds that break, bodies that are replaced, changes of the plan) as one CSV
-//! table that grows.
+//! Events of a run (broken bonds, replaced bodies, changes of the plan) as one CSV table that
+//! grows.
 //!
-//! Columns: see [`COLUMNS`]. What does not apply to an event is left empty. Every number reads back
-//! as the same bits.
+//! Columns: see [`COLUMNS`]. Values that do not apply to an event are empty. Every number reads
+//! back as the same bits.
 
 use std::fmt::{Display, Write};
 use std::path::Path;
@@ -21,21 +21,21 @@ pub struct Event<'a> {
     pub step: u64,
     /// Simulated time, s.
     pub time_s: f64,
-    /// What happened: `bond_broken`.
+    /// Type of the event: `bond_broken`.
     pub kind: &'a str,
-    /// The bond that it happened to.
+    /// The bond concerned.
     pub bond: Option<u64>,
-    /// The first particle that it happened to.
+    /// The first particle concerned.
     pub particle_a: Option<u64>,
     /// The second one.
     pub particle_b: Option<u64>,
-    /// Where, m.
+    /// Position, m.
     pub position_m: Option<[f64; 3]>,
-    /// Why: `tension`. May be empty.
+    /// Cause: `tension`. May be empty.
     pub cause: &'a str,
-    /// Energy that was released, J.
+    /// Released energy, J.
     pub energy_j: Option<f64>,
-    /// Anything more, for a person. May be empty.
+    /// Further human-readable details. May be empty.
     pub detail: &'a str,
 }
 
@@ -46,7 +46,7 @@ pub struct EventFile {
 }
 
 impl EventFile {
-    /// A new file without events. Replaces what stood there.
+    /// A new file without events. Replaces an existing one.
     ///
     /// # Errors
     /// Missing folder, no permission, full disk (all exit code 1).
@@ -56,8 +56,7 @@ impl EventFile {
         })
     }
 
-    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its
-    /// checkpoint.
+    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
     ///
     /// # Errors
     /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
@@ -71,7 +70,7 @@ impl EventFile {
     /// Appends events, such as all of one step. They are in the file when this returns.
     ///
     /// # Errors
-    /// Full disk (exit code 1): the events before are kept.
+    /// Full disk (exit code 1): earlier events are kept.
     pub fn append(&mut self, events: &[Event<'_>]) -> Result<()> {
         if events.is_empty() {
             return Ok(());
@@ -80,13 +79,13 @@ impl EventFile {
             .append(&events.iter().map(row).collect::<String>())
     }
 
-    /// Length of the file: what a checkpoint keeps for [`EventFile::continue_at`].
+    /// Length of the file, stored in a checkpoint for [`EventFile::continue_at`].
     pub fn length_bytes(&self) -> u64 {
         self.table.length_bytes()
     }
 
-    /// Waits until all events are on the disk, where a power failure leaves them. To be called
-    /// before a checkpoint is written that counts on them.
+    /// Waits until all events are on the disk, safe from a power failure. To be called before
+    /// writing a checkpoint that relies on them.
     ///
     /// # Errors
     /// Full or broken disk (exit code 1).
@@ -98,7 +97,7 @@ impl EventFile {
 fn row(event: &Event<'_>) -> String {
     let [x, y, z] = event.position_m.map_or([None; 3], |place| place.map(Some));
     let mut row = String::new();
-    // Writing to a text cannot fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(
         row,
         "{},{:e},{},{},{},{},{},{},{},{},{},{}",

@@ -1,4 +1,4 @@
-//! The folder of a run: what is called how, and what may be in it before.
+//! The folder of a run: the names in it, and its permitted previous contents.
 
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
@@ -43,19 +43,19 @@ const SINGLE_FILES: [&str; 12] = [
     ENDED,
 ];
 
-/// What to do with a folder that holds something already.
+/// Treatment of a folder that is not empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
     /// Refuse it.
     Refuse,
-    /// Remove the files that an earlier run wrote, and nothing else: `--force`.
+    /// Remove the files written by an earlier run, and nothing else: `--force`.
     Replace,
-    /// Leave all as it is, but for what killed writes have left, for a run that goes on:
-    /// `--resume`.
+    /// Leave everything except the remains of killed writes, to continue a run: `--resume`.
     Continue,
 }
 
-/// The folder that a run writes to, and no other run as long as this or a clone of it lives.
+/// The folder to which a run writes. No other run can write to it as long as this or a clone of it
+/// exists.
 #[derive(Debug, Clone)]
 pub struct ResultsFolder {
     path: PathBuf,
@@ -63,8 +63,7 @@ pub struct ResultsFolder {
 }
 
 impl ResultsFolder {
-    /// Makes the folder `path` or takes the one that is there, and makes sure that it can be
-    /// written to.
+    /// Makes the folder `path` or uses the existing one, and checks that it can be written to.
     ///
     /// # Errors
     /// It is not empty, by `existing`; there is none to continue; another run is writing into it
@@ -80,7 +79,7 @@ impl ResultsFolder {
                 "check its name, or start the run without --resume",
             ));
         }
-        // A folder that is not that of a run gets no lock either.
+        // A folder that is not that of a run does not get a lock file either.
         if existing == Existing::Refuse && !path.join(LOCK).exists() {
             refuse_unless_empty(path)?;
         }
@@ -92,13 +91,13 @@ impl ResultsFolder {
             Existing::Refuse => refuse_unless_empty(path)?,
             Existing::Replace => folder.remove_results()?,
             Existing::Continue => {
-                // What a killed write has left.
+                // The remains of a killed write.
                 for part in ["", FRAMES, PICTURES, PLOTS] {
                     folder.remove_files(part, |_| false)?;
                 }
             }
         }
-        // Nothing comes of this file: it only shows that files can be written here.
+        // This file is not kept: it only shows that files can be written here.
         PendingFile::write(&folder.summary(), |_| Ok(()))?;
         Ok(folder)
     }
@@ -150,7 +149,7 @@ impl ResultsFolder {
         self.path.join(FRAGMENTS)
     }
 
-    /// Which fragment broke off which: `fragment-tree.csv`.
+    /// The origin of each fragment: `fragment-tree.csv`.
     pub fn fragment_tree(&self) -> PathBuf {
         self.path.join(FRAGMENT_TREE)
     }
@@ -160,7 +159,7 @@ impl ResultsFolder {
         self.path.join(SUMMARY)
     }
 
-    /// What is written at the end of a run, kept until it all is: `.ended.json`.
+    /// The data written at the end of a run, kept until all files are complete: `.ended.json`.
     pub fn ended(&self) -> PathBuf {
         self.path.join(ENDED)
     }
@@ -170,7 +169,7 @@ impl ResultsFolder {
         self.path.join(CHECKPOINT)
     }
 
-    /// A plot: `plots/NAME.svg`. Letters that a file name may not hold become `_`.
+    /// A plot: `plots/NAME.svg`. Characters that a file name may not contain become `_`.
     pub fn plot(&self, name: &str) -> PathBuf {
         let name: String = name
             .chars()
@@ -262,14 +261,14 @@ impl ResultsFolder {
         self.remove_files("", |name| name == INDEX)
     }
 
-    /// Removes the files that a run wrote, and the folder unless it holds something else.
+    /// Removes the files written by a run, and the folder unless it contains something else.
     ///
     /// # Errors
     /// No permission (exit code 1).
     pub fn remove(self) -> Result<()> {
         self.remove_results()?;
         for part in [FRAMES, PICTURES, PLOTS] {
-            // One that holds something else stays, and so does the folder then.
+            // A folder with other contents stays, and so does the main folder then.
             let _ = fs::remove_dir(self.path.join(part));
         }
         let is_empty = refuse_unless_empty(&self.path).is_ok();
@@ -282,8 +281,7 @@ impl ResultsFolder {
     }
 
     fn remove_results(&self) -> Result<()> {
-        // First, so that a folder of which only a part could be removed is not taken for a run to
-        // continue.
+        // First, so that a partly removed folder is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
         self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
         self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
@@ -294,8 +292,8 @@ impl ResultsFolder {
         })
     }
 
-    /// Removes the files of the folder `part` that are `ours` by their name. A file of a write that
-    /// was killed is ours, too.
+    /// Removes the files of the folder `part` that are `ours` by their name. A file left by a
+    /// killed write is also ours.
     fn remove_files(&self, part: &str, ours: impl Fn(&str) -> bool) -> Result<()> {
         let folder = self.path.join(part);
         if !folder.is_dir() {
@@ -320,20 +318,20 @@ impl ResultsFolder {
     }
 }
 
-/// Whether a run is writing into the folder `path` at this moment. A folder that no run has written
-/// to is not there for it.
+/// True if a run is writing into the folder `path` at this moment. A folder to which no run has
+/// written is not created.
 pub fn is_written_to(path: &Path) -> bool {
     is_locked(&path.join(LOCK))
 }
 
-/// Whether a file is there and another program holds its lock.
+/// True if a file exists and another program holds its lock.
 pub fn is_locked(path: &Path) -> bool {
     File::open(path).is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
 }
 
-/// The first of `files` that stands in the folder `path` under a name of results, also through a
-/// link: a run that writes
-/// there would remove or overwrite it. None: there is none of them, or no such folder.
+/// The first of `files` that is in the folder `path` under a name of results, also through a link:
+/// a run that writes there would remove or overwrite it. None if there is none of them, or no such
+/// folder.
 pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf> {
     let is_ours = |part: &str, name: &str| match part {
         FRAMES => frame_number(name).is_some(),
@@ -361,11 +359,10 @@ pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf
     None
 }
 
-/// Refuses to write results into the folder `path` where they would take the place of a file that
-/// the run reads.
+/// Refuses to write results into the folder `path` if they would replace a file that the run reads.
 ///
 /// # Errors
-/// One of `inputs` stands there under a name of results (exit code 2).
+/// One of `inputs` is in it under a name of results (exit code 2).
 pub fn refuse_inputs_among_results(path: &Path, inputs: &[PathBuf]) -> Result<()> {
     match result_among(path, inputs) {
         None => Ok(()),
@@ -380,8 +377,8 @@ pub fn refuse_inputs_among_results(path: &Path, inputs: &[PathBuf]) -> Result<()
     }
 }
 
-/// The numbers of the frames in the results folder `path`, rising. Nothing is locked: a run may be
-/// writing there.
+/// The numbers of the frames in the results folder `path`, ascending. Nothing is locked: a run may
+/// be writing there.
 ///
 /// # Errors
 /// There is no such folder, or it cannot be read.
@@ -412,7 +409,7 @@ pub fn frame_in(path: &Path, number: usize) -> PathBuf {
     path.join(frame_name(number))
 }
 
-/// The name of a frame in the folder, with `/` on every system: ParaView wants it so.
+/// The name of a frame in the folder, with `/` on every system, as required by ParaView.
 pub(super) fn frame_name(number: usize) -> String {
     format!("{FRAMES}/frame_{number:06}.vtp")
 }
@@ -427,14 +424,14 @@ fn picture_number(name: &str) -> Option<usize> {
     number_of(name, "picture-", ".png", 5)
 }
 
-/// The number of at least so many digits between the two.
+/// The number, of at least `least` digits, between `before` and `after`.
 fn number_of(name: &str, before: &str, after: &str, least: usize) -> Option<usize> {
     let digits = name.strip_prefix(before)?.strip_suffix(after)?;
     let is_number = digits.len() >= least && digits.bytes().all(|byte| byte.is_ascii_digit());
     is_number.then(|| digits.parse().ok()).flatten()
 }
 
-/// Makes a folder unless it is there. Its parent must be.
+/// Makes a folder unless it exists. Its parent must exist.
 fn make_folder(path: &Path) -> Result<()> {
     match fs::create_dir(path) {
         Ok(()) => Ok(()),
@@ -452,8 +449,8 @@ fn make_folder(path: &Path) -> Result<()> {
     }
 }
 
-/// Takes the lock of a folder, which the system releases when the program ends, however it does.
-/// The file stays: another run may be about to lock it.
+/// Locks a folder. The system releases the lock when the program ends for whatever reason. The file
+/// stays: another run may be about to lock it.
 fn lock(folder: &Path) -> Result<File> {
     let path = folder.join(LOCK);
     let file = File::options()
@@ -468,7 +465,7 @@ fn lock(folder: &Path) -> Result<File> {
             "another run is writing into it",
             "wait until that run has ended, or name another folder with --output",
         )),
-        // Some network disks know no locks: that is no reason not to run.
+        // Some network disks do not support locks: that is not a reason to refuse the run.
         Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
     }
 }
@@ -487,7 +484,7 @@ fn refuse_unless_empty(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The paths of what is in a folder.
+/// The paths of the entries of a folder.
 fn entries(folder: &Path) -> Result<impl Iterator<Item = std::io::Result<PathBuf>>> {
     let entries = fs::read_dir(folder).map_err(|error| {
         Diagnostic::failed(

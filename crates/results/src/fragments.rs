@@ -1,8 +1,8 @@
-//! Fragments of bodies that break: how each moves at chosen moments, as one CSV table that grows,
-//! and which broke off which, as one that is written at the end.
+//! Fragments of breaking bodies: their motion at chosen moments, as one CSV table that grows, and
+//! their origin, as one that is written at the end.
 //!
-//! Columns: see [`COLUMNS`] and [`TREE_COLUMNS`]. What a fragment does not have is left empty.
-//! Every number reads back as the same bits, but for a zero, which has no sign.
+//! Columns: see [`COLUMNS`] and [`TREE_COLUMNS`]. Values that a fragment does not have are empty.
+//! Every number reads back as the same bits, except that a zero has no sign.
 
 use std::fmt::{Display, Write};
 use std::path::Path;
@@ -19,27 +19,27 @@ pub const COLUMNS: &str = "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_
 /// The first line of the fragment tree.
 pub const TREE_COLUMNS: &str = "fragment_id,parent_id,created_s,ended_s,particles";
 
-/// Rows that are handed to the system together.
+/// Number of rows that are passed to the system together.
 const AT_ONCE: usize = 1000;
 
 /// A fragment at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FragmentRow {
-    /// Its number, which no other one ever has.
+    /// Its number, which is never reused.
     pub fragment_id: u32,
-    /// The fragment that it broke off.
+    /// The fragment from which it broke off.
     pub parent_id: Option<u32>,
     /// Number of its particles.
     pub particles: u32,
-    /// kg.
+    /// Mass, kg.
     pub mass_kg: f64,
     /// Centre of mass, m. Length 3.
     pub centre_m: [f64; 3],
-    /// Of the centre of mass, m/s. Length 3.
+    /// Velocity of the centre of mass, m/s. Length 3.
     pub velocity_m_s: [f64; 3],
-    /// rad/s. Length 3.
+    /// Angular velocity, rad/s. Length 3.
     pub angular_velocity_rad_s: [f64; 3],
-    /// Sum of what acts on its particles, N. Length 3.
+    /// Sum of the forces on its particles, N. Length 3.
     pub force_n: [f64; 3],
     /// Diameter of the sphere with the volume of its particles, m.
     pub equivalent_diameter_m: f64,
@@ -54,7 +54,7 @@ pub struct FragmentFile {
 }
 
 impl FragmentFile {
-    /// A new file without fragments. Replaces what stood there.
+    /// A new file without fragments. Replaces an existing one.
     ///
     /// # Errors
     /// Missing folder, no permission, full disk (all exit code 1).
@@ -64,8 +64,7 @@ impl FragmentFile {
         })
     }
 
-    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its
-    /// checkpoint.
+    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
     ///
     /// # Errors
     /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
@@ -79,7 +78,8 @@ impl FragmentFile {
     /// Appends the fragments of one moment. They are in the file when this returns.
     ///
     /// # Errors
-    /// Full disk (exit code 1): the moments before are kept, of this one perhaps some whole rows.
+    /// Full disk (exit code 1): earlier moments are kept, and possibly some complete rows of this
+    /// one.
     pub fn append(&mut self, time_s: f64, fragments: &[FragmentRow]) -> Result<()> {
         for some in fragments.chunks(AT_ONCE) {
             let rows: String = some.iter().map(|fragment| row(time_s, fragment)).collect();
@@ -88,13 +88,13 @@ impl FragmentFile {
         Ok(())
     }
 
-    /// Length of the file: what a checkpoint keeps for [`FragmentFile::continue_at`].
+    /// Length of the file, stored in a checkpoint for [`FragmentFile::continue_at`].
     pub fn length_bytes(&self) -> u64 {
         self.table.length_bytes()
     }
 
-    /// Waits until all rows are on the disk, where a power failure leaves them. To be called before
-    /// a checkpoint is written that counts on them.
+    /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
+    /// a checkpoint that relies on them.
     ///
     /// # Errors
     /// Full or broken disk (exit code 1).
@@ -124,29 +124,29 @@ fn row(time_s: f64, fragment: &FragmentRow) -> String {
     ];
     let numbers = [mass].into_iter().chain(vectors.into_iter().flatten());
     for number in numbers.chain([size, extent]) {
-        // Writing to a text cannot fail. Adding 0 takes the sign from a zero.
+        // Writing to a string cannot fail. Adding 0 removes the sign of a zero.
         let _ = write!(row, ",{}", exact(number + 0.0));
     }
     row.push('\n');
     row
 }
 
-/// A fragment that is or was.
+/// A present or former fragment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TreeRow {
     /// Its number.
     pub fragment_id: u32,
-    /// The fragment that it broke off; none: it was there whole.
+    /// The fragment from which it broke off; none if it is an original body.
     pub parent_id: Option<u32>,
-    /// When it was found, s.
+    /// Time at which it was found, s.
     pub created_s: f64,
-    /// When it was found in pieces, s; none: it is whole.
+    /// Time at which it was found broken, s; none if it is not broken.
     pub ended_s: Option<f64>,
     /// Number of its particles.
     pub particles: u32,
 }
 
-/// Writes the fragment tree to the file `path`, whole or not at all.
+/// Writes the fragment tree to the file `path`, completely or not at all.
 ///
 /// # Errors
 /// As [`write_file`].

@@ -1,8 +1,7 @@
-//! Frames of a run for ParaView: one .vtp file each, and one index of all with their times,
-//! `frames.pvd`.
+//! Frames of a run for ParaView: one .vtp file each, and one index with their times, `frames.pvd`.
 //!
 //! Points = particles (Float64, m), lines = bonds, any point and cell data, the time as field data
-//! `TimeValue` (s). How it is encoded, [`dem_io::vtk`] says.
+//! `TimeValue` (s). For the encoding see [`dem_io::vtk`].
 
 use std::io::{self, Write};
 
@@ -12,7 +11,7 @@ use dem_io::safe_write::write_file;
 pub use dem_io::vtk::{NamedArray, Values};
 use dem_io::vtk::{PolyData, exact, write_number};
 
-/// What is to be seen at one time. Particles and bonds are known by their indices, from 0 on.
+/// The data of a frame. Particles and bonds are given by their indices, from 0.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
     /// Simulated time, s.
@@ -21,21 +20,21 @@ pub struct Frame<'a> {
     pub particles: usize,
     /// Centre of each particle, m.
     pub position_m: &'a dyn Fn(usize) -> [f64; 3],
-    /// What is known of the particles.
+    /// Arrays of the particles.
     pub particle_arrays: &'a [NamedArray<'a>],
     /// Number of bonds.
     pub bonds: usize,
     /// The two particles of each bond.
     pub ends: &'a dyn Fn(usize) -> [u32; 2],
-    /// What is known of the bonds.
+    /// Arrays of the bonds.
     pub bond_arrays: &'a [NamedArray<'a>],
 }
 
 impl Frame<'_> {
-    /// Whether every bond has its two particles: ParaView crashes without.
+    /// Checks that the two particles of every bond exist: otherwise ParaView crashes.
     ///
     /// # Errors
-    /// Says which bond (exit code 1: it is a fault of the program).
+    /// The bond concerned (exit code 1: it is an error of the program).
     pub fn check(&self) -> Result<()> {
         let missing = |end: u32| end as usize >= self.particles;
         match (0..self.bonds).find(|&bond| (self.ends)(bond).into_iter().any(missing)) {
@@ -79,7 +78,7 @@ pub struct FrameFiles {
 }
 
 impl FrameFiles {
-    /// No frame yet. Nothing is written before the first.
+    /// No frames yet. Nothing is written before the first.
     pub fn create(folder: &ResultsFolder) -> Self {
         Self {
             folder: folder.clone(),
@@ -87,8 +86,8 @@ impl FrameFiles {
         }
     }
 
-    /// The frames of an interrupted run up to its checkpoint, which had these times, s. Later ones
-    /// are removed.
+    /// The frames of an interrupted run up to its checkpoint, at these times, s. Later ones are
+    /// removed.
     ///
     /// # Errors
     /// A frame is missing (exit code 2); the index cannot be written or a later frame not removed
@@ -118,11 +117,11 @@ impl FrameFiles {
         Ok(frames)
     }
 
-    /// Writes the next frame, then the index with it.
+    /// Writes the next frame, then the updated index.
     ///
     /// # Errors
-    /// No permission, full disk (exit code 1): frames and index before are kept. The frame is wrong
-    /// by [`Frame::check`].
+    /// No permission, full disk (exit code 1): earlier frames and the index are kept. The frame
+    /// fails [`Frame::check`].
     pub fn append(&mut self, frame: &Frame<'_>) -> Result<()> {
         frame.check()?;
         self.folder.make_frames_folder()?;
@@ -132,7 +131,7 @@ impl FrameFiles {
         self.write_index()
     }
 
-    /// Times of the frames, s: what a checkpoint keeps for [`FrameFiles::continue_at`].
+    /// Times of the frames, s, stored in a checkpoint for [`FrameFiles::continue_at`].
     pub fn times_s(&self) -> &[f64] {
         &self.times_s
     }

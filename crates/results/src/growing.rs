@@ -1,4 +1,4 @@
-//! A CSV table that grows by whole rows while a program runs.
+//! A CSV table that grows by complete rows while a program runs.
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -10,7 +10,7 @@ use dem_io::safe_write::{explain, write_file};
 const PUT_BACK: &str =
     "put back the file that belongs to the checkpoint, or start the run again without --resume";
 
-/// The file of a table. Every row is handed to the system as soon as it is appended, so that a
+/// The file of a table. Every row is passed to the system as soon as it is appended, so that a
 /// crash of the program loses none.
 #[derive(Debug)]
 pub(super) struct GrowingTable {
@@ -20,13 +20,13 @@ pub(super) struct GrowingTable {
 }
 
 impl GrowingTable {
-    /// A table with its `header` only, a line without its line break. Replaces what stood there.
+    /// A table with only its `header`, a line without its line break. Replaces an existing one.
     pub(super) fn create(path: &Path, header: &str) -> Result<Self> {
         write_file(path, |out| writeln!(out, "{header}"))?;
         Self::continue_at(path, header, header.len() as u64 + 1)
     }
 
-    /// A table of which the first `length_bytes` bytes are kept and the others cut away.
+    /// A table of which the first `length_bytes` bytes are kept and the others removed.
     pub(super) fn continue_at(path: &Path, header: &str, length_bytes: u64) -> Result<Self> {
         let file = OpenOptions::new().read(true).write(true).open(path);
         let file = file.map_err(|error| match error.kind() {
@@ -49,7 +49,7 @@ impl GrowingTable {
         Ok(table)
     }
 
-    /// Whether the file has this header and a row that ends where it should.
+    /// Checks that the file has this header and a row that ends at the expected position.
     fn check(&mut self, header: &str) -> Result<()> {
         let refused =
             |problem: String| Diagnostic::input(self.path.display().to_string(), problem, PUT_BACK);
@@ -84,8 +84,8 @@ impl GrowingTable {
         Ok(())
     }
 
-    /// Appends whole rows, each with its line break. If that fails, the file keeps the rows that it
-    /// had.
+    /// Appends complete rows, each with its line break. If that fails, the file keeps its previous
+    /// rows.
     pub(super) fn append(&mut self, rows: &str) -> Result<()> {
         match self.file.write_all(rows.as_bytes()) {
             Ok(()) => {
@@ -93,7 +93,8 @@ impl GrowingTable {
                 Ok(())
             }
             Err(error) => {
-                // If this fails as well, the last row stays cut off; the cause is told either way.
+                // If this fails as well, the last row stays truncated; the cause is reported in
+                // either case.
                 let _ = self.file.set_len(self.length_bytes);
                 let _ = self.file.seek(SeekFrom::End(0));
                 Err(explain(&self.path, &error))
@@ -101,12 +102,12 @@ impl GrowingTable {
         }
     }
 
-    /// Length of the file: where to continue.
+    /// Length of the file, at which to continue.
     pub(super) fn length_bytes(&self) -> u64 {
         self.length_bytes
     }
 
-    /// Waits until all rows are on the disk, where a power failure leaves them.
+    /// Waits until all rows are on the disk, safe from a power failure.
     pub(super) fn sync(&self) -> Result<()> {
         self.file
             .sync_data()
@@ -114,8 +115,8 @@ impl GrowingTable {
     }
 }
 
-/// A text as it may stand between two commas: quoted if need be (RFC 4180). Line breaks become
-/// blanks, so that a row is a line.
+/// A text in a form that is valid between two commas: quoted if necessary (RFC 4180). Line breaks
+/// become blanks, so that a row is a line.
 pub(super) fn field(text: &str) -> String {
     let line = text.replace(['\n', '\r'], " ");
     if line.contains([',', '"']) {
@@ -125,7 +126,7 @@ pub(super) fn field(text: &str) -> String {
     }
 }
 
-/// The texts that [`field`] put between the commas of a line.
+/// The texts between the commas of a line, as written by [`field`].
 pub(super) fn fields(line: &str) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut quoted = false;

@@ -1,8 +1,8 @@
 //! Results of a run: a folder of frames, time series, events, fragments, plots and a summary.
 //!
-//! A crash or a full disk never destroys what was there: files appear whole or not at all, and
-//! tables grow by whole rows. A run that was interrupted and continued leaves the same bytes as one
-//! that was not.
+//! A crash or a full disk never destroys existing results: files appear complete or not at all, and
+//! tables grow by complete rows. A run that was interrupted and continued writes the same bytes as
+//! one that was not.
 
 pub mod checkpoint;
 pub mod events;

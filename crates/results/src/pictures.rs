@@ -1,5 +1,5 @@
-//! Pictures of a run: one PNG file each, `pictures/picture-00000.png` and so on. What is in them,
-//! only the program knows that draws them.
+//! Pictures of a run: one PNG file each, `pictures/picture-00000.png` and so on. Their content is
+//! determined by the program that draws them.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub struct PictureFiles {
 }
 
 impl PictureFiles {
-    /// No picture yet. Nothing is written before the first.
+    /// No pictures yet. Nothing is written before the first.
     pub fn create(folder: &ResultsFolder) -> Self {
         Self {
             folder: folder.clone(),
@@ -23,7 +23,8 @@ impl PictureFiles {
         }
     }
 
-    /// The pictures of an interrupted run up to its checkpoint, so many. Later ones are removed.
+    /// The first `count` pictures of an interrupted run, up to its checkpoint. Later ones are
+    /// removed.
     ///
     /// # Errors
     /// A picture is missing (exit code 2); a later one cannot be removed (exit code 1).
@@ -46,7 +47,7 @@ impl PictureFiles {
     /// Writes the next picture, given as the bytes of a PNG file.
     ///
     /// # Errors
-    /// No permission, full disk (exit code 1): the pictures before are kept.
+    /// No permission, full disk (exit code 1): earlier pictures are kept.
     pub fn append(&mut self, png: &[u8]) -> Result<()> {
         self.folder.make_pictures_folder()?;
         write_bytes(&self.folder.picture(self.count), png)?;
@@ -54,7 +55,7 @@ impl PictureFiles {
         Ok(())
     }
 
-    /// How many there are: what a checkpoint keeps for [`PictureFiles::continue_at`].
+    /// Number of pictures, stored in a checkpoint for [`PictureFiles::continue_at`].
     pub fn count(&self) -> usize {
         self.count
     }

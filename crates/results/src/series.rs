@@ -1,4 +1,4 @@
-//! Time series as one CSV table that grows while a run goes on.
+//! Time series as one CSV table that grows during a run.
 //!
 //! The first line names the columns and their units: `time_s,kinetic_energy_j,...`. Every number
 //! reads back as the same bits.
@@ -21,7 +21,7 @@ pub struct SeriesFile {
 
 impl SeriesFile {
     /// A new file with these columns after the time, named with their units: `kinetic_energy_j`.
-    /// Replaces what stood there.
+    /// Replaces an existing one.
     ///
     /// # Errors
     /// Missing folder, no permission, full disk (all exit code 1).
@@ -32,8 +32,7 @@ impl SeriesFile {
         })
     }
 
-    /// The file of an interrupted run, cut back to the `length_bytes` that it had at its
-    /// checkpoint.
+    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
     ///
     /// # Errors
     /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
@@ -49,7 +48,8 @@ impl SeriesFile {
     /// this returns.
     ///
     /// # Errors
-    /// Full disk (exit code 1): the rows before are kept. Not as many values as columns.
+    /// Full disk (exit code 1): earlier rows are kept. The number of values differs from the number
+    /// of columns.
     pub fn append(&mut self, time_s: f64, values: &[f64]) -> Result<()> {
         if values.len() != self.columns {
             return Err(Diagnostic::failed(
@@ -60,20 +60,20 @@ impl SeriesFile {
         }
         let mut row = format!("{time_s:e}");
         for value in values {
-            // Writing to a text cannot fail.
+            // Writing to a string cannot fail.
             let _ = write!(row, ",{value:e}");
         }
         row.push('\n');
         self.table.append(&row)
     }
 
-    /// Length of the file: what a checkpoint keeps for [`SeriesFile::continue_at`].
+    /// Length of the file, stored in a checkpoint for [`SeriesFile::continue_at`].
     pub fn length_bytes(&self) -> u64 {
         self.table.length_bytes()
     }
 
-    /// Waits until all rows are on the disk, where a power failure leaves them. To be called before
-    /// a checkpoint is written that counts on them.
+    /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
+    /// a checkpoint that relies on them.
     ///
     /// # Errors
     /// Full or broken disk (exit code 1).
@@ -82,10 +82,10 @@ impl SeriesFile {
     }
 }
 
-/// Time series as a file tells them, such as for plots.
+/// Time series read from a file, for example for plots.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
-    /// Names of the columns with their units, the time not among them.
+    /// Names of the columns with their units, without the time.
     pub columns: Vec<String>,
     /// Times, s. One per row.
     pub times_s: Vec<f64>,
@@ -96,8 +96,8 @@ pub struct Series {
 /// Reads the file of a [`SeriesFile`].
 ///
 /// # Errors
-/// There is no such file, its first column is not the time, a row is not whole or no numbers (all
-/// exit code 2).
+/// The file does not exist, its first column is not the time, or a row is incomplete or not numeric
+/// (all exit code 2).
 pub fn read_series(path: &Path) -> Result<Series> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let file = File::open(path).map_err(|error| {

@@ -1,5 +1,5 @@
-//! What a run writes: the folder and its files, whole, readable by others, and the same after an
-//! interruption.
+//! The results of a run: the folder and its files, complete, readable by other programs, and the
+//! same after an interruption.
 
 mod checkpoints;
 mod folder;
@@ -17,7 +17,7 @@ fn results_in(parent: &tempfile::TempDir) -> ResultsFolder {
     ResultsFolder::create(&parent.path().join("out"), Existing::Refuse).unwrap()
 }
 
-/// All files of a folder and of those in it but for its lock, with their bytes.
+/// All files of a folder and its subfolders except its lock, with their bytes.
 fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found = Vec::new();
     for entry in folder.read_dir().unwrap() {

@@ -1,4 +1,4 @@
-//! The bodies that a scene names.
+//! The bodies named in a scene.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::{BodySource, Scene};
 /// The bodies of a scene by name, from their files or from the scene itself.
 ///
 /// # Errors
-/// A file that is missing or wrong; particles or bonds that cannot be.
+/// A file that is missing or wrong; impossible particles or bonds.
 pub fn read_bodies(scene: &Scene) -> Result<BTreeMap<String, Body>> {
     let mut bodies = BTreeMap::new();
     for (name, entry) in &scene.bodies {

@@ -17,13 +17,13 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
 
-/// Where a body comes from.
+/// Source of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BodySource {
     /// `file`, resolved against the folder of the scene; "-" is standard input.
     File(PathBuf),
-    /// `particles` and `bond_list` in the scene. A bond is as thick as the smaller of its
-    /// particles, times `radius_factor`, and as long as they are apart.
+    /// `particles` and `bond_list` in the scene. The radius of a bond is that of its smaller
+    /// particle times `radius_factor`; its length is their distance.
     Inline {
         /// `particles = [[x, y, z, radius], ...]`, m.
         particles: Vec<[f64; 4]>,
@@ -33,18 +33,18 @@ pub enum BodySource {
     },
 }
 
-/// A body and how it stands and moves at the start.
+/// A body, its position and its motion at the start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyEntry {
-    /// Where its particles and bonds come from.
+    /// Source of its particles and bonds.
     pub source: BodySource,
     /// `material`: a name of `[materials]`.
     pub material: String,
     /// `bonds`: a name of `[bonds]`. None only for bodies without bonds.
     pub bond_kind: Option<String>,
-    /// `position`: moved by this, m. Length 3. After `rotation`.
+    /// `position`: translation, m, after `rotation`. Length 3.
     pub position_m: [f64; 3],
-    /// `rotation = { axis, angle }`: turned about the origin of the body's file, as a rotation
+    /// `rotation = { axis, angle }`: rotation about the origin of the body's file, as a rotation
     /// vector, rad. Length 3.
     pub rotation_rad: [f64; 3],
     /// `velocity` of the centre of mass, m/s. Length 3.
@@ -57,10 +57,10 @@ pub struct BodyEntry {
     pub whole_mass: Option<WholeMass>,
 }
 
-/// What a body weighs as a whole: the density of its spheres follows.
+/// The total mass of a body, which determines the density of its spheres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WholeMass {
-    /// `body_density`: mass over the volume of its shape, kg/m3. The body comes from a file.
+    /// `body_density`: mass over the volume of its shape, kg/m3. Only for a body from a file.
     Density(f64),
     /// `mass`, kg.
     Mass(f64),
@@ -183,7 +183,7 @@ fn read(
     let start_as = clump::read(&table)?;
     let whole_mass = whole_mass(&table, &source)?;
     if let BodySource::Inline { bonds, .. } = &source {
-        // Of a clump: who replaces it needs them.
+        // Also for a clump: the cluster that replaces it needs them.
         if !bonds.is_empty() && bond_kind.is_none() && start_as == StartAs::Bonded {
             table.need("bonds")?;
         }

@@ -31,7 +31,7 @@ pub enum BondModel {
     },
 }
 
-/// How forces follow from motion.
+/// How forces are computed from motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Formulation {
     /// "total": the gradient of an energy of positions and orientations.
@@ -40,7 +40,7 @@ pub enum Formulation {
     Incremental,
 }
 
-/// What bonds are made of.
+/// Properties of bonds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BondKind {
     /// `model`, "timoshenko" unless given.
@@ -74,42 +74,42 @@ pub struct BondDamping {
     pub torque_factor: f64,
 }
 
-/// What the rate is of that strengthens bonds.
+/// The quantity whose rate strengthens bonds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub enum StrainRateMeasure {
     /// "elongation": relative velocity along the bond over its initial length.
     #[default]
     Elongation,
-    /// "relative-velocity": the whole relative velocity over the initial length, as printed in
-    /// Platzer 2022, eq. 21. A bond that only turns has a rate, too.
+    /// "relative-velocity": the full relative velocity over the initial length, as printed in
+    /// Platzer 2022, eq. 21. It also gives a rate for a bond that only rotates.
     RelativeVelocity,
 }
 
-/// What breaks a bond; whichever comes first.
+/// Failure criteria of a bond; the first one met breaks it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BondFailure {
     /// `tensile_strength`: largest stress at the tensile edge, F_n/A + M_ben r/I, Pa (MUSEN's
     /// sigma_max with the sign of the force).
     pub tensile_strength_pa: Option<f64>,
-    /// `compressive_strength`: largest stress at the pressed edge, -F_n/A + M_ben r/I, Pa. None:
-    /// nothing breaks there.
+    /// `compressive_strength`: largest compressive stress at the edge, -F_n/A + M_ben r/I, Pa.
+    /// None: no failure in compression.
     pub compressive_strength_pa: Option<f64>,
     /// `shear_strength`: largest shear stress, Pa (MUSEN's tau_max).
     pub shear_strength_pa: Option<f64>,
     /// `von_mises_strength`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
     pub von_mises_strength_pa: Option<f64>,
-    /// `rate_strengthening`: strain rate from which strengths but that in compression rise with the
-    /// rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
+    /// `rate_strengthening`: strain rate above which all strengths except the compressive one rise
+    /// with the rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
     pub rate_strengthening_from_1_s: Option<f64>,
-    /// `strain_rate_measure`: what that rate is of. The elongation unless given.
+    /// `strain_rate_measure`: the measure of that rate, the elongation unless given.
     pub strain_rate_measure: StrainRateMeasure,
     /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale
-    /// is the strength given. None: all alike.
+    /// is the given strength. None: all bonds are equal.
     pub weibull_modulus: Option<f64>,
 }
 
-/// What `rate_strengthening = true` stands for, 1/s: where the strength of [Platzer 2022, eqs. 20,
-/// 21] begins to rise.
+/// Value of `rate_strengthening = true`, 1/s: where the strength of [Platzer 2022, eqs. 20, 21]
+/// begins to rise.
 const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;
 
 pub(super) static BOND: Schema = Schema {
@@ -257,7 +257,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
     })
 }
 
-/// The models and their words.
+/// The models and their names.
 fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 5] {
     [
         ("parallel", BondModel::Parallel { stiffness_ratio }),
@@ -375,7 +375,7 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
     Ok(failure)
 }
 
-/// The strain rate from which strengths rise, 1/s. None for `false`.
+/// The strain rate above which strengths rise, 1/s. None for `false`.
 fn rate_strengthening(table: &Table<'_>) -> Result<Option<f64>> {
     let Some(field) = table.get("rate_strengthening") else {
         return Ok(None);

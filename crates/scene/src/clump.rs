@@ -7,7 +7,7 @@ use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// What a body is at first: when the run starts, or when an inlet feeds it.
+/// The initial form of a body: when the run starts, or when an inlet feeds it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum StartAs {
     /// "bonded": particles, and bonds between them.
@@ -17,18 +17,18 @@ pub enum StartAs {
     Clump(ClumpSettings),
 }
 
-/// `clump = { scale, mass }`: how a rigid clump is made of a body. Its spheres are the body's
+/// `clump = { scale, mass }`: how a rigid clump is made from a body. Its spheres are the body's
 /// particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClumpSettings {
-    /// `scale`: radii with which its spheres touch others, over those of the particles, about their
-    /// own centres. 1 unless given; in [1, 1.5].
+    /// `scale`: contact radii of its spheres over those of the particles, which keep their centres.
+    /// 1 unless given; in [1, 1.5].
     pub scale: f64,
     /// `mass`, "spheres" unless given.
     pub mass: ClumpMass,
 }
 
-/// `scale` unless given.
+/// Default of `scale`.
 const SCALE: f64 = 1.0;
 
 impl Default for ClumpSettings {
@@ -40,16 +40,16 @@ impl Default for ClumpSettings {
     }
 }
 
-/// Of what mass, centre and inertia of a clump are.
+/// The volume from which the mass, centre and inertia of a clump are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ClumpMass {
-    /// "spheres": sums over the particles, overlaps twice, as of the bonded cluster.
+    /// "spheres": sums over the particles, with overlaps counted twice, as for the bonded cluster.
     Spheres,
-    /// "union": what the particles fill together, overlaps once.
+    /// "union": the union of the particles, with overlaps counted once.
     Union,
 }
 
-/// What a body may start as: whether as a clump.
+/// The initial forms of a body; true for a clump.
 const STARTS: [(&str, bool); 2] = [("bonded", false), ("clump", true)];
 
 /// The key `start_as`.

@@ -5,16 +5,16 @@ use super::schema::{Key, Kind, Schema};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// When damaged bodies are searched for their pieces (Platzer 2022, 4.2).
+/// When damaged bodies are searched for fragments (Platzer 2022, 4.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Clusters {
-    /// `interval`: steps between two looks at what has broken. At least 1.
+    /// `interval`: steps between two checks for broken bonds. At least 1.
     pub interval: u64,
-    /// `min_broken_bonds`: bonds that must have broken since the last search for another. At least
-    /// 1.
+    /// `min_broken_bonds`: number of bonds broken since the last search that triggers another. At
+    /// least 1.
     pub min_broken_bonds: u64,
-    /// `force_every`: so many intervals after the last search there is another in any case. 0:
-    /// never.
+    /// `force_every`: number of intervals after the last search that triggers another in any case.
+    /// 0: never.
     pub force_every: u64,
 }
 

@@ -1,4 +1,4 @@
-//! `[contacts]`: how two materials touch.
+//! `[contacts]`: the contact between two materials.
 
 mod pair;
 
@@ -14,7 +14,7 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::STIFFNESS;
 
-/// Least coefficient of restitution: dampers that leave less need steps without end.
+/// Smallest coefficient of restitution: dampers below it need arbitrarily small steps.
 const LEAST_RESTITUTION: f64 = 1e-3;
 
 /// Names of contact laws.
@@ -29,7 +29,7 @@ const LAWS: [(&str, LawName); 2] = [
     ("linear", LawName::Linear),
 ];
 
-/// Laws of rolling: whether with a spring.
+/// Rolling laws; true with a spring.
 const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpot", true)];
 
 pub(super) static CONTACT: Schema = Schema {
@@ -88,22 +88,22 @@ pub(super) static CONTACT: Schema = Schema {
     ],
 };
 
-/// How two materials touch.
+/// The contact between two materials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
-    /// Names of `[materials]`, sorted; twice the same for a material with itself.
+    /// Names of `[materials]`, sorted; the same name twice for a material with itself.
     pub materials: [String; 2],
     /// `law`
     pub law: ContactLaw,
-    /// `restitution`: speed after a head-on collision over that before it, in (0, 1].
+    /// `restitution`: speed after a head-on collision over the speed before it, in (0, 1].
     pub restitution: f64,
     /// `friction`: largest tangential force over the normal one; 0 unless given.
     pub friction: f64,
-    /// `rolling`: none where `friction` is 0.
+    /// `rolling`: none if `friction` is 0.
     pub rolling: Rolling,
 }
 
-/// How forces follow from overlap and sliding.
+/// How forces are computed from overlap and sliding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactLaw {
     /// "hertz-mindlin", unless given: elastic spheres. Both materials have a `young_modulus`, or
@@ -119,10 +119,10 @@ pub enum ContactLaw {
     },
 }
 
-/// What resists rolling.
+/// Resistance to rolling.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rolling {
-    /// Nothing, without `rolling_friction`.
+    /// None, without `rolling_friction`.
     None,
     /// "constant-torque", unless given.
     ConstantTorque {
@@ -211,7 +211,8 @@ fn law(table: &Table<'_>) -> Result<ContactLaw> {
     }
 }
 
-/// Whether both materials say how stiff they are, as Hertz and Mindlin need it.
+/// Refuses a pair if one material has no Young's modulus, which Hertz-Mindlin needs, and is not
+/// rigid.
 fn need_moduli(
     table: &Table<'_>,
     pair: &[String; 2],

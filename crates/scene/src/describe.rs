@@ -1,4 +1,4 @@
-//! Every value of a scene in SI, defaults included, for a person.
+//! A human-readable list of every value of a scene in SI, defaults included.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -57,7 +57,7 @@ impl Scene {
         lines.each("inlets", &inlet::INLET, &self.inlets, inlet::list);
         lines.each("outlets", &outlet::OUTLET, &self.outlets, outlet::list);
         lines.each("measures", &measure::MEASURE, &self.measures, measure::list);
-        // Where nothing can touch, only what is not as usual.
+        // If nothing can touch, only values that differ from the defaults.
         let touches = !self.contacts.is_empty() || !self.walls.is_empty();
         lines.unusual(
             touches,
@@ -121,7 +121,7 @@ impl Lines {
         }
     }
 
-    /// A table that is listed always, or where a value is not as usual.
+    /// A table that is always listed, or only if a value differs from its default.
     fn unusual<T>(
         &mut self,
         always: bool,

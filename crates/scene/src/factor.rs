@@ -1,4 +1,4 @@
-//! Factors over time, which loads, supports and walls share: `ramp`, `table` and `end`.
+//! Factors over time, shared by loads, supports and walls: `ramp`, `table` and `end`.
 
 use super::field::Field;
 use super::listing::{LISTED, Listing};
@@ -14,13 +14,13 @@ use serde::{Deserialize, Serialize};
 pub enum Factor {
     /// 1 from the start.
     One,
-    /// `ramp`: rises evenly from 0 to 1 until this time, s, and stays.
+    /// `ramp`: rises linearly from 0 to 1 until this time, s, and stays at 1.
     Ramp {
         /// End of the rise, s.
         until_s: f64,
     },
-    /// `table = [[time, factor], ...]`: straight between the points, constant outside them. Times
-    /// rise.
+    /// `table = [[time, factor], ...]`: linear between the points, constant outside them. Times
+    /// increase.
     Table(Vec<[f64; 2]>),
 }
 
@@ -49,7 +49,7 @@ pub(super) const fn until(doc: &'static str) -> Key {
         .otherwise("never")
 }
 
-/// The key that says how a factor changes with time, if there is one.
+/// The key for the change of a factor with time, if there is one.
 pub(super) fn over_time<'a>(table: &Table<'a>) -> Option<Field<'a>> {
     table.get("ramp").or_else(|| table.get("table"))
 }
@@ -87,8 +87,8 @@ pub(super) fn end(table: &Table<'_>, factor: &Factor) -> Result<Option<f64>> {
     Ok(Some(end_s))
 }
 
-/// The factor of what `moved` says. Only the changes of a factor move a displacement, so it has to
-/// begin at 0.
+/// The factor of the motion given by `moved`. Only the changes of a factor move a displacement, so
+/// it must begin at 0.
 pub(super) fn factor_from_zero(table: &Table<'_>, moved: &Field<'_>) -> Result<Factor> {
     let factor = factor(table)?;
     let first = match &factor {

@@ -1,4 +1,4 @@
-//! One value of a scene: what it should be, and the message where it is not.
+//! One value of a scene: its expected form, and the message if it is wrong.
 
 use std::ops::Bound;
 
@@ -30,13 +30,13 @@ impl<'a> Field<'a> {
         Diagnostic::input(self.document.place(self.node.origin), problem, remedy)
     }
 
-    /// This value is not what it must be.
+    /// The error for a value that is not as required.
     pub(super) fn wrong(&self, limit: &str, remedy: impl Into<String>) -> Diagnostic {
         let problem = format!("{} is {}, but must be {limit}", self.path, self.shown());
         self.refuse(problem, remedy)
     }
 
-    /// The value as written, or its kind where that is long.
+    /// The value as written, or its type if that is long.
     pub(super) fn shown(&self) -> String {
         match &self.node.value {
             Value::Text(text) => format!("\"{}\"", shortened(text, SHOWN_TEXT)),
@@ -52,7 +52,7 @@ impl<'a> Field<'a> {
     /// A finite value in SI.
     ///
     /// # Errors
-    /// No number, or a unit of something else.
+    /// Not a number, or the unit of another quantity.
     pub(super) fn quantity(&self, dimension: &Dimension) -> Result<f64> {
         match &self.node.value {
             Value::Number(_, value) if value.is_finite() => Ok(*value),
@@ -68,14 +68,14 @@ impl<'a> Field<'a> {
     /// A value in SI, within the limits of `key`.
     ///
     /// # Errors
-    /// Those of [`Field::quantity`], and beyond the limits.
+    /// Those of [`Field::quantity`], or a value outside the limits.
     pub(super) fn within_limits(&self, key: &Key) -> Result<f64> {
         let dimension = key.dimension();
         let value = self.quantity(dimension)?;
         if !key.allows(value) {
             return Err(self.wrong(&key.limits_in_words(), remedy(key)));
         }
-        // -0 is 0 where nothing is below 0.
+        // -0 counts as 0 if nothing below 0 is allowed.
         let from_zero = key.limits.0 == Bound::Included(0.0);
         Ok(if from_zero { value.abs() } else { value })
     }
@@ -100,10 +100,10 @@ impl<'a> Field<'a> {
         ])
     }
 
-    /// The values of a list of `N`, which is written as `form` says.
+    /// The values of a list of `N`, written in the form `form`.
     ///
     /// # Errors
-    /// No list, or of another length.
+    /// Not a list, or one of another length.
     pub(super) fn row<const N: usize>(&self, form: &str) -> Result<[Field<'a>; N]> {
         self.listed()
             .and_then(|items| items.try_into().ok())
@@ -113,7 +113,7 @@ impl<'a> Field<'a> {
     /// The values of a list that is not empty.
     ///
     /// # Errors
-    /// No list, or empty.
+    /// Not a list, or an empty one.
     pub(super) fn items(&self) -> Result<Vec<Field<'a>>> {
         let Some(items) = self.listed() else {
             return Err(self.wrong("a list", "write it in [ ]"));
@@ -154,8 +154,8 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// A whole number from `least` to `most`; None names no largest one, though only what 64 bits
-    /// hold is taken.
+    /// A whole number from `least` to `most`. With None no largest number is named in messages, but
+    /// it must fit into 64 bits.
     pub(super) fn whole(&self, least: u64, most: Option<u64>, remedy: &str) -> Result<u64> {
         let number = match &self.node.value {
             Value::Number(written, _) => written.parse().ok(),
@@ -171,7 +171,7 @@ impl<'a> Field<'a> {
             })
     }
 
-    /// Number of one of `count` particles, from 0.
+    /// Index of one of `count` particles, from 0.
     pub(super) fn particle(&self, count: u32) -> Result<u32> {
         let remedy = "particles are numbered from 0: correct or remove it";
         let number = self.whole(0, Some(u64::from(count.saturating_sub(1))), remedy)?;
@@ -179,12 +179,12 @@ impl<'a> Field<'a> {
         Ok(number as u32)
     }
 
-    /// Whether it is this word.
+    /// True if the value is this word.
     pub(super) fn is(&self, word: &str) -> bool {
         matches!(&self.node.value, Value::Text(text) if text == word)
     }
 
-    /// Text that does not begin like a number.
+    /// True for text that does not begin like a number.
     pub(super) fn is_word(&self) -> bool {
         matches!(&self.node.value, Value::Text(text) if text.starts_with(char::is_alphabetic))
     }
@@ -207,7 +207,7 @@ impl<'a> Field<'a> {
     /// A name of `known`: the names in `[table.NAME]`.
     ///
     /// # Errors
-    /// No text, or no such name.
+    /// Not a text, or not a known name.
     pub(super) fn reference<'n>(
         &self,
         known: impl Iterator<Item = &'n String>,
@@ -223,7 +223,7 @@ impl<'a> Field<'a> {
         Ok(name.to_owned())
     }
 
-    /// Refuses the key `name` of this value where it is no name of `known`: the names in
+    /// Refuses the key `name` of this value if it is not among `known`: the names in
     /// `[table.NAME]`.
     pub(super) fn key_reference<'n>(
         &self,
@@ -235,7 +235,7 @@ impl<'a> Field<'a> {
         self.named(name, known, table, problem)
     }
 
-    /// Refuses `name`, as `problem` says, where it is not among `known`.
+    /// Refuses `name` with `problem` if it is not among `known`.
     fn named<'n>(
         &self,
         name: &str,
@@ -266,7 +266,7 @@ fn example(dimension: &Dimension) -> String {
     )
 }
 
-/// What to do about a number beyond the limits of `key`.
+/// The remedy for a number outside the limits of `key`.
 pub(super) fn remedy(key: &Key) -> String {
     if key.remedy.is_empty() {
         example(key.dimension())

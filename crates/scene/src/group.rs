@@ -12,31 +12,32 @@ use super::shape::{BOX, SPHERE, corners, list_box, list_sphere, sphere};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// Which particles are meant.
+/// A group of particles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParticleGroup {
-    /// `body`: only of this one. None: of all. Never None where `pick` lists particles.
+    /// `body`: only particles of this body. None: of all bodies. Never None if `pick` lists
+    /// particles.
     pub body: Option<String>,
-    /// How they are picked, at the start of the run.
+    /// How they are selected, at the start of the run.
     pub pick: Pick,
 }
 
-/// How particles are picked.
+/// How particles are selected.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pick {
     /// `all = true`
     All,
-    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or where there
-    /// is one body.
+    /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or if there is
+    /// only one body.
     Particles(Vec<u32>),
-    /// `box = { min, max }`: centres in it, m.
+    /// `box = { min, max }`: particles with their centres in it, m.
     Box {
         /// Smallest corner, m.
         min: [f64; 3],
         /// Largest corner, m.
         max: [f64; 3],
     },
-    /// `sphere = { centre, radius }`: centres in it, m.
+    /// `sphere = { centre, radius }`: particles with their centres in it, m.
     Sphere {
         /// Centre, m.
         centre: [f64; 3],
@@ -45,7 +46,7 @@ pub enum Pick {
     },
 }
 
-/// The ways to pick.
+/// The ways to select particles.
 const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
 
 pub(super) static GROUP: Schema = Schema {
@@ -153,7 +154,7 @@ fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Parti
 fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
     let count = match body.map(|body| &body.source) {
         Some(BodySource::Inline { particles, .. }) => particles.len(),
-        // Whoever reads the file checks the indices.
+        // The indices are checked when the file is read.
         _ => usize::MAX,
     };
     let count = u32::try_from(count).unwrap_or(u32::MAX);

@@ -8,8 +8,8 @@ use super::targets::{GROUP_KEY, Targets};
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
-/// How the particles of a group start, on top of how their bodies do. What several of these say of
-/// a particle adds up.
+/// Initial motion of the particles of a group, in addition to that of their bodies. If several of
+/// these apply to a particle, they are added.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Initial {
     /// `group`: a group, a body or `all`.
@@ -19,7 +19,7 @@ pub struct Initial {
     /// `angular_velocity` of the group as one rigid body about its centre of mass, rad/s; 0 unless
     /// given. Length 3.
     pub angular_velocity_rad_s: [f64; 3],
-    /// `displacement` of each particle from where its bonds are at rest, m; 0 unless given.
+    /// `displacement` of each particle from the rest position of its bonds, m; 0 unless given.
     /// Length 3.
     pub displacement_m: [f64; 3],
 }

@@ -13,7 +13,7 @@ use super::tree::Value;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
 
-/// How new bodies may be turned: whether at random.
+/// Orientation of new bodies; true for random.
 const ORIENTATIONS: [(&str, bool); 2] = [("random", true), ("as-is", false)];
 
 pub(super) static INLET: Schema = Schema {
@@ -66,13 +66,13 @@ pub(super) static INLET: Schema = Schema {
     ],
 };
 
-/// Feeds bodies during the run. Those that it names do not stand in the scene at the start.
+/// Feeds bodies during the run. The bodies that it names are not in the scene at the start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inlet {
-    /// `bodies`: names of `[bodies]`, each once, with their proportions by number: more than 0, of
-    /// any sum. All 1 unless given. At least one.
+    /// `bodies`: names of `[bodies]`, each once, with their proportions by number: more than 0,
+    /// with any sum. All 1 unless given. At least one.
     pub bodies: Vec<(String, f64)>,
-    /// `region`: a name of `[regions]`, in which the centres of new bodies are put at random.
+    /// `region`: a name of `[regions]`, in which the centres of new bodies are placed at random.
     pub region: String,
     /// `rate` or `mass_rate`
     pub rate: FeedRate,
@@ -80,17 +80,17 @@ pub struct Inlet {
     pub velocity_m_s: [f64; 3],
     /// `angular_velocity` of new bodies, rad/s; 0 unless given. Length 3.
     pub angular_velocity_rad_s: [f64; 3],
-    /// `orientation`: "random", or "as-is", as the body's own `rotation` says. False unless given.
+    /// `orientation`: "random", or "as-is" for the body's own `rotation`. False unless given.
     pub random_orientation: bool,
     /// `start`, s; 0 unless given. At least 0.
     pub start_s: f64,
-    /// `end`, s: later than the start. Infinite, unless given: feeds as long as the run lasts.
+    /// `end`, s: later than the start. Infinite unless given: feeds until the end of the run.
     pub end_s: f64,
-    /// `count`: at most so many bodies. None: no limit. At least 1.
+    /// `count`: largest number of bodies. None: no limit. At least 1.
     pub count: Option<u32>,
 }
 
-/// How much an inlet feeds.
+/// Feed rate of an inlet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FeedRate {
     /// `rate`: bodies per second, 1/s; more than 0.
@@ -200,7 +200,7 @@ fn rate(table: &Table<'_>) -> Result<FeedRate> {
     }
 }
 
-/// Refuses where a body that is fed says itself where it stands or how it moves at the start.
+/// Refuses a body that is fed but has its own position or motion at the start.
 fn refuse_own_start(
     root: &Table<'_>,
     inlet: &str,

@@ -1,4 +1,4 @@
-//! The files that a scene reads.
+//! The files read for a scene.
 
 use std::path::PathBuf;
 
@@ -9,13 +9,12 @@ use super::wall::WallShape;
 use dem_io::body::files::body_files;
 
 impl Scene {
-    /// The scene's own file and those of its bodies, walls and regions. Standard input is none of
-    /// them.
+    /// The scene's own file and those of its bodies, walls and regions, except standard input.
     pub fn input_files(&self) -> Vec<PathBuf> {
         let mut files = vec![PathBuf::from(&self.source)];
         for body in self.bodies.values() {
             if let BodySource::File(path) = &body.source {
-                // A name that is that of no body has been refused, or will be when it is read.
+                // A name that is not that of a body has been refused, or will be when it is read.
                 files.extend(body_files(path).unwrap_or_default());
             }
         }

@@ -1,8 +1,8 @@
-//! A scene: what stands where, of what, what is done to it and what is asked. Plain data in SI
-//! units, as read from TOML.
+//! A scene: the objects and their places, their materials, loads and supports, and the requested
+//! results. Plain data in SI units, as read from TOML.
 //!
-//! Every table of the file has one struct, beside its keys and its reader; names are unique within
-//! their table. The reader of the file refuses what cannot be simulated.
+//! Every table of the file has one struct, next to its keys and its reader; names are unique within
+//! their table. The reader of the file refuses scenes that cannot be simulated.
 
 mod bodies;
 mod body;

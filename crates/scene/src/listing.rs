@@ -3,7 +3,7 @@
 use super::schema::{Key, Schema};
 use super::table::Read;
 
-/// Most items of a list that are written out.
+/// Largest number of items of a list that are written out.
 pub(super) const LISTED: usize = 8;
 
 /// The lines of one table.
@@ -12,7 +12,7 @@ pub(super) struct Listing {
     path: String,
     schema: &'static Schema,
     pub(super) lines: Vec<(String, String)>,
-    /// Whether all values so far are those that hold unless given.
+    /// True if all values so far are the defaults.
     pub(super) is_usual: bool,
 }
 
@@ -35,18 +35,18 @@ impl Listing {
         }
     }
 
-    /// What holds where the key `name` is left out, in words.
+    /// The default of the key `name` as text.
     pub(super) fn usual(&self, name: &str) -> String {
         self.schema.key(name).map_or_else(String::new, Key::usual)
     }
 
-    /// A line in words.
+    /// A line of text.
     pub(super) fn text(&mut self, name: &str, text: impl Into<String>) {
         self.lines
             .push((format!("{}.{name}", self.path), text.into()));
     }
 
-    /// A line of the first few of so many items.
+    /// A line of the first few of this number of items.
     pub(super) fn some(&mut self, name: &str, shown: &[String], count: usize) {
         let mut text = shown.join(", ");
         if count > shown.len() {
@@ -68,8 +68,8 @@ impl Listing {
     }
 }
 
-/// Both ways of a table whose keys stand for one field each: `fields` fills the struct, `list`
-/// shows it.
+/// Implements reading and listing for a table whose keys stand for one field each: `fields` fills
+/// the struct, `list` shows it.
 macro_rules! one_field_a_key {
     ($of:ident { $($field:ident: $key:literal),+ $(,)? }) => {
         fn fields(table: &$crate::table::Table<'_>) -> dem_io::diagnostic::Result<$of> {

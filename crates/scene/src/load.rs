@@ -9,18 +9,19 @@ use super::targets::{GROUP_KEY, Targets};
 use dem_io::diagnostic::Result;
 use dem_io::units::{FORCE, TORQUE};
 
-/// A load on a group of particles, shared equally among them.
+/// A load on a group of particles, distributed equally among them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
     /// `group`: a group, a body or `all`.
     pub group: String,
-    /// `force` on the whole group, N. Length 3. Not zero together with the torque.
+    /// `force` on the entire group, N. Length 3. Not zero together with the torque.
     pub force_n: [f64; 3],
-    /// `torque` on the whole group, N m. Length 3.
+    /// `torque` on the entire group, N m. Length 3.
     pub torque_n_m: [f64; 3],
     /// `ramp` or `table`.
     pub factor: Factor,
-    /// `end`: from this time on it is zero, s. Not before the factor's last change. None: never.
+    /// `end`: time from which the load is zero, s. Not before the factor's last change. None:
+    /// never.
     pub end_s: Option<f64>,
 }
 

@@ -9,22 +9,22 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{DENSITY, STRESS};
 
-/// What particles and walls are made of.
+/// Properties of the material of particles and walls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// `density`, kg/m3. None: the density that the body's file names; a body whose particles stand
-    /// in the scene has none.
+    /// `density`, kg/m3. None: the density in the body's file; bodies whose particles are in the
+    /// scene have none.
     pub density_kg_m3: Option<f64>,
     /// `young_modulus`, Pa; or from `shear_modulus` and `poisson_ratio`. None: not given; only
     /// contacts and Rayleigh's estimate need it.
     pub young_modulus_pa: Option<f64>,
     /// `poisson_ratio`, in (-1, 0.5]. 0.3 unless given.
     pub poisson_ratio: f64,
-    /// `rigid`: does not deform; of walls only, and without the values above. Not unless given.
+    /// `rigid`: does not deform; only for walls, and without the values above. False unless given.
     pub rigid: bool,
 }
 
-/// What a material that deforms can have.
+/// Keys of a deformable material.
 const OF_ELASTIC: [&str; 4] = ["density", "young_modulus", "shear_modulus", "poisson_ratio"];
 
 pub(super) static MATERIAL: Schema = Schema {

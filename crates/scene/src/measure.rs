@@ -14,12 +14,12 @@ use dem_io::units::{
 };
 use serde::{Deserialize, Serialize};
 
-/// What is measured. Of a group, positions and velocities are those of its centre of mass,
-/// energies, forces and counts are sums. Walls have positions, forces and torques, fragments a
-/// count and masses, groups all but torques, count and masses.
+/// The quantity that is measured. For a group, positions and velocities are those of its centre of
+/// mass; energies, forces and counts are sums. Walls have positions, forces and torques; fragments
+/// a count and masses; groups all except torques, count and masses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Quantity {
-    /// "position_x", ... m; of a wall, that of its pivot. Axis 0, 1, 2.
+    /// "position_x", ... m; for a wall, that of its pivot. Axis 0, 1, 2.
     Position(u8),
     /// "displacement_x", ... of the centre of mass since the start, m.
     Displacement(u8),
@@ -41,7 +41,7 @@ pub enum Quantity {
     ReactionTorque(u8),
     /// "kinetic_energy", J.
     KineticEnergy,
-    /// "elastic_energy" of the bonds, each half to its ends, J.
+    /// "elastic_energy" of the bonds, half of each assigned to either end, J.
     ElasticEnergy,
     /// "broken_bonds" since the start.
     BrokenBonds,
@@ -49,18 +49,18 @@ pub enum Quantity {
     LargestUtilisation,
     /// "angle_of_repose": slope of the heap that the particles form, degrees.
     AngleOfRepose,
-    /// "force_x", ... force of contacts with all else: of particles on a wall, of others and walls
-    /// on a group, N.
+    /// "force_x", ... total contact force: of particles on a wall, of other particles and walls on
+    /// a group, N.
     Force(u8),
     /// "force": its magnitude, N.
     ForceMagnitude,
-    /// "contact_force_x", ... force of contacts with what `with` names on the group, N.
+    /// "contact_force_x", ... contact force of the object named by `with` on the group, N.
     ContactForce(u8),
     /// "contact_force": its magnitude, N.
     ContactForceMagnitude,
-    /// "contact_overlap": deepest overlap of these contacts; 0 where there is none, m.
+    /// "contact_overlap": deepest overlap of these contacts; 0 if there is none, m.
     ContactOverlap,
-    /// "contact_duration": how long the two have touched since the start, s.
+    /// "contact_duration": total time of contact between the two since the start, s.
     ContactDuration,
     /// "torque_x", ... torque of particles on the wall about its pivot, N m.
     Torque(u8),
@@ -72,7 +72,7 @@ pub enum Quantity {
     MassOfLargest,
 }
 
-/// Which value of a measure's history is its result.
+/// The statistic of a measure's history that is its result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Statistic {
     /// "end"
@@ -85,21 +85,22 @@ pub enum Statistic {
     Mean,
 }
 
-/// A named quantity, with what it should be where that is known.
+/// A named quantity, with its expected value if that is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
-    /// `of`: a group, a body, a wall, `fragments` or `all` (unless given). It has the quantity.
+    /// `of`: a group, a body, a wall, `fragments` or `all` (the default), whose quantity is
+    /// measured.
     pub of: String,
     /// `quantity`
     pub quantity: Quantity,
-    /// `with`: the body, group or wall that `of` touches. Only of contacts, which need it.
+    /// `with`: the body, group or wall that `of` touches. Required for contacts, and only allowed
+    /// there.
     pub with: Option<String>,
     /// `statistic`, "end" unless given.
     pub statistic: Statistic,
-    /// `reference`: what the result should be, in the quantity's unit. Not zero where there is a
-    /// `tolerance`.
+    /// `reference`: expected result, in the quantity's unit. Not zero if there is a `tolerance`.
     pub reference: Option<f64>,
-    /// `tolerance`: largest relative error for the run to be called good. Only with `reference`.
+    /// `tolerance`: largest relative error for the run to pass. Only with `reference`.
     pub tolerance: Option<f64>,
     /// `absolute_tolerance`: largest difference from `reference`, which it needs, in the quantity's
     /// unit.
@@ -170,7 +171,7 @@ impl Quantity {
         found.map_or("", |(name, _)| *name)
     }
 
-    /// Its dimension, which knows the unit of its values.
+    /// Its dimension, which gives the unit of its values.
     pub fn dimension(self) -> &'static Dimension {
         match self {
             Self::Position(_)
@@ -197,7 +198,7 @@ impl Quantity {
         }
     }
 
-    /// Whether it is of the contacts between two: `of` and `with`.
+    /// True if it belongs to the contacts between two objects: `of` and `with`.
     pub fn is_of_contact(self) -> bool {
         matches!(
             self,
@@ -208,7 +209,7 @@ impl Quantity {
         )
     }
 
-    /// Whether it is of such things.
+    /// True if such objects have it.
     fn is_of(self, subject: Subject) -> bool {
         match self {
             Self::Position(_) | Self::Force(_) | Self::ForceMagnitude => {
@@ -307,7 +308,7 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
     })
 }
 
-/// What `of` touches: needed where a contact is measured, refused elsewhere.
+/// The object that `of` touches: required if a contact is measured, refused otherwise.
 fn counterpart(
     table: &Table<'_>,
     of: &str,
@@ -351,7 +352,7 @@ fn counterpart(
     ))
 }
 
-/// The quantity that is asked, if `of`, which is a `subject`, has it.
+/// The requested quantity, if `of`, which is a `subject`, has it.
 fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
     let mut known = QUANTITIES.to_vec();
     known.retain(|(_, quantity)| quantity.is_of(subject));

@@ -1,6 +1,6 @@
-//! Names: what they may look like, and which known one was meant.
+//! Names: their allowed form, and suggestions for misspelt ones.
 
-/// `did you mean 'end_time'?`, or the known names where none is near.
+/// `did you mean 'end_time'?`, or the known names if none is similar.
 pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
     let nearest = known
@@ -27,10 +27,10 @@ pub(super) fn suggestion<'a>(name: &str, known: impl Iterator<Item = &'a str>) -
 /// All particles of the scene.
 pub(super) const ALL: &str = "all";
 
-/// The pieces that bodies are in.
+/// The fragments of bodies.
 pub(super) const FRAGMENTS: &str = "fragments";
 
-/// What a name stands for in every scene; None for those that are free to be given.
+/// The meaning of a reserved name; None for a name that is free.
 pub(super) fn meaning(name: &str) -> Option<&'static str> {
     match name {
         ALL => Some("all particles of the scene"),
@@ -39,16 +39,18 @@ pub(super) fn meaning(name: &str) -> Option<&'static str> {
     }
 }
 
-/// Longest list of names in a message.
+/// Largest number of names listed in a message.
 const MOST_NAMES: usize = 30;
 
-/// Whether one name may be a slip for the other: a third of the letters, and not all of them.
+/// True if one name may be a misspelling of the other: at most a third of the letters differ, and
+/// not all of them.
 fn near(distance: usize, name: &str, candidate: &str) -> bool {
     let length = candidate.chars().count();
     3 * distance <= length + 2 && distance < length.max(name.chars().count())
 }
 
-/// Fewest letters inserted, removed, replaced or swapped with their neighbour that make `b` of `a`.
+/// Smallest number of letters inserted, removed, replaced or swapped with their neighbour that
+/// turns `a` into `b`.
 fn edit_distance(a: &str, b: &str) -> usize {
     let a: Vec<char> = a.chars().take(LONGEST_COMPARED).collect();
     let b: Vec<char> = b.chars().take(LONGEST_COMPARED).collect();
@@ -69,10 +71,10 @@ fn edit_distance(a: &str, b: &str) -> usize {
     last[b.len()]
 }
 
-/// Names are compared by their first letters up to here.
+/// Number of leading letters up to which names are compared.
 const LONGEST_COMPARED: usize = 64;
 
-/// Whether `name` is made of letters, digits, - and _.
+/// True if `name` consists of letters, digits, - and _.
 pub(super) fn well_formed(name: &str) -> bool {
     !name.is_empty()
         && name

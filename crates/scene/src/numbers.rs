@@ -1,4 +1,4 @@
-//! Numbers as the listing of a scene shows them.
+//! Numbers as shown in the listing of a scene.
 
 /// A number with at most 12 digits, which hides the rounding of units.
 pub(super) fn number(number: f64) -> String {

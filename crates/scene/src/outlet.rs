@@ -25,12 +25,12 @@ pub(super) static OUTLET: Schema = Schema {
     ],
 };
 
-/// Removes bodies and fragments whose centre is there, and counts them.
+/// Removes bodies and fragments by the position of their centre, and counts them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outlet {
     /// `inside` or `outside`: a name of `[regions]`.
     pub region: String,
-    /// `outside`: removes what is not in the region.
+    /// `outside`: removes objects outside the region.
     pub removes_outside: bool,
 }
 

@@ -10,21 +10,21 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::TIME;
 
-/// What is written, and how often. Times are simulated seconds.
+/// The results to write, and how often. Times are simulated seconds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Output {
-    /// `folder`: results go here, resolved against the folder of the scene. None: the scene's name
-    /// with `-out`.
+    /// `folder`: folder of the results, resolved against the folder of the scene. None: the scene's
+    /// name with `-out`.
     pub folder: Option<PathBuf>,
     /// `frames`: time between frames. None: first and last only.
     pub frames_s: Option<f64>,
-    /// `series`: time between rows of the time series. None: a thousandth of the run; 200 steps at
-    /// least in large scenes.
+    /// `series`: time between rows of the time series. None: a thousandth of the run, but at least
+    /// 200 steps in large scenes.
     pub series_s: Option<f64>,
     /// `pictures`: time between pictures. None: no pictures.
     pub pictures_s: Option<f64>,
-    /// `view = { from }`: where pictures are taken from, as seen from the bodies; of length 1.
-    /// None: from the front, the right and above. Length 3.
+    /// `view = { from }`: direction from the bodies to the camera, of length 1. None: from the
+    /// front, the right and above. Length 3.
     pub view_from: Option<[f64; 3]>,
     /// `checkpoint`: time between checkpoints. None: only at the end and when interrupted.
     pub checkpoint_s: Option<f64>,

@@ -1,16 +1,16 @@
-//! `--set KEY=VALUE`: values given on the command line, laid over those of the file.
+//! `--set KEY=VALUE`: values given on the command line, which override those of the file.
 
 use super::tree::{Document, Node, Origin, Value, parse_value};
 use dem_io::diagnostic::{Diagnostic, Result};
 
 impl Document {
-    /// Lays a `--set` text over the file: `run.end_time="0.5 s"`. A value that is no TOML is text,
-    /// without quotes. Tables and keys that the file lacks are added; whether they are known is for
-    /// those who read them.
+    /// Applies a `--set` text to the file: `run.end_time="0.5 s"`. A value that is not TOML is
+    /// taken as text, without quotes. Missing tables and keys are added; unknown ones are refused
+    /// when they are read.
     ///
     /// # Errors
-    /// No `=`, an empty key, a list or table that is no TOML, or a key within something that is no
-    /// table.
+    /// No `=`, an empty key, a list or table that is not TOML, or a key inside a value that is not
+    /// a table.
     pub(super) fn set(&mut self, text: &str) -> Result<()> {
         let option = self.options.len();
         self.options.push(text.to_owned());
@@ -49,7 +49,7 @@ impl Document {
     }
 }
 
-/// Most parts of a key, as in `bodies.bar.rotation.angle`.
+/// Largest number of parts of a key, as in `bodies.bar.rotation.angle`.
 const DEEPEST: usize = 4;
 
 fn value_of(text: &str, option: usize) -> std::result::Result<Node, String> {
@@ -63,7 +63,8 @@ fn value_of(text: &str, option: usize) -> std::result::Result<Node, String> {
     }
 }
 
-/// Puts `node` at the end of the path `keys`, or says how many keys lead to what is no table.
+/// Puts `node` at the end of the path `keys`. The error is the number of keys up to a value that is
+/// not a table.
 fn insert(root: &mut Node, keys: &[&str], node: Node) -> std::result::Result<(), usize> {
     let origin = node.origin;
     let mut here = root;

@@ -1,4 +1,4 @@
-//! Files that a scene or a study names, and their text.
+//! Files named in a scene or a study, and their text.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -8,13 +8,13 @@ use super::field::Field;
 use super::tree::Origin;
 use dem_io::diagnostic::{Diagnostic, Result};
 
-/// Largest file of a scene or study, bytes: what is larger is something else, or has no end.
+/// Largest file of a scene or study, bytes: a larger one is something else, or has no end.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// The text of a file that holds `what`.
+/// The text of a file, called `what` in messages.
 ///
 /// # Errors
-/// It cannot be read, or is not text.
+/// The file cannot be read, or is not text.
 pub fn text_of(path: &Path, what: &str) -> Result<String> {
     let name = path.display().to_string();
     let read = || -> std::io::Result<Vec<u8>> {
@@ -51,11 +51,10 @@ pub fn text_of(path: &Path, what: &str) -> Result<String> {
     })
 }
 
-/// The file or folder that `field` names. Names in the file are resolved against its folder; names
-/// on the command line are meant from where the program runs. "-" stays.
+/// The file or folder named by `field`. Names in the file are resolved against its folder, names on
+/// the command line against the current folder. "-" stays.
 ///
-/// # Errors
-/// No text, or empty.
+/// Not a text, or an empty one.
 pub(super) fn named_path(field: &Field<'_>, folder: &Path) -> Result<PathBuf> {
     let name = field.text()?;
     if name.trim().is_empty() {

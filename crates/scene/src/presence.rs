@@ -1,4 +1,4 @@
-//! Which bodies have particles of their own at the start of the run.
+//! The bodies that have particles of their own at the start of the run.
 
 use std::collections::BTreeMap;
 
@@ -10,24 +10,23 @@ use super::names::ALL;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// Bodies, and the inlets that feed some of them. A body that is fed is not there at the start; the
-/// particles of a rigid clump cannot be held or moved one by one.
+/// Bodies, and the inlets that feed some of them. A body that is fed is not in the scene at the
+/// start; the particles of a rigid clump cannot be held or moved individually.
 pub(super) struct Presence<'a> {
     pub(super) bodies: &'a BTreeMap<String, BodyEntry>,
     pub(super) inlets: &'a BTreeMap<String, Inlet>,
 }
 
-/// Why a body has no particles of its own at the start.
+/// The reason why a body has no particles of its own at the start.
 struct Absence {
-    /// "which ...", after its name.
+    /// "which ...", to be put after its name.
     why: String,
-    /// What makes it have them.
+    /// The change that gives it particles.
     remedy: String,
 }
 
 impl Presence<'_> {
-    /// Refuses the body `name`, which `field` gives, where it has no particles of its own at the
-    /// start.
+    /// Refuses the body `name`, given by `field`, if it has no particles of its own at the start.
     pub(super) fn refuse_body(&self, field: &Field<'_>, name: &str) -> Result<()> {
         match self.absence(name) {
             Some(Absence { why, remedy }) => {
@@ -38,8 +37,8 @@ impl Presence<'_> {
         }
     }
 
-    /// Refuses `table`, which is about the only body, `name`, where that has no particles of its
-    /// own at the start.
+    /// Refuses `table`, which refers to the only body, `name`, if that has no particles of its own
+    /// at the start.
     pub(super) fn refuse_only(&self, table: &Table<'_>, name: &str) -> Result<()> {
         match self.absence(name) {
             Some(Absence { why, remedy }) => {
@@ -50,7 +49,7 @@ impl Presence<'_> {
         }
     }
 
-    /// Refuses the name `all`, which `field` gives, where a body of all has no particles of its own
+    /// Refuses the name `all`, given by `field`, if one of the bodies has no particles of its own
     /// at the start.
     pub(super) fn refuse_all(&self, field: &Field<'_>) -> Result<()> {
         for name in self.bodies.keys() {
@@ -65,8 +64,8 @@ impl Presence<'_> {
         Ok(())
     }
 
-    /// Refuses the group `field` of the body `body`, or of all bodies, where it could pick
-    /// particles of a clump, or where the body is fed.
+    /// Refuses the group `field` of the body `body`, or of all bodies, if it could select particles
+    /// of a clump, or if the body is fed.
     pub(super) fn refuse_group(&self, field: &Field<'_>, body: Option<&str>) -> Result<()> {
         if let Some(name) = body {
             let table = Table::any(field)?;
@@ -75,7 +74,7 @@ impl Presence<'_> {
                 None => self.refuse_only(&table, name),
             };
         }
-        // What is fed does not stand where a group could pick it.
+        // Bodies that are fed are not yet where a group could select their particles.
         for name in self.bodies.keys().filter(|name| self.fed(name).is_none()) {
             if let Some(Absence { why, .. }) = self.clump(name) {
                 let problem = format!(
@@ -88,8 +87,8 @@ impl Presence<'_> {
         Ok(())
     }
 
-    /// Refuses the quantity that `field` gives, which counts from the start, for `of` where an
-    /// inlet feeds it or a part of it.
+    /// Refuses the quantity given by `field`, which refers to the start, if an inlet feeds `of` or
+    /// a part of it.
     pub(super) fn refuse_without_start(&self, field: &Field<'_>, of: &str) -> Result<()> {
         let mut meant = self.bodies.keys().filter(|name| of == ALL || *name == of);
         let Some((name, absence)) =

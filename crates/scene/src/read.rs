@@ -1,4 +1,4 @@
-//! A scene from its text: the order in which the tables are read, and what holds between them.
+//! A scene from its text: the order in which the tables are read, and the relations between them.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,12 +18,12 @@ use super::{
 use crate::field::Field;
 use dem_io::diagnostic::Result;
 
-/// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts laid over it, as in
-/// `run.end_time="0.5 s"`; a value that is no TOML is text. File names in the scene are resolved
-/// against its folder, those in `overrides` against the current one; "-" stays.
+/// Reads a scene from a TOML file. `overrides` are `KEY=VALUE` texts that override its values, as
+/// in `run.end_time="0.5 s"`; a value that is not TOML is text. File names in the scene are
+/// resolved against its folder, those in `overrides` against the current one; "-" stays.
 ///
 /// # Errors
-/// The file cannot be read, is no TOML, or cannot be simulated. The place is file and line, or the
+/// The file cannot be read, is not TOML, or cannot be simulated. The place is file and line, or the
 /// option.
 pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
     let text = text_of(path, "a scene")?;
@@ -33,7 +33,7 @@ pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
 /// Reads a scene from the text of a file named `source`, as [`read_scene`] does.
 ///
 /// # Errors
-/// Those of [`read_scene`], but for reading the file.
+/// Those of [`read_scene`], except for reading the file.
 pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result<Scene> {
     let mut document = Document::parse(source, text)?;
     for text in overrides {

@@ -1,4 +1,4 @@
-//! What is written from the schema of scenes and studies: the reference, and the JSON Schema for
+//! Files generated from the schema of scenes and studies: the reference, and the JSON Schema for
 //! editors.
 
 mod json;

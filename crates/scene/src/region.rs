@@ -30,7 +30,7 @@ pub(super) static REGION: Schema = Schema {
     ],
 };
 
-/// A part of space, which nothing bounces off.
+/// A region of space, without walls.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Region {
     /// `box = { min, max }`
@@ -56,8 +56,8 @@ pub enum Region {
         /// Radius, m.
         radius_m: f64,
     },
-    /// `stl` and `unit`: what a closed surface encloses. Whether it is closed, the reader of the
-    /// file checks.
+    /// `stl` and `unit`: the region enclosed by a closed surface. The reader of the file checks
+    /// whether it is closed.
     Stl {
         /// `stl`: the file, resolved against the folder of the scene.
         file: PathBuf,

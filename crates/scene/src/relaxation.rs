@@ -7,14 +7,14 @@ use super::schema::{Key, Schema};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// What becomes of overlaps between particles that cease to be of one piece (Platzer 2022, 4.3).
+/// Treatment of overlaps between particles that are no longer connected (Platzer 2022, 4.3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relaxation {
     /// `enabled`: such an overlap becomes the origin of the pair's contact law.
     pub enabled: bool,
-    /// `min_overlap`: smaller ones, as a fraction of the reduced radius, are not kept; in [0, 1).
-    /// The force that a pair then has at once gives it energy, which grows with this to the power
-    /// of 2.5: at 1e-3 a whole body can gain 1e-4 of its own.
+    /// `min_overlap`: smaller overlaps, as a fraction of the reduced radius, are not kept; in
+    /// [0, 1). The contact force that such a pair then has at once adds energy, which grows with
+    /// this to the power of 2.5: at 1e-3 an entire body can gain 1e-4 of its own.
     pub min_overlap: f64,
 }
 

@@ -1,5 +1,5 @@
-//! Keys of scenes and studies that had another name before version 0.1: whoever uses one is told
-//! the new one.
+//! Keys of scenes and studies that had another name before version 0.1: the message for an old name
+//! gives the new one.
 
 /// Title of the table in the schema, old key, new key.
 const RENAMED: [(&str, &str, &str); 36] = [
@@ -53,7 +53,7 @@ const RENAMED: [(&str, &str, &str); 36] = [
     ("[measures.NAME]", "ledger", "balance"),
 ];
 
-/// The new name of the key `old` of the table `title` and how it is written, if it had another one.
+/// The new name of the key `old` of the table `title` and its form, if it was renamed.
 pub(super) fn new_name(title: &str, old: &str) -> Option<(&'static str, String)> {
     let is = |row: &&(&str, &str, &str)| row.0 == title && row.1 == old;
     let (_, _, new) = RENAMED.iter().find(is)?;

@@ -12,7 +12,7 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, TIME, VELOCITY};
 
-/// Whether all of `when` must hold, or any.
+/// Words for `require`; true if all conditions of `when` must hold.
 const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
 
 pub(super) static REPLACEMENT: Schema = Schema {
@@ -100,37 +100,39 @@ pub(super) static RESTORE: Schema = Schema {
     ],
 };
 
-/// When a rigid clump becomes the bonded cluster that it stands for, and when that becomes rigid
-/// again.
+/// Conditions under which a rigid clump becomes the bonded cluster that it represents, and under
+/// which a fragment becomes rigid again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replacement {
-    /// `when.enters`: its centre is in this region, a name of `[regions]`. None, here and below:
-    /// not asked; at least one is.
+    /// `when.enters`: its centre is in this region, a name of `[regions]`. None, here and below: no
+    /// such condition. At least one is given.
     pub enters: Option<String>,
-    /// `when.force` on it reaches this, N; more than 0.
+    /// `when.force`: the resultant contact force on it reaches this, N; more than 0.
     pub force_n: Option<f64>,
-    /// `when.impact_energy`, that of a contact, reaches this, J; more than 0.
+    /// `when.impact_energy`: the kinetic energy that contacts have taken from it so far reaches
+    /// this, J; more than 0.
     pub impact_energy_j: Option<f64>,
-    /// `when.time`: so late it is, s; at least 0.
+    /// `when.time`: this time is reached, s; at least 0.
     pub time_s: Option<f64>,
-    /// `require`: all that `when` has must hold ("all"), not just any ("any"). False unless given.
+    /// `require`: all conditions of `when` must hold ("all"), not just any ("any"). False unless
+    /// given.
     pub requires_all: bool,
-    /// `restore`. None: what was replaced stays bonded.
+    /// `restore`. None: replaced bodies stay bonded.
     pub restore: Option<Restore>,
 }
 
-/// `restore = { ... }`: when a fragment becomes rigid again. All of it must hold.
+/// `restore = { ... }`: conditions under which a fragment becomes rigid again. All must hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Restore {
     /// `leaves`: its centre is outside this region, a name of `[regions]`.
     pub leaves: String,
-    /// `min_particles`: it has at least so many, 10 unless given. At least 1.
+    /// `min_particles`: smallest number of its particles, 10 unless given. At least 1.
     pub min_particles: u32,
-    /// `strain_energy`: elastic energy of its bonds over its mass is at most this, 0.01 J/kg unless
-    /// given; more than 0.
+    /// `strain_energy`: largest elastic energy of its bonds over its mass, 0.01 J/kg unless given;
+    /// more than 0.
     pub strain_energy_j_kg: f64,
-    /// `fluctuation_velocity`: root mean square velocity of its particles relative to its
-    /// rigid-body motion is at most this, 5 mm/s unless given; more than 0.
+    /// `fluctuation_velocity`: largest root mean square velocity of its particles relative to its
+    /// rigid-body motion, 5 mm/s unless given; more than 0.
     pub fluctuation_velocity_m_s: f64,
 }
 
@@ -147,7 +149,7 @@ pub(super) fn read_all(
     Ok(replacements)
 }
 
-/// Refuses what is no clump, cannot break, or would change its mass.
+/// Refuses a body that is not a clump, cannot break, or would change its mass.
 fn check_body(
     root: &Table<'_>,
     name: &str,
@@ -168,7 +170,7 @@ fn check_body(
     };
     let has_bonds = match &body.source {
         BodySource::Inline { bonds, .. } if bonds.is_empty() => false,
-        // Whoever reads the file finds whether it has some.
+        // The reader of the file finds whether it has bonds.
         _ => body.bond_kind.is_some(),
     };
     if !has_bonds {

@@ -1,4 +1,4 @@
-//! A whole scene, and its tables.
+//! A complete scene, and its tables.
 
 use super::schema::{Key, Kind, Schema};
 use std::collections::BTreeMap;
@@ -32,10 +32,10 @@ use super::{
 /// Version of the scene format.
 pub const SCENE_VERSION: u64 = 1;
 
-/// A whole scene.
+/// A complete scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// File that it was read from, as the user named it.
+    /// File from which it was read, as named by the user.
     pub source: String,
     /// `[run]`
     pub run: Run,
@@ -50,8 +50,8 @@ pub struct Scene {
     pub bodies: BTreeMap<String, BodyEntry>,
     /// `[walls.NAME]`. No body or group has the name of a wall.
     pub walls: BTreeMap<String, Wall>,
-    /// `[groups.NAME]`. The name of a body also stands for all its particles, and `all` for all of
-    /// the scene.
+    /// `[groups.NAME]`. The name of a body also stands for all its particles, and `all` for all
+    /// particles of the scene.
     pub groups: BTreeMap<String, ParticleGroup>,
     /// `[initial.NAME]`
     pub initial: BTreeMap<String, Initial>,
@@ -63,7 +63,7 @@ pub struct Scene {
     pub regions: BTreeMap<String, Region>,
     /// `[replacement.NAME]`, by the name of the body: a clump that has bonds.
     pub replacement: BTreeMap<String, Replacement>,
-    /// `[inlets.NAME]`. The bodies that they name do not stand in the scene at the start.
+    /// `[inlets.NAME]`. The bodies that they name are not in the scene at the start.
     pub inlets: BTreeMap<String, Inlet>,
     /// `[outlets.NAME]`
     pub outlets: BTreeMap<String, Outlet>,

@@ -8,56 +8,56 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ACCELERATION, TIME};
 
-/// End of the run, time step, and what acts on everything.
+/// End of the run, time step, and effects on all particles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// `end_time`: simulated time at the end, s. Infinite where a `[test]` says when it ends.
+    /// `end_time`: simulated time at the end, s. Infinite if a `[test]` determines the end.
     pub end_time_s: f64,
     /// `integrator`, "leapfrog" unless given.
     pub integrator: Integrator,
     /// `rest_energy_ratio`, in (0, 1): end sooner, when the kinetic energy has been below this
-    /// share of the elastic energy during the last fifth of the run.
+    /// fraction of the elastic energy during the last fifth of the run.
     pub rest_energy_ratio: Option<f64>,
     /// `time_step`: seconds, or None for "auto", which is `safety_factor` times the exact limit.
     pub time_step_s: Option<f64>,
-    /// `safety_factor`: the automatic step over the limit, 0.9 unless given; in (0, 2), of which 1
-    /// and more are for trials only.
+    /// `safety_factor`: the automatic step over the limit, 0.9 unless given; in (0, 2). Values from
+    /// 1 are for trials only.
     pub safety_factor: f64,
-    /// `adaptive`: the automatic step follows the limit up as well as down; not unless given.
+    /// `adaptive`: the automatic step follows the limit up as well as down; false unless given.
     pub adaptive: bool,
-    /// `gravity`, m/s2; none unless given. Length 3.
+    /// `gravity`, m/s2; 0 unless given. Length 3.
     pub gravity_m_s2: [f64; 3],
     /// `local_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).
     pub local_damping: f64,
-    /// `seed` of everything random (scatter of strengths); 0 unless given.
+    /// `seed` of all random numbers (scatter of strengths); 0 unless given.
     pub seed: u64,
     /// `initial_overlap`, "refuse" unless given.
     pub initial_overlap: InitialOverlap,
 }
 
-/// How a run comes to its end.
+/// How a run reaches its end.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Integrator {
     /// "leapfrog": step by step.
     #[default]
     Leapfrog,
-    /// "static": at once, into the equilibrium under what loads and supports are at the end. Bonded
-    /// bodies on supports only: nothing touches, breaks, comes or goes.
+    /// "static": directly, by solving for the equilibrium under the final loads and supports. Only
+    /// for bonded bodies on supports, without contacts, breakage, inlets and outlets.
     Static,
 }
 
-/// What happens where bodies or walls overlap at the start, although no bond joins them.
+/// Treatment of bodies or walls that overlap at the start without being joined by a bond.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InitialOverlap {
     /// "refuse": the scene is refused.
     Refuse,
     /// "relax": the overlap is the origin of their contact law.
     Relax,
-    /// "keep": contacts like all others, which press with the force of their overlap.
+    /// "keep": contacts like all others, with the force of their overlap.
     Keep,
 }
 
-/// `run.safety_factor` unless given.
+/// Default of `run.safety_factor`.
 pub const SAFETY: f64 = 0.9;
 
 pub(super) static RUN: Schema = Schema {

@@ -1,5 +1,6 @@
-//! The schema of scenes and studies: a table lists its keys once, each with kind, unit, default,
-//! limits and one sentence. Reader, messages, listing, reference and JSON Schema are made from it.
+//! The schema of scenes and studies: a table lists its keys once, each with type, unit, default,
+//! limits and one sentence. Reader, messages, listing, reference and JSON Schema are generated from
+//! it.
 
 use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::ops::{Bound, RangeBounds};
@@ -9,7 +10,7 @@ use dem_io::units::{Dimension, NUMBER};
 
 /// A table and its keys.
 pub(super) struct Schema {
-    /// `[run]`, `[bodies.NAME]`; of a table within others, what it is.
+    /// `[run]`, `[bodies.NAME]`; for a table within others, a description.
     pub(super) title: &'static str,
     /// One sentence.
     pub(super) doc: &'static str,
@@ -31,28 +32,28 @@ pub(super) struct Key {
     pub(super) name: &'static str,
     pub(super) kind: Kind,
     pub(super) unless_given: Unless,
-    /// Of numbers, in SI.
+    /// Limits of numbers, in SI.
     pub(super) limits: (Bound<f64>, Bound<f64>),
-    /// What to do about a number beyond the limits; empty: an example says it.
+    /// The remedy for a number outside the limits; empty: an example gives it.
     pub(super) remedy: &'static str,
     /// One sentence or two.
     pub(super) doc: &'static str,
 }
 
-/// What a value is.
+/// The type of a value.
 pub(super) enum Kind {
     /// A number of this dimension, with or without a unit.
     Quantity(&'static Dimension),
     /// "auto", or a number of this dimension.
     Auto(&'static Dimension),
-    /// A number in the dimension of what `[measures.NAME]` measures.
+    /// A number in the dimension of the quantity of `[measures.NAME]`.
     Measured,
     /// Three numbers of this dimension, along x, y and z.
     Vector(&'static Dimension),
-    /// Three numbers that point somewhere; how messages call them: "an axis".
+    /// Three numbers that give a direction; its name in messages: "an axis".
     Direction(&'static str),
-    /// A whole number from `least`, of such things ("steps"); `most` is None where no message needs
-    /// to name it.
+    /// A whole number from `least`, with its unit ("steps"); `most` is None if no message needs to
+    /// name it.
     Whole {
         least: u64,
         most: Option<u64>,
@@ -60,40 +61,41 @@ pub(super) enum Kind {
     },
     /// True or false.
     Boolean,
-    /// Nothing but true.
+    /// Only true.
     True,
     /// One of these words.
     Word(fn() -> Vec<&'static str>),
-    /// Text; what it says: "a file", "a name in [materials]".
+    /// Text, and its meaning: "a file", "a name in [materials]".
     Text(&'static str),
-    /// A list of at least one.
+    /// A list of at least one item.
     List(&'static Kind),
-    /// A list of exactly these.
+    /// A list of exactly these items.
     Row(&'static [Kind]),
     /// A table with these keys.
     Table(&'static Schema),
-    /// A table with a value of this kind for each of its names; what the names are: "NAME".
+    /// A table with a value of this type for each of its names; the placeholder of the names:
+    /// "NAME".
     Named(&'static str, &'static Kind),
-    /// A table with these keys, and others with values of this kind.
+    /// A table with these keys, and others with values of this type.
     Open(&'static Schema, &'static Kind),
-    /// One of these.
+    /// One of these types.
     Either(&'static [Kind]),
-    /// What another file says.
+    /// A value defined by another file.
     Anything(&'static str),
 }
 
-/// What holds where a key is left out.
+/// The value of a key that is left out.
 #[derive(Clone, Copy)]
 pub(super) enum Unless {
-    /// The scene is refused; how the value may look.
+    /// None: the scene is refused. An example of the value.
     Required(&'static str),
-    /// The same in some cases, of which the sentence tells; else there is no value.
+    /// The same in some cases, which the sentence names; otherwise there is no value.
     SometimesRequired(&'static str),
-    /// This number, in SI, or three of it.
+    /// This number, in SI, or three times this number for a vector.
     Number(f64),
     Word(&'static str),
     Boolean(bool),
-    /// There is no value; what that means: "never".
+    /// No value, and its meaning: "never".
     Absent(&'static str),
 }
 
@@ -102,7 +104,7 @@ pub(super) trait Word: Copy + PartialEq + 'static {
     const WORDS: &'static [(&'static str, Self)];
 }
 
-/// The words of a list of words and what they mean.
+/// The words of a list of words and values.
 pub(super) fn words_of<T>(known: &[(&'static str, T)]) -> Vec<&'static str> {
     known.iter().map(|(word, _)| *word).collect()
 }
@@ -179,19 +181,19 @@ impl Key {
         Self::new(name, Kind::Table(keys), doc)
     }
 
-    /// The scene is refused without it.
+    /// Makes the key required.
     pub(super) const fn required(mut self, example: &'static str) -> Self {
         self.unless_given = Unless::Required(example);
         self
     }
 
-    /// The scene is refused without it in some cases.
+    /// Makes the key required in some cases.
     pub(super) const fn sometimes_required(mut self, example: &'static str) -> Self {
         self.unless_given = Unless::SometimesRequired(example);
         self
     }
 
-    /// Unless given, it is this number, in SI.
+    /// Sets the default to this number, in SI.
     pub(super) const fn or(mut self, number: f64) -> Self {
         self.unless_given = Unless::Number(number);
         self
@@ -202,7 +204,7 @@ impl Key {
         self
     }
 
-    /// Unless given there is none, which means `what`.
+    /// Sets the default to no value, with the meaning `what`.
     pub(super) const fn otherwise(mut self, what: &'static str) -> Self {
         self.unless_given = Unless::Absent(what);
         self
@@ -230,12 +232,12 @@ impl Key {
         self
     }
 
-    /// Whether it is a number within the limits.
+    /// True if it is a number within the limits.
     pub(super) fn allows(&self, value: f64) -> bool {
         self.limits.contains(&value)
     }
 
-    /// "more than 0 m"; empty where nothing is limited.
+    /// "more than 0 m"; empty without limits.
     pub(super) fn limits_in_words(&self) -> String {
         let low = match self.limits.0 {
             Excluded(low) => Some(format!("more than {low}")),
@@ -255,7 +257,7 @@ impl Key {
         format!("{words} {}", self.unit()).trim_end().to_owned()
     }
 
-    /// The dimension of its numbers; that of plain numbers where it has none.
+    /// The dimension of its numbers; that of plain numbers if it has none.
     pub(super) fn dimension(&self) -> &'static Dimension {
         let of = |kind: &Kind| match kind {
             Kind::Quantity(dimension) | Kind::Auto(dimension) | Kind::Vector(dimension) => {
@@ -275,7 +277,7 @@ impl Key {
         self.dimension().si
     }
 
-    /// What holds where it is left out, as the listing of a scene says it.
+    /// Its default, as shown in the listing of a scene.
     pub(super) fn usual(&self) -> String {
         match self.unless_given {
             Unless::Required(_) => "needed".to_owned(),

@@ -10,8 +10,8 @@ use dem_io::diagnostic::Result;
 /// Neighbour search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Search {
-    /// `skin`: how far beyond touching pairs are listed, as a fraction of the largest radius; in
-    /// (0, 2]. None: chosen by the program.
+    /// `skin`: distance beyond contact up to which pairs are listed, as a fraction of the largest
+    /// radius; in (0, 2]. None: chosen by the program.
     pub skin: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Shapes that groups, walls and regions share.
+//! Shapes shared by groups, walls and regions.
 
 use std::path::{Path, PathBuf};
 
@@ -48,7 +48,7 @@ pub(super) static CYLINDER: Schema = Schema {
     ],
 };
 
-/// The key `unit` beside `stl`.
+/// The key `unit`, for `stl`.
 pub(super) const UNIT: Key = Key::new(
     "unit",
     Kind::Either(&[
@@ -59,8 +59,8 @@ pub(super) const UNIT: Key = Key::new(
 )
 .sometimes_required("\"mm\", the file's unit of length");
 
-/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` for both along each
-/// axis; `limit` says in words what min must be to max.
+/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` is the condition for
+/// both along each axis; `limit` is its text.
 pub(super) fn corners(
     field: &Field<'_>,
     limit: &str,
@@ -107,8 +107,7 @@ pub(super) fn cylinder(field: &Field<'_>) -> Result<([[f64; 3]; 2], f64)> {
     Ok(([from_m, to_m], table.read("radius")?))
 }
 
-/// The file of triangles that `field`, a key of `table`, names, and the size of the file's `unit`,
-/// m.
+/// The file of triangles named by `field`, a key of `table`, and the size of the file's `unit`, m.
 pub(super) fn stl(field: &Field<'_>, table: &Table<'_>, folder: &Path) -> Result<(PathBuf, f64)> {
     let path = named_path(field, folder)?;
     if path.as_os_str() == "-" {
@@ -125,7 +124,7 @@ pub(super) fn stl(field: &Field<'_>, table: &Table<'_>, folder: &Path) -> Result
     Ok((path, unit_m))
 }
 
-/// Refuses `keys`, which act on `stl`, where the shape is `key`.
+/// Refuses `keys`, which apply to `stl`, if the shape is `key`.
 pub(super) fn refuse_without_stl(
     table: &Table<'_>,
     keys: &[&'static str],

@@ -7,12 +7,12 @@ use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{TIME, VELOCITY};
 
-/// When bodies at rest are no more stepped, until something comes near them.
+/// When bodies at rest are no longer integrated, until something comes near them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sleep {
-    /// `speed`: no point of a body that falls asleep is faster, m/s; more than 0.
+    /// `speed`: largest speed of any point of a body that falls asleep, m/s; more than 0.
     pub speed_m_s: f64,
-    /// `after`: it has been as slow for so long, s; more than 0.
+    /// `after`: time for which the body has been below that speed, s; more than 0.
     pub after_s: f64,
 }
 

@@ -1,10 +1,10 @@
-//! What has no meaning where a run goes to the equilibrium at once.
+//! Refusal of tables that have no meaning for a static equilibrium.
 
 use super::field::Field;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// Tables of what touches, moves by itself, comes or goes, and of how it starts.
+/// Tables of contacts, moving or fed objects, and initial conditions.
 const TABLES: [&str; 8] = [
     "initial",
     "contacts",
@@ -16,8 +16,8 @@ const TABLES: [&str; 8] = [
     "test",
 ];
 
-/// Refuses what is more than bonded bodies, loads and supports in a scene that goes to its
-/// equilibrium at once.
+/// Refuses everything except bonded bodies, loads and supports in a scene solved for its static
+/// equilibrium.
 pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
     if let Some((_, field)) = root.given(&TABLES).next() {
         let problem = format!(
@@ -62,7 +62,7 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The first `[table.NAME]` with this word for this key: the word.
+/// The word, if a `[table.NAME]` has it for this key.
 fn written<'a>(root: &Table<'a>, table: &str, key: &str, word: &str) -> Result<Option<Field<'a>>> {
     for (_, one) in root.named(table)? {
         let field = Table::any(&one)?.get(key);

@@ -1,5 +1,5 @@
-//! A study: a scene, what varies in it, what is measured and what it is compared with. Plain data,
-//! as read from TOML.
+//! A study: a scene, the values that vary in it, the measures and their references. Plain data, as
+//! read from TOML.
 
 mod check;
 mod contents;

@@ -13,10 +13,10 @@ use dem_io::diagnostic::Result;
 use dem_io::units::{ANGLE, ANGULAR_VELOCITY, LENGTH, VELOCITY};
 use serde::{Deserialize, Serialize};
 
-/// What holds one degree of freedom.
+/// Constraint of one degree of freedom.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Hold {
-    /// Does not move.
+    /// Fixed.
     Fixed,
     /// Moves at this velocity times the factor, m/s or rad/s.
     Velocity(f64),
@@ -29,13 +29,13 @@ pub enum Hold {
 pub struct Support {
     /// `group`: a group, a body or `all`.
     pub group: String,
-    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. Not all
-    /// are free. Length 6.
+    /// Along x, y, z, then about x, y, z (`fixed`, `velocity`, `displacement`); None: free. At
+    /// least one is not free. Length 6.
     pub holds: [Option<Hold>; 6],
     /// `ramp` or `table`, for velocities and displacements.
     pub factor: Factor,
-    /// `end`: from this time on the freedoms are free, s. Not before the factor's last change.
-    /// None: never.
+    /// `end`: time from which the degrees of freedom are free, s. Not before the factor's last
+    /// change. None: never.
     pub end_s: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! One table of a scene: hands out its values by key, as its schema says.
+//! One table of a scene: gives its values by key, according to its schema.
 
 use super::field::Field;
 use super::names::{suggestion, well_formed};
@@ -10,25 +10,25 @@ use dem_io::diagnostic::{Diagnostic, Result};
 /// A table of the scene, with its path for messages.
 pub(super) struct Table<'a> {
     pub(super) document: &'a Document,
-    /// As in `bodies.bar`; empty for the whole file.
+    /// As in `bodies.bar`; empty for the entire file.
     pub(super) path: String,
     pub(super) origin: Origin,
     pub(super) entries: &'a [(String, Node)],
     schema: &'static Schema,
 }
 
-/// What the value of a key is read as.
+/// A type as which the value of a key can be read.
 pub(super) trait Read: Sized {
-    /// From what is given.
+    /// From the given value.
     ///
     /// # Errors
-    /// It is not what `key` wants.
+    /// The value is not as required by `key`.
     fn given(field: &Field<'_>, key: &Key) -> Result<Self>;
 
-    /// Where the key is left out; None where it must not be.
+    /// The value if the key is left out; None if it is required.
     fn unless_given(usual: Unless) -> Option<Self>;
 
-    /// As the listing of a scene shows it, in SI.
+    /// The value as shown in the listing of a scene, in SI.
     fn told(&self, key: &Key) -> String;
 }
 
@@ -40,7 +40,7 @@ static ANY: Schema = Schema {
 };
 
 impl<'a> Table<'a> {
-    /// The whole file, which may hold any keys until [`Table::refuse_unknown`].
+    /// The entire file, which may hold any keys until [`Table::refuse_unknown`].
     pub(super) fn root(document: &'a Document, schema: &'static Schema) -> Result<Self> {
         let root = Field {
             document,
@@ -51,10 +51,10 @@ impl<'a> Table<'a> {
         Ok(Self { schema, ..table })
     }
 
-    /// The table that `field` is, if it has no other keys than `schema`.
+    /// The table in `field`, if it has no other keys than `schema`.
     ///
     /// # Errors
-    /// No table, or an unknown key in it.
+    /// Not a table, or an unknown key in it.
     pub(super) fn of(field: &Field<'a>, schema: &'static Schema) -> Result<Self> {
         let table = Self {
             schema,
@@ -64,10 +64,10 @@ impl<'a> Table<'a> {
         Ok(table)
     }
 
-    /// The table that `field` is, with any keys.
+    /// The table in `field`, with any keys.
     ///
     /// # Errors
-    /// No table.
+    /// Not a table.
     pub(super) fn any(field: &Field<'a>) -> Result<Self> {
         let Value::Table(entries) = &field.node.value else {
             let remedy = format!("write it as [{}], or in {{ }}", field.path);
@@ -82,7 +82,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// The table `name` within this one; one without entries where it is left out.
+    /// The table `name` within this one; an empty one if it is left out.
     pub(super) fn table(&self, name: &str, schema: &'static Schema) -> Result<Self> {
         match self.get(name) {
             Some(field) => Self::of(&field, schema),
@@ -132,10 +132,10 @@ impl<'a> Table<'a> {
         Some(field)
     }
 
-    /// The value of a key, or what holds unless it is given.
+    /// The value of a key, or its default.
     ///
     /// # Errors
-    /// It is not what the schema says, or is missing and must not be.
+    /// The value is not as required by the schema, or is missing although required.
     pub(super) fn read<T: Read>(&self, name: &str) -> Result<T> {
         let key = self.key(name)?;
         if let Some(field) = self.get(name) {
@@ -144,7 +144,7 @@ impl<'a> Table<'a> {
         T::unless_given(key.unless_given).ok_or_else(|| self.missing(key))
     }
 
-    /// What `read` makes of a key, if it is there.
+    /// The result of `read` for a key, if it is there.
     pub(super) fn read_by<T>(
         &self,
         name: &str,
@@ -153,7 +153,7 @@ impl<'a> Table<'a> {
         self.get(name).map(read).transpose()
     }
 
-    /// Those of `keys` that are there, in the order of the file, with their values.
+    /// Those of `keys` that are given, in the order of the file, with their values.
     pub(super) fn given(
         &self,
         keys: &[&'static str],
@@ -164,13 +164,13 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// The value of a key that must be there.
+    /// The value of a required key.
     pub(super) fn need(&self, name: &str) -> Result<Field<'a>> {
         let key = self.key(name)?;
         self.get(name).ok_or_else(|| self.missing(key))
     }
 
-    /// The value of a key that must be there; `example` is how it may look.
+    /// The value of a required key; `example` is a possible form.
     pub(super) fn need_such(&self, name: &str, example: &str) -> Result<Field<'a>> {
         self.get(name).ok_or_else(|| self.without(name, example))
     }
@@ -212,7 +212,7 @@ impl<'a> Table<'a> {
     /// The named tables in the table `key`: `[key.NAME]`; none if it is not there.
     ///
     /// # Errors
-    /// No table, or a name with other characters than letters, digits, - and _.
+    /// Not a table, or a name with other characters than letters, digits, - and _.
     pub(super) fn named(&self, key: &str) -> Result<Vec<(String, Field<'a>)>> {
         let Some(field) = self.get(key) else {
             return Ok(Vec::new());

@@ -1,4 +1,4 @@
-//! What supports, loads and measures are of.
+//! Objects of supports, loads and measures.
 
 use std::collections::BTreeMap;
 
@@ -18,15 +18,15 @@ pub(super) const GROUP_KEY: Key = Key::text(
 )
 .required("\"NAME\", a group, a body or \"all\"");
 
-/// What supports, loads and measures can name: groups, bodies and `all`; walls and `fragments` can
-/// only be measured.
+/// Objects that supports, loads and measures can name: groups, bodies and `all`; walls and
+/// `fragments` only for measures.
 pub(super) struct Targets<'a> {
     pub(super) groups: &'a BTreeMap<String, ParticleGroup>,
     pub(super) presence: &'a Presence<'a>,
     pub(super) walls: &'a BTreeMap<String, Wall>,
 }
 
-/// What has quantities that can be measured.
+/// Objects whose quantities can be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Subject {
     /// A group, a body or `all`.
@@ -38,7 +38,7 @@ pub(super) enum Subject {
 }
 
 impl Targets<'_> {
-    /// The name that `field` gives, if it is that of a group, of a body or `all`, and has particles
+    /// The name given by `field`, if it is that of a group, of a body or `all`, and has particles
     /// of its own at the start.
     pub(super) fn name(&self, field: &Field<'_>) -> Result<String> {
         let name = field.text()?;
@@ -64,7 +64,7 @@ impl Targets<'_> {
         }
     }
 
-    /// The name that `field` gives, if it can be measured, and what it is.
+    /// The name given by `field`, if it can be measured, and its type.
     pub(super) fn measured(&self, field: &Field<'_>) -> Result<(String, Subject)> {
         let name = field.text()?;
         let subject = self.subject(name).ok_or_else(|| {
@@ -92,7 +92,8 @@ impl Targets<'_> {
     }
 }
 
-/// No `kinds` has the name that `field` gives; `known` do.
+/// The error for the name given by `field`, which none of the `kinds` has; `known` are the valid
+/// names.
 fn unknown<'n>(
     field: &Field<'_>,
     name: &str,

@@ -84,32 +84,32 @@ const fn size(name: &'static str, doc: &'static str) -> Key {
         .otherwise(MEASURED)
 }
 
-/// A quasi-static test: what moves, how far and how fast, and what it is compared with.
+/// A quasi-static test: the moving parts, their stroke and rate, and the reference values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Test {
     /// `type`
     pub kind: TestType,
-    /// `body` that is tested; the only one unless given.
+    /// `body`: the tested body; the only one unless given.
     pub body: String,
-    /// `crosshead`: walls that load, which do not move otherwise; for tension groups that are
+    /// `crosshead`: walls that load, which do not move otherwise; for tension, groups that are
     /// pulled. At least one.
     pub crosshead: Vec<String>,
-    /// `direction` in which they move, of length 1; for tension along x, y or z. Length 3.
+    /// `direction` of their motion, of length 1; for tension along x, y or z. Length 3.
     pub direction: [f64; 3],
-    /// `stroke`: how far they move at most, m.
+    /// `stroke`: largest displacement of the crosshead, m.
     pub stroke_m: f64,
-    /// `rate`: their velocity, m/s. None, "auto": such that the stroke takes `periods`.
+    /// `rate`: velocity of the crosshead, m/s. None, "auto": such that the stroke takes `periods`.
     pub rate_m_s: Option<f64>,
     /// `periods` of the body's lowest frequency, 20 unless given. At least 1.
     pub periods: f64,
-    /// `rate_check`: the test is done at twice the rate as well. True unless given.
+    /// `rate_check`: the test is also done at twice the rate. True unless given.
     pub rate_check: bool,
-    /// `young_modulus` that the body as a whole should have, Pa. None: compared with nothing.
+    /// `young_modulus`: target modulus of the entire body, Pa. None: not compared.
     pub young_modulus_pa: Option<f64>,
-    /// `poisson_ratio` of the body as a whole, for its shear in bending; 0.3 unless given.
+    /// `poisson_ratio` of the entire body, for its shear in bending; 0.3 unless given.
     pub poisson_ratio: f64,
-    /// `strength` that the body as a whole should have, by the formula of the test, Pa. None:
-    /// compared with nothing.
+    /// `strength`: target strength of the entire body, by the formula of the test, Pa. None: not
+    /// compared.
     pub strength_pa: Option<f64>,
     /// `support_span` between the supports of a beam, m. None: that of the walls.
     pub support_span_m: Option<f64>,
@@ -119,14 +119,14 @@ pub struct Test {
     pub width_m: Option<f64>,
     /// `height` of a beam, or diameter of a disc, m. None: that of the body.
     pub height_m: Option<f64>,
-    /// `length` of a body that is pressed or pulled, m. None: that of the body.
+    /// `length` of a compressed or pulled body, m. None: that of the body.
     pub length_m: Option<f64>,
-    /// `area` of its section, m2. None: volume of the body's shape over its length, or, where no
-    /// file names a volume, the product of its other two sides.
+    /// `area` of its section, m2. None: volume of the body's shape over its length or, if no file
+    /// gives a volume, the product of its other two sides.
     pub area_m2: Option<f64>,
 }
 
-/// What a test can name.
+/// The names that a test can use.
 pub(super) struct Known<'a> {
     pub(super) presence: &'a Presence<'a>,
     pub(super) groups: &'a BTreeMap<String, ParticleGroup>,
@@ -199,7 +199,7 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
     }
 }
 
-/// Refuses dimensions that mean nothing to the kind of test.
+/// Refuses dimensions that do not apply to this type of test.
 fn refuse_dimensions(table: &Table<'_>, kind: TestType) -> Result<()> {
     let all = [
         "support_span",
@@ -222,7 +222,7 @@ fn refuse_dimensions(table: &Table<'_>, kind: TestType) -> Result<()> {
     }
 }
 
-/// The body that is named, or the only one.
+/// The named body, or the only one.
 fn body(table: &Table<'_>, known: &Known<'_>) -> Result<String> {
     let bodies = known.presence.bodies;
     if let Some(field) = table.get("body") {
@@ -244,7 +244,7 @@ fn body(table: &Table<'_>, known: &Known<'_>) -> Result<String> {
     }
 }
 
-/// What `crosshead` names, each once.
+/// The objects named by `crosshead`, each once.
 fn all_moved(field: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<Vec<String>> {
     let mut moves: Vec<String> = Vec::new();
     for item in field.items()? {
@@ -258,7 +258,7 @@ fn all_moved(field: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<Vec<St
     Ok(moves)
 }
 
-/// What an item of `crosshead` names: a wall that stands still, or a group that no support holds.
+/// The object named by an item of `crosshead`: a fixed wall, or a group without a support.
 fn moved(item: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<String> {
     let name = item.text()?;
     if pulls {

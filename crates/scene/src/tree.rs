@@ -1,28 +1,28 @@
-//! The text of a scene as a tree of values, each with the place where it stands. Alone knows the
-//! TOML parser.
+//! The text of a scene as a tree of values, each with its place. The only module besides
+//! `study::rewrite` that uses the TOML parser.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
 use dem_io::diagnostic::{Diagnostic, Result};
 
-/// Where a value comes from.
+/// Origin of a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Origin {
     /// A line of the file, from 1.
     Line(usize),
-    /// A `--set`, by its number in [`Document::options`].
+    /// A `--set`, by its index in [`Document::options`].
     Option(usize),
 }
 
-/// A value and where it comes from.
+/// A value and its origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Node {
     pub(super) origin: Origin,
     pub(super) value: Value,
 }
 
-/// What TOML can say.
+/// A TOML value.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Value {
     Text(String),
@@ -35,14 +35,14 @@ pub(super) enum Value {
     Table(Vec<(String, Node)>),
 }
 
-/// A scene's text, taken apart.
+/// The parsed text of a scene.
 #[derive(Debug)]
 pub(super) struct Document {
     /// Name of the file.
     pub(super) name: String,
-    /// What was given with `--set`.
+    /// The texts of `--set`.
     pub(super) options: Vec<String>,
-    /// The table of everything.
+    /// The root table.
     pub(super) root: Node,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct Document {
 const SHOWN_OPTION: usize = 60;
 
 impl Document {
-    /// Takes `text` apart.
+    /// Parses `text`.
     ///
     /// # Errors
     /// Not TOML: line, and what was expected there.
@@ -70,7 +70,7 @@ impl Document {
         })
     }
 
-    /// A place as messages name it.
+    /// A place, as named in messages.
     pub(super) fn place(&self, origin: Origin) -> String {
         match origin {
             Origin::Line(line) => format!("{}:{line}", self.name),
@@ -85,7 +85,7 @@ impl Document {
 /// The value of a `--set`, if it is TOML.
 ///
 /// # Errors
-/// What the parser says.
+/// The message of the parser.
 pub(super) fn parse_value(text: &str, option: usize) -> std::result::Result<Node, String> {
     let value = DeValue::parse(text).map_err(|error| error.message().to_owned())?;
     let origin = Origin::Option(option);
@@ -148,7 +148,7 @@ fn plain(value: DeValue<'_>, origin: &dyn Fn(usize) -> Origin) -> Value {
     }
 }
 
-/// Where each line begins, in bytes.
+/// The start of each line, in bytes.
 fn line_starts(text: &str) -> Vec<usize> {
     let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
     std::iter::once(0)
@@ -162,7 +162,7 @@ fn line_of(lines: &[usize], byte: usize) -> usize {
 }
 
 fn not_toml(name: &str, text: &str, lines: &[usize], error: &Error) -> Diagnostic {
-    // An error at the very end belongs to the last line that says something.
+    // An error at the very end belongs to the last line with text.
     let end = text.trim_end().len();
     let byte = error.span().map_or(0, |span| span.start).min(end);
     let line = line_of(lines, byte);
@@ -198,7 +198,7 @@ fn not_toml(name: &str, text: &str, lines: &[usize], error: &Error) -> Diagnosti
     Diagnostic::input(place, format!("not TOML: {message}"), remedy)
 }
 
-/// A table or a key that stands twice: TOML knows no second of the same name.
+/// The error for a table or a key that appears twice, which TOML does not allow.
 fn twice(place: String, text: &str, line: usize, written: &str, key: &str) -> Diagnostic {
     if !written.starts_with('[') {
         let problem = format!("the key {key} is given twice in its table");

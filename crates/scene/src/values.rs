@@ -1,4 +1,4 @@
-//! What the values of keys are read as and shown as: numbers, vectors, true and false, words.
+//! How the values of keys are read and shown: numbers, vectors, true and false, words.
 
 use super::direction::{direction, rotation};
 use super::field::{Field, remedy};
@@ -7,7 +7,7 @@ use super::schema::{Key, Kind, Unless, Word};
 use super::table::Read;
 use dem_io::diagnostic::Result;
 
-/// Infinite where the key is left out and there is no value.
+/// Infinite if the key is left out and has no default.
 impl Read for f64 {
     fn given(field: &Field<'_>, key: &Key) -> Result<Self> {
         if let (Kind::Auto(dimension), true) = (&key.kind, field.is_word()) {
@@ -76,7 +76,7 @@ impl Read for bool {
     }
 }
 
-/// 0 where the key is left out and there is no value.
+/// 0 if the key is left out and has no default.
 impl Read for u64 {
     fn given(field: &Field<'_>, key: &Key) -> Result<Self> {
         let number = match key.kind {
@@ -106,7 +106,7 @@ impl Read for u64 {
     }
 }
 
-/// Of a key whose largest number 32 bits hold.
+/// For a key whose largest number fits into 32 bits.
 impl Read for u32 {
     fn given(field: &Field<'_>, key: &Key) -> Result<Self> {
         u64::given(field, key).map(|number| number as Self)
@@ -142,7 +142,7 @@ impl<T: Word> Read for T {
     }
 }
 
-/// None where the key is left out, or is "auto".
+/// None if the key is left out, or is "auto".
 impl<T: Read> Read for Option<T> {
     fn given(field: &Field<'_>, key: &Key) -> Result<Self> {
         match key.kind {

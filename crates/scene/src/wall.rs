@@ -87,14 +87,14 @@ pub struct Wall {
     pub shape: WallShape,
     /// `material`: a name of `[materials]`.
     pub material: String,
-    /// `rotation = { axis, angle }`: turned about the pivot, as a rotation vector, rad. Length 3.
+    /// `rotation = { axis, angle }`: rotation about the pivot, as a rotation vector, rad. Length 3.
     pub rotation_rad: [f64; 3],
     /// `pivot`, m; the origin unless given. Length 3.
     pub pivot_m: [f64; 3],
-    /// How it moves; fixed unless given.
+    /// Its motion; fixed unless given.
     pub motion: WallMotion,
-    /// `surface_velocity`: that of a belt, which the shape does not follow, m/s; 0 unless given.
-    /// Length 3.
+    /// `surface_velocity`: velocity of a belt's surface, which the shape does not follow, m/s; 0
+    /// unless given. Length 3.
     pub surface_velocity_m_s: [f64; 3],
 }
 

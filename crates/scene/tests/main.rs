@@ -1,4 +1,4 @@
-//! All that can be tested of this crate from outside.
+//! Tests of this crate through its public interface.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod scene;

@@ -1,4 +1,4 @@
-//! The reader of scenes: what it takes, what it refuses and in which words.
+//! The reader of scenes: valid scenes, refused scenes and the messages.
 
 mod corpus;
 mod feed;

@@ -1,4 +1,4 @@
-//! Studies: what they may say, what is refused, and scenes written with their values.
+//! Studies: valid contents, refusals, and scenes written with their values.
 
 use std::path::Path;
 
@@ -349,7 +349,7 @@ fn a_scene_is_written_with_its_values() {
             .iter()
             .flat_map(|axis| &axis.values.last().unwrap().settings);
         let settings: Vec<_> = study.fixed.iter().chain(last).collect();
-        // Equality with the scene that was asked for is seen to inside.
+        // Equality with the requested scene is checked inside.
         rewritten(&study, SCENE, &settings, Path::new("new.toml"))
             .unwrap_or_else(|e| panic!("{rest}: {e}"))
     };
@@ -400,7 +400,7 @@ fn a_scene_is_written_with_its_values() {
     );
 }
 
-/// An angle of repose is in degrees, in a study too; contacts have references of their own kinds.
+/// An angle of repose is in degrees, also in a study; contacts have their own types of references.
 #[test]
 fn references_are_in_the_unit_of_the_measure() {
     let scene = format!(

@@ -1,4 +1,5 @@
-//! The tables of doc/laboratory.md, made by running what they are of. From the folder of the clone:
+//! The tables of doc/laboratory.md, made by running the tests and scenes concerned. From the folder
+//! of the clone:
 //!
 //! ```sh
 //! cargo run --release -p dem-run --example laboratory_tables -- bending            # 16 minutes
@@ -7,11 +8,11 @@
 //! cargo run --release -p dem-run --example laboratory_tables -- drops
 //! ```
 //!
-//! Builds both programs, packs the bodies and runs the scenes as they stand, with the `--set`s that
-//! are printed on standard error, one after another on one
-//! thread. Times are those of one core that does nothing else. A number after the word says over
-//! how many packings (4 unless given). Results lie in
-//! `target/laboratory-tables`; `--resume` at the end keeps those that are whole.
+//! Builds both programs, packs the bodies and runs the scenes unchanged except for the `--set`s
+//! printed on standard error, one after another on one thread. Times are those of one core that
+//! does nothing else. A number after the word gives the number of packings (4 unless given).
+//! Results are written to `target/laboratory-tables`; `--resume` at the end keeps the complete
+//! ones.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -27,30 +28,28 @@ use dem_io::units::significant;
 use dem_scene::study::read_study;
 use serde_json::Value;
 
-/// Packings over which a mean and its scatter are taken, unless a number is given: `--seed 1` to
-/// `--seed 4`.
+/// Number of packings for a mean and its scatter, unless given: `--seed 1` to `--seed 4`.
 const PACKINGS: u32 = 4;
-/// The packing of what is looked at in one only.
+/// The packing used where a single one is enough.
 const FIRST: u32 = 1;
 const LARGER_SPHERES: &str = "data/studies/larger-spheres.toml";
-/// What the samples fall with, m/s, in the scenes of drops.
+/// Impact speed of the samples, m/s, in the scenes of drops.
 const IMPACT_SPEED_M_S: f64 = 4.0;
 const GRAVITY_M_S2: f64 = 9.81;
 const NO_RATE_CHECK: &str = "test.rate_check=false";
-/// Hardly any, as they take time.
+/// Hardly any pictures, as they take time.
 const PICTURES: &str = "output.pictures=\"1 s\"";
 
 type Failed = Box<dyn Error>;
 
-/// A table as it stands in the page: the words that make it, its head, and the first cell of each
-/// row.
+/// A table of the page: its command word, its header, and the first cell of each row.
 struct Table {
     words: String,
     head: &'static [&'static str],
     first_cells: Vec<String>,
 }
 
-/// The four-point test, a row for each packing. The rate is checked on the first only, as that
+/// The four-point test, a row for each packing. The rate is checked for the first only, as that
 /// takes half as long again.
 const BENDING_HEAD: [&str; 8] = [
     "packing",
@@ -107,11 +106,11 @@ const INCLINED_HEAD: [&str; 5] = [
     "25 degrees, upright",
 ];
 
-/// How the strength of the bonds depends on the rate. The scene as it stands is run with all
+/// Dependence of the strength of the bonds on the rate. The unchanged scene is run with all
 /// packings, the others with the first.
 struct Strength {
     first_cell: &'static str,
-    /// For names of folders.
+    /// Name for folders.
     name: &'static str,
     sets: &'static [&'static str],
     all_packings: bool,
@@ -173,7 +172,7 @@ fn main() -> Result<(), Failed> {
 
 const USAGE: &str = "write bending, disc-and-bar, larger-spheres or drops, then a number of packings or nothing, then --resume or nothing";
 
-/// The word of a table, and the number of packings where it is not the usual one.
+/// The word of a table, and the number of packings if it is not the default.
 fn words(word: &str, packings: u32) -> String {
     if packings == PACKINGS {
         word.to_owned()
@@ -196,7 +195,7 @@ fn bending_table(packings: u32) -> Table {
     }
 }
 
-/// What is set in the four-point test of a packing.
+/// Settings of the four-point test of a packing.
 fn bending_sets(seed: u32) -> &'static [&'static str] {
     if seed == FIRST { &[] } else { &[NO_RATE_CHECK] }
 }
@@ -302,7 +301,7 @@ fn larger_spheres_table() -> Result<Table, Failed> {
     })
 }
 
-/// The study as it stands, but for the file of the first body.
+/// The unchanged study, except for the file of the first body.
 fn larger_spheres(bench: &Bench, _: u32) -> Result<(), Failed> {
     let body = bench.pack("sample", "bending-sample", "2mm..3mm", FIRST)?;
     let data = root().join("data");
@@ -415,7 +414,7 @@ fn drops(bench: &Bench, packings: u32) -> Result<(), Failed> {
     Ok(())
 }
 
-/// How high the scene's own body rises again.
+/// Rebound height of the scene's own body.
 fn flat_rows(bench: &Bench) -> Result<Vec<Vec<String>>, Failed> {
     let height_m = IMPACT_SPEED_M_S.powi(2) / (2.0 * GRAVITY_M_S2);
     let mut rows = Vec::new();
@@ -431,8 +430,8 @@ fn flat_rows(bench: &Bench) -> Result<Vec<Vec<String>>, Failed> {
     Ok(rows)
 }
 
-/// Of each fall the broken bonds, mean and scatter, and the share of the largest piece, smallest to
-/// largest.
+/// For each fall, the broken bonds, mean and scatter, and the fraction of the largest piece,
+/// smallest to largest.
 fn inclined_rows(bench: &Bench, bodies: &[PathBuf]) -> Result<Vec<Vec<String>>, Failed> {
     let mut rows = Vec::new();
     for strength in STRENGTHS {
@@ -477,7 +476,7 @@ impl Table {
         ]
     }
 
-    /// The cells of a row, its first one left out, are in the order of the head.
+    /// The cells of a row after the first are in the order of the header.
     fn print(&self, rows: &[Vec<String>]) {
         println!("{}", self.comment());
         for line in self.head_lines() {
@@ -489,7 +488,7 @@ impl Table {
     }
 }
 
-/// The two programs, and where their results lie.
+/// The two programs, and the folder of their results.
 struct Bench {
     dem_pack: PathBuf,
     dem_run: PathBuf,
@@ -528,7 +527,7 @@ impl Bench {
         })
     }
 
-    /// A packing of a shape, as the scenes' comments say: overlap 0.296, touching spheres bonded.
+    /// A packing of a shape as in the scenes' comments: overlap 0.296, touching spheres bonded.
     fn pack(&self, name: &str, shape: &str, sizes: &str, seed: u32) -> Result<PathBuf, Failed> {
         let body = self.results.join(format!("{name}-{seed}.vtp"));
         let mut command = Command::new(&self.dem_pack);
@@ -568,7 +567,7 @@ impl Bench {
         Ok(serde_json::from_slice(&std::fs::read(summary)?)?)
     }
 
-    /// Says a command and runs it in the folder of the clone; its standard output.
+    /// Prints a command and runs it in the folder of the clone. Returns its standard output.
     fn output(&self, command: &mut Command) -> Result<Vec<u8>, Failed> {
         let words: Vec<_> = command.get_args().map(OsStr::to_string_lossy).collect();
         let program = Path::new(command.get_program())
@@ -599,8 +598,8 @@ fn scattered(values: &[f64]) -> Scattered {
     }
 }
 
-/// Mean and scatter of the values that there are, and of how many packings they are if that is not
-/// all. Empty: none has one.
+/// Mean and scatter of the available values, and their number if some are missing. Empty if there
+/// are none.
 fn in_cell(values: &[f64], digits: usize, unit: &str) -> String {
     let there: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     if there.is_empty() {
@@ -622,7 +621,7 @@ fn in_cell(values: &[f64], digits: usize, unit: &str) -> String {
     cell
 }
 
-/// The figure of a test with this name, wherever it stands.
+/// The figure of a test with this name, in any list.
 fn figure(run: &Value, name: &str) -> f64 {
     ["results", "calibration"]
         .iter()
@@ -682,7 +681,7 @@ mod tests {
 
     use super::*;
 
-    /// The tables with the number of packings that stands in the page.
+    /// The tables with the numbers of packings given in the page.
     fn tables(packings: &dyn Fn(&str) -> u32) -> [Table; 5] {
         [
             bending_table(packings("bending")),
@@ -701,7 +700,7 @@ mod tests {
         number.parse().unwrap_or(PACKINGS)
     }
 
-    /// The lines of the page from each comment of a command to the end of its table.
+    /// The lines of the page from each comment with a command to the end of its table.
     fn tables_of_page(page: &str) -> Vec<Vec<&str>> {
         let lines: Vec<&str> = page.lines().collect();
         let starts = lines
@@ -716,8 +715,8 @@ mod tests {
             .collect()
     }
 
-    /// Commands, heads and first cells of the page are those that the program prints, and every row
-    /// has all of its cells.
+    /// Commands, headers and first cells of the page are those that the program prints, and every
+    /// row has all of its cells.
     #[test]
     fn the_page_has_the_tables_of_this_program() {
         let page = std::fs::read_to_string(root().join("doc/laboratory.md")).unwrap();
@@ -739,7 +738,7 @@ mod tests {
         }
     }
 
-    /// What the rows set is there in the scenes as they stand.
+    /// The keys set by the rows exist in the scenes.
     #[test]
     fn scenes_take_what_rows_set() {
         let mut asked: Vec<(&str, Vec<String>)> = Vec::new();

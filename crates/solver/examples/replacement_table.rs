@@ -1,12 +1,11 @@
-//! The table of doc/replacement.md: the chute in three ways, with several seeds. From the folder of
-//! the clone:
+//! The table of doc/replacement.md: the chute run in three ways, with several seeds. From the
+//! folder of the clone:
 //!
 //! ```sh
 //! cargo build --release && cargo run --release -p dem-run --example replacement_table
 //! ```
 //!
-//! Takes a quarter of an hour. One thread and hardly any pictures, so that it is the steps that are
-//! compared.
+//! Takes a quarter of an hour. One thread and hardly any pictures, so that the steps are compared.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -29,7 +28,7 @@ const SEEDS: usize = 4;
 
 type Failed = Box<dyn Error>;
 
-/// What is taken down of a run.
+/// The recorded data of a run.
 #[derive(Default)]
 struct Run {
     wall_s: f64,
@@ -46,7 +45,7 @@ fn main() -> Result<(), Failed> {
     let folder = std::env::temp_dir().join("replacement-table");
     std::fs::create_dir_all(&folder)?;
     let mut runs: [Vec<Run>; 3] = Default::default();
-    // In turn, so that a machine that becomes slower is so for all.
+    // In turn, so that a slowdown of the machine affects all equally.
     for seed in 0..SEEDS {
         for ((name, _), runs) in WAYS.iter().zip(&mut runs) {
             runs.push(run(
@@ -134,7 +133,7 @@ fn all_masses_kg(runs: &[Run]) -> Vec<f64> {
         .collect()
 }
 
-/// Least to largest distance of pairs of runs, by number and by mass.
+/// Smallest to largest distance of pairs of runs, by number and by mass.
 fn pairs(a: &[Run], b: &[Run], counts: impl Fn(usize, usize) -> bool) -> [String; 2] {
     [|_| 1.0, |kg| kg].map(|weight: fn(f64) -> f64| {
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);

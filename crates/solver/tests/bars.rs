@@ -1,4 +1,4 @@
-//! Bodies that the tests run, and what they do with them.
+//! Bodies for the tests, and operations on them.
 
 use dem_run::physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia, reduced};
 use dem_run::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
@@ -20,7 +20,7 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
 };
 
-/// All bond models, with the names of the reference values, which know no elastic solid bond.
+/// All bond models, with the names in the reference values, which have no elastic solid bond.
 pub(crate) const MODELS: [(BondModel, &str); 5] = [
     (BondModel::Parallel { kappa: None }, "PBM"),
     (BondModel::EulerBernoulli, "EBBM"),
@@ -32,14 +32,14 @@ pub(crate) const MODELS: [(BondModel, &str); 5] = [
 /// Largest stable step of the bar of Timoshenko bonds, s.
 pub(crate) const BAR_LIMIT_S: f64 = 6.536982689455117e-5;
 
-/// How bonds are damped.
+/// Damping of bonds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum BondDamping {
     /// Chen et al. 2022, eqs. 9 and 10.
     Chen(f64),
     /// The same with the stiffness of each mode.
     ChenByMode(f64),
-    /// Platzer 2022: this fraction of 2 sqrt(k_n m_red) on the velocity, and this factor on the
+    /// Platzer 2022: this fraction of 2 sqrt(k_n m_red) for the velocity, and this factor for the
     /// moments.
     Platzer(f64, f64),
 }
@@ -60,17 +60,17 @@ impl BondDamping {
     }
 }
 
-/// What a body is made of.
+/// Properties of a body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bonding {
-    /// Radius of a bond over that of its smaller end.
+    /// Radius of a bond over that of the smaller of its two spheres.
     pub(crate) radius_factor: f64,
     pub(crate) model: BondModel,
     pub(crate) young_modulus_pa: f64,
     pub(crate) rule: BondRule,
 }
 
-/// Adds bonds between these pairs, in rest as the particles stand, that follow the next rule.
+/// Adds bonds between these pairs, at rest in the present positions, that follow the next rule.
 pub(crate) fn add_bonds(
     bonds: &mut Bonds,
     particles: &Particles,
@@ -101,7 +101,7 @@ pub(crate) fn add_bonds(
     }
 }
 
-/// Particles with bonds of one kind.
+/// Particles with bonds of one type.
 pub(crate) fn body(
     particles: Particles,
     pairs: &[[u32; 2]],
@@ -122,7 +122,7 @@ pub(crate) fn spheres(count: u32) -> (Particles, Vec<[u32; 2]>) {
     (particles, (0..count - 1).map(|i| [i, i + 1]).collect())
 }
 
-/// Steel bonds as thick as the spheres.
+/// Steel bonds with the radius of the spheres.
 pub(crate) fn steel(model: BondModel, rule: BondRule) -> Bonding {
     Bonding {
         radius_factor: 1.0,
@@ -191,13 +191,13 @@ pub(crate) fn damp(state: &mut State, damping: BondDamping) {
     state.scratch.bond_resistance = vec![Wrench::default(); p.len()];
 }
 
-/// Damps all particles with this share of what acts on them.
+/// Damps all particles with this fraction of the force on them.
 pub(crate) fn damp_particles(state: &mut State, gamma: f64) {
     state.model.particle_damping = gamma;
     state.scratch.particle_resistance = vec![Wrench::default(); state.particles.len()];
 }
 
-/// Numbers between -1 and 1 that look random, the same on every machine.
+/// Pseudo-random numbers between -1 and 1, the same on every machine.
 pub(crate) fn scattered() -> impl FnMut() -> f64 {
     let mut seed = 1_u64;
     move || {
@@ -208,7 +208,7 @@ pub(crate) fn scattered() -> impl FnMut() -> f64 {
     }
 }
 
-/// Gives every particle a velocity and spin of up to this size, and opens the ledger anew.
+/// Gives every particle a velocity and spin of up to this size, and reopens the ledger.
 pub(crate) fn shake(state: &mut State, velocity_m_s: f64) {
     let mut next = scattered();
     let p = &mut state.particles;
@@ -219,7 +219,7 @@ pub(crate) fn shake(state: &mut State, velocity_m_s: f64) {
     reopen(state);
 }
 
-/// The bar tumbles about all axes and vibrates in its slow modes, as the second case of the
+/// The bar tumbles about all axes and vibrates in its slow modes, as in the second case of the
 /// reference values' drift: 27.2 MJ, of which the bonds take up to about 80 kJ.
 pub(crate) fn tumble(state: &mut State) {
     let spin = Vector3::new(20.0, 30.0, 103.5);
@@ -232,7 +232,7 @@ pub(crate) fn tumble(state: &mut State) {
     {
         let from_centre = pose.place() - Vector3::new(centre, 0.0, 0.0);
         let x = from_centre.x / half;
-        // The slowest bending mode of a free bar, nearly: its deflection and its slope.
+        // Approximately the slowest bending mode of a free bar: its deflection and its slope.
         let bend = 9.0 * (x * x - 0.4);
         let slope = 18.0 * x / half;
         let stretch = 1.5 * x;
@@ -244,12 +244,12 @@ pub(crate) fn tumble(state: &mut State) {
     reopen(state);
 }
 
-/// Opens the ledger anew.
+/// Reopens the ledger.
 pub(crate) fn reopen(state: &mut State) {
     state.ledger = opened(state);
 }
 
-/// A step, with the ledger in its middle.
+/// A step, with a balance of the ledger in its middle.
 pub(crate) fn step_and_balance(state: &mut State) -> Balance {
     interact(state);
     let balance = balance(state);
@@ -260,7 +260,7 @@ pub(crate) fn step_and_balance(state: &mut State) -> Balance {
 /// The largest errors of a run.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Errors {
-    /// J.
+    /// Energy error, J.
     pub(crate) energy_j: f64,
     pub(crate) energy: f64,
     pub(crate) momentum: f64,
@@ -271,7 +271,7 @@ pub(crate) struct Errors {
     pub(crate) kinetic_j: f64,
 }
 
-/// Runs this many steps and looks at the ledger in every one of `every`.
+/// Runs this many steps and evaluates the ledger every `every` steps.
 pub(crate) fn run(state: &mut State, steps: u64, every: u64) -> Errors {
     let mut errors = Errors::default();
     for at in 1..=steps {
@@ -290,20 +290,19 @@ pub(crate) fn run(state: &mut State, steps: u64, every: u64) -> Errors {
     errors
 }
 
-/// Does something where Rayon has this many threads. With one, nothing is handed over, which small
-/// bodies are grateful for.
+/// Runs `work` in a Rayon pool of this many threads. With one, nothing is handed over, which is
+/// faster for small bodies.
 pub(crate) fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.unwrap().install(work)
 }
 
-/// Order of a method whose errors at steps each half of the one before are these: one number for
-/// each halving.
+/// Order of convergence from errors at successively halved steps: one number for each halving.
 pub(crate) fn orders(errors: &[f64]) -> Vec<f64> {
     errors.windows(2).map(|e| (e[0] / e[1]).log2()).collect()
 }
 
-/// Particles turned about the origin, with their velocities.
+/// Particles rotated about the origin, with their velocities.
 pub(crate) fn turned(particles: &Particles, by: UnitQuaternion<f64>) -> Particles {
     let mut particles = particles.clone();
     for pose in &mut particles.poses {

@@ -1,4 +1,4 @@
-//! Bond laws against closed forms, reference values and their own energy.
+//! Bond laws compared with closed forms, reference values and their own energy.
 
 mod damping;
 mod failure;

@@ -1,5 +1,5 @@
-//! Rigid clumps in the solver: that they move as rigid bodies do, that bonded clusters take their
-//! places and nothing is lost, and that bodies come and go as the scene says.
+//! Rigid clumps in the solver: rigid-body motion, conservation when bonded clusters replace them,
+//! and bodies that are fed and removed as defined in the scene.
 
 mod again;
 mod books;
@@ -32,18 +32,18 @@ use nalgebra::Vector3;
 use crate::helpers::scene;
 use dem_scene::read_bodies;
 
-/// The head of a scene: one material, which meets itself in this way, and bonds.
+/// The head of a scene: one material with this contact, and bonds.
 pub(crate) const HEAD: &str = "version = 1
 run.end_time = 1
 materials.stuff = { density = 2500, young_modulus = 1e8, poisson_ratio = 0.25 }
 bonds.stiff = { young_modulus = 1e9, poisson_ratio = 0.25 }
 ";
 
-/// How the material meets itself.
+/// The contact of the material with itself.
 pub(crate) const MEETS: &str = "contacts.stuff-stuff = { restitution = 0.5, friction = 0.5 }\n";
 
-/// A body of a block of spheres whose neighbours in it are bonded. `radius_m`: of the sphere there,
-/// or none.
+/// A body of a block of spheres in which neighbours are bonded. `radius_m`: radius of the sphere at
+/// a position, or none.
 pub(crate) fn block(
     name: &str,
     counts: [i32; 3],
@@ -77,7 +77,7 @@ pub(crate) fn block(
     text
 }
 
-/// A body of 11 spheres of 2 mm without any symmetry, whose neighbours are bonded.
+/// A body of 11 spheres of 2 mm without any symmetry, with bonded neighbours.
 pub(crate) fn lump(name: &str, more: &str) -> String {
     let radius = |[x, y, z]: [i32; 3]| {
         let is_there = [x, y, z] != [2, 1, 1];
@@ -95,7 +95,7 @@ pub(crate) fn planned(text: &str) -> Plan {
     try_plan(text).unwrap()
 }
 
-/// A step, after which the bodies are counted anew.
+/// A step, after which the bodies are listed again.
 pub(crate) fn go<'a>(state: &'a mut State, bodies: &mut Vec<PlacedBody>) -> &'a Events {
     let events = step(state);
     for by in &events.renumberings {
@@ -104,12 +104,12 @@ pub(crate) fn go<'a>(state: &'a mut State, bodies: &mut Vec<PlacedBody>) -> &'a 
     events
 }
 
-/// A step of which only what happened is asked.
+/// A step of which only the events are returned.
 pub(crate) fn happens(state: &mut State) -> Vec<PopulationEvent> {
     step(state).population.clone()
 }
 
-/// Mass, centre of mass, momentum, angular momentum about a place and kinetic energy of some
+/// Mass, centre of mass, momentum, angular momentum about a point and kinetic energy of some
 /// particles.
 pub(crate) struct Whole {
     pub(crate) mass_kg: f64,

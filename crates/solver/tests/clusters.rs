@@ -1,4 +1,4 @@
-//! Clusters against a search from scratch; fragments against the whole.
+//! Clusters compared with a search from scratch; fragments compared with the total.
 
 mod breaking;
 mod fragments;

@@ -1,5 +1,4 @@
-//! Laws of contact against an independent implementation, closed forms, and what every law must
-//! keep.
+//! Contact laws compared with an independent implementation and closed forms, and their invariants.
 
 mod books;
 mod documented;
@@ -15,7 +14,7 @@ mod world;
 
 use serde::Deserialize;
 
-/// What an independent implementation found, and what can be written down.
+/// Results of an independent implementation, and analytical values.
 #[derive(Deserialize)]
 struct Reference {
     hertz_elastic: Vec<Elastic>,

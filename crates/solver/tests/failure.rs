@@ -1,4 +1,4 @@
-//! Bonds break where they should, when they should, and leave nothing behind.
+//! Bonds break at the right place and time, and leave nothing behind.
 
 mod after;
 mod bodies;

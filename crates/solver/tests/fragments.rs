@@ -1,4 +1,4 @@
-//! What a run writes about fragments, and fragments taken out of it as bodies.
+//! Output of a run about fragments, and fragments extracted from it as bodies.
 
 mod bodies;
 mod files;
@@ -23,10 +23,10 @@ use tempfile::TempDir;
 
 use dem_scene::read_bodies;
 
-/// Particles of the rod.
+/// Number of particles of the rod.
 pub(crate) const PARTICLES: usize = 60;
 
-/// A rod that spins until it bursts, and a pair that flies by and holds. Strengths scatter.
+/// A rod that spins until it bursts, and a pair that flies past and holds. Strengths scatter.
 pub(crate) fn bursting() -> Scene {
     let mut particles = String::new();
     let mut bonds = String::new();
@@ -70,7 +70,7 @@ pub(crate) fn bursting() -> Scene {
     scene_from_text(&text, "bursting.toml", &[]).unwrap()
 }
 
-/// A plan whose bodies are searched for pieces in every step in which a bond breaks.
+/// A plan whose bodies are searched for fragments in every step in which a bond breaks.
 pub(crate) fn planned(scene: &Scene) -> Plan {
     let mut plan = plan(scene, read_bodies(scene).unwrap(), 1, false).unwrap();
     let state = &mut plan.state;
@@ -79,7 +79,7 @@ pub(crate) fn planned(scene: &Scene) -> Plan {
     plan
 }
 
-/// Runs a plan into a folder; when it has reached `stop_at` of its end time, it is interrupted.
+/// Runs a plan into a folder; it is interrupted at `stop_at` of its end time.
 pub(crate) fn run_into(
     folder: &ResultsFolder,
     plan: Plan,
@@ -102,7 +102,7 @@ pub(crate) fn run_into(
     })
 }
 
-/// The bursting rod in a folder `out` that vanishes after the test.
+/// The bursting rod in a folder `out` that is removed after the test.
 pub(crate) fn burst() -> (TempDir, ResultsFolder, Summary) {
     let parent = tempfile::tempdir().unwrap();
     let folder = ResultsFolder::create(&parent.path().join("out"), Existing::Refuse).unwrap();
@@ -111,7 +111,7 @@ pub(crate) fn burst() -> (TempDir, ResultsFolder, Summary) {
     (parent, folder, summary)
 }
 
-/// Rows of a table as texts, checked to be as long as its header, which is given back first.
+/// The header of a table, and its rows as texts, checked to have the same length.
 pub(crate) fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
     let text = fs::read_to_string(path).unwrap();
     let words = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<String>>();

@@ -1,15 +1,15 @@
-//! What several subjects need: scenes of texts, their bodies, and random numbers.
+//! Helpers for several subjects: scenes from texts, their bodies, and random numbers.
 
 use dem_scene::Scene;
 use dem_scene::scene_from_text;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// The scene of a text that can be read.
+/// The scene of a valid text.
 pub(crate) fn scene(text: &str) -> Scene {
     scene_from_text(text, "test.toml", &[]).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// Numbers that look random (SplitMix64).
+/// Pseudo-random numbers (SplitMix64).
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {

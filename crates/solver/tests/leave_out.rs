@@ -1,4 +1,4 @@
-//! What a scene does not need does nothing and takes no memory: counted, not timed.
+//! Features that a scene does not need cost neither work nor memory: counted, not timed.
 
 mod one_feature;
 mod scenes;
@@ -12,7 +12,7 @@ use dem_run::step::{number_of, stages, step};
 use dem_scene::scene_from_text;
 use dem_scene::{BodySource, Scene};
 
-/// A scene planned, its bodies read with `read`.
+/// A planned scene, with its bodies read by `read`.
 fn planned_with(scene: &Scene, read: impl Fn(&str) -> Option<Body>) -> Result<Plan> {
     let mut bodies = BTreeMap::new();
     for (name, entry) in &scene.bodies {
@@ -34,14 +34,14 @@ fn planned(text: &str) -> (Scene, Plan) {
     (scene, plan)
 }
 
-/// Steps as a run does.
+/// Steps as in a run.
 fn go(state: &mut State, steps: u64) {
     for _ in 0..steps {
         step(state);
     }
 }
 
-/// Stages that have done something.
+/// Stages that have been active.
 fn busy(state: &State) -> Vec<&'static str> {
     let all = stages().iter();
     let busy = all.filter(|stage| state.scratch.clock.done(number_of(stage)) > 0);

@@ -1,4 +1,4 @@
-//! Measures: of bodies as a whole, be they clumps or clusters; of contacts; of heaps.
+//! Measures: of entire bodies, clumps or clusters; of contacts; of heaps.
 
 mod contacts;
 mod heaps;
@@ -25,7 +25,7 @@ pub(crate) fn try_plan(scene: &Scene) -> Result<Plan> {
     plan(scene, read_bodies(scene).unwrap(), 1, true)
 }
 
-/// A scene that is stepped, and its measures.
+/// A scene under simulation, and its measures.
 pub(crate) struct Measured {
     pub(crate) state: State,
     pub(crate) probes: Vec<Probe>,
@@ -47,12 +47,12 @@ impl Measured {
         }
     }
 
-    /// First half of a step, after which everything can be read.
+    /// First half of a step, after which all values can be read.
     pub(crate) fn interact(&mut self) {
         interact(&mut self.state);
     }
 
-    /// What comes and goes. Whether anything did.
+    /// Feeding, removal and replacement. Returns whether anything changed.
     pub(crate) fn replace(&mut self) -> bool {
         exchange(&mut self.state);
         if self.state.scratch.events.population.is_empty() {
@@ -79,7 +79,7 @@ impl Measured {
         names.zip(values).collect()
     }
 
-    /// Steps until this time, s, and reads there alone: the results by name.
+    /// Steps until this time, s, and reads only there. Returns the results by name.
     pub(crate) fn run(&mut self, end_s: f64) -> BTreeMap<String, f64> {
         loop {
             self.interact();

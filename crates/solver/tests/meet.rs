@@ -1,4 +1,4 @@
-//! Particles that meet: contacts in the moving solver.
+//! Contacts between particles in the moving solver.
 
 mod apart;
 mod clouds;

@@ -1,4 +1,4 @@
-//! The names that doc/notation.md gives are those of the code.
+//! The names in doc/notation.md are those of the code.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What of a state is to be seen, and from where.
+//! The visible parts of a state, and the view.
 
 use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
 use dem_run::output::pictures::View;
@@ -7,7 +7,7 @@ use dem_run::state::bonds::Bonds;
 use dem_run::state::particles::Particles;
 use dem_run::state::walls::Wall;
 
-/// Balls of 10 mm at these places, m, without contacts and clusters.
+/// Balls of 10 mm at these positions, m, without contacts and clusters.
 fn state(places: &[[f64; 3]]) -> State {
     let mut particles = Particles::default();
     for place in places {
@@ -59,7 +59,7 @@ fn the_view_is_that_of_the_direction_whatever_its_length() {
     let front = of(Some([0.0, -1.0, 0.0]));
     assert!(front == of(Some([0.0, -7.0, 0.0])));
     assert!(front != of(None) && front != of(Some([0.0, 1.0, 0.0])));
-    // From straight above, where nothing is up.
+    // From straight above, where no direction is up.
     assert!(of(Some([0.0, 0.0, 1.0])) != front);
 }
 

@@ -1,4 +1,5 @@
-//! dem-run as a person meets it: scenes and options in; results, messages and exit codes out.
+//! dem-run from the user's side: scenes and options as input; results, messages and exit codes as
+//! output.
 
 mod adaptive;
 mod bad_bodies;
@@ -44,7 +45,7 @@ fn dem_run() -> Command {
     Command::new(env!("CARGO_BIN_EXE_dem-run"))
 }
 
-/// Packs a shape as dem-pack does, in this process.
+/// Packs a shape like dem-pack, in this process.
 fn dem_pack(stl: &Path, options: &[&str], output: &Path) {
     let mut arguments = vec![OsStr::new("dem-pack"), stl.as_os_str()];
     arguments.extend(options.iter().map(OsStr::new));
@@ -81,7 +82,7 @@ fn good(name: &str) -> PathBuf {
     root().join("tests/scenes/good").join(name)
 }
 
-/// A folder that vanishes after the test.
+/// A folder that is removed after the test.
 struct Bench {
     folder: TempDir,
 }
@@ -102,12 +103,12 @@ impl Bench {
         self.path(name)
     }
 
-    /// Names of what is in the folder, hidden ones too.
+    /// Names of the entries of the folder, including hidden ones.
     fn files(&self) -> Vec<String> {
         names_in(self.folder.path())
     }
 
-    /// dem-run SCENE OPTIONS in the folder.
+    /// The command dem-run SCENE OPTIONS in the folder.
     fn command(&self, scene: &Path, options: &[&str]) -> Command {
         let mut command = dem_run();
         command
@@ -117,12 +118,12 @@ impl Bench {
         command
     }
 
-    /// dem-run SCENE OPTIONS in the folder, to its end.
+    /// Runs dem-run SCENE OPTIONS in the folder to its end.
     fn run(&self, scene: &Path, options: &[&str]) -> Output {
         self.command(scene, options).output().unwrap()
     }
 
-    /// Runs a scene that can be run; what it says.
+    /// Runs a valid scene. Returns its messages.
     fn good(&self, scene: &Path, options: &[&str]) -> String {
         let output = self.run(scene, options);
         let said = String::from_utf8_lossy(&output.stderr);
@@ -131,7 +132,7 @@ impl Bench {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// Runs a scene that fails with this exit code; its one message.
+    /// Runs a scene that fails with this exit code. Returns its only message.
     fn bad(&self, scene: &Path, options: &[&str], code: i32) -> String {
         let (said, found) = refused(&self.run(scene, options));
         assert_eq!(found, code, "{said}");
@@ -139,7 +140,8 @@ impl Bench {
     }
 }
 
-/// All files of a results folder by their names, but for what time and place put into the summary.
+/// All files of a results folder by their names, without the parts of the summary that depend on
+/// time and place.
 fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for part in ["", "frames", "pictures", "plots"] {
@@ -148,7 +150,7 @@ fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         }
         for entry in fs::read_dir(folder.join(part)).unwrap() {
             let path = entry.unwrap().path();
-            // It holds the summary, run times and all.
+            // It contains the summary, including run times.
             if path.is_file() && !path.ends_with(".ended.json") {
                 let name = path.strip_prefix(folder).unwrap().display().to_string();
                 found.insert(name, fs::read(&path).unwrap());
@@ -173,7 +175,7 @@ fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// Asserts that two results folders hold the same bits.
+/// Asserts that two results folders contain the same bits.
 fn assert_same(one: &Path, other: &Path) {
     let (one, other) = (results(one), results(other));
     let names = |of: &BTreeMap<String, Vec<u8>>| of.keys().cloned().collect::<Vec<_>>();
@@ -205,7 +207,7 @@ fn numbers(path: &Path, column: &str) -> Vec<f64> {
     rows.iter().map(|row| row[at].parse().unwrap()).collect()
 }
 
-/// A row of particles, each bonded to the next but for one gap.
+/// A row of particles, each bonded to the next except for one gap.
 fn row(particles: usize) -> Body {
     let bonds: Vec<[u32; 2]> = (1..particles as u32)
         .filter(|b| *b as usize != particles / 2)
@@ -238,15 +240,14 @@ fn piped(arguments: &[&str], input: &[u8]) -> Output {
     dem_testing::piped(dem_run().args(arguments), input)
 }
 
-/// What is said on standard error besides the warnings at the start of a run, which may be doubtful
-/// and
-/// still go well: those are held in `verdict.rs`.
+/// Standard error without the warnings at the start of a run, which can be doubtful and still end
+/// well: `verdict.rs` tests those.
 fn without_warnings(said: &str) -> String {
     let lines = said.lines().filter(|line| !line.starts_with("warning: "));
     lines.map(|line| format!("{line}\n")).collect()
 }
 
-/// The one line that a failed run says, and its exit code.
+/// The only line printed by a failed run, and its exit code.
 fn refused(output: &Output) -> (String, i32) {
     let said = without_warnings(&String::from_utf8_lossy(&output.stderr));
     assert!(output.stdout.is_empty(), "{said}");

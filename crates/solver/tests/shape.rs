@@ -1,5 +1,5 @@
-//! Geometry of bodies made of spheres, and free rotation: against published numbers, closed forms
-//! and samples.
+//! Geometry of bodies made of spheres, and free rotation: compared with published values, closed
+//! forms and samples.
 
 mod fit;
 mod inertia;

@@ -1,4 +1,4 @@
-//! Sleep: bodies at rest on a ground at rest are not stepped, and nothing else changes by that.
+//! Sleep: bodies at rest on ground at rest are not integrated, without any other change.
 
 mod again;
 mod books;
@@ -18,17 +18,17 @@ use crate::helpers::scene;
 use dem_scene::read_bodies;
 
 pub(crate) const GRAVITY_M_S2: f64 = 9.81;
-/// Of the scenes here.
+/// Speed limit for sleep in these scenes.
 pub(crate) const SPEED_M_S: f64 = 1e-3;
 pub(crate) const AFTER_S: f64 = 5e-3;
-/// Of all spheres.
+/// Radius of all spheres.
 pub(crate) const RADIUS_M: f64 = 1e-3;
 
 pub(crate) const SLEEP: &str = "[sleep]\nspeed = \"1 mm/s\"\nafter = \"5 ms\"\n";
 pub(crate) const GROUND: &str =
     "[walls.ground]\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = \"stuff\"\n";
 
-/// The head of a scene whose ground is inclined by this angle, rad, as its gravity is turned.
+/// The head of a scene with ground inclined by this angle, rad, by a rotation of gravity.
 pub(crate) fn head(slope_rad: f64) -> String {
     let (sine, cosine) = slope_rad.sin_cos();
     format!(
@@ -41,7 +41,7 @@ pub(crate) fn head(slope_rad: f64) -> String {
     )
 }
 
-/// A slab of two by two spheres whose lowest points are at this place, m.
+/// A slab of two by two spheres with its lowest points at this position, m.
 pub(crate) fn slab(name: &str, [x_m, y_m, z_m]: [f64; 3], more: &str) -> String {
     let mut particles = String::new();
     for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
@@ -56,7 +56,7 @@ pub(crate) fn slab(name: &str, [x_m, y_m, z_m]: [f64; 3], more: &str) -> String 
 
 pub(crate) const CLUMP: &str = "start_as = \"clump\"";
 
-/// A sphere whose lowest point is at this place, m.
+/// A sphere with its lowest point at this position, m.
 pub(crate) fn ball(name: &str, [x_m, y_m, z_m]: [f64; 3], more: &str) -> String {
     format!(
         "[bodies.{name}]\nmaterial = \"stuff\"\n\
@@ -74,7 +74,7 @@ pub(crate) fn planned(text: &str) -> State {
     plan_of(text).state
 }
 
-/// A step as a run takes it.
+/// A step as in a run.
 pub(crate) fn go(state: &mut State) {
     step(state);
 }
@@ -89,7 +89,7 @@ pub(crate) fn sleep(state: &State) -> &Sleep {
     state.sleep.as_ref().unwrap()
 }
 
-/// Goes on until so many bodies sleep.
+/// Continues until this number of bodies sleep.
 pub(crate) fn go_until_asleep(state: &mut State, bodies: usize) {
     while sleep(state).bodies < bodies {
         assert!(state.time_s < 0.5, "{} asleep", sleep(state).bodies);
@@ -105,7 +105,7 @@ pub(crate) fn apart_m(a: &State, b: &State) -> f64 {
     })
 }
 
-/// Depth at which one of four spheres of a body of this mass, kg, rests, m.
+/// Depth, m, of one of the four spheres of a body of this mass, kg, at rest.
 pub(crate) fn depth_m(mass_kg: f64) -> f64 {
     let reduced_pa = 1e8 / (2.0 * (1.0 - 0.25 * 0.25));
     let force_n = 0.25 * mass_kg * GRAVITY_M_S2;
@@ -117,7 +117,7 @@ pub(crate) fn slab_kg() -> f64 {
     4.0 * 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS_M.powi(3)
 }
 
-/// Contacts, bonds and wall touches that a step works on.
+/// Numbers of contacts, bonds and wall contacts that a step processes.
 pub(crate) fn work(state: &State) -> [usize; 4] {
     let bonds = state
         .scratch
@@ -133,7 +133,7 @@ pub(crate) fn work(state: &State) -> [usize; 4] {
     ]
 }
 
-/// What contacts, walls and bonds do to a clump, N.
+/// Force of contacts, walls and bonds on a clump, N.
 pub(crate) fn force_on_clump(state: &State, n: usize) -> Vector3<f64> {
     state.clumps.all[n].force_n.into()
 }

@@ -1,5 +1,5 @@
-//! How a scene starts and what ends in it: sets displaced and in motion, supports and loads that
-//! end, overlaps that are kept, a bounce; walls that are rigid and clumps that nothing replaces.
+//! Start and end conditions of a scene: displaced and moving groups, supports and loads that end,
+//! overlaps that are kept, a bounce; rigid walls and clumps that are never replaced.
 
 mod bounce;
 mod ends;
@@ -21,8 +21,8 @@ use nalgebra::Vector3;
 use crate::helpers::scene;
 use dem_scene::read_bodies;
 
-/// Two spheres of 1 mm and 1000 kg/m3, bonded along x and 2 mm apart. The bond is E A/L stiff with
-/// a radius of 1 mm.
+/// Two spheres of 1 mm and 1000 kg/m3, bonded along x and 2 mm apart. The bond has the stiffness E
+/// A/L with a radius of 1 mm.
 const PAIR: &str = "version = 1\nmaterials.m.density = 1000\n\
      bonds.b = { model = \"parallel\", young_modulus = \"1 MPa\", poisson_ratio = 0.3, radius_factor = 1 }\n\
      bodies.pair = { material = \"m\", bonds = \"b\", particles = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 1e-3]], bond_list = [[0, 1]] }\n\
@@ -34,7 +34,7 @@ const STIFFNESS_N_M: f64 = 1e6 * std::f64::consts::PI * 1e-6 / 2e-3;
 /// Mass of one of its spheres, kg.
 const MASS_KG: f64 = 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9;
 
-/// The plan of a scene whose particles stand in it.
+/// The plan of a scene with inline particles.
 fn try_planned(text: &str) -> Result<Plan> {
     let scene = scene(text);
     plan(&scene, read_bodies(&scene).unwrap(), 1, false)
@@ -44,7 +44,7 @@ fn planned(text: &str) -> Plan {
     try_planned(text).unwrap()
 }
 
-/// Runs a scene, into a folder or nowhere; it is interrupted at `stop_at` of its end time.
+/// Runs a scene, with or without a folder; it is interrupted at `stop_at` of its end time.
 fn run_of(
     text: &str,
     folder: Option<&ResultsFolder>,
@@ -66,7 +66,7 @@ fn run_of(
     })
 }
 
-/// Where the centre of a particle is, m.
+/// Centre of a particle, m.
 fn place(state: &State, particle: usize) -> Vector3<f64> {
     state.particles.poses[particle].place()
 }

@@ -1,5 +1,5 @@
-//! Equilibrium without steps: closed forms, convergence, supports, stability, refusals, and what
-//! runs that step come to.
+//! Static equilibrium: closed forms, convergence, supports, stability, refusals, and comparison
+//! with time stepping.
 
 mod convergence;
 mod elastica;
@@ -21,10 +21,10 @@ use nalgebra::Vector3;
 
 use crate::bars::{ELASTIC, body, spheres, steel};
 
-/// When loads and supports are what they are, s.
+/// Time at which loads and supports are evaluated, s.
 const END_S: f64 = 1.0;
 
-/// A bar of steel along x: so many bonds of length 0.4 m and radius 0.2 m times a factor.
+/// A steel bar along x: this many bonds of length 0.4 m and radius 0.2 m times a factor.
 fn bar(model: BondModel, bonds: u32, radius_factor: f64) -> State {
     let (particles, pairs) = spheres(bonds + 1);
     let mut bonding = steel(model, ELASTIC);
@@ -32,7 +32,7 @@ fn bar(model: BondModel, bonds: u32, radius_factor: f64) -> State {
     body(particles, &pairs, &bonding, 1.0)
 }
 
-/// Holds these freedoms of these particles.
+/// Fixes these degrees of freedom of these particles.
 fn hold(state: &mut State, particles: &[u32], holds: [Option<Hold>; 6], factor: Factor) {
     let held = |&particle: &u32| HeldParticle {
         particle,
@@ -46,7 +46,7 @@ fn hold(state: &mut State, particles: &[u32], holds: [Option<Hold>; 6], factor: 
     });
 }
 
-/// Holds all freedoms of these particles.
+/// Fixes all degrees of freedom of these particles.
 fn fix(state: &mut State, particles: &[u32]) {
     hold(state, particles, [Some(Hold::Fixed); 6], Factor::One);
 }
@@ -62,14 +62,14 @@ fn load(state: &mut State, particles: &[u32], force_n: [f64; 3], torque_n_m: [f6
     });
 }
 
-/// Brings a state to rest, whole.
+/// Solves for the complete equilibrium of a state.
 fn rest(state: &mut State) -> Equilibrium {
     let found = equilibrium(state, END_S, &|_| true).unwrap();
     set_at_rest(state, END_S, 1);
     found
 }
 
-/// How far a particle of a bar has moved.
+/// Displacement of a particle of a bar.
 fn moved(state: &State, i: usize) -> Vector3<f64> {
     state.particles.poses[i].place() - Vector3::new(0.4 * i as f64, 0.0, 0.0)
 }

@@ -1,4 +1,4 @@
-//! The moving solver: largest steps, energy and momentum, frequencies, equal results.
+//! The moving solver: largest steps, energy and momentum, frequencies, reproducibility.
 
 mod breakage;
 mod energy;

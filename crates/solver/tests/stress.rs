@@ -1,4 +1,4 @@
-//! The stress suite: every case does as predicted, and a case that does not is told so.
+//! The stress suite: every case behaves as predicted, and deviations are reported.
 
 mod mended;
 mod sabotage;
@@ -15,7 +15,7 @@ fn members(case: &str) -> Vec<Member> {
     found.members(&AtomicBool::new(false)).unwrap()
 }
 
-/// The member of a case that is called so.
+/// The member of a case with this name.
 fn member(case: &str, what: &str) -> Member {
     let all = members(case).into_iter();
     let mut found = all.filter(|member| member.what == what);

@@ -1,5 +1,5 @@
-//! Where spheres touch walls: meshes against the shapes that they stand for and against looking at
-//! everything.
+//! Contacts of spheres with walls: meshes compared with the shapes that they represent and with
+//! exhaustive search.
 
 mod brute;
 mod files;
@@ -30,7 +30,7 @@ pub(crate) fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
     (Vector3::from(a) - Vector3::from(b)).norm()
 }
 
-/// The same place, distance and normal within `error`.
+/// The same point, distance and normal within `error`.
 #[track_caller]
 pub(crate) fn assert_same(found: &Touch, wanted: &Touch, error: f64, what: &str) {
     assert!(
@@ -41,8 +41,8 @@ pub(crate) fn assert_same(found: &Touch, wanted: &Touch, error: f64, what: &str)
     );
 }
 
-/// A box with each face divided into `n` by `n` squares of two triangles, whose diagonals run
-/// either way. Faces share vertices.
+/// A box with each face divided into `n` by `n` squares of two triangles, with diagonals in either
+/// direction. Faces share vertices.
 pub(crate) fn box_surface(low: [f64; 3], high: [f64; 3], n: u32) -> Surface {
     let mut surface = (Vec::new(), Vec::new());
     for axis in 0..3_usize {
@@ -64,7 +64,7 @@ pub(crate) fn box_surface(low: [f64; 3], high: [f64; 3], n: u32) -> Surface {
     surface
 }
 
-/// Adds `n` by `n` squares whose corners `place` tells.
+/// Adds `n` by `n` squares with corners given by `place`.
 pub(crate) fn add_tiles(surface: &mut Surface, n: u32, place: impl Fn(u32, u32) -> [f64; 3]) {
     for i in 0..n {
         for j in 0..n {

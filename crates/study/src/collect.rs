@@ -1,4 +1,4 @@
-//! What the processes of a sweep came to, from the files that they left.
+//! The outcomes of the processes of a sweep, from the files that they left.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ use super::jobs::Job;
 use super::masses::masses_kg;
 use super::outcome::{Done, Outcome, Reading};
 
-/// Reads what a job has left.
+/// Reads the results of a job.
 pub fn outcome(study: &Study, job: Job, runs: &Path) -> Outcome {
     let summary = fs::read(job.folder(runs).join("summary.json"));
     let summary = summary
@@ -63,7 +63,7 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
     })
 }
 
-/// What is no number in JSON is null there.
+/// A value that is not a number is null in JSON.
 fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, String> {
     let plain = |value: f64| Reading {
         value,

@@ -1,4 +1,4 @@
-//! Load over displacement of laboratory tests, and how far two such curves are apart.
+//! Load over displacement of laboratory tests, and the distance between two such curves.
 
 use std::fs;
 use std::path::Path;
@@ -8,11 +8,11 @@ use dem_plots::{Axis, Line, MOST_LINES, Plot};
 
 use super::rows::SweepTable;
 
-/// The curve of the test whose results stand in this folder: points (displacement in m, load in N),
-/// rising in the first.
+/// The curve of the test with its results in this folder: points (displacement in m, load in N),
+/// ascending in displacement.
 ///
 /// # Errors
-/// Why there is none, in words.
+/// The reason why there is none, as text.
 pub fn curve(results: &Path) -> Result<Vec<[f64; 2]>, String> {
     const FILE: &str = "force-displacement.csv";
     let text =
@@ -40,9 +40,9 @@ pub fn largest_n(curve: &[[f64; 2]]) -> f64 {
     curve.iter().map(|[_, force]| *force).fold(0.0, f64::max)
 }
 
-/// The area between two curves over the area under the second, from no displacement to where the
-/// later of the two has its largest load. Lines join the points; beyond its last point a curve
-/// keeps its last load.
+/// The area between two curves over the area under the second, from zero displacement to the later
+/// of the two largest loads. Points are joined by lines; beyond its last point a curve keeps its
+/// last load.
 pub fn distance(curve: &[[f64; 2]], reference: &[[f64; 2]]) -> f64 {
     let at_peak = |points: &[[f64; 2]]| {
         let peak = points.iter().max_by(|a, b| a[1].total_cmp(&b[1]));
@@ -65,7 +65,7 @@ pub fn distance(curve: &[[f64; 2]], reference: &[[f64; 2]]) -> f64 {
     between / under
 }
 
-/// Mean of |y| where y goes evenly from `from` to `to`.
+/// Mean of |y| for y changing linearly from `from` to `to`.
 fn mean_size(from: f64, to: f64) -> f64 {
     if from * to < 0.0 {
         0.5 * (from * from + to * to) / (from.abs() + to.abs())
@@ -74,7 +74,8 @@ fn mean_size(from: f64, to: f64) -> f64 {
     }
 }
 
-/// The curves of a measure of all runs, of as many as have a colour. None: it is of something else.
+/// The curves of a measure for as many runs as there are colours. None if the measure is not a
+/// curve.
 pub fn plot(table: &SweepTable, measure: usize) -> Option<Plot> {
     let runs = table.runs.iter();
     let with_curve = runs.filter(|row| {
@@ -107,19 +108,19 @@ mod tests {
     fn curves_that_are_a_known_way_apart() {
         let line = [[0.0, 0.0], [1.0, 2.0], [2.0, 4.0]];
         assert_eq!(distance(&line, &line), 0.0);
-        // The same line with other points, and before the load touched.
+        // The same line with other points, and before contact.
         let same = [[-1.0, -2.0], [0.5, 1.0], [2.0, 4.0]];
         assert!(distance(&same, &line) < 1e-15);
         let stiffer = [[0.0, 0.0], [2.0, 4.4]];
         assert!((distance(&stiffer, &line) - 0.1).abs() < 1e-15);
         // It breaks at half the displacement: the other half of the area, three quarters of it, is
-        // between them, but for the fall.
+        // between them, except for the drop.
         let weaker = [[0.0, 0.0], [1.0, 2.0], [1.0 + 1e-9, 0.0], [1.1, 0.0]];
         assert!((distance(&weaker, &line) - 0.75).abs() < 1e-8);
-        // And the other way round: the area under the weaker one is 1, that between them 3.
+        // Reversed: the area under the weaker one is 1, the area between them 3.
         assert!((distance(&line, &weaker) - 3.0).abs() < 1e-8);
-        // Two lines that cross at half the way: two triangles of a quarter each, under the second
-        // one of a half.
+        // Two lines that cross half-way: two triangles of a quarter each; the area under the second
+        // is one half.
         let [up, down] = [[[0.0, 0.0], [1.0, 1.0]], [[0.0, 1.0], [1.0, 0.0]]];
         assert!((distance(&up, &down) - 1.0).abs() < 1e-15);
     }

@@ -3,31 +3,31 @@
 use dem_io::{Diagnostic, Result};
 use dem_scene::study::{Axis, Combine, Setting, Study};
 
-/// Most processes that are started without being asked twice.
+/// Largest number of processes started without confirmation.
 pub const MOST_UNASKED: u64 = 10_000;
-/// Most processes at all.
+/// Largest number of processes.
 pub const MOST: u64 = 1_000_000;
-/// Most runs times axes, which are kept in memory.
+/// Largest number of runs times axes, which are kept in memory.
 const MOST_CHOICES: u64 = 10_000_000;
 
-/// One choice of values.
+/// One combination of values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Run {
-    /// From 1.
+    /// Number, from 1.
     pub number: usize,
-    /// Of each axis the value, from 0.
+    /// Index of the value on each axis, from 0.
     pub choice: Vec<usize>,
 }
 
 impl Run {
-    /// What it sets in the scene.
+    /// Its settings of the scene.
     pub fn settings<'a>(&self, study: &'a Study) -> Vec<&'a Setting> {
         let chosen = study.axes.iter().zip(&self.choice);
         let chosen = chosen.flat_map(|(axis, &at)| &axis.values[at].settings);
         study.fixed.iter().chain(chosen).collect()
     }
 
-    /// Its value on each axis, for a person.
+    /// Human-readable value on each axis.
     pub fn labels(&self, study: &Study) -> Vec<String> {
         let chosen = study.axes.iter().zip(&self.choice);
         chosen
@@ -121,8 +121,8 @@ fn choice(combine: Combine, lengths: &[usize], index: usize) -> Vec<usize> {
     choice
 }
 
-/// What the runs have in common that differ along one axis only. Runs of a study that is paired all
-/// differ along each.
+/// The common choices of runs that differ along one axis only. Runs of a paired study differ along
+/// every axis.
 pub fn group(study: &Study, run: &Run, along: usize) -> Vec<usize> {
     match study.combine {
         Combine::Paired => Vec::new(),

@@ -1,5 +1,5 @@
-//! The folder of a sweep: `study.json` (what it is of), `runs/0001-1` (each process), and what
-//! comes of all.
+//! The folder of a sweep: `study.json` (its identity), `runs/0001-1` (each process), and the
+//! results of all.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -22,33 +22,33 @@ const VARY: &str = "[vary]";
 /// Files of which a sweep makes one each, besides [`IDENTITY`].
 const TABLES: [&str; 3] = ["sweep.csv", "sweep.json", "sweep.html"];
 
-/// The folder of a sweep, and of no other as long as this lives.
+/// The folder of a sweep. No other sweep can use it as long as this exists.
 #[derive(Debug)]
 pub struct SweepFolder {
     path: PathBuf,
     _lock: Option<File>,
 }
 
-/// What to do with a sweep that is there already.
+/// Treatment of an existing sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Earlier {
     /// Refuse it.
     Refuse,
     /// Remove its runs.
     Replace,
-    /// Keep what is done; it must be of the same runs.
+    /// Keep finished runs; they must be of the same study.
     Continue,
-    /// The same, and it must be there.
+    /// The same, and it must exist.
     Collect,
 }
 
 impl SweepFolder {
-    /// Makes the folder `path`, or takes the one that is there. `scene_text` is that of the scene's
+    /// Makes the folder `path`, or uses the existing one. `scene_text` is the text of the scene's
     /// file.
     ///
     /// # Errors
-    /// An earlier sweep by `earlier`, or other files are in it; another sweep is writing into it;
-    /// it cannot be written to.
+    /// It contains an earlier sweep, by `earlier`, or other files; another sweep is writing into
+    /// it; it cannot be written to.
     pub fn create(path: &Path, earlier: Earlier, study: &Study, scene_text: &str) -> Result<Self> {
         let place = path.display().to_string();
         let is_sweep = is_identity(&path.join(IDENTITY));
@@ -94,7 +94,7 @@ impl SweepFolder {
         Ok(folder)
     }
 
-    /// Removes what an earlier sweep has made, and nothing else.
+    /// Removes the files of an earlier sweep, and nothing else.
     fn remove_sweep(&self) -> Result<()> {
         for path in entries(&self.path)? {
             let name = path.file_name().and_then(|name| name.to_str());
@@ -117,8 +117,8 @@ impl SweepFolder {
         Ok(())
     }
 
-    /// Refuses a sweep of which a process goes on, as after a kill of the program that had started
-    /// it.
+    /// Refuses a sweep of which a process is still running, for example after the program that
+    /// started it was killed.
     fn refuse_living(&self) -> Result<()> {
         let runs = self.runs();
         for path in entries(&runs)? {
@@ -137,11 +137,11 @@ impl SweepFolder {
         Ok(())
     }
 
-    /// Refuses a folder in which the sweep would remove or overwrite what it reads. `inputs`: the
+    /// Refuses a folder in which the sweep would remove or overwrite its inputs. `inputs`: the
     /// study, the scene and its files.
     ///
     /// # Errors
-    /// One of them stands there under a name that a sweep gives (exit code 2).
+    /// One of them is in it under a name used by a sweep (exit code 2).
     pub fn refuse_inputs(path: &Path, inputs: &[PathBuf]) -> Result<()> {
         let is_made = |path: &PathBuf| {
             let name = path.file_name().and_then(|name| name.to_str());
@@ -173,7 +173,7 @@ impl SweepFolder {
         &self.path
     }
 
-    /// Where the processes have their folders.
+    /// The folder that contains those of the processes.
     pub fn runs(&self) -> PathBuf {
         self.path.join(RUNS)
     }
@@ -195,7 +195,7 @@ impl SweepFolder {
     }
 }
 
-/// Whether this file says what a sweep is of.
+/// True if this file is the identity of a sweep.
 fn is_identity(path: &Path) -> bool {
     let value: Option<Value> =
         (fs::read(path).ok()).and_then(|bytes| serde_json::from_slice(&bytes).ok());
@@ -210,19 +210,19 @@ fn is_svg(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "svg")
 }
 
-/// A file itself, and no link to one.
+/// True for a file itself, false for a link to one.
 fn is_plain_file(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file())
 }
 
-/// What is in a folder.
+/// The entries of a folder.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let read = fs::read_dir(folder).map_err(|error| cannot(folder, &error))?;
     let paths: std::io::Result<Vec<PathBuf>> = read.map(|entry| Ok(entry?.path())).collect();
     paths.map_err(|error| cannot(folder, &error))
 }
 
-/// What decides what runs give: not how often they are done, nor what is made of them.
+/// The data that determine the results of runs, without the number of repeats and the evaluation.
 fn identity(study: &Study, scene_text: &str) -> Value {
     let settings = |settings: &[Setting]| -> Vec<[String; 2]> {
         let texts = settings.iter();
@@ -243,8 +243,8 @@ fn identity(study: &Study, scene_text: &str) -> Value {
     })
 }
 
-/// Takes the lock of a folder, which the system releases when the program ends. Some network disks
-/// know none: that is no reason not to run.
+/// Locks a folder. The system releases the lock when the program ends. Some network disks do not
+/// support locks: that is not a reason to refuse the sweep.
 fn lock(folder: &Path) -> Result<Option<File>> {
     let path = folder.join(LOCK);
     let file = File::options()

@@ -1,29 +1,30 @@
-//! The Pareto front of error and run time: what each further step towards exactness costs.
+//! The Pareto front of error and run time: the cost of each further step in accuracy.
 
 /// A run by its error and run time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Median run time, s.
     pub time_s: f64,
-    /// Differences of run times up to this mean nothing, s.
+    /// Uncertainty of the run time, s: smaller differences are not significant.
     pub spread_s: f64,
-    /// At least 0; with the uncertainty of the reference, below which errors mean nothing.
+    /// Error, at least 0, including the uncertainty of the reference, below which errors are not
+    /// significant.
     pub error: f64,
 }
 
 impl Point {
-    /// Whether it is faster by more than the spread of both.
+    /// True if it is faster by more than the spread of both.
     pub fn is_clearly_faster(&self, other: &Self) -> bool {
         self.time_s + self.spread_s.max(other.spread_s) < other.time_s
     }
 }
 
-/// Which points are on the front. From the smallest error upwards, a point is on it if it is
-/// clearly faster than all that are on it already. Errors count with two digits; of points with the
-/// same error that are as fast as the fastest of them, within their spread, the first is taken.
+/// For each point, true if it is on the front. From the smallest error upwards, a point is on it if
+/// it is clearly faster than all points already on it. Errors count with two digits; of points with
+/// the same error that are as fast as the fastest of them, within their spread, the first is taken.
 ///
-/// So chance does not decide where run times hardly differ: of two runs that are equally fast the
-/// more exact one is wanted, of two that are equal the first.
+/// So chance does not decide between hardly different run times: of two equally fast runs the more
+/// accurate one is taken, of two equal ones the first.
 pub fn front(points: &[Point]) -> Vec<bool> {
     let errors: Vec<f64> = points.iter().map(|point| two_digits(point.error)).collect();
     let mut order: Vec<usize> = (0..points.len()).collect();
@@ -31,7 +32,7 @@ pub fn front(points: &[Point]) -> Vec<bool> {
     let mut is_on = vec![false; points.len()];
     let mut members: Vec<usize> = Vec::new();
     for equals in order.chunk_by(|&a, &b| errors[a] == errors[b]) {
-        // The order of equals is that of the points: sorting is stable.
+        // Equal points keep their order: sorting is stable.
         let is_first = |at: &&usize| {
             let mut others = equals.iter();
             !others.any(|&other| points[other].is_clearly_faster(&points[**at]))
@@ -68,9 +69,9 @@ mod tests {
     }
 
     proptest! {
-        /// Of two members the less exact is clearly faster; the most exact error has one; and
-        /// whoever is not on it has a member, or an equal of one that is as fast, that is as exact
-        /// and not clearly slower.
+        /// Of two members the less accurate is clearly faster; the smallest error has a member; for
+        /// every other point there is a member, or an equally fast equal of one, that is as
+        /// accurate and not clearly slower.
         #[test]
         fn each_step_towards_exactness_costs_time(points in points()) {
             let is_on = front(&points);
@@ -93,8 +94,8 @@ mod tests {
             }
         }
 
-        /// Run times that are the same or lie apart by more than twice the noise and their spread:
-        /// the front stays.
+        /// Run times are equal or differ by more than twice the noise and their spread: the front
+        /// stays the same.
         #[test]
         fn noise_within_the_spread_does_not_change_it(
             ranks in prop::collection::vec((0..8u32, 0..8i32), 1..30),
@@ -127,7 +128,7 @@ mod tests {
             point(9.0, 0.0),
         ];
         assert_eq!(front(&points), [true, true, false, false, false, true]);
-        // The third digit of an error is none to wait for, and of equals the first is taken.
+        // The third digit of an error does not matter, and of equal points the first is taken.
         assert_eq!(
             front(&[point(1.02, 0.1004), point(1.0, 0.1001), point(2.0, 0.1001)]),
             [true, false, false]

@@ -1,4 +1,4 @@
-//! The processes of a sweep: what is started, in which order, and what is left to do.
+//! The processes of a sweep: what to start, in which order, and what is left.
 
 use std::collections::VecDeque;
 use std::fs::{self, File};
@@ -16,19 +16,19 @@ use serde_json::Value;
 use super::expand::Run;
 use super::outcome::Outcome;
 
-/// Runs that are done more than once are repeated until so much time has been measured, s, or so
-/// often: short ones scatter most.
+/// Runs done more than once are repeated up to this total measured time, s, or this number of
+/// repeats: short ones scatter most.
 const MEASURED_S: f64 = 0.5;
 const MOST_REPEATS: u32 = 25;
-/// How often processes are looked after. What they take is measured by themselves.
+/// Interval at which processes are checked. They measure their own times.
 const LOOK: Duration = Duration::from_millis(5);
 
 /// One process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Job {
-    /// Place of the run in the list of all, from 0.
+    /// Index of the run in the list of all, from 0.
     pub run: usize,
-    /// From 1.
+    /// Number of the repeat, from 1.
     pub repeat: u32,
 }
 
@@ -38,12 +38,12 @@ impl Job {
         runs.join(format!("{:04}-{}", self.run + 1, self.repeat))
     }
 
-    /// What it says if it fails.
+    /// File of its error messages.
     pub fn complaint(&self, runs: &Path) -> PathBuf {
         runs.join(format!("{:04}-{}.txt", self.run + 1, self.repeat))
     }
 
-    /// The job whose folder or complaint has this name, such as `0007-2` or `0007-2.txt`.
+    /// The job whose folder or error file has this name, such as `0007-2` or `0007-2.txt`.
     pub fn named(name: &str) -> Option<Self> {
         let (run, repeat) = name.strip_suffix(".txt").unwrap_or(name).split_once('-')?;
         let job = Self {
@@ -55,25 +55,25 @@ impl Job {
         own.into_iter().any(is_same).then_some(job)
     }
 
-    /// Whether its process goes on at this moment, although the sweep that started it may have
+    /// True if its process is running at this moment, although the sweep that started it may have
     /// ended.
     pub fn is_alive(&self, runs: &Path) -> bool {
         is_locked(&self.complaint(runs)) || is_written_to(&self.folder(runs))
     }
 
-    /// Whether it has come to its end.
+    /// True if it has finished.
     pub fn is_done(&self, runs: &Path) -> bool {
         let summary = fs::read(self.folder(runs).join("summary.json"));
         let summary = summary
             .ok()
             .and_then(|bytes| serde_json::from_slice::<Value>(&bytes).ok());
-        // A run that fails leaves a summary, too, which says why.
+        // A failed run also leaves a summary, which contains the reason.
         summary.is_some_and(|summary| summary["problem"].is_null())
     }
 }
 
-/// All processes. Each run is done once before any is done again, there and back, so that a machine
-/// that becomes slower favours none.
+/// All processes. Each run is done once before any is repeated, forwards and backwards in turn, so
+/// that a machine that slows down favours none.
 pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
     let mut jobs = Vec::new();
     for repeat in 1..=repeats {
@@ -87,8 +87,8 @@ pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
     jobs
 }
 
-/// Further repeats of runs that are short, from the outcomes of all [`jobs`] of each run. None of a
-/// run of which one has not come to its end.
+/// Further repeats of short runs, from the outcomes of all [`jobs`] of each run. None for a run
+/// with an unfinished job.
 pub fn further_jobs(repeats: u32, outcomes: &[Vec<Outcome>]) -> Vec<Job> {
     if repeats == 1 {
         return Vec::new();
@@ -108,7 +108,7 @@ pub fn further_jobs(repeats: u32, outcomes: &[Vec<Outcome>]) -> Vec<Job> {
     jobs
 }
 
-/// The arguments of the program for a process.
+/// The arguments of the program for one process.
 pub fn arguments(study: &Study, run: &Run, job: Job, runs: &Path) -> Vec<String> {
     let mut arguments = scene_arguments(study, run);
     let threads = study.threads.to_string();
@@ -129,7 +129,7 @@ pub fn arguments(study: &Study, run: &Run, job: Job, runs: &Path) -> Vec<String>
 /// The scene and its values.
 pub fn scene_arguments(study: &Study, run: &Run) -> Vec<String> {
     let scene = study.scene.display().to_string();
-    // Not to be taken for an option.
+    // Prevents its interpretation as an option.
     let here = if scene.starts_with('-') { "./" } else { "" };
     let mut arguments = vec![format!("{here}{scene}")];
     for setting in run.settings(study) {
@@ -163,10 +163,10 @@ pub fn shell_line(program: &str, arguments: &[String], complaint: Option<&Path>)
     line
 }
 
-/// Refuses what a command of `--list` cannot hold: it stands on one line, and is text.
+/// Refuses names that a command of `--list` cannot contain: it is one line of text.
 ///
 /// # Errors
-/// The name or value `text`, which stands at `place`, has control characters or is not UTF-8 (exit
+/// The name or value `text`, given at `place`, has control characters or is not UTF-8 (exit
 /// code 2).
 pub fn refuse_unlistable(place: &str, text: &Path) -> Result<()> {
     let problem = match text.to_str() {
@@ -190,7 +190,7 @@ fn shell_word(text: &str) -> String {
     }
 }
 
-/// A process that is under way, and its job. Dropped, it is ended.
+/// A running process, and its job. It is killed when dropped.
 struct Started(Child, Job);
 
 impl Drop for Started {
@@ -202,8 +202,8 @@ impl Drop for Started {
     }
 }
 
-/// Does the jobs, so many at a time. One that fails leaves its complaint; the others go on. `tell`
-/// is called with the number that are done.
+/// Runs the jobs, several at a time. A failed one leaves its error message; the others continue.
+/// `tell` is called with the number of finished jobs.
 ///
 /// # Errors
 /// Interrupted; the program cannot be started.
@@ -236,8 +236,7 @@ pub fn work(
                 Diagnostic::failed(complaint.display().to_string(), problem, "")
             })?;
             // The process inherits the lock with its standard error, and holds it as long as it
-            // lives. Where the disk
-            // knows no locks, that of its folder is left.
+            // lives. If the disk does not support locks, the lock of its folder remains.
             let _ = say.try_lock();
             let child = Command::new(&program)
                 .args(arguments(study, &all[job.run], job, runs))
@@ -343,7 +342,7 @@ mod tests {
     }
 
     proptest::proptest! {
-        /// Each line, read by sh, is the command that is meant and no other.
+        /// Each line, when read by sh, is exactly the intended command.
         #[cfg(unix)]
         #[test]
         fn sh_splits_no_line_of_any_names(
@@ -357,7 +356,7 @@ mod tests {
             for arguments in &lines {
                 let mut all = vec!["%s\\0".to_owned()];
                 all.extend(arguments.iter().cloned());
-                // Without any, printf writes its format once.
+                // Without arguments, printf writes its format once.
                 all.push("end".to_owned());
                 script += &shell_line("printf", &all, None);
                 script.push('\n');

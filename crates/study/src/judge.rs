@@ -1,4 +1,4 @@
-//! Errors: what the values of a measure are compared with, and how far they are off.
+//! Errors: the references of the values of a measure, and the deviations from them.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use super::outcome::Done;
 use super::reference::{Extrapolated, richardson};
 use super::rows::{Judged, Row};
 
-/// Finds the references of one measure, and from them the errors.
+/// Determines the references of one measure, and from them the errors.
 pub fn judge(
     study: &Study,
     runs: &[Run],
@@ -72,7 +72,7 @@ struct Group<'a> {
     runs: &'a [Run],
     done: &'a [Option<&'a Done>],
     measure: usize,
-    /// Numbers of its runs, from 0.
+    /// Indices of its runs, from 0.
     members: &'a [usize],
 }
 
@@ -81,7 +81,7 @@ impl Group<'_> {
         self.runs[at].labels(self.study).join(", ")
     }
 
-    /// Compares all with the finest of them.
+    /// Compares all runs with the finest of them.
     fn compare_with(&self, finest: usize, rows: &mut [Row], notes: &mut Vec<String>) {
         let of = &self.study.measures[self.measure];
         let Some(reference) = rows[finest].results.get(self.measure).map(|j| j.value) else {
@@ -124,7 +124,7 @@ impl Group<'_> {
         }
     }
 
-    /// Compares all with the value that they tend to (Richardson).
+    /// Compares all runs with the value to which they converge (Richardson).
     fn extrapolate(&self, along: usize, rows: &mut [Row], notes: &mut Vec<String>) {
         let (study, measure, members) = (self.study, self.measure, self.members);
         let of = &study.measures[measure];
@@ -183,7 +183,7 @@ fn set_error(judged: &mut Judged, reference: f64, uncertainty: Option<f64>) {
     judged.uncertainty = uncertainty.map(|uncertainty| uncertainty / scale);
 }
 
-/// What a measure is compared with, in words.
+/// The reference of a measure, as text.
 pub fn in_words(study: &Study, measure: usize) -> String {
     let measure = &study.measures[measure];
     match (&measure.of, &measure.reference) {

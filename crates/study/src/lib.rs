@@ -1,10 +1,10 @@
-//! A sweep: a scene is run with many settings, each in a process of its own; error against run time
-//! comes of it.
+//! A sweep: a scene is run with many settings, each in a process of its own, to compare error with
+//! run time.
 //!
-//! Study -> [`expand`] runs -> [`jobs`] processes with a folder each -> [`collect`] what they came
-//! to -> [`judge`] errors (of distributions: [`masses`], of tests: [`curves`]) -> [`table`]
-//! medians, [`front`]s, [`order`]s -> CSV, JSON, [`page`] with [`plot`]s, [`want`] the fastest that
-//! is exact enough.
+//! Study -> [`expand`] runs -> [`jobs`] processes with a folder each -> [`collect`] their
+//! outcomes -> [`judge`] errors (of distributions: [`masses`], of tests: [`curves`]) -> [`table`]
+//! medians, [`front`]s, [`order`]s -> CSV, JSON, [`page`] with [`plot`]s, [`want`] the fastest run
+//! that is accurate enough.
 
 pub mod collect;
 pub mod curves;

@@ -1,21 +1,21 @@
-//! Masses of the pieces that a run has left, and how far two such distributions are apart.
+//! Masses of the pieces after a run, and the distance between two such distributions.
 
 use std::fs;
 use std::path::Path;
 
 use dem_scene::study::Pieces;
 
-/// What chance alone exceeds in one of twenty cases, times the root of 1/n + 1/m (Kolmogorov and
-/// Smirnov).
+/// Limit of the distance that chance alone exceeds in one of twenty cases, divided by sqrt(1/n +
+/// 1/m) (Kolmogorov and Smirnov).
 const ONE_OF_TWENTY: f64 = 1.358;
-/// Values that differ by less than this share are the same: the mass of a clump and that of its
-/// cluster are sums in another order.
+/// Values with a smaller relative difference are the same: the masses of a clump and of its cluster
+/// are sums in a different order.
 const SAME: f64 = 1e-9;
 
-/// The masses, kg, of the pieces of the run whose results stand in this folder.
+/// The masses, kg, of the pieces of the run with its results in this folder.
 ///
 /// # Errors
-/// Why there are none, in words.
+/// The reason why there are none, as text.
 pub fn masses_kg(pieces: Pieces, results: &Path) -> Result<Vec<f64>, String> {
     let (file, column) = match pieces {
         Pieces::Left => ("events.csv", "detail"),
@@ -54,9 +54,8 @@ pub fn masses_kg(pieces: Pieces, results: &Path) -> Result<Vec<f64>, String> {
     }
 }
 
-/// The largest difference of two cumulative distributions (Kolmogorov and Smirnov), of values that
-/// count as much as `weight` says: 1 for a distribution by number, the value itself for one by
-/// mass.
+/// The largest difference between two cumulative distributions (Kolmogorov and Smirnov) of values
+/// with weights from `weight`: 1 for a distribution by number, the value itself for one by mass.
 pub fn distance(a: &[f64], b: &[f64], weight: impl Fn(f64) -> f64) -> f64 {
     let sums = [a, b].map(|all| all.iter().map(|x| weight(*x)).sum::<f64>());
     let mut all: Vec<(f64, f64)> = (a.iter().map(|x| (*x, weight(*x) / sums[0])))
@@ -76,7 +75,7 @@ pub fn distance(a: &[f64], b: &[f64], weight: impl Fn(f64) -> f64) -> f64 {
     largest
 }
 
-/// The distance by number that two samples of so many values of one distribution exceed in one of
+/// The distance by number that two samples of these sizes from one distribution exceed in one of
 /// twenty cases.
 pub fn by_chance(a: usize, b: usize) -> f64 {
     ONE_OF_TWENTY * (1.0 / a as f64 + 1.0 / b as f64).sqrt()
@@ -91,7 +90,7 @@ mod tests {
         let one = |_: f64| 1.0;
         assert_eq!(distance(&[1.0, 2.0, 3.0], &[3.0, 1.0, 2.0], one), 0.0);
         assert_eq!(distance(&[1.0, 2.0], &[3.0, 4.0, 5.0], one), 1.0);
-        // At 2 the first has 2 of 4 below or at, the other none of 2.
+        // At 2 the first has 2 of 4 at or below, the other none of 2.
         let apart = distance(&[1.0, 2.0, 5.0, 6.0], &[3.0, 6.0], one);
         assert!((apart - 0.5).abs() < 1e-15);
         let twice = [2.0, 2.0 * (1.0 + 1e-15), 2.0 * (1.0 - 1e-15)];
@@ -117,7 +116,7 @@ mod tests {
         let limit = by_chance(a, b);
         let beyond = (0..2000).filter(|_| distance(&sample(a), &sample(b), |_| 1.0) > limit);
         let fraction = beyond.count() as f64 / 2000.0;
-        // The limit is that of large samples: these exceed it a little less often.
+        // The limit is that for large samples: these exceed it slightly less often.
         assert!((0.02..0.07).contains(&fraction), "{fraction}");
     }
 }

@@ -1,4 +1,4 @@
-//! Observed orders: by which power of the size errors fall.
+//! Observed orders: the power of the size with which errors decrease.
 
 use std::collections::BTreeMap;
 
@@ -8,11 +8,11 @@ use super::expand::{Run, group};
 use super::reference::{observed_order, richardson};
 use super::rows::{Order, Row};
 
-/// Fewest runs for an order.
+/// Smallest number of runs for an order.
 const FEWEST: usize = 3;
 
-/// Of each measure, along each axis with sizes. Errors below the uncertainty of their reference say
-/// nothing and are left out.
+/// For each measure, along each axis with sizes. Errors below the uncertainty of their reference
+/// are not significant and are left out.
 pub fn orders(study: &Study, runs: &[Run], rows: &[Row]) -> Vec<Order> {
     let mut found = Vec::new();
     for (measure, of) in study.measures.iter().enumerate() {

@@ -1,11 +1,11 @@
-//! What came of the processes of a sweep.
+//! Outcomes of the processes of a sweep.
 
-/// What one process came to.
+/// The result of one process.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Done {
-    /// Time of its steps as the study asks for it, s.
+    /// Time of its steps, as defined by the study, s.
     pub time_s: f64,
-    /// Steps.
+    /// Number of steps.
     pub steps: u64,
     /// Last time step, s.
     pub time_step_s: f64,
@@ -18,25 +18,25 @@ pub struct Done {
 /// A measure of one process.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// In `unit`.
+    /// Value in `unit`.
     pub value: f64,
     /// SI unit; empty for plain numbers.
     pub unit: String,
-    /// What the scene or the theory says it should be.
+    /// Expected value from the scene or the theory.
     pub closed_form: Option<f64>,
-    /// Of masses of pieces: each, kg. Otherwise empty.
+    /// For masses of pieces: each mass, kg. Otherwise empty.
     pub masses_kg: Vec<f64>,
-    /// Of a curve: its points (displacement in m, load in N). Otherwise empty.
+    /// For a curve: its points (displacement in m, load in N). Otherwise empty.
     pub curve: Vec<[f64; 2]>,
 }
 
-/// What came of a process.
+/// The outcome of a process.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// It came to its end, and all measures are numbers.
+    /// It finished, and all measures are numbers.
     Done(Done),
-    /// Why not.
+    /// It failed, for this reason.
     Failed(String),
-    /// It has not been run to its end.
+    /// It has not finished.
     Missing,
 }

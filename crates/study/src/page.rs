@@ -1,4 +1,4 @@
-//! The page of a sweep: plots, fronts, orders and all runs in one file that needs no other.
+//! The page of a sweep: plots, fronts, orders and all runs in one self-contained file.
 
 use dem_io::units::significant;
 use dem_plots::{Column, Page, Table};
@@ -8,10 +8,10 @@ use super::plot::plot;
 use super::rows::{Judged, Row, SweepTable};
 use super::text::front_of;
 
-/// Most runs in the table of all; the CSV has every one.
+/// Largest number of runs in the table; the CSV has all of them.
 const MOST_ROWS: usize = 2000;
 
-/// The whole page as HTML.
+/// The complete page as HTML.
 pub fn page(table: &SweepTable) -> String {
     let mut page = Page::new(&format!("Error against run time: {}", table.scene));
     page.paragraph(&format!(

@@ -1,5 +1,5 @@
-//! Error against run time: both axes logarithmic, series told apart by colour and shape, the front
-//! filled and joined.
+//! Error against run time: both axes logarithmic, series distinguished by colour and shape, the
+//! front filled and joined.
 
 use dem_io::units::significant;
 use dem_plots::{Axis, Marks, Plot, Point};

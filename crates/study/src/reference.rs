@@ -1,31 +1,31 @@
-//! What a value is compared with where nothing says what it should be: the finest run, or what the
-//! runs come to at size 0.
+//! References for values without a known expectation: the finest run, or the extrapolation of the
+//! runs to size 0.
 
-/// What values tend to as their size goes to 0.
+/// The limit of values as their size goes to 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extrapolated {
     /// The value at size 0.
     pub value: f64,
-    /// By how much it may be off.
+    /// Its uncertainty.
     pub uncertainty: f64,
-    /// Observed order. None: it cannot be told.
+    /// Observed order. None if it cannot be determined.
     pub order: Option<f64>,
-    /// What speaks against it. None: nothing.
+    /// Objection to the extrapolation. None if there is none.
     pub warning: Option<Warning>,
 }
 
-/// What speaks against an extrapolation. The value is that of the finest size then, and the
-/// uncertainty three times what the finest three differ by.
+/// Objections to an extrapolation. The value is then that of the finest size, and the uncertainty
+/// three times the range of the finest three.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Warning {
-    /// The values go up and down.
+    /// The values are not monotone.
     NotMonotone,
-    /// They do not come nearer to each other.
+    /// Their differences do not decrease.
     DoesNotConverge,
 }
 
 impl Warning {
-    /// In words.
+    /// As text.
     pub fn text(self) -> &'static str {
         match self {
             Self::NotMonotone => "its values go up and down with the size",
@@ -36,21 +36,21 @@ impl Warning {
     }
 }
 
-/// Orders that are looked for.
+/// Range of orders that are searched.
 const ORDERS: [f64; 2] = [0.05, 20.0];
-/// Safety factors of the grid convergence index (Roache 1994): for three sizes, and where a fourth
+/// Safety factors of the grid convergence index (Roache 1994): for three sizes, and if a fourth
 /// does not confirm the order.
 const SAFETY: f64 = 1.25;
 const UNCONFIRMED: f64 = 3.0;
-/// Differences that are rounding, as a share of the value.
+/// Relative differences up to this are rounding errors.
 const ROUNDING: f64 = 1e-14;
-/// Least uncertainty as a share of what was extrapolated.
+/// Smallest uncertainty as a fraction of the extrapolated difference.
 const LEAST: f64 = 0.02;
 
 /// Richardson extrapolation f = f0 + C h^p through the three finest of `points` (size, value). With
-/// four sizes the uncertainty follows from how far the extrapolations of the finest and the next
-/// finest three differ, but is no more than three times what was extrapolated; with three it is the
-/// grid convergence index. None: fewer than three sizes.
+/// four sizes the uncertainty follows from the difference between the extrapolations of the finest
+/// and the next finest three, but is at most three times the extrapolated difference; with three it
+/// is the grid convergence index. None for fewer than three sizes.
 pub fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
     let mut points = points.to_vec();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -64,7 +64,7 @@ pub fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
         Some(next) if finest.warning.is_none() && next.warning.is_none() => {
             let rounding = ROUNDING * a.1.abs();
             let way = (finest.value - a.1).abs();
-            // Both are off by a further power of their finest sizes, of the first order at least.
+            // Both have errors of a further power of their finest sizes, at least of first order.
             let falls = b.0 / a.0 - 1.0;
             let differ = SAFETY * (finest.value - next.value).abs() * falls.recip().max(1.0);
             let differ = differ.clamp(LEAST * way, UNCONFIRMED * way);
@@ -77,7 +77,7 @@ pub fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
     })
 }
 
-/// Through three points, the finest first.
+/// Extrapolation through three points, the finest first.
 fn through([(h1, f1), (h2, f2), (h3, f3)]: [(f64, f64); 3]) -> Extrapolated {
     let (fine, coarse) = (f2 - f1, f3 - f2);
     let rounding = ROUNDING * f1.abs().max(f2.abs()).max(f3.abs());
@@ -99,7 +99,7 @@ fn through([(h1, f1), (h2, f2), (h3, f3)]: [(f64, f64); 3]) -> Extrapolated {
     if wanted <= ratio(ORDERS[0]) {
         return found(Some(Warning::DoesNotConverge), 3.0 * range);
     }
-    // The ratio rises with the order.
+    // The ratio increases with the order.
     let [mut low, mut high] = ORDERS;
     for _ in 0..200 {
         let middle = f64::midpoint(low, high);
@@ -119,8 +119,8 @@ fn through([(h1, f1), (h2, f2), (h3, f3)]: [(f64, f64); 3]) -> Extrapolated {
     }
 }
 
-/// Slope of log(error) over log(size): by how much the error falls with the size. None: fewer than
-/// two different sizes with an error.
+/// Slope of log(error) over log(size): the order with which the error decreases with the size. None
+/// for fewer than two different sizes with an error.
 pub fn observed_order(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<[f64; 2]> = points
         .iter()

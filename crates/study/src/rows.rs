@@ -1,9 +1,9 @@
-//! What the table of a sweep holds.
+//! The contents of the table of a sweep.
 
 use dem_scene::study::Study;
 use serde::Serialize;
 
-/// Everything that came of a sweep. SI units.
+/// All results of a sweep. SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepTable {
     /// The study's file.
@@ -12,101 +12,101 @@ pub struct SweepTable {
     pub scene: String,
     /// Program and version.
     pub program: String,
-    /// Processors and cores that did it. Run times of several are not compared.
+    /// Processors and cores that ran it. Run times on several are not compared.
     pub machines: Vec<String>,
-    /// How often each run was to be done, at least.
+    /// Smallest number of repeats of each run.
     pub repeats: u32,
     /// Threads of each run.
     pub threads: u32,
     /// "run time" or "processor time".
     pub time: String,
-    /// What varies.
+    /// Parameters that vary.
     pub axes: Vec<AxisColumn>,
-    /// The axis that colours tell apart.
+    /// The axis distinguished by colours.
     pub series: Option<usize>,
-    /// What is measured.
+    /// Measures.
     pub measures: Vec<MeasureColumn>,
     /// All runs, in the order of their numbers.
     pub runs: Vec<Row>,
-    /// How fast errors fall with the size.
+    /// Orders with which errors decrease with the size.
     pub orders: Vec<Order>,
-    /// What is to be known of it.
+    /// Notes on the results.
     pub notes: Vec<String>,
 }
 
-/// Something that varies.
+/// A parameter that varies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AxisColumn {
     /// Its path or name.
     pub name: String,
-    /// Its values, for a person.
+    /// Its values, human-readable.
     pub values: Vec<String>,
-    /// How coarse they are.
+    /// Their sizes.
     pub sizes: Option<Vec<f64>>,
 }
 
-/// Something that is measured.
+/// A measure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasureColumn {
     /// Its name.
     pub name: String,
     /// SI unit of its values; empty for plain numbers.
     pub unit: String,
-    /// What it is compared with, in words.
+    /// Its reference, as text.
     pub reference: String,
 }
 
 /// One run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
-    /// From 1.
+    /// Number, from 1.
     pub number: usize,
-    /// Value of each axis, from 0.
+    /// Index of the value on each axis, from 0.
     pub choice: Vec<usize>,
-    /// The same for a person.
+    /// The same, human-readable.
     pub settings: Vec<String>,
-    /// Why it has no values. None: it has.
+    /// The reason why it has no values. None if it has values.
     pub failed: Option<String>,
     /// Time of each repeat, s.
     pub times_s: Vec<f64>,
     /// Their median, s.
     pub time_s: Option<f64>,
-    /// Differences of run times up to this mean nothing, s: the width of the range in which the
-    /// median lies with a probability of 95 %, or 10 % of the median.
+    /// Uncertainty of the run time, s; smaller differences are not significant: the width of the
+    /// range in which the median lies with a probability of 95 %, or 10 % of the median.
     pub spread_s: Option<f64>,
-    /// Steps.
+    /// Number of steps.
     pub steps: Option<u64>,
     /// Last time step, s.
     pub time_step_s: Option<f64>,
-    /// One for each measure; none of a run that failed.
+    /// One result for each measure; none for a failed run.
     pub results: Vec<Judged>,
 }
 
 /// A measure of one run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Judged {
-    /// In the unit of the measure.
+    /// Value in the unit of the measure.
     pub value: f64,
-    /// What it should be. None: that is not known, or this run is what others are compared with.
+    /// Expected value. None if it is unknown, or if this run is the reference of others.
     pub reference: Option<f64>,
     /// |value - reference|/|reference|; the plain difference for a reference of 0.
     pub error: Option<f64>,
-    /// By how much the error may be off, as the reference is not known better.
+    /// Uncertainty of the error, due to that of the reference.
     pub uncertainty: Option<f64>,
-    /// Whether others are compared with this run.
+    /// True if this run is the reference of others.
     pub is_reference: bool,
-    /// Whether it is on the [front](super::front).
+    /// True if it is on the [front](super::front).
     pub is_on_front: bool,
-    /// Time of the run that it is compared with over its own.
+    /// Time of its reference run over its own.
     pub times_as_fast: Option<f64>,
-    /// Of a curve: its points (displacement in m, load in N). Otherwise empty.
+    /// For a curve: its points (displacement in m, load in N). Otherwise empty.
     #[serde(skip)]
     pub curve: Vec<[f64; 2]>,
 }
 
 impl Row {
-    /// How coarse its value of an axis is: its step itself where the axis is the relative one, as a
-    /// run has a least number of steps.
+    /// The size of its value on an axis: its time step itself if the axis is the relative one, as a
+    /// run has a smallest number of steps.
     pub fn size(&self, study: &Study, along: usize) -> Option<f64> {
         let axis = &study.axes[along];
         match axis.name.as_str() {
@@ -117,7 +117,7 @@ impl Row {
 }
 
 impl Judged {
-    /// The error, or the uncertainty where that is larger: below it nothing can be told.
+    /// The error, or the uncertainty if that is larger: smaller errors are not significant.
     pub fn sure_error(&self) -> Option<f64> {
         let error = self.error.filter(|error| !error.is_nan())?;
         Some(error.max(self.uncertainty.unwrap_or(0.0)))
@@ -131,7 +131,7 @@ pub struct Order {
     pub measure: String,
     /// The axis along which the size changes.
     pub along: String,
-    /// What the runs have in common: the values of the other axes.
+    /// The common choices of the runs: the values of the other axes.
     pub of: Vec<String>,
     /// The order.
     pub order: f64,

@@ -1,5 +1,4 @@
-//! The table of a sweep: of every run its time, its values and its errors, and which are on the
-//! fronts.
+//! The table of a sweep: the time, values and errors of every run, and the runs on the fronts.
 
 use std::collections::BTreeSet;
 
@@ -12,12 +11,12 @@ use super::order::orders;
 use super::outcome::{Done, Outcome};
 use super::rows::{AxisColumn, Judged, MeasureColumn, Row, SweepTable};
 
-/// Differences of run times below this share mean nothing, however close the repeats are.
+/// Smallest significant relative difference of run times, however close the repeats are.
 const LEAST_SPREAD: f64 = 0.1;
 
 impl SweepTable {
-    /// `outcomes`: of each run those of its repeats. `values`: what each measure is compared with,
-    /// where the study says so as a number.
+    /// `outcomes`: for each run, those of its repeats. `values`: the reference of each measure, if
+    /// the study gives it as a number.
     pub fn new(
         study: &Study,
         runs: &[Run],
@@ -112,7 +111,7 @@ impl SweepTable {
         self.runs.iter().filter(|row| row.failed.is_some())
     }
 
-    /// How often runs were done: `once`, `3 times`, `3 to 25 times`.
+    /// Number of repeats of the runs: `once`, `3 times`, `3 to 25 times`.
     pub fn times(&self) -> String {
         let most = self.runs.iter().map(|row| row.times_s.len());
         match (self.repeats as usize, most.max().unwrap_or(0)) {
@@ -172,7 +171,7 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
     }
 }
 
-/// Of rising times.
+/// Of ascending times.
 fn median(rising: &[f64]) -> Option<f64> {
     let middle = rising.len() / 2;
     match rising.len() {
@@ -184,7 +183,7 @@ fn median(rising: &[f64]) -> Option<f64> {
 
 /// Width of the range in which the median of many more repeats lies with a probability of 95 %,
 /// whatever the distribution of the times: between the values whose ranks are half their number -+
-/// the root of it. All of it up to five. Of rising times.
+/// its square root. Up to five times, the full range. Of ascending times.
 fn range_of_median(rising: &[f64]) -> f64 {
     let count = rising.len() as f64;
     let below = (0.5 * count - 0.98 * count.sqrt()).max(0.0) as usize;

@@ -1,4 +1,4 @@
-//! The table of a sweep as CSV and for a person.
+//! The table of a sweep as CSV and as human-readable text.
 
 use std::fmt;
 
@@ -7,10 +7,10 @@ use dem_io::units::significant;
 
 use super::rows::{Row, SweepTable};
 
-/// Most lines of a part that a person is told.
+/// Largest number of lines of a part of the text.
 const MOST_LINES: usize = 20;
 
-/// The table with one line for each run: comma-separated, texts in quotes where they need some.
+/// The table with one line for each run: comma-separated, texts in quotes where needed.
 pub fn csv(table: &SweepTable) -> String {
     let mut columns = vec!["run".to_owned()];
     columns.extend(table.axes.iter().map(|axis| axis.name.clone()));
@@ -87,7 +87,7 @@ pub fn front_of(table: &SweepTable, measure: usize) -> Vec<&Row> {
     rows
 }
 
-/// Lines of which only the first are shown.
+/// Prints lines, of which only the first are shown.
 fn cut(f: &mut fmt::Formatter<'_>, lines: &[String]) -> fmt::Result {
     for line in lines.iter().take(MOST_LINES) {
         writeln!(f, "{line}")?;

@@ -1,16 +1,16 @@
-//! The fastest setting that is exact enough.
+//! The fastest setting that is accurate enough.
 
 use dem_io::units::{NUMBER, quantity, significant};
 use dem_io::{Diagnostic, Result};
 
 use super::rows::{Row, SweepTable};
 
-/// A wanted error.
+/// A target error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Want {
-    /// As it was asked for.
+    /// As typed by the user.
     pub text: String,
-    /// Of this measure. None: of all.
+    /// The measure. None for all.
     pub measure: Option<String>,
     /// Largest error.
     pub error: f64,
@@ -20,7 +20,7 @@ impl Want {
     /// From `all=1%` or `NAME=1%`.
     ///
     /// # Errors
-    /// No such measure, or no number above 0.
+    /// No such measure, or not a number above 0.
     pub fn parse(text: &str, table_measures: &[&str]) -> Result<Self> {
         let place = format!("--max-error {text}");
         let form = "write all=1%, or NAME=1% for one measure";
@@ -49,7 +49,7 @@ impl Want {
         })
     }
 
-    /// The largest error of a run of those that this is about. None: one of them is not known.
+    /// The largest error of a run among the measures concerned. None if one of them is unknown.
     fn error_of(&self, table: &SweepTable, row: &Row) -> Option<f64> {
         let meant = table.measures.iter().zip(&row.results);
         let mut meant = meant
@@ -64,11 +64,11 @@ impl Want {
     }
 }
 
-/// The fastest run whose errors are as small as wanted. Of those that are as fast within their
-/// spread, the most exact.
+/// The fastest run whose errors are within the targets. Of those that are equally fast within their
+/// spread, the most accurate.
 ///
 /// # Errors
-/// None is as exact; times are of several machines.
+/// None is as accurate; times are of several machines.
 pub fn fastest<'a>(table: &'a SweepTable, wants: &[Want]) -> Result<&'a Row> {
     let place = wants
         .iter()
@@ -81,7 +81,7 @@ pub fn fastest<'a>(table: &'a SweepTable, wants: &[Want]) -> Result<&'a Row> {
             "do all of them on machines of one kind",
         ));
     }
-    // Largest error over what is wanted: 1 is just enough.
+    // Largest error over its target: 1 is just enough.
     let fraction = |row: &Row| {
         let fractions = wants
             .iter()

@@ -1,4 +1,4 @@
-//! What tests of several crates share.
+//! Helpers shared by tests of several crates.
 
 #![allow(
     clippy::unwrap_used,
@@ -14,7 +14,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-/// Names of what is in a folder, hidden files too, sorted.
+/// Names of the entries of a folder, including hidden files, sorted.
 pub fn names_in(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .unwrap()
@@ -40,8 +40,8 @@ pub fn piped(program: &mut Command, input: &[u8]) -> Output {
     })
 }
 
-/// Runs a program once with a standard error that is full, and once with one whose reader is gone;
-/// the exit codes.
+/// Runs a program once with a standard error that is full, and once with one whose reader is gone.
+/// Returns the exit codes.
 #[cfg(target_os = "linux")]
 pub fn codes_without_standard_error(program: &mut Command) -> [Option<i32>; 2] {
     let full = std::fs::File::options().write(true).open("/dev/full");

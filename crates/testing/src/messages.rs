@@ -1,9 +1,9 @@
-//! Expected messages: one file a folder, `messages.txt`, a line for each message.
+//! Expected messages: one file `messages.txt` per folder, one line per message.
 
 use std::path::Path;
 
-/// Holds the messages that the cases of a folder gave, in order, to its file `messages.txt`; with
-/// `RENEW_MESSAGES` set, writes the file anew first.
+/// Compares the messages of the cases of a folder, in order, with its file `messages.txt`; with
+/// `RENEW_MESSAGES` set, rewrites the file first.
 ///
 /// # Panics
 /// They differ.

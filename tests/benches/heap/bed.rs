@@ -1,4 +1,4 @@
-//! A bed of spheres that touch as those of a heap do.
+//! A bed of spheres with contacts as in a heap.
 
 use std::sync::Arc;
 
@@ -16,15 +16,15 @@ use dem_run::state::contacts::{ContactModel, Contacts};
 use dem_run::state::order::spatial_order;
 use dem_run::state::particles::Particles;
 
-/// Cubes of a face-centred lattice along each side: with four sites each, of which some are left
-/// empty, about 20,000 spheres.
+/// Number of cubes of a face-centred lattice along each side: with four sites each, of which some
+/// are empty, about 20,000 spheres.
 const CUBES: usize = 18;
 const EMPTY: f64 = 0.143;
 const RADIUS_M: f64 = 1e-3;
 const SKIN_M: f64 = 0.1 * RADIUS_M;
 
-/// Spheres on a dense lattice with vacancies, of radii that differ by a thousandth: of their near
-/// pairs those overlap, by about as much, that happen to be large. About 2.9 pairs for each sphere
+/// Spheres on a dense lattice with vacancies, with radii that differ by a thousandth: of their near
+/// pairs, those of large spheres overlap, by about the same amount. About 2.9 pairs per sphere
 /// touch, of 4.9 that are near. Nothing holds the bed together: its time step is so short that it
 /// does not move.
 pub(crate) fn bed(threads: usize) -> State {
@@ -79,13 +79,13 @@ fn contacts(state: &State, threads: usize) -> Contacts {
         ..Contacts::default()
     };
     let clusters: Vec<u32> = (0..poses.len() as u32).collect();
-    // As if they had come together: what they overlap by presses.
+    // As if they had come together: their overlaps give forces.
     contacts.relist(near_pairs(poses, &clusters, SKIN_M), |_| 0.0);
     contacts.divide(poses.len(), threads);
     contacts
 }
 
-/// Numbers from 0 to 1 that look random (SplitMix64).
+/// Pseudo-random numbers from 0 to 1 (SplitMix64).
 struct Random(u64);
 
 impl Random {

@@ -1,8 +1,8 @@
-//! The time step of dem-run on 20,000 single spheres that touch as those of a settled heap do, on
-//! one thread and on all: `cargo bench -p dem-tests --bench heap`.
+//! The time step of dem-run for 20,000 single spheres with contacts as in a settled heap, on one
+//! thread and on all: `cargo bench -p dem-tests --bench heap`.
 //!
-//! "contacts" is the pass over the contacts alone; "step" the whole step; "relist" the search for
-//! near pairs, which a settled heap needs rarely.
+//! "contacts" is the pass over the contacts alone; "step" the complete step; "relist" the search
+//! for near pairs, which a settled heap rarely needs.
 #![allow(
     missing_docs,
     clippy::expect_used,

@@ -1,5 +1,4 @@
-//! Static cases of Chen et al. 2022, run through the time stepping to rest, and the page about
-//! them.
+//! Static cases of Chen et al. 2022, run to rest by time stepping, and the page about them.
 
 mod bar;
 mod cases;
@@ -12,7 +11,7 @@ use self::tables::{
 };
 use super::page::{assert_shown, filled, on_one_thread};
 
-/// Runs all five cases, holds each against its exact solution, and the page against what came out.
+/// Runs all five cases, and compares each with its exact solution, and the page with the results.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
     assert_shown(&on_one_thread(files));

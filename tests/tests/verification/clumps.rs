@@ -1,4 +1,4 @@
-//! Rigid clumps that turn freely, and their replacement by bonded clusters.
+//! Freely rotating rigid clumps, and their replacement by bonded clusters.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use super::table::{Case, compared};
 const RADIUS_M: f64 = 5e-3;
 const DENSITY_KG_M3: f64 = 2500.0;
 
-/// Steps in which a body turns by a radian.
+/// Number of steps per radian of rotation.
 const PER_RADIAN: f64 = 20.0;
 
 /// A body of equal spheres whose principal axes are x, y and z and whose centre is the origin.
@@ -90,8 +90,8 @@ fn about(axis: Vector3<f64>, angle: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Unit::new_normalize(axis), angle)
 }
 
-/// Rotation since the start of a symmetric top about x with this spin: it turns about its own axis,
-/// while that goes about its angular momentum.
+/// Rotation since the start of a symmetric top about x with this spin: it rotates about its own
+/// axis, while that precesses about its angular momentum.
 fn symmetric_top(body: &Body, spin: Vector3<f64>, time_s: f64) -> UnitQuaternion<f64> {
     let moments = body.moments_kg_m2();
     let momentum = moments.component_mul(&spin);
@@ -99,8 +99,8 @@ fn symmetric_top(body: &Body, spin: Vector3<f64>, time_s: f64) -> UnitQuaternion
     about(momentum, momentum.norm() / moments.y * time_s) * about(Vector3::x(), own * time_s)
 }
 
-/// How far a symmetric top is turned from the closed form, over the angle through which it has
-/// turned: the splitting turns it exactly, but for rounding.
+/// Deviation of the rotation of a symmetric top from the closed form, over the angle of rotation:
+/// the splitting is exact for it, except for rounding.
 fn symmetric() -> String {
     let mut cases = Vec::new();
     for spin in [[100.0, 10.0, 0.0], [100.0, 60.0, 0.0], [10.0, 100.0, 20.0]] {
@@ -130,7 +130,7 @@ fn elliptic(modulus_squared: f64) -> f64 {
     0.5 * PI / a
 }
 
-/// Period of the spin of a free body in its own axes, from its moments of inertia, rising, s.
+/// Period of the spin of a free body in its own axes, from its moments of inertia, ascending, s.
 fn euler_period_s(moments: Vector3<f64>, spin: Vector3<f64>) -> f64 {
     let momentum = moments.component_mul(&spin);
     let (square, twice_energy) = (momentum.norm_squared(), momentum.dot(&spin));
@@ -145,7 +145,7 @@ fn euler_period_s(moments: Vector3<f64>, spin: Vector3<f64>) -> f64 {
     4.0 * elliptic(part / rate) / (rate / (i1 * i2 * i3)).sqrt()
 }
 
-/// Period of the spin of the cross in its own axes, as a run shows it, s.
+/// Period of the spin of the cross in its own axes, measured in a run, s.
 fn period_s(spin: [f64; 3], per_radian: f64) -> f64 {
     let size = Vector3::from(spin).norm();
     let momentum = CROSS.moments_kg_m2().component_mul(&Vector3::from(spin));
@@ -192,13 +192,13 @@ fn asymmetric() -> String {
     compared("turns about", "ms", &cases)
 }
 
-/// Sums over spheres, half a step before their places stand, where their velocities do.
+/// Sums over spheres, at the time of their velocities, half a step before that of their positions.
 #[derive(Debug, Clone, Copy, Default)]
 struct Whole {
     mass_kg: f64,
     centre_m: Vector3<f64>,
     momentum_n_s: Vector3<f64>,
-    /// About the centre.
+    /// Angular momentum about the centre.
     angular_n_m_s: Vector3<f64>,
     /// Sum of the three moments.
     inertia_kg_m2: f64,
@@ -247,8 +247,8 @@ impl Whole {
     }
 }
 
-/// What a clump and the cluster that takes its place have in common: sums over the spheres, and
-/// their places.
+/// The quantities that a clump and the cluster that replaces it have in common: sums over the
+/// spheres, and their positions.
 fn replaced() -> [String; 2] {
     let (spin, velocity) = ([30.0, 20.0, 100.0], [3.0, -2.0, 1.0]);
     let step_s = 1e-5;
@@ -263,7 +263,8 @@ fn replaced() -> [String; 2] {
     let (spin, velocity) = (Vector3::from(spin), Vector3::from(velocity));
     let found = Whole::of(&state);
     let wanted = Whole::of_clump(velocity, spin, state.time_s - 0.5 * step_s);
-    // Spheres go straight on in the first step, by the square of its angle off their circle.
+    // Spheres move in straight lines in the first step, which deviate from their circle by the
+    // square of its angle.
     let straight = (spin.norm() * step_s).powi(2);
     let off = found.angular_n_m_s - wanted.angular_n_m_s;
     let angular = wanted.angular_n_m_s.norm();
@@ -303,7 +304,7 @@ fn replaced() -> [String; 2] {
             straight,
         ),
     ];
-    // Where the clump of a step before would have gone.
+    // The path of the clump of the previous step.
     let in_body = (turned.inverse() * wanted.angular_n_m_s).component_div(&CROSS.moments_kg_m2());
     let spin = turned * in_body;
     let turned = about(spin, spin.norm() * step_s) * turned;
@@ -317,7 +318,7 @@ fn replaced() -> [String; 2] {
     [compared("sum", "", &sums), compared("place", "mm", &places)]
 }
 
-/// The page of clumps is what the solver gives.
+/// The page of clumps equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
     let page = on_one_thread(|| {

@@ -1,4 +1,4 @@
-//! Impacts, head-on and oblique, and rolling, against closed forms.
+//! Impacts, head-on and oblique, and rolling, compared with closed forms.
 
 use std::f64::consts::PI;
 
@@ -13,11 +13,11 @@ const RADIUS_M: f64 = 0.01;
 const DENSITY_KG_M3: f64 = 2500.0;
 const YOUNG_PA: f64 = 70e6;
 const POISSON: f64 = 0.25;
-/// Of the linear law.
+/// Stiffness of the linear law.
 const STIFFNESS_N_M: f64 = 1e5;
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// Steps in an elastic impact.
+/// Number of steps in an elastic impact.
 const STEPS: f64 = 1000.0;
 
 /// Duration of an elastic impact of Hertz's law over largest overlap and speed: the integral of
@@ -30,21 +30,21 @@ enum Law {
     Linear,
 }
 
-/// A ball that meets a rigid wall, or another ball of its kind.
+/// A ball that hits a rigid wall, or another equal ball.
 #[derive(Debug, Clone, Copy)]
 struct Impact {
     law: Law,
     pair: bool,
     restitution: f64,
     friction: f64,
-    /// Of the ball against what it meets: across and along the normal, m/s.
+    /// Velocity of the ball relative to the other object: tangential and normal, m/s.
     velocity_m_s: [f64; 2],
 }
 
-/// What came of an impact.
+/// Result of an impact.
 #[derive(Debug, Clone, Copy)]
 struct Rebound {
-    /// Across and along the normal, m/s.
+    /// Tangential and normal, m/s.
     velocity_m_s: [f64; 2],
     spin_rad_s: f64,
     duration_s: f64,
@@ -107,7 +107,7 @@ impl Impact {
         }
     }
 
-    /// The ball at a distance that it goes in `away` seconds, with this time step.
+    /// The ball at the distance that it covers in `away` seconds, with this time step.
     fn scene(&self, time_step: &str, away_s: f64) -> String {
         let law = match self.law {
             Law::Hertz => "law = \"hertz-mindlin\"".to_owned(),
@@ -140,8 +140,8 @@ impl Impact {
         )
     }
 
-    /// Runs until the ends part. They meet in the middle of a step, and of the step in which they
-    /// part the moment is known by a straight line.
+    /// Runs until the ends separate. They meet in the middle of a step; the time of separation
+    /// within its step is found by linear interpolation.
     fn run(&self, steps: f64) -> Rebound {
         let step_s = self.duration_s() / steps;
         self.run_from(&mut started(
@@ -149,8 +149,8 @@ impl Impact {
         ))
     }
 
-    /// The same with the time step that the solver chooses by itself, the ends meeting after so
-    /// many steps.
+    /// The same with the time step chosen by the solver, where the ends meet after this number of
+    /// steps.
     fn run_as_planned(&self, after_steps: f64) -> Rebound {
         let step_s = planned(&self.scene("\"auto\"", 0.0)).step.step_s;
         let mut state = started(&self.scene("\"auto\"", after_steps * step_s));
@@ -198,7 +198,7 @@ fn mass_kg() -> f64 {
     DENSITY_KG_M3 * 4.0 / 3.0 * PI * RADIUS_M.powi(3)
 }
 
-/// Against what a pair meets.
+/// The other object of an impact.
 fn other(pair: bool) -> &'static str {
     if pair {
         "ball and ball"
@@ -207,8 +207,8 @@ fn other(pair: bool) -> &'static str {
     }
 }
 
-/// Elastic impacts: duration and largest overlap. Leapfrog is of second order, with the duration
-/// as half a period.
+/// Elastic impacts: duration and largest overlap. Leapfrog is of second order, with the duration as
+/// half a period.
 fn elastic() -> [String; 3] {
     let bound = (PI / STEPS).powi(2);
     let mut tables = [Vec::new(), Vec::new(), Vec::new()];
@@ -237,7 +237,7 @@ fn elastic() -> [String; 3] {
     ]
 }
 
-/// Damping ratio that gives a restitution, by halving of the closed form on the page.
+/// Damping ratio for a restitution, by bisection of the closed form on the page.
 fn damping_ratio(restitution: f64) -> f64 {
     let (mut low, mut high) = (0.0, 100.0);
     for _ in 0..100 {
@@ -256,9 +256,9 @@ fn damping_ratio(restitution: f64) -> f64 {
     low
 }
 
-/// Restitution. The linear law's is of second order in the step over the faster of the two times
-/// of a damped swing; Hertz's stiffness grows within a step, which leaves a part of the first
-/// order.
+/// Bound of the restitution error. That of the linear law is of second order in the step over the
+/// faster of the two times of a damped oscillation; Hertz's stiffness grows within a step, which
+/// leaves a part of first order.
 fn restitution_bound(law: Law, restitution: f64, fraction: f64) -> f64 {
     let zeta = damping_ratio(restitution);
     let fraction = fraction * (zeta + zeta.hypot(1.0));
@@ -291,8 +291,8 @@ fn restitution() -> String {
     compared("impact", "", &cases)
 }
 
-/// The same at the step that the solver chooses: the worst of twenty moments within a step at which
-/// the ends may meet.
+/// The same at the step chosen by the solver: the worst of twenty times within a step at which the
+/// ends may meet.
 fn restitution_as_planned() -> String {
     let mut cases = Vec::new();
     for law in [Law::Hertz, Law::Linear] {
@@ -301,7 +301,7 @@ fn restitution_as_planned() -> String {
             let step_s = planned(&impact.scene("\"auto\"", 0.0)).step.step_s;
             let bound = match law {
                 Law::Hertz => restitution_bound(law, wanted, step_s / impact.duration_s()),
-                // What the step is chosen for.
+                // The tolerance for which the step is chosen.
                 Law::Linear => 0.01,
             };
             let moments = (0..20).map(|n| 2.0 + (f64::from(n) + 0.5) / 20.0);
@@ -313,8 +313,8 @@ fn restitution_as_planned() -> String {
     compared("impact", "", &cases)
 }
 
-/// Rebound of the Hertz-Mindlin law at restitution 1 by its equations, step by step without the
-/// solver: tangential velocity and spin.
+/// Rebound of the Hertz-Mindlin law at restitution 1 by its equations, integrated step by step
+/// without the solver: tangential velocity and spin.
 fn integrated(impact: &Impact, steps: f64) -> [f64; 2] {
     let step_s = impact.duration_s() / steps;
     let mass = mass_kg();
@@ -331,7 +331,7 @@ fn integrated(impact: &Impact, steps: f64) -> [f64; 2] {
         let normal = 4.0 / 3.0 * impact.effective_young_pa() * root * overlap;
         let stiffness = 8.0 * shear_pa * root;
         let lever = RADIUS_M - 0.5 * overlap;
-        // While the load rises the spring keeps its force, while it falls its elongation.
+        // While the load increases the spring keeps its force, while it decreases its elongation.
         if stiffness > stiffness_before {
             spring *= stiffness_before / stiffness;
         }
@@ -358,7 +358,7 @@ fn oblique() -> [String; 2] {
         let found = impact.run(STEPS);
         let [across, along] = impact.velocity_m_s;
         let slides = across > 3.5 * 0.1 * 2.0 * along;
-        // A share of the lever that the closed form takes for the radius.
+        // Relative error of the lever, for which the closed form uses the radius.
         let lever = 0.5 * impact.overlap_m() / RADIUS_M;
         let (what, wanted, bounds) = if slides {
             let pushed = 0.1 * 2.0 * along;
@@ -394,7 +394,7 @@ fn oblique() -> [String; 2] {
     ]
 }
 
-/// The linear law without damping, where friction holds the ball all along.
+/// The linear law without damping, where friction holds the ball throughout.
 fn oblique_linear() -> String {
     let mut linear = Vec::new();
     for angle in [1.0_f64, 5.0, 10.0, 15.0] {
@@ -412,8 +412,7 @@ fn oblique_linear() -> String {
     compared("angle to the normal", "m/s", &linear)
 }
 
-/// A ball that rests on a plane, pressed by its weight as far as it sinks in, under gravity turned
-/// by `angle`.
+/// A ball at rest on a plane, with the overlap due to its weight, under gravity rotated by `angle`.
 fn on_plane(angle_rad: f64, friction: &str, velocity_m_s: f64, spin_rad_s: f64) -> State {
     let normal_n = mass_kg() * GRAVITY_M_S2 * angle_rad.cos();
     let young = YOUNG_PA / (1.0 - POISSON * POISSON);
@@ -434,8 +433,8 @@ fn on_plane(angle_rad: f64, friction: &str, velocity_m_s: f64, spin_rad_s: f64) 
     ))
 }
 
-/// Overlap over radius of a ball on a plane: by so much its lever is shorter than its radius, and
-/// twice that by friction's and inertia's.
+/// Ratio of overlap to radius of a ball on a plane: the relative reduction of its lever; for
+/// friction and inertia twice that.
 fn sunk() -> f64 {
     let young = YOUNG_PA / (1.0 - POISSON * POISSON);
     let force = mass_kg() * GRAVITY_M_S2;
@@ -448,8 +447,8 @@ fn until(state: &mut State, time_s: f64) {
     }
 }
 
-/// Mean acceleration along x between two times, m/s2. Velocities stand half a step before the
-/// state's time, both.
+/// Mean acceleration along x between two times, m/s2. Both velocities are those of half a step
+/// before the state's time.
 fn acceleration(state: &mut State, from_s: f64, to_s: f64) -> [f64; 2] {
     until(state, from_s);
     let (start_s, before) = (state.time_s, [velocity(state, 0).x, spin(state, 0).y]);
@@ -503,7 +502,7 @@ fn sliding_to_rolling() -> String {
     )
 }
 
-/// Accelerations on an incline, of a ball that rolls or slides.
+/// Accelerations on an incline, of a rolling or sliding ball.
 fn incline() -> [String; 2] {
     let mut tables = [Vec::new(), Vec::new()];
     for degrees in [5.0_f64, 15.0, 30.0, 45.0, 50.0, 60.0] {
@@ -530,7 +529,7 @@ fn incline() -> [String; 2] {
     ]
 }
 
-/// Rolling friction: how it slows a ball down, on the flat and on an incline.
+/// Rolling friction: deceleration of a ball on the flat and on an incline.
 fn rolling_friction() -> String {
     let mut cases = Vec::new();
     for kind in ["constant-torque", "spring-dashpot"] {
@@ -570,7 +569,7 @@ fn held() -> String {
     compared("incline", "m/s", &cases)
 }
 
-/// The page of contacts is what the solver gives.
+/// The page of contacts equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
     let page = on_one_thread(|| {

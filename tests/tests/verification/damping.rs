@@ -1,4 +1,4 @@
-//! Swings of one bond with damping of bonds or of particles, and where they come to rest.
+//! Oscillations of one bond with damping of bonds or of particles, and their rest positions.
 
 use std::f64::consts::PI;
 
@@ -15,10 +15,10 @@ const POISSON: f64 = 0.25;
 const DENSITY_KG_M3: f64 = 2500.0;
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// Step times circular frequency.
+/// Step times angular frequency.
 const STEP: f64 = 0.01;
 
-/// How two spheres swing against each other.
+/// Mode in which two spheres oscillate against each other.
 #[derive(Debug, Clone, Copy)]
 enum Mode {
     Axial,
@@ -49,7 +49,7 @@ impl Mode {
         }
     }
 
-    /// N/m or N m/rad.
+    /// Stiffness, N/m or N m/rad.
     fn stiffness(self) -> f64 {
         let shear = YOUNG_PA / (2.0 * (1.0 + POISSON));
         match self {
@@ -59,7 +59,7 @@ impl Mode {
         }
     }
 
-    /// kg or kg m2, of two equal spheres.
+    /// Reduced mass or inertia, kg or kg m2, of two equal spheres.
     fn reduced(self) -> f64 {
         0.5 * match self {
             Self::Axial => mass_kg(),
@@ -71,7 +71,7 @@ impl Mode {
         (self.stiffness() / self.reduced()).sqrt()
     }
 
-    /// At which each of two free spheres starts, m/s or rad/s.
+    /// Initial speed of each of two free spheres, m/s or rad/s.
     fn start_speed(self) -> f64 {
         let moved = if matches!(self, Self::Axial) {
             LENGTH_M
@@ -81,7 +81,7 @@ impl Mode {
         1e-4 * moved * self.omega_rad_s()
     }
 
-    /// How two free spheres start: opposite velocities or spins.
+    /// Initial condition of two free spheres: opposite velocities or spins.
     fn start(self) -> String {
         let of = match self {
             Self::Axial => "velocity = [V, 0, 0]",
@@ -97,7 +97,7 @@ impl Mode {
         )
     }
 
-    /// Displacement of the second sphere against the first, and its rate half a step before.
+    /// Displacement of the second sphere relative to the first, and its rate half a step before.
     fn relative(self, state: &State) -> [f64; 2] {
         let turn = |i: usize| state.particles.poses[i].rotation().scaled_axis();
         let turned = turn(1) - turn(0);
@@ -113,8 +113,8 @@ impl Mode {
     }
 }
 
-/// Two spheres and their bond along x, with keys of `[run]`, damping of the bond, and what else is
-/// done to "left" and "right".
+/// Two spheres and their bond along x, with keys of `[run]`, damping of the bond, and further
+/// tables for "left" and "right".
 fn pair(run: &str, damping: &str, more: &str) -> State {
     started(&format!(
         r#"
@@ -130,7 +130,7 @@ fn pair(run: &str, damping: &str, more: &str) -> State {
     ))
 }
 
-/// Times and speeds at which a swing passes through its middle.
+/// Times and speeds at which an oscillation passes through its middle.
 fn crossings(mode: Mode, state: &mut State, count: usize) -> Vec<[f64; 2]> {
     let mut found = Vec::new();
     let mut before = mode.relative(state);
@@ -138,7 +138,7 @@ fn crossings(mode: Mode, state: &mut State, count: usize) -> Vec<[f64; 2]> {
     while found.len() < count {
         step(state);
         let now = mode.relative(state);
-        // Rates stand half a step before: the one before, and that which comes after.
+        // Rates are those of half a step earlier: the previous one and the next one.
         if let Some(at_s) = at_s.take() {
             let part: f64 = (at_s - state.time_s) / state.time_step_s + 1.5;
             found.push([at_s, (before[1] + part * (now[1] - before[1])).abs()]);
@@ -152,7 +152,7 @@ fn crossings(mode: Mode, state: &mut State, count: usize) -> Vec<[f64; 2]> {
     found
 }
 
-/// Logarithmic decrement and duration of half a swing.
+/// Logarithmic decrement and duration of half an oscillation.
 fn half_swing(crossings: &[[f64; 2]]) -> [f64; 2] {
     let (first, last) = (crossings[0], crossings[crossings.len() - 1]);
     let oscillations = (crossings.len() - 1) as f64;
@@ -162,8 +162,8 @@ fn half_swing(crossings: &[[f64; 2]]) -> [f64; 2] {
     ]
 }
 
-/// Damping ratios and frequencies of damped bonds. The dashpots take the velocity of half a step
-/// ago, which is as if the mass were less by a share of zeta omega dt.
+/// Damping ratios and frequencies of damped bonds. The dashpots use the velocity of half a step
+/// earlier, equivalent to a mass that is smaller by a fraction zeta omega dt.
 fn damped_bonds() -> [String; 2] {
     let (mut ratios, mut frequencies) = (Vec::new(), Vec::new());
     let fraction = |mode: Mode| match mode {
@@ -220,7 +220,8 @@ fn damped_bonds() -> [String; 2] {
     ]
 }
 
-/// What is booked as taken by damping once a swing has died down, over the energy at its start.
+/// Energy recorded as dissipated by damping once an oscillation has decayed, over the initial
+/// energy.
 fn booked() -> String {
     let mut cases = Vec::new();
     for mode in MODES {
@@ -239,7 +240,8 @@ fn booked() -> String {
 
 const HELD: &str = "supports.left = { group = \"left\", fixed = true }\n";
 
-/// Particle damping of a sphere that swings on a held one: decrement and duration of half a swing.
+/// Particle damping of a sphere that oscillates on a fixed one: decrement and duration of half an
+/// oscillation.
 fn particle_damping() -> [String; 2] {
     let (mut decrements, mut durations) = (Vec::new(), Vec::new());
     let omega = (Mode::Axial.stiffness() / mass_kg()).sqrt();
@@ -256,8 +258,8 @@ fn particle_damping() -> [String; 2] {
         let what = format!("{gamma}");
         decrements.push(Case::new(what.clone(), decrement, wanted, bound));
         let wanted = quarter(1.0 - gamma) + quarter(1.0 + gamma);
-        // A step late, the force is 2 gamma too large for that long, and the quarter after it by
-        // so much shorter.
+        // One step late, the force is too large by 2 gamma for that time, and the following quarter
+        // is shorter by the same effect.
         let late = 2.0 * gamma / (1.0 - gamma) * STEP / (omega * wanted);
         let bound = late + STEP * STEP;
         durations.push(Case::new(what, 1e6 * half_s, 1e6 * wanted, bound));
@@ -292,7 +294,7 @@ fn fall() -> String {
     compared("gamma", "m/s2", &cases)
 }
 
-/// Where a loaded sphere comes to rest, whatever damps it.
+/// Rest position of a loaded sphere, for any type of damping.
 fn rest() -> String {
     let phi = 20.0 * RADIUS_M * RADIUS_M * (1.0 + POISSON) / (3.0 * LENGTH_M * LENGTH_M);
     let shear = 12.0 * YOUNG_PA * second_moment_m4() / (LENGTH_M.powi(3) * (1.0 + phi));
@@ -314,7 +316,7 @@ fn rest() -> String {
                 step(&mut state);
             }
             let moved = place(&state, 1);
-            // Half the length is the lever of a force across, of its moment and of its turn.
+            // Half the length is the lever of a transverse force, for its moment and its rotation.
             let half = 0.5 * LENGTH_M;
             let (found, wanted) = if direction == "along" {
                 (moved.x - LENGTH_M, along / Mode::Axial.stiffness())
@@ -330,7 +332,7 @@ fn rest() -> String {
     compared("damping, load", "nm", &cases)
 }
 
-/// The page of damping is what the solver gives.
+/// The page of damping equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
     let page = on_one_thread(|| {

@@ -1,4 +1,4 @@
-//! One bond that breaks, by every criterion, at every rate, and many whose strengths scatter.
+//! Breakage of one bond, by every criterion, at every rate, and of many with scattered strengths.
 
 use std::f64::consts::PI;
 
@@ -21,15 +21,16 @@ const COMPRESSION_PA: f64 = 1.3e6;
 const SHEAR_PA: f64 = 0.7e6;
 const VON_MISES_PA: f64 = 1.1e6;
 
-/// Steps in which a load rises to its end. A bond breaks at the first step at which it carries more
-/// than its strength: late by one step of the load at most.
+/// Number of steps in which a load rises to its final value. A bond breaks at the first step at
+/// which it carries more than its strength: at most one load step late.
 const STEPS: f64 = 10_000.0;
-/// Of its end, a load has come to this share when the bond breaks: in the middle of a step.
+/// Fraction of its final value that a load has reached when the bond breaks: in the middle of a
+/// step.
 const FRACTION: f64 = 0.700_05;
-/// Bonds break at strains of some 1e-6; loads are linear in displacements but for such a share.
+/// Relative nonlinearity of loads in displacements: bonds break at strains of about 1e-6.
 const STRAIN: f64 = 1e-5;
 
-/// Axial and bending stress, shear stress and that of torsion, in some proportion, Pa.
+/// Axial, bending, shear and torsional stress, in some proportion, Pa.
 #[derive(Debug, Clone, Copy)]
 struct Stresses {
     axial: f64,
@@ -45,7 +46,7 @@ const NONE: Stresses = Stresses {
     torsion: 0.0,
 };
 
-/// A strength: its key, and what it is of.
+/// A strength: its key, and its type of stress.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Criterion {
     Tension,
@@ -73,7 +74,7 @@ impl Criterion {
         }
     }
 
-    /// Share of the strength that stresses use.
+    /// Utilisation of the strength by these stresses.
     fn used(self, s: Stresses) -> f64 {
         let sheared = s.shear + s.torsion;
         match self {
@@ -106,8 +107,8 @@ fn shear_stiffness_n_m() -> f64 {
     12.0 * YOUNG_PA * second_moment_m4() / (LENGTH_M.powi(3) * (1.0 + phi))
 }
 
-/// Two spheres and their Timoshenko bond along x; `failure` are the keys of its failure, `more` is
-/// what is done to the spheres "left" and "right".
+/// Two spheres and their Timoshenko bond along x; `failure` are its failure keys, `more` is added
+/// for the spheres "left" and "right".
 fn bond(failure: &str, run: &str, more: &str) -> State {
     started(&format!(
         r#"
@@ -123,7 +124,7 @@ fn bond(failure: &str, run: &str, more: &str) -> State {
     ))
 }
 
-/// Runs until the first bond breaks: when forces were computed by which it did, s.
+/// Runs until the first bond breaks. Returns the time of the forces that broke it, s.
 fn breaks_s(state: &mut State, end_s: f64) -> f64 {
     while state.time_s <= end_s {
         let now_s = state.time_s;
@@ -135,8 +136,8 @@ fn breaks_s(state: &mut State, end_s: f64) -> f64 {
     f64::NAN
 }
 
-/// Share of these stresses at which a bond breaks whose ends are displaced and turned such that it
-/// carries them at the end.
+/// Fraction of these stresses at which a bond breaks whose ends are displaced and rotated such that
+/// it carries them at the end.
 fn breaks_at(criterion: Criterion, end: Stresses) -> f64 {
     let strain = end.axial / YOUNG_PA;
     let slid_m = end.shear * area_m2() / shear_stiffness_n_m();
@@ -155,7 +156,7 @@ fn breaks_at(criterion: Criterion, end: Stresses) -> f64 {
     breaks_s(&mut bond(&criterion.key(), &run, &more), 1.0)
 }
 
-/// Stresses in proportion, by what they are of.
+/// Proportions of stresses, by their type.
 const LOADS: [(&str, Stresses); 9] = [
     ("tension", Stresses { axial: 1.0, ..NONE }),
     (
@@ -215,7 +216,7 @@ const LOADS: [(&str, Stresses); 9] = [
     ),
 ];
 
-/// The loads that each criterion is tried with.
+/// The loads with which each criterion is tested.
 const TRIED: [(Criterion, &[&str]); 4] = [
     (
         Criterion::Tension,
@@ -242,7 +243,7 @@ const TRIED: [(Criterion, &[&str]); 4] = [
     ),
 ];
 
-/// All criteria under single and mixed loads: the largest stress as the bond breaks.
+/// All criteria under single and mixed loads: the largest stress at the break.
 fn by_displacement() -> String {
     let tried = TRIED.iter().flat_map(|(criterion, names)| {
         let of = move |name: &&str| LOADS.iter().find(|load| load.0 == *name).unwrap();
@@ -270,8 +271,8 @@ fn by_displacement() -> String {
     compared("criterion: load", "MPa", &cases.collect::<Vec<_>>())
 }
 
-/// Loads on the free end that rise slowly. Damping of the coefficient c takes c/k times the rate of
-/// the load from what a bond of stiffness k carries.
+/// Slowly increasing loads on the free end. Damping with the coefficient c reduces the load of a
+/// bond of stiffness k by c/k times the rate of the load.
 fn by_load() -> String {
     let mass_kg = 2500.0 * 4.0 / 3.0 * PI * RADIUS_M.powi(3);
     let inertia_kg_m2 = 0.4 * mass_kg * RADIUS_M * RADIUS_M;
@@ -302,7 +303,7 @@ fn by_load() -> String {
             of_bending_s,
         ),
         (
-            // The moment counts halfway along the bond.
+            // The moment is evaluated halfway along the bond.
             Criterion::Tension,
             "across the end, N",
             "force = [0, 1, 0]",
@@ -330,7 +331,7 @@ fn by_load() -> String {
     compared("load", "", &cases)
 }
 
-/// The dynamic increase factor as Platzer 2022 gives it in eq. 20.
+/// The dynamic increase factor of Platzer 2022, eq. 20.
 fn dynamic_increase_factor(rate_1_s: f64) -> f64 {
     let lg = rate_1_s.clamp(4.64e-6, 50.0).log10();
     if rate_1_s <= 0.1 {
@@ -340,11 +341,11 @@ fn dynamic_increase_factor(rate_1_s: f64) -> f64 {
     }
 }
 
-/// Steps until the static strength is reached: such that at no rate a bond breaks just as a step
-/// ends, where rounding decides which.
+/// Number of steps until the static strength is reached, such that at no rate a bond breaks just at
+/// the end of a step, where rounding decides.
 const STATIC_STEPS: f64 = 5066.7;
 
-/// Strength over static strength of a bond that is pulled at a rate.
+/// Strength over static strength of a bond under a constant strain rate.
 fn strengthened(rate_1_s: f64, from_1_s: f64) -> f64 {
     let static_s = TENSION_PA / YOUNG_PA / rate_1_s;
     let half = 0.5 * rate_1_s * LENGTH_M;
@@ -393,7 +394,8 @@ fn gamma(x: f64) -> f64 {
     (far - between).exp()
 }
 
-/// Strengths over the one given of bonds that are pulled alike, in the order in which they break.
+/// Ratios of the strengths of bonds under equal elongation to the given one, in the order of
+/// breakage.
 fn scattered(modulus: f64, count: usize, steps: f64) -> Vec<f64> {
     let spheres = (0..count).map(|i| {
         let y = 4.0 * RADIUS_M * i as f64;
@@ -439,8 +441,8 @@ fn scattered(modulus: f64, count: usize, steps: f64) -> Vec<f64> {
     strengths
 }
 
-/// Mean and deviation of the strengths, and their distance from the distribution. Bounds are three
-/// standard errors, and the step of the load.
+/// Mean and standard deviation of the strengths, and their distance from the distribution. Bounds
+/// are three standard errors, and the step of the load.
 fn scatter() -> String {
     const COUNT: usize = 2000;
     const STEPS: f64 = 500.0;
@@ -484,7 +486,7 @@ fn scatter() -> String {
     compared("Weibull modulus", "", &cases)
 }
 
-/// The page of failure is what the solver gives.
+/// The page of failure equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
     let page = on_one_thread(|| {

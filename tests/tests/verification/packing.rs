@@ -1,4 +1,4 @@
-//! Packed shapes: what the report says of them, against the definitions, counted anew.
+//! Packed shapes: the values of the report compared with their definitions, computed separately.
 
 use std::f64::consts::PI;
 
@@ -11,18 +11,18 @@ use super::page::{assert_shown, filled, on_one_thread};
 use super::table::{Case, compared};
 use crate::root;
 
-/// Spheres touch at radii smaller by this: the overlap of Platzer 2022, table 1.
+/// Overlap of Platzer 2022, table 1: spheres touch at radii smaller by this.
 const OVERLAP: f64 = 0.25;
-/// Bonds join pairs up to this times the sum of their radii apart: as there.
+/// Bond range of the same table: bonds join pairs up to this times the sum of their radii apart.
 const BONDING: f64 = 1.1;
 
-/// Density of the spheres, as there.
+/// Density of the spheres in the same table.
 const DENSITY_KG_M3: f64 = 2050.0;
 
-/// Points by which a volume is counted.
+/// Number of points for the estimate of a volume.
 const POINTS: u32 = 100_000;
 
-/// A shape of `data/shapes` with a closed form, and the diameters that it is packed with.
+/// A shape of `data/shapes` with a closed form, and the diameters of its packing.
 #[derive(Debug, Clone, Copy)]
 struct Shape {
     name: &'static str,
@@ -30,13 +30,13 @@ struct Shape {
     /// Box around it, m.
     box_m: [[f64; 3]; 2],
     volume_m3: f64,
-    /// By how much the facets may fall short of the volume.
+    /// Relative deficit of the volume due to the facets.
     facets: f64,
     /// Distance from the surface, positive inside, m.
     depth_m: fn(&Vector3<f64>) -> f64,
 }
 
-/// A box from the origin's middle upwards.
+/// A box with the origin in the middle of its lower face.
 const BAR_M: [f64; 3] = [0.03, 0.03, 0.06];
 /// Radius and thickness of a disc whose axis is y.
 const DISC_M: [f64; 2] = [0.025, 0.025];
@@ -102,7 +102,7 @@ fn shapes() -> [Shape; 3] {
     ]
 }
 
-/// Of numbers in a file that have 24 bits.
+/// Rounding of numbers in a file, which have 24 bits.
 const ROUNDING: f64 = 1e-6;
 
 /// A packed shape.
@@ -113,8 +113,8 @@ struct Packed {
     report: BodyReport,
 }
 
-/// A shape packed with spheres that touch at radii smaller by `overlap`; without settling if the
-/// front is to stay as it is.
+/// A shape packed with spheres that touch at radii smaller by `overlap`; `settle` is 0 for an
+/// unsettled front.
 fn packed(shape: Shape, overlap: f64, settle: Option<f64>) -> Packed {
     let file = root().join(format!("data/shapes/{}.stl", shape.name));
     let reading = ReadSettings {
@@ -154,13 +154,14 @@ impl Packed {
         places.zip(self.body.radii.iter().copied())
     }
 
-    /// Volume of all spheres at radii over this, overlaps counted twice, m3.
+    /// Volume of all spheres with their radii divided by this, overlaps counted twice, m3.
     fn sum_m3(&self, over: f64) -> f64 {
         let volume = |radius: f64| 4.0 / 3.0 * PI * (radius / over).powi(3);
         self.body.radii.iter().map(|&radius| volume(radius)).sum()
     }
 
-    /// Volume inside spheres, m3, and its standard error, from points evenly spread in the box.
+    /// Volume of the union of the spheres, m3, and its standard error, from points evenly spread in
+    /// the box.
     fn union_m3(&self) -> [f64; 2] {
         let [low, high] = self.shape.box_m.map(Vector3::from);
         let size = high - low;
@@ -196,7 +197,8 @@ impl Packed {
         (near, largest)
     }
 
-    /// Largest part of its radius by which a sphere stands out of the shape; 0 if none does.
+    /// Largest protrusion of a sphere from the shape, as a fraction of its radius; 0 if there is
+    /// none.
     fn stands_out(&self) -> f64 {
         let out =
             |(place, radius): (Vector3<f64>, f64)| (radius - (self.shape.depth_m)(&place)) / radius;
@@ -204,7 +206,7 @@ impl Packed {
     }
 }
 
-/// Volumes of shapes, of what is inside spheres, and of the reduced spheres.
+/// Volumes of shapes, of the union of the spheres, and of the reduced spheres.
 fn volumes(all: &[Packed]) -> [String; 3] {
     let (mut shapes, mut unions, mut reduced) = (Vec::new(), Vec::new(), Vec::new());
     for packed in all {
@@ -236,7 +238,7 @@ fn volumes(all: &[Packed]) -> [String; 3] {
     ]
 }
 
-/// What is counted: bonds, density, sizes, overlaps and walls.
+/// Values found by counting: bonds, density, sizes, overlaps and walls.
 fn counts(all: &[Packed]) -> [String; 3] {
     let (mut counted, mut sizes, mut exact) = (Vec::new(), Vec::new(), Vec::new());
     for packed in all {
@@ -286,7 +288,7 @@ fn counts(all: &[Packed]) -> [String; 3] {
     ]
 }
 
-/// How far spheres overlap that touch in the front, which puts each against three others. Printed:
+/// Overlaps of touching spheres in the front, which puts each against three others. Printed:
 /// spheres of 1 mm and 0.7 mm at an overlap of 0.1.
 fn touching() -> String {
     let [bar, ..] = shapes();
@@ -316,10 +318,10 @@ fn touching() -> String {
     )
 }
 
-/// Rounding of places, and of the corners of the shapes, over radii.
+/// Rounding of positions, and of the corners of the shapes, relative to radii.
 const EXACT: f64 = 1e-9;
 
-/// The page of packing is what the packer gives.
+/// The page of packing equals the results of the packer.
 #[test]
 fn the_page_shows_what_the_packer_gives() {
     let page = on_one_thread(|| {

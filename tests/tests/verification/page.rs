@@ -1,4 +1,5 @@
-//! Pages in `tests/verification`: a text with places for tables, held against what is computed.
+//! Pages in `tests/verification`: a text with placeholders for tables, compared with the computed
+//! values.
 
 use std::fs;
 
@@ -6,7 +7,7 @@ use dem_testing::names_in;
 
 use crate::root;
 
-/// Puts tables where a text names them: `{name}`.
+/// Inserts tables at their placeholders: `{name}`.
 pub(crate) fn filled(text: &str, tables: &[(&str, String)]) -> String {
     let mut page = text.to_owned();
     for (name, table) in tables {
@@ -17,7 +18,7 @@ pub(crate) fn filled(text: &str, tables: &[(&str, String)]) -> String {
     page
 }
 
-/// Holds files of `tests/verification`, names and contents, against those that are there; with
+/// Compares files of `tests/verification`, names and contents, with the existing ones; with
 /// `RENEW_VERIFICATION` set, writes them instead.
 pub(crate) fn assert_shown(files: &[(String, String)]) {
     let folder = root().join("tests/verification");
@@ -42,14 +43,14 @@ pub(crate) fn assert_shown(files: &[(String, String)]) {
     );
 }
 
-/// On one worker thread: scenes here are too small for more, and handing each step to another
-/// thread takes longer than the step.
+/// Runs `work` on one worker thread: scenes here are too small for more, and handing each step to
+/// another thread takes longer than the step.
 pub(crate) fn on_one_thread<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.unwrap().install(work)
 }
 
-/// Every page is linked from README.md beside it, and every DOI on it stands in doc/references.md.
+/// Every page is linked from README.md next to it, and every DOI on it is in doc/references.md.
 #[test]
 fn pages_are_listed_and_so_are_their_sources() {
     let folder = root().join("tests/verification");

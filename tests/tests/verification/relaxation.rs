@@ -1,5 +1,5 @@
-//! Overlaps of particles that part by breakage, or overlap at the start: what they press, and that
-//! they gain no energy.
+//! Overlaps of particles that separate by breakage, or overlap at the start: their forces, and the
+//! absence of an energy gain.
 
 use std::f64::consts::PI;
 
@@ -14,9 +14,9 @@ const DENSITY_KG_M3: f64 = 2500.0;
 const YOUNG_PA: f64 = 70e6;
 const POISSON: f64 = 0.25;
 const GRAVITY_M_S2: f64 = 9.81;
-/// Overlap at the start.
+/// Initial overlap.
 const OVERLAP_M: f64 = 1e-3;
-/// Steps in an impact.
+/// Number of steps in an impact.
 const STEPS: f64 = 1000.0;
 
 /// Hertz's law between a ball and a rigid wall, or two balls.
@@ -45,7 +45,7 @@ impl Hertz {
         8.0 / 15.0 * self.stiffness() * overlap_m.powf(2.5)
     }
 
-    /// Speed that this energy is, m/s.
+    /// Speed with this kinetic energy, m/s.
     fn speed_m_s(self, energy_j: f64) -> f64 {
         (2.0 * energy_j / self.mass_kg()).sqrt()
     }
@@ -59,7 +59,8 @@ impl Hertz {
         2.943_275_184 * self.overlap_m(speed_m_s) / speed_m_s
     }
 
-    /// Overlapping balls, or a ball and a wall, that meet at this speed; part of them below 0.
+    /// Overlapping balls, or a ball and a wall, that approach at this speed, or separate if it is
+    /// below 0.
     fn scene(self, run: &str, restitution: f64, least: f64, speed_m_s: f64) -> State {
         let (height, other) = if self.pair {
             let below = format!("[[0, 0, 0, {RADIUS_M:e}]]");
@@ -86,7 +87,7 @@ impl Hertz {
         ))
     }
 
-    /// Overlap, m, and speed at which the ends part, m/s, half a step before.
+    /// Overlap, m, and separation speed, m/s, half a step before.
     fn apart(self, state: &State) -> [f64; 2] {
         if self.pair {
             let reach = (place(state, 0) - place(state, 1)).z;
@@ -106,7 +107,7 @@ impl Hertz {
     }
 }
 
-/// Runs until the ends are apart: largest overlap, m, and speed then, m/s.
+/// Runs until the ends are apart. Returns the largest overlap, m, and the separation speed, m/s.
 fn parted(hertz: Hertz, state: &mut State) -> [f64; 2] {
     let mut largest = 0.0_f64;
     loop {
@@ -119,7 +120,8 @@ fn parted(hertz: Hertz, state: &mut State) -> [f64; 2] {
     }
 }
 
-/// Balls that overlap at the start and are driven into each other: the law begins where they start.
+/// Balls that overlap at the start and are driven into each other: their initial overlap is the
+/// origin of the law.
 fn driven() -> [String; 2] {
     let (mut overlaps, mut speeds) = (Vec::new(), Vec::new());
     for pair in [false, true] {
@@ -141,7 +143,7 @@ fn driven() -> [String; 2] {
             }
             let what = format!("{what}, restitution {restitution}");
             // The damped law is of first order in the step over the faster time of the damped
-            // swing, as in any impact; 0.5 has this damping ratio.
+            // oscillation, as in any impact; 0.5 has this damping ratio.
             let zeta = 0.2553_f64;
             let bound = if restitution == 1.0 {
                 (PI / STEPS).powi(2)
@@ -157,8 +159,9 @@ fn driven() -> [String; 2] {
     ]
 }
 
-/// Balls at rest that overlap at the start, and balls that are pulled apart: with the overlap kept
-/// all of its energy is set free, relaxed none, and with a least overlap that of this overlap.
+/// Balls at rest that overlap at the start, and balls that are pulled apart: all energy of the
+/// overlap is released if it is kept, none if it is relaxed, and with a least overlap the energy of
+/// that overlap.
 fn released() -> String {
     let mut cases = Vec::new();
     for pair in [false, true] {
@@ -190,8 +193,8 @@ fn released() -> String {
         let [_, found] = parted(hertz, &mut hertz.scene(&with("relax"), 1.0, 0.05, -slow));
         let energy = hertz.energy_j(least_m);
         let wanted = hertz.speed_m_s(energy).hypot(slow);
-        // The pair becomes ordinary up to a step late, and its energy grows like the overlap to
-        // the power of 5/2.
+        // The pair becomes ordinary up to a step late, and its energy grows with the overlap to the
+        // power of 5/2.
         let late = 2.5 * slow * step_s / least_m + square;
         let what = format!("{name}, pulled apart, `relax`, `min_overlap = 0.05`");
         cases.push(Case::new(what, found, wanted, late));
@@ -199,8 +202,8 @@ fn released() -> String {
     compared("overlapping at the start", "m/s", &cases)
 }
 
-/// A ball that overlaps a wall is thrown up and falls back before it is free: it presses from the
-/// least overlap that it had.
+/// A ball that overlaps a wall is thrown up and falls back before it is free: the contact force
+/// starts at the smallest overlap reached.
 fn thrown() -> String {
     let hertz = Hertz { pair: false };
     let weight_n = hertz.mass_kg() * GRAVITY_M_S2;
@@ -208,7 +211,7 @@ fn thrown() -> String {
     let cases = [0.2, 0.5, 0.8].map(|fraction| {
         let rises_m = fraction * OVERLAP_M;
         let speed = (2.0 * GRAVITY_M_S2 * rises_m).sqrt();
-        // The swing is about as slow as one of the stiffness at half of its depth.
+        // The oscillation is about as slow as with the stiffness at half of its depth.
         let stiffness = 2.0 * hertz.stiffness() * (0.5 * sinks_m).sqrt();
         let step_s = (hertz.mass_kg() / stiffness).sqrt() * PI / STEPS;
         let run = format!(
@@ -228,7 +231,7 @@ fn thrown() -> String {
             };
         }
         let found = 1e6 * (deepest - (OVERLAP_M - rises_m));
-        // The top is met to half a step, and with it the place from where the ball falls.
+        // The top is accurate to half a step, and with it the position from which the ball falls.
         let top = 0.5 * GRAVITY_M_S2 * step_s * step_s / sinks_m;
         let bound = (PI / STEPS).powi(2) + top;
         Case::new(
@@ -241,12 +244,12 @@ fn thrown() -> String {
     compared("thrown up by", "um", &cases)
 }
 
-/// Of the bond between two overlapping spheres.
+/// Young's modulus of the bond between two overlapping spheres.
 const BOND_YOUNG_PA: f64 = 10e6;
 const BOND_STRENGTH_PA: f64 = 100e3;
 const BOND_LENGTH_M: f64 = 2.0 * RADIUS_M - OVERLAP_M;
 
-/// Two overlapping bonded spheres that are driven together at this speed.
+/// Two overlapping bonded spheres driven together at this speed.
 fn bonded(speed_m_s: f64, step_s: f64) -> State {
     let half = 0.5 * speed_m_s;
     started(&format!(
@@ -268,8 +271,8 @@ fn bonded(speed_m_s: f64, step_s: f64) -> State {
     ))
 }
 
-/// Two overlapping spheres, whose bond is pressed until it breaks: the contact takes over from the
-/// overlap at which they part.
+/// Two overlapping spheres, whose bond is compressed until it breaks: the contact starts from the
+/// overlap at which they separate.
 fn broken() -> String {
     let hertz = Hertz { pair: true };
     let stiffness = BOND_YOUNG_PA * PI * (0.5 * RADIUS_M).powi(2) / BOND_LENGTH_M;
@@ -291,7 +294,7 @@ fn broken() -> String {
         // The bond breaks up to a step late, and the contact begins up to a step after that.
         let late_m = 2.0 * speed * step_s;
         let beyond_m = hertz.overlap_m(left_m_s);
-        // What the bond takes of the energy is more by its force on that way.
+        // The bond takes additional energy by its force over that distance.
         let late = stiffness * (pressed_m + late_m) * late_m / (2.0 * left_j);
         let square = (PI / STEPS).powi(2);
         let deepest_bound = (late_m + beyond_m * late) / (met_m + beyond_m) + square;
@@ -320,7 +323,7 @@ fn broken() -> String {
     compared("driven together at", "", &cases)
 }
 
-/// The page of relaxation is what the solver gives.
+/// The page of relaxation equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
     let page = on_one_thread(|| {

@@ -1,10 +1,10 @@
-//! Scenes of texts, and what is read from them as they run.
+//! Scenes from texts, and values read from them during the run.
 
 use dem_run::{Plan, State, plan};
 use dem_scene::{read_bodies, scene_from_text};
 use nalgebra::Vector3;
 
-/// The plan of a scene, at any time step that it names.
+/// The plan of a scene, for any time step in it.
 pub(crate) fn planned(text: &str) -> Plan {
     let scene = scene_from_text(text, "verification.toml", &[]);
     let scene = scene.unwrap_or_else(|error| panic!("{error}: {text}"));
@@ -17,7 +17,7 @@ pub(crate) fn started(text: &str) -> State {
     planned(text).state
 }
 
-/// Place of a particle at the time of the state, m.
+/// Position of a particle at the time of the state, m.
 pub(crate) fn place(state: &State, particle: usize) -> Vector3<f64> {
     state.particles.poses[particle].place()
 }

@@ -1,14 +1,14 @@
-//! Tables of pages: numbers whose printed digits are the same on every machine, and rows that hold
-//! what is computed against a reference.
+//! Tables of pages: numbers whose printed digits are the same on every machine, and rows that
+//! compare computed values with a reference.
 
-/// What a result may differ by from machine to machine, relative: the last digits of sines, powers
-/// and logarithms, which libraries round differently.
+/// Relative difference of a result between machines: the last digits of sines, powers and
+/// logarithms, which libraries round differently.
 const DOUBT: f64 = 1e-12;
 
-/// Relative errors below this are of rounding, and are not printed.
+/// Relative errors below this are rounding errors, and are not printed.
 const ROUNDING: f64 = 1e-9;
 
-/// One case: what the solver gives, what it should give, and by how much the two may differ.
+/// One case: the result of the solver, its expected value, and the bound of their difference.
 #[derive(Debug, Clone)]
 pub(crate) struct Case {
     what: String,
@@ -42,7 +42,8 @@ impl Case {
         }
     }
 
-    /// Errors below this are not printed: their digits hang on the order of sums.
+    /// Sets the limit below which errors are not printed, since their digits depend on the order of
+    /// sums.
     pub(crate) fn rounding(self, rounding: f64) -> Self {
         Self { rounding, ..self }
     }
@@ -79,7 +80,8 @@ impl Case {
     }
 }
 
-/// The table of these cases, all of which keep their bounds. `unit` is that of both numbers.
+/// The table of these cases, all of which must be within their bounds. `unit` is that of both
+/// numbers.
 pub(crate) fn compared(of: &str, unit: &str, cases: &[Case]) -> String {
     let unit = if unit.is_empty() {
         String::new()
@@ -98,7 +100,7 @@ pub(crate) fn compared(of: &str, unit: &str, cases: &[Case]) -> String {
     table
 }
 
-/// A number with six significant digits, which must not hang on the last `doubt` of it.
+/// A number with six significant digits, which must not depend on its last `doubt`.
 fn significant(value: f64, doubt: f64) -> String {
     if value.abs() <= doubt {
         return "0".to_owned();
@@ -111,8 +113,8 @@ fn significant(value: f64, doubt: f64) -> String {
     }
 }
 
-/// A number with this many decimals. It must not hang on what differs from machine to machine, the
-/// last `doubt` of it.
+/// A number with this many decimals. It must not depend on `doubt`, the difference between
+/// machines.
 pub(crate) fn digits(value: f64, decimals: usize, doubt: f64) -> String {
     steady(value, doubt, |value| {
         let text = format!("{value:.decimals$}");
@@ -123,7 +125,7 @@ pub(crate) fn digits(value: f64, decimals: usize, doubt: f64) -> String {
     })
 }
 
-/// The text of a number, if it is the same for all within `doubt` of it.
+/// The text of a number, if it is the same for all numbers within `doubt` of it.
 fn steady(value: f64, doubt: f64, text: impl Fn(f64) -> String) -> String {
     assert_eq!(text(value - doubt), text(value + doubt), "unsteady digits");
     text(value).replace('-', "−").replace("e−", "e-")
@@ -134,7 +136,7 @@ pub(crate) fn row(cells: &[String]) -> String {
     format!("| {} |\n", cells.join(" | "))
 }
 
-/// The head of a table: words in the first column, numbers in the others.
+/// The header of a table: words in the first column, numbers in the others.
 pub(crate) fn head(cells: &[&str]) -> String {
     let names: Vec<String> = cells.iter().map(|&cell| cell.to_owned()).collect();
     format!("{}|---|{}\n", row(&names), "---:|".repeat(cells.len() - 1))

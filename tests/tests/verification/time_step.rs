@@ -1,4 +1,4 @@
-//! The largest stable step: by the exact method, by estimates, and as runs show it.
+//! The largest stable step: by the exact method, by estimates, and as observed in runs.
 
 use std::f64::consts::PI;
 
@@ -14,15 +14,15 @@ const YOUNG_PA: f64 = 1e9;
 const POISSON: f64 = 0.25;
 const DENSITY_KG_M3: f64 = 2500.0;
 
-/// How well the exact method is to know an eigenvalue: its search ends at a residual of 1e-5, and
-/// the error of an eigenvalue is of the order of the residual's square; the difference quotient
-/// that it takes for stiffness moves spheres by 1e-5 of their radius.
+/// Accuracy of an eigenvalue from the exact method: its search ends at a residual of 1e-5, and the
+/// error of an eigenvalue is of the order of the residual's square; the difference quotient used
+/// for stiffness moves spheres by 1e-5 of their radius.
 const EXACT: f64 = 1e-5;
 
-/// Errors below this hang on the order of sums in a search, and are not printed.
+/// Errors below this depend on the order of sums in a search, and are not printed.
 const SEARCHED: f64 = 1e-6;
 
-/// Share of the limit to which the step at which runs begin to grow is found.
+/// Relative accuracy of the step at which runs begin to grow.
 const HALVED: f64 = 1e-7;
 
 fn mass_kg() -> f64 {
@@ -33,10 +33,10 @@ fn mass_kg() -> f64 {
 #[derive(Debug, Clone, Copy)]
 struct Row<'a> {
     model: &'a str,
-    /// Bond radius over that of the spheres.
+    /// Ratio of the bond radius to that of the spheres.
     radius_factor: f64,
     spheres: usize,
-    /// The first sphere does not move.
+    /// True if the first sphere is fixed.
     held: bool,
     /// Damping ratio of each mode of a pair.
     damping: f64,
@@ -129,8 +129,8 @@ impl Row<'_> {
         2.0 * (self.normal() / mass_kg()).sqrt() * angle.sin()
     }
 
-    /// Largest step at which a small motion along the row does not grow in so many steps, over the
-    /// limit, by halving.
+    /// Largest step at which a small motion along the row does not grow in this number of steps,
+    /// over the limit, by bisection.
     fn observed(&self, limit_s: f64, steps: usize) -> f64 {
         let speed = 1e-9 * LENGTH_M / limit_s;
         let more = format!("initial.last = {{ group = \"last\", velocity = [{speed:e}, 0, 0] }}");
@@ -202,14 +202,14 @@ fn chains() -> String {
     compared("row", "rad/s", &cases)
 }
 
-/// Steps in which a run must grow.
+/// Number of steps in which a run must grow.
 const STEPS: usize = 20_000;
 
-/// By what share the step must be beyond the limit so that a motion grows a millionfold in so many
-/// steps: ten thousandfold from where it starts, of which a hundredth is of the fastest mode.
+/// Fraction by which the step must exceed the limit so that a motion grows a millionfold in this
+/// number of steps: ten thousandfold from its start, of which a hundredth is in the fastest mode.
 ///
 /// With r = omega dt, a step multiplies that mode by a root of q^2 - q (2 - 2 zeta r - r^2) + 1 - 2
-/// zeta r = 0, which is -1 at the limit; beyond it by a share s, its logarithm is 2 sqrt(2 s)
+/// zeta r = 0, which is -1 at the limit. Beyond it by a fraction s, its logarithm is 2 sqrt(2 s)
 /// without damping, and 2 s (1 + r/(2 zeta)) with it.
 fn late(damping: f64) -> f64 {
     let in_a_step = 1e6_f64.ln() / STEPS as f64;
@@ -256,7 +256,7 @@ fn limits() -> [String; 2] {
     ]
 }
 
-/// Estimates, the larger of which do not know bonds.
+/// Estimates; the larger ones ignore bonds.
 fn estimates() -> String {
     let row = Row {
         model: "timoshenko",
@@ -290,7 +290,7 @@ fn estimates() -> String {
     )
 }
 
-/// The page of the time step is what the solver gives.
+/// The page of the time step equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
     let page = on_one_thread(|| {

@@ -1,16 +1,15 @@
-//! The rules that every body keeps, checked whenever one is read or written.
+//! The rules for every body, checked whenever one is read or written.
 
 use super::parts::Body;
 use crate::diagnostic::{Diagnostic, Result};
 
 impl Body {
-    /// Whether this is a body: particles with finite centres and positive radii, bonds with
-    /// positive radii and lengths between two different particles that exist, the smaller index
-    /// first, no pair bonded twice, arrays of equal length, no NUL character in what is known of
-    /// it.
+    /// Checks that this is a body: particles with finite centres and positive radii, bonds with
+    /// positive radii and lengths between two different existing particles, the smaller index
+    /// first, no pair bonded twice, arrays of equal length, no NUL character in its texts.
     ///
-    /// Takes linear time; at most 8 bytes per particle and 4 per bond of memory, none if the bonds
-    /// are sorted.
+    /// Takes linear time and at most 8 bytes of memory per particle and 4 per bond, none if the
+    /// bonds are sorted.
     ///
     /// # Errors
     /// The first rule broken: number of the particle or bond (counted from 0), value, limit,
@@ -107,7 +106,7 @@ fn check_bonds(body: &Body) -> Result<()> {
     Ok(())
 }
 
-/// Whether the ends of a bond are different particles, as they are numbered where they come from.
+/// Checks that the ends of a bond are different particles, by their numbers in the source.
 pub(super) fn check_different(a: u32, b: u32) -> Result<()> {
     if a != b {
         return Ok(());
@@ -171,12 +170,12 @@ fn check_about(body: &Body) -> Result<()> {
 }
 
 /// Refuses a pair of particles bonded twice. Every bond must join two existing particles, the
-/// smaller number first.
+/// smaller index first.
 fn check_double_bonds(body: &Body) -> Result<()> {
     if body.bonds.is_sorted_by(|p, q| p < q) {
         return Ok(());
     }
-    // Counting sort by the smaller number: the partners of particle a end up in partners[ends[a -
+    // Counting sort by the smaller index: the partners of particle a end up in partners[ends[a -
     // 1]..ends[a]].
     let mut ends = vec![0_usize; body.positions.len()];
     for &[a, _] in &body.bonds {
@@ -242,7 +241,7 @@ mod tests {
         }
     }
 
-    /// A good body after `spoil`, and what is said of it.
+    /// The error for a good body after `spoil`.
     fn said(spoil: impl FnOnce(&mut Body)) -> String {
         let mut body = pair();
         spoil(&mut body);

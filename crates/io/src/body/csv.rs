@@ -3,8 +3,8 @@
 //!
 //! The first line names the columns and their units: `x_m,y_m,z_m,radius_m` and
 //! `particle_a,particle_b,bond_radius_m,initial_length_m`. The ends `particle_a` and `particle_b`
-//! of a bond are the numbers of particles, counted from 0 in the order of their file. Every number
-//! reads back as the same bits. [`About`](super::About) has no place here and is left out.
+//! of a bond are particle indices, counted from 0 in the order of their file. Every number reads
+//! back as the same bits. [`About`](super::About) is not stored.
 
 use std::io::{self, BufRead, Write};
 
@@ -51,13 +51,13 @@ pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a body from its two files. Columns may stand in any order, others are left out. Without
-/// the column `bond_radius_m` a bond is as thick as the smaller of its particles, without
-/// `initial_length_m` it is as long as they are apart.
+/// Reads a body from its two files. Columns may be in any order; others are ignored. Without the
+/// column `bond_radius_m` a bond has the radius of the smaller of its particles, without
+/// `initial_length_m` their distance as its length.
 ///
 /// # Errors
-/// A column is missing, a line makes no sense or has no end (the file is cut off), or not a body by
-/// [`Body::check`]. The place begins with "particles" or "bonds" where it is known.
+/// A column is missing, a line is invalid or has no end (the file is cut off), or not a body by
+/// [`Body::check`]. The place begins with "particles" or "bonds" if it is known.
 pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body> {
     let mut parts = Parts::default();
     read_particles(particles, &mut parts).map_err(|error| error.within("particles"))?;
@@ -123,8 +123,7 @@ fn read_bonds(input: &mut dyn BufRead, parts: &mut Parts) -> Result<()> {
     Ok(())
 }
 
-/// Where each of the columns stands, as the first line says. The first `required` of them must be
-/// there.
+/// The positions of the columns, from the first line. The first `required` of them must be present.
 fn read_columns<const N: usize>(
     lines: &mut Lines<'_>,
     names: [&str; N],

@@ -1,4 +1,5 @@
-//! Bodies from and to files, pipes included; the ending of the name says which format.
+//! Reading and writing of bodies as files or through pipes; the ending of the name gives the
+//! format.
 
 use std::ffi::OsStr;
 use std::fs::File;
@@ -13,7 +14,7 @@ use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
 
 const BUFFER_BYTES: usize = 1 << 16;
 
-/// How a body is stored, with the names of its files.
+/// The form in which a body is stored, with the names of its files.
 enum Storage {
     /// One .vtp file through standard input or output.
     Pipe,
@@ -59,7 +60,7 @@ impl Pair {
     ) -> Result<Body> {
         let mut particles = open(&self.particles)?;
         let mut bonds = open(&self.bonds)?;
-        // The readers say "particles" or "bonds" for the file.
+        // The readers name the file "particles" or "bonds".
         read(&mut particles, &mut bonds).map_err(|mut error| {
             for (part, path) in [("particles", &self.particles), ("bonds", &self.bonds)] {
                 if let Some(place) = error
@@ -120,8 +121,8 @@ impl Storage {
     }
 }
 
-/// The files that a body has which is written to `path`: one, two (.csv, .txt), or none (`-`,
-/// standard output).
+/// The files of a body that is written to `path`: one, two (.csv, .txt), or none (`-`, standard
+/// output).
 ///
 /// # Errors
 /// An unknown ending, with the list of the known ones.
@@ -134,7 +135,7 @@ pub fn body_files(path: &Path) -> Result<Vec<PathBuf>> {
 }
 
 /// Reads a body from `path`; `-` is a .vtp on standard input. For .csv and .txt either file of the
-/// pair may be named, or the name that they have in common (`cake.csv`).
+/// pair may be given, or their common name (`cake.csv`).
 ///
 /// # Errors
 /// No such file, an unknown ending, damaged, or not a body by [`Body::check`]. The place begins
@@ -165,14 +166,14 @@ pub fn read_body(path: &Path) -> Result<Body> {
 /// Reads a frame of a run.
 ///
 /// # Errors
-/// No such file, damaged, or it tells of no fragments (all exit code 2).
+/// No such file, damaged, or without fragments (all exit code 2).
 pub fn read_frame(path: &Path) -> Result<StoredFrame> {
     let mut file = open(path)?;
     vtp::read_frame(&mut file).map_err(|error| error.within(&path.display().to_string()))
 }
 
 /// Writes a body to `path`; `-` is a .vtp on standard output, whose reader may close it early.
-/// Files appear whole or not at all; of two files, neither appears before both are written.
+/// Files appear complete or not at all; of two files, neither appears before both are written.
 ///
 /// # Errors
 /// Not a body by [`Body::check`], an unknown ending, standard output is a terminal (exit code 2);

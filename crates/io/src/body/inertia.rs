@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
 
-/// Products of inertia below this part of the trace are rounding.
+/// Products of inertia below this fraction of the trace are rounding errors.
 const ROUNDING: f64 = 4e-16;
 
 /// Mass, centre of mass and principal axes of a rigid body.
@@ -12,27 +12,26 @@ pub struct MassProperties {
     pub mass_kg: f64,
     /// Centre of mass, m.
     pub centre_m: [f64; 3],
-    /// Principal moments of inertia about the centre of mass, rising, kg m^2.
+    /// Principal moments of inertia about the centre of mass, ascending, kg m^2.
     pub moments_kg_m2: [f64; 3],
     /// Rotation from the principal axes, in the order of the moments, to the axes of the input:
     /// unit quaternion x, y, z, w.
     ///
-    /// The axes are right-handed; the first two have their component of largest size positive, and
-    /// w is not negative. Where moments are equal, the axes are some of the many right ones, the
-    /// same in each run.
+    /// The axes are right-handed. The largest components of the first two are positive, and w is
+    /// not negative. If moments are equal, the axes are one of many valid choices, the same in each
+    /// run.
     pub axes: [f64; 4],
 }
 
-/// The mass properties of rigidly joined spheres, each with its own mass and moment of inertia: the
-/// sum, with overlaps counted as often as they are there.
+/// The mass properties of rigidly joined spheres, each with its own mass and moment of inertia:
+/// their sum, in which overlaps are counted repeatedly.
 ///
-/// A cluster of bonded spheres has the same mass, centre of mass and inertia, so that one can stand
-/// for the other without a change of momentum or kinetic energy.
+/// A cluster of bonded spheres has the same mass, centre of mass and inertia, so one can replace
+/// the other without a change of momentum or kinetic energy.
 ///
 /// `centres_m`, m, `masses_kg` and `own_inertias_kg_m2` (about the centre of the sphere; for a full
-/// one 2/5 m r^2) have one entry per sphere; entries without partners are left out. All sums are
-/// taken about the mean. A body without mass has zero moments; numbers that are not finite give
-/// moments that are no numbers.
+/// one 2/5 m r^2) have one entry per sphere; surplus entries are ignored. All sums are taken about
+/// the mean. A body without mass has zero moments; numbers that are not finite give moments of NaN.
 pub fn of_spheres(
     centres_m: &[[f64; 3]],
     masses_kg: &[f64],
@@ -54,13 +53,13 @@ pub fn of_spheres(
         return properties(origin, 0.0, Matrix3::zeros());
     }
     let mean = Vector3::from(first.total()) / mass;
-    // What rounding leaves of the first moment about the mean.
+    // The rounding error of the first moment about the mean.
     let mut rest = Sum::<3>::default();
     let mut second = Sum::<6>::default();
     for ((centre, &m), &own) in spheres() {
         let v = Vector3::from(*centre) - origin - mean;
         rest.add((v * m).into());
-        // Half the own inertia along each axis adds up to all of it about each.
+        // Half of the own inertia along each axis gives the full value about each.
         let own = 0.5 * own;
         second.add([
             m * v.x * v.x + own,
@@ -86,7 +85,7 @@ impl MassProperties {
         let turn = turn.to_rotation_matrix();
         let turned = turn.matrix() * Matrix3::from_diagonal(&self.moments_kg_m2.into());
         let inertia = turned * turn.matrix().transpose();
-        // Both halves the same to the bit.
+        // Both halves are bitwise equal.
         [0, 1, 2].map(|row| [0, 1, 2].map(|k: usize| inertia[(row.max(k), row.min(k))]))
     }
 }
@@ -118,7 +117,7 @@ fn properties(centre: Vector3<f64>, mass_kg: f64, second: Matrix3<f64>) -> MassP
     }
 }
 
-/// The moments, rising, and the axes as columns.
+/// The moments, ascending, and the axes as columns.
 fn principal(inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
     if !inertia.iter().all(|value| value.is_finite()) {
         return ([f64::NAN; 3], Matrix3::identity());
@@ -139,7 +138,7 @@ fn principal(inertia: Matrix3<f64>) -> ([f64; 3], Matrix3<f64>) {
     )
 }
 
-/// Sums that carry along what rounding takes away (Neumaier 1974).
+/// Sums with compensation of rounding errors (Neumaier 1974).
 struct Sum<const N: usize> {
     sum: [f64; N],
     lost: [f64; N],

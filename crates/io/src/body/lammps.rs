@@ -1,9 +1,9 @@
-//! Bodies as LAMMPS data files for `atom_style bpm/sphere`, which OVITO reads too.
+//! Bodies as LAMMPS data files for `atom_style bpm/sphere`, which OVITO also reads.
 //!
 //! An atom is a particle (`atom-ID molecule-ID atom-type diameter density x y z`), a bond is a bond
 //! (`bond-ID bond-type atom1 atom2`); atoms are numbered from 1; one molecule, one type of each; SI
 //! units (`units si`). Positions, diameters and the density read back as the same bits. Bond radii
-//! and lengths have no place here: LAMMPS takes the lengths from the positions of the atoms, and so
+//! and lengths are not stored: LAMMPS computes the lengths from the positions of the atoms, and so
 //! does [`read`].
 //!
 //! [read_data](https://docs.lammps.org/read_data.html),
@@ -16,10 +16,11 @@ use super::table::particle;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::lines::{Lines, float, on_line};
 
-/// Density that is written if none is known, kg/m3. LAMMPS cannot do without.
+/// Density that is written if none is known, kg/m3. LAMMPS requires one.
 pub const DENSITY_IF_UNKNOWN_KG_M3: f64 = 1000.0;
 
-/// Densities of atoms may differ by rounding, as LAMMPS itself computes them from masses.
+/// Tolerance for different densities of atoms: rounding, as LAMMPS itself computes them from
+/// masses.
 const DENSITY_TOLERANCE: f64 = 1e-9;
 
 /// Writes a body as LAMMPS data. The box is larger than the body by the largest diameter on each
@@ -78,13 +79,13 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a body from LAMMPS data as `write_data` and [`write()`] write them. Atoms may stand in any
-/// order. A bond is as thick as the smaller of its particles and as long as they are apart.
-/// Velocities, coefficients, molecules and types are left out.
+/// Reads a body from LAMMPS data as written by `write_data` and [`write()`]. Atoms may be in any
+/// order. A bond has the radius of the smaller of its particles and their distance as its length.
+/// Velocities, coefficients, molecules and types are ignored.
 ///
 /// # Errors
 /// Another atom style, atoms not numbered 1, 2, 3, ..., of several densities or beyond a periodic
-/// boundary, wrong counts, a line that makes no sense, or not a body by [`Body::check`].
+/// boundary, wrong counts, an invalid line, or not a body by [`Body::check`].
 pub fn read(input: &mut dyn BufRead) -> Result<Body> {
     let mut data = Data::default();
     let mut section = Section::Head;
@@ -111,12 +112,12 @@ enum Section {
     Head,
     Atoms,
     Bonds,
-    /// Nothing that a body knows.
+    /// Data that a body does not have.
     Other,
 }
 
 impl Section {
-    /// From its key word and the comment after it.
+    /// From its keyword and the comment after it.
     fn named(name: &str, comment: &str) -> Result<Self> {
         match name {
             "Atoms" if comment.is_empty() || comment == "bpm/sphere" => Ok(Self::Atoms),
@@ -134,7 +135,7 @@ impl Section {
     }
 }
 
-/// What has been read so far. Atoms stand in the order of the file.
+/// The data read so far. Atoms are in the order of the file.
 #[derive(Default)]
 struct Data {
     atoms: usize,
@@ -238,7 +239,7 @@ impl Data {
         Body::from_parts(self.parts)
     }
 
-    /// Puts the atoms in the order of their numbers.
+    /// Sorts the atoms by their numbers.
     fn sort(&mut self) -> Result<()> {
         if self.numbers.is_sorted_by(|a, b| a < b) {
             return Ok(());

@@ -1,4 +1,5 @@
-//! What a body of spheres weighs, and what its shape would: spheres overlap, and leave voids.
+//! The mass of a body of spheres, compared with that of its shape: spheres overlap, and leave
+//! voids.
 
 use serde::Serialize;
 
@@ -6,32 +7,32 @@ use super::inertia::{MassProperties, of_spheres};
 use super::parts::{About, Body};
 use crate::units::{show_length, significant};
 
-/// Coordinates of a centre below this part of the radius of gyration are rounding.
+/// Coordinates of a centre below this fraction of the radius of gyration are rounding errors.
 const ROUNDING: f64 = 1e-9;
 
-/// What a body weighs, beside its shape filled with one density. SI units.
+/// The mass of a body, and that of its shape filled with one density. SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BodyMass {
-    /// Mass of its spheres, kg. Overlaps count twice, unless it is a clump that weighs what its
-    /// spheres fill.
+    /// Mass of its spheres, kg. Overlaps count twice, except for a clump whose mass is that of the
+    /// union of its spheres.
     pub mass_kg: f64,
-    /// The density with which its shape is filled for the comparison, kg/m3, where one is known.
+    /// The density with which its shape is filled for the comparison, kg/m3, if known.
     pub fill_density_kg_m3: Option<f64>,
-    /// Mass of its shape filled with that density, kg, where its volume is known.
+    /// Mass of its shape filled with that density, kg, if its volume is known.
     pub shape_mass_kg: Option<f64>,
-    /// By how much it weighs more than that, percent.
+    /// Difference between its mass and that mass, percent.
     pub difference_percent: Option<f64>,
     /// Centre of mass, m. Length 3.
     pub centre_m: [f64; 3],
-    /// Principal moments of inertia about the centre of mass, rising, kg m2. Length 3.
+    /// Principal moments of inertia about the centre of mass, ascending, kg m2. Length 3.
     pub principal_moments_kg_m2: [f64; 3],
     /// Inertia about the centre of mass along the axes of space, kg m2: a symmetric matrix.
     pub inertia_kg_m2: [[f64; 3]; 3],
 }
 
 impl BodyMass {
-    /// Of a body with these mass properties, and a shape of this volume (m3) to be filled with this
-    /// density (kg/m3).
+    /// For a body with these mass properties, and a shape of this volume (m3) to be filled with
+    /// this density (kg/m3).
     pub fn new(
         properties: &MassProperties,
         fill_density_kg_m3: Option<f64>,
@@ -51,7 +52,7 @@ impl BodyMass {
         }
     }
 
-    /// Two lines for a person: mass, and what its shape would weigh; centre and principal moments.
+    /// Two human-readable lines: mass, and that of its filled shape; centre and principal moments.
     pub fn lines(&self) -> [String; 2] {
         let mut mass = format!("{} kg", significant(self.mass_kg, 4));
         if let (Some(density), Some(shape), Some(percent)) = (
@@ -76,7 +77,7 @@ impl BodyMass {
     }
 }
 
-/// A centre of mass for a person: what rounding leaves is 0.
+/// A human-readable centre of mass: rounding errors are shown as 0.
 pub(crate) fn centre_text(centre_m: [f64; 3], moments_kg_m2: [f64; 3], mass_kg: f64) -> String {
     let sum: f64 = moments_kg_m2.iter().sum();
     let least_m = ROUNDING * (0.5 * sum / mass_kg).sqrt();
@@ -84,13 +85,13 @@ pub(crate) fn centre_text(centre_m: [f64; 3], moments_kg_m2: [f64; 3], mass_kg: 
     centre_m.map(shown).join(", ")
 }
 
-/// Principal moments for a person.
+/// Human-readable principal moments.
 pub(crate) fn moments_text(moments_kg_m2: [f64; 3]) -> String {
     let moments = moments_kg_m2.map(|moment| significant(moment, 4));
     format!("principal moments {} kg m2", moments.join(", "))
 }
 
-/// A difference for a person: -21 %, +4.1 %.
+/// A human-readable difference: -21 %, +4.1 %.
 pub fn percent_text(percent: f64) -> String {
     match percent.abs() {
         none if none < 0.05 => "as much".to_owned(),
@@ -108,7 +109,7 @@ pub fn of_body(body: &Body, density_kg_m3: f64) -> MassProperties {
     of_spheres(&body.positions, &masses, &inertias)
 }
 
-/// What a body weighs whose spheres have the density that it names. None: it names none.
+/// The mass of a body whose spheres have the density that it names. None if it names none.
 pub fn of_named_density(body: &Body) -> Option<BodyMass> {
     let About {
         particle_density_kg_m3: density,

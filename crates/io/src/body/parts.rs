@@ -1,15 +1,15 @@
-//! A body: its numbers, and what of them a file may leave out.
+//! A body: its data, and the parts of them that a file may omit.
 
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::Result;
 
-/// What is known of how a body came about. Every field is optional: a body may come from anywhere.
+/// Information on the origin of a body. Every field is optional: a body may come from anywhere.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// Program and version that made it.
     pub program: Option<String>,
-    /// File that the shape came from.
+    /// File of the shape.
     pub source: Option<String>,
     /// Hash of that file's bytes (FNV-1a, 64 bit).
     pub source_hash: Option<u64>,
@@ -23,7 +23,7 @@ pub struct About {
     pub bond_range: Option<f64>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
-    /// What the program that made it warned of, a sentence each.
+    /// Warnings of the program that made it, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -40,11 +40,11 @@ pub struct Body {
     pub bond_radii: Vec<f64>,
     /// Initial bond lengths, m. One per bond.
     pub bond_lengths: Vec<f64>,
-    /// Where it came from.
+    /// Information on its origin.
     pub about: About,
 }
 
-/// A body as a file tells it, perhaps not all of it.
+/// A body as read from a file, possibly incomplete.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Parts {
     pub(crate) positions: Vec<[f64; 3]>,
@@ -56,8 +56,8 @@ pub(crate) struct Parts {
 }
 
 impl Body {
-    /// A body of spheres (x, y, z, radius, m) and the bonds between them, which are at rest and as
-    /// thick as the smaller of their spheres.
+    /// A body of spheres (x, y, z, radius, m) and the bonds between them, which are at rest and
+    /// have the radius of the smaller of their spheres.
     ///
     /// # Errors
     /// Not a body by [`Body::check`].
@@ -85,8 +85,8 @@ impl Body {
         crate::hash::fnv1a(&bytes)
     }
 
-    /// A body from what a file tells of it. The smaller end of each bond is put first. Unless
-    /// given, a bond is as thick as the smaller of its particles and as long as they are apart.
+    /// A body from the data of a file. The smaller end of each bond is put first. Unless given, a
+    /// bond has the radius of the smaller of its particles and their distance as its length.
     ///
     /// # Errors
     /// Not a body by [`Body::check`].
@@ -102,7 +102,7 @@ impl Body {
         for bond in &mut bonds {
             bond.sort_unstable();
         }
-        // An end that does not exist gives no number here, and is refused by the check below.
+        // A non-existing end gives NaN here, and is refused by the check below.
         let bond_radii = bond_radii.unwrap_or_else(|| {
             let radius = |end: u32| radii.get(end as usize).copied().unwrap_or(f64::NAN);
             bonds

@@ -9,24 +9,24 @@ use crate::diagnostic::{Diagnostic, Result};
 pub const RADIUS: &str = "radius_m";
 /// Particle array: density of the material, kg/m3.
 pub const DENSITY: &str = "density_kg_m3";
-/// Particle array: number of the fragment.
+/// Particle array: id of the fragment.
 pub const FRAGMENT_ID: &str = "fragment_id";
 /// Bond array: radius, m.
 pub const BOND_RADIUS: &str = "bond_radius_m";
-/// Bond array: length at which the bond is free of force, m.
+/// Bond array: stress-free (rest) length, m.
 pub const BOND_LENGTH: &str = "initial_length_m";
-/// Bond array: whether it is broken, 1 or 0.
+/// Bond array: 1 for a broken bond, else 0.
 pub const BROKEN: &str = "broken";
 /// Field: simulated time, s.
 pub const TIME: &str = "TimeValue";
 
-/// Densities of one material differ by no more than this part, by rounding.
+/// Largest relative difference between densities of one material, due to rounding.
 const SAME_DENSITY: f64 = 1e-12;
 
-/// Fragments that a message names.
+/// Largest number of fragments that a message names.
 const NAMED: usize = 5;
 
-/// What a frame says of its fragments. SI units.
+/// The fragments of a frame. SI units.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StoredFrame {
     /// Simulated time, s.
@@ -43,9 +43,9 @@ pub struct StoredFrame {
     pub bonds: Vec<[u32; 2]>,
     /// Radius of each bond, m.
     pub bond_radii: Vec<f64>,
-    /// Length at which each bond is free of force, m.
+    /// Stress-free (rest) length of each bond, m.
     pub bond_lengths: Vec<f64>,
-    /// Whether each bond is broken.
+    /// For each bond, true if it is broken.
     pub broken: Vec<bool>,
 }
 
@@ -56,12 +56,12 @@ pub struct StoredFragment {
     pub id: u32,
     /// Number of its particles.
     pub particles: usize,
-    /// kg.
+    /// Mass, kg.
     pub mass_kg: f64,
 }
 
 impl StoredFrame {
-    /// All fragments, the heaviest first; of equal ones that with the smallest number.
+    /// All fragments, the heaviest first; among equal ones the one with the smallest number.
     pub fn fragments(&self) -> Vec<StoredFragment> {
         let mut found: BTreeMap<u32, StoredFragment> = BTreeMap::new();
         for (i, &id) in self.clusters.iter().enumerate() {
@@ -80,15 +80,15 @@ impl StoredFrame {
         fragments
     }
 
-    /// A fragment as a body: its particles where they stand, in the order of the frame, and the
-    /// bonds between them that hold.
+    /// A fragment as a body: its particles at their positions, in the order of the frame, and the
+    /// unbroken bonds between them.
     ///
-    /// Bonds keep the lengths at which they are free of force, so that one that is stretched or
-    /// pressed stays so. That they were bent, twisted or sheared is lost, and so are velocities.
-    /// The density is that of the particles, unless they differ.
+    /// Bonds keep their stress-free lengths, so stretched or compressed bonds stay so. Their
+    /// bending, twist and shear are lost, and so are velocities. The density is that of the
+    /// particles, unless they differ.
     ///
     /// # Errors
-    /// There is no such fragment; the frame holds no sound body of it.
+    /// There is no such fragment; the frame contains no valid body of it.
     pub fn body(&self, id: u32) -> Result<Body> {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)
@@ -148,7 +148,7 @@ impl StoredFrame {
     }
 }
 
-/// A density without what came in when it was reckoned from a mass: 12 digits of it.
+/// A density rounded to 12 digits, without the rounding errors of its computation from a mass.
 fn without_rounding(density_kg_m3: f64) -> f64 {
     format!("{density_kg_m3:.11e}")
         .parse()

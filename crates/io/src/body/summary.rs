@@ -1,4 +1,4 @@
-//! What a body holds, for a person and for programs.
+//! The contents of a body, human-readable and as JSON.
 
 use std::fmt;
 
@@ -10,20 +10,21 @@ use crate::disjoint::DisjointSets;
 use crate::text::visible;
 use crate::units::{show_length, significant};
 
-/// What a body holds. SI units.
+/// The contents of a body. SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BodySummary {
     /// Number of particles.
     pub particles: usize,
     /// Number of bonds.
     pub bonds: usize,
-    /// Bonds by particles. Each bond belongs to two, so a particle has twice as many on average.
+    /// Number of bonds / number of particles. Each bond belongs to two, so a particle has twice as
+    /// many on average.
     pub bonds_per_particle: f64,
-    /// Particles without a bond.
+    /// Number of particles without a bond.
     pub unbonded_particles: usize,
-    /// Pieces of particles that hold together by bonds. A particle without a bond is a piece.
+    /// Number of pieces connected by bonds. A particle without a bond is a piece.
     pub pieces: usize,
-    /// Particles of the largest piece.
+    /// Number of particles of the largest piece.
     pub largest_piece: usize,
     /// Smallest particle radius, m.
     pub radius_min_m: f64,
@@ -43,20 +44,20 @@ pub struct BodySummary {
     pub solid_density_kg_m3: Option<f64>,
     /// Mass of the shape filled with the density of the particles, kg, if both are known.
     pub shape_mass_kg: Option<f64>,
-    /// By how much the body weighs more than that, percent, if the volume of the shape is known: of
-    /// any density.
+    /// Difference between the mass of the body and that mass, percent, if the volume of the shape
+    /// is known; independent of the density.
     pub mass_difference_percent: Option<f64>,
     /// Centre of mass, m. Length 3.
     pub centre_m: [f64; 3],
-    /// Principal moments of inertia, rising, kg m2, if the density is known. Length 3.
+    /// Principal moments of inertia, ascending, kg m2, if the density is known. Length 3.
     pub principal_moments_kg_m2: Option<[f64; 3]>,
     /// Inertia about the centre of mass, kg m2, if the density is known: a symmetric matrix.
     pub inertia_kg_m2: Option<[[f64; 3]; 3]>,
-    /// Where it came from.
+    /// Information on its origin.
     pub about: About,
 }
 
-/// What `body` holds. It must keep the rules of [`Body::check`]. Takes linear time.
+/// The contents of `body`, which must follow the rules of [`Body::check`]. Takes linear time.
 pub fn body_summary(body: &Body) -> BodySummary {
     let particles = body.positions.len();
     let mut box_min_m = [f64::INFINITY; 3];
@@ -74,7 +75,7 @@ pub fn body_summary(body: &Body) -> BodySummary {
         .sum();
     let density = body.about.particle_density_kg_m3;
     let mass_kg = density.map(|density| density * volume);
-    // Where the centre is does not depend on the density.
+    // The position of the centre does not depend on the density.
     let properties = of_body(body, density.unwrap_or(1.0));
     let shape_volume = body.about.shape_volume_m3;
     let piece_sizes = piece_sizes(body);
@@ -104,7 +105,7 @@ pub fn body_summary(body: &Body) -> BodySummary {
     }
 }
 
-/// Number of particles in each piece that bonds hold together, by the first particle of each.
+/// Number of particles in each piece connected by bonds, by the first particle of each.
 fn piece_sizes(body: &Body) -> Vec<usize> {
     let mut sets = DisjointSets::new(body.positions.len());
     for &[a, b] in &body.bonds {
@@ -198,7 +199,7 @@ impl fmt::Display for BodySummary {
 }
 
 impl BodySummary {
-    /// What its shape would weigh, where its mass is, and how it is spread.
+    /// The mass of its shape, its centre of mass and its moments of inertia.
     fn write_shape_mass(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(difference) = self.mass_difference_percent {
             let percent = percent_text(difference);
@@ -217,7 +218,7 @@ impl BodySummary {
             }
         }
         let known = self.mass_kg.zip(self.principal_moments_kg_m2);
-        // Without a density nothing tells how large rounding is.
+        // Without a density the size of rounding errors is unknown.
         let (mass_kg, moments) = known.unwrap_or((1.0, [0.0; 3]));
         write!(
             f,

@@ -1,9 +1,10 @@
-//! What the readers of tables of particles and bonds have in common.
+//! Functions shared by the readers of tables of particles and bonds.
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::lines::{missing, not_a_number};
 
-/// The same message about a particle or a bond of a body from two tables, said of its table.
+/// The same message about a particle or a bond of a body from two tables, with the place in its
+/// table.
 pub(super) fn in_table(error: Diagnostic) -> Diagnostic {
     let place = error.place.as_str();
     if place.starts_with("particle ") {
@@ -15,8 +16,7 @@ pub(super) fn in_table(error: Diagnostic) -> Diagnostic {
     }
 }
 
-/// The particle that `word` names, of so many, the first of which has the number `first`. Counted
-/// from 0.
+/// The index, from 0, of the particle given by `word`. `first` is the number of the first of them.
 pub(super) fn particle(
     word: Option<&str>,
     what: &str,
@@ -40,7 +40,7 @@ pub(super) fn particle(
         })
 }
 
-/// The words of `line` that stand in these columns.
+/// The words in these columns of `line`.
 pub(super) fn pick<const N: usize>(line: &str, columns: [Option<usize>; N]) -> [Option<&str>; N] {
     let mut picked = [None; N];
     for (column, word) in line.split(',').enumerate() {

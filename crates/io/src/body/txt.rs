@@ -1,10 +1,8 @@
 //! Bodies as the two text files of Platzer 2022, algorithm 1: `cake.particles.txt` and
-//! `cake.bonds.txt`.
-//!
-//! Their layout is not printed there; this is the plainest: one line for each particle with x, y, z
-//! and radius in m, one line for each bond with the numbers of its two particles, counted from 1 as
-//! in MATLAB, without a head line. Positions and radii read back as the same bits. Bond radii, bond
-//! lengths and [`About`](super::About) have no place here.
+//! `cake.bonds.txt`.  Their layout is not printed there. This is the simplest: one line per
+//! particle with x, y, z and radius in m, and one line per bond with the numbers of its two
+//! particles, counted from 1 as in MATLAB, without a header line. Positions and radii read back as
+//! the same bits. Bond radii, bond lengths and [`About`](super::About) are not stored.
 
 use std::io::{self, BufRead, Write};
 
@@ -36,13 +34,13 @@ pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a body from its two files. Commas may stand between the numbers, lines that begin with %
-/// or # are left out. A bond is as thick as the smaller of its particles and as long as they are
-/// apart.
+/// Reads a body from its two files. There may be commas between the numbers; lines that begin with
+/// % or # are ignored. A bond has the radius of the smaller of its particles and their distance as
+/// its length.
 ///
 /// # Errors
-/// A line makes no sense or has no end (the file is cut off), or not a body by [`Body::check`]. The
-/// place begins with "particles" or "bonds" where it is known.
+/// A line is invalid or has no end (the file is cut off), or not a body by [`Body::check`]. The
+/// place begins with "particles" or "bonds" if it is known.
 pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body> {
     let mut parts = Parts::default();
     each_line(particles, |words| {
@@ -65,7 +63,7 @@ pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body
     Body::from_parts(parts).map_err(in_table)
 }
 
-/// Gives the words of each line to `take`, which must use all of them.
+/// Passes the words of each line to `take`, which must use all of them.
 fn each_line(
     input: &mut dyn BufRead,
     mut take: impl FnMut(&mut dyn Iterator<Item = &str>) -> Result<()>,

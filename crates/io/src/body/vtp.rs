@@ -1,9 +1,9 @@
-//! Bodies as VTK XML PolyData (.vtp), which ParaView and PyVista open as they stand.
+//! Bodies as VTK XML PolyData (.vtp), which ParaView and PyVista open directly.
 //!
 //! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius`,
 //! cell data `bond_radius` and `bond_initial_length` (m), field data: `body_format_version`,
-//! `length_unit` and one array for each known field of [`About`]. How it is encoded, [`crate::vtk`]
-//! says.
+//! `length_unit` and one array for each known field of [`About`]. For the encoding see
+//! [`crate::vtk`].
 
 mod contents;
 mod decode;
@@ -26,7 +26,7 @@ use names::{
 use super::parts::{About, Body};
 use crate::vtk::{NamedArray, PolyData, Values, exact, write_number, write_text, write_texts};
 
-/// Writes a body as .vtp. It must keep the rules of [`Body::check`].
+/// Writes a body as .vtp. It must follow the rules of [`Body::check`].
 ///
 /// # Errors
 /// Those of `out`.

@@ -1,6 +1,6 @@
 //! ASCII STL -> facets: `solid NAME (facet normal N N N outer loop (vertex X Y Z)*3 endloop
 //! endfacet)* endsolid NAME`, any number of times; upper or lower case, any white space. Normals
-//! are skipped unread: many programs write them badly or not at all.
+//! are skipped: many programs write them wrongly or not at all.
 
 use super::facets::{Facets, REMEDY_AGAIN, is_blank};
 use crate::diagnostic::{Diagnostic, Result};
@@ -48,7 +48,7 @@ fn read_solid(words: &mut Words, facets: &mut Facets) -> Result<()> {
     }
 }
 
-/// Reads what follows the word `facet`, up to `endfacet`. `number` counts from 1.
+/// Reads the text after the word `facet`, up to `endfacet`. `number` counts from 1.
 fn read_facet(words: &mut Words, number: usize) -> Result<[[f64; 3]; 3]> {
     let mut word = words.need(number)?;
     for _ in 0..4 {
@@ -150,8 +150,7 @@ impl<'a> Words<'a> {
         (self.next > start).then(|| &self.text[start..self.next])
     }
 
-    /// The next word of a facet that is not complete yet. A word at the very end of the text may be
-    /// cut short.
+    /// The next word of an incomplete facet. A word at the very end of the text may be truncated.
     fn need(&mut self, facet: usize) -> Result<&'a [u8]> {
         let word = self
             .next_word()
@@ -169,7 +168,7 @@ impl<'a> Words<'a> {
         self.next == self.text.len()
     }
 
-    /// Leaves out the rest of the line: the name of a solid can be anything.
+    /// Skips the rest of the line: the name of a solid can be anything.
     fn skip_line(&mut self) {
         while self
             .text

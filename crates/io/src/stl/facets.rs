@@ -1,15 +1,15 @@
-//! The facets of a file, and what both of its forms have in common.
+//! The facets of a file, and definitions shared by its two forms.
 
-/// What to do with a file that lost bytes.
+/// The remedy for a file that lost bytes.
 pub(super) const REMEDY_AGAIN: &str = "export or copy the file again";
 
-/// The facets of an STL file, as they stand there.
+/// The facets of an STL file, unchanged.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Facets {
     /// Three corners each, in units of the file; all finite. Normals are not kept: the order of the
-    /// corners says it better.
+    /// corners is more reliable.
     pub corners: Vec<[[f64; 3]; 3]>,
-    /// One sentence for each thing that is odd about the file but harmless.
+    /// One sentence for each harmless oddity of the file.
     pub warnings: Vec<String>,
 }
 

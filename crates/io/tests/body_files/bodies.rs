@@ -1,10 +1,10 @@
-//! Bodies to test with.
+//! Bodies for the tests.
 
 use dem_io::Body;
 use dem_io::body::About;
 use proptest::prelude::*;
 
-/// A small body with everything known about it.
+/// A small body with all information on its origin.
 pub(crate) fn triangle() -> Body {
     Body {
         positions: vec![[0.0; 3], [1e-3, 0.0, 0.0], [-0.0, 1e-3, 1e-4]],
@@ -26,7 +26,7 @@ pub(crate) fn triangle() -> Body {
     }
 }
 
-/// Every bit of a body but that of what is known about it.
+/// Every bit of a body except the information on its origin.
 pub(crate) fn bits(body: &Body) -> Vec<Vec<u64>> {
     let all = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect();
     vec![
@@ -41,7 +41,7 @@ pub(crate) fn bits(body: &Body) -> Vec<Vec<u64>> {
     ]
 }
 
-/// The same body as a format tells it that knows of a bond its ends only.
+/// The same body as read from a format that stores only the ends of bonds.
 pub(crate) fn with_derived_bonds(mut body: Body) -> Body {
     let radius = |particle: u32| body.radii[particle as usize];
     body.bond_radii = body
@@ -58,14 +58,14 @@ pub(crate) fn with_derived_bonds(mut body: Body) -> Body {
     body
 }
 
-/// Bodies whose numbers are anything that a body may hold.
+/// Bodies with any valid numbers.
 pub(crate) fn any_body() -> impl Strategy<Value = Body> {
     use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
     let coordinate = NORMAL | SUBNORMAL | ZERO | POSITIVE | NEGATIVE;
     body_of(coordinate, NORMAL | SUBNORMAL | POSITIVE)
 }
 
-/// Bodies of a size that things have.
+/// Bodies of realistic size.
 pub(crate) fn usual_body() -> impl Strategy<Value = Body> {
     body_of(-1e3..1e3, 1e-9..1e3)
 }

@@ -1,4 +1,4 @@
-//! Files that were cut off, bent or made up.
+//! Truncated, corrupted and made-up files.
 
 use dem_io::Body;
 use dem_io::body::{csv, lammps, txt, vtp};
@@ -19,7 +19,7 @@ fn lammps_bytes() -> Vec<u8> {
     bytes
 }
 
-/// One small file of each kind. Pairs are one after the other, with an empty line between.
+/// One small file of each format. Pairs are one after the other, with an empty line between.
 fn corpus() -> Vec<Vec<u8>> {
     let (mut tables, mut texts) = (Vec::new(), Vec::new());
     csv::write_particles(&triangle(), &mut tables).unwrap();
@@ -62,8 +62,8 @@ fn other_files_cut_off_anywhere_never_break_the_reader() {
             every_reader(&bytes[..end]);
         }
     }
-    // The counts at its head show where a LAMMPS file is cut; within its last number the missing
-    // line break does.
+    // A truncated LAMMPS file is detected by the counts in its header; within its last number by
+    // the missing line break.
     let bytes = lammps_bytes();
     for end in 0..bytes.len() {
         assert!(lammps::read(&mut &bytes[..end]).is_err(), "{end}");
@@ -73,8 +73,8 @@ fn other_files_cut_off_anywhere_never_break_the_reader() {
 type Write = fn(&Body, &mut dyn std::io::Write) -> std::io::Result<()>;
 type Read = fn(&mut dyn std::io::BufRead, &mut dyn std::io::BufRead) -> dem_io::Result<Body>;
 
-/// Tables do not say how long they are. A cut shows within a line, and where a bond names a
-/// particle that is gone.
+/// Tables do not give their length. A truncation is detected within a line, or where a bond names a
+/// missing particle.
 #[test]
 fn tables_cut_off_are_refused_unless_whole_bonds_are_missing() {
     let kinds: [(Write, Write, Read); 2] = [
@@ -129,7 +129,7 @@ fn a_later_version_is_refused_with_the_remedy() {
     assert!(vtp::read(&mut later.as_slice()).is_err());
 }
 
-/// A header that promises more than there is must not make the reader ask for the memory.
+/// A header that gives a larger size than the file must not make the reader allocate the memory.
 #[test]
 fn enormous_counts_are_refused() {
     let bytes = vtp_bytes();
@@ -212,7 +212,7 @@ fn apply(change: &Change, data: &mut Vec<u8>) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(10_000))]
 
-    /// What the fuzz target does, with a fixed number of tries.
+    /// The same as the fuzz target, with a fixed number of tries.
     #[test]
     fn changed_files_never_break_a_reader(
         file in 0_usize..9,

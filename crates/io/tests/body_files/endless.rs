@@ -1,13 +1,13 @@
-//! Pipes that never end: the reader stops at the first bytes that are no body, and keeps little.
+//! Endless pipes: the reader stops at the first bytes that are not a body, and uses little memory.
 
 use std::io::{self, BufRead, Read};
 
 use dem_io::body::vtp;
 
-/// Most bytes that may be read of what is no body.
+/// Largest number of bytes that may be read of an input that is not a body.
 const MOST: usize = 12 << 20;
 
-/// A beginning, and then the same bytes without end.
+/// A beginning, and then the same bytes endlessly repeated.
 struct Endless<'a> {
     beginning: &'a [u8],
     again: Vec<u8>,
@@ -53,7 +53,7 @@ impl BufRead for Endless<'_> {
     }
 }
 
-/// The one message that such an input is refused with.
+/// The single message with which such an input is refused.
 fn refused(beginning: &[u8], pattern: &[u8]) -> String {
     let mut input = Endless::new(beginning, pattern);
     let error = vtp::read(&mut input).expect_err("no body");
@@ -68,12 +68,12 @@ fn garbage_is_no_vtk_file() {
         let said = refused(b"", pattern);
         assert!(said.starts_with("this is not a VTK XML file"), "{said}");
     }
-    // One comment that never ends.
+    // One endless comment.
     let said = refused(b"<!-- ", b"cake ");
     assert!(said.starts_with("this is not a VTK XML file"), "{said}");
 }
 
-/// Whole files of other programs, cut off behind a part of them: what follows is garbage.
+/// Complete files of other programs, cut off after a part of them and followed by garbage.
 #[test]
 fn garbage_after_a_header() {
     let files = [

@@ -4,8 +4,8 @@
 use dem_io::body::{csv, lammps, txt, vtp};
 use dem_io::{Body, Result};
 
-/// Whatever `data` are, each reader gives a body that keeps the rules, or says what is wrong.
-/// A body that was read survives being written and read once more.
+/// For any `data`, each reader returns a valid body or an error. A body that was read survives
+/// writing and reading again.
 pub(crate) fn every_reader(data: &[u8]) {
     check(vtp::read(&mut &data[..]));
     check(lammps::read(&mut &data[..]));

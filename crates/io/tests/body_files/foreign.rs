@@ -1,4 +1,4 @@
-//! Files as other programs write them. The vtk-*.vtp beside this file were written by VTK 9.7
+//! Files written by other programs. The vtk-*.vtp next to this file were written by VTK 9.7
 //! (vtkXMLPolyDataWriter).
 
 use dem_io::body::{csv, lammps, txt, vtp};

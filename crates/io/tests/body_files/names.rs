@@ -1,4 +1,4 @@
-//! Names of files that mean nothing, are not there, or cannot be written.
+//! Names of files that have no meaning, do not exist, or cannot be written.
 
 use std::path::Path;
 

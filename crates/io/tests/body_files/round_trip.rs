@@ -1,4 +1,4 @@
-//! What is written reads back the same, bit for bit where the format holds it.
+//! Written bodies read back the same, bit for bit for all data that the format stores.
 
 use std::path::Path;
 
@@ -50,9 +50,9 @@ proptest! {
     }
 }
 
-/// A reader of its own for this layout, as plain as the format allows: header by text search,
-/// arrays by their offset. (The crate vtkio cannot take its place: as published it reads appended
-/// data in base64 only.)
+/// A separate reader for this layout, as simple as the format allows: header by text search, arrays
+/// by their offset. (The crate vtkio cannot replace it: as published it reads appended data in
+/// base64 only.)
 #[test]
 fn an_independent_reader_sees_the_same() {
     let body = triangle();

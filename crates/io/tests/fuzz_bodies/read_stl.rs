@@ -1,9 +1,9 @@
-//! What must hold for any bytes given to the STL reader. Shared by the fuzz target and the bounded
-//! run of the ordinary tests.
+//! Conditions that hold for any bytes given to the STL reader. Shared by the fuzz target and the
+//! bounded run of the ordinary tests.
 
 use dem_io::surface::{ReadSettings, surface_from_stl};
 
-/// Reads `bytes` as an STL, with and without the filling of holes: either a message, or a surface
+/// Reads `bytes` as an STL, with and without filling holes: the result is an error, or a surface
 /// that is closed and finite.
 pub(crate) fn read_stl(bytes: &[u8]) {
     for fill_holes in [false, true] {
@@ -30,8 +30,8 @@ pub(crate) fn read_stl(bytes: &[u8]) {
     }
 }
 
-/// Every number finite, coordinates as documented, every edge run along as often forwards as
-/// backwards, shells one after another.
+/// Checks that every number is finite, coordinates are as documented, every edge is traversed as
+/// often forwards as backwards, and shells are one after another.
 pub(crate) fn assert_solid(surface: &dem_io::Surface) {
     let extent = surface.extent();
     assert!(

@@ -1,4 +1,4 @@
-//! Parts that cross or overlap: the union is meant.
+//! Parts that cross or overlap form their union.
 
 use super::solids::{ascii, binary, block, turned};
 use super::{METRES, read};
@@ -14,7 +14,7 @@ fn overlapping_parts_form_their_union() {
         ),
         // Faces in one plane: no edge goes through a face, but the parts overlap.
         (block([1.0, 0.0, 0.0], [3.0, 2.0, 2.0]), 12.0, false),
-        // Through and through.
+        // Passing through completely.
         (
             block([0.5, 0.5, -1.0], [1.0, 1.0, 3.0]),
             8.0 + 0.25 * 2.0,

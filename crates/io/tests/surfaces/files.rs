@@ -1,4 +1,4 @@
-//! The files of tests/shapes: what is right for each stands in the names of the tests.
+//! The files of tests/shapes: the names of the tests give the expected result for each.
 
 use super::{FILL, METRES, assert_same_solid, assert_volume, read, refusal, shape, shape_bytes};
 use dem_io::surface::ReadSettings;

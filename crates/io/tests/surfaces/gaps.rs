@@ -43,8 +43,8 @@ fn t_junctions_are_closed_and_reported() {
 
 #[test]
 fn faces_split_differently_on_both_sides_of_every_edge_close() {
-    // Each face of the box is a grid of its own fineness, so that hardly any vertex on an edge has
-    // a partner.
+    // Each face of the box is a grid of its own resolution, so that hardly any vertex on an edge
+    // has a partner.
     let facets = solids::block_of_grids([20.0, 12.0, 10.0], [2, 3, 5, 7, 4, 1]);
     let surface = read(&binary(&facets), METRES);
     assert!((surface.volume_m3() / 2400.0 - 1.0).abs() < 1e-5);

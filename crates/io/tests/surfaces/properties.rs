@@ -1,4 +1,4 @@
-//! What holds for any facets and any bytes.
+//! Conditions that hold for any facets and any bytes.
 
 use super::body::{self, assert_solid};
 use super::gaps::block_with_t_junction;
@@ -46,7 +46,7 @@ proptest! {
             let cell = [cell % 8, cell / 8 % 8, cell / 64].map(|x| x as u8);
             union += u32::from(boxes.iter().any(|(min, max)| (0..3).all(|k| min[k] <= cell[k] && cell[k] < max[k])));
         }
-        // Faces that cannot be told apart may be refused, but a solid must be the union.
+        // Faces that cannot be distinguished may be refused, but a solid must be the union.
         match surface_from_stl(&binary(&facets), "boxes.stl", METRES) {
             Ok(surface) => {
                 assert_solid(&surface);

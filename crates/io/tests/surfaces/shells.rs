@@ -1,4 +1,4 @@
-//! Several shells: which are parts, which cavities, and which way round.
+//! Several shells: parts, cavities, and their orientation.
 
 use super::solids::{Facet, ascii, binary, block, mirrored, moved, turned};
 use super::{METRES, assert_same_solid, assert_volume, read};

@@ -1,4 +1,4 @@
-//! Small solids and the files that hold them, for tests.
+//! Small solids and their files, for tests.
 
 /// Three corners.
 pub(crate) type Facet = [[f64; 3]; 3];
@@ -50,7 +50,7 @@ pub(crate) fn block_of_grids(size: [f64; 3], counts: [usize; 6]) -> Vec<Facet> {
     facets
 }
 
-/// A strip with one side: `count` pieces around a ring, with half a twist.
+/// A one-sided strip: `count` pieces around a ring, with half a twist.
 pub(crate) fn moebius_strip(count: usize) -> Vec<Facet> {
     let point = |i: usize, side: f64| {
         let angle = std::f64::consts::TAU * i as f64 / count as f64;
@@ -95,7 +95,7 @@ pub(crate) fn open_tube(count: usize, height: f64) -> Vec<Facet> {
     (0..count).flat_map(side).collect()
 }
 
-/// The facets, each wound the other way round.
+/// The facets with reversed winding.
 pub(crate) fn turned(facets: &[Facet]) -> Vec<Facet> {
     facets.iter().map(|[a, b, c]| [*a, *c, *b]).collect()
 }
@@ -108,7 +108,7 @@ pub(crate) fn moved(facets: &[Facet], by: [f64; 3]) -> Vec<Facet> {
         .collect()
 }
 
-/// The facets seen in a mirror in the plane x = 1, wound outwards again.
+/// The facets mirrored in the plane x = 1, wound outwards again.
 pub(crate) fn mirrored(facets: &[Facet]) -> Vec<Facet> {
     turned(
         &facets
@@ -118,7 +118,7 @@ pub(crate) fn mirrored(facets: &[Facet]) -> Vec<Facet> {
     )
 }
 
-/// The facets turned about z, y and x, in this order, by three angles in radians.
+/// The facets rotated about z, y and x, in this order, by three angles in radians.
 pub(crate) fn rotated(facets: &[Facet], angles: [f64; 3]) -> Vec<Facet> {
     let turn = |p: [f64; 3]| {
         let mut p = p;

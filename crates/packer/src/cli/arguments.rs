@@ -13,7 +13,7 @@ use dem_io::units::{density_kg_m3, length_m, significant};
 use dem_io::{Diagnostic, Result};
 use std::path::PathBuf;
 
-/// Options that had another name before version 0.1, and their names.
+/// Options that had another name before version 0.1, and their new names.
 pub const RENAMED: [(&str, &str); 4] = [
     ("--bonding-radius", "--bond-range"),
     ("--bond-radius-factor", "--bond-radius"),
@@ -21,7 +21,7 @@ pub const RENAMED: [(&str, &str); 4] = [
     ("--by", "--basis"),
 ];
 
-/// As large as a shrink is chosen.
+/// Largest value for `--densify`: the largest that is chosen automatically.
 const LARGEST_DENSIFY: f64 = SHRINK_RANGE[1];
 
 /// Fills the shape of an STL file with overlapping spheres and joins them by bonds.
@@ -210,7 +210,7 @@ impl Arguments {
     /// The arguments of this process. Help and version are printed, and the process ends.
     ///
     /// # Errors
-    /// Arguments that are not understood, on one line.
+    /// Arguments that cannot be parsed, on one line.
     pub fn parsed() -> Result<Self> {
         refuse_renamed(std::env::args_os(), &RENAMED)?;
         Self::try_parse().map_err(|error| {
@@ -222,7 +222,7 @@ impl Arguments {
     }
 }
 
-/// The message of clap, without its `error:`, the usage and the hint to the help, which stand in
+/// The message of clap, without its `error:`, the usage and the hint to the help, which are
 /// paragraphs of their own.
 fn on_one_line(said: &str) -> String {
     let paragraphs = said.trim_start_matches("error:").split("\n\n");

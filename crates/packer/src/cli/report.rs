@@ -43,7 +43,7 @@ pub(super) fn surface_text(surface: &Surface) -> String {
     text
 }
 
-/// The mass of the body, beside that of its filled shape, and its centre.
+/// The mass of the body compared with that of its filled shape, and its centre of mass.
 fn mass_text(made: &BodyReport) -> String {
     let [mass, centre] = match &made.mass {
         Some(mass) => mass.lines(),

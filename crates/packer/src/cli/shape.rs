@@ -10,7 +10,7 @@ use std::path::Path;
 /// The surface of the shape in a file, or in standard input (`-`).
 ///
 /// # Errors
-/// A file that cannot be read; a surface that bounds no solid; a scale or unit that is none.
+/// A file that cannot be read; a surface that bounds no solid; an invalid scale or unit.
 pub(super) fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
     if !(reading.scale > 0.0 && reading.scale.is_finite()) {
         return Err(Diagnostic::input(

@@ -5,9 +5,10 @@ use super::assembly::Assembly;
 use super::block::Block;
 use super::places::Workspace;
 
-/// Fills the room around the front spheres of a block, and around those placed meanwhile. Beside it
-/// stand the lines of the printed algorithm, except that for its bondingList: bonds are found when
-/// all spheres have come to rest. Of all candidate points the one nearest to the seed is taken.
+/// Fills the space around the front spheres of a block, and around those placed meanwhile. The
+/// comments quote the lines of the printed algorithm, except for its bondingList: bonds are found
+/// when all spheres have come to rest. Of all candidate points the one nearest to the seed is
+/// taken.
 pub(super) fn fill(assembly: &Assembly, block: &mut Block, workspace: &mut Workspace) {
     let largest = assembly.settings.radius_range[1];
     // while frontSpheresQueue.size() != 0 do

@@ -1,12 +1,12 @@
-//! The spheres placed so far (the source's assemblyList and grid), and what room they and the wall
-//! leave.
+//! The spheres placed so far (the source's assemblyList and grid), and the room that they and the
+//! wall leave.
 
 use crate::geometry::boundary::Boundary;
 use crate::grid::Grid;
 use crate::spheres::{ReducedSphere, Vector3, distance};
 use rayon::prelude::*;
 
-/// The sizes that are to be placed, and how near to each other and to the wall. Lengths in local
+/// The sizes to be placed, and their distances from each other and from the wall. Lengths in local
 /// units.
 pub(crate) struct SizeSettings<'a> {
     /// Radius (not reduced) from a uniform random number in [0, 1).
@@ -15,13 +15,13 @@ pub(crate) struct SizeSettings<'a> {
     pub(crate) radius_range: [f64; 2],
     /// Reduced radius = radius / (1 + overlap).
     pub(crate) overlap: f64,
-    /// A sphere keeps its radius times this clear of the wall: more than 1 if it is to grow later.
+    /// Distance that a sphere keeps from the wall / its radius: more than 1 if it is to grow later.
     pub(crate) wall_factor: f64,
-    /// Cells of the grid at most: for shapes that fill little of their box.
+    /// Largest number of cells of the grid: a limit for shapes that fill little of their box.
     pub(crate) most_cells: usize,
 }
 
-/// A sphere of the front: itself, and the number of the seed that its front grew from.
+/// A sphere of the front, and the index of the seed from which its front grew.
 pub(crate) type FrontSphere = (ReducedSphere, u32);
 
 /// Spheres inside a solid, in a grid of cells.
@@ -29,14 +29,14 @@ pub(crate) struct Assembly<'a> {
     pub(crate) settings: SizeSettings<'a>,
     pub(super) boundary: &'a Boundary,
     pub(super) grid: Grid,
-    /// Cells that a sphere may have its centre in only after a distance query.
+    /// For each cell, true if a sphere with its centre there needs a distance query.
     near_wall: Vec<bool>,
     /// All spheres in order of placement.
     pub(crate) spheres: Vec<ReducedSphere>,
 }
 
 impl<'a> Assembly<'a> {
-    /// No spheres yet, in the box up to `extent`.
+    /// An empty assembly in the box from the origin to `extent`.
     pub(crate) fn new(
         settings: SizeSettings<'a>,
         boundary: &'a Boundary,
@@ -56,7 +56,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// Adds a sphere where it is known to fit.
+    /// Adds a sphere that is known to fit.
     pub(crate) fn add(&mut self, sphere: ReducedSphere) {
         self.grid.insert(sphere);
         self.spheres.push(sphere);
@@ -72,7 +72,7 @@ impl<'a> Assembly<'a> {
         (self.settings.radius)(quantile)
     }
 
-    /// The part of a (not reduced) radius within which spheres do not overlap.
+    /// The reduced radius of a (not reduced) radius: spheres of reduced radii do not overlap.
     pub(crate) fn reduced(&self, radius: f64) -> f64 {
         radius / (1.0 + self.settings.overlap)
     }
@@ -117,19 +117,19 @@ impl<'a> Assembly<'a> {
         radius * self.settings.wall_factor
     }
 
-    /// True if the cell that the sphere's centre lies in is near the wall.
+    /// True if the cell of the sphere's centre is near the wall.
     pub(super) fn is_near_wall(&self, sphere: &ReducedSphere) -> bool {
         self.near_wall[self.cell_of(sphere)]
     }
 
-    /// The number of the cell that the sphere's centre lies in.
+    /// The number of the cell that contains the sphere's centre.
     pub(super) fn cell_of(&self, sphere: &ReducedSphere) -> usize {
         let lattice = &self.grid.lattice;
         lattice.index(lattice.cell_of(sphere[0], sphere[1], sphere[2]))
     }
 
-    /// Distance from a place to the wall, over the factor that a sphere keeps clear of it; at most
-    /// that to the spheres around, as a (not reduced) radius.
+    /// The smaller of the distance to the wall, divided by the factor by which a sphere keeps clear
+    /// of it, and the distance to the spheres around, as a (not reduced) radius.
     pub(crate) fn clearance(&self, place: &Vector3, cut_off: f64) -> f64 {
         let to_spheres = self.reach_to_spheres(place, cut_off);
         let factor = self.settings.wall_factor;
@@ -138,7 +138,7 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// For each cell of a grid whether a point of it may be closer than `distance` to the wall.
+/// For each cell of a grid, true if one of its points may be closer than `distance` to the wall.
 pub(super) fn cells_near_wall(grid: &Grid, boundary: &Boundary, distance: f64) -> Vec<bool> {
     let half_diagonal = 0.5 * 3.0_f64.sqrt() * grid.lattice.cell;
     let [nx, ny, nz] = grid.lattice.counts;

@@ -1,4 +1,4 @@
-//! A block of space in which the front is worked off: its queue, its draws, and what it did.
+//! A block of space in which the front is processed: its queue, its draws, and its result.
 
 use super::assembly::{Assembly, FrontSphere};
 use super::cells::block_of;
@@ -7,10 +7,10 @@ use super::fillers::{BlockFillers, FilledVoids, FillingRules};
 use super::places::{Place, Workspace};
 use crate::spheres::{ReducedSphere, Vector3, distance};
 
-/// The work around the spheres of the front.
+/// The type of work around the spheres of the front.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Work {
-    /// Sizes drawn are placed around spheres up to this distance from their seeds, local units.
+    /// Drawn sizes are placed around spheres up to this distance from their seeds, local units.
     Draws { within: f64 },
     /// Voids are filled, and no size is drawn.
     Voids,
@@ -23,13 +23,13 @@ pub(super) struct Rules<'a> {
     pub(super) seeds: &'a [Vector3],
     /// Seed of the random numbers.
     pub(super) random_seed: u64,
-    /// Rules for filling voids, if the front does that.
+    /// Rules for filling voids, if the front fills them.
     pub(super) filling: Option<FillingRules<'a>>,
 }
 
 /// The task of a block.
 pub(super) struct Task {
-    /// Its number.
+    /// Number of the block.
     pub(super) block: usize,
     /// Its front spheres.
     pub(super) queue: Vec<FrontSphere>,
@@ -53,7 +53,7 @@ pub(super) struct BlockResult {
 /// A sphere placed.
 pub(super) struct Placed {
     pub(super) sphere: FrontSphere,
-    /// Not even the smallest sphere fits around it any more: it need not enter the queue.
+    /// True if not even the smallest sphere fits around it any more: it need not enter the queue.
     pub(super) is_done: bool,
 }
 
@@ -61,7 +61,7 @@ pub(super) struct Placed {
 pub(super) struct Block<'a> {
     number: usize,
     rules: &'a Rules<'a>,
-    /// The front, and how many of its spheres have been taken.
+    /// The front, and the number of its spheres taken so far.
     queue: Vec<FrontSphere>,
     taken: usize,
     draws: Draws,
@@ -93,8 +93,8 @@ impl<'a> Block<'a> {
         Some(sphere)
     }
 
-    /// A place beside a sphere of the front for the size that was drawn last; none if it does not
-    /// fit there.
+    /// A place next to a sphere of the front for the size drawn last; none if it does not fit
+    /// there.
     pub(super) fn candidate(
         &mut self,
         assembly: &Assembly,

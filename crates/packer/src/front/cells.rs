@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// Cells along the edge of a block.
 const BLOCK: usize = 2;
 
-/// Colour and number of the block that a sphere's centre lies in.
+/// Colour and number of the block that contains a sphere's centre.
 pub(super) fn block_of(lattice: &Lattice, sphere: &ReducedSphere) -> (usize, usize) {
     let block = lattice
         .cell_of(sphere[0], sphere[1], sphere[2])

@@ -3,7 +3,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-/// Draws one size after the other; each waits until it finds a place, so that the sizes placed are
+/// Draws sizes one after the other. Each waits until it finds a place, so that the sizes placed are
 /// the sizes drawn.
 pub(super) struct Draws {
     pub(super) random: ChaCha8Rng,
@@ -12,25 +12,25 @@ pub(super) struct Draws {
 }
 
 impl Draws {
-    /// Draws of one stream of random numbers, after those that wait already.
+    /// Draws of one stream of random numbers, after those that are already waiting.
     pub(super) fn new(seed: u64, stream: u64, waiting: Option<f64>) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(stream);
         Self { random, waiting }
     }
 
-    /// The draw that waits for a place, made by `draw` if none waits.
+    /// The waiting draw, made by `draw` if none waits.
     pub(super) fn current(&mut self, draw: impl FnOnce(&mut ChaCha8Rng) -> f64) -> f64 {
         *self.waiting.get_or_insert_with(|| draw(&mut self.random))
     }
 
-    /// The draw that waited has found its place.
+    /// Records that the waiting draw has found its place.
     pub(super) fn placed(&mut self) {
         self.waiting = None;
     }
 }
 
-/// A draw from the whole distribution.
+/// A draw from the complete distribution.
 pub(super) fn any_size(random: &mut ChaCha8Rng) -> f64 {
     random.random::<f64>()
 }

@@ -1,10 +1,10 @@
-//! Voids filled as the bare front goes, with the sizes kept true. Not before settling, which moves
-//! the spheres anyway.
+//! Voids filled while the bare front advances, without distorting the sizes. Not used before
+//! settling, which moves the spheres anyway.
 //!
-//! Where a front sphere would leave the queue although a smaller sphere than the one drawn fits
-//! around it, about the largest that fits is placed, and its size is drawn less often afterwards:
-//! so no void is left that takes the smallest sphere, and the sizes placed still follow the
-//! distribution.
+//! A front sphere may be about to leave the queue although a smaller sphere than the one drawn fits
+//! around it. Then about the largest sphere that fits is placed, and its size is drawn less often
+//! afterwards. So no void is left that takes the smallest sphere, and the sizes placed still follow
+//! the distribution.
 
 use super::assembly::{Assembly, FrontSphere};
 use super::draws::Draws;
@@ -16,46 +16,46 @@ use rand::rngs::ChaCha8Rng;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// For a void the next smaller quantile is this part of the last: half of it on average, but never
-/// the same part. Halves of halves would fill all voids with a few sizes only, and so many more of
-/// those than can be kept back: in a ball, where the front comes to the whole wall last.
+/// Range of the ratio of the next smaller quantile tried for a void to the last one: one half on
+/// average, but never the same. Repeated halving would fill all voids with a few sizes, and need
+/// more of those than can be held back, as in a ball, where the front reaches the entire wall last.
 const SMALLER: Range<f64> = 1.0 / 3.0..2.0 / 3.0;
-/// Quantiles tried at most: the last is some five hundredth of the first.
+/// Largest number of quantiles tried: the last is about one five-hundredth of the first.
 const FILLERS_TRIED: usize = 9;
-/// As long as small spheres are not more than expected by this many roots of the number of spheres
-/// (a fifth of what chance does), voids are filled at once. Others wait until the front is `LAG`
-/// shells farther: draws that were made meanwhile may have filled them.
+/// Voids are filled at once as long as the surplus of small spheres, in square roots of the number
+/// of spheres, is below this (a fifth of the effect of chance). Others wait until the front is
+/// `LAG` shells farther: draws made meanwhile may have filled them.
 const MOST_AT_ONCE: f64 = 0.27;
 const LAG: u32 = 3;
-/// Voids filled in a block, about: of some 70 spheres one in eight fills a void.
+/// Approximate number of voids filled in a block: one of eight among about 70 spheres fills a void.
 const FILLERS_OF_BLOCK: f64 = 10.0;
 
 /// Limits to the filling of voids.
 #[derive(Debug, Clone)]
 pub(crate) struct FillingSettings {
-    /// Spheres expected, about.
+    /// Expected number of spheres, approximately.
     pub(crate) expected: f64,
-    /// As long as small spheres are not more than expected by this many roots of the number of
-    /// spheres, voids are filled at all.
+    /// Surplus of small spheres, in square roots of the number of spheres, below which voids are
+    /// filled at all.
     pub(crate) most_too_many: f64,
-    /// The sizes to begin with, where those of an earlier attempt are to be evened out.
+    /// The quota to begin with, if it is to balance the sizes of an earlier attempt.
     pub(crate) quota: Option<SizeQuota>,
 }
 
-/// The voids of a front: those that were filled, and those that wait or were left.
+/// The voids of a front: those filled, and those waiting or left.
 pub(super) struct Fillers {
     settings: FillingSettings,
     /// Sizes placed, drawn or chosen.
     pub(super) quota: SizeQuota,
-    /// Cells in which a sphere may have neighbours that touch the wall.
+    /// For each cell, true if spheres there may have neighbours that touch the wall.
     pub(super) wall_in_reach: Vec<bool>,
     /// Spheres that left the queue with room around them for the smallest sphere, by shell.
     with_room: BTreeMap<u32, Vec<FrontSphere>>,
-    /// Those of them around which voids had to be left.
+    /// Spheres among them around which voids had to be left.
     pub(super) left_open: Vec<FrontSphere>,
-    /// Spheres that were chosen to fill voids.
+    /// Number of spheres chosen to fill voids.
     pub(super) placed: usize,
-    /// Those of them that touch no three others or walls.
+    /// Number of fillers that touch fewer than three other spheres or walls.
     pub(super) loose: usize,
 }
 
@@ -73,8 +73,8 @@ impl Fillers {
         }
     }
 
-    /// Rules for blocks that draw sizes (`draws`), or else only fill voids, and begin with so many
-    /// front spheres.
+    /// Rules for blocks that draw sizes (`draws`) or else only fill voids, and that begin with this
+    /// number of front spheres.
     pub(super) fn rules(&self, draws: bool, front_spheres: usize) -> FillingRules<'_> {
         let most_too_many = if draws {
             MOST_AT_ONCE
@@ -89,14 +89,14 @@ impl Fillers {
         }
     }
 
-    /// Number of voids that may still be filled if there may be so many roots of the number of
-    /// spheres too many small ones.
+    /// Number of voids that may still be filled for a surplus of small spheres of this many square
+    /// roots of the number of spheres.
     fn allowed(&self, most_too_many: f64) -> f64 {
         most_too_many * self.settings.expected.sqrt() - self.quota.too_many()
     }
 
-    /// Number of blocks that may work until the next look at the quota: no more than fill the voids
-    /// that may be filled at all.
+    /// Number of blocks that may work until the quota is checked again: no more than can fill the
+    /// allowed number of voids.
     pub(super) fn blocks_at_once(&self) -> usize {
         let allowed = self.allowed(self.settings.most_too_many);
         if allowed > 0.0 {
@@ -106,14 +106,15 @@ impl Fillers {
         }
     }
 
-    /// The spheres of the next shell, `LAG` shells and more behind `shell`, that left the queue
+    /// The spheres of the next shell, at least `LAG` shells behind `shell`, that left the queue
     /// with room around them.
     pub(super) fn next_behind(&mut self, shell: u32) -> Option<Vec<FrontSphere>> {
         let entry = self.with_room.first_entry()?;
         (*entry.key() <= shell.saturating_sub(LAG)).then(|| entry.remove())
     }
 
-    /// Adds what a block did; `shell_of` a sphere of the front is asked where sizes were drawn.
+    /// Adds the result of a block. `shell_of` a sphere of the front is only called where sizes were
+    /// drawn.
     pub(super) fn merge(
         &mut self,
         filled: FilledVoids,
@@ -136,17 +137,17 @@ impl Fillers {
 
 /// Rules for all blocks that work at the same time.
 pub(super) struct FillingRules<'a> {
-    /// Sizes are drawn, and not only voids filled.
+    /// True if sizes are drawn, and not only voids filled.
     draws: bool,
-    /// For each class of the quota the probability with which a draw is left out.
+    /// Probability for each class of the quota that a draw is left out.
     left_out: Vec<f64>,
-    /// Voids may be filled.
+    /// True if voids may be filled.
     fills: bool,
     wall_in_reach: &'a [bool],
 }
 
 impl FillingRules<'_> {
-    /// A draw that no class of sizes has had too many of.
+    /// A draw from a class of sizes without a surplus.
     fn draw(&self, random: &mut ChaCha8Rng) -> f64 {
         loop {
             let quantile = random.random::<f64>();
@@ -163,9 +164,9 @@ impl FillingRules<'_> {
 pub(super) struct FilledVoids {
     /// Quantiles of all spheres placed.
     quantiles: Vec<f64>,
-    /// Number of them chosen to fill voids.
+    /// Number of spheres chosen to fill voids.
     placed: usize,
-    /// Those of them that touch no three others or walls.
+    /// Number of fillers that touch fewer than three other spheres or walls.
     loose: usize,
     /// Front spheres that left the queue with room around them for the smallest sphere.
     with_room: Vec<FrontSphere>,
@@ -174,9 +175,9 @@ pub(super) struct FilledVoids {
 /// The voids of a block at work.
 pub(super) struct BlockFillers<'a> {
     rules: &'a FillingRules<'a>,
-    /// Spheres of this quantile and above do not fit around the front sphere any more.
+    /// Spheres of this quantile and above no longer fit around the front sphere.
     too_large: f64,
-    /// A place for the smallest sphere beside the front sphere.
+    /// A place for the smallest sphere next to the front sphere.
     void: Option<Vector3>,
     filled: FilledVoids,
 }
@@ -191,8 +192,8 @@ impl<'a> BlockFillers<'a> {
         }
     }
 
-    /// A place beside the front sphere `initial` for the size drawn, or for one that fits if that
-    /// does not. `assembled` are the spheres that the grid does not hold yet.
+    /// A place next to the front sphere `initial` for the size drawn, or for one that fits if that
+    /// does not. `assembled` are the spheres not yet in the grid.
     pub(super) fn candidate(
         &mut self,
         assembly: &Assembly,
@@ -230,8 +231,8 @@ impl<'a> BlockFillers<'a> {
         })
     }
 
-    /// A sphere for a void beside the front sphere `initial`: the first that fits as quantiles
-    /// become smaller, if one of some does.
+    /// A sphere for a void next to the front sphere `initial`: the first that fits as the quantiles
+    /// decrease, if one of those tried does.
     fn smaller(
         &mut self,
         assembly: &Assembly,
@@ -251,14 +252,14 @@ impl<'a> BlockFillers<'a> {
         None
     }
 
-    /// A sphere was placed, drawn or chosen.
+    /// Records a sphere that was placed, drawn or chosen.
     pub(super) fn placed(&mut self, assembly: &Assembly, sphere: &ReducedSphere, quantile: f64) {
         let reach = sphere[3] + assembly.reduced(assembly.settings.radius_range[0]);
         self.void = self.void.filter(|place| distance(sphere, place) >= reach);
         self.filled.quantiles.push(quantile);
     }
 
-    /// The work around a front sphere is at an end.
+    /// Ends the work around a front sphere.
     pub(super) fn retire(&mut self, initial: FrontSphere) {
         if self.void.take().is_some() {
             self.filled.with_room.push(initial);

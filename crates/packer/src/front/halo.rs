@@ -11,7 +11,7 @@ use super::rims::{LANES, Rims};
 use crate::spheres::{ReducedSphere, Vector3};
 use pulp::Arch;
 
-/// Rims may be crossed by this much: overlaps stay below 1e-11 of a radius.
+/// Tolerance for crossing a rim: overlaps stay below 1e-11 of a radius.
 const RIM_TOLERANCE: f64 = 1e-12;
 /// Caps whose axes are nearer to parallel than this (sine squared) have no sharp corner.
 const SMALLEST_SINE_SQUARED: f64 = 1e-8;
@@ -34,14 +34,14 @@ pub struct Halo {
     pub radius: f64,
     /// Largest first, nearly: they cover most.
     pub(super) caps: Vec<Cap>,
-    /// The same in single precision.
+    /// The same caps in single precision.
     rims: Rims,
-    /// The least order of any point on a rim in the upper half, the number of its cap in the lower
-    /// one.
+    /// The smallest order of any point on a rim in the upper half, the number of its cap in the
+    /// lower half.
     order: Vec<u64>,
 }
 
-/// A sphere near one front sphere, with what all radii of a new sphere share.
+/// A sphere near one front sphere, with the quantities common to all radii of a new sphere.
 #[derive(Debug, Clone, Copy)]
 struct Neighbour {
     axis: Vector3,
@@ -53,13 +53,13 @@ struct Neighbour {
 #[derive(Debug, Default)]
 pub struct Neighbours {
     all: Vec<Neighbour>,
-    /// Their order by distance from surface to surface: that distance in the upper half, the index
-    /// in the lower one.
+    /// Their order by the distance between surfaces: that distance in the upper half, the index in
+    /// the lower half.
     order: Vec<u64>,
 }
 
 impl Neighbours {
-    /// Forgets all.
+    /// Removes all spheres.
     pub fn clear(&mut self) {
         self.all.clear();
         self.order.clear();
@@ -74,7 +74,7 @@ impl Neighbours {
             let reach = ball[3] + other[3] + 2.0 * largest;
             if squared < reach * reach && squared > 0.0 {
                 let distance = squared.sqrt();
-                // Positive numbers are ordered as their bits are.
+                // The bits of positive numbers have the same order as the numbers.
                 let apart = (distance - other[3]).max(0.0) as f32;
                 self.order
                     .push(u64::from(apart.to_bits()) << 32 | self.all.len() as u64);
@@ -87,7 +87,7 @@ impl Neighbours {
         }
     }
 
-    /// Brings the nearest to the front: their caps are the largest.
+    /// Sorts the nearest neighbours first: their caps are the largest.
     pub(crate) fn sort(&mut self) {
         self.order.sort_unstable();
     }
@@ -120,8 +120,8 @@ impl Halo {
         self.group_rims();
     }
 
-    /// Adds what flat walls cut out: direction and distance from the halo's centre less the radius
-    /// of the new sphere.
+    /// Adds the caps of flat walls: the direction to each, and its distance from the halo's centre
+    /// less the radius of the new sphere.
     pub(crate) fn add_walls(&mut self, walls: impl Iterator<Item = (Vector3, f64)>) {
         let radius = self.radius;
         let caps = walls.map(|(axis, clearance)| {
@@ -149,10 +149,9 @@ impl Halo {
     }
 
     /// Calls `found` with the position of each point where two rims meet and no cap covers, as long
-    /// as it is better than the best one so far: its order, p . `wanted`, is smaller. `found`
-    /// returns whether it takes it.
-    ///
-    /// Nearly all points are covered. Those are found out in single precision, see rims.rs.
+    /// as it is better than the best one so far, which means that its order, p . `wanted`, is
+    /// smaller. `found` returns true if it accepts the point.
+    /// Nearly all points are covered. They are eliminated in single precision, see rims.rs.
     pub fn corners(&mut self, wanted: &Vector3, found: impl FnMut(&Vector3) -> bool) {
         Arch::new().dispatch(
             #[inline(always)]
@@ -170,7 +169,7 @@ impl Halo {
                 let across = (cap.sine_squared * (squared - along * along))
                     .max(0.0)
                     .sqrt();
-                // From 0 to 4: positive numbers are ordered as their bits are.
+                // From 0 to 4; the bits of positive numbers have the same order as the numbers.
                 let least = 2.0 + (cap.rim * along - across) / squared.sqrt();
                 u64::from((least as f32).max(0.0).to_bits()) << 32 | j as u64
             }));
@@ -188,7 +187,7 @@ impl Halo {
                 };
                 for p in places {
                     let order = p.dot(wanted);
-                    // Of equals, as in a regular packing, the one of the nearest neighbours.
+                    // Among equals, as in a regular packing, the one of the nearest neighbours.
                     let is_better = order < least || (order == least && j < of_rim);
                     if is_better && is_free(caps, &p) && found(&(self.centre + p * self.radius)) {
                         (least, of_rim) = (order, j);
@@ -198,7 +197,7 @@ impl Halo {
         }
     }
 
-    /// The position of a point where two rims meet and no cap covers, and that `takes` takes, if
+    /// The position of a point where two rims meet, that no cap covers and that `takes` accepts, if
     /// there is one.
     pub(crate) fn any_corner(&mut self, takes: impl Fn(&Vector3) -> bool) -> Option<Vector3> {
         Arch::new().dispatch(
@@ -263,8 +262,8 @@ fn is_free(caps: &[Cap], p: &Vector3) -> bool {
 }
 
 /// The two unit vectors where the rims of two caps meet at an angle, if they do: a foot in the
-/// plane of the axes, and as far off it to either side as sin^2 sin^2 - (cosine - cos cos)^2 >= 0
-/// says.
+/// plane of the axes, offset to either side by a distance given by sin^2 sin^2 - (cosine - cos
+/// cos)^2 >= 0.
 fn corners_of(a: &Cap, b: &Cap) -> Option<[Vector3; 2]> {
     let cosine = a.axis.dot(&b.axis);
     let excess = cosine - a.rim * b.rim;

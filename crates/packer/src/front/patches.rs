@@ -1,31 +1,32 @@
-//! A search for a free place on a halo, walls of any shape included: the halo is cut into patches,
-//! and those into smaller ones, as long as neither a cap nor the wall is sure to cover them.
+//! A search for a free place on a halo, for walls of any shape: the halo is divided into patches,
+//! and those into smaller ones, as long as neither a cap nor the wall is certain to cover them.
 
 use super::halo::Halo;
 use crate::spheres::Vector3;
 
-/// The part of a patch, taken as a ball around its middle, that the wall leaves.
+/// The part of a patch, enclosed in a ball around its middle, that the wall leaves free.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Wall {
-    /// Nothing of it.
+    /// Nothing is free.
     Covers,
-    /// Its middle and perhaps more.
+    /// The middle is free, and perhaps more.
     LeavesMiddle,
-    /// Not its middle, but perhaps other parts.
+    /// The middle is not free, but other parts may be.
     Cuts,
 }
 
-/// Patches smaller than this part of the halo's radius count as covered.
+/// Patches smaller than this fraction of the halo's radius count as covered.
 const SMALLEST: f64 = 1e-6;
-/// Patches looked at at most: where a whole seam is just too narrow, they become ever more.
+/// Largest number of patches examined: their number grows without limit where an entire seam is
+/// just too narrow.
 const MOST: usize = 10_000;
 
 /// A triangle on the unit sphere.
 type Patch = [Vector3; 3];
 
 impl Halo {
-    /// A place that no neighbour's cap and no wall covers, if there is one. `wall` says what the
-    /// wall leaves of a ball (centre and radius in local units).
+    /// A place that no neighbour's cap and no wall covers, if there is one. `wall` gives the part
+    /// that the wall leaves of a ball (centre and radius in local units).
     pub(crate) fn free_place(&self, wall: impl Fn(&Vector3, f64) -> Wall) -> Option<Vector3> {
         let mut patches: Vec<Patch> = octahedron().collect();
         let mut looked_at = 0;

@@ -1,4 +1,4 @@
-//! Candidate points: places beside one front sphere where a new sphere touches it and two others,
+//! Candidate points: places next to one front sphere where a new sphere touches it and two others,
 //! or one other and the wall (Platzer 2022, sections 4.1.2 and 4.1.3).
 
 use super::assembly::Assembly;
@@ -6,13 +6,13 @@ use super::halo::{Halo, Neighbours};
 use crate::geometry::boundary::Nearest;
 use crate::spheres::{ReducedSphere, Vector3, centre_of};
 
-/// A place at the wall is taken before one that is nearer to the seed by up to this many radii: it
-/// fills the first layer at the wall.
+/// A place at the wall is preferred to one that is nearer to the seed by up to this many radii:
+/// this fills the first layer at the wall.
 const WALL_PREFERENCE: f64 = 0.5;
 
 impl Assembly<'_> {
     /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest`
-    /// beside `initial` could touch. `assembled` are spheres that the grid does not hold yet.
+    /// next to `initial` could touch. `assembled` are the spheres not yet in the grid.
     pub(super) fn find_neighbours(
         &self,
         workspace: &mut Workspace,
@@ -43,7 +43,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// The candidate point nearest to the seed for a new sphere of (not reduced) `radius` beside
+    /// The candidate point nearest to the seed for a new sphere of (not reduced) `radius` next to
     /// `initial` that overlaps neither sphere nor wall.
     pub(super) fn best_place(
         &self,
@@ -93,9 +93,9 @@ impl Assembly<'_> {
         best
     }
 
-    /// From a place `p` on the rim of neighbour `j`, near to a place where a sphere of (not
-    /// reduced) `radius` touches the wall: that place, if it is free. The wall is taken for a plane
-    /// at its nearest point, again and again.
+    /// The place, if it is free, where a sphere of (not reduced) `radius` touches the wall,
+    /// searched from a place `p` nearby on the rim of neighbour `j`. The wall is repeatedly
+    /// approximated by a plane at its nearest point.
     fn touch_wall(&self, halo: &Halo, radius: f64, j: usize, p: &Vector3) -> Option<Vector3> {
         let radius = self.wall_clearance(radius);
         let wanted = radius * (1.0 + 1e-12);
@@ -128,7 +128,7 @@ pub(super) struct Place {
     pub(super) quantile: f64,
 }
 
-/// Arrays that a thread uses again for every front sphere.
+/// Work arrays that a thread reuses for every front sphere.
 #[derive(Default)]
 pub(super) struct Workspace {
     pub(super) neighbours: Neighbours,

@@ -1,5 +1,5 @@
-//! Keeps the sizes true where spheres are chosen to fill voids: classes of sizes that have had more
-//! than their quota are drawn less often.
+//! Keeps the size distribution correct where spheres are chosen to fill voids: classes of sizes
+//! that have exceeded their quota are drawn less often.
 
 /// Numbers of spheres of each class of sizes that have been placed, drawn or chosen. The classes
 /// are equal fractions of the distribution by number.
@@ -7,15 +7,15 @@
 pub(crate) struct SizeQuota {
     placed: Vec<f64>,
     total: f64,
-    /// The quota of each class while there are draws, as a fraction of all spheres: less than equal
-    /// where voids will take more at the end.
+    /// The quota of each class during the draws, as a fraction of all spheres: less than equal for
+    /// classes from which voids will take more at the end.
     quotas: Vec<f64>,
 }
 
 impl SizeQuota {
-    /// For a packing of about so many spheres. More classes would tell sizes better apart, but have
-    /// fewer spheres each, and draws hit them more seldom: with so many both errors stay a part of
-    /// the noise of as many draws.
+    /// For a packing of about this number of spheres. More classes would distinguish sizes better,
+    /// but have fewer spheres each and are drawn less often. With the number chosen, both errors
+    /// stay a fraction of the statistical noise of a random sample.
     pub(crate) fn new(spheres: f64) -> Self {
         let classes = (0.7 * spheres.sqrt()).clamp(1.0, 1e4) as usize;
         Self {
@@ -25,9 +25,9 @@ impl SizeQuota {
         }
     }
 
-    /// For another attempt that keeps back what each class has had too many of in the end, and what
-    /// is more than all of it from the next larger ones: the number of spheres up to most sizes is
-    /// true then.
+    /// For another attempt that holds back the final surplus of each class. A surplus that exceeds
+    /// the quota of its class is held back from the next larger ones, so that the number of spheres
+    /// up to most sizes is then correct.
     pub(crate) fn corrected(&self) -> Self {
         let classes = self.placed.len();
         let mut owed = 0.0;
@@ -57,8 +57,8 @@ impl SizeQuota {
         self.total += 1.0;
     }
 
-    /// For each class the probability with which a draw is to be left out, if about so many are to
-    /// be made before the next look: half of what would even out all, since the number is a guess.
+    /// For each class, the probability that a draw is left out, if about this number of draws are
+    /// made before the next check. It removes half of the surplus, since the number is a guess.
     pub(crate) fn fractions_left_out(&self, draws: usize) -> Vec<f64> {
         let draws_of_class = draws as f64 / self.placed.len() as f64;
         self.surplus(&self.quotas)
@@ -66,7 +66,7 @@ impl SizeQuota {
             .collect()
     }
 
-    /// Largest surplus of spheres up to any size over the number aimed at.
+    /// Largest surplus of spheres up to any size over the target number.
     pub(crate) fn too_many(&self) -> f64 {
         largest_sum(self.surplus(&self.quotas))
     }
@@ -85,7 +85,7 @@ impl SizeQuota {
     }
 }
 
-/// The largest sum of a row from its beginning.
+/// The largest partial sum of a sequence.
 fn largest_sum(row: impl Iterator<Item = f64>) -> f64 {
     let mut sum = 0.0;
     row.fold(0.0, |most: f64, x| {
@@ -94,7 +94,7 @@ fn largest_sum(row: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
-/// The class of a quantile among so many.
+/// The class of a quantile among this number of classes.
 pub(super) fn class_of(u: f64, classes: usize) -> usize {
     ((u * classes as f64) as usize).min(classes - 1)
 }

@@ -1,48 +1,50 @@
-//! The parts of the rims of caps that no other cap covers: in single precision, `LANES` caps at a
-//! time.
+//! The parts of the rims of caps that no other cap covers, in single precision for `LANES` caps at
+//! a time.
 //!
 //! A rim is a circle on the unit sphere. Another cap covers one arc of it. The circle is cut into
 //! 64 sectors; a sector that lies within one such arc is covered, and once all 64 are, the rim
-//! holds no corner of the free area. Most rims end so after a few caps. A place that is called
-//! covered here is covered; one that is called open may still be covered: the caller looks at it in
-//! double precision.
+//! holds no corner of the free area. For most rims a few caps are enough. A place reported as
+//! covered is covered. One reported as open may still be covered: the caller checks it in double
+//! precision.
 
 use crate::spheres::Vector3;
 
-/// Caps handled at once, without a branch.
+/// Number of caps processed at once, without a branch.
 pub(crate) const LANES: usize = 8;
 /// Numbers of `LANES` caps side by side.
 type Lanes = [f32; LANES];
 
 const SECTORS: f32 = 64.0;
-/// An arc is taken to be shorter than it is by this part of a sector at either end, far more than
-/// rounding can change it.
+/// Fraction of a sector by which an arc is shortened at either end: far more than the effect of
+/// rounding.
 const MARGIN: f32 = 0.02;
-/// A corner is looked for this many sectors to either side of where it seems to be.
+/// A corner is searched for this many sectors to either side of its apparent position.
 const CORNER_MARGIN: f32 = 0.1;
-/// Two rims whose planes are so nearly parallel (sine times sine, squared) that rounding could
-/// misplace their corners by more than that.
+/// Square of sine times sine below which the planes of two rims are so nearly parallel that
+/// rounding could misplace their corners by more than that.
 const BLUNT: f32 = 4e-4;
-/// An arc shorter than about a sector (sine of half its angle, squared) counts for nothing.
+/// Square of the sine of half the angle below which an arc, shorter than about a sector, is
+/// ignored.
 const SHORT: f32 = 0.01;
-/// Rims that pass each other by less than this (cosines, squared) may meet.
+/// Difference of cosines, squared, below which rims that pass each other may meet.
 const NEARLY_MEET: f32 = 1e-5;
 
-/// In place of a position on a rim: the two rims do not meet.
+/// Stands for a position on a rim: the two rims do not meet.
 const APART: f32 = -1.0;
-/// In place of a position on a rim: they may meet anywhere.
+/// Stands for a position on a rim: they may meet anywhere.
 const ANYWHERE: f32 = -2.0;
 
 /// Caps in groups of `LANES`: x, y, z of the axes and the cosines of the caps' angles. The last
-/// group is filled up with caps that cover nothing.
+/// group is padded with caps that cover nothing.
 #[derive(Debug, Default)]
 pub(crate) struct Rims {
     groups: Vec<[Lanes; 4]>,
-    /// Begin and end of the arcs on the rim that was looked at last, in sectors.
+    /// Begin and end of the arcs on the rim examined last, in sectors.
     ends: Vec<[Lanes; 2]>,
 }
 
-/// A cap with two directions across its axis, along which positions on its rim are measured.
+/// A cap, and two directions perpendicular to its axis from which positions on its rim are
+/// measured.
 struct Rim {
     axis: [f32; 3],
     across: [[f32; 3]; 2],
@@ -62,7 +64,7 @@ impl Rims {
         self.groups.clear();
     }
 
-    /// Adds caps, `LANES` or, at the end, fewer: axis and cosine of the cap's angle.
+    /// Adds up to `LANES` caps: axis and cosine of the cap's angle.
     pub(crate) fn push(&mut self, caps: impl Iterator<Item = (Vector3, f64)>) {
         let mut group = [[0.0; LANES], [0.0; LANES], [0.0; LANES], [2.0; LANES]];
         for (lane, (axis, cosine)) in caps.enumerate() {
@@ -74,7 +76,7 @@ impl Rims {
         self.groups.push(group);
     }
 
-    /// Calls `visit` with each cap k < `j` of which a corner with cap `j` may be free.
+    /// Calls `visit` with each cap k < `j` that may have a free corner with cap `j`.
     #[inline(always)]
     pub(crate) fn open_corners(&mut self, j: usize, mut visit: impl FnMut(usize)) {
         let rim = self.rim(j);
@@ -118,9 +120,9 @@ impl Rims {
 }
 
 impl Rim {
-    /// The point of this rim in direction p of the plane across its axis is covered by a cap with
-    /// axis (along, u, v) where p . (u, v) sine > t, t = cosine of that cap - along * cosine of
-    /// this one.
+    /// True if the point of this rim in direction p, in the plane perpendicular to its axis, is
+    /// covered by a cap with axis (along, u, v): p . (u, v) sine > t, with t = cosine of that cap -
+    /// along * cosine of this one.
     #[inline(always)]
     fn arcs(&self, [x, y, z, cosine]: &[Lanes; 4]) -> Arcs {
         let dot = |a: &[f32; 3], k: usize| a[0] * x[k] + a[1] * y[k] + a[2] * z[k];
@@ -182,7 +184,8 @@ impl Rim {
     }
 }
 
-/// Position of a direction on the circle, in sectors: grows with its angle, though not evenly.
+/// Position of a direction on the circle, in sectors: grows monotonically with its angle, but not
+/// uniformly.
 #[inline(always)]
 fn position(x: f32, y: f32) -> f32 {
     let sum = x.abs() + y.abs();

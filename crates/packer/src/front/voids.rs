@@ -1,4 +1,4 @@
-//! Voids: places that take the smallest sphere, and how large a sphere they take.
+//! Voids: places that take the smallest sphere, and the size of the sphere that fits there.
 
 use super::assembly::{Assembly, cells_near_wall};
 use super::patches::Wall;
@@ -8,11 +8,11 @@ use crate::seed::climb;
 use crate::spheres::{ReducedSphere, Vector3, centre_of, distance};
 use rayon::prelude::*;
 
-/// Voids are counted up to this number, and extrapolated from there.
+/// Voids are counted up to this number, and extrapolated beyond it.
 const MOST_COUNTED: usize = 10_000;
 
 impl Assembly<'_> {
-    /// For each cell of the grid whether a sphere with its centre there may have neighbours that
+    /// For each cell of the grid, true if a sphere with its centre there may have neighbours that
     /// touch the wall.
     pub(super) fn cells_with_wall_in_reach(&self) -> Vec<bool> {
         let largest = self.settings.radius_range[1];
@@ -21,7 +21,7 @@ impl Assembly<'_> {
     }
 
     /// A place where a sphere of the smallest radius touches `initial` and overlaps neither sphere
-    /// nor wall, if there is one. `wall_in_reach` as [`Assembly::cells_with_wall_in_reach`] says.
+    /// nor wall, if there is one. `wall_in_reach` is from [`Assembly::cells_with_wall_in_reach`].
     pub(super) fn place_for_smallest(
         &self,
         workspace: &mut Workspace,
@@ -55,8 +55,8 @@ impl Assembly<'_> {
             .or_else(|| halo.free_place(|centre, reach| self.wall_at(centre, reach, clearance)))
     }
 
-    /// The part that the wall leaves of a ball of places (centre and radius `reach`, local units)
-    /// that must be farther from it than `clearance`.
+    /// The part of a ball of places (centre and radius `reach`, local units) that is farther from
+    /// the wall than `clearance`.
     fn wall_at(&self, centre: &Vector3, reach: f64, clearance: f64) -> Wall {
         let boundary = self.boundary;
         let Some((triangle, near)) = boundary.nearest_triangle(centre, clearance + reach) else {
@@ -91,9 +91,8 @@ impl Assembly<'_> {
             .collect()
     }
 
-    /// The roomiest place near a void, no farther from it than blocks of one colour can bear, and
-    /// the largest size that fits there. `assembled` are the spheres that the grid does not hold
-    /// yet.
+    /// The roomiest place near a void, no farther from it than the blocks of one colour allow, and
+    /// the largest size that fits there. `assembled` are the spheres not yet in the grid.
     pub(super) fn roomiest_place(&self, void: &Vector3, assembled: &[ReducedSphere]) -> Place {
         let [smallest, largest] = self.settings.radius_range;
         let enlarge = 1.0 + self.settings.overlap;
@@ -118,7 +117,7 @@ impl Assembly<'_> {
     }
 
     /// The roomiest place near a void, and a radius (not reduced) among those that fit there: the
-    /// part `drawn` (0 to 1) of their quantiles.
+    /// fraction `drawn` (0 to 1) of their quantiles.
     pub(crate) fn roomy_place(&self, void: &Vector3, drawn: f64) -> (Vector3, f64) {
         let smallest = self.settings.radius_range[0];
         let roomiest = climb(void, 0.1 * smallest, 1e-3 * smallest, &|p| self.room(p));
@@ -132,7 +131,7 @@ impl Assembly<'_> {
     }
 
     /// Radius (not reduced) of the largest sphere around a place that overlaps neither sphere nor
-    /// wall, at most the largest asked for.
+    /// wall, at most the largest size.
     fn room(&self, place: &Vector3) -> f64 {
         let largest = self.settings.radius_range[1];
         let wall = self
@@ -142,7 +141,7 @@ impl Assembly<'_> {
         wall.min(self.reach_to_spheres(place, largest)).min(largest)
     }
 
-    /// The fraction of sizes whose radius is at most this.
+    /// Fraction of the sizes whose radius is at most this.
     fn largest_quantile_below(&self, radius: f64) -> f64 {
         let (mut fits, mut fits_not) = (0.0, 1.0);
         for _ in 0..52 {
@@ -156,13 +155,13 @@ impl Assembly<'_> {
         fits
     }
 
-    /// Number of the smallest spheres that would still fit around the spheres `open`, about: fills
-    /// the voids with them.
+    /// Approximate number of the smallest spheres that would still fit around the spheres `open`:
+    /// the voids are filled with them.
     pub(super) fn count_voids(mut self, open: &[ReducedSphere], wall_in_reach: &[bool]) -> usize {
         let mut workspace = Workspace::default();
         let smallest = self.settings.radius_range[0];
         let mut found = 0;
-        // In strides, so that what is found first is spread evenly.
+        // In strides, so that the places found first are spread evenly.
         let stride = open.len().div_ceil(100).max(1);
         let spread = (0..stride).flat_map(|first| open.iter().skip(first).step_by(stride));
         for (searched, sphere) in spread.enumerate() {
@@ -182,7 +181,7 @@ impl Assembly<'_> {
         found
     }
 
-    /// Number of the smallest spheres that would fit around all spheres, about.
+    /// Approximate number of the smallest spheres that would fit around all spheres.
     pub(crate) fn count_all_voids(self) -> usize {
         let wall_in_reach = self.cells_with_wall_in_reach();
         let open = self.spheres.clone();

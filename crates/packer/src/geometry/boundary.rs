@@ -1,5 +1,5 @@
-//! The wall of the solid: how far it is from a point, on which side of it a point lies, and what of
-//! it a ball would meet.
+//! The wall of the solid: its distance from a point, the side on which a point lies, and the parts
+//! that a ball would meet.
 
 use super::tree::{Corners, TriangleTree};
 use super::union::outer_pieces;
@@ -17,17 +17,17 @@ pub struct Nearest {
 
 /// The facets of a surface in a tree, for distance queries and rays.
 pub struct Boundary {
-    /// All facets of the surface, in its order: what rays are counted against.
+    /// All facets of the surface, in its order: rays are counted against them.
     facets: TriangleTree,
-    /// The triangles that bound the solid, where those are not all facets: parts of the surface may
+    /// The triangles that bound the solid, if they differ from the facets: parts of the surface may
     /// lie inside others.
     union: Option<TriangleTree>,
     /// The triangles of the wall, prepared for `nearest_on`.
     planes: Vec<Plane>,
 }
 
-/// A triangle as the plane that it lies in: p is above it where u = (p - corner) . along_u >= 0, v
-/// >= 0 and u + v <= 1.
+/// A triangle as the plane in which it lies: p is above it where u = (p - corner) . along_u >= 0,
+/// v >= 0 and u + v <= 1.
 struct Plane {
     corner: Vector3,
     normal: Vector3,
@@ -36,7 +36,7 @@ struct Plane {
 }
 
 /// Triangles whose height is a smaller fraction of their longest edge have no plane: its normal
-/// would be off by more than 1e-10.
+/// would have an error of more than 1e-10.
 const THINNEST: f64 = 1e-6;
 
 impl Plane {
@@ -45,8 +45,8 @@ impl Plane {
         let (edge_u, edge_v) = (b - a, c - a);
         let normal = edge_u.cross(&edge_v);
         let longest = edge_u.norm().max(edge_v.norm()).max((c - b).norm());
-        // A thin triangle does not tell its normal well, and has hardly an inner part that a point
-        // could be above: NaN fails every comparison.
+        // The normal of a thin triangle is inaccurate, and hardly any points are above the
+        // triangle. With NaN every comparison fails.
         let squared = if normal.norm() < THINNEST * longest * longest {
             f64::NAN
         } else {
@@ -60,7 +60,7 @@ impl Plane {
         }
     }
 
-    /// u and v of a point given from the corner.
+    /// u and v of a point given relative to the corner.
     fn along_triangle(&self, from_corner: &Vector3) -> [f64; 2] {
         [&self.along_u, &self.along_v].map(|along| from_corner.dot(along))
     }
@@ -121,7 +121,7 @@ impl Boundary {
         self.nearest_triangle(point, cut_off).map(|(_, near)| near)
     }
 
-    /// As [`Boundary::nearest`], with the triangle of the wall that the nearest point lies on.
+    /// As [`Boundary::nearest`], with the triangle of the wall on which the nearest point lies.
     pub(crate) fn nearest_triangle(&self, point: &Vector3, cut_off: f64) -> Option<(u32, Nearest)> {
         self.wall().nearest(point, cut_off, |triangle, closest| {
             self.nearest_below(triangle, point, closest)
@@ -129,7 +129,7 @@ impl Boundary {
     }
 
     /// True if a point is behind the triangle of the wall that is nearest to it, on the inner side:
-    /// then it is inside. None where that is not sure: the nearest point is at an edge, or the
+    /// then it is inside. None if this is uncertain because the nearest point is at an edge, or the
     /// point on the wall itself.
     pub(crate) fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
         const EDGE: f64 = 1e-6;
@@ -142,7 +142,7 @@ impl Boundary {
         sure.then_some(height < 0.0)
     }
 
-    /// True if the surface leaves a ball of this radius (local units) free.
+    /// True if a ball of this radius (local units) does not meet the surface.
     pub fn clears(&self, centre: &Vector3, radius: f64) -> bool {
         !self
             .wall()
@@ -160,7 +160,7 @@ impl Boundary {
         closest: f64,
     ) -> Option<(f64, Nearest)> {
         let plane = &self.planes[triangle as usize];
-        // The plane of a thin triangle is NaN, and not farther away than anything.
+        // The plane of a thin triangle is NaN, which is never farther away.
         if (point - plane.corner).dot(&plane.normal).abs() >= closest {
             return None;
         }
@@ -173,7 +173,7 @@ impl Boundary {
         self.wall().within(point, reach)
     }
 
-    /// The triangles of the wall whose boxes a ray passes, by their corners.
+    /// The triangles of the wall, by their corners, whose boxes a ray passes through.
     pub(crate) fn walls_on_ray(
         &self,
         origin: &Vector3,
@@ -213,7 +213,7 @@ impl Boundary {
                 k < MOST
                     && self.wall().corners(triangle).iter().all(|corner| {
                         let from_point = Vector3::from(*corner) - point;
-                        // NaN, of a thin triangle, is behind nothing.
+                        // NaN, for a thin triangle, is behind nothing.
                         found.iter().all(|(normal, distance)| {
                             from_point.dot(normal) <= distance + SAME_PLANE * reach
                         })
@@ -222,8 +222,8 @@ impl Boundary {
     }
 
     /// The walls that a ball of this radius (local units) would meet: nearest points in directions
-    /// that differ by more than 14 degrees, a face hidden behind a nearer one (the same plane, the
-    /// far side of an edge) left out. `triangles` limits the search; the 8 nearest are found.
+    /// that differ by more than 14 degrees. A face hidden behind a nearer one (the same plane, the
+    /// far side of an edge) is left out. `triangles` limits the search; the 8 nearest are found.
     pub fn walls(
         &self,
         triangles: impl Iterator<Item = u32>,
@@ -279,10 +279,10 @@ impl Boundary {
     }
 
     /// True if a point (local units) lies inside the solid, judged by the normal of the nearest
-    /// triangle: much faster than a ray. `triangles` must hold the nearest one and all that are as
-    /// near.
+    /// triangle: much faster than a ray. `triangles` must contain the nearest one and all that are
+    /// equally near.
     ///
-    /// `None` where this decides nothing, and [`is_inside`](super::inside::is_inside) does: the
+    /// `None` if this is undecided, and [`is_inside`](super::inside::is_inside) is needed: the
     /// nearest place is an edge or a corner, or several triangles within 1e-9 of the nearest
     /// contradict each other (as where two parts touch).
     pub fn is_behind_nearest(

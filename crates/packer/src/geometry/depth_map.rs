@@ -1,10 +1,11 @@
-//! Signed distance to the surface at any point, made cheap by a coarse grid: its cells know where
-//! the surface is far, on which side they lie, and which triangles of the wall can be nearest.
+//! Signed distance to the surface at any point, made cheap by a coarse grid: each cell stores
+//! whether the surface is far, on which side the cell lies, and which triangles of the wall can be
+//! nearest.
 //!
-//! Where these are many, the distances d_i of the cell's corners c_i bound that of a point p. With
-//! q over the surface, d(p)^2 - |p|^2 is the minimum of |q|^2 - 2 p.q, so concave: it is at least
-//! what is interpolated between the corners. And d(p) is at most the distance to the point of the
-//! surface that is nearest to a corner.
+//! For cells with many such triangles, the distances d_i of the cell's corners c_i bound that of a
+//! point p. With q over the surface, d(p)^2 - |p|^2 is the minimum of |q|^2 - 2 p.q, so it is
+//! concave: it is at least the value interpolated between the corners. Also, d(p) is at most the
+//! distance to the point of the surface that is nearest to a corner.
 
 use super::boundary::Boundary;
 use super::inside::is_inside;
@@ -12,23 +13,23 @@ use crate::spheres::Vector3;
 use dem_io::Surface;
 use rayon::prelude::*;
 
-/// Cells along the longest edge of the bounding box, at most.
+/// Largest number of cells along the longest edge of the bounding box.
 const MOST_CELLS_ALONG: f64 = 100.0;
-/// So many cells in the solid at least: where the spheres are few, finer cells save more than they
-/// cost.
+/// Smallest number of cells in the solid: with few spheres, finer cells save more than they cost.
 const FEWEST_CELLS: f64 = 10_000.0;
-/// A cell with more triangles that can be nearest leaves the search to the tree.
+/// Largest number of candidates for the nearest triangle in a cell; with more, the tree is
+/// searched.
 const MOST_TRIANGLES: usize = 12;
-/// Distances are compared with this relative margin, for rounding.
+/// Relative margin for rounding when distances are compared.
 const MARGIN: f64 = 1e-9;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Side {
-    /// All of it is inside, deeper than the cut-off.
+    /// The entire cell is inside, deeper than the cut-off.
     Deep,
-    /// All of it is inside.
+    /// The entire cell is inside.
     Inside,
-    /// All of it is outside.
+    /// The entire cell is outside.
     Outside,
     /// The surface may pass through it.
     Crossed,
@@ -43,20 +44,20 @@ impl Cell {
 #[derive(Clone, Copy)]
 struct Cell {
     side: Side,
-    /// All of it is at least as far from the surface, local units.
+    /// Lower limit of the distance between the cell and the surface, local units.
     clear: f64,
     /// Its triangles in the list of its row: those that can be nearest, or only the nearest to its
     /// centre.
     first: u32,
     count: u32,
-    /// None but these can be nearest.
+    /// True if no other triangle can be nearest.
     complete: bool,
 }
 
 /// A corner of cells.
 #[derive(Clone, Copy)]
 struct Corner {
-    /// Square of its distance to the surface, or of the cut-off if that is less.
+    /// Square of its distance to the surface, or of the cut-off if that is smaller.
     squared: f64,
     /// The nearest point of the surface, if nearer than the cut-off.
     nearest: Option<Vector3>,
@@ -68,17 +69,18 @@ struct Row {
     triangles: Vec<u32>,
 }
 
-/// Knows for the cells of a grid whether they are inside and what is near.
+/// For the cells of a grid, which side of the surface they are on and what is near.
 pub struct DepthMap<'a> {
     boundary: &'a Boundary,
     cut_off: f64,
     edge: f64,
     counts: [usize; 3],
     rows: Vec<Row>,
-    /// Corners of the cells, x fastest: of those that are inside and near many triangles. Empty if
-    /// there are none.
+    /// Corners of the cells that are inside and near many triangles, x fastest. Empty if there are
+    /// none.
     corners: Vec<Option<Corner>>,
-    /// No other part touches the wall from outside: what is in front of it is outside.
+    /// True if no other part touches the wall from outside: then all that is in front of the wall
+    /// is outside.
     one_part: bool,
 }
 
@@ -156,9 +158,9 @@ impl<'a> DepthMap<'a> {
             cells: Vec::with_capacity(self.counts[0]),
             triangles: Vec::new(),
         };
-        // From a cell without surface to the next, the side stays the same.
+        // The side is the same from a cell without surface to the next.
         let mut known_side = None;
-        // How far the last centre is from the surface at least, if it is outside.
+        // Lower limit of the distance between the last centre and the surface, if it is outside.
         let mut far_outside = 0.0;
         for x in 0..self.counts[0] {
             far_outside -= self.edge;
@@ -197,8 +199,8 @@ impl<'a> DepthMap<'a> {
             if let Some((triangle, _)) = nearest
                 && side != Side::Outside
             {
-                // Of a point of the cell, the nearest triangle is at most half a diagonal farther
-                // than of the centre.
+                // For a point of the cell, the nearest triangle is at most half a diagonal farther
+                // away than for the centre.
                 let reach = (distance + 2.0 * half_diagonal) * (1.0 + MARGIN);
                 complete = self.list(&centre, reach, &mut row.triangles);
                 if !complete {
@@ -231,8 +233,8 @@ impl<'a> DepthMap<'a> {
         true
     }
 
-    /// Bounds of the distance to the surface (see [`DepthMap::depth`]) that cost little, perhaps
-    /// none at all.
+    /// Bounds of the distance to the surface (see [`DepthMap::depth`]) at little cost; they may be
+    /// infinite.
     pub fn bounds(&self, point: [f64; 3]) -> [f64; 2] {
         const NONE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
         let place = [0, 1, 2].map(|k| (point[k] / self.edge).floor());
@@ -278,9 +280,8 @@ impl<'a> DepthMap<'a> {
         ]
     }
 
-    /// Distance to the surface, positive inside, infinite where it is more than the cut-off.
-    /// Outside it is negative or zero, and may be nearer to zero than the surface is: never
-    /// farther.
+    /// Distance to the surface, positive inside, infinite beyond the cut-off. Outside it is
+    /// negative or zero, and its magnitude never exceeds the true distance but may be smaller.
     pub fn depth(&self, point: [f64; 3]) -> f64 {
         let cell = [0, 1, 2].map(|k| (point[k] / self.edge).floor());
         if (0..3).any(|k| cell[k] < 0.0 || cell[k] >= self.counts[k] as f64) {
@@ -312,8 +313,7 @@ impl<'a> DepthMap<'a> {
         }
     }
 
-    /// Distance to the nearest triangle and which it is, if it is listed or nearer than the
-    /// cut-off.
+    /// The nearest triangle and its distance, if it is listed or nearer than the cut-off.
     fn nearest(&self, point: &Vector3, listed: &[u32], complete: bool) -> Option<(f64, u32)> {
         let of_list = listed
             .iter()

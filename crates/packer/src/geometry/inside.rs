@@ -11,8 +11,8 @@ pub fn is_inside(boundary: &Boundary, point: &Vector3) -> bool {
     winding(boundary.facets(), point).is_some_and(|winding| winding > 0)
 }
 
-/// Distance along a ray (unit direction, local units) to the first wall that it meets farther away
-/// than `beyond`.
+/// Distance along a ray (unit direction, local units) to the first wall beyond the distance
+/// `beyond`.
 pub fn first_hit(
     boundary: &Boundary,
     origin: &Vector3,

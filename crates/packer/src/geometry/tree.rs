@@ -1,4 +1,4 @@
-//! Triangles in a tree of boxes. The only module that knows parry3d.
+//! Triangles in a tree of boxes. The only module that uses parry3d.
 
 use crate::spheres::Vector3;
 use parry3d_f64::bounding_volume::Aabb;
@@ -17,7 +17,7 @@ impl TriangleTree {
     /// The tree over triangles given by the indices of their vertices.
     ///
     /// # Errors
-    /// No triangles, in words.
+    /// No triangles, as text.
     pub(super) fn new(
         vertices: impl Iterator<Item = [f64; 3]>,
         triangles: Vec<[u32; 3]>,
@@ -44,7 +44,7 @@ impl TriangleTree {
         self.in_box(Aabb::new(centre - half, centre + half))
     }
 
-    /// The triangles whose boxes meet that of `triangle`, itself among them.
+    /// The triangles whose boxes meet the box of `triangle`, including itself.
     pub(super) fn beside(&self, triangle: u32) -> impl Iterator<Item = u32> + '_ {
         self.in_box(self.0.triangle(triangle).local_aabb())
     }
@@ -54,7 +54,7 @@ impl TriangleTree {
         self.0.bvh().leaves(move |node| node.intersects(&query))
     }
 
-    /// The triangles whose boxes a ray passes.
+    /// The triangles whose boxes a ray passes through.
     pub(super) fn on_ray(
         &self,
         origin: &Vector3,
@@ -66,8 +66,9 @@ impl TriangleTree {
             .leaves(move |node| node.cast_ray(&ray, f64::MAX) < f64::MAX)
     }
 
-    /// The triangle nearest to `point`, if it is closer than `cut_off`, with what `measure` says of
-    /// it: `measure(triangle, closest)` gives its distance, or None if that is not below `closest`.
+    /// The triangle nearest to `point`, if it is closer than `cut_off`, with the result of
+    /// `measure` for it: `measure(triangle, closest)` gives its distance, or None if that is not
+    /// below `closest`.
     #[inline]
     pub(super) fn nearest<T>(
         &self,
@@ -89,7 +90,7 @@ impl TriangleTree {
         radius: f64,
         measure: impl Fn(u32, f64) -> Option<(f64, T)>,
     ) -> bool {
-        // The first triangle within the radius decides: no box is worth a look after it.
+        // The first triangle within the radius decides: no further box is examined.
         let distance = |node: &BvhNode, closest: f64| {
             if closest < radius {
                 f64::MAX

@@ -1,10 +1,11 @@
-//! Surfaces whose parts cross each other bound the union of the parts: what of a facet lies inside
-//! another part is no wall.
+//! The union of the parts of a surface that cross each other: the part of a facet that lies inside
+//! another part is not a wall.
 //!
 //! A facet is split along the segments in which others meet it, into convex pieces that each lie
-//! wholly inside or wholly outside of every part. A piece is wall if the solid lies behind it and
-//! not before it, by the winding numbers on both sides of its middle. If these do not tell (parts
-//! that touch with their outer sides), it stays: a wall too many is harmless, a hole is not.
+//! entirely inside or entirely outside every part. A piece is wall if the solid lies behind it and
+//! not before it, by the winding numbers on both sides of its middle. If these do not decide (parts
+//! that touch with their outer sides), the piece is kept: a superfluous wall is harmless, a hole is
+//! not.
 
 use super::tree::{Corners, TriangleTree};
 use super::winding::winding;
@@ -12,12 +13,12 @@ use crate::spheres::Vector3;
 use dem_io::Surface;
 use rayon::prelude::*;
 
-/// Shorter lengths than this are rounding (local units).
+/// Lengths below this are rounding errors (local units).
 const ROUNDING: f64 = 1e-12;
-/// Distance from a piece at which the winding number is asked for, in local units. Surfaces that
-/// stand closer together are taken to coincide.
+/// Distance from a piece at which the winding number is evaluated, in local units. Surfaces closer
+/// together are taken to coincide.
 const OFF: f64 = 1e-7;
-/// A facet with more segments than this is halved first, so that the pieces have few corners.
+/// Facets with more segments than this are halved first, so that the pieces have few corners.
 const MANY_SEGMENTS: usize = 8;
 
 type Segment = [Vector3; 2];
@@ -34,7 +35,7 @@ pub fn outer_pieces(surface: &Surface, facets: &TriangleTree) -> Vec<Corners> {
     let whole: Vec<usize> = patches
         .into_par_iter()
         .filter(|patch| {
-            // The largest facet tells most safely where the patch lies.
+            // The largest facet gives the most reliable side for the patch.
             let facet = patch.iter().copied().max_by(|a, b| {
                 let area = |f: usize| normal(surface.corners(f)).norm();
                 area(*a).total_cmp(&area(*b)).then(b.cmp(a))
@@ -65,7 +66,7 @@ fn corners(surface: &Surface, facet: usize) -> Polygon {
     surface.corners(facet).map(Vector3::from).to_vec()
 }
 
-/// Normal of a triangle, twice its area long.
+/// Normal of a triangle; its length is twice the area.
 fn normal(corners: Corners) -> Vector3 {
     let [a, b, c] = corners.map(Vector3::from);
     (b - a).cross(&(c - a))
@@ -124,7 +125,7 @@ fn meet(polygon: &Polygon, normal: &Vector3, triangle: Corners, segments: &mut V
     }
 }
 
-/// Zero if it is no more than rounding.
+/// Zero for lengths that are only rounding errors.
 fn flushed(length: f64) -> f64 {
     if length.abs() <= ROUNDING {
         0.0
@@ -138,7 +139,7 @@ fn along(from: Vector3, to: Vector3, height_from: f64, height_to: f64) -> Vector
     from + (to - from) * (height_from / (height_from - height_to))
 }
 
-/// Length of the part of a segment in the plane of a convex polygon that lies in the polygon.
+/// Length of the part of a segment that lies inside a convex polygon in the same plane.
 fn length_within(polygon: &Polygon, normal: &Vector3, [start, end]: &Segment) -> f64 {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for k in 0..polygon.len() {
@@ -160,8 +161,8 @@ fn length_within(polygon: &Polygon, normal: &Vector3, [start, end]: &Segment) ->
     (to - from).max(0.0) * (end - start).norm()
 }
 
-/// The facets that no other meets, joined over edges of two facets: those of a patch are all wall
-/// or all not.
+/// The facets that no other facet crosses, joined over edges of two facets: a patch is either all
+/// wall or not wall at all.
 fn patches(surface: &Surface, segments: &[Vec<Segment>]) -> Vec<Vec<usize>> {
     let mut edges: Vec<([u32; 2], usize)> = Vec::new();
     for (facet, triangle) in surface.triangles.iter().enumerate() {
@@ -229,7 +230,8 @@ fn split(polygon: Polygon, segments: Vec<Segment>, normal: &Vector3) -> Vec<Poly
     pieces
 }
 
-/// A line through the middle of some segments, across the direction in which they spread most.
+/// A line through the middle of some segments, perpendicular to the direction in which they spread
+/// most.
 fn middle_line(segments: &[Segment], normal: &Vector3) -> Segment {
     let middles = || segments.iter().map(|[p, q]| 0.5 * (p + q));
     let middle = middles().sum::<Vector3>() / segments.len() as f64;
@@ -270,8 +272,8 @@ fn divide(polygon: &Polygon, [start, end]: &Segment, normal: &Vector3) -> Option
     Some([left, right])
 }
 
-/// True if the solid lies behind a piece of a facet and not before it. Also true where that cannot
-/// be told.
+/// True if the solid lies behind a piece of a facet and not before it. Also true if that cannot be
+/// decided.
 fn bounds_solid(facets: &TriangleTree, piece: &Polygon, normal: &Vector3) -> bool {
     let middle = piece.iter().sum::<Vector3>() / piece.len() as f64;
     let behind = winding(facets, &(middle - OFF * normal));

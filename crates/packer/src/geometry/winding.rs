@@ -1,14 +1,14 @@
 //! Winding numbers: a ray is cast and its crossings with the facets are counted (Moeller and
 //! Trumbore 1997; Platzer 2022, section 4.1.1).
 //!
-//! A ray that grazes a facet, an edge or a vertex decides nothing: the next direction is tried.
+//! A ray that grazes a facet, an edge or a vertex is undecided: the next direction is tried.
 //! Crossings are counted with their sense (out of the solid +1, into it -1), so that shells that
 //! cross each other form their union.
 
 use super::tree::{Corners, TriangleTree};
 use crate::spheres::Vector3;
 
-/// Directions in no special position to any axis or to each other.
+/// Directions in general position relative to the axes and to each other.
 const DIRECTIONS: [[f64; 3]; 7] = [
     [0.577_215_66, 0.321_309_89, 0.751_988_48],
     [-0.414_213_56, 0.732_050_81, 0.540_963_27],
@@ -23,8 +23,8 @@ const DIRECTIONS: [[f64; 3]; 7] = [
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Crossing {
     Miss,
-    /// Crosses the inner part; the sign tells whether the ray leaves (+1) or enters (-1) the side
-    /// of the normal.
+    /// Crosses the inner part; the sign is +1 if the ray leaves through the side of the normal, -1
+    /// if it enters.
     Hit(i32),
     /// Too near an edge, a vertex or the plane of the triangle to be sure.
     Unsure,
@@ -73,7 +73,7 @@ pub(super) fn moeller_trumbore(
 }
 
 /// Winding number of the surface around a point (local units): 1 inside one shell, 0 outside.
-/// `None` when it cannot be told, as on the surface itself.
+/// `None` if it cannot be decided, as on the surface itself.
 pub(super) fn winding(facets: &TriangleTree, point: &Vector3) -> Option<i32> {
     DIRECTIONS
         .iter()

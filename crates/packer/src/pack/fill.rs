@@ -1,4 +1,4 @@
-//! Fourth act: the voids of a settled packing are filled, as far as the sizes allow.
+//! Fourth step: the voids of a settled packing are filled, as far as the sizes allow.
 
 use super::job::Job;
 use super::settings::Progress;
@@ -6,24 +6,24 @@ use crate::front::{Assembly, first_draw};
 use crate::spheres::ReducedSphere;
 use dem_io::Result;
 
-/// Spheres around which voids are searched at a time.
+/// Number of spheres around which voids are searched at a time.
 const VOID_SEARCH_GROUP: usize = 2000;
 
-/// The history of this act.
+/// History of this step.
 #[derive(Debug, Default)]
 pub(super) struct FillHistory {
-    /// Spheres put into voids.
+    /// Number of spheres put into voids.
     pub(super) fillers: usize,
-    /// Voids that would still take the smallest sphere, about.
+    /// Approximate number of voids that would still take the smallest sphere.
     pub(super) voids_left: usize,
 }
 
 /// Puts spheres into the voids that take at least the smallest one, unless the front has filled
-/// them already (`is_filled`): each of a size drawn among those that fit there, as long as their
-/// number does not distort the distribution of sizes by more than a tenth of its statistical noise.
+/// them already (`is_filled`). Each size is drawn among those that fit there. Filling stops before
+/// it distorts the size distribution by more than a tenth of its statistical noise.
 ///
 /// # Errors
-/// What `progress` returns.
+/// Errors of `progress`.
 pub(super) fn fill(
     job: &Job,
     is_filled: bool,
@@ -48,8 +48,8 @@ pub(super) fn fill(
         most,
         fillers: 0,
     };
-    // Neighbours in memory are neighbours in space: the search goes round in strides, so that what
-    // it finds first is spread evenly.
+    // Neighbours in memory are neighbours in space: the search proceeds in strides, so that the
+    // places found first are spread evenly.
     let groups = count.div_ceil(VOID_SEARCH_GROUP);
     for group in 0..groups {
         let around: Vec<u32> = (group..count).step_by(groups).map(|i| i as u32).collect();
@@ -81,14 +81,14 @@ struct Filling<'a> {
     assembly: Assembly<'a>,
     /// Seed of the random numbers: each sphere has a stream of its own.
     seed: u64,
-    /// Spheres put into voids at most.
+    /// Largest number of spheres put into voids.
     most: usize,
-    /// Spheres put into voids.
+    /// Number of spheres put into voids.
     fillers: usize,
 }
 
 impl Filling<'_> {
-    /// Searches around the spheres `around` (indices) and then around those that were added.
+    /// Searches around the spheres `around` (indices) and then around the added ones.
     fn fill_around(&mut self, mut around: Vec<u32>) {
         let smallest = self.assembly.settings.radius_range[0];
         while !around.is_empty() {

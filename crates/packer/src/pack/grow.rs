@@ -1,5 +1,5 @@
-//! Second act: fronts that begin at seeds spread over the solid, and again wherever room is left
-//! that none has reached.
+//! Second step: fronts that start at seeds spread over the solid, and again wherever there is room
+//! that no front has reached.
 
 use super::attempt::Attempt;
 use super::job::Job;
@@ -14,41 +14,41 @@ use dem_io::{Diagnostic, Result};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Before settling a front begins in every cube of so many largest diameters: near enough that
-/// directions of growth average out, far enough that few fronts meet, since where they meet there
-/// is less.
+/// Edge of the cubes in which a front starts before settling, in largest diameters: small enough
+/// that directions of growth average out, large enough that few fronts meet, since the density is
+/// lower where they meet.
 const SEED_SPACING: f64 = 8.0;
-/// Spheres at most: some 30 GB.
+/// Largest number of spheres: about 30 GB.
 const MOST_SPHERES: f64 = 1e8;
 
-/// The history of this act.
+/// History of this step.
 #[derive(Debug)]
 pub(super) struct GrowHistory {
-    /// Fronts started.
+    /// Number of fronts started.
     pub(super) fronts: usize,
-    /// Radii drawn that found no place.
+    /// Number of drawn radii that found no place.
     pub(super) unplaced: usize,
-    /// Spheres that were chosen to fill voids.
+    /// Number of spheres chosen to fill voids.
     pub(super) fillers: usize,
-    /// Those of them that touch no three others or walls.
+    /// Number of fillers that touch fewer than three other spheres or walls.
     pub(super) loose_fillers: usize,
-    /// Voids that would still take the smallest sphere, about.
+    /// Approximate number of voids that would still take the smallest sphere.
     pub(super) voids_left: usize,
 }
 
 /// A front that has filled the solid.
 pub(super) struct Grown<'a> {
     front: Front<'a>,
-    /// Its radii over those asked for.
+    /// Ratio of its radii to the requested ones.
     scale: f64,
-    /// Fronts started.
+    /// Number of fronts started.
     fronts: usize,
 }
 
 /// Fills the solid with the spheres of one attempt.
 ///
 /// # Errors
-/// More spheres than can be handled; what `progress` returns.
+/// Too many spheres; errors of `progress`.
 pub(super) fn grow<'a>(job: &'a Job, attempt: &Attempt, progress: Progress) -> Result<Grown<'a>> {
     let scale = 1.0 - attempt.shrink;
     let expected = expected_spheres(job, scale)?;
@@ -71,7 +71,7 @@ pub(super) fn grow<'a>(job: &'a Job, attempt: &Attempt, progress: Progress) -> R
     })
 }
 
-/// About how many spheres there will be.
+/// Approximate number of spheres expected.
 fn expected_spheres(job: &Job, scale: f64) -> Result<f64> {
     let surface = job.solid.surface;
     let reduced_volume = job.settings.sizes.mean_volume_m3() * (scale / job.enlarge()).powi(3);
@@ -89,8 +89,8 @@ fn expected_spheres(job: &Job, scale: f64) -> Result<f64> {
     ))
 }
 
-/// Grows fronts from the seed and, before settling, from others spread over the solid. Returns how
-/// many began.
+/// Grows fronts from the seed and, before settling, from others spread over the solid. Returns the
+/// number started.
 fn begin_at_seeds(
     job: &Job,
     front: &mut Front,
@@ -121,8 +121,8 @@ fn begin_at_seeds(
     Ok(fronts)
 }
 
-/// Grows fronts in what no front has reached: other shells, and rooms behind a neck narrower than a
-/// sphere. Returns how many.
+/// Grows fronts in the regions that no front has reached: other shells, and spaces behind a neck
+/// narrower than a sphere. Returns their number.
 fn begin_where_room_is_left(
     job: &Job,
     front: &mut Front,
@@ -137,8 +137,8 @@ fn begin_where_room_is_left(
         if is_too_narrow || assembly.gap(&place.centre, reduced) < 0.9 * reduced {
             continue;
         }
-        // The steps are never longer than the distance to the wall, so that the climb stays on its
-        // side of it.
+        // The steps are never longer than the distance to the wall, so that the climb stays on the
+        // same side of it.
         let reach = 4.0 * assembly.settings.radius_range[1];
         let clearance = |p: &Vector3| assembly.clearance(p, reach);
         let room = climb(&place.centre, 0.5 * smallest, 1e-6 * smallest, &clearance);
@@ -151,7 +151,7 @@ fn begin_where_room_is_left(
     Ok(fronts)
 }
 
-/// Places as many of the first three spheres around `seed` as find room. Returns their indices.
+/// Places as many of the first three spheres as fit around `seed`. Returns their indices.
 fn place_first_spheres(job: &Job, front: &mut Front, seed: &Vector3) -> Range<u32> {
     let draws = front.next_draws();
     let assembly = &front.assembly;
@@ -191,12 +191,13 @@ impl Grown<'_> {
         self.front.quota()
     }
 
-    /// True if voids were left that take the smallest sphere.
+    /// True if voids remain that take the smallest sphere.
     pub(super) fn has_left_voids(&self) -> bool {
         self.front.has_left_voids()
     }
 
-    /// The spheres at full size, which overlap if the front ran at smaller radii, and what it did.
+    /// The spheres at full size, which overlap if the front used smaller radii, and the history of
+    /// the front.
     pub(super) fn finish(self) -> (Vec<ReducedSphere>, GrowHistory) {
         let unplaced = self.front.waiting.len();
         let mut finished = self.front.finish();

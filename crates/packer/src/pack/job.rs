@@ -1,5 +1,5 @@
-//! A packing that is to be made: the solid, the sizes in its local units, and where the front
-//! begins.
+//! A packing to be made: the solid, the sizes in its local units, and the starting point of the
+//! front.
 
 use super::settings::PackSettings;
 use super::solid::Solid;
@@ -10,23 +10,23 @@ use crate::spheres::Vector3;
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result};
 
-/// Cells of the front's grid beyond one per sphere.
+/// Number of cells of the front's grid in addition to one per sphere.
 const MORE_CELLS: usize = 1_000_000;
 
-/// The job that all acts of a packing share.
+/// The job shared by all steps of a packing.
 pub(super) struct Job<'a> {
     pub(super) solid: &'a Solid<'a>,
     pub(super) settings: &'a PackSettings,
     /// Starting point of the front, local units.
     pub(super) seed: Vector3,
-    /// Radii are multiples of this, some 2e-10 of the largest: so that a radius is the same number
-    /// in whatever unit it was given. A difference in the last bit would grow while the spheres
-    /// settle, until every sphere lay elsewhere.
+    /// All radii are multiples of this, about 2e-10 of the largest, so that a radius is the same
+    /// number whatever its unit was. A difference in the last bit would grow while the spheres
+    /// settle, until every sphere was somewhere else.
     radius_step: f64,
 }
 
 impl<'a> Job<'a> {
-    /// The job, checked.
+    /// Checks the settings and makes the job.
     ///
     /// # Errors
     /// Sizes that do not fit the shape; a seed point outside.
@@ -51,13 +51,13 @@ impl<'a> Job<'a> {
         Vector3::from(self.solid.surface.extent())
     }
 
-    /// Smallest and largest radius, local units, as asked for.
+    /// Smallest and largest radius as requested, local units.
     pub(super) fn exact_radius_range(&self) -> [f64; 2] {
         let sizes = &self.settings.sizes;
         [sizes.min_m(), sizes.max_m()].map(|d| 0.5 * d / self.solid.surface.unit_m)
     }
 
-    /// The same, rounded as all radii are.
+    /// The same, rounded like all radii.
     pub(super) fn radius_range(&self) -> [f64; 2] {
         self.exact_radius_range().map(|r| self.rounded(r))
     }
@@ -72,8 +72,8 @@ impl<'a> Job<'a> {
         self.rounded(0.5 * sizes.quantile_by_number(quantile) / self.solid.surface.unit_m)
     }
 
-    /// No spheres yet, of radii `scale` times those asked for, that are to grow to full size; about
-    /// `expected` will come.
+    /// An empty assembly for about `expected` spheres, with radii `scale` times those requested,
+    /// which are to grow to full size.
     pub(super) fn assembly(&self, scale: f64, wall_factor: f64, expected: usize) -> Assembly<'_> {
         let settings = SizeSettings {
             radius: Box::new(move |quantile| scale * self.radius(quantile)),

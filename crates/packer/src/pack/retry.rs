@@ -1,14 +1,13 @@
-//! The policy of retries: when a packing is begun again, and with what. The only place of the
-//! packer that tries again.
+//! The policy of retries: when a packing is started again, and with which settings. No other part
+//! of the packer retries.
 //!
-//! - A bare front that fills voids may distort the sizes: the next one keeps back those that were
-//!   too many.
-//! - A front before settling may leave too much room or too little: in small bodies it differs by
+//! - A bare front that fills voids may distort the sizes: the next one holds back the sizes in
+//!   surplus.
+//! - A front before settling may leave too much room or too little, since small bodies vary by
 //!   chance. The next one runs at other radii.
-//! - Its spheres may jam all the same: the next front runs at radii that are less smaller.
+//! - Its spheres may still jam: the next front reduces the radii by less.
 //!
-//! If the fraction by which radii are smaller was asked for, nothing is tried again but the sizes
-//! of a bare front.
+//! If the reduction of the radii was given by the user, only the sizes of a bare front are retried.
 
 use super::attempt::{Attempt, can_fill_voids};
 use super::grow::Grown;
@@ -17,39 +16,40 @@ use super::settle::{Settled, WhenJammed};
 use super::shrink::{FillTarget, rounded};
 use crate::sizes::Sizes;
 
-/// Surplus of small spheres in a bare front up to which voids are filled, in roots of the number of
-/// spheres: at first many times what chance does, to learn how many voids there are (10 in a ball
-/// of half a million spheres, less in all else that can be filled); in the last attempt a third of
-/// it, whatever voids that leaves.
+/// Surplus of small spheres in a bare front up to which voids are filled, in square roots of the
+/// number of spheres. The first attempts allow many times the effect of chance, to learn the number
+/// of voids (10 in a ball of half a million spheres, less in all other shapes that can be filled).
+/// The last attempt allows a third of the effect of chance, whatever voids remain.
 const MOST_TOO_MANY: [f64; 2] = [20.0, 0.5];
-/// Bare fronts at most.
+/// Largest number of bare fronts.
 const MOST_BARE_FRONTS: usize = 9;
-/// A bare front is kept if the number of spheres up to any size is off by less than this many roots
-/// of the number of spheres: half of what chance does, after some attempts two thirds.
+/// Largest error of the number of spheres up to any size, in square roots of the number of spheres,
+/// for which a bare front is kept: half the effect of chance, after some attempts two thirds.
 const MOST_IMBALANCE: [f64; 2] = [0.68, 0.9];
 const STRICT_ATTEMPTS: usize = 4;
-/// The next attempt is the last one where the number is off by more than so many roots, what chance
-/// does, and by more than this part of what it was off by in the attempt before: what can be evened
-/// out falls to a third or less while it is that much.
+/// The next attempt is the last one if the error, in square roots of the number of spheres, is
+/// larger than this (the effect of chance) and has not fallen below the second fraction of the
+/// previous error: an imbalance of this size that can be corrected falls to a third or less each
+/// time.
 const HOPELESS_IMBALANCE: f64 = 1.36;
 const SLOWEST_FALL: f64 = 0.6;
 
-/// Fronts at most until one leaves the room that settling wants.
+/// Largest number of fronts until one leaves the room that settling needs.
 const MOST_FRONTS: usize = 4;
-/// By this factor a front runs at less smaller radii where the spheres of the one before have
-/// jammed, and how often that is done before some are taken out.
+/// Factor on the reduction of the radii after the spheres of the previous front have jammed, and
+/// the number of times that it is applied before some spheres are taken out.
 const AFTER_JAM: f64 = 0.93;
 const MOST_JAMS: usize = 3;
 
-/// The attempts made, and those that may still be made.
+/// The attempts made, and those still allowed.
 pub(super) struct Retry {
-    /// The volume to reach, if the shrink is chosen here.
+    /// The target volume, if the reduction is chosen here.
     target: Option<FillTarget>,
-    /// Fronts run.
+    /// Number of fronts run.
     pub(super) fronts: usize,
     /// Number of times that the spheres have jammed.
     jams: usize,
-    /// The bare front is the last that is tried.
+    /// True if this bare front is the last one.
     is_last: bool,
     last_imbalance: f64,
 }
@@ -79,7 +79,7 @@ impl Retry {
         }
     }
 
-    /// The attempt to make in place of one whose front is not good enough.
+    /// The attempt to make if the front of this one is not good enough.
     pub(super) fn after_front(&mut self, attempt: &Attempt, grown: &Grown) -> Option<Attempt> {
         self.fronts += 1;
         if attempt.fills_voids {
@@ -109,7 +109,7 @@ impl Retry {
         }
     }
 
-    /// The attempt to make in place of one whose spheres jammed.
+    /// The attempt to make if the spheres of this one jammed.
     pub(super) fn after_settling(
         &mut self,
         attempt: &Attempt,
@@ -125,7 +125,7 @@ impl Retry {
         })
     }
 
-    /// A bare front that keeps back the sizes that were too many in this one, unless they are true.
+    /// A bare front that holds back the sizes in surplus in this one, unless the sizes are correct.
     fn with_truer_sizes(&mut self, attempt: &Attempt, grown: &Grown) -> Option<Attempt> {
         let quota = grown.quota()?;
         let placed = grown.spheres() as f64;
@@ -134,8 +134,7 @@ impl Retry {
         if self.is_last || (imbalance < most_imbalance && !grown.has_left_voids()) {
             return None;
         }
-        // Where too few small spheres can be kept back for all voids, more attempts would not
-        // change that.
+        // If too few small spheres can be held back for all voids, more attempts would not help.
         let is_hopeless = self.fronts == 1 && grown.has_left_voids()
             || imbalance > HOPELESS_IMBALANCE.max(SLOWEST_FALL * self.last_imbalance);
         self.is_last = is_hopeless || self.fronts + 1 == MOST_BARE_FRONTS;
@@ -143,7 +142,7 @@ impl Retry {
         Some(Attempt {
             expected: Some(placed),
             most_too_many: MOST_TOO_MANY[usize::from(self.is_last)],
-            // Nothing is kept back where voids are left anyway.
+            // Nothing is held back if voids remain anyway.
             quota: (!self.is_last).then(|| quota.corrected()),
             ..attempt.clone()
         })

@@ -14,16 +14,15 @@ pub struct PackSettings {
     pub overlap: f64,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// The front runs at radii smaller by this fraction; then they grow to full size. 0: the bare
-    /// front. None: by as much as leaves the spheres just short of jamming.
+    /// Fraction by which the front's radii are reduced before they grow to full size. 0: the bare
+    /// front. None: chosen so that the spheres are just short of jamming.
     pub densify: Option<f64>,
-    /// Starting point of the front, in metres; the deepest point if not given. Length 3.
+    /// Starting point of the front, m; the deepest point if not given. Length 3.
     pub seed_point_m: Option<[f64; 3]>,
 }
 
 impl PackSettings {
-    /// Settled spheres of these sizes with an overlap of 0.25 and seed 1, as the program packs them
-    /// unless told otherwise.
+    /// The program's defaults: settled spheres of these sizes with an overlap of 0.25 and seed 1.
     pub fn new(sizes: Sizes) -> Self {
         Self {
             sizes,
@@ -35,36 +34,36 @@ impl PackSettings {
     }
 }
 
-/// The course of a packing.
+/// History of a packing.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PackHistory {
     /// Starting point of the first front, m. Length 3.
     pub seed_point_m: [f64; 3],
     /// Diameter of the largest ball that fits into the shape, m.
     pub largest_inscribed_diameter_m: f64,
-    /// The radii of the front were smaller by this fraction.
+    /// Fraction by which the front's radii were reduced.
     pub densify: f64,
-    /// Fronts started: one for each seed, and one for each part that the ones before could not
-    /// reach.
+    /// Number of fronts started: one for each seed, and one for each part that the earlier ones
+    /// could not reach.
     pub fronts: usize,
-    /// Steps of the settling minimiser.
+    /// Number of steps of the settling minimiser.
     pub densify_steps: usize,
-    /// Spheres removed because they were jammed.
+    /// Number of spheres removed because they were jammed.
     pub removed: usize,
-    /// Number of fronts run: again with other sizes kept back where filling the voids had distorted
-    /// the distribution, or at other radii where it had left too much room for settling or too
-    /// little.
+    /// Number of fronts run. More than one: with some sizes held back because filling the voids had
+    /// distorted the distribution, or at other radii because there was too much or too little room
+    /// for settling.
     pub attempts: usize,
-    /// Spheres put into voids, of sizes that fit there: by the bare front as it goes, after
-    /// settling at the end.
+    /// Number of spheres put into voids, of sizes that fit there: by the bare front as it advances,
+    /// or at the end after settling.
     pub void_fillers: usize,
-    /// Those of them that stand where they have most room, and need not touch three others or
+    /// Number of these at places with the most room, which need not touch three other spheres or
     /// walls.
     pub loose_fillers: usize,
-    /// Voids that would still take the smallest sphere, about: extrapolated when more fillers would
-    /// distort the sizes.
+    /// Approximate number of voids that would still take the smallest sphere: extrapolated when
+    /// more fillers would distort the sizes.
     pub voids_left: usize,
-    /// Radii drawn that found no place.
+    /// Number of drawn radii that found no place.
     pub unplaced: usize,
     /// Time for the front, s.
     pub front_seconds: f64,
@@ -74,14 +73,14 @@ pub struct PackHistory {
     pub fill_seconds: f64,
 }
 
-/// Spheres inside a surface, and how they came there.
+/// Spheres inside a surface, and the history of their packing.
 #[derive(Debug, Clone)]
 pub struct Packing {
     /// The spheres, sorted along a space-filling curve.
     pub spheres: Spheres,
-    /// The course of the packing.
+    /// History of the packing.
     pub history: PackHistory,
 }
 
-/// Called with the stage and the fraction of it that is done (0 to 1); an error stops the work.
+/// Called with the stage and the completed fraction of it (0 to 1); an error stops the work.
 pub type Progress<'a> = &'a dyn Fn(&str, f64) -> Result<()>;

@@ -1,31 +1,31 @@
-//! First act: the fraction by which the front runs at smaller radii, so that it leaves as much room
+//! First step: the fraction by which the front's radii are reduced, so that it leaves as much room
 //! as settling needs and no more.
 //!
-//! Far from walls, spheres of the sizes used here jam, settled in random order, at
-//! `0.630 + 0.066 s + 0.086 k s^2` of the volume, with the standard deviation over mean s and the
-//! skewness k of their diameters: the form of Desmond and Weeks 2014 (Phys. Rev. E 90, 022204), whose
-//! 0.634 for one size this settling does not quite reach. Walls take 0.080 of it for each mean
-//! diameter times surface over volume. That was found with bars, balls, discs, rocks and tori, 6 to
-//! 40 diameters thick, of one size, uniform and lognormal diameters: it tells jamming bodies from
-//! others within 0.5 %.
+//! Far from walls, spheres of the sizes used here jam, settled in random order, at `0.630 + 0.066
+//! s + 0.086 k s^2` of the volume, with the standard deviation over mean s and the skewness k of
+//! their diameters: the form of Desmond and Weeks 2014 (Phys. Rev. E 90, 022204), whose 0.634 for
+//! one size this settling does not quite reach. Walls reduce it by 0.080 times mean diameter times
+//! surface over volume. This was fitted to bars, balls, discs, rocks and tori, 6 to 40 diameters
+//! thick, of one size, uniform and lognormal diameters: it separates jamming bodies from others
+//! within 0.5 %.
 
 use super::settings::PackSettings;
 use crate::sizes::Sizes;
 use crate::spheres::Vector3;
 use dem_io::Surface;
 
-/// Volume fraction at which one size jams, and what spread and skewness add to it.
+/// Volume fraction at which a single size jams, and the contributions of spread and skewness.
 const JAMMED: [f64; 3] = [0.6304, 0.0658, 0.0857];
-/// Volume that walls take for each mean diameter times surface over volume.
+/// Reduction of the volume fraction by walls, per mean diameter times surface over volume.
 const WALL: f64 = 0.080;
-/// Distance below jamming that a body is to keep, as a fraction of it; and how much more and less
-/// will do. Nearer, settling takes two to three times the steps.
+/// Target distance below jamming, as a fraction of the jamming density, and the accepted deviation
+/// from it. Nearer, settling takes two to three times the steps.
 const BELOW_JAMMING: f64 = 0.006;
 const WILL_DO: [f64; 2] = [0.003, 0.005];
-/// Smallest and largest fraction by which a front is chosen to run at smaller radii.
+/// Smallest and largest reduction of the front's radii that is chosen automatically.
 pub(crate) const SHRINK_RANGE: [f64; 2] = [0.02, 0.08];
 
-/// The volume of spheres that a body is to hold.
+/// The target volume of spheres in a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FillTarget {
     /// Volume of the spheres at their reduced radii, in local units.
@@ -33,8 +33,8 @@ pub struct FillTarget {
 }
 
 impl FillTarget {
-    /// Just short of jamming in a shape, for spheres that touch at radius / (1 + overlap), but keep
-    /// their whole radius from the wall.
+    /// Just short of jamming in a shape, for spheres that touch at radius / (1 + overlap) but keep
+    /// their full radius from the wall.
     pub fn new(surface: &Surface, sizes: &Sizes, overlap: f64) -> Self {
         let area: f64 = (0..surface.triangles.len())
             .map(|n| {
@@ -44,7 +44,7 @@ impl FillTarget {
             .sum();
         let volume = surface.volume_m3() / surface.unit_m.powi(3);
         let diameter = sizes.mean_m() / surface.unit_m / (1.0 + overlap);
-        // What reduced spheres can reach ends half the overlap below the surface.
+        // The region that reduced spheres can reach ends half the overlap below the surface.
         let reached = (volume - 0.5 * overlap * diameter * area).max(0.0);
         let [spread, skewness] = sizes.spread_and_skewness();
         let far = JAMMED[0] + JAMMED[1] * spread + JAMMED[2] * skewness * spread * spread;
@@ -54,9 +54,9 @@ impl FillTarget {
         }
     }
 
-    /// The fraction by which the radii of a front should have been smaller, where they were by
-    /// `shrink` and its spheres will have the volume `filled` at their reduced radii, in local
-    /// units; none where that will do.
+    /// A better reduction of the radii for a front whose radii were reduced by `shrink` and whose
+    /// spheres will have the volume `filled` at their reduced radii, in local units; none if that
+    /// is good enough.
     pub fn better_shrink(&self, shrink: f64, filled: f64) -> Option<f64> {
         let [more, less] = WILL_DO;
         if filled <= (1.0 + more) * self.volume && filled >= (1.0 - less) * self.volume {
@@ -68,8 +68,8 @@ impl FillTarget {
     }
 }
 
-/// The fraction to begin with: as asked for, or else one from which most bodies need another that
-/// is hardly different. Sizes that differ much fill better from the start, and need less.
+/// The reduction to begin with: the user's, or else one from which most bodies need only a slightly
+/// different one. Wide size distributions fill better from the start, and need less.
 pub(super) fn choose_shrink(settings: &PackSettings) -> f64 {
     let usual = || {
         let [spread, _] = settings.sizes.spread_and_skewness();
@@ -78,7 +78,7 @@ pub(super) fn choose_shrink(settings: &PackSettings) -> f64 {
     rounded(settings.densify.unwrap_or_else(usual))
 }
 
-/// Rounded to millionths, for the same reason as radii are rounded.
+/// Rounded to millionths, for the same reason as the radii.
 pub(super) fn rounded(shrink: f64) -> f64 {
     (1e6 * shrink).round() * 1e-6
 }

@@ -1,4 +1,4 @@
-//! The solid inside a surface, which all its packings have in common.
+//! The solid inside a surface, shared by all its packings.
 
 use crate::geometry::boundary::Boundary;
 use crate::seed::{InscribedSphere, deepest_point, inner_points};
@@ -7,7 +7,7 @@ use dem_io::{Diagnostic, Result, Surface};
 
 /// A surface, prepared for packing.
 pub(crate) struct Solid<'a> {
-    /// The surface, whose local units all lengths are in.
+    /// The surface; all lengths are in its local units.
     pub(crate) surface: &'a Surface,
     /// Its wall.
     pub(crate) boundary: Boundary,

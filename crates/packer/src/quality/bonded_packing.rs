@@ -1,19 +1,18 @@
-//! The packing that is judged: spheres, their bonds, and the solid that they fill.
+//! The packing to assess: spheres, their bonds, and the solid that they fill.
 
 use crate::bonds::CrossesSurface;
 use crate::sizes::Sizes;
 use crate::spheres::Spheres;
 
-/// Contacts are counted up to a gap of this fraction of the smaller radius: settled spheres keep
-/// moving a little until none overlaps, and so stay apart by a few thousandths, seldom more than
-/// this.
+/// Largest gap of a contact, as a fraction of the smaller radius: settled spheres keep moving a
+/// little until none overlaps, and so stay apart by a few thousandths, seldom more than this.
 pub const DEFAULT_GAP_LIMIT: f64 = 0.02;
-/// The interior begins so many largest diameters from the wall.
+/// Distance from the wall at which the interior begins, in largest diameters.
 pub(super) const INTERIOR_DEPTH_IN_LARGEST_DIAMETERS: f64 = 2.0;
-/// Thicker than twice this is not measured.
+/// Half of the largest thickness that is measured.
 pub(super) const CAP_IN_MEAN_DIAMETERS: f64 = 10.0;
 
-/// A packing with its bonds, to be judged. Lengths in local units of the surface.
+/// A packing with its bonds, to be assessed. Lengths in local units of the surface.
 #[derive(Clone, Copy)]
 pub struct BondedPacking<'a> {
     /// The spheres, with true radii.
@@ -22,10 +21,10 @@ pub struct BondedPacking<'a> {
     pub overlap: f64,
     /// Bonded pairs, the smaller index first, each once.
     pub bonds: &'a [[u32; 2]],
-    /// The bonds are all pairs up to this times the sum of their radii, but for those with surface
-    /// between them; 0 if the bonds were chosen otherwise.
+    /// If the bonds are all pairs up to a multiple of the sum of their radii, except those with
+    /// surface between them: that multiple. 0 if the bonds were chosen otherwise.
     pub bond_range: f64,
-    /// The sizes that were asked for.
+    /// The requested sizes.
     pub sizes: &'a Sizes,
     /// One local unit in metres.
     pub unit_m: f64,
@@ -42,18 +41,18 @@ pub struct BondedPacking<'a> {
     /// [`depth_needed`]. Outside it is negative or zero, and at most as far below zero as the
     /// surface is away. The only slow part: called a few hundred thousand times.
     pub distance_inside: &'a (dyn Fn([f64; 3]) -> f64 + Sync),
-    /// Least and largest value that `distance_inside` can have at a point, if that is known for
-    /// less than the distance costs.
+    /// Lower and upper bound of `distance_inside` at a point, if known at less cost than the
+    /// distance.
     pub distance_bounds: &'a (dyn Fn([f64; 3]) -> [f64; 2] + Sync),
-    /// True if surface lies between two spheres; asked only to advise a bond range.
+    /// True if surface lies between two spheres; only called to suggest a bond range.
     pub crosses_surface: CrossesSurface<'a>,
     /// Largest gap of a contact, as a fraction of the smaller radius: [`DEFAULT_GAP_LIMIT`].
     pub gap_limit: f64,
-    /// Separate parts of the shape: a body in as many pieces is whole.
+    /// Number of separate parts of the shape: a body with the same number of pieces is complete.
     pub parts: usize,
 }
 
-/// Distances to the wall matter up to here, local units; farther is all the same.
+/// Depth in local units beyond which distances to the wall make no difference.
 pub fn depth_needed(spheres: &Spheres) -> f64 {
     let largest = 2.0 * spheres.radii.iter().copied().fold(0.0, f64::max);
     (INTERIOR_DEPTH_IN_LARGEST_DIAMETERS * largest)

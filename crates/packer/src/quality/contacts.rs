@@ -1,11 +1,11 @@
-//! Contacts, and the exact checks: no overlap in r_gen, nothing outside the wall.
+//! Contacts, and the exact checks: no overlap in r_gen, no sphere outside the wall.
 
 use super::bonded_packing::BondedPacking;
 use crate::bonds::{centre_distance, close_pairs};
 use dem_io::Result;
 use serde::{Deserialize, Serialize};
 
-/// A particle with fewer contacts can move.
+/// Number of contacts below which a particle can move.
 const CONTACTS_THAT_HOLD: u32 = 4;
 
 /// Contacts of the spheres reduced to r_gen, and of the true ones with the wall.
@@ -22,12 +22,13 @@ pub struct Contacts {
     /// Largest overlap of two spheres in r_gen, as a fraction of the smaller r_gen. 0 if none
     /// overlap.
     pub largest_overlap: f64,
-    /// Largest way by which a sphere stands out of the wall, as a fraction of its radius. 0 if none
-    /// does, 1 if a centre is outside.
+    /// Largest protrusion of a sphere from the wall, as a fraction of its radius. 0 if there is
+    /// none, 1 if a centre is outside.
     pub largest_protrusion: f64,
 }
 
-/// Counts the contacts. `depths` of the centres below the wall, local units, one per sphere.
+/// Counts the contacts. `depths` are those of the centres below the wall, local units, one per
+/// sphere.
 pub(super) fn count(packing: &BondedPacking, depths: &[f64]) -> Result<Contacts> {
     let spheres = packing.spheres;
     let shrink = 1.0 / (1.0 + packing.overlap);

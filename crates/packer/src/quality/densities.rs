@@ -1,5 +1,5 @@
-//! Densities by sampling: how much of the solid, of its interior and of its layers the spheres
-//! cover.
+//! Densities by sampling: the fraction of the solid, of its interior and of its layers that the
+//! spheres cover.
 //!
 //! The standard error comes from the differences of the two random points of a cell: for a region
 //! with indicator r, cover c and fraction f = sum(c r)/sum(r), it is sqrt(sum over cells of ((c -
@@ -11,15 +11,15 @@ use super::depth::DepthQuery;
 use super::points::{Box3, Cells, over_pairs};
 use serde::{Deserialize, Serialize};
 
-/// Random points in a region, for a standard error of 0.001 at most. Points that are many for each
-/// sphere are evenly spread through it, so that fewer are needed in all.
+/// Number of random points in a region, for a standard error of 0.001 at most. With many points per
+/// sphere they are evenly spread through it, so that fewer are needed in total.
 const POINTS_PER_SPHERE: f64 = 100.0;
 const FEWEST_POINTS_IN_REGION: f64 = 100_000.0;
 const MOST_POINTS_IN_REGION: f64 = 250_000.0;
 const LAYERS: usize = 20;
 const LAYERS_PER_DIAMETER: f64 = 4.0;
 const SLABS: usize = 10;
-/// A region with fewer points than this has no density to speak of.
+/// Number of points below which a region has no meaningful density.
 const FEWEST_POINTS: u64 = 100;
 
 /// A fraction found by sampling.
@@ -38,11 +38,11 @@ pub struct Layer {
     pub from_m: f64,
     /// Its end, m.
     pub to_m: f64,
-    /// Its density. None if hardly a point fell into it.
+    /// Its density. None if hardly any point lies in it.
     pub density: Option<Fraction>,
 }
 
-/// Densities that the points give.
+/// Densities from the sampled points.
 pub(super) struct Sampled {
     pub(super) union_density: Fraction,
     pub(super) interior_union_density: Option<Fraction>,
@@ -64,8 +64,8 @@ struct Tally {
 }
 
 impl Tally {
-    /// Adds a cell: for each of its two points whether it is in the region, and whether there it is
-    /// covered.
+    /// Adds a cell: for each of its two points, true if it is in the region, and true if it is
+    /// covered there.
     fn add(&mut self, region: [bool; 2], covered: [bool; 2]) {
         if !(region[0] || region[1]) {
             return;
@@ -103,13 +103,13 @@ impl Tally {
     }
 }
 
-/// Counts for the whole and the layers from the wall.
+/// Counts for the entire solid and for the layers from the wall.
 #[derive(Clone)]
 struct Whole {
     union: Tally,
-    /// Points in the interior.
+    /// Number of points in the interior.
     interior: u64,
-    /// Holds all cells that reach into the interior.
+    /// Box around all cells that reach into the interior.
     interior_box: Box3,
     layers: [Tally; LAYERS],
 }
@@ -188,11 +188,11 @@ fn whole(packing: &BondedPacking, interior_depth: f64, layer: f64) -> Whole {
         limit: interior_depth,
     };
     let parts = over_pairs(packing, &cells, question, |counts: &mut Whole, pair| {
-        // A covered point is inside, whatever rounding says at the wall.
+        // A covered point is inside, despite rounding at the wall.
         let solid = [0, 1].map(|i| pair.in_union[i] || pair.depths[i] > 0.0);
         counts.union.add(solid, pair.in_union);
         counts.interior += pair.depths.iter().filter(|d| **d > interior_depth).count() as u64;
-        // From a point to another of its cell, the depth changes by no more than the way.
+        // Between two points of a cell, the depth changes by no more than their distance.
         if pair.depths[0].min(pair.depths[1]) + diagonal > interior_depth {
             counts.interior_box.add(&Box3 {
                 low: pair.corner,

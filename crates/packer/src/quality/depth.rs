@@ -1,38 +1,38 @@
-//! Distance to the wall at many points, with as few exact (slow) distances as the question needs.
+//! Distance to the wall at many points, with as few exact (slow) distances as needed.
 
 use super::bonded_packing::BondedPacking;
 use rayon::prelude::*;
 
-/// Points that share the last exact distance: fixed, so that results do not depend on the number of
-/// threads.
+/// Number of points that share the last exact distance: fixed, so that results do not depend on the
+/// number of threads.
 const CHUNK: usize = 4096;
 /// Mean number of spheres in a cell of the order in which depths are measured.
 const SPHERES_PER_CELL: f64 = 4.0;
 
-/// Answers depths at points one after the other, best in an order in which neighbours follow each
-/// other: the distance changes by no more than the way from the last point that was measured, which
-/// often settles the matter.
+/// Gives depths at points one after the other, best in an order in which neighbours follow each
+/// other: the distance changes by no more than the distance from the last measured point, which is
+/// often enough to decide.
 pub(super) struct DepthProbe<'a> {
     packing: &'a BondedPacking<'a>,
     question: DepthQuery,
     last: Option<([f64; 3], f64)>,
 }
 
-/// A question about a depth.
+/// The accuracy needed of a depth.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DepthQuery {
-    /// Shallower is all the same.
+    /// Depths below this need not be distinguished.
     pub(super) floor: f64,
-    /// Deeper is all the same.
+    /// Depths above this need not be distinguished.
     pub(super) cap: f64,
-    /// In which layer of this thickness it is; 0 to know it exactly.
+    /// Thickness of the layers to be distinguished; 0 for exact depths.
     pub(super) layer: f64,
-    /// A depth is above this or not.
+    /// Depths above this are to be distinguished from those below.
     pub(super) limit: f64,
 }
 
 impl DepthQuery {
-    /// True if two depths are the same answer.
+    /// True if two depths need not be distinguished.
     fn same(&self, a: f64, b: f64) -> bool {
         (a <= self.floor && b <= self.floor)
             || (a >= self.cap && b >= self.cap)
@@ -53,8 +53,8 @@ impl<'a> DepthProbe<'a> {
         }
     }
 
-    /// Depth of a point below the surface, or more if that answers the question alike; the cap if
-    /// deeper, zero if not above the floor.
+    /// Depth of a point below the surface, or a larger one that is equivalent for the question; the
+    /// cap if deeper, zero if not above the floor.
     pub(super) fn depth(&mut self, point: [f64; 3]) -> f64 {
         let DepthQuery { floor, cap, .. } = self.question;
         if let Some((measured, distance)) = self.last {
@@ -81,7 +81,8 @@ impl<'a> DepthProbe<'a> {
     }
 }
 
-/// Depth of each centre, at most `cap`: as the packing knows it, or else measured. One per sphere.
+/// Depth of each centre, at most `cap`: from the packing if known there, or else measured. One per
+/// sphere.
 pub(super) fn of_centres(packing: &BondedPacking, cap: f64) -> Vec<f64> {
     let mut depths: Vec<f64> = packing
         .wall_distance

@@ -1,42 +1,44 @@
-//! Fabric: whether bonds prefer a direction.
+//! Fabric: the preferred directions of bonds.
 //!
 //! The tensor is the mean of n n^T over the bonds, n the direction of a bond: isotropic, all
 //! eigenvalues are 1/3. For N independent random directions each diagonal entry scatters by sigma =
 //! sqrt(4/45/N), and 15/2 N |tensor - 1/3|^2 follows chi-squared with 5 degrees of freedom. The
-//! largest of the three eigenvalue deviations is by itself about 2 sigma for such directions, so
-//! that the chance says more than the sigmas.
+//! largest of the three eigenvalue deviations is about 2 sigma even for such directions, so the
+//! probability is more informative than the deviation in sigma.
 
 use crate::spheres::Spheres;
 use nalgebra::{Matrix3, SymmetricEigen};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Bonds summed by one task: fixed, so that the sum is the same for any number of threads.
+/// Number of bonds summed by one task: fixed, so that the sum is the same for any number of
+/// threads.
 const CHUNK: usize = 8192;
 
 /// Distribution of bond directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fabric {
-    /// Bonds counted.
+    /// Number of bonds counted.
     pub bonds: usize,
     /// Eigenvalues of the mean of n n^T, descending; their sum is 1. Length 3.
     pub eigenvalues: [f64; 3],
     /// Direction of the largest, a unit vector. Length 3.
     pub direction: [f64; 3],
-    /// Statistical noise of a diagonal entry for so many independent bonds.
+    /// Statistical noise of a diagonal entry for this number of independent bonds.
     pub sigma: f64,
     /// Largest deviation of an eigenvalue from 1/3, in sigma.
     pub largest_deviation_in_sigma: f64,
-    /// The largest deviation is at most 2 sigma.
+    /// True if the largest deviation is at most 2 sigma.
     pub isotropic_within_2_sigma: bool,
-    /// Probability that so many independent random directions deviate as much or more, 0 to 1.
+    /// Probability that the same number of independent random directions deviates at least as much,
+    /// 0 to 1.
     pub chance: f64,
 }
 
-/// The fabric of the bonds, each end counted for half a bond if `counts` says that its particle
-/// counts. None if none does.
+/// The fabric of the bonds. Each end counts for half a bond if `counts` is true for its particle.
+/// None if no end counts.
 ///
-/// To count only bonds with both ends in a region would favour directions along its border.
+/// Counting only bonds with both ends in a region would favour directions along its border.
 pub(super) fn of(
     spheres: &Spheres,
     bonds: &[[u32; 2]],

@@ -1,24 +1,24 @@
-//! The pieces that bonds hold together.
+//! Pieces: sets of particles connected by bonds.
 
 use dem_io::disjoint::DisjointSets;
 use serde::{Deserialize, Serialize};
 
-/// Pieces of a body: particles joined by bonds.
+/// Pieces of a body: particles connected by bonds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pieces {
     /// Number of pieces, single particles included.
     pub count: usize,
-    /// Fraction of the particles that are in the largest.
+    /// Fraction of the particles that are in the largest piece.
     pub largest_fraction: f64,
-    /// Particles in all others.
+    /// Number of particles in all other pieces.
     pub outside_largest: usize,
-    /// Particles without a bond.
+    /// Number of particles without a bond.
     pub without_bond: usize,
-    /// Particles that hang on one bond.
+    /// Number of particles with a single bond.
     pub with_one_bond: usize,
 }
 
-/// The pieces of so many particles.
+/// The pieces of this number of particles.
 pub(super) fn find(particles: usize, bonds: &[[u32; 2]]) -> Pieces {
     let mut sets = DisjointSets::new(particles);
     let mut bonds_of = vec![0_u32; particles];

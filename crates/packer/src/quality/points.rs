@@ -1,4 +1,4 @@
-//! Random points in a box, what covers them and how deep they lie.
+//! Random points in a box, the spheres that cover them and their depth.
 //!
 //! The box is cut into equal cells with two random points each (stratified sampling, the same
 //! points for the same box).
@@ -9,7 +9,7 @@ use dem_io::random::nth;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-/// For regions that fill little of their box.
+/// Largest number of cells, for regions that fill little of their box.
 const MOST_CELLS: f64 = 4e6;
 const SPHERES_PER_TASK: usize = 1024;
 const ROWS_PER_TASK: usize = 16;
@@ -20,11 +20,11 @@ pub(super) struct Pair {
     pub(super) corner: [f64; 3],
     /// Their positions, local units.
     pub(super) points: [[f64; 3]; 2],
-    /// Their depths, as far as the probe was asked to tell.
+    /// Their depths, as exact as the question requires.
     pub(super) depths: [f64; 2],
-    /// Covered by spheres of true radius.
+    /// True if covered by spheres of true radius.
     pub(super) in_union: [bool; 2],
-    /// Covered by spheres reduced to r_gen.
+    /// True if covered by spheres reduced to r_gen.
     pub(super) in_generating: [bool; 2],
 }
 
@@ -36,13 +36,13 @@ pub(super) struct Box3 {
 }
 
 impl Box3 {
-    /// Holds nothing, until it is enlarged.
+    /// An empty box, to be enlarged.
     pub(super) const EMPTY: Self = Self {
         low: [f64::INFINITY; 3],
         high: [f64::NEG_INFINITY; 3],
     };
 
-    /// Enlarges it to hold another.
+    /// Enlarges it to contain another.
     pub(super) fn add(&mut self, other: &Self) {
         for k in 0..3 {
             self.low[k] = self.low[k].min(other.low[k]);
@@ -65,8 +65,8 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// So many cells that about `points` random points fall into a region of `volume` within the
-    /// box.
+    /// The number of cells is chosen so that about `points` random points fall into a region of
+    /// `volume` within the box.
     pub(super) fn new(within: &Box3, volume: f64, points: f64) -> Self {
         let size = within.size();
         let box_volume: f64 = size.iter().product();
@@ -115,7 +115,7 @@ impl Cells {
 const GENERATING: [u8; 2] = [1, 4];
 const UNION: [u8; 2] = [2, 8];
 
-/// For each cell which of its points lie in a sphere: bits as above, for the reduced and the true
+/// For each cell, which of its points lie in a sphere: bits as above, for the reduced and the true
 /// radii.
 fn cover(packing: &BondedPacking, cells: &Cells) -> Vec<AtomicU8> {
     let covered: Vec<AtomicU8> = (0..cells.count.iter().product())
@@ -156,8 +156,8 @@ fn cover(packing: &BondedPacking, cells: &Cells) -> Vec<AtomicU8> {
     covered
 }
 
-/// Shows all pairs of points to `add`, in parts whose order and extent are always the same. Depths
-/// answer the question, see [`DepthProbe`].
+/// Calls `add` with all pairs of points, in parts whose order and extent are always the same.
+/// Depths answer the question, see [`DepthProbe`].
 pub(super) fn over_pairs<T: Default + Send>(
     packing: &BondedPacking,
     cells: &Cells,

@@ -15,8 +15,8 @@ pub struct Report {
     pub particles: usize,
     /// Number of bonds.
     pub bonds: usize,
-    /// They are all pairs up to this times the sum of their radii, but for those with surface
-    /// between them; 0 if they were chosen otherwise.
+    /// If the bonds are all pairs up to a multiple of the sum of their radii, except those with
+    /// surface between them: that multiple. 0 if they were chosen otherwise.
     pub bond_range: f64,
     /// Mean diameter by number, m.
     pub mean_diameter_m: f64,
@@ -40,9 +40,9 @@ pub struct Report {
     pub wall_profile: Vec<Layer>,
     /// Density (r_gen) of the interior in ten slabs along the longest side of the shape.
     pub slab_profile: Vec<Layer>,
-    /// Sizes placed against sizes asked for, by number.
+    /// Sizes placed compared with those requested, by number.
     pub sizes_by_number: Fit,
-    /// Sizes placed against sizes asked for, by mass.
+    /// Sizes placed compared with those requested, by mass.
     pub sizes_by_mass: Fit,
     /// Bonds divided by particles, as Platzer 2022 counts (4.87).
     pub bonds_per_particle: f64,
@@ -55,10 +55,10 @@ pub struct Report {
     /// Directions of all bonds. None without bonds.
     pub fabric: Option<Fabric>,
     /// Directions of the bonds of the interior: those with one end in it count half. None without
-    /// such.
+    /// such bonds.
     pub interior_fabric: Option<Fabric>,
-    /// The thinnest part. None without particles.
+    /// The thinnest part of the body. None without particles.
     pub thinnest: Option<Thinnest>,
-    /// One sentence for each thing that a user should know, with advice.
+    /// Warnings with advice, one sentence each.
     pub warnings: Vec<String>,
 }

@@ -7,11 +7,11 @@ use super::warnings::RARE;
 use crate::sizes::Fit;
 use dem_io::units::{show_length, significant};
 
-/// A name and what is said of it.
+/// A name and its text.
 type Line = (&'static str, String);
 
 impl Report {
-    /// The human-readable report, about twenty aligned lines, one subject each, and the warnings.
+    /// The human-readable report: about twenty aligned lines, one subject each, and the warnings.
     pub fn text(&self) -> String {
         let lines: Vec<Line> = density_lines(self)
             .into_iter()
@@ -70,13 +70,13 @@ fn density_lines(report: &Report) -> Vec<Line> {
     lines
 }
 
-/// The density from the wall inwards and along the shape.
+/// Density profiles from the wall inwards and along the shape.
 fn profile_lines(report: &Report) -> Vec<Line> {
     let densities = |layers: &[Layer]| {
         let values: Vec<String> = layers.iter().map(|l| value(l.density.as_ref())).collect();
         values.join(" ")
     };
-    // The first two diameters, where it changes; the whole profile is in the JSON.
+    // The first two diameters, where it changes; the complete profile is in the JSON.
     let near = &report.wall_profile[..report.wall_profile.len().min(8)];
     let near = format!("{} per quarter diameter, r_gen", densities(near));
     let mut lines = vec![("from the wall", near)];
@@ -132,7 +132,7 @@ fn bond_lines(report: &Report) -> [Line; 4] {
 /// Directions of the bonds, and the thinnest part.
 fn structure_lines(report: &Report) -> Vec<Line> {
     let mut lines = Vec::new();
-    // Near a wall the layers show, which is no preferred direction of the material.
+    // Near a wall the layers show, which are not a preferred direction of the material.
     match (&report.interior_fabric, &report.fabric) {
         (Some(interior), _) => lines.push(("fabric inside", fabric(interior))),
         (None, Some(all)) => lines.push((

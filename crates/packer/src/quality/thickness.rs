@@ -1,15 +1,16 @@
-//! The thinnest part of a body, as its bonds and the depths of its particles show it.
+//! The thinnest part of a body, from its bonds and the depths of its particles.
 //!
 //! Particles are taken from the deepest to the shallowest, bonds joining those taken. Where two
-//! sets that are both more than crumbs meet, there is a neck between them, as deep as the shallower
-//! end of the joining bond; where a piece ends up alone, its deepest particle is its thickness. The
-//! thinnest part is the smallest of all these, twice the depth. Centres of particles seldom lie in
-//! the very middle, so that this reads low, by up to two diameters. The same is therefore done with
-//! the points of a lattice that lie deeper than the smallest particle needs, each joined to its six
-//! neighbours, and the larger of the two counts, where there are few across. Every way through the
-//! solid passes within half a diagonal of its cells of lattice points, so that the result is too
-//! small by at most a diagonal: 0.43 mean diameters up to some [`MOST_POINTS`] / 64 particles, more
-//! in larger bodies. It does not see a fin that grows out of a thick part.
+//! sets that are both larger than crumbs meet, there is a neck between them, as deep as the
+//! shallower end of the joining bond; where a piece ends up alone, its deepest particle is its
+//! thickness. The thinnest part is the smallest of all these, twice the depth. Centres of particles
+//! seldom lie exactly in the middle, so this estimate is too small by up to two diameters. If there
+//! are few particles across, the same is therefore done with the points of a lattice that lie
+//! deeper than the smallest particle needs, each joined to its six neighbours, and the larger
+//! result is used. Every path through the solid passes within half a cell diagonal of lattice
+//! points, so the result is too small by at most a diagonal: 0.43 mean diameters up to some
+//! [`MOST_POINTS`] / 64 particles, more in larger bodies. It does not see a fin that grows out of a
+//! thick part.
 
 use super::bonded_packing::{BondedPacking, CAP_IN_MEAN_DIAMETERS};
 use super::depth::{DepthProbe, DepthQuery};
@@ -19,32 +20,32 @@ use serde::{Deserialize, Serialize};
 
 /// Steps of depth up to the cap.
 const LEVELS: usize = 400;
-/// The lattice is left out where so many mean diameters fit across by the particles: two more or
-/// less do not matter.
+/// Mean diameters across, by the particles, above which the lattice is left out: two more or less
+/// make no difference.
 const MANY_ACROSS: f64 = 15.0;
-/// Edge of a lattice cell in mean diameters: a quarter of what matters, one particle more or less
+/// Edge of a lattice cell in mean diameters: a quarter of the relevant difference of one particle
 /// across.
 const FINEST_EDGE: f64 = 0.25;
-/// Points of the lattice inside the solid, about, and in the whole box, for regions that fill
-/// little of it.
+/// Approximate number of lattice points inside the solid, and largest number in the entire box, for
+/// regions that fill little of it.
 const MOST_POINTS: f64 = 1.5e5;
 const MOST_POINTS_IN_BOX: f64 = 1e6;
-/// A set of fewer particles, or of a smaller fraction of them, is a crumb.
+/// Smallest number and fraction of particles in a set that is not a crumb.
 const FEWEST_PARTICLES: usize = 20;
 const SMALLEST_PART: f64 = 0.01;
 
-/// The thinnest part.
+/// The thinnest part of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Thinnest {
     /// Its thickness, m: the diameter of the largest ball that passes through.
     pub thickness_m: f64,
     /// The same in mean diameters.
     pub particles_across: f64,
-    /// Thicker than could be measured: the two numbers are lower limits.
+    /// True if it is thicker than could be measured: the two numbers are lower limits.
     pub at_least: bool,
 }
 
-/// The thinnest part: see above. None without particles.
+/// The thinnest part, as described above. None without particles.
 pub(super) fn thinnest(
     packing: &BondedPacking,
     depths: &[f64],
@@ -58,7 +59,7 @@ pub(super) fn thinnest(
     } else {
         lattice(packing, mean_diameter, cap)
     };
-    // As much of the solid as that many particles take.
+    // The number of points that fills as much of the solid as that many particles.
     let fewest = FEWEST_PARTICLES * points.len() / depths.len();
     let by_points = neck(&points, &pairs, cap, fewest).unwrap_or(0.0);
     let depth = by_particles.max(by_points);
@@ -69,9 +70,8 @@ pub(super) fn thinnest(
     })
 }
 
-/// Depths of the points of a lattice that lie deeper than the smallest radius, and pairs of
-/// neighbours. A point is in the middle of the box, so that the middle of a symmetric shape is not
-/// missed.
+/// Depths of the lattice points that lie deeper than the smallest radius, and pairs of neighbours.
+/// One point is in the middle of the box, so that the middle of a symmetric shape is not missed.
 fn lattice(packing: &BondedPacking, mean_diameter: f64, cap: f64) -> (Vec<f64>, Vec<[u32; 2]>) {
     let box_volume: f64 = packing.extent.iter().product();
     let edge = (FINEST_EDGE * mean_diameter)
@@ -121,7 +121,8 @@ fn lattice(packing: &BondedPacking, mean_diameter: f64, cap: f64) -> (Vec<f64>, 
     (points, pairs)
 }
 
-/// Depth of the thinnest part of what `bonds` join, at most `cap`. None if there is nothing.
+/// Depth of the thinnest part of the set connected by `bonds`, at most `cap`. None if there is
+/// nothing.
 fn neck(depths: &[f64], bonds: &[[u32; 2]], cap: f64, fewest: usize) -> Option<f64> {
     let deepest = depths.iter().copied().reduce(f64::max)?;
     let top = deepest.min(cap);
@@ -159,7 +160,7 @@ fn neck(depths: &[f64], bonds: &[[u32; 2]], cap: f64, fewest: usize) -> Option<f
 }
 
 /// Indices of the bonds, ordered by the level of the shallower end and then of the deeper one, the
-/// deepest first: a particle joins what lies deeper before it joins its like.
+/// deepest first: a particle joins deeper ones before those of its own level.
 fn deepest_first(bonds: &[[u32; 2]], levels: &[u16]) -> Vec<u32> {
     let ends = |bond: u32| bonds[bond as usize].map(|i| levels[i as usize]);
     let any_order = (0..bonds.len() as u32).collect();

@@ -4,16 +4,16 @@ use super::report::Report;
 use crate::bonds::WELL_BONDED;
 use dem_io::units::{show_length, significant};
 
-/// Below so many particles across, a body shows its particles more than its material.
+/// Number of particles across below which a body shows its particles more than its material.
 const ENOUGH_ACROSS: f64 = 10.0;
-/// A body with fewer bonds per particle is hardly rigid.
+/// Number of bonds per particle below which a body is hardly rigid.
 pub(super) const ENOUGH_BONDS: f64 = 4.0;
-/// Overlaps (in r_gen) and protrusions beyond this fraction of a radius are not rounding.
+/// Overlaps (in r_gen) and protrusions above this fraction of a radius are not rounding errors.
 const EXACT: f64 = 1e-9;
-/// Sizes are called wrong beyond so many times the statistical limit: chance alone goes beyond once
-/// in 2,000 packings, beyond the limit itself once in 20.
+/// Sizes are reported as wrong beyond this multiple of the statistical limit: chance alone exceeds
+/// it once in 2,000 packings, the limit itself once in 20.
 const CLEARLY_OFF: f64 = 1.5;
-/// A fabric that chance makes more rarely than this is called anisotropic.
+/// Probability below which a fabric is reported as anisotropic.
 pub(super) const RARE: f64 = 0.01;
 
 pub(super) fn warnings(
@@ -70,7 +70,7 @@ pub(super) fn warnings(
     warnings
 }
 
-/// Warnings about what chance does not explain: sizes, and directions of bonds.
+/// Warnings about deviations that chance does not explain: sizes, and directions of bonds.
 fn statistical_warnings(report: &Report) -> Vec<String> {
     let mut warnings = Vec::new();
     for (fit, by) in [

@@ -1,9 +1,9 @@
 //! A cumulative distribution as a monotone table: piecewise cubic, exact to about 1e-9, and quick
 //! to invert.
 
-/// Accepted error of one cell, as a fraction of the whole.
+/// Accepted error of one cell, as a fraction of the total.
 const TOLERANCE: f64 = 1e-9;
-/// Cells of the table that says where to begin the search for a quantile.
+/// Number of cells of the table of starting points for the search for a quantile.
 const GUIDE_CELLS: usize = 4096;
 /// Nodes and weights of the five-point Gauss-Legendre rule on [-1, 1].
 const GAUSS: [(f64, f64); 5] = [
@@ -15,8 +15,8 @@ const GAUSS: [(f64, f64); 5] = [
 ];
 
 /// In `[start, start + width]` the distribution rises from `below` by `fraction`, along the cubic
-/// that leaves with slope `slope_start` and arrives with `slope_end` (both 1 for a straight line;
-/// at most 3, so that it is monotone).
+/// with slope `slope_start` at the start and `slope_end` at the end (both 1 for a straight line; at
+/// most 3, so that it is monotone).
 #[derive(Debug, Clone)]
 struct Cell {
     start: f64,
@@ -64,19 +64,20 @@ impl Cell {
     }
 }
 
-/// A cumulative distribution of diameters. Lengths in the unit of the density it was made from.
+/// A cumulative distribution of diameters. Lengths in the unit of the density from which it was
+/// made.
 #[derive(Debug, Clone)]
 pub(super) struct Curve {
     cells: Vec<Cell>,
     guide: Vec<u32>,
-    /// Integral of the density it was made from.
+    /// Integral of the density from which it was made.
     pub(super) total: f64,
     /// Mean of the diameter under this distribution.
     pub(super) mean: f64,
 }
 
 impl Curve {
-    /// Everything at one diameter.
+    /// A distribution with a single diameter.
     pub(super) fn single(diameter: f64) -> Self {
         let cell = Cell {
             start: diameter,
@@ -95,8 +96,8 @@ impl Curve {
     }
 
     /// The distribution whose density in the piece `[knots[i], knots[i + 1]]` is `density(i,
-    /// diameter)`: smooth and without a peak much narrower than the piece. Need not be normalised.
-    /// None if the whole is zero or not finite.
+    /// diameter)`: it must be smooth and without a peak much narrower than the piece, but need not
+    /// be normalised. None if the total is zero or not finite.
     pub(super) fn from_density(knots: &[f64], density: impl Fn(usize, f64) -> f64) -> Option<Self> {
         let pieces = || {
             knots
@@ -130,8 +131,8 @@ impl Curve {
             below += cell.fraction;
             moment += cell.fraction * (cell.start + cell.width * cell.mean_position());
         }
-        // Empty cells (a flat part of a sieve curve) are never drawn from and say nothing
-        // of the rise.
+        // Empty cells (a flat part of a sieve curve) are never drawn from and contain no
+        // information on the rise.
         let guide = (0..GUIDE_CELLS)
             .map(|g| {
                 let u = g as f64 / GUIDE_CELLS as f64;
@@ -148,7 +149,7 @@ impl Curve {
         })
     }
 
-    /// Share of the distribution at or below `diameter`.
+    /// Fraction of the distribution at or below `diameter`.
     pub(super) fn cdf(&self, diameter: f64) -> f64 {
         let last = &self.cells[self.cells.len() - 1];
         if diameter >= last.start + last.width {
@@ -162,8 +163,8 @@ impl Curve {
         (cell.below + cell.fraction * cell.rise(t)).min(1.0)
     }
 
-    /// The diameter that the fraction `u` of the distribution lies below. `u` outside [0, 1] counts
-    /// as the nearer end.
+    /// The diameter below which the fraction `u` of the distribution lies. `u` outside [0, 1]
+    /// counts as the nearer end.
     pub(super) fn quantile(&self, u: f64) -> f64 {
         let u = u.clamp(0.0, 1.0);
         let mut index =
@@ -184,7 +185,7 @@ impl Curve {
 }
 
 impl Cell {
-    /// Mean position (0 to 1) of what the cell holds: one less the integral of the rise.
+    /// Mean position (0 to 1) of the content of the cell: one less the integral of the rise.
     fn mean_position(&self) -> f64 {
         0.5 - (self.slope_start - self.slope_end) / 12.0
     }
@@ -199,8 +200,8 @@ fn gauss(from: f64, to: f64, density: &impl Fn(f64) -> f64) -> f64 {
         .sum::<f64>()
 }
 
-/// Cuts `[from, to]` until the cubic of each cell follows the integral of the density; appends the
-/// cells with their integrals as `fraction`.
+/// Divides `[from, to]` until the cubic of each cell follows the integral of the density; appends
+/// the cells with their integrals as `fraction`.
 fn refine(
     from: f64,
     to: f64,

@@ -6,9 +6,9 @@ use super::parse::{self, Law};
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
 
-/// The largest size may be so many times the smallest.
+/// Largest ratio of the largest to the smallest size.
 pub(crate) const LARGEST_SIZE_RATIO: f64 = 1000.0;
-/// Less than this fraction of a distribution between MIN and MAX is taken for a mistake.
+/// Fraction of a distribution between MIN and MAX below which they are taken for a mistake.
 const SMALLEST_FRACTION_KEPT: f64 = 0.01;
 
 /// A distribution of particle diameters between two limits, in metres.
@@ -24,12 +24,12 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// The file of a sieve curve that `text` names, if it names one.
+    /// The file of a sieve curve named in `text`, if any.
     pub fn file(text: &str) -> Option<&str> {
         parse::file(text)
     }
 
-    /// The sizes that `text` asks for, in one of the forms above; reads the file of a sieve curve.
+    /// The sizes described by `text`, in one of the forms above; reads the file of a sieve curve.
     ///
     /// # Errors
     /// A text of another form; a size that is zero, negative or not finite; MIN above MAX; a
@@ -59,7 +59,7 @@ impl Sizes {
     }
 
     /// Standard deviation over mean of the diameters, by number, and their skewness (0 for one
-    /// size); to about 1e-3.
+    /// size); accurate to about 1e-3. Length 2.
     pub fn spread_and_skewness(&self) -> [f64; 2] {
         const PARTS: u32 = 1000;
         let off = |k: u32| {
@@ -85,28 +85,28 @@ impl Sizes {
         self.by
     }
 
-    /// The diameter in metres that the fraction `u` of the particles lies below: with `u` uniform
+    /// The diameter in metres below which the fraction `u` of the particles lies: with `u` uniform
     /// in [0, 1), a diameter drawn at random.
     pub fn quantile_by_number(&self, u: f64) -> f64 {
         self.number.quantile(u)
     }
 
-    /// Share of the particles at or below a diameter in metres. Exact to 1e-8.
+    /// Fraction of the particles at or below a diameter in metres. Accurate to 1e-8.
     pub fn cdf_by_number(&self, diameter_m: f64) -> f64 {
         self.number.cdf(diameter_m)
     }
 
-    /// Share of the particles' mass at or below a diameter in metres. Exact to 1e-8.
+    /// Fraction of the particles' mass at or below a diameter in metres. Accurate to 1e-8.
     pub fn cdf_by_mass(&self, diameter_m: f64) -> f64 {
         self.mass.cdf(diameter_m)
     }
 
-    /// All particles of one size.
+    /// True if all particles have one size.
     pub fn is_one_size(&self) -> bool {
         self.min_m == self.max_m
     }
 
-    /// One line for a person: the distribution, its limits and means, and what was done to it.
+    /// One human-readable line: the distribution, its limits and means, and the changes made to it.
     pub fn describe(&self) -> &str {
         &self.description
     }
@@ -158,8 +158,7 @@ impl Sizes {
         Ok(sizes)
     }
 
-    /// The distribution in words; `kept` is the fraction of it between the limits, where it was
-    /// cut.
+    /// The distribution as text; `kept` is the fraction of it between the limits, where it was cut.
     fn described(&self, law: &Law, name: &str, kept: Option<f64>) -> String {
         let note = match law {
             Law::One(d) => return format!("all {}", show_length(*d)),

@@ -1,27 +1,26 @@
-//! Agreement of the sizes placed with those asked for: one-sample Kolmogorov-Smirnov distances.
+//! Agreement of the sizes placed with those requested: one-sample Kolmogorov-Smirnov distances.
 
 use super::distribution::Sizes;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// The Kolmogorov-Smirnov distance that 95 % of large samples stay below, times the root of their
-/// size.
+/// The Kolmogorov-Smirnov distance of 95 % of large samples is below this, divided by the square
+/// root of their size.
 const LIMIT_95: f64 = 1.358;
 
-/// The largest difference between the distribution of a sample and the one asked for.
+/// The largest difference between the distribution of a sample and the requested one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
-    /// The largest difference of the two distribution functions, 0 to 1.
+    /// The largest difference between the two distribution functions, 0 to 1.
     pub distance: f64,
-    /// Limit that 95 % of random samples of this size stay below: 1.358/sqrt(n), n the effective
-    /// size.
+    /// Limit for 95 % of random samples of this size: 1.358/sqrt(n), n the effective size.
     pub limit_95: f64,
     /// Number of particles; by mass (sum of masses)^2 / (sum of squared masses).
     pub effective_samples: f64,
 }
 
 impl Fit {
-    /// Within the statistical limit.
+    /// True if the distance is within the statistical limit.
     pub fn passes(&self) -> bool {
         self.distance <= self.limit_95
     }
@@ -66,7 +65,7 @@ fn distance(
     for diameter in &sorted {
         let fraction = weight(*diameter) / total;
         if sizes.is_one_size() {
-            // A step: what counts is the fraction that is off it, beyond rounding.
+            // A step: only the fraction that differs from it by more than rounding counts.
             distance += if (diameter / sizes.min_m() - 1.0).abs() > 1e-9 {
                 fraction
             } else {

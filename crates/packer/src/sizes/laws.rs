@@ -1,4 +1,4 @@
-//! The laws that sizes can follow, as tables of their distributions by number and by mass.
+//! The laws of size distributions, as tables of their distributions by number and by mass.
 
 use super::curve::Curve;
 use super::parse::{Cut, Law};
@@ -7,16 +7,16 @@ use dem_io::{Diagnostic, Result};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// The standard normal deviate that 99.9 % lie below.
+/// The standard normal quantile of 99.9 %.
 const NORMAL_DEVIATE_999: f64 = 3.090_232_306_167_813;
 
 /// The quantity that a distribution of sizes counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Basis {
-    /// Particles.
+    /// Number of particles.
     Number,
-    /// Mass (or volume): each particle with the third power of its diameter.
+    /// Mass (or volume): each particle counts with the third power of its diameter.
     Mass,
 }
 
@@ -24,7 +24,7 @@ pub enum Basis {
 pub(super) struct Tables {
     /// The name of the law.
     pub(super) name: String,
-    /// The smallest diameter, those where pieces of the density begin, and the largest, m.
+    /// The smallest diameter, the boundaries between the pieces of the density, and the largest, m.
     pub(super) knots: Vec<f64>,
     /// The distributions by number and by mass; none if there is nothing between the limits.
     pub(super) curves: Option<(Curve, Curve)>,
@@ -136,7 +136,7 @@ fn named(law: &str, mean: f64, std: f64) -> String {
 }
 
 /// The distributions by number and by mass from a density that counts by `by`; pieces as in
-/// [`Curve::from_density`]. The mass of a particle is counted in that of the smallest.
+/// [`Curve::from_density`]. Masses are relative to that of the smallest particle.
 fn curves(knots: &[f64], by: Basis, density: impl Fn(usize, f64) -> f64) -> Option<(Curve, Curve)> {
     let smallest = knots[0];
     let volume = |d: f64| (d / smallest).powi(3);

@@ -7,9 +7,9 @@ use std::ops::RangeInclusive;
 
 const FORMS: &str = "write one of 2.5mm, 2mm..3mm, normal:MEAN,STD,MIN..MAX, lognormal:MEAN,STD,MIN..MAX, \
                      weibull:SCALE,SHAPE,MIN..MAX, sieve:FILE.csv";
-/// Diameters that a program for particles can mean, m.
+/// Diameters that make sense for particles, m.
 const SENSIBLE_M: RangeInclusive<f64> = 1e-12..=1e6;
-/// A smaller ratio of standard deviation to mean is one size.
+/// Ratio of standard deviation to mean below which the distribution is one size.
 const SMALLEST_SPREAD: f64 = 1e-6;
 const SHAPES: RangeInclusive<f64> = 0.05..=1000.0;
 
@@ -46,7 +46,7 @@ pub(super) enum Law {
     Sieve(SieveCurve),
 }
 
-/// The file of a sieve curve that `text` names.
+/// The file of a sieve curve named in `text`.
 pub(super) fn file(text: &str) -> Option<&str> {
     let text = text.trim();
     match text.split_once(':') {
@@ -55,7 +55,7 @@ pub(super) fn file(text: &str) -> Option<&str> {
     }
 }
 
-/// The law that `text` names.
+/// The law named in `text`.
 pub(super) fn law(text: &str) -> Result<Law> {
     let text = text.trim();
     let (name, rest) = text.split_once(':').unwrap_or(("", text));
@@ -148,7 +148,7 @@ fn weibull(rest: &str) -> Result<Law> {
     })
 }
 
-/// MIN..MAX, written with or without units as the text `beside` it is.
+/// MIN..MAX, with or without units like the text `beside` it.
 fn cut(limits: Option<&str>, beside: &str) -> Result<Option<Cut>> {
     let Some(limits) = limits else {
         return Ok(None);
@@ -223,7 +223,8 @@ fn diameter(text: &str) -> Result<f64> {
     Ok(length)
 }
 
-/// A plain number is metres, so "2..3mm" would be 2 m to 3 mm: all with a unit, or none.
+/// Requires all numbers with a unit, or none: a plain number is in metres, so "2..3mm" would be 2 m
+/// to 3 mm.
 fn same_notation(texts: &[&str]) -> Result<()> {
     let has_unit = |text: &&str| text.trim().ends_with(|c: char| c.is_alphabetic());
     if texts.iter().all(has_unit) || !texts.iter().any(has_unit) {

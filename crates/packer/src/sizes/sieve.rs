@@ -1,14 +1,14 @@
 //! Sieve curves: a table of openings and cumulative passing.
 //!
-//! Two columns, separated by comma, semicolon or tab. The unit of the opening stands in the header
+//! Two columns, separated by comma, semicolon or tab. The unit of the opening is in the header
 //! (`opening_mm`, `Opening [mm]`) or at each value (`2 mm`). Passing is a percentage or a fraction:
 //! by the header (`%`, `percent`, `fraction`), or else by whether a value exceeds 1. Coarsest or
-//! finest first; `#` begins a comment; with semicolons a decimal comma is understood.
+//! finest first; `#` begins a comment; with semicolons a decimal comma is accepted.
 
 use dem_io::units::{length_m, length_unit_m, significant};
 use dem_io::{Diagnostic, Result};
 
-/// A curve that starts above 0 or ends below 100 % by no more than this is stretched to the whole.
+/// Largest gap at 0 or 100 % of a curve that is still stretched to the full range.
 const LARGEST_GAP: f64 = 0.05;
 
 /// A cumulative curve from 0 to 1.
@@ -16,7 +16,7 @@ const LARGEST_GAP: f64 = 0.05;
 pub(super) struct SieveCurve {
     /// Openings, m, ascending. At least 2.
     pub(super) openings_m: Vec<f64>,
-    /// Share that passes, never falling, first 0 and last 1. As many as openings.
+    /// Fraction that passes, never falling, first 0 and last 1. One per opening.
     pub(super) passing: Vec<f64>,
     /// Changes to the curve, to be appended to a sentence. May be empty.
     pub(super) note: String,
@@ -227,7 +227,7 @@ fn check_ends(rows: &[Row]) -> Result<()> {
     Ok(())
 }
 
-/// Checks the rows (passing as fractions) and stretches them to the whole.
+/// Checks the rows (passing as fractions) and stretches them to the full range.
 fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
     if rows[0].opening_m > rows[1].opening_m {
         rows.reverse();
@@ -244,7 +244,7 @@ fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
     } else {
         String::new()
     };
-    // Flat ends hold no particles: the sizes begin and end where the curve rises.
+    // Flat ends contain no particles: the sizes begin and end where the curve rises.
     let rising = rows
         .windows(2)
         .position(|p| p[1].passing > p[0].passing)

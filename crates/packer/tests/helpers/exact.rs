@@ -1,15 +1,15 @@
-//! What must hold exactly of every packing, judged without the packer's own geometry: distances to
-//! all triangles one by one (Ericson 2005, section 5.1.5), the inside by the winding number, a sum
-//! of solid angles (van Oosterom and Strackee 1983).
+//! Conditions that hold exactly for every packing, checked without the packer's own geometry:
+//! distances to all triangles one by one (Ericson 2005, section 5.1.5), and the inside by the
+//! winding number, a sum of solid angles (van Oosterom and Strackee 1983).
 
 use super::facets::Point;
 
-/// Beyond this share of a radius an overlap or a protrusion is no rounding.
+/// Fraction of a radius above which an overlap or a protrusion is not a rounding error.
 pub(crate) const EXACT: f64 = 1e-9;
 
 /// Checks a packing: no overlap of the reduced spheres, nothing outside. All lengths in the same
-/// unit; `unsure` is how far, in that unit, the facets may lie from the surface that was filled (0
-/// unless the file had to be repaired).
+/// unit. `unsure` is the distance by which the facets may deviate from the surface that was filled
+/// (0 unless the file had to be repaired).
 pub(crate) fn assert_exact(
     what: &str,
     facets: &[[Point; 3]],
@@ -46,7 +46,7 @@ pub(crate) fn assert_exact(
     assert_eq!(outside, 0, "{what}: centres outside the solid");
 }
 
-/// Largest overlap of two spheres as a share of the smaller radius; negative if there is a gap
+/// Largest overlap of two spheres as a fraction of the smaller radius; negative if there is a gap
 /// everywhere.
 pub(crate) fn largest_overlap(positions: &[Point], radii: &[f64]) -> f64 {
     let mut order: Vec<usize> = (0..positions.len()).collect();
@@ -66,7 +66,7 @@ pub(crate) fn largest_overlap(positions: &[Point], radii: &[f64]) -> f64 {
     worst
 }
 
-/// Largest share of its radius by which a facet reaches into a sphere; 0 if none does.
+/// Largest protrusion of a facet into a sphere, as a fraction of its radius; 0 if there is none.
 pub(crate) fn largest_protrusion(facets: &[[Point; 3]], positions: &[Point], radii: &[f64]) -> f64 {
     let boxes: Vec<[Point; 2]> = facets
         .iter()
@@ -88,7 +88,7 @@ pub(crate) fn largest_protrusion(facets: &[[Point; 3]], positions: &[Point], rad
     worst
 }
 
-/// How often the facets wind around a point: 0 outside of a closed surface.
+/// Winding number of the facets around a point: 0 outside a closed surface.
 pub(crate) fn winding_number(facets: &[[Point; 3]], p: &Point) -> i64 {
     let mut angle = 0.0;
     for corners in facets {

@@ -1,5 +1,5 @@
-//! What the tests share: solids, random numbers, lattices of spheres, and an oracle of packings
-//! with a geometry of its own.
+//! Helpers shared by the tests: solids, random numbers, lattices of spheres, and an independent
+//! check of packings with its own geometry.
 
 pub(crate) mod exact;
 pub(crate) mod facets;

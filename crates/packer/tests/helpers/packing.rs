@@ -1,4 +1,4 @@
-//! Packings with seed 1 unless a test says otherwise.
+//! Packings with seed 1 unless a test sets another.
 
 use super::facets::Facets;
 use super::solids::{local_facets, surface_of};

@@ -1,4 +1,4 @@
-//! Uniform random numbers from a generator of a few lines, independent of the program's.
+//! Uniform random numbers from a generator of a few lines, independent of the program's generator.
 
 use std::f64::consts::PI;
 

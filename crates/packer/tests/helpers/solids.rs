@@ -1,4 +1,4 @@
-//! The solids that the packer is tried on.
+//! Solids for the tests of the packer.
 
 use super::exact::{cross, distance_to_triangle, dot, length, scaled, sub};
 use super::facets::{Facets, Point, cuboid, prism, rounded, stl};
@@ -24,7 +24,7 @@ pub(crate) fn point_between(random: &mut ChaCha8Rng, low: Point, high: Point) ->
     [0, 1, 2].map(|k| between(random, low[k], high[k]))
 }
 
-/// What the packer works with, for facets in mm.
+/// The packer's input for facets in mm.
 pub(crate) fn surface_of(facets: &Facets) -> (Surface, Boundary) {
     let settings = ReadSettings {
         unit_m: 1e-3,
@@ -121,7 +121,7 @@ pub(crate) fn turned_inside_out(facets: Facets) -> Facets {
     facets.into_iter().map(|[a, b, c]| [a, c, b]).collect()
 }
 
-/// Moved and turned in space at random.
+/// The facets moved and rotated at random.
 pub(crate) fn turned(random: &mut ChaCha8Rng, facets: Facets) -> Facets {
     let angles = [0; 3].map(|_| between(random, 0.0, TAU));
     let rotation = nalgebra::Rotation3::from_euler_angles(angles[0], angles[1], angles[2]);
@@ -138,7 +138,7 @@ pub(crate) fn turned(random: &mut ChaCha8Rng, facets: Facets) -> Facets {
     )
 }
 
-/// A shape of another kind for each of 0 to 5, with random sizes, about 10 across (mm).
+/// A shape of a different kind for each of 0 to 5, with random sizes, about 10 across (mm).
 pub(crate) fn random_solid(random: &mut ChaCha8Rng, kind: usize) -> (&'static str, Facets) {
     match kind {
         0 => ("box", cuboid([0; 3].map(|_| between(random, 5.0, 14.0)))),

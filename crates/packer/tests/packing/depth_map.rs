@@ -1,4 +1,4 @@
-//! Distances of the depth map against all triangles one by one and winding numbers.
+//! Distances of the depth map compared with all triangles one by one and with winding numbers.
 
 use crate::helpers::exact::winding_number;
 use crate::helpers::facets::cuboid;

@@ -1,4 +1,4 @@
-//! The bare front: every sphere leans on three others or on two and the wall, whatever its seeds.
+//! The bare front: every sphere rests on three others or on two and the wall, for any seeds.
 
 use crate::helpers::exact::assert_exact;
 use crate::helpers::facets::{Facets, cuboid, prism};
@@ -69,8 +69,8 @@ fn spheres_touch_three_others_or_two_and_the_wall() {
             overlap,
             0.0,
         );
-        // The first three of a front lean on each other only, and some fillers of voids stand where
-        // they have most room.
+        // The first three of a front rest only on each other, and some fillers of voids are at the
+        // roomiest place.
         let free = 3 * packing.history.fronts + packing.history.loose_fillers;
         let found = unsupported(&facets, &packing, overlap);
         assert!(
@@ -117,8 +117,8 @@ fn no_void_is_left_that_takes_one_more_sphere_of_one_size() {
     let overlap = 0.2;
     let (facets, packing) = bare_front(&cuboid([10.0, 8.0, 7.0]), "1mm", overlap);
     assert_eq!(packing.history.voids_left, 0);
-    // Points on a fine lattice where a sphere would fit with a tenth to spare; a void that takes
-    // one more is there to be hit.
+    // Points on a fine lattice where a sphere would fit with a tenth to spare: a void for another
+    // sphere would contain one.
     let spheres = &packing.spheres;
     let radius = spheres.radii[0];
     let spacing = 0.1 * radius;

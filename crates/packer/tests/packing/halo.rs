@@ -1,4 +1,4 @@
-//! Corners of a halo, against the three-sphere intersection worked out from scratch.
+//! Corners of a halo compared with a separately computed three-sphere intersection.
 
 use crate::helpers::exact::largest_overlap;
 use crate::helpers::solids::{between, point_between, random_numbers};
@@ -132,7 +132,7 @@ fn every_corner_that_is_offered_is_free() {
         neighbours.clear();
         neighbours.gather(&balls[0], &balls, new);
         halo.set(&balls[0], new, &neighbours);
-        // Refusing each, all corners are offered one after the other.
+        // If each is refused, all corners are offered one after the other.
         halo.corners(&Vector3::x(), |q| {
             let mut positions: Vec<[f64; 3]> = balls.iter().map(|b| [b[0], b[1], b[2]]).collect();
             let mut radii: Vec<f64> = balls.iter().map(|b| b[3]).collect();

@@ -1,5 +1,4 @@
-//! Which points lie inside, against winding numbers and closed forms, and where rays meet the
-//! surface.
+//! Points inside, compared with winding numbers and closed forms, and rays that meet the surface.
 
 use crate::helpers::exact::{length, winding_number};
 use crate::helpers::facets::{Facets, Point, cuboid, rounded};
@@ -94,8 +93,7 @@ fn points_in_line_with_vertices_and_edges_are_decided() {
 
 #[test]
 fn rays_aimed_at_vertices_and_edges_are_decided() {
-    // The first directions that are tried, and how far the ray starts from the place that it is
-    // aimed at.
+    // The first directions that are tried, and the distance of the ray's start from its target.
     let directions = [
         [0.577_215_66, 0.321_309_89, 0.751_988_48],
         [-0.414_213_56, 0.732_050_81, 0.540_963_27],
@@ -150,7 +148,7 @@ fn a_cavity_is_outside_and_what_lies_in_it_is_inside() {
     for _ in 0..2000 {
         let p = point_between(&mut random, [-11.0; 3], [11.0; 3]);
         let r = length(p);
-        // Facets of the second cut lie 5 % deep at most.
+        // Facets of the second subdivision lie at most 5 % deep.
         if [2.0, 6.0, 10.0]
             .iter()
             .all(|wall| r > wall * 1.0001 || r < wall * 0.95)

@@ -1,4 +1,4 @@
-//! The stages of a packing, and whole packings.
+//! The stages of a packing, and complete packings.
 
 mod depth_map;
 mod front;

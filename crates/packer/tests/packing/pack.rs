@@ -1,4 +1,4 @@
-//! The whole packing, exact on shapes of many kinds, sizes and orientations.
+//! Complete packings, exact on shapes of many kinds, sizes and orientations.
 
 use crate::helpers::exact::assert_exact;
 use crate::helpers::facets::cuboid;
@@ -59,7 +59,7 @@ fn exact_on(kind: usize) {
                     "{what}: {d}"
                 );
             }
-            // However bad the shape, no packing of spheres is as thin as this unless a part was
+            // However bad the shape, a packing of spheres is only as thin as this if a part was
             // forgotten.
             let filled = spheres
                 .radii
@@ -143,8 +143,8 @@ fn a_sphere_that_just_fits_is_placed() {
     );
 }
 
-/// A plate one sphere thick, where each sphere touches both walls and nothing may stand out by the
-/// rounding of the last step.
+/// A plate one sphere thick: each sphere touches both walls, and none may protrude by the rounding
+/// of the last step.
 #[test]
 fn exact_in_a_plate_one_sphere_thick() {
     for seed in 1..=10 {
@@ -166,8 +166,8 @@ fn exact_in_a_plate_one_sphere_thick() {
     }
 }
 
-/// The first three spheres stand around the seed, and the seed may stand nearer to the wall than
-/// any sphere can.
+/// The first three spheres are around the seed, and the seed may be nearer to the wall than any
+/// sphere can be.
 #[test]
 fn exact_from_a_seed_almost_on_the_wall() {
     for settle in [Some(0.0), None] {

@@ -1,4 +1,4 @@
-//! The deepest point, against closed forms and points tried at random; the first three spheres.
+//! The deepest point, compared with closed forms and random points; the first three spheres.
 
 use crate::helpers::exact::winding_number;
 use crate::helpers::facets::{Facets, cuboid};
@@ -11,8 +11,8 @@ use dem_pack::internals::{
 };
 use std::f64::consts::PI;
 
-/// Radius in mm of the largest ball that is found; checked to be inside, and not beaten by random
-/// points.
+/// Radius in mm of the largest ball found. Checks that it is inside, and that no random point has a
+/// larger one.
 fn deepest_mm(facets: &Facets) -> f64 {
     let (surface, boundary) = surface_of(facets);
     let inner = inner_points(&boundary, &surface);
@@ -45,7 +45,7 @@ fn of_a_box_half_the_smallest_edge() {
     for _ in 0..6 {
         let size = [0; 3].map(|_| between(&mut random, 1.0, 30.0));
         let facets = cuboid(size);
-        // As rounded: the far corner is in the first side wall's second triangle.
+        // With rounding: the far corner is in the first side wall's second triangle.
         let smallest = size
             .map(|s| f64::from(s as f32))
             .into_iter()
@@ -70,8 +70,8 @@ fn of_a_ball_its_centre() {
 
 #[test]
 fn of_a_torus_its_tube() {
-    // The tube is 5 where its facets touch the torus, and off by less than the chords' depths
-    // elsewhere.
+    // The tube has radius 5 where its facets touch the torus, and deviates by less than the chords'
+    // depths elsewhere.
     let (ring, tube) = (96.0, 48.0);
     let chords = 5.0 * (1.0 - (PI / tube).cos()) + 25.0 * (1.0 - (PI / ring).cos());
     let found = deepest_mm(&torus(20.0, 5.0, ring as usize, tube as usize));
@@ -155,7 +155,7 @@ fn only_as_many_first_spheres_as_fit() {
         first_spheres(&centre, [1.0; 3], [1.0; 3], &|_, _| false).len(),
         0
     );
-    // A slab hardly thicker than a sphere: turned this way and that, they come to lie in it.
+    // A slab hardly thicker than a sphere: some of the orientations tried lie in it.
     let in_slab = first_spheres(&centre, [1.0; 3], [1.0; 3], &|p, _| p.z.abs() < 0.4);
     assert!(
         in_slab.len() >= 2 && in_slab.iter().all(|(p, _)| p.z.abs() < 0.4),

@@ -1,5 +1,5 @@
-//! Settling: what overlaps is pushed apart and away from the wall, and where there is no room
-//! spheres are taken out.
+//! Settling: overlapping spheres are pushed apart and away from the wall, and spheres are taken out
+//! if there is no room.
 
 use crate::helpers::exact::assert_exact;
 use crate::helpers::facets::{Facets, cuboid};
@@ -13,8 +13,8 @@ use dem_pack::internals::is_inside;
 use dem_pack::internals::{Settled, WhenJammed, minimise_overlaps};
 use std::f64::consts::PI;
 
-/// Spheres at random places inside until their reduced volumes are this share of the solid, none
-/// nearer to another or to the wall than the share `apart` of where they would touch.
+/// Spheres at random places inside until their reduced volumes are this fraction of the solid.
+/// Distances to each other and to the wall are at least the fraction `apart` of those at contact.
 fn cloud(
     facets: &Facets,
     fraction: f64,
@@ -59,7 +59,8 @@ fn sizes_of(balls: &[ReducedSphere]) -> Vec<f64> {
     sizes
 }
 
-/// Settles clouds below jamming: without overlap in the end, whole, with the sizes that went in.
+/// Settles clouds below jamming. In the end no spheres overlap, none are missing and the sizes are
+/// unchanged.
 fn assert_clouds_settle(apart: f64) {
     let cases = [
         ("box", cuboid([10.0, 8.0, 7.0]), 0.40, 0.0, 1),
@@ -118,7 +119,7 @@ fn where_there_is_no_room_spheres_are_taken_out() {
     );
 }
 
-/// Spheres thicker than the plate touch no other: the wall alone jams them.
+/// Spheres thicker than the plate touch no others: the wall alone jams them.
 #[test]
 fn spheres_that_only_the_wall_jams_are_taken_out() {
     let (surface, boundary) = surface_of(&cuboid([10.0, 8.0, 2.0]));

@@ -1,4 +1,4 @@
-//! How full a body is by default: as full as spheres in random order can be without jamming, in
+//! The density of a body by default: as dense as spheres in random order can be without jamming, in
 //! shapes of any curvature and thickness.
 
 use crate::helpers::facets::{Facets, cuboid};
@@ -9,7 +9,8 @@ use dem_pack::{Basis, Sizes};
 use dem_pack::{PackSettings, pack};
 use std::f64::consts::PI;
 
-/// Packs with the default share. Volume of the reduced spheres over that which is wanted.
+/// Packs with the default reduction of the radii. Returns the volume of the reduced spheres /
+/// target volume.
 fn filled_over_wanted(facets: &Facets, diameter: &str, overlap: f64, seed: u64) -> f64 {
     let (surface, _) = surface_of(facets);
     let settings = PackSettings {
@@ -24,8 +25,8 @@ fn filled_over_wanted(facets: &Facets, diameter: &str, overlap: f64, seed: u64) 
     filled / FillTarget::new(&surface, &settings.sizes, overlap).volume
 }
 
-/// A ball took out up to 4 % of its spheres and fell into pieces; shapes of ten spheres across were
-/// less dense than the bare front.
+/// Regression: in a ball up to 4 % of the spheres were taken out and it fell into pieces; shapes of
+/// ten spheres across were less dense than the bare front.
 #[test]
 fn bodies_are_as_full_as_can_be_without_jamming() {
     let ball = icosphere(3, &|_| 9.0);
@@ -76,6 +77,6 @@ fn a_front_that_leaves_too_little_room_runs_at_less_small_radii() {
     let better = target.better_shrink(0.04, 103.0).unwrap();
     assert!((103.0 * (0.96 / (1.0 - better)).powi(3) - 100.0).abs() < 1e-9);
     assert!(better < 0.04 && target.better_shrink(0.04, 97.0).unwrap() > 0.04);
-    // Nothing to gain beyond the limits.
+    // Nothing to gain outside the limits.
     assert_eq!(target.better_shrink(0.08, 50.0), None);
 }

@@ -1,5 +1,5 @@
-//! The wall of crossing parts: that it is closed, what it encloses, and how far it is, against
-//! closed forms.
+//! The wall of crossing parts, compared with closed forms: it is closed, and the enclosed volume
+//! and the distances are right.
 
 use crate::helpers::exact::{
     cross, distance_to_triangle, dot, length, scaled, sub, winding_number,
@@ -20,7 +20,7 @@ fn plus(a: Point, b: Point) -> Point {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// A box with any edges, right-handed, in mm.
+/// A box with any orthogonal edges, right-handed, in mm.
 #[derive(Clone, Copy)]
 struct Block {
     corner: Point,
@@ -36,9 +36,9 @@ fn block(low: Point, high: Point) -> Block {
     }
 }
 
-/// A box turned about two axes so that its corners are whole numbers: edges are multiples of 65.
+/// A box rotated about two axes so that its corners are whole numbers: edges are multiples of 65.
 fn tilted(corner: Point, lengths: [f64; 3]) -> Block {
-    // Turned by the angle of the triangle 3, 4, 5 about z, then by that of 5, 12, 13 about x.
+    // Rotated by the angle of the triangle 3, 4, 5 about z, then by that of 5, 12, 13 about x.
     let turn = |[x, y, z]: Point| {
         let [x, y] = [(3.0 * x - 4.0 * y) / 5.0, (4.0 * x + 3.0 * y) / 5.0];
         [x, (5.0 * y - 12.0 * z) / 13.0, (12.0 * y + 5.0 * z) / 13.0]
@@ -76,8 +76,7 @@ impl Block {
         dot(self.edges[0], cross(self.edges[1], self.edges[2]))
     }
 
-    /// The convex polygons of which the rest of a convex polygon consists when the inner part of
-    /// the box is taken away.
+    /// The convex polygons that remain of a convex polygon when the inside of the box is removed.
     fn taken_from(&self, polygon: Vec<Point>) -> Vec<Vec<Point>> {
         let mut rest = Vec::new();
         let mut inner = polygon;
@@ -132,7 +131,7 @@ fn boundary_of_union(blocks: &[Block]) -> Facets {
     triangles
 }
 
-/// Turned at random about the origin, which stays inside or near.
+/// Rotated at random about the origin, which stays inside or near.
 fn turned_about(random: &mut ChaCha8Rng, facets: Facets) -> Facets {
     let [a, b, c] = point_between(random, [0.0; 3], [2.0 * PI; 3]);
     let rotation = nalgebra::Rotation3::from_euler_angles(a, b, c);
@@ -154,7 +153,7 @@ fn signed_volume(triangles: &[[Point; 3]]) -> f64 {
     sum / 6.0
 }
 
-/// How far from closed: the sum of all area vectors, as a share of the area.
+/// Deviation from a closed surface: the sum of all area vectors, as a fraction of the area.
 fn gap(triangles: &[[Point; 3]]) -> f64 {
     let areas = || {
         triangles
@@ -165,15 +164,15 @@ fn gap(triangles: &[[Point; 3]]) -> f64 {
     length(areas().fold([0.0; 3], plus)) / area
 }
 
-/// The volume that the wall encloses, in mm3. Checked: the wall is closed, and each piece has the
-/// solid behind it and nothing before it.
+/// The volume that the wall encloses, in mm3. Checks that the wall is closed, and that each piece
+/// has the solid behind it and nothing in front of it.
 fn enclosed_mm3(surface: &Surface, boundary: &Boundary) -> f64 {
     let wall = outer_pieces(surface, boundary.facets());
     assert!(gap(&wall) < 1e-12, "open by {:e}", gap(&wall));
     let facets = local_facets(surface);
     for [a, b, c] in &wall {
         let across = cross(sub(*b, *a), sub(*c, *a));
-        // Of slivers the middle is too near to other facets.
+        // The middle of a sliver is too near to other facets.
         if length(across) < 1e-8 {
             continue;
         }
@@ -229,7 +228,7 @@ fn assert_union_of_blocks(blocks: &[Block], coplanar: bool) {
     assert_distances(&surface, &boundary, 1e-9 * extent_mm, &|p| {
         distance_to(&wanted, &p)
     });
-    // Faces in one plane are wall twice over.
+    // Faces in one plane are counted twice in the wall.
     if !coplanar {
         let (found, wanted) = (enclosed_mm3(&surface, &boundary), signed_volume(&wanted));
         assert!((found / wanted - 1.0).abs() < 1e-12, "{found} {wanted}");
@@ -244,7 +243,7 @@ fn of_two_boxes() {
     let (surface, boundary) = surface_of(&[first.facets(), second.facets()].concat());
     let wanted = 480.0 + 800.0 - 3.0 * 5.0 * 4.0;
     assert!((enclosed_mm3(&surface, &boundary) / wanted - 1.0).abs() < 1e-12);
-    // Through and through, and the other way round.
+    // Passing through completely, in both directions.
     let rod = block([-3.0, 2.0, 1.0], [20.0, 5.0, 4.0]);
     assert_union_of_blocks(&[first, rod], false);
     assert_union_of_blocks(&[rod, first], false);
@@ -266,9 +265,9 @@ fn of_boxes_with_faces_in_one_plane() {
     for second in [
         // Four faces in the planes of others; edges on edges.
         block([2.0, 0.0, 0.0], [6.0, 4.0, 4.0]),
-        // A corner in common, and three planes.
+        // A common corner, and three common planes.
         block([0.0; 3], [2.0, 6.0, 8.0]),
-        // One plane.
+        // One common plane.
         block([1.0, 1.0, 0.0], [6.0, 3.0, 3.0]),
         // From face to face, ending in them.
         block([1.0, 1.0, 0.0], [3.0, 3.0, 9.0]),
@@ -288,7 +287,7 @@ fn of_boxes_with_faces_in_one_plane() {
 
 #[test]
 fn faces_nearly_in_one_plane_leave_no_hole() {
-    // Turned and rounded to single precision, the planes that coincided are off by rounding.
+    // Rotated and rounded to single precision, planes that coincided differ by rounding.
     let mut random = random_numbers(3);
     let blocks = [
         block([0.0; 3], [4.0; 3]),
@@ -298,7 +297,8 @@ fn faces_nearly_in_one_plane_leave_no_hole() {
     let facets: Facets = blocks.iter().flat_map(Block::facets).collect();
     for _ in 0..20 {
         let turned = turned(&mut random, facets.clone());
-        // The reference is moved along by the same facets: three corners of the first box tell how.
+        // The reference is moved along with the same facets: three corners of the first box give
+        // the motion.
         let moved = |p: Point| {
             let corner = |k: usize| turned[0][k];
             let from = blocks[0].facets()[0];
@@ -370,7 +370,7 @@ fn ball(middle: Point) -> Facets {
 fn of_two_balls() {
     let apart = 13.0;
     let (surface, boundary) = surface_of(&[ball([0.0; 3]), ball([apart, 0.0, 0.0])].concat());
-    // The lens that two balls of radius r have in common: pi (4 r + d) (2 r - d)^2 / 12.
+    // The common lens of two balls of radius r: pi (4 r + d) (2 r - d)^2 / 12.
     let lens = PI * (40.0 + apart) * (20.0 - apart).powi(2) / 12.0;
     let wanted = 8.0 / 3.0 * PI * 1000.0 - lens;
     let found = enclosed_mm3(&surface, &boundary);
@@ -380,7 +380,7 @@ fn of_two_balls() {
     );
     let error = (found - surface.volume_m3() * 1e9).abs();
     assert!(error <= surface.overlap_volume_error_m3 * 1e9, "{error}");
-    // Nearest is the circle where they meet, or the far side of one ball.
+    // The nearest part is the circle where they meet, or the far side of one ball.
     let circle = (100.0 - 0.25 * apart * apart).sqrt();
     assert_distances(&surface, &boundary, 3.0 * CHORD_MM, &|[x, y, z]| {
         let from_axis = y.hypot(z);
@@ -427,7 +427,7 @@ fn of_three_balls() {
 
 #[test]
 fn of_a_ball_and_a_box_with_large_faces() {
-    // Hundreds of facets meet one.
+    // Hundreds of facets cross one.
     let facets = [
         block([-30.0, -25.0, -40.0], [30.0, 35.0, 3.0]).facets(),
         ball([1.0, 2.0, 5.0]),
@@ -451,7 +451,7 @@ fn of_random_solids_is_closed() {
         });
         let (surface, boundary) = surface_of(&[first, second].concat());
         let wall = outer_pieces(&surface, boundary.facets());
-        // Pieces narrower than 1e-7 stay on both sides of a crossing.
+        // Pieces narrower than 1e-7 remain on both sides of a crossing.
         assert!(gap(&wall) < 1e-7, "{round}: open by {:e}", gap(&wall));
         let volume = signed_volume(&wall) * surface.unit_m.powi(3);
         assert!(

@@ -1,5 +1,5 @@
-//! The bare front leaves no void that takes the smallest sphere: searched for by halving boxes,
-//! without halos, grids or trees.
+//! The bare front leaves no void that takes the smallest sphere. Voids are searched by halving
+//! boxes, without halos, grids or trees.
 
 use crate::helpers::exact::{EXACT, assert_exact, distance_to_triangle, winding_number};
 use crate::helpers::facets::{Facets, Point, cuboid, prism};
@@ -9,8 +9,9 @@ use dem_io::Surface;
 use dem_pack::{PackHistory, PackSettings, Packing, pack};
 use dem_pack::{Sizes, ks_distance_by_mass, ks_distance_by_number};
 
-/// Boxes smaller than this part of the smallest radius are not halved any more: a void that takes
-/// spheres larger by so much than the smallest is found, a narrower one need not be.
+/// Boxes smaller than this fraction of the smallest radius are not halved any more. A void for
+/// spheres larger than the smallest by at least this fraction is found, a narrower one may be
+/// missed.
 const FINEST: f64 = 1e-3;
 
 struct Search<'a> {
@@ -22,7 +23,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// How far a point is from the nearest place where the smallest sphere would touch something;
+    /// Distance of a point from the nearest place where the smallest sphere would touch something;
     /// less than 0 where it would overlap.
     fn clearance(&self, p: &Point, facets: &[u32], balls: &[u32]) -> f64 {
         let to_wall = facets
@@ -35,7 +36,7 @@ impl Search<'_> {
         to_wall.chain(to_balls).fold(f64::INFINITY, f64::min)
     }
 
-    /// Looks for places in a cube, given the facets and balls that may come near it.
+    /// Searches for places in a cube, given the facets and balls that may be near it.
     fn search(&mut self, middle: Point, half: f64, facets: &[u32], balls: &[u32], is_inside: bool) {
         let reach = half * 3.0_f64.sqrt();
         let near_facets: Vec<u32> = facets
@@ -60,13 +61,13 @@ impl Search<'_> {
         let touches_wall = near_facets
             .iter()
             .any(|f| distance_to_triangle(&middle, &self.facets[*f as usize]) < reach);
-        // What no facet passes through is inside or outside as a whole, and so are its parts.
+        // A cube that no facet passes through is entirely inside or outside, and so are its parts.
         if !touches_wall && !is_inside && winding_number(self.facets, &middle) == 0 {
             return;
         }
         if clearance >= EXACT * self.radius && !touches_wall {
             self.found.push(middle);
-            // One place of a void is enough.
+            // One place per void is enough.
             self.balls.push((middle, self.reduced));
             return;
         }
@@ -96,7 +97,7 @@ fn distance(a: &Point, b: &Point) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Places that take a sphere of this radius, none overlapping another: local units.
+/// Places for spheres of this radius that do not overlap each other, in local units.
 fn voids(facets: &[[Point; 3]], packing: &Packing, overlap: f64, radius: f64) -> Vec<Point> {
     let spheres = &packing.spheres;
     let balls = spheres.positions.iter().zip(&spheres.radii);
@@ -225,8 +226,8 @@ fn no_void_is_left_that_takes_the_smallest_sphere() {
     }
 }
 
-/// The front comes to the whole wall of a ball at once, when hardly a draw is left that could make
-/// up for small spheres put into voids.
+/// The front reaches the entire wall of a ball at once, when hardly any draws are left that could
+/// balance the small spheres put into voids.
 #[test]
 fn a_ball_is_full_and_true_after_a_few_attempts() {
     let (surface, _) = surface_of(&icosphere(3, &|_| 10.0));

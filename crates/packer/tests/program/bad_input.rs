@@ -1,10 +1,10 @@
-//! Input that cannot be right: exit code 2, one message with the value and what to do, nothing left
-//! behind.
+//! Invalid input: exit code 2, one message with the value and the remedy, no files left.
 
 use super::{Bench, dem_pack, refusal, shape};
 use std::process::Output;
 
-/// What dem-pack says of the box of 20 x 12 x 10 mm with these options; the folder must stay empty.
+/// The message of dem-pack for the box of 20 x 12 x 10 mm with these options; the folder must stay
+/// empty.
 fn said_of_box(options: &[&str]) -> String {
     let bench = Bench::new();
     let output = bench.run(&shape("02"), &[options, &["-o", "body.vtp"]].concat());
@@ -154,7 +154,7 @@ fn a_seed_point_outside_is_told_where_inside_is() {
         let said = refusal(&output, &outside);
         assert!(said.starts_with("error: --seed-point: ("), "{said}");
         assert!(bench.files().is_empty());
-        // The point that it names, as it stands there, works.
+        // The point named in the message, copied literally, works.
         let named = said
             .rsplit_once("inside is (")
             .unwrap()

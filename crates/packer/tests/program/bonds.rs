@@ -1,4 +1,4 @@
-//! The bonds in the file are those that the options say, found again one pair after the other.
+//! The bonds in the file are those requested by the options, verified pair by pair.
 
 use super::{Bench, Made};
 use crate::helpers::exact::{length, sub};
@@ -140,7 +140,7 @@ fn two_fingers_stay_two() {
     let near = pairs_within(body, 1.3);
     assert!(crossing(&near) > 20, "the gap is too wide to show anything");
     assert_eq!(crossing(&body.bonds), 0);
-    // Nothing else is left out but lines that cut the two corners at the bottom of the gap.
+    // Only lines that cut the two corners at the bottom of the gap are left out.
     assert!(
         near.len() - body.bonds.len() < crossing(&near) + 40,
         "{} of {}",

@@ -246,7 +246,7 @@ fn info_says_what_a_body_is() {
     assert_eq!(json["pieces"], made.report["quality"]["pieces"]["count"]);
 }
 
-/// The mass of the spheres, beside that of the shape filled with their density.
+/// The mass of the spheres compared with that of the shape filled with their density.
 #[test]
 fn the_report_says_what_body_and_shape_weigh() {
     let bench = Bench::new();

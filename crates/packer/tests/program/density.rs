@@ -1,4 +1,4 @@
-//! A solid density that is asked for is found, and is the one of the file.
+//! A requested solid density is found, and is the one of the file.
 
 use super::{Bench, bits, refusal, shape};
 use std::f64::consts::PI;
@@ -84,7 +84,7 @@ fn the_density_is_printed() {
     ] {
         assert!(line.contains(part), "{line}");
     }
-    // The stages add up, whatever number of packings was made.
+    // The stages add up, whatever the number of packings.
     let numbers: Vec<f64> = said
         .lines()
         .find(|line| line.starts_with("time"))
@@ -152,7 +152,7 @@ fn few_packings_are_finished_and_the_overlap_found_gives_the_same_body() {
     );
     let [begun, finished] =
         ["packings", "finished"].map(|key| found.count(&format!("/density_search/{key}")));
-    // Chance decides how many fronts it takes; of these few are worth the rest.
+    // The number of fronts depends on chance; only a few of them are worth completing.
     assert!(
         finished <= begun.min(6) && begun <= 30,
         "{finished} of {begun}"
@@ -167,7 +167,7 @@ fn few_packings_are_finished_and_the_overlap_found_gives_the_same_body() {
 
 #[test]
 fn without_overlap_the_two_densities_are_one() {
-    // One is sampled, the other is the volume of the spheres; shapes that leave much of their box
+    // One is sampled, the other is the volume of the spheres; these shapes leave much of their box
     // empty.
     for name in ["22", "09"] {
         let made = Bench::new().pack(

@@ -1,5 +1,5 @@
-//! The same input gives the same bytes, for any number of threads; another seed another body; and
-//! the unit does not matter.
+//! The same input gives the same bytes for any number of threads; another seed gives another body;
+//! the unit makes no difference.
 
 use super::{Bench, bits, dem_pack, root, shape};
 use crate::helpers::facets::{cuboid, prism};
@@ -84,11 +84,11 @@ fn another_seed_gives_another_body_of_the_same_kind() {
     assert!(n.abs_diff(m) < n / 20, "{n} {m}");
 }
 
-/// Positions are computed in the shape's own scale from the numbers of the file; only the
-/// diameters, in metres, are rounded otherwise for another unit, by one part in 1e16. Where sphere
-/// leans on sphere that grows: it stays far below 1e-6 of a diameter in a bare front of this size.
-/// Settling adds to it: the spheres are the same, in the same order, each at its place, but those
-/// that nothing holds come to rest elsewhere within their cages.
+/// Positions are computed in the shape's own scale from the numbers of the file. Only the
+/// diameters, in metres, are rounded differently for another unit, by one part in 1e16. This grows
+/// from sphere to sphere, but stays far below 1e-6 of a diameter in a bare front of this size.
+/// Settling adds to it: the spheres are the same, in the same order and at the same places, except
+/// that rattlers come to rest elsewhere within their cages.
 #[test]
 fn the_unit_of_the_file_does_not_matter() {
     let bench = Bench::new();
@@ -146,7 +146,7 @@ fn the_scale_does_what_the_unit_does() {
     assert!((by_scale.number("/quality/shape_volume_m3") / 2400e-6 - 1.0).abs() < 1e-12);
 }
 
-/// The bodies that scenes of `data` run with are those that their page tells how to make.
+/// The bodies used by the scenes of `data` are those that their page tells how to make.
 #[test]
 fn bodies_of_data_are_as_said() {
     let bench = Bench::new();

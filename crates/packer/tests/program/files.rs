@@ -191,7 +191,7 @@ fn a_full_disk_is_exit_code_1_and_leaves_nothing() {
         );
         assert!(output.stdout.is_empty());
     }
-    // The body of the third was complete before its report found no place.
+    // The third body was complete before its report could not be written.
     assert_eq!(bench.files(), ["body.vtp", "box.stl", "full.vtp"]);
     read_body(&bench.path("body.vtp")).unwrap();
 }
@@ -207,7 +207,7 @@ fn a_standard_error_that_takes_nothing() {
     );
 }
 
-/// A pipe that never ends is left at the first bytes that are no body.
+/// An endless pipe is rejected at the first bytes that are not a body.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_endless_pipe_is_refused_at_once() {
@@ -260,8 +260,8 @@ fn an_endless_pipe_is_refused_at_once() {
     }
 }
 
-/// Neither the shape nor the sieve curve nor the body that is converted is written over, under
-/// whatever name.
+/// Neither the shape nor the sieve curve nor the converted body is overwritten, under whatever
+/// name.
 #[cfg(unix)]
 #[test]
 fn an_output_that_is_an_input_is_refused() {
@@ -308,7 +308,7 @@ fn an_output_that_is_an_input_is_refused() {
         fs::read_to_string(bench.path("sieve.particles.csv")).unwrap(),
         sieve
     );
-    // Any other file is replaced as ever.
+    // Any other file is replaced as usual.
     let made = bench.run(
         &bench.path("shape.vtp"),
         &["-d", "2mm", "-q", "-o", "body.vtp"],
@@ -321,7 +321,7 @@ fn an_output_that_is_an_input_is_refused() {
     refused(&["convert", "pair.csv", "pair.particles.csv"]);
 }
 
-/// A limit of the shell on the size of files is an error, not a signal that ends the program.
+/// A file size limit of the shell is an error, not a signal that ends the program.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_file_beyond_the_limit_of_the_shell_leaves_nothing() {
@@ -349,7 +349,7 @@ fn a_file_beyond_the_limit_of_the_shell_leaves_nothing() {
     }
 }
 
-/// What a killed run has left goes with the next; what somebody else writes stays.
+/// Leftovers of a killed run are removed by the next; files of others stay.
 #[test]
 fn remnants_of_a_killed_run_go_with_the_next() {
     let bench = Bench::new();
@@ -363,7 +363,7 @@ fn remnants_of_a_killed_run_go_with_the_next() {
     assert_eq!(bench.files(), [".unfinished-zzzzzz", "body.vtp"]);
 }
 
-/// What the report warns of is kept in the .vtp, and told by info.
+/// Warnings of the report are kept in the .vtp, and printed by info.
 #[test]
 fn warnings_are_kept_with_the_body() {
     let bench = Bench::new();
@@ -384,7 +384,7 @@ fn warnings_are_kept_with_the_body() {
             "{info}"
         );
     }
-    // Through a pipe and a conversion too.
+    // Also through a pipe and a conversion.
     let again = dem_pack()
         .current_dir(bench.folder.path())
         .args(["convert", "body.vtp", "again.vtp"])
@@ -393,7 +393,7 @@ fn warnings_are_kept_with_the_body() {
     assert!(again.status.success());
     let again = read_body(&bench.path("again.vtp")).unwrap();
     assert_eq!(again.about, made.body.about);
-    // Nothing is written of a body without any.
+    // Nothing is written for a body without warnings.
     let sound = bench.pack(&shape("02"), &["-d", "1mm"]);
     assert_eq!(
         sound.report["quality"]["warnings"]

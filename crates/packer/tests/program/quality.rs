@@ -1,4 +1,4 @@
-//! How good the bending sample's packing is: the figures that README.md states.
+//! The quality of the bending sample's packing: the figures given in README.md.
 
 use super::{Bench, Made, root};
 
@@ -14,7 +14,7 @@ fn the_bending_sample_is_dense_isotropic_even_and_true_to_its_sizes() {
     let number = |path: &str| made.number(&format!("/quality/{path}"));
     assert!(number("interior_generating_density/value") >= 0.63);
     assert!(number("generating_density") >= 0.595);
-    // One packing in 370 of truly random directions is farther off.
+    // One packing in 370 of truly random directions deviates more.
     assert!(number("interior_fabric/largest_deviation_in_sigma") < 3.0);
     for by in ["number", "mass"] {
         let off = number(&format!("sizes_by_{by}/distance"));

@@ -1,5 +1,5 @@
 //! Every difficult shape that cannot be packed: one message that names file, place and cause, and
-//! nothing left behind.
+//! no files left.
 
 use super::{Bench, refusal, shape};
 

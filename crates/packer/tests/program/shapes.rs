@@ -35,7 +35,7 @@ fn packed(name: &str, more: &[&str], volume: f64, pieces: u64, unsure: f64) -> M
             .all(|r| (0.5 - 1e-12..=0.75 + 1e-12).contains(r)),
         "{name}: radii"
     );
-    // As dense as a packing with walls in every direction is at least.
+    // The density of a packing with walls in every direction is at least this.
     let fraction = radii
         .iter()
         .map(|r| 4.0 / 3.0 * PI * r.powi(3))
@@ -163,7 +163,7 @@ fn a_thin_plate_takes_what_fits() {
     let (positions, radii) = made.millimetres();
     assert_exact("13", &read_stl(&file), &positions, &radii, 0.0, 0.0);
     assert!((made.number("/quality/shape_volume_m3") * 1e9 - 2500.0).abs() < 0.01);
-    // One layer at least everywhere: in each square of 5 x 5 mm as many as in the others, about.
+    // At least one layer everywhere: about the same number in each square of 5 x 5 mm.
     let mut counts = [0_usize; 100];
     let low = [0, 1].map(|k| {
         read_stl(&file)
@@ -191,7 +191,7 @@ fn a_ring_is_packed_from_a_seed_inside_it() {
         in_tube < 0.2,
         "the seed is {in_tube} mm off the middle of the tube"
     );
-    // All around.
+    // On all sides.
     let (positions, _) = made.millimetres();
     let mut counts = [0_usize; 24];
     for p in &positions {

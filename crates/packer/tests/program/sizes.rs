@@ -1,5 +1,5 @@
-//! The spheres placed have the sizes asked for: Kolmogorov-Smirnov, by number and by mass, against
-//! the distributions' own formulas.
+//! The spheres placed have the requested sizes: Kolmogorov-Smirnov tests, by number and by mass,
+//! against the distributions' own formulas.
 
 use super::{Bench, Made};
 use crate::helpers::facets::cuboid;
@@ -11,9 +11,9 @@ const LIMIT_95: f64 = 1.358;
 /// and this once in a thousand times.
 const LIMIT_999: f64 = 1.949;
 
-/// Largest distance between the share of the weight at or below each diameter and what it should
-/// be, with the number of spheres that so many weights are worth (Kish: the sum squared over the
-/// sum of squares).
+/// Largest distance between the fraction of the weight at or below each diameter and its expected
+/// value, with the effective number of spheres (Kish: the sum of weights squared over the sum of
+/// squares).
 fn kolmogorov_smirnov(
     made: &Made,
     weight: &dyn Fn(f64) -> f64,
@@ -41,7 +41,7 @@ struct Law {
 }
 
 impl Law {
-    /// The share at or below `d`, counted with the weight d^power.
+    /// The fraction at or below `d`, counted with the weight d^power.
     fn fraction(&self, d: f64, power: i32) -> f64 {
         self.moment(d, power) / self.moment(f64::INFINITY, power)
     }
@@ -76,7 +76,7 @@ impl Law {
     }
 }
 
-/// The text for `--diameter`, and what it means.
+/// The texts for `--diameter`, and their distributions.
 fn laws(folder: &Path) -> Vec<(String, Law)> {
     let curve = folder.join("curve.csv");
     fs::write(
@@ -132,13 +132,12 @@ fn laws(folder: &Path) -> Vec<(String, Law)> {
     ]
 }
 
-/// Powers of d that weigh the density so that it counts particles, and mass, when it is given as
-/// `by` says.
+/// Powers of d that weight the density by number and by mass, for a density given as `by`.
 fn powers(by: &str) -> [i32; 2] {
     if by == "number" { [0, 3] } else { [-3, 0] }
 }
 
-/// Ten packings of about 10,000 spheres. Of ten, chance puts three or more beyond the limit of 95 %
+/// Ten packings of about 10,000 spheres. By chance, three or more of ten exceed the limit of 95 %
 /// once in a hundred times.
 #[test]
 fn every_distribution_is_followed_by_number_and_by_mass() {
@@ -176,7 +175,7 @@ fn every_distribution_is_followed_by_number_and_by_mass() {
     assert!(beyond_95.len() <= 2, "{beyond_95:?}");
 }
 
-/// A small bias hides in the noise of one packing, not in that of many.
+/// A small bias is hidden by the noise of one packing, but not of many.
 #[test]
 fn no_size_is_favoured() {
     const SEEDS: usize = 10;
@@ -191,7 +190,7 @@ fn no_size_is_favoured() {
             (found - mean) / (deviation / count.sqrt())
         };
         let bias = (1..=SEEDS).map(in_sigma).sum::<f64>() / SEEDS as f64;
-        // The mean of so many standard normal numbers, at three of its standard deviations.
+        // The mean of this many standard normal numbers, at three of its standard deviations.
         let limit = 3.0 / (SEEDS as f64).sqrt();
         assert!(
             bias.abs() < limit,

@@ -1,4 +1,4 @@
-//! Densities: lattices, lenses, layers, and the error that is stated beside them.
+//! Densities: lattices, lenses, layers, and the stated error.
 
 use super::{Case, close};
 use crate::helpers::lattice::cubic;
@@ -6,7 +6,7 @@ use crate::helpers::random::Random;
 use dem_pack::Spheres;
 use std::f64::consts::PI;
 
-/// Volume that two balls of radius `r` at distance `d` have in common.
+/// Common volume of two balls of radius `r` at distance `d`.
 fn lens(r: f64, d: f64) -> f64 {
     PI * (4.0 * r + d) * (2.0 * r - d).powi(2) / 12.0
 }
@@ -25,7 +25,7 @@ fn simple_cubic() {
         "{:?}",
         report.union_density
     );
-    // The interior, [2, 18]^3, holds whole cells.
+    // The interior, [2, 18]^3, contains complete cells.
     close(report.interior_union_density.unwrap(), PI / 6.0);
     close(report.interior_generating_density.unwrap(), PI / 6.0);
     let contacts = 3.0 * n * n * (n - 1.0);
@@ -151,7 +151,7 @@ fn overlapping_lattice() {
     );
     assert_eq!(report.bonds, 3 * 16 * 16 * 15);
     assert!((report.contacts.largest_overlap).abs() < 1e-14);
-    // The true spheres stand out of the box by 0.05.
+    // The true spheres protrude from the box by 0.05.
     assert!((report.contacts.largest_protrusion - 0.05 / 0.55).abs() < 1e-12);
     assert!(
         report
@@ -189,8 +189,8 @@ fn profile_from_a_wall() {
 
 #[test]
 fn the_stated_error_is_the_error() {
-    // Balls without overlap at random places in a box: the covered share is known, the error is as
-    // often too small as it should be.
+    // Balls without overlap at random places in a box: the covered fraction is known, and the error
+    // must be too small as often as too large.
     let mut random = Random(4);
     let mut squares = 0.0;
     let cases = 40;
@@ -218,8 +218,8 @@ fn the_stated_error_is_the_error() {
 
 #[test]
 fn outside_costs_nothing_of_the_solid() {
-    // A ball of radius 8 in its box, filled without overlap. Outside, perhaps nothing is known but
-    // that it is outside.
+    // A ball of radius 8 in its box, filled without overlap. Outside, the distance may only be
+    // known to be negative.
     let inside = |p: [f64; 3]| 8.0 - p.iter().map(|x| (x - 8.0).powi(2)).sum::<f64>().sqrt();
     let mut spheres = cubic([16; 3], 0.5);
     spheres.positions.retain(|p| inside(*p) >= 0.5);

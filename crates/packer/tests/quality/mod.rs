@@ -1,4 +1,4 @@
-//! The report against closed forms: lattices, lenses, lines, plates and necks.
+//! The report compared with closed forms: lattices, lenses, lines, plates and necks.
 
 mod densities;
 mod structure;
@@ -10,7 +10,7 @@ use dem_pack::internals::{BondedPacking, DEFAULT_GAP_LIMIT, assess};
 use dem_pack::{Basis, Sizes};
 use dem_pack::{Fraction, Report};
 
-/// Spheres in a box whose walls are all six sides, or a solid given by its own distance.
+/// Spheres in a box with six walls, or a solid given by its own distance.
 struct Case {
     spheres: Spheres,
     extent: [f64; 3],

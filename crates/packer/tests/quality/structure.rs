@@ -91,8 +91,8 @@ fn chance_of_a_fabric_is_a_chance() {
     }
     // Binomial of 400 at 0.05: 20 with a standard deviation of 4.4.
     assert!((7..=34).contains(&rare), "{rare}");
-    // Of three eigenvalues the largest deviation is beyond two sigma in almost half of all
-    // isotropic samples.
+    // The largest deviation of three eigenvalues exceeds two sigma in almost half of all isotropic
+    // samples.
     assert!((180..=250).contains(&within), "{within}");
 }
 
@@ -160,7 +160,7 @@ fn thin_parts_are_found() {
         block.particles_across > 10.9 && block.particles_across <= 12.0 && !block.at_least,
         "{block:?}"
     );
-    // A block thicker than is measured.
+    // A block thicker than the measured range.
     let block = Case::new(cubic([24; 3], 0.5), [24.0; 3])
         .report()
         .thinnest

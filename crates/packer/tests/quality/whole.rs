@@ -1,4 +1,4 @@
-//! The report as a whole: the same for any number of threads, its text and JSON, and the smallest
+//! The complete report: the same for any number of threads, its text and JSON, and the smallest
 //! packings.
 
 use super::{Case, close};

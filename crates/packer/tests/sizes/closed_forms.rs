@@ -104,8 +104,8 @@ fn uniform_by_mass_has_its_closed_form() {
 
 #[test]
 fn means_of_cut_distributions() {
-    // Symmetric cut: the mean stays. Lognormal wide open: mean and third moment of the whole, exp(3
-    // mu + 9/2 sigma^2).
+    // Symmetric cut: the mean stays. Lognormal without a cut: mean and third moment of the complete
+    // distribution, exp(3 mu + 9/2 sigma^2).
     let normal = Sizes::parse("normal:3mm,0.5mm,2mm..4mm", Basis::Number).unwrap();
     assert!((normal.mean_m() - 3e-3).abs() < 1e-11);
     let lognormal = Sizes::parse("lognormal:3mm,0.6mm,0.5mm..20mm", Basis::Number).unwrap();

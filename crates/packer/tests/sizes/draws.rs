@@ -1,4 +1,4 @@
-//! Draws against the distribution, and the Kolmogorov-Smirnov distances that the report gives.
+//! Draws compared with the distribution, and the Kolmogorov-Smirnov distances of the report.
 
 use super::{TextFile, laws};
 use crate::helpers::random::Random;

@@ -1,5 +1,5 @@
-//! Size distributions against closed forms that are computed here, independently of the program's
-//! tables.
+//! Size distributions compared with closed forms that are computed here, independently of the
+//! program's tables.
 
 mod closed_forms;
 mod draws;

@@ -1,4 +1,4 @@
-//! What a user may type, and what a mistake is answered with.
+//! Valid sizes as typed by a user, and the messages for mistakes.
 
 use super::TextFile;
 use dem_pack::{Basis, Sizes};

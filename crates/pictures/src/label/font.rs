@@ -1,23 +1,23 @@
-//! A font of strokes, smooth at every size.
+//! A stroke font, smooth at every size.
 
 use crate::image::Image;
 
 /// Units between the base line and the top of a digit. A glyph is up to 4 units wide.
 const HIGH: f64 = 8.0;
-/// Between two glyphs, units.
+/// Gap between two glyphs, units.
 const GAP: f64 = 1.9;
-/// How much wider than high units are.
+/// Ratio of the width of a unit to its height.
 const WIDE: f64 = 1.15;
-/// Width of a stroke as a share of the height of a digit.
+/// Width of a stroke as a fraction of the height of a digit.
 const STROKE: f64 = 0.125;
-/// How far the white border reaches around a stroke, as a share of its width.
+/// Reach of the white border around a stroke, as a fraction of its width.
 const HALO: f64 = 1.1;
 const HALO_OPACITY: f64 = 0.85;
-/// How often corners are cut: three times is smooth.
+/// Number of times that corners are cut: three times is smooth.
 const CUTS: usize = 3;
 
 /// Width in units, and strokes: points of two digits each, from the left and from the top. Corners
-/// are rounded, unless a point stands twice.
+/// are rounded, unless a point is repeated.
 const GLYPHS: [(char, usize, &str); 28] = [
     ('0', 4, "20 40 42 46 48 28 08 06 02 00 20"),
     ('1', 2, "02 20 20 28"),
@@ -51,7 +51,7 @@ const GLYPHS: [(char, usize, &str); 28] = [
 
 type Stroke = [[f64; 2]; 2];
 
-/// How wide a text is whose digits are `size` px high, px.
+/// Width of a text with digits `size` px high, px.
 pub(super) fn width(text: &str, size: f64) -> f64 {
     let units: f64 = text.chars().map(advance).sum();
     (units - GAP).max(0.0) * WIDE * size / HIGH
@@ -137,13 +137,13 @@ fn distance_squared(point: [f64; 2], ends: &Stroke) -> f64 {
     off[0] * off[0] + off[1] * off[1]
 }
 
-/// From the left end of a glyph to that of the next one, units.
+/// Distance from the left end of a glyph to that of the next one, units.
 fn advance(sign: char) -> f64 {
     let glyph = GLYPHS.iter().find(|glyph| glyph.0 == sign);
     glyph.map_or(1.5, |(_, wide, _)| *wide as f64) + GAP
 }
 
-/// The points of a stroke, its corners cut off again and again.
+/// The points of a stroke, with its corners cut off repeatedly.
 fn smooth(points: &str) -> Vec<[f64; 2]> {
     let mut line: Vec<[f64; 2]> = points
         .split(' ')

@@ -1,31 +1,31 @@
-//! A band of rows of the picture, with four samples a pixel.
+//! A band of rows of the picture, with four samples per pixel.
 
 use nalgebra::Vector3;
 
 use super::shade::{self, linear, mixed, stored};
 use super::{Face, Line, Scene};
 
-/// Rows of pixels in a band.
+/// Number of rows of pixels in a band.
 pub(super) const ROWS: usize = 16;
 
-/// How much of the sky a wall sees is found in every so many pixels both ways, and between them by
-/// their distance.
+/// Spacing of the pixels, in both directions, at which the fraction of the sky visible from a wall
+/// is computed; it is interpolated between them.
 const STEP: usize = 4;
-/// Rows of such places in a band.
+/// Number of rows of such pixels in a band.
 const STEPS: usize = ROWS / STEP + 1;
 
-/// Layers of walls kept at a sample, the nearest ones.
+/// Number of wall layers kept at a sample, the nearest ones.
 const LAYERS: usize = 4;
 
-/// How much a wall hides of the walls behind it and of the background.
+/// Fraction of the walls behind it and of the background that a wall hides.
 const SOLID: f32 = 0.88;
-/// What shines through less than this is not looked for.
+/// Transmission below which nothing behind is evaluated.
 const DARK: f32 = 0.02;
 
-/// Layers as near to each other as this are one, px.
+/// Layers closer together than this count as one, px.
 const SAME: f32 = 0.02;
 
-/// Lines: colour, width in px, and how dark they are in sight and behind a wall.
+/// Lines: colour, width in px, and their darkness when visible and when behind a wall.
 const INK: [u8; 3] = [92, 99, 108];
 const WIDTH: f64 = 1.15;
 const IN_SIGHT: f32 = 0.85;
@@ -40,20 +40,20 @@ struct Layer {
     face: u32,
 }
 
-/// Buffers of one band after the other.
+/// Buffers, used for one band after the other.
 pub(super) struct Band {
-    /// Pixels in a row.
+    /// Number of pixels in a row.
     width: usize,
     /// The first row, px.
     top: f64,
-    /// The nearest ball of each sample. Rows of samples, two a pixel both ways.
+    /// The nearest ball of each sample. Rows of samples, two per pixel in both directions.
     depth: Vec<f32>,
     body: Vec<u32>,
     /// Walls nearer than the ball, the nearest first.
     count: Vec<u8>,
     layers: Vec<[Layer; LAYERS]>,
     light: Vec<[f32; 3]>,
-    /// Of the faces in the band, in rising order.
+    /// For the faces in the band, in ascending order.
     skies: Vec<Sky>,
 }
 
@@ -68,17 +68,17 @@ impl Face {
     }
 }
 
-/// How much of the sky one face sees in a band.
+/// Fraction of the sky visible from one face in a band.
 struct Sky {
     face: u32,
-    /// The first column of places.
+    /// The first column of grid points.
     first: usize,
-    /// Columns of [`STEPS`] places; not a number where it is not known yet.
+    /// Columns of [`STEPS`] grid points; NaN if not computed yet.
     places: Vec<f32>,
 }
 
 impl Sky {
-    /// Of a face in a picture of this width, px.
+    /// For a face in a picture of this width, px.
     fn new(face: u32, corners: &[[f64; 3]; 3], width: usize) -> Self {
         let [first, last] = super::range(corners.map(|corner| corner[0]))
             .map(|x| x.clamp(0.0, width as f64) as usize / STEP);
@@ -89,7 +89,7 @@ impl Sky {
         }
     }
 
-    /// In the middle of a pixel of the band, whose first row is `top`, px.
+    /// Value in the middle of a pixel of the band, whose first row is `top`, px.
     fn at(&mut self, scene: &Scene, top: f64, column: usize, row: usize) -> f32 {
         let face = &scene.faces[self.face as usize];
         let mut place = |i: usize, j: usize| {
@@ -129,7 +129,7 @@ impl Band {
         }
     }
 
-    /// Makes it the empty band of this index.
+    /// Makes this the empty band of this index.
     pub(super) fn clear(&mut self, index: usize) {
         self.top = (index * ROWS) as f64;
         self.depth.fill(f32::NEG_INFINITY);
@@ -138,7 +138,7 @@ impl Band {
         self.skies.clear();
     }
 
-    /// Samples whose middle lies between two places, px, among `end` of them.
+    /// Samples with their middle between two positions, px, among `end` of them.
     fn samples(low: f64, high: f64, end: usize) -> std::ops::Range<usize> {
         let first = |at: f64| (2.0 * at - 0.5).ceil().clamp(0.0, end as f64) as usize;
         first(low)..first(high)
@@ -171,7 +171,7 @@ impl Band {
         }
     }
 
-    /// After the balls.
+    /// Adds faces; called after the balls.
     pub(super) fn add_faces(&mut self, scene: &Scene, numbers: &[u32]) {
         let wide = 2 * self.width;
         for &number in numbers {
@@ -215,7 +215,7 @@ impl Band {
         self.count[at] = end as u8;
     }
 
-    /// The four samples of a pixel, and where they lie, px from its corner.
+    /// The four samples of a pixel, and their positions, px from its corner.
     fn of_pixel(&self, column: usize, row: usize) -> [(usize, [f32; 2]); 4] {
         let first = 4 * row * self.width + 2 * column;
         let below = first + 2 * self.width;
@@ -227,7 +227,7 @@ impl Band {
         ]
     }
 
-    /// Finds the light of every pixel.
+    /// Computes the light of every pixel.
     pub(super) fn resolve(&mut self, scene: &Scene) {
         let mut shaded: Vec<(u32, [f32; 3])> = Vec::new();
         let mut skies = std::mem::take(&mut self.skies);
@@ -334,7 +334,7 @@ impl Band {
         let reach = 0.5 * WIDTH + 0.5;
         for row in 0..ROWS {
             let y = self.top + row as f64 + 0.5;
-            // The part of the line that is near to this row, and the columns around it.
+            // The part of the line near this row, and the columns around it.
             let mut part = [0.0f64, 1.0];
             if along[1].abs() > 1e-9 {
                 let ends = [y - 1.5, y + 1.5].map(|y| (y - a[1]) / along[1]);
@@ -367,7 +367,7 @@ impl Band {
         }
     }
 
-    /// How dark a line at this depth is in a pixel.
+    /// Darkness of a line at this depth in a pixel.
     fn sight(&self, scene: &Scene, column: usize, row: usize, depth: f64) -> f32 {
         let of_sample = |at: usize| {
             if f64::from(self.depth[at]) > depth + 1.0 {
@@ -389,7 +389,7 @@ impl Band {
         0.25 * sum
     }
 
-    /// Stores the band, or as much of it as the picture has rows.
+    /// Stores the band, up to the number of rows of the picture.
     pub(super) fn write(&self, pixels: &mut [u8]) {
         for (pixel, light) in pixels.chunks_exact_mut(3).zip(&self.light) {
             pixel.copy_from_slice(&stored(*light));
@@ -397,7 +397,7 @@ impl Band {
     }
 }
 
-/// Where a row crosses a triangle: equal for both triangles on one edge.
+/// The x of the crossings between a row and a triangle: equal for both triangles on one edge.
 pub(super) fn crossings(corners: &[[f64; 3]; 3], y: f64) -> [f64; 2] {
     let mut found = [f64::INFINITY, f64::NEG_INFINITY];
     for k in 0..3 {

@@ -1,6 +1,6 @@
-//! What the lamp and the sky see: depth maps, each along one direction.
+//! The parts visible from the lamp and the sky: depth maps, each along one direction.
 //!
-//! A ball throws its shadow on what is behind it as far as the next wall. There the shadow of the
+//! A ball casts its shadow on objects behind it as far as the next wall. There the shadow of the
 //! wall begins, which is fainter and falls on walls only.
 
 use nalgebra::Vector3;
@@ -10,40 +10,40 @@ use super::band::crossings;
 use super::{Body, range};
 use crate::camera::Camera;
 
-/// Towards the lamp in view space, where y points downwards: from the upper left, a little from the
-/// front. Any length.
+/// Direction to the lamp in view space, where y points downwards: from the upper left, a little
+/// from the front. Any length.
 const LAMP: Vector3<f32> = Vector3::new(-0.42, -0.78, 0.46);
-/// Towards the middle of the sky. Any length.
+/// Direction to the middle of the sky. Any length.
 const ZENITH: Vector3<f32> = Vector3::new(-0.08, -0.76, 0.64);
 
-/// Directions of the sky.
+/// Number of directions of the sky.
 const SKY: usize = 14;
-/// Cosine and sine of the golden angle, by which one direction follows the other.
+/// Cosine and sine of the golden angle, the angle between successive directions.
 const GOLDEN: [f32; 2] = [-0.737_368_9, 0.675_490_3];
 
-/// Most texels along a side of a map of the lamp and of the sky.
+/// Largest number of texels along a side of a map of the lamp and of the sky.
 const LAMP_TEXELS: f32 = 1536.0;
 const SKY_TEXELS: f32 = 400.0;
 
-/// How much light a wall lets through to other walls.
+/// Fraction of light that a wall lets through to other walls.
 const THROUGH_WALL: f32 = 0.62;
 
-/// Texels along a side of a block, of which the nearest depth is kept.
+/// Number of texels along a side of a block, of which the nearest depth is kept.
 const BLOCK: usize = 8;
 
 /// The lights on all balls.
 pub(super) struct Lights {
     lamp: Map,
     sky: Vec<Map>,
-    /// Towards the middle of the sky.
+    /// Direction to the middle of the sky.
     pub(super) zenith: Vector3<f32>,
 }
 
-/// What is lit.
+/// The object that receives light.
 #[derive(Clone, Copy)]
 enum Receiver {
     Ball,
-    /// With how far before it walls count, px.
+    /// A wall, with the distance by which other walls must be in front of it to count, px.
     Wall(f32),
 }
 
@@ -61,7 +61,7 @@ impl Lights {
         let mean = near.iter().map(|body| body.radius).sum::<f32>() / near.len().max(1) as f32;
         let lamp = (0.12 * mean).max(0.7);
         let sky = (0.5 * mean).max(0.8);
-        // And what lies outside the picture is not lit.
+        // Objects outside the picture are not lit.
         let [far, close] = camera.depth_px();
         let high = [f64::from(width), f64::from(height), close.max(far)];
         let low = [0.0, 0.0, far];
@@ -80,23 +80,23 @@ impl Lights {
         }
     }
 
-    /// Towards the lamp.
+    /// Direction to the lamp.
     pub(super) fn lamp(&self) -> Vector3<f32> {
         self.lamp.towards
     }
 
-    /// How much of the lamp is seen from a point of a ball, 0 to 1.
+    /// Fraction of the lamp visible from a point of a ball, 0 to 1.
     pub(super) fn lamp_on_ball(&self, point: Vector3<f32>, bias: f32) -> f32 {
         self.lamp.soft(point, bias, Receiver::Ball)
     }
 
-    /// How much of the lamp is seen from a point of a flat wall that looks towards it, 0 to 1.
+    /// Fraction of the lamp visible from a point of a flat wall that faces it, 0 to 1.
     pub(super) fn lamp_on_wall(&self, point: Vector3<f32>, facing: f32) -> f32 {
         let bias = 1.0 + 3.0 * self.lamp.texel * steepness(facing);
         self.lamp.soft(point, 1.0, Receiver::Wall(bias))
     }
 
-    /// How much of the sky is seen from a point of a flat wall, 0 to 1.
+    /// Fraction of the sky visible from a point of a flat wall, 0 to 1.
     pub(super) fn sky_at(&self, point: Vector3<f32>, normal: Vector3<f32>) -> f32 {
         let mut seen = 0.0;
         let mut all = 1e-6;
@@ -111,7 +111,7 @@ impl Lights {
         if all > 1e-3 { seen / all } else { 1.0 }
     }
 
-    /// How much of the sky a ball sees: the mean, and how it grows along each axis.
+    /// Fraction of the sky visible from a ball: the mean, and its gradient along each axis.
     pub(super) fn sky_of(&self, body: &Body) -> [f32; 4] {
         let fraction = 1.0 / SKY as f32;
         let seen: Vec<f32> = self.sky.iter().map(|map| map.seen(body)).collect();
@@ -126,12 +126,12 @@ impl Lights {
     }
 }
 
-/// Directions around the zenith, more of them near to it.
+/// Directions around the zenith, denser near it.
 fn directions(zenith: Vector3<f32>) -> [Vector3<f32>; SKY] {
     let [right, up] = across(zenith);
     let mut turn = [1.0, 0.0];
     std::array::from_fn(|k| {
-        // Sine squared of the angle from the zenith.
+        // Squared sine of the angle from the zenith.
         let square = 0.96 * (k as f32 + 0.5) / SKY as f32;
         let (out, along) = (square.sqrt(), (1.0 - square).sqrt());
         turn = [
@@ -142,8 +142,8 @@ fn directions(zenith: Vector3<f32>) -> [Vector3<f32>; SKY] {
     })
 }
 
-/// How near to a light the nearest ball and the nearest wall are, for each texel of a grid across
-/// its direction.
+/// Depths of the nearest ball and the nearest wall towards a light, for each texel of a grid
+/// perpendicular to its direction.
 struct Map {
     towards: Vector3<f32>,
     across: [Vector3<f32>; 2],
@@ -160,8 +160,8 @@ struct Map {
 }
 
 impl Map {
-    /// The map of all these balls and points: at least so large texels, px, and at most so many
-    /// along a side.
+    /// The map of all these balls and points, with a smallest size of texels, px, and a largest
+    /// number of them along a side.
     fn new(
         towards: Vector3<f32>,
         bodies: &[&Body],
@@ -215,7 +215,7 @@ impl Map {
         map
     }
 
-    /// Place in texels, and depth.
+    /// Position in texels, and depth.
     fn place(&self, point: Vector3<f32>) -> [f32; 3] {
         [
             (point.dot(&self.across[0]) - self.low[0]) / self.texel,
@@ -299,7 +299,7 @@ impl Map {
         }
     }
 
-    /// How much light a texel lets through to a depth.
+    /// Fraction of light that a texel lets through to a depth.
     fn light(&self, x: usize, y: usize, z: f32, bias: f32, receiver: Receiver) -> f32 {
         if x >= self.wide || y >= self.high {
             return 1.0;
@@ -320,9 +320,9 @@ impl Map {
         }
     }
 
-    /// Whether nothing is before any texel around this place.
+    /// True if nothing is in front of any texel around this position.
     fn is_free(&self, [x, y, z]: [f32; 3], bias: f32, receiver: Receiver) -> bool {
-        // Not so either where it is not a number.
+        // Also not if it is NaN.
         let is_inside = x >= 0.0 && y >= 0.0 && x < self.wide as f32 && y < self.high as f32;
         !is_inside || {
             let [column, row] = [x, y].map(|at| at as usize / BLOCK);
@@ -335,7 +335,7 @@ impl Map {
         }
     }
 
-    /// How much of a point is lit: four texels.
+    /// Lit fraction of a point: four texels.
     fn smooth(&self, point: Vector3<f32>, bias: f32, receiver: Receiver) -> f32 {
         let [x, y, z] = self.place(point);
         if self.is_free([x, y, z], bias, receiver) {
@@ -350,7 +350,7 @@ impl Map {
         above * (1.0 - fy) + below * fy
     }
 
-    /// How much of a point is lit, with a soft border: 16 texels.
+    /// Lit fraction of a point, with a soft border: 16 texels.
     fn soft(&self, point: Vector3<f32>, bias: f32, receiver: Receiver) -> f32 {
         let [x, y, z] = self.place(point);
         if self.is_free([x, y, z], bias, receiver) {
@@ -369,7 +369,7 @@ impl Map {
         sum / 9.0
     }
 
-    /// How much of a ball's near side is lit, at five places.
+    /// Lit fraction of the near side of a ball, at five positions.
     fn seen(&self, body: &Body) -> f32 {
         let [x, y, z] = self.place(body.centre);
         let bias = 0.3 * body.radius + self.texel;
@@ -389,12 +389,12 @@ impl Map {
     }
 }
 
-/// How fast depth changes along a surface that looks so much towards the light.
+/// Rate of change of depth along a surface that faces the light to this degree.
 fn steepness(facing: f32) -> f32 {
     ((1.0 - facing * facing).max(0.0).sqrt() / facing.max(0.05)).min(10.0)
 }
 
-/// Two unit vectors across a unit vector and each other.
+/// Two unit vectors perpendicular to a unit vector and to each other.
 fn across(a: Vector3<f32>) -> [Vector3<f32>; 2] {
     let other = if a.x.abs() < 0.6 {
         Vector3::x()

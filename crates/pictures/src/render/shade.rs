@@ -1,4 +1,4 @@
-//! How bright a point of a surface is. Colours are proportional to light: the square of what is
+//! Brightness of a point of a surface. Colours are proportional to light: the square of the values
 //! stored in a picture.
 
 use nalgebra::Vector3;
@@ -9,14 +9,14 @@ use super::{Body, Face, Scene};
 const LAMP: f32 = 0.72;
 const SKY: f32 = 0.62;
 
-/// What the farthest things lose to the white of the background.
+/// Fraction by which the farthest objects fade into the white of the background.
 const HAZE: f32 = 0.10;
 
-/// How dark the border of a ball is, and from which cosine to the viewer it begins.
+/// Darkness of the border of a ball, and the cosine to the viewer at which it begins.
 const RIM: f32 = 0.42;
 const RIM_FROM: f32 = 0.5;
 
-/// How much shadows darken walls.
+/// Darkening of walls by shadows.
 const SHADOW: f32 = 0.46;
 const DEPTH_OF_SKY: f32 = 0.50;
 
@@ -37,7 +37,7 @@ pub(super) fn mixed(a: [f32; 3], b: [f32; 3], fraction: f32) -> [f32; 3] {
     [0, 1, 2].map(|k| a[k] + fraction * (b[k] - a[k]))
 }
 
-/// The light of a ball where it is seen at `x`, `y`.
+/// The light of a ball at `x`, `y`.
 pub(super) fn body(scene: &Scene, body: &Body, x: f32, y: f32) -> [f32; 3] {
     let [nx, ny] = [x - body.centre.x, y - body.centre.y].map(|d| d / body.radius);
     let nz = (1.0 - nx * nx - ny * ny).max(0.0).sqrt();
@@ -63,7 +63,7 @@ pub(super) fn body(scene: &Scene, body: &Body, x: f32, y: f32) -> [f32; 3] {
     hazy(scene, body.colour.map(|c| c * bright + shine), point.z)
 }
 
-/// The light of a wall where it is seen at `x`, `y`, and sees so much of the sky.
+/// The light of a wall at `x`, `y`, with this visible fraction of the sky.
 pub(super) fn face(scene: &Scene, face: &Face, x: f32, y: f32, sky: f32) -> [f32; 3] {
     let point = face.point(x, y);
     let facing = face.normal.dot(&scene.lights.lamp());

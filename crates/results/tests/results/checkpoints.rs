@@ -1,4 +1,4 @@
-//! Checkpoints come back bit by bit or are refused.
+//! Checkpoints are restored bit by bit or refused.
 
 use std::fs;
 

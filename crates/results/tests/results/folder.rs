@@ -1,4 +1,4 @@
-//! The folder: when it is refused, what is removed, what is called how.
+//! The folder: refusals, removed files, and names.
 
 use std::fs;
 
@@ -85,7 +85,7 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
     let path = &path.to_owned();
     drop(folder);
     ResultsFolder::create(path, Existing::Continue).unwrap();
-    // Only what two killed writes have left is gone, and there is a plot.
+    // Only the remains of two killed writes are gone, and there is a plot.
     assert_eq!(contents(path).len(), ours.len() - 2 + foreign.len() + 1);
     ResultsFolder::create(path, Existing::Replace).unwrap();
     let mut left: Vec<_> = foreign.iter().map(|name| path.join(name)).collect();
@@ -129,7 +129,7 @@ fn a_folder_that_is_read_only_is_noticed_at_once() {
     let path = parent.path().join("out");
     fs::create_dir(&path).unwrap();
     fs::set_permissions(&path, fs::Permissions::from_mode(0o555)).unwrap();
-    // Who may write everywhere cannot test this.
+    // A user who may write everywhere cannot test this.
     if fs::write(path.join("probe"), "").is_ok() {
         return;
     }
@@ -180,6 +180,6 @@ fn one_run_at_a_time() {
     let error = ResultsFolder::create(&path, Existing::Refuse).unwrap_err();
     assert_eq!(error.problem, "this folder is not empty");
     ResultsFolder::create(&path, Existing::Replace).unwrap();
-    // Nothing but the lock is in it now.
+    // It now contains only the lock.
     ResultsFolder::create(&path, Existing::Refuse).unwrap();
 }

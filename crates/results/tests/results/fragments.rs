@@ -1,4 +1,4 @@
-//! Tables of fragments: full precision, whole rows, and the same bytes after an interruption.
+//! Tables of fragments: full precision, complete rows, and the same bytes after an interruption.
 
 use std::fs;
 use std::io::Write;
@@ -123,7 +123,7 @@ proptest! {
                     let length = file.length_bytes();
                     file.append(9.0, &rows(3)).unwrap();
                     drop(file);
-                    // What a row may look like that was being written.
+                    // A possible state of a row that was being written.
                     fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(half.as_bytes()).unwrap();
                     file = FragmentFile::continue_at(&path, length).unwrap();
                 }
@@ -133,7 +133,7 @@ proptest! {
         };
         let text = write("whole.csv", false);
         prop_assert_eq!(&write("part.csv", true), &text);
-        // And the numbers come back.
+        // The numbers are read back unchanged.
         let mut lines = text.lines();
         prop_assert_eq!(lines.next(), Some(COLUMNS));
         let wanted = moments.iter().enumerate().flat_map(|(number, count)| (0..*count).map(move |id| (number, id)));
@@ -150,7 +150,7 @@ proptest! {
     }
 }
 
-/// Rows are handed over in groups: none is lost or doubled at their borders.
+/// Rows are passed on in groups: none is lost or doubled at their borders.
 #[test]
 fn thousands_of_fragments_of_one_moment_are_all_there() {
     let folder = tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Frames: read back by the reader of bodies, whose format they share, and checked array by array.
+//! Frames: read back by the reader of bodies, which share their format, and checked array by array.
 
 use std::fs;
 
@@ -189,7 +189,7 @@ fn a_wrong_frame_is_a_fault_with_a_name() {
     assert_eq!(error.problem, "bond 1 joins [0, 2] of 2 particles");
 }
 
-/// A frame of `count` particles in a row, each joined to the next, with an array of each kind.
+/// A frame of `count` particles in a row, each joined to the next, with an array of each type.
 fn bytes_of_row(count: usize) -> Vec<u8> {
     let row = Frame {
         time_s: 0.0,

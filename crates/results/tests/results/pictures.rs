@@ -1,4 +1,4 @@
-//! Pictures: numbered, taken up again, whole.
+//! Pictures: numbered, continued after an interruption, complete.
 
 use std::fs;
 

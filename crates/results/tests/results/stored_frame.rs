@@ -1,4 +1,4 @@
-//! A frame read again: its fragments, and each of them as a body that files can hold.
+//! A frame read back: its fragments, and each of them as a body that can be written to files.
 
 use std::fs;
 use std::path::PathBuf;
@@ -9,13 +9,14 @@ use dem_results::{Frame, NamedArray, Values, write_frame};
 use proptest::prelude::*;
 use tempfile::{TempDir, tempdir};
 
-/// Two pieces that were one, and a third body. Bond 1 is broken; bond 3 names its larger end first.
+/// Two fragments of one body, and a third body. Bond 1 is broken; bond 3 names its larger end
+/// first.
 fn stored() -> StoredFrame {
     StoredFrame {
         time_s: 0.25,
         positions: (0..6).map(|i| [2e-3 * f64::from(i), 1e-5, 0.0]).collect(),
         radii: vec![1e-3, 1.1e-3, 1e-3, 1.2e-3, 1e-3, 1e-3],
-        // As a program reckons them from masses.
+        // As computed by a program from masses.
         densities_kg_m3: vec![
             2050.0,
             2050.0000000000002,
@@ -32,7 +33,7 @@ fn stored() -> StoredFrame {
     }
 }
 
-/// Writes a frame as a run does, without one of the arrays if it is named.
+/// Writes a frame like a run, without the array named `without`.
 fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     let folder = tempdir().unwrap();
     let path = folder.path().join("frame.vtp");
@@ -85,13 +86,14 @@ fn a_frame_reads_back_bit_by_bit() {
 fn fragments_come_the_heaviest_first() {
     let fragments = stored().fragments();
     let ids: Vec<u32> = fragments.iter().map(|fragment| fragment.id).collect();
-    // 3 has the largest sphere; 5 is 4000 kg/m3 times one sphere of 1 mm, which is the least.
+    // 3 has the largest sphere; 5 is 4000 kg/m3 times one sphere of 1 mm, which is the smallest
+    // mass.
     assert_eq!(ids, [3, 7, 5]);
     let volume = |r: f64| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3);
     let mass = 2050.0 * (volume(1e-3) + volume(1.2e-3));
     assert!((fragments[0].mass_kg / mass - 1.0).abs() < 1e-14);
     assert!(fragments.iter().all(|fragment| fragment.particles == 2));
-    // Of two as heavy, that of the smaller number.
+    // Of two with equal mass, the one with the smaller number.
     let mut equal = stored();
     equal.radii = vec![1e-3; 6];
     equal.densities_kg_m3 = vec![1000.0; 6];
@@ -106,10 +108,10 @@ fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
     assert_eq!(body.radii, [1e-3, 1.2e-3]);
     assert_eq!(body.bonds, [[0, 1]]);
     assert_eq!(body.bond_radii, [4e-4]);
-    // Not the distance of its ends, 2 mm: it is pressed.
+    // Not the distance of its ends, 2 mm: it is compressed.
     assert_eq!(body.bond_lengths, [2.1e-3]);
     assert_eq!(body.about.particle_density_kg_m3, Some(2050.0));
-    // Of two materials there is no one density.
+    // Two materials have no common density.
     assert_eq!(stored().body(5).unwrap().about.particle_density_kg_m3, None);
     let folder = tempdir().unwrap();
     for name in ["body.vtp", "body.csv", "body.data", "body.txt"] {
@@ -129,7 +131,7 @@ fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
 #[test]
 fn a_bond_within_a_fragment_that_is_broken_stays_away() {
     let mut frame = stored();
-    // Broken, and not yet searched for pieces.
+    // Broken, and not yet searched for fragments.
     frame.clusters = vec![0; 6];
     let body = frame.body(0).unwrap();
     assert_eq!(body.bonds, [[0, 1], [4, 5], [2, 3]]);
@@ -181,7 +183,7 @@ fn frames_without_fragments_and_other_files_are_refused() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Fragments share out the particles, the mass and the bonds that hold.
+    /// The particles, the mass and the unbroken bonds are divided completely among the fragments.
     #[test]
     fn bodies_of_all_fragments_make_up_the_frame(
         clusters in prop::collection::vec(0_u32..6, 1..40),
@@ -211,7 +213,7 @@ proptest! {
         let mut places: Vec<[f64; 3]> = bodies.iter().flat_map(|b| b.positions.clone()).collect();
         places.sort_by(|a, b| a[0].total_cmp(&b[0]));
         prop_assert_eq!(&places, &frame.positions);
-        // Of each bond its ends' places, its radius and its length.
+        // For each bond, the positions of its ends, its radius and its length.
         let mut found: Vec<[f64; 4]> = Vec::new();
         for body in &bodies {
             for (at, ends) in body.bonds.iter().enumerate() {

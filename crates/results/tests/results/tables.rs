@@ -1,4 +1,4 @@
-//! Series and events: full precision, whole rows, and the same bytes after an interruption.
+//! Series and events: full precision, complete rows, and the same bytes after an interruption.
 
 use std::fs;
 use std::io::Write;
@@ -168,14 +168,14 @@ proptest! {
             }
         }
         drop(series);
-        // What a row may look like that was being written.
+        // A possible state of a row that was being written.
         fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(half.as_bytes()).unwrap();
         let mut series = SeriesFile::continue_at(&path, &names, kept).unwrap();
         for [time, a, b] in &rows[checkpoint..] {
             series.append(*time, &[*a, *b]).unwrap();
         }
         prop_assert_eq!(fs::read(&path).unwrap(), fs::read(&whole).unwrap());
-        // And the numbers come back.
+        // The numbers are read back unchanged.
         let text = fs::read_to_string(&whole).unwrap();
         for (line, row) in text.lines().skip(1).zip(&rows) {
             for (word, value) in line.split(',').zip(row) {

@@ -1,4 +1,4 @@
-//! The two materials that a key of `[contacts]` names: "cake-steel", where names may themselves
+//! The two materials named by a key of `[contacts]`: "cake-steel", where names may themselves
 //! contain a "-".
 
 use std::collections::BTreeMap;
@@ -39,14 +39,15 @@ pub(super) fn named_pair(
     }
 }
 
-/// The two sides of every "-" in `key`, where neither is empty.
+/// The two sides of every "-" in `key`, if neither is empty.
 fn splits(key: &str) -> impl Iterator<Item = [&str; 2]> {
     key.match_indices('-')
         .map(|(at, dash)| [&key[..at], &key[at + dash.len()..]])
         .filter(|sides| sides.iter().all(|name| !name.is_empty()))
 }
 
-/// `key` is no pair: it is one material, or one of its sides is none.
+/// The error for a `key` that is not a pair: it is one material, or one of its sides is not a
+/// material.
 fn unknown(key: &str, field: &Field<'_>, materials: &BTreeMap<String, Material>) -> Diagnostic {
     let is_known = |name: &str| materials.contains_key(name);
     let half_known = |sides: &[&str; 2]| sides.iter().any(|name| is_known(name));

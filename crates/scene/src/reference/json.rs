@@ -1,4 +1,4 @@
-//! The JSON Schema (draft 7) by which editors complete and check TOML files.
+//! The JSON Schema (draft 7) with which editors complete and check TOML files.
 
 use std::ops::Bound::{Excluded, Included, Unbounded};
 
@@ -19,7 +19,7 @@ pub(super) fn text(title: &str, root: &Schema) -> String {
     format!("{schema:#}\n")
 }
 
-/// A table; `others` is the schema of keys that it does not list.
+/// A table; `others` is the schema of keys that are not listed.
 fn table(schema: &Schema, others: &Value) -> Value {
     let keys = schema.keys.iter();
     let properties: Map<String, Value> = keys
@@ -141,7 +141,7 @@ fn id(dimension: &Dimension) -> String {
     dimension.name.replace(' ', "-")
 }
 
-/// Text of a number with or without one of the units, in all spellings in which they are read.
+/// Text of a number with or without one of the units, in all accepted spellings.
 fn with_unit(dimension: &Dimension) -> Value {
     let units: Vec<&str> = dimension.units.iter().map(|(unit, _)| *unit).collect();
     let spelled: Vec<String> = units.iter().map(|unit| spellings(unit)).collect();

@@ -115,7 +115,7 @@ fn kind(of: &Kind) -> String {
     }
 }
 
-/// The kind of an item, with its article.
+/// The type of an item, with its article.
 fn each(of: &Kind) -> String {
     match of {
         Kind::Quantity(dimension) => dimension.named(),
@@ -170,7 +170,7 @@ fn link(schema: &Schema) -> String {
     format!("[{}](#{anchor})", heading(schema))
 }
 
-/// Brackets outside of code would begin a link.
+/// Brackets outside code would start a link.
 fn escaped(text: &str) -> String {
     let parts = text.split('`').enumerate();
     let parts: Vec<String> = parts

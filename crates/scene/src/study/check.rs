@@ -1,4 +1,4 @@
-//! What a study says, laid over its scene.
+//! The values of a study, applied to its scene.
 
 use std::path::PathBuf;
 
@@ -15,10 +15,10 @@ use crate::tree::Document;
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::units::quantity;
 
-/// The scene of `study`, whose file holds `text`, with these values laid over it.
+/// The scene of `study`, whose file contains `text`, with these values applied.
 ///
 /// # Errors
-/// The scene refuses one of them, or it names something that the scene does not have; the place is
+/// The scene refuses one of them, or it names something that the scene does not have. The place is
 /// that of the value in the study.
 pub fn scene_with<'a>(
     study: &Study,
@@ -41,7 +41,7 @@ pub fn scene_with<'a>(
     }
     let read = |overrides: &[String]| scene_from_text(text, &name, overrides);
     let mut scene = read(&overrides).map_err(|error| {
-        // Of several, the first without which there is no complaint, or another one.
+        // Of several, the first one without which there is no error, or another one.
         let said = |count: usize| read(&overrides[..count]).err();
         let guilty = (0..overrides.len()).find(|&at| {
             said(at + 1).is_some_and(|now| now == error) && said(at).is_none_or(|was| was != error)
@@ -75,12 +75,12 @@ pub fn scene_with<'a>(
     Ok(scene)
 }
 
-/// `PATH=VALUE`, as `--set` takes it.
+/// `PATH=VALUE`, as for `--set`.
 pub fn override_text(setting: &Setting) -> String {
     format!("{}={}", setting.path, setting.value)
 }
 
-/// Refuses a path into a table `[kind.NAME]` that the scene does not have: a scene would take it
+/// Refuses a path into a table `[kind.NAME]` that the scene does not have: the scene would take it
 /// for a new one.
 fn refuse_new_name(root: &Table<'_>, setting: &Setting) -> Result<()> {
     let keys: Vec<&str> = setting.path.split('.').collect();
@@ -109,11 +109,11 @@ fn refuse_new_name(root: &Table<'_>, setting: &Setting) -> Result<()> {
     ))
 }
 
-/// What each measure of a study is compared with in one of its scenes, in SI, where that is known
-/// without a run.
+/// The reference of each measure of a study in one of its scenes, in SI, if it is known without a
+/// run.
 ///
 /// # Errors
-/// The scene has no such measure or no test, or a reference is missing or is none of that quantity.
+/// The scene has no such measure or no test, or a reference is missing or is not of that quantity.
 pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>> {
     let mut values = Vec::new();
     for measure in &study.measures {

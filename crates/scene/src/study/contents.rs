@@ -1,4 +1,4 @@
-//! What a study holds, as plain data.
+//! The contents of a study, as plain data.
 
 use std::path::PathBuf;
 
@@ -7,50 +7,50 @@ use crate::schema::Word;
 /// Version of the study format.
 pub const STUDY_VERSION: u64 = 1;
 
-/// How a path begins that stands for the file of a body, as `--body NAME=FILE` gives it.
+/// Prefix of a path that stands for the file of a body, as in `--body NAME=FILE`.
 pub const BODY: &str = "body.";
 
-/// A whole study.
+/// A complete study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
-    /// File that it was read from, as the user named it.
+    /// File from which it was read, as named by the user.
     pub source: String,
     /// `scene`, resolved against the folder of the study.
     pub scene: PathBuf,
-    /// `repeats`: how often each run is done; 3 unless given.
+    /// `repeats`: number of repetitions of each run; 3 unless given.
     pub repeats: u32,
     /// `threads` of each run; 1 unless given.
     pub threads: u32,
-    /// `force_step`: steps above the largest stable one are taken; not unless given.
+    /// `force_step`: allows steps above the largest stable one; false unless given.
     pub force_step: bool,
     /// `time`, "wall" unless given.
     pub time: RunTime,
     /// `combine`, "grid" unless given.
     pub combine: Combine,
-    /// `[set]`: what all runs have.
+    /// `[set]`: values common to all runs.
     pub fixed: Vec<Setting>,
     /// `[vary]`, then `[together.NAME]`, in the order of the file. At least one.
     pub axes: Vec<Axis>,
     /// `[measures.NAME]`, in the order of the file. At least one.
     pub measures: Vec<StudyMeasure>,
-    /// `series` of `[page]`: the axis whose values have colours; the first without sizes unless
-    /// given.
+    /// `series` of `[page]`: the axis whose values are distinguished by colour; the first without
+    /// sizes unless given.
     pub series: Option<usize>,
 }
 
-/// Which time of a run is compared. Both leave out start-up.
+/// The time of a run that is compared. Both exclude start-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RunTime {
     /// "wall": from the first step to the last.
     Wall,
-    /// "processor": what processors spent on it; other programs on the machine change it less.
+    /// "processor": processor time; other programs on the machine affect it less.
     Processor,
 }
 
-/// How the values of several axes meet.
+/// How the values of several axes are combined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Combine {
-    /// "grid": each with each.
+    /// "grid": each value with each other.
     Grid,
     /// "paired": the first with the first, the second with the second.
     Paired,
@@ -61,25 +61,25 @@ pub enum Combine {
 pub struct Setting {
     /// Path in the scene, or [`BODY`] and a name.
     pub path: String,
-    /// As TOML; the name of a file, resolved against the folder of the study, for a body.
+    /// As TOML; for a body, the name of a file, resolved against the folder of the study.
     pub value: String,
-    /// Where it stands in the study.
+    /// Its place in the study.
     pub place: String,
 }
 
-/// Something that varies.
+/// A parameter that varies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Its path, or the name of the paths that vary together.
     pub name: String,
-    /// Where it stands in the study.
+    /// Its place in the study.
     pub place: String,
-    /// At least one.
+    /// Values, at least one.
     pub values: Vec<AxisValue>,
 }
 
 impl Axis {
-    /// The size of each value. None: not all of them have one.
+    /// The size of each value. None if not all of them have one.
     pub fn sizes(&self) -> Option<Vec<f64>> {
         self.values.iter().map(|value| value.size).collect()
     }
@@ -88,39 +88,38 @@ impl Axis {
 /// One of the values of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisValue {
-    /// For a person.
+    /// Human-readable label.
     pub label: String,
-    /// What it sets: one path, or all that vary together.
+    /// Its settings: one path, or all paths that vary together.
     pub settings: Vec<Setting>,
-    /// How coarse it is, above 0: the value itself where it is a number, unless `size` says
-    /// something else.
+    /// Its coarseness, above 0: the value itself if it is a number, unless `size` is given.
     pub size: Option<f64>,
 }
 
-/// What is looked at in each run.
+/// A quantity evaluated in each run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyMeasure {
     /// Its name.
     pub name: String,
-    /// What it is of.
+    /// Its source.
     pub of: MeasureOf,
-    /// What it is compared with.
+    /// Its reference.
     pub reference: Reference,
-    /// Where it stands in the study.
+    /// Its place in the study.
     pub place: String,
 }
 
-/// What a measure of a study is of.
+/// The source of a measure of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MeasureOf {
-    /// `measure`: a measure of the scene; that of the same name unless given.
+    /// `measure`: a measure of the scene; the one of the same name unless given.
     Measure(String),
     /// `test_result`: a result of the scene's laboratory test.
     Figure(String),
-    /// `fragment_masses`: how many pieces there are, and how far the distribution of their masses
-    /// is from that of the finest run.
+    /// `fragment_masses`: the number of pieces, and the distance between the distribution of their
+    /// masses and that of the finest run.
     Masses(Pieces),
-    /// `curve = "force-displacement"`: the curve of the scene's laboratory test, and how far it is
+    /// `curve = "force-displacement"`: the curve of the scene's laboratory test, and its distance
     /// from that of the finest run.
     Curve,
     /// `balance`: "energy", "momentum" or "angular-momentum": its largest relative error, which
@@ -128,16 +127,16 @@ pub enum MeasureOf {
     Balance(&'static str),
 }
 
-/// Which pieces' masses are compared.
+/// The pieces whose masses are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pieces {
-    /// "discharged": those that went through outlets.
+    /// "discharged": pieces discharged through outlets.
     Left,
-    /// "remaining": those that are there at the end of the run.
+    /// "remaining": pieces present at the end of the run.
     AtEnd,
 }
 
-/// What a measure is compared with.
+/// The reference of a measure.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reference {
     /// "closed-form", unless given: the reference of the scene's measure, or the theory of the
@@ -147,7 +146,7 @@ pub enum Reference {
     Value(String),
     /// `{ finest = "AXIS" }`: the run of the smallest size along this axis.
     Finest(usize),
-    /// `{ richardson = "AXIS" }`: what the runs along this axis come to at size 0.
+    /// `{ richardson = "AXIS" }`: the runs along this axis, extrapolated to size 0.
     Richardson(usize),
 }
 

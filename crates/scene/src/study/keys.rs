@@ -3,7 +3,7 @@
 use super::contents::{BALANCES, CURVES, Combine, Pieces, RunTime};
 use crate::schema::{Key, Kind, Schema, Word, words_of};
 
-/// Most repeats, threads.
+/// Largest number of repeats and of threads.
 const MOST: f64 = 1024.0;
 
 /// Any value of a scene.
@@ -81,7 +81,7 @@ pub(crate) static STUDY: Schema = Schema {
     ],
 };
 
-/// How coarse the values are, and what they are called.
+/// Sizes of the values, and their labels.
 const SIZE: Key = Key::new(
     "size",
     Kind::List(&ANYTHING),
@@ -125,7 +125,7 @@ pub(super) static RANGE: Schema = Schema {
     ],
 };
 
-/// Whether a range is spread by logarithms.
+/// Spacings of a range; true for logarithmic.
 pub(super) const SPACINGS: [(&str, bool); 2] = [("linear", false), ("log", true)];
 
 pub(super) static TOGETHER: Schema = Schema {

@@ -1,4 +1,4 @@
-//! What is looked at in each run, and what it is compared with.
+//! The measures of each run, and their references.
 
 use super::contents::{Axis, BALANCES, CURVES, MeasureOf, Pieces, Reference, StudyMeasure};
 use super::keys::{MEASURE, REFERENCE};
@@ -128,7 +128,7 @@ fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {
     }
 }
 
-/// Three different sizes are needed to see an order.
+/// Checks that there are three different sizes, which are needed to see an order.
 fn richardson(field: &Field<'_>, at: usize, axes: &[Axis]) -> Result<Reference> {
     let mut sizes = axes[at].sizes().unwrap_or_default();
     sizes.sort_by(f64::total_cmp);

@@ -11,13 +11,13 @@ use crate::table::Table;
 use crate::tree::Document;
 use dem_io::diagnostic::{Diagnostic, Result};
 
-/// Most axes of a study.
+/// Largest number of axes of a study.
 const MOST_AXES: usize = 100;
 
 /// Reads a study from a TOML file.
 ///
 /// # Errors
-/// The file cannot be read, is no TOML, or no study. The place is file and line.
+/// The file cannot be read, is not TOML, or is not a study. The place is file and line.
 pub fn read_study(path: &Path) -> Result<Study> {
     study_from_text(&text_of(path, "a study")?, &path.display().to_string())
 }
@@ -25,7 +25,7 @@ pub fn read_study(path: &Path) -> Result<Study> {
 /// Reads a study from the text of a file named `source`.
 ///
 /// # Errors
-/// Those of [`read_study`], but for reading the file.
+/// Those of [`read_study`], except for reading the file.
 pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     let document = Document::parse(source, text)?;
     let root = Table::root(&document, &STUDY)?;
@@ -91,7 +91,7 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     })
 }
 
-/// Refuses the last axis if all have more values than a study can have.
+/// Refuses the last axis if the number of values of all exceeds the limit of a study.
 fn refuse_many_values(axes: &[Axis]) -> Result<()> {
     let count: usize = axes.iter().map(|axis| axis.values.len()).sum();
     match axes.last() {
@@ -112,7 +112,7 @@ fn refuse_many_values(axes: &[Axis]) -> Result<()> {
     }
 }
 
-/// Whether two axes set the same path.
+/// True if two axes set the same path.
 fn sets_same(one: &Axis, other: &Axis) -> bool {
     let paths = |axis: &Axis| -> Vec<String> {
         let first = axis.values.first().into_iter();

@@ -1,5 +1,5 @@
-//! A scene's text with other values in it; comments and order stay. Beside
-//! [`tree`](crate::tree) alone knows the TOML parser.
+//! A scene's text with other values in it; comments and order are kept. Besides
+//! [`tree`](crate::tree) the only module that uses the TOML parser.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -15,11 +15,11 @@ use crate::root::Scene;
 use crate::tree::{Value, parse_value};
 use dem_io::diagnostic::{Diagnostic, Result};
 
-/// The text of a scene file `target` that is the scene of `study`, whose file holds `text`, with
+/// The text of a scene file `target` that is the scene of `study`, whose file contains `text`, with
 /// `settings`. Read back it is the same scene.
 ///
 /// # Errors
-/// The scene refuses the settings, or it is written in a way in which they cannot be put.
+/// The scene refuses the settings, or is written in a way that does not allow to insert them.
 pub fn rewritten(
     study: &Study,
     text: &str,
@@ -63,7 +63,7 @@ pub fn rewritten(
     }
 }
 
-/// A scene without what the place of its file decides.
+/// A scene without the parts that depend on the place of its file.
 fn comparable(mut scene: Scene) -> Scene {
     scene.source.clear();
     for body in scene.bodies.values_mut() {
@@ -77,8 +77,7 @@ fn comparable(mut scene: Scene) -> Scene {
     scene
 }
 
-/// From the root. The name may be that of a body in two files, which are called a little
-/// differently.
+/// The absolute path. The name may be that of a body in two files, whose names differ slightly.
 fn absolute(path: &Path) -> PathBuf {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -90,14 +89,14 @@ fn absolute(path: &Path) -> PathBuf {
     }
 }
 
-/// Where something stands in a text, in bytes.
+/// The place of an item in a text, in bytes.
 struct Found {
     key: Range<usize>,
     value: Range<usize>,
     is_table: bool,
 }
 
-/// What stands at the ends of ever longer parts of a path, as far as it exists.
+/// The items at the ends of ever longer parts of a path, as far as it exists.
 fn way(text: &str, keys: &[&str]) -> Option<Vec<Found>> {
     let root = DeTable::parse(text).ok()?;
     let mut table = root.get_ref();
@@ -122,7 +121,7 @@ fn way(text: &str, keys: &[&str]) -> Option<Vec<Found>> {
     Some(found)
 }
 
-/// `text` with `value` at the end of the path `keys`. None: it cannot be put there.
+/// `text` with `value` at the end of the path `keys`. None if it cannot be put there.
 fn with(text: &str, keys: &[&str], value: &str) -> Option<String> {
     let way = way(text, keys)?;
     let is_inline = |found: &Found| text[found.value.clone()].starts_with('{');
@@ -169,7 +168,7 @@ fn with(text: &str, keys: &[&str], value: &str) -> Option<String> {
     }
 }
 
-/// `text` in which the tables `[keys]` and those within give way to one with the entries of
+/// `text` in which the tables `[keys]` and those within are replaced by one with the entries of
 /// `value`, which is a table as well.
 fn with_section(text: &str, keys: &[&str], value: &str) -> Option<String> {
     let Value::Table(entries) = parse_value(value, 0).ok()?.value else {
@@ -194,7 +193,7 @@ fn with_section(text: &str, keys: &[&str], value: &str) -> Option<String> {
     Some(new)
 }
 
-/// `text` without a key and its value, if it is there. None: it cannot be read.
+/// `text` without a key and its value, if it is there. None if it cannot be read.
 fn without(text: &str, keys: &[&str]) -> Option<String> {
     let way = way(text, keys)?;
     let Some(found) = way.get(keys.len() - 1) else {

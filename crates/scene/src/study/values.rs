@@ -1,4 +1,4 @@
-//! What varies, and through which values: lists, ranges, several paths together.
+//! The parameters that vary, and their values: lists, ranges, several paths together.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -11,7 +11,7 @@ use crate::tree::{Node, Value, shortened};
 use dem_io::diagnostic::Result;
 use dem_io::units::{DIMENSIONS, quantity};
 
-/// Most values of a range, and of all axes of a study.
+/// Largest number of values of a range, and of all axes of a study.
 pub(super) const MOST_VALUES: u64 = 100_000;
 /// Longest label, in characters.
 const LONGEST_LABEL: usize = 40;
@@ -157,7 +157,7 @@ fn setting(path: &str, field: &Field<'_>, folder: &Path) -> Result<Setting> {
     })
 }
 
-/// The same for a body, which may be two files of other names: its folder is made tidy.
+/// The same for a body, which may consist of two files with other names: its folder is normalised.
 fn tidy_body(path: PathBuf) -> PathBuf {
     match (path.parent(), path.file_name()) {
         (Some(folder), Some(name)) => tidy(folder.to_owned()).join(name),
@@ -198,7 +198,7 @@ fn with_sizes(
     Ok(())
 }
 
-/// The values of `{ from, to, count, spacing }`, as TOML and for a person.
+/// The values of `{ from, to, count, spacing }`, as TOML and as labels.
 fn range(path: &str, field: &Field<'_>) -> Result<Vec<(String, String)>> {
     let table = Table::of(field, &RANGE)?;
     let [from, to] = [table.need("from")?, table.need("to")?];
@@ -261,7 +261,7 @@ fn range(path: &str, field: &Field<'_>) -> Result<Vec<(String, String)>> {
         .collect())
 }
 
-/// To six digits: what stands between the ends need not be exact, but short.
+/// Rounded to six digits: values between the ends need not be exact, but short.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
@@ -298,7 +298,7 @@ fn split(node: &Node) -> Option<(f64, String)> {
     }
 }
 
-/// How coarse a value is, if it is a number above 0.
+/// The size of a value, if it is a number above 0.
 fn size_of(node: &Node) -> Option<f64> {
     match &node.value {
         Value::Number(_, value) => (value.is_finite() && *value > 0.0).then_some(*value),
@@ -316,7 +316,7 @@ pub(super) fn in_si(text: &str) -> Option<f64> {
     DIMENSIONS.iter().find_map(|d| quantity(text, d).ok())
 }
 
-/// A value for a person.
+/// A human-readable label of a value.
 fn label(node: &Node) -> String {
     match &node.value {
         Value::Text(text) => {
@@ -369,7 +369,7 @@ pub(super) fn quoted(text: &str) -> String {
     out
 }
 
-/// A path without `folder/..`, where that is the same.
+/// A path without `folder/..`, if that is the same.
 pub(super) fn tidy(path: PathBuf) -> PathBuf {
     let mut short = PathBuf::new();
     for part in path.components() {
@@ -386,7 +386,7 @@ pub(super) fn tidy(path: PathBuf) -> PathBuf {
     }
 }
 
-/// A key as TOML wants it.
+/// A key in TOML syntax.
 pub(super) fn key(name: &str) -> String {
     if well_formed(name) {
         name.to_owned()

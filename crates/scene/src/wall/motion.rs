@@ -1,4 +1,4 @@
-//! How a wall moves: at a velocity, by a displacement, or as a servo.
+//! The motion of a wall: at a velocity, by a displacement, or as a servo.
 
 use crate::factor::{self, Factor, factor, factor_from_zero, over_time};
 use crate::field::Field;
@@ -9,33 +9,33 @@ use dem_io::diagnostic::Result;
 use dem_io::units::{FORCE, VELOCITY};
 use serde::Serialize;
 
-/// How a wall moves.
+/// The motion of a wall.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub enum WallMotion {
-    /// Not at all.
+    /// Fixed.
     #[default]
     Fixed,
     /// `velocity` and `angular_velocity`, with `ramp` or `table`.
     Velocity {
-        /// Of the pivot, m/s. Length 3.
+        /// Velocity of the pivot, m/s. Length 3.
         velocity_m_s: [f64; 3],
-        /// About the pivot, which moves along, rad/s. Length 3.
+        /// Angular velocity about the pivot, which moves along, rad/s. Length 3.
         spin_rad_s: [f64; 3],
-        /// On both, over time.
+        /// Factor on both, over time.
         factor: Factor,
     },
     /// `displacement` and `angular_displacement`, with `ramp` or `table`.
     Displacement {
-        /// Of the pivot, m. Length 3.
+        /// Displacement of the pivot, m. Length 3.
         displacement_m: [f64; 3],
-        /// About the pivot, which moves along: `angular_displacement = { axis, angle }` as a
-        /// rotation vector, rad. Length 3.
+        /// Rotation about the pivot, which moves along: `angular_displacement = { axis, angle }` as
+        /// a rotation vector, rad. Length 3.
         angular_displacement_rad: [f64; 3],
-        /// On both, over time.
+        /// Factor on both, over time.
         factor: Factor,
     },
     /// `servo = { force, direction, max_velocity }`, with `ramp` or `table`: moves along
-    /// `direction` such that it exerts a given force.
+    /// `direction` so that it exerts a given force.
     Servo {
         /// `force`: force to exert along `direction`, N; below 0 against it.
         force_n: f64,
@@ -43,7 +43,7 @@ pub enum WallMotion {
         direction: [f64; 3],
         /// `max_velocity`, m/s; more than 0.
         max_velocity_m_s: f64,
-        /// On the force, over time.
+        /// Factor on the force, over time.
         factor: Factor,
     },
 }
@@ -70,7 +70,7 @@ pub(crate) static SERVO: Schema = Schema {
     ],
 };
 
-/// The ways to move, each with its keys.
+/// The types of motion, each with its keys.
 const WAYS: [&[&str]; 3] = [
     &["velocity", "angular_velocity"],
     &["displacement", "angular_displacement"],

@@ -1,4 +1,4 @@
-//! What a wall looks like: `plane`, `box`, `cylinder` or `stl`.
+//! The shape of a wall: `plane`, `box`, `cylinder` or `stl`.
 
 use std::path::{Path, PathBuf};
 
@@ -10,14 +10,14 @@ use crate::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::LENGTH;
 
-/// What a wall looks like, before it is turned.
+/// The shape of a wall, before it is rotated.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WallShape {
-    /// `plane = { point, normal }`, without end.
+    /// `plane = { point, normal }`, infinite.
     Plane {
         /// A point of it, m. Length 3.
         point_m: [f64; 3],
-        /// Of length 1, into the free side. Length 3.
+        /// Normal of length 1, into the free side. Length 3.
         normal: [f64; 3],
     },
     /// `box = { min, max }`: solid, with particles outside.

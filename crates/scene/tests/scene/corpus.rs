@@ -1,4 +1,4 @@
-//! Files that must be read, and files that must be refused with one message, which stands in
+//! Files that must be read, and files that must be refused with one message, which is in
 //! `bad/messages.txt`.
 
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use dem_scene::{read_scene, scene_from_text};
 use dem_testing::hold_messages;
 
-/// Fewest files that the corpus must have: an empty folder would pass.
+/// Smallest number of files in the corpus: an empty folder would pass.
 const FEWEST_BAD: usize = 200;
 const FEWEST_GOOD: usize = 11;
 

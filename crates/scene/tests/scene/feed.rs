@@ -7,8 +7,8 @@ use dem_scene::{read_scene, scene_from_text};
 
 use super::good::{assert_near, folder, good};
 
-/// The second example of the documentation goes on from the first, and each way that stands in a
-/// comment is one as well.
+/// The second example of the documentation continues the first, and each alternative in a comment
+/// is valid as well.
 #[test]
 fn the_documentation() {
     let text = include_str!("../../../../doc/scenes.md");
@@ -169,8 +169,8 @@ fn inlets_and_outlets() {
     assert_eq!(scene.outlets["lost"], outlet("all", true));
 }
 
-/// All bodies may be fed; a set of all bodies then picks from those that stand there, and what is
-/// zero says nothing of the start.
+/// All bodies may be fed; a group of all bodies then selects from those present, and a zero value
+/// does not count as a start condition.
 #[test]
 fn bodies_that_are_fed() {
     let scene = good("only-fed.toml");

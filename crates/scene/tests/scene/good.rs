@@ -1,4 +1,4 @@
-//! What good files say.
+//! The contents of valid files.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ pub(crate) fn assert_near(got: f64, wanted: f64) {
     );
 }
 
-/// What the documentation shows is a scene.
+/// The example in the documentation is a valid scene.
 #[test]
 fn the_documentation() {
     let text = include_str!("../../../../doc/scenes.md");
@@ -35,7 +35,7 @@ fn the_documentation() {
     let (example, _) = rest.split_once("```").unwrap();
     let scene = scene_from_text(example, "doc.toml", &[]).unwrap();
     assert_eq!(scene.walls.len(), 2);
-    // Each way that stands in a comment is one as well.
+    // Each alternative in a comment is valid as well.
     let ways = [
         ("box = ", "# plane = "),
         ("box = ", "# cylinder = "),
@@ -232,7 +232,7 @@ fn motions_of_walls() {
             factor: Factor::Ramp { until_s: 0.001 },
         }
     );
-    // One key of a way to move says nothing of the others.
+    // A single key of one type of motion leaves the others unset.
     let walls = good("touching.toml").walls;
     assert_eq!(
         walls["roller"].motion,
@@ -422,7 +422,7 @@ fn supports_and_loads() {
     assert_eq!(scene.loads["turn"].end_s, None);
 }
 
-/// What a set starts with, in SI; what is left out is 0.
+/// The initial conditions of a group, in SI; values left out are 0.
 #[test]
 fn initial_states() {
     let scene = good("every-key.toml");
@@ -438,7 +438,7 @@ fn initial_states() {
     assert_eq!(scene.initial["only"].angular_velocity_rad_s, [0.0; 3]);
 }
 
-/// A clump that is never replaced needs no kind of bonds, and overlaps may be kept.
+/// A clump that is never replaced needs no bond properties, and overlaps may be kept.
 #[test]
 fn a_rigid_clump_without_a_kind_of_bonds() {
     let options = ["bodies.bar.start_as=clump", "run.initial_overlap=keep"].map(str::to_owned);
@@ -548,7 +548,7 @@ output                          none
     assert_eq!(scene.describe(), wanted);
 }
 
-/// A test says when the run ends, and all it leaves out in words.
+/// A test determines the end of the run, and all its defaults are shown as text.
 #[test]
 fn a_laboratory_test() {
     let scene = good("bending-test.toml");
@@ -630,7 +630,7 @@ fn what_a_laboratory_test_is_told() {
     assert_eq!((test.length_m, test.area_m2), (Some(2.0), Some(3.1)));
 }
 
-/// The echo names every key of the file that says them all.
+/// The echo names every key of the file that gives them all.
 #[test]
 fn values_in_words() {
     let text = good("every-key.toml").describe();
@@ -708,8 +708,8 @@ fn values_in_words() {
     }
 }
 
-/// Where things can touch, all that says how is said, with its defaults; where nothing can, only
-/// what is asked.
+/// If objects can touch, all contact values are listed, with their defaults; if nothing can touch,
+/// only those given.
 #[test]
 fn words_on_contacts() {
     let said = |scene: &Scene| -> Vec<String> {

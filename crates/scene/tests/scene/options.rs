@@ -50,14 +50,14 @@ fn options_add_keys_and_tables() {
     .unwrap();
     assert_eq!(scene.bonds["weak"].young_modulus_pa, 1e6);
     assert_eq!(scene.bonds["weak"].failure.tensile_strength_pa, Some(1e3));
-    // What is typed in a shell is meant from there.
+    // Names typed in a shell are relative to its folder.
     let folder = scene.output.unwrap().folder;
     assert_eq!(folder, Some("elsewhere".into()));
     let file = &scene.bodies["other"].source;
     assert_eq!(*file, BodySource::File("a=b.vtp".into()));
 }
 
-/// Pairs of materials and walls are set like all else.
+/// Pairs of materials and walls are set like all other keys.
 #[test]
 fn options_add_contacts_and_walls() {
     let scene = with(&[

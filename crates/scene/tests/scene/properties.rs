@@ -1,4 +1,4 @@
-//! Whatever the text, the reader answers with a scene or with one message.
+//! For any text, the reader returns a scene or one message.
 
 use dem_scene::scene_from_text;
 use proptest::prelude::*;
@@ -129,7 +129,7 @@ proptest! {
     }
 }
 
-/// Brackets as deep as a file may hold end in a message, not in a full stack.
+/// Brackets nested as deeply as a file allows give a message, not a stack overflow.
 #[test]
 fn deep_nesting() {
     for depth in [10, 79, 80, 81, 100_000] {

@@ -1,5 +1,5 @@
-//! The reference and the JSON Schema, which are written from the schema by which scenes and studies
-//! are read.
+//! The reference and the JSON Schema, which are generated from the schema by which scenes and
+//! studies are read.
 
 mod json;
 
@@ -78,8 +78,8 @@ fn the_files_in_doc_are_those_that_the_program_writes() {
     }
 }
 
-/// Fails where one of the at least `fewest` keys of a schema is in none of the files, or where it
-/// refuses one of them.
+/// Fails if one of the at least `fewest` keys of a schema is in none of the files, or if it refuses
+/// one of them.
 #[track_caller]
 fn assert_all_stand_in(files: &[PathBuf], schema: &Value, fewest: usize) {
     let mut missing = BTreeSet::new();
@@ -94,7 +94,7 @@ fn assert_all_stand_in(files: &[PathBuf], schema: &Value, fewest: usize) {
     assert!(missing.is_empty(), "no file has {missing:?}");
 }
 
-/// A key that is new fails here until a scene has it.
+/// A new key fails here until a scene has it.
 #[test]
 fn every_key_of_a_scene_stands_in_a_good_one() {
     let schema = schema("scene.schema.json");
@@ -110,7 +110,7 @@ fn every_key_of_a_study_stands_in_a_good_one() {
     assert_all_stand_in(&studies, &schema, 25);
 }
 
-/// Unknown keys and words, and units of something else, are marked in the editor already.
+/// Unknown keys and words, and units of other quantities, are already marked in the editor.
 #[test]
 fn the_json_schema_refuses_what_the_reader_does_not_know() {
     let schema = schema("scene.schema.json");
@@ -122,7 +122,7 @@ fn the_json_schema_refuses_what_the_reader_does_not_know() {
         let kinds = [
             message.starts_with("unknown key") || message.starts_with("unknown table"),
             message.contains(", which is unknown; "),
-            // In which unit a measure is depends on its quantity.
+            // The unit of a measure depends on its quantity.
             message.contains(": unknown unit '")
                 && message.contains("' is not a")
                 && !message.starts_with("measures."),

@@ -1,5 +1,5 @@
-//! Damping of bonds: conserves what it must, dissipates, and leaves the largest step that an
-//! independent implementation found.
+//! Damping of bonds: its conservation laws, its dissipation, and the largest step compared with an
+//! independent implementation.
 
 use super::vector;
 use dem_run::physics::bond::damping::{
@@ -37,7 +37,7 @@ fn coefficients() -> impl Strategy<Value = DampingCoefficients> {
     })
 }
 
-/// Size that rounding is measured by: coefficients, speeds and levers are of the order 1 to 10.
+/// Scale of rounding errors: coefficients, speeds and levers are of the order 1 to 10.
 const ROUNDING: f64 = 1e-12;
 
 proptest! {
@@ -133,8 +133,8 @@ fn platzer_damps_with_its_equations_7_and_9() {
     assert!((d.bending / (1.5 * bending) - 1.0).abs() < 1e-14);
 }
 
-/// One relative coordinate of two equal spheres, let go at a small deflection, after this many
-/// damped periods: Runge-Kutta of fourth order.
+/// One relative coordinate of two equal spheres, released at a small deflection, after this many
+/// damped periods: fourth-order Runge-Kutta.
 fn after_periods(
     periods: u32,
     frequency_rad_s: f64,
@@ -157,7 +157,7 @@ fn after_periods(
     q
 }
 
-/// Small: what is not linear in it is of the order of its square.
+/// Small: nonlinear effects are of the order of its square.
 const DEFLECTION: f64 = 1e-6;
 
 #[test]
@@ -203,8 +203,8 @@ fn two_spheres_swing_with_the_logarithmic_decrement_of_eta() {
     }
 }
 
-/// Largest step of a free chain of eleven steel spheres as a share of the undamped one, damped with
-/// these eta, for eqs. 9 and 10 and for each mode's own stiffness.
+/// Largest step of a free chain of eleven steel spheres as a fraction of the undamped one, damped
+/// with these eta, for eqs. 9 and 10 and for each mode's own stiffness.
 const ETAS: [f64; 5] = [0.05, 0.1, 0.2, 0.4, 0.6];
 const LIMITS: [(BondModel, f64, [f64; 5], [f64; 5]); 4] = [
     (
@@ -281,8 +281,9 @@ const LIMITS: [(BondModel, f64, [f64; 5], [f64; 5]); 4] = [
     ),
 ];
 
-/// Matrix that takes velocities of the chain to forces against them, each row and column divided by
-/// the root of its mass. With stiffnesses in place of the coefficients it is the stiffness matrix.
+/// Matrix that maps velocities of the chain to forces against them, each row and column divided by
+/// the square root of its mass. With stiffnesses in place of the coefficients it is the stiffness
+/// matrix.
 fn matrix_of_chain(coefficients: &DampingCoefficients, levers_m: &[f64; 2]) -> DMatrix<f64> {
     let spheres = 11;
     let root = |row: usize| if row % 6 < 3 { MASS_KG } else { INERTIA_KG_M2 }.sqrt();
@@ -313,8 +314,8 @@ fn matrix_of_chain(coefficients: &DampingCoefficients, levers_m: &[f64; 2]) -> D
     matrix
 }
 
-/// Largest dt for which v += dt (-K x - C v), x += dt v does not grow: 4 - 2 dt C - dt^2 K must
-/// have no negative eigenvalue.
+/// Largest dt for which v += dt (-K x - C v), x += dt v does not grow: 4 - 2 dt C - dt^2 K must not
+/// have a negative eigenvalue.
 fn exact_limit(k: &DMatrix<f64>, c: &DMatrix<f64>, above: f64) -> f64 {
     let four = DMatrix::from_diagonal_element(k.nrows(), k.nrows(), 4.0);
     let (mut low, mut high) = (0.0, above);
@@ -362,7 +363,7 @@ fn a_damped_chain_takes_the_steps_of_the_independent_implementation() {
             ] {
                 let damped = matrix_of_chain(&damping, &k.levers_m);
                 let found = exact_limit(&stiff, &damped, 1.01 * limit) / limit;
-                // The reference found its limits by halving, to this.
+                // The reference determined its limits by bisection, to this accuracy.
                 assert!(
                     (found / wanted - 1.0).abs() < 1e-6,
                     "{model:?}, {eta}: {found} instead of {wanted}"

@@ -1,4 +1,4 @@
-//! Breaking of bonds: loads at which a round bar of known strength must fail.
+//! Breaking of bonds: failure loads of a round bar of known strength.
 
 use dem_run::physics::bond::BondLoad;
 use dem_run::physics::bond::failure::{
@@ -68,7 +68,7 @@ fn stresses_are_those_of_a_round_bar() {
     assert_near(found.bending_pa, 7.0 * RADIUS_M / second_moment);
 }
 
-/// A bond without strength breaks under any load, and by none; no number is lost on the way.
+/// A bond with zero strength breaks under any load, but not without load; no NaN occurs on the way.
 #[test]
 fn of_no_strength_any_load_is_too_much() {
     for zero in [
@@ -117,7 +117,7 @@ fn of_no_strength_any_load_is_too_much() {
     }
 }
 
-/// Each criterion sees the modes that are its own.
+/// Each criterion responds to its own modes.
 #[test]
 fn each_mode_uses_its_share_of_each_strength() {
     let cases = [
@@ -207,9 +207,9 @@ fn criteria_act_together_and_the_worst_one_is_the_cause() {
     assert_eq!(cause(&criteria, &stresses, ONE), Cause::VonMises);
 }
 
-/// Tension counts at the edge that is pulled, also while the bond as a whole is pressed;
-/// compression
-/// at the opposite one, also while it is pulled. What has no strength breaks by no stress.
+/// Tension counts at the tensile edge, also in an overall compressed bond; compression at the
+/// opposite edge, also in a bond under tension. A bond without a strength is not broken by any
+/// stress.
 #[test]
 fn each_edge_has_a_strength_of_its_own() {
     let tension = Criteria {
@@ -227,7 +227,7 @@ fn each_edge_has_a_strength_of_its_own() {
     };
     let by_tension = Some(Cause::Tension);
     let by_compression = Some(Cause::Compression);
-    // Axial and bending stress; then share and cause by tension, by compression, by both.
+    // Axial and bending stress; then utilisation and cause by tension, by compression, by both.
     for (axial_pa, bending_pa, wanted) in [
         (
             2.0,
@@ -244,7 +244,7 @@ fn each_edge_has_a_strength_of_its_own() {
             2.0,
             [(1.0, by_tension), (0.4, by_compression), (1.0, by_tension)],
         ),
-        // A small push: the pulled edge still breaks.
+        // A small compression: the tensile edge still breaks.
         (
             -0.25,
             2.25,
@@ -288,7 +288,7 @@ fn each_edge_has_a_strength_of_its_own() {
             }
         }
     }
-    // The equivalent stress leaves out the axial part only.
+    // The equivalent stress excludes only the axial part.
     let platzer = Criteria {
         von_mises_strength_pa: 2.0,
         ..NONE
@@ -312,14 +312,14 @@ fn nothing_breaks_without_a_criterion_or_a_load() {
         von_mises_strength_pa: 1.0,
     };
     assert_eq!(utilisation(&strong, &Stresses::default(), ONE), 0.0);
-    // Factors make all strengths larger.
+    // Factors increase all strengths.
     assert_near(
         utilisation(&strong, &MODES[3], Factors::scattered(4.0)),
         0.25e6 * 3.0_f64.sqrt(),
     );
 }
 
-/// The rate of strain raises all strengths but that in compression; scatter raises all.
+/// The strain rate increases all strengths except the compressive one; scatter affects all.
 #[test]
 fn compression_is_not_strengthened_by_the_rate() {
     let criteria = Criteria {
@@ -363,7 +363,7 @@ fn causes_are_counted_and_said() {
 /// Loads, and radii of bonds.
 fn loads() -> impl Strategy<Value = (BondLoad, f64)> {
     let any = (-1e3..1e3, 0.0..1e3, 0.0..3.0, 0.0..3.0, 1e-4..1e-2);
-    // Axial force and bending that nearly cancel at an edge, too.
+    // Including axial force and bending that nearly cancel at an edge.
     let cancel = prop::option::of((proptest::bool::ANY, -15..0));
     (any, cancel).prop_map(
         |((normal_n, shear_n, torsion_n_m, bending_n_m, radius_m), cancel)| {
@@ -403,8 +403,8 @@ fn some_criteria() -> impl Strategy<Value = Criteria> {
 }
 
 proptest! {
-    /// The screen that the step uses is the square of the utilisation, but for what rounding leaves
-    /// of axial force and bending where they cancel.
+    /// The screen used by the step is the square of the utilisation, except for rounding where
+    /// axial force and bending cancel.
     #[test]
     fn the_screen_finds_what_is_utilised(
         (load, radius_m) in loads(),
@@ -420,8 +420,8 @@ proptest! {
         prop_assert!(error <= 1e-12 * exact + 2e-14 * cancelled, "{screened} {exact}");
     }
 
-    /// It misses no bond that breaks: at the load at which the strength is just reached, and
-    /// beyond, it says so.
+    /// It misses no bond that breaks: it reports the load at which the strength is just reached,
+    /// and loads beyond it.
     #[test]
     fn the_screen_misses_no_bond_that_breaks(
         (load, radius_m) in loads(),
@@ -431,7 +431,7 @@ proptest! {
         let exact = |criteria: &Criteria| utilisation(criteria, &stresses(&load, radius_m), ONE);
         let reached = exact(&criteria);
         prop_assume!(reached > 0.0);
-        // Strengths at which this load is just enough, by one rounding more or less.
+        // Strengths that this load just reaches, to one rounding more or less.
         let scale = reached * (1.0 - beyond.unwrap_or(0.0));
         let scaled = Criteria {
             tensile_strength_pa: criteria.tensile_strength_pa * scale,

@@ -1,5 +1,5 @@
-//! The incremental formulation: does not depend on names, is objective, bends a cantilever as an
-//! independent implementation does, and keeps energy.
+//! The incremental formulation: independent of numbering, objective, equal to an independent
+//! implementation for a bent cantilever, and energy-conserving.
 
 use super::{MODELS, vector};
 use dem_run::physics::bond::incremental::{History, Step, advance, bond_forces};
@@ -20,7 +20,7 @@ fn model() -> impl Strategy<Value = Stiffness> {
     })
 }
 
-/// A loaded bond along x and a step that moves and turns its ends.
+/// A loaded bond along x and a step that moves and rotates its ends.
 fn loaded() -> impl Strategy<Value = (Stiffness, History, Step)> {
     let step = (vector(0.2), vector(0.2), vector(0.3), vector(0.3));
     (model(), -9.0..9.0, -9.0..9.0, vector(9.0), step).prop_map(
@@ -113,7 +113,7 @@ proptest! {
         prop_assert!((found.moment - turn * after.moment).norm() < ROUNDING);
     }
 
-    /// Half of load times deformation in each mode, and torques about the contact point.
+    /// Half of force times deformation in each mode, and torques about the contact point.
     #[test]
     fn energy_and_load_are_those_of_the_history((k, history, step) in loaded()) {
         let after = advance(&k, &history, &step);
@@ -130,8 +130,8 @@ proptest! {
     }
 }
 
-/// What a loaded bond remembers, in axes that turn with it, after it went round as a rigid body in
-/// this many steps.
+/// The history of a loaded bond, in co-rotating axes, after one rigid-body revolution in this many
+/// steps.
 fn error_after_turning(steps: u32) -> f64 {
     let k = stiffness(
         BondModel::Timoshenko,
@@ -147,7 +147,7 @@ fn error_after_turning(steps: u32) -> f64 {
         shear_force: Vector3::new(0.0, 3.0, -2.0),
         moment: Vector3::new(1.0, 2.0, 4.0),
     };
-    // Neither along the bond nor across it.
+    // Neither along the bond nor perpendicular to it.
     let turn = Vector3::new(1.0, 1.5, -0.5) / f64::from(steps);
     let once = UnitQuaternion::from_scaled_axis(turn);
     let mut history = loaded;
@@ -198,8 +198,8 @@ const SPHERES: usize = 11;
 const RADIUS_M: f64 = 0.2;
 const MASS_KG: f64 = 7850.0 * 4.0 / 3.0 * PI * RADIUS_M * RADIUS_M * RADIUS_M;
 const INERTIA_KG_M2: f64 = 0.4 * MASS_KG * RADIUS_M * RADIUS_M;
-/// Largest stable step of the bar in the Timoshenko model, 2 over its largest frequency, of which
-/// an independent implementation gives these digits.
+/// Largest stable step of the bar in the Timoshenko model, 2 over its largest frequency, to the
+/// digits of an independent implementation.
 const CRITICAL_STEP_S: f64 = 6.536982689455117e-5;
 
 impl Bar {
@@ -279,8 +279,8 @@ impl Bar {
     }
 }
 
-/// Tip of the bar held at one end and pushed across at the other, brought to rest by damping that
-/// slows everything alike.
+/// Tip deflection of the bar, held at one end and loaded transversely at the other, at rest after
+/// uniform damping.
 fn tip_of_cantilever(model: BondModel) -> f64 {
     let mut bar = Bar::at_rest(model, Formulation::Incremental);
     // Below every model's critical step; the damping is critical for the slowest mode, of about 123
@@ -321,7 +321,7 @@ fn cantilevers_bend_as_the_independent_implementation_says() {
     }
 }
 
-/// The bar flies, tumbles about all three axes and vibrates in bending, stretch and twist.
+/// The bar flies, tumbles about all three axes and vibrates in bending, stretching and torsion.
 fn tumbling(formulation: Formulation) -> Bar {
     let mut bar = Bar::at_rest(BondModel::Timoshenko, formulation);
     let spin = Vector3::new(60.0, 30.0, 100.0);
@@ -336,7 +336,7 @@ fn tumbling(formulation: Formulation) -> Bar {
     bar
 }
 
-/// Largest change of energy, in two parts of the run, over the energy.
+/// Largest change of energy over the energy, in two parts of the run.
 fn energy_errors(formulation: Formulation, share_of_critical: f64, steps: u32) -> [f64; 2] {
     let mut bar = tumbling(formulation);
     let step = share_of_critical * CRITICAL_STEP_S;
@@ -352,7 +352,7 @@ fn energy_errors(formulation: Formulation, share_of_critical: f64, steps: u32) -
     errors
 }
 
-/// Both formulations err by what leapfrog errs, and neither drifts.
+/// Both formulations have the error of leapfrog, and neither drifts.
 #[test]
 fn a_tumbling_bar_keeps_its_energy_as_well_as_in_the_total_formulation() {
     let [early, late] = energy_errors(Formulation::Incremental, 0.1, 50_000);

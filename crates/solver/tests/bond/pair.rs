@@ -1,5 +1,5 @@
-//! Frequencies of two bonded spheres against an independent implementation, and in limits that can
-//! be written down.
+//! Frequencies of two bonded spheres compared with an independent implementation and with
+//! analytical limits.
 
 use dem_run::physics::bond::pair::{Frequencies, frequencies};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
@@ -184,7 +184,7 @@ fn an_end_that_is_held_is_one_of_endless_mass() {
     assert_eq!(nothing.critical_step_s(), f64::INFINITY);
 }
 
-/// Point masses held against turning: shear alone, k_s (1/m_a + 1/m_b).
+/// Point masses with rotation prevented: shear alone, k_s (1/m_a + 1/m_b).
 #[test]
 fn without_turning_only_shear_is_left() {
     let (k, per_mass, _) = pair(BondModel::Timoshenko, true);

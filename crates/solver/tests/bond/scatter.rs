@@ -1,19 +1,19 @@
-//! Strengths that scatter: their distribution, and what they depend on.
+//! Scattered strengths: their distribution, and the quantities on which they depend.
 
 use dem_run::physics::bond::scatter::strength_factor;
 
 const BONDS: u64 = 100_000;
 
-/// Factors of many bonds of one body, in the order in which a packing numbers them: neighbours in
-/// space, so close numbers.
+/// Factors of many bonds of one body, in the order of numbering in a packing: neighbours in space,
+/// so close numbers.
 fn factors(seed: u64, body: u64, modulus: f64) -> Vec<f64> {
     (0..BONDS)
         .map(|bond| strength_factor(seed, body, [bond / 7, bond / 7 + 1 + bond % 7], modulus))
         .collect()
 }
 
-/// Largest distance between the shares found and the distribution, times the root of their number
-/// (Kolmogorov and Smirnov).
+/// Largest distance between the observed fractions and the distribution, times the square root of
+/// their number (Kolmogorov and Smirnov).
 fn misfit(mut values: Vec<f64>, share_below: impl Fn(f64) -> f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let count = values.len() as f64;
@@ -44,7 +44,7 @@ fn seeds_and_bodies_scatter_independently() {
     let base = factors(1, 0, 1.0);
     for other in [factors(2, 0, 1.0), factors(1, 1, 1.0), factors(0, 1, 1.0)] {
         assert!(base.iter().zip(&other).all(|(a, b)| a != b));
-        // The lesser of two independent exponential numbers is exponential with twice the rate.
+        // The smaller of two independent exponential numbers is exponential with twice the rate.
         let lesser = base.iter().zip(&other).map(|(a, b)| a.min(*b)).collect();
         let found = misfit(lesser, |x| 1.0 - (-2.0 * x).exp());
         assert!(found < RARE, "{found}");

@@ -1,10 +1,11 @@
-//! Stiffnesses against Chen et al. 2022, table 5, with the digits of an independent implementation.
+//! Stiffnesses compared with Chen et al. 2022, table 5, with the digits of an independent
+//! implementation.
 
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 
 const STEEL_PA: f64 = 200e9;
 const NU: f64 = 0.3;
-/// The bar of the paper's cases 1 and 3: 4 m long, radius 0.2 m, made of this many bonds.
+/// The bar of the paper's cases 1 and 3: 4 m long, radius 0.2 m, with this many bonds.
 fn bar_of(bonds: u32) -> BondShape {
     BondShape {
         length_m: 4.0 / f64::from(bonds),

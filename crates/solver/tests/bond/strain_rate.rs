@@ -1,13 +1,12 @@
-//! The dynamic increase factor at rates where its logarithm is a whole number, and where its
-//! branches meet.
+//! The dynamic increase factor at rates with an integer logarithm, and where its branches meet.
 
 use dem_run::physics::bond::strain_rate::{
     PLATZER_LOWEST_RATE_1_S, dynamic_increase_factor, elongation_rate,
 };
 use nalgebra::Vector3;
 
-/// Worked by hand from eq. 20 with its parentheses: lg = -5, -3, -1, 0, 1, and 50/s, where lg =
-/// 1.6989700043360187.
+/// Computed by hand from eq. 20 with its parentheses: lg = -5, -3, -1, 0, 1, and 50/s, where lg
+/// = 1.6989700043360187.
 #[test]
 fn the_factor_is_that_of_equation_20() {
     let cases = [
@@ -37,7 +36,7 @@ fn it_is_continuous_and_constant_beyond_its_ends() {
         .map(|step| 10.0_f64.powf(-7.0 + 10.0 * f64::from(step) / f64::from(steps)))
         .map(|rate| dynamic_increase_factor(rate, 0.0))
         .collect();
-    // Steepest at 50/s: 2 * 0.7325 * 1.699 + 1.235 = 3.72 a decade.
+    // Steepest at 50/s: 2 * 0.7325 * 1.699 + 1.235 = 3.72 per decade.
     let steepest = 3.73 * 10.0 / f64::from(steps);
     assert!(
         factors
@@ -48,8 +47,8 @@ fn it_is_continuous_and_constant_beyond_its_ends() {
     assert_eq!(factors[10_000], dynamic_increase_factor(50.0, 0.0));
 }
 
-/// The parabola of the second branch has its lowest point inside it: lg = -1.235 / (2 * 0.7325),
-/// where it is 1.6 - 1.235^2 / (4 * 0.7325).
+/// The parabola of the second branch has its minimum inside it: lg = -1.235 / (2 * 0.7325), where
+/// it is 1.6 - 1.235^2 / (4 * 0.7325).
 #[test]
 fn the_printed_fit_dips_above_a_tenth_per_second() {
     let found = dynamic_increase_factor(0.143_544, 0.0);

@@ -1,4 +1,4 @@
-//! The tangent of a bond against differences of its forces, and where it is not symmetric.
+//! The tangent of a bond compared with differences of its forces, and its asymmetry.
 
 use super::total::{bond, largest};
 use dem_run::physics::bond::tangent::{DEGREES_OF_FREEDOM, bond_tangent};
@@ -8,7 +8,7 @@ use dem_run::physics::number::Number;
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
-/// The ends after a small move or turn along freedom `j`.
+/// The ends after a small displacement or rotation along degree of freedom `j`.
 fn moved(ends: &[End; 2], j: usize, by: f64) -> [End; 2] {
     let mut ends = *ends;
     let mut axis = Vector3::zeros();
@@ -72,7 +72,7 @@ proptest! {
         }
     }
 
-    /// Every operation, against rules of differentiation written out by hand.
+    /// Every operation, compared with explicit rules of differentiation.
     #[test]
     fn dual_numbers_differentiate(x in 0.2..3.0_f64, y in 0.2..3.0_f64) {
         let (a, b) = (Dual::<2>::variable(x, 0), Dual::<2>::variable(y, 1));

@@ -1,5 +1,5 @@
-//! The total formulation: its forces are the gradient of its energy, and nothing but deformation
-//! gives a force.
+//! The total formulation: its forces are the gradient of its energy, and only deformation gives a
+//! force.
 
 use super::{MODELS, vector};
 use dem_run::physics::bond::stiffness::{BondShape, Stiffness, stiffness};
@@ -13,7 +13,7 @@ fn direction() -> impl Strategy<Value = Vector3<f64>> {
         .prop_map(|v| v.normalize())
 }
 
-/// A bond of length 1 with its ends moved and turned by up to a few tenths.
+/// A bond of length 1 with its ends displaced and rotated by up to a few tenths.
 pub(crate) fn bond() -> impl Strategy<Value = (Stiffness, Vector3<f64>, [End; 2])> {
     let ends = (vector(0.2), vector(0.5), vector(0.2), vector(0.5));
     (0..MODELS.len(), direction(), 0.2..0.6, ends).prop_map(
@@ -169,7 +169,7 @@ fn each_mode_has_its_stiffness() {
         let twisted = forces_when(none, [none, small * along]);
         near(-twisted.torques[1].x / small, k.torsion);
         near(twisted.torques[0].x / small, k.torsion);
-        // Both ends turned against each other about the contact point in the middle: bending
+        // Both ends rotated against each other about the contact point in the middle: bending
         // without shear.
         let turn = 0.5 * small * Vector3::z();
         let bent = forces_when(none, [-turn, turn]);

@@ -1,4 +1,4 @@
-//! The same bits on any number of threads, and after any interruption.
+//! The same bits for any number of threads, and after any interruption.
 
 use dem_run::plan::Plan;
 use dem_run::run::Progress;
@@ -12,7 +12,7 @@ use dem_run::state::partitions::divide;
 use super::books::feed;
 use super::{go, planned};
 
-/// Lumps that come quickly, wait for each other, break, and go.
+/// Lumps that are fed rapidly, wait for each other, break, and are removed.
 fn busy(threads: usize) -> Plan {
     let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.01] }")
         .replace("rate = 60", "rate = 400")
@@ -24,7 +24,7 @@ fn busy(threads: usize) -> Plan {
         );
     let mut plan = planned(&text);
     let state = &mut plan.state;
-    // So few particles are not worth a second thread but for this test.
+    // Outside this test, this few particles do not justify a second thread.
     state.scratch.threads = threads;
     state.scratch.partitions = divide(&state.bonds, state.particles.free, threads);
     let count = state.particles.len();
@@ -35,7 +35,7 @@ fn busy(threads: usize) -> Plan {
     plan
 }
 
-/// All that a run goes on from or tells.
+/// All data that a run continues from or reports.
 pub(crate) fn same(a: &State, b: &State) -> bool {
     let rules = |s: &State| {
         (
@@ -55,8 +55,8 @@ pub(crate) fn same(a: &State, b: &State) -> bool {
         all.map(|w| (w.touching.clone(), w.push, w.friction_j, w.damping_j))
             .collect::<Vec<_>>()
     };
-    // Spheres of clumps that are near nothing follow when somebody asks; which are near depends on
-    // when it was looked for last.
+    // Spheres of clumps without near objects are only placed on demand; which clumps have near
+    // objects depends on the last search.
     let poses = |s: &State| {
         let mut particles = s.particles.clone();
         place_all(&s.clumps, &mut particles);
@@ -194,7 +194,7 @@ fn a_run_taken_up_again_at_any_moment_goes_on_to_the_same_bits() {
             .restore(number, &mut again, &mut again_bodies)
             .unwrap();
         assert_eq!(again.steps, *at);
-        // Some to the end, and the others past what comes next.
+        // Some to the end, and the others past the next event.
         let last = if to_end.contains(why) {
             u64::MAX
         } else {
@@ -215,7 +215,7 @@ fn a_run_taken_up_again_at_any_moment_goes_on_to_the_same_bits() {
     }
 }
 
-/// In every step near those in which something is replaced: nobody knows it before.
+/// At every step near those in which something is replaced, including steps before it.
 fn taken_before_swap(
     state: &State,
     bodies: &[PlacedBody],

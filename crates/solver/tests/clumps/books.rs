@@ -1,4 +1,4 @@
-//! The books of scenes in which bodies come, become others and go.
+//! The balances of scenes in which bodies are fed, replaced and removed.
 
 use dem_run::plan::Plan;
 use dem_run::stages::ledger::{Balance, balance};
@@ -8,8 +8,8 @@ use dem_run::step::{advance, interact};
 
 use super::{HEAD, lump, planned};
 
-/// Lumps that come through an inlet, fall, become clusters on the way, bounce on a plate, roll off
-/// it and go.
+/// Lumps that enter through an inlet, fall, become clusters on the way, bounce on a plate, roll off
+/// it and leave.
 pub(crate) fn feed(restitution: f64, outlet: &str) -> String {
     let head = HEAD
         .replace("1e9,", "1e7, damping = { damping_ratio = 0.1 },")
@@ -77,7 +77,7 @@ fn mass_inside_kg(state: &State) -> f64 {
     free + state.clumps.mass_kg()
 }
 
-/// What came, was replaced and went, and whether mass agrees.
+/// Numbers of bodies fed, replaced and removed; checks the balance of mass.
 fn counted(books: &Books) -> [usize; 3] {
     let state = &books.state;
     let count = |is: fn(&PopulationEvent) -> bool| books.happened.iter().filter(|h| is(h)).count();
@@ -99,7 +99,7 @@ fn counted(books: &Books) -> [usize; 3] {
 fn what_comes_and_goes_is_booked_and_errors_fall_with_the_square_of_the_step() {
     // They leave below the plate, in flight.
     let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.015] }");
-    // Bodies bounce otherwise with each step, which scatters the error of one run: means over
+    // Bodies bounce differently for each step, which scatters the error of one run: means over
     // three.
     let errors = [4e-6, 2e-6, 1e-6].map(|step_s| {
         let of_seed = |seed: u32| {
@@ -126,7 +126,7 @@ fn what_comes_and_goes_is_booked_and_errors_fall_with_the_square_of_the_step() {
     assert!(a > 3.0 * b && b > 3.0 * c && c < 1e-5, "{a:e} {b:e} {c:e}");
 }
 
-/// Spheres that fall on a plate and go while they press on it.
+/// Spheres that fall on a plate and are removed while they press on it.
 fn pressing(outlet: &str) -> String {
     format!(
         "{}contacts.stuff-stuff = {{ restitution = 0.9 }}\n\
@@ -158,8 +158,8 @@ fn what_goes_while_it_touches_a_wall_takes_its_elastic_energy_along() {
     );
 }
 
-/// A lump whose contact spheres are larger than its own is replaced when it hits a plate, and one
-/// on another lump: contacts end, and their energy with them.
+/// A lump whose contact spheres are larger than its own is replaced when it hits a plate, and
+/// another one on another lump: contacts end, and their energy with them.
 #[test]
 fn what_shrinks_while_it_touches_books_what_contacts_lose() {
     let fed = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.5] }");
@@ -175,12 +175,12 @@ fn what_shrinks_while_it_touches_books_what_contacts_lose() {
         let [_, replaced, _] = counted(&books);
         assert!(replaced > 2, "{replaced}");
         let scale_j = books.last.energy_scale_j;
-        // The half kick that comes after the places of the moment is still that of the larger
-        // spheres: 0.05 N, and a little more as force rises step by step, at no more than 1 m/s.
-        // The rest, as of bodies that keep their size, is the step's.
+        // The half kick after the current positions is still that of the larger spheres: 0.05 N,
+        // and a little more as the force increases step by step, at no more than 1 m/s. The rest,
+        // as for bodies that keep their size, is the error of the step.
         let bound_j = replaced as f64 * 0.5 * 0.06 * step_s + 2e-5 * scale_j;
         let error_j = books.worst[0] * scale_j;
-        // Some 0.4 F d each, with a depth of at least 30 um, is what contacts hold.
+        // Contacts store about 0.4 F d each, with a depth of at least 30 um.
         let held_j = replaced as f64 * 0.4 * 0.05 * 3e-5;
         eprintln!("{replaced}: error {error_j:.1e} J of {bound_j:.1e} J, held {held_j:.1e} J");
         assert!(
@@ -190,8 +190,8 @@ fn what_shrinks_while_it_touches_books_what_contacts_lose() {
     }
 }
 
-/// Bodies that break, and go in pieces, several times as many bonds as there are at a time: the
-/// count of those that broke goes on.
+/// Bodies that break and leave in pieces, several times as many bonds as exist at a time: the count
+/// of broken bonds continues.
 #[test]
 fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
     let fed = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.015] }");

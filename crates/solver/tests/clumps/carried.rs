@@ -1,4 +1,4 @@
-//! What contacts remember is carried over when a clump that rests becomes a cluster.
+//! The contact history is carried over when a resting clump becomes a cluster.
 
 use dem_run::plan::Plan;
 use dem_run::state::State;
@@ -6,13 +6,13 @@ use nalgebra::Vector3;
 
 use super::{HEAD, block, go, planned};
 
-/// Slope on which bodies stick: friction is 0.8, and a step is steep enough to be felt.
+/// Slope on which bodies stick: friction is 0.8, and the effect of a step is noticeable.
 const SLOPE_RAD: f64 = 0.3;
 const GRAVITY_M_S2: f64 = 9.81;
 const SWAP_S: f64 = 0.1;
 
-/// A slab of four spheres that lies on another slab, `under`, which lies on a plane, all sphere on
-/// sphere; or on the plane itself.
+/// A slab of four spheres on another slab, `under`, that lies on a plane, sphere on sphere; or
+/// directly on the plane.
 fn resting(top: &str, under: Option<&str>) -> Plan {
     let slab = |name: &str, z_m: f64| {
         let more = format!("start_as = \"clump\"\nposition = [0, 0, {z_m:e}]");
@@ -34,7 +34,7 @@ fn resting(top: &str, under: Option<&str>) -> Plan {
     ))
 }
 
-/// What walls and contacts do to the four spheres of the top slab, which are given.
+/// Force of walls and contacts on the four given spheres of the top slab.
 fn force_on(state: &State, top: &[u32]) -> Vector3<f64> {
     let of_wrenches = top.iter().map(|i| {
         let [x, y, z, _] = state.particles.wrenches[*i as usize].force_n;
@@ -43,7 +43,7 @@ fn force_on(state: &State, top: &[u32]) -> Vector3<f64> {
     of_wrenches.sum()
 }
 
-/// A slab rests, is replaced, and goes on resting.
+/// A slab rests, is replaced, and stays at rest.
 fn after_swap(top: &str, under: Option<&str>) {
     let Plan {
         mut state,
@@ -64,7 +64,7 @@ fn after_swap(top: &str, under: Option<&str>) {
             .find(|(_, c)| is_top(&state, c));
         before = clump.map(|(_, now)| *now);
     }
-    // `go` has replaced and moved on: the clump as it was when forces were last summed up.
+    // `go` has replaced it and moved on: the clump at the last summation of forces.
     let clump = before.unwrap();
     let template = state
         .clumps
@@ -76,7 +76,7 @@ fn after_swap(top: &str, under: Option<&str>) {
     let body = bodies.iter().find(|body| body.name == top).unwrap().clone();
     let weight_n = template.mass_kg * GRAVITY_M_S2;
     let wanted_n = -Vector3::from(state.model.gravity_m_s2) * template.mass_kg;
-    // It rested, and stuck: far below the friction that there could be.
+    // It was at rest and stuck: far below the limit of friction.
     assert!(
         (Vector3::from(clump.force_n) - wanted_n).norm() < 1e-6 * weight_n,
         "{:?}",
@@ -87,7 +87,7 @@ fn after_swap(top: &str, under: Option<&str>) {
     let start: Vec<Vector3<f64>> = (body.particles.iter())
         .map(|i| state.particles.poses[*i as usize].place())
         .collect();
-    // Bonds are there now and pull nothing yet: the first forces are those of the contacts alone.
+    // The new bonds do not pull yet: the first forces are those of the contacts alone.
     dem_run::step::interact(&mut state);
     let first_n = force_on(&state, &body.particles);
     let first = (first_n - Vector3::from(clump.force_n)).norm() / weight_n;
@@ -106,10 +106,10 @@ fn after_swap(top: &str, under: Option<&str>) {
     let spring_m = springs.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(springs.len(), if under.is_some() { 8 } else { 4 });
     dem_run::step::advance(&mut state);
-    // The bonds were not there before and carry nothing yet: what the slope does unequally to front
-    // and back, at most its pull, comes upon them at once. The cluster swings a little, by the
-    // compliance of the bonds, of which bending is the softest, at most four times that along them;
-    // and dashpots of the four contacts answer.
+    // The new bonds carry nothing yet. The unequal part of the slope's effect on front and back, at
+    // most its pull, acts on them suddenly. The cluster swings a little, by the compliance of the
+    // bonds (softest in bending, at most four times the axial compliance), and the dashpots of the
+    // four contacts respond.
     let spring_n_m = 1.5 * 0.25 * weight_n / depth_m;
     let bond_n_m = 0.25 * 1e9 * std::f64::consts::PI * 1e-6 / 2e-3;
     let answer = 4.0 * 2.0 * SLOPE_RAD.sin() * (spring_n_m / bond_n_m).sqrt();
@@ -130,8 +130,8 @@ fn after_swap(top: &str, under: Option<&str>) {
         "{top} on {under:?}: force {first:.1e} at once, along the slope {sliding:.1e}, later {worst:.1e} of {answer:.1e}, on average {mean:.1e}; moved {moved_m:.1e} m, springs {spring_m:.1e} m"
     );
     assert!(first < 1e-6 && sliding < 1e-6, "{first:e} {sliding:e}");
-    // Nothing moves by more than a hundredth of the springs: without what they remember it would
-    // slide by all of their length.
+    // Nothing moves by more than a hundredth of the spring elongation: without the history it would
+    // slide by all of it.
     assert!(moved_m < 0.01 * spring_m, "{moved_m:e}");
     assert!(
         worst < answer && mean < 1e-3,

@@ -1,4 +1,5 @@
-//! Bodies come as often, in such shares and so turned as the scene says, and where there is place.
+//! Bodies are fed at the rates, in the proportions and with the orientations of the scene, and
+//! where there is space.
 
 use dem_run::physics::rotation::rotation;
 use dem_run::state::State;
@@ -9,10 +10,10 @@ use nalgebra::Vector3;
 use super::{HEAD, MEETS, block, go, happens, lump, planned};
 
 const BALL: &str = "[bodies.ball]\nmaterial = \"stuff\"\nparticles = [[0, 0, 0, 1e-3]]\n";
-/// Wide enough that nobody waits.
+/// Wide enough that no body waits.
 const WIDE: &str = "[regions.gate]\nbox = { min = [-50, -50, -50], max = [50, 50, 50] }\n";
 
-/// A scene without contacts, in which time passes quickly.
+/// A scene without contacts, with a large time step.
 fn fed(bodies: &str, inlet: &str) -> State {
     let text = format!("{HEAD}{bodies}[inlets.feed]\nregion = \"gate\"\n{inlet}");
     let mut plan = planned(&text);
@@ -36,7 +37,7 @@ fn a_rate_by_number_is_kept_between_start_and_end() {
         let now_s = state.time_s;
         happens(&mut state);
         let since_s = now_s.min(0.05) - 0.01;
-        // The first at once, and one every 2 ms: at the end itself none.
+        // The first at once, and one every 2 ms; none at the end itself.
         let due = if n < 100 {
             0.0
         } else {
@@ -53,7 +54,7 @@ fn a_rate_by_number_is_kept_between_start_and_end() {
     assert_eq!(state.population.inlets[0].bodies, 20);
     assert_eq!(state.clumps.all.len(), 20);
     assert_eq!(state.population.inlets[0].delayed, 0);
-    // No more than so many.
+    // No more than `count`.
     let mut state = fed(&format!("{BALL}{WIDE}"), &format!("{inlet}count = 7\n"));
     run_to(&mut state, 0.08);
     assert_eq!(state.population.inlets[0].bodies, 7);
@@ -105,7 +106,7 @@ fn a_mix_has_its_shares() {
     assert!((pairs - 0.25 * count).abs() < 4.0 * sigma);
 }
 
-/// Places, orientations and kinds.
+/// Bodies, positions and orientations.
 fn told(state: &State) -> Vec<(u32, [f64; 3], [f64; 4])> {
     let all = state.clumps.all.iter();
     all.map(|clump| (clump.template, clump.place_m, clump.turned))
@@ -132,8 +133,8 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
         assert!(a.1 != b.1 && a.2 != b.2);
     }
 
-    // When they come, before they have turned: of each axis, each component has mean 0 and mean
-    // square 1/3.
+    // When fed, before they have rotated: each component of each axis has mean 0 and mean square
+    // 1/3.
     let mut fresh = fed(&bodies(1), inlet);
     let template = fresh.clumps.templates[0].clone();
     let mut axes: Vec<[Vector3<f64>; 3]> = Vec::new();
@@ -170,7 +171,7 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
     let mean: Vector3<f64> = places.iter().sum::<Vector3<f64>>() / n;
     assert!(mean.amax() < 4.0 * 100.0 / (12.0 * n).sqrt(), "{mean}");
 
-    // As the scene's body is turned, and its like.
+    // Oriented like the scene's body, and its copies.
     let turned = "start_as = \"clump\"\nrotation = { axis = [1, 2, 2], angle = 0.9 }";
     let mut state = fed(
         &format!("{}{WIDE}", lump("lump", turned)),
@@ -183,7 +184,7 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
     assert!((found.scaled_axis() - wanted).norm() < 1e-14);
 }
 
-/// Whether no two spheres of different bodies overlap.
+/// True if no spheres of different bodies overlap.
 fn none_overlap(state: &State) -> bool {
     let clusters = &state.clusters.as_ref().unwrap().of_particle;
     let poses = &state.particles.poses;
@@ -219,7 +220,7 @@ fn bodies_with_larger_contact_spheres_do_not_come_into_each_other() {
     let scaled = "start_as = \"clump\"\nclump = { scale = 1.5 }";
     let ball = format!("{BALL}{scaled}\n").replace("ball", "body");
     for body in [lump("body", scaled), ball] {
-        // All at once, so that each has to mind those that come with it.
+        // All at once, so that each must avoid those fed with it.
         let inlet = "bodies = [\"body\"]\nrate = 1e9\ncount = 60\norientation = \"random\"\n";
         let mut state = fed(&format!("{MEETS}{body}{gate}"), inlet);
         for _ in 0..100 {
@@ -235,7 +236,7 @@ fn bodies_with_larger_contact_spheres_do_not_come_into_each_other() {
 
 #[test]
 fn nothing_comes_into_the_middle_of_a_clump() {
-    // Its inner spheres are not in the scene, but there it is.
+    // Its inner spheres are not in the scene, but their space is occupied.
     let full = block(
         "full",
         [8, 8, 8],
@@ -256,7 +257,7 @@ fn nothing_comes_into_the_middle_of_a_clump() {
     assert_eq!(state.population.inlets[0].delayed, 1);
 }
 
-/// The region lies half in a floor, and a lump needs room above it.
+/// Half of the region is inside a floor, and a lump needs room above it.
 #[test]
 fn nothing_comes_into_a_wall() {
     let text = format!(
@@ -295,7 +296,7 @@ fn who_is_due_and_has_not_come_is_counted() {
             lump("lump", "start_as = \"clump\"")
         )
     };
-    // One comes and takes the place. Due are those at 0, 10, 20 ... ms.
+    // One enters and takes the place. Due are those at 0, 10, 20 ... ms.
     for (rest, time_s, waiting) in [
         ("rate = 100", 0.0, 0),
         ("rate = 100", 0.035, 3),

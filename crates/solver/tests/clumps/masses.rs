@@ -1,4 +1,5 @@
-//! Bodies weigh what the scene says, however they start, and clumps as much as what they become.
+//! Bodies have the mass given in the scene, in whatever form they start, and clumps the mass of the
+//! clusters that replace them.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +10,10 @@ use dem_run::state::events::PopulationEvent;
 use super::{HEAD, MEETS, Whole, happens};
 use crate::helpers::scene;
 
-/// Volume of the shape that the body is said to fill, m3.
+/// Volume of the shape of the body, m3.
 const VOLUME_M3: f64 = 3e-8;
 
-/// Four spheres without symmetry that overlap, in a row with a corner.
+/// Four overlapping spheres without symmetry, in a row with a corner.
 fn cake() -> Body {
     let spheres = [
         [0.0, 0.0, 0.0, 1e-3],
@@ -37,7 +38,7 @@ fn of_text(text: &str) -> Plan {
     plan(&scene(text), bodies, 1, false).unwrap()
 }
 
-/// Mass of all bodies of the state, of clumps by their templates.
+/// Mass of all bodies of the state, with clumps by their templates.
 fn mass_kg(plan: &Plan) -> f64 {
     let p = &plan.state.particles;
     let of_clumps = plan.state.clumps.mass_kg();
@@ -71,7 +72,7 @@ fn a_body_weighs_what_the_scene_says() {
                     "{start} {says}: {found}"
                 );
             }
-            // The same shape, heavier: inertia grows as the mass, the centre stays.
+            // The same shape, heavier: inertia grows with the mass, the centre stays.
             let heavier = wanted_kg / spheres.mass_kg;
             for k in 0..3 {
                 let grown = cake.principal_moments_kg_m2[k] / spheres.principal_moments_kg_m2[k];
@@ -81,7 +82,7 @@ fn a_body_weighs_what_the_scene_says() {
             assert!(plan.notes.is_empty(), "{:?}", plan.notes);
         }
     }
-    // Of a shape that is filled with the density of the body, it weighs as much.
+    // A shape filled with the density of the body has the same mass.
     let as_much = planned("body_density = 1800").masses["cake"];
     assert_eq!(as_much.fill_density_kg_m3, Some(1800.0));
     assert!(as_much.difference_percent.unwrap().abs() < 1e-9);

@@ -1,4 +1,4 @@
-//! Spheres that cannot be touched are left out, and no bit changes.
+//! Spheres that cannot be touched are left out without changing a bit.
 
 use std::sync::Arc;
 
@@ -121,8 +121,8 @@ fn make_no_difference(few: State) {
     assert!(on_ground > 100 && on_each_other > 100);
 }
 
-/// What a clump takes that waits: its outer spheres, and no more, however many spheres and bonds
-/// its body has.
+/// Memory of a waiting clump: only its outer spheres, whatever the numbers of spheres and bonds of
+/// its body.
 #[test]
 fn clumps_share_what_they_are_made_of() {
     let lump = porous("lump", "").replace(

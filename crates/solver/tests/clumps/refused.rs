@@ -1,4 +1,4 @@
-//! Scenes with clumps that cannot be are refused, with the place, the value and what to do.
+//! Invalid scenes with clumps are refused, with the place, the value and the remedy.
 
 use super::regions::box_stl;
 use super::{HEAD, MEETS, block, lump, try_plan};
@@ -6,7 +6,7 @@ use crate::helpers::scene;
 use dem_io::{Body, Diagnostic};
 use dem_run::plan::plan;
 
-/// The message says where, what, and what to do, and a program that gives it ends with 2.
+/// The message gives place, problem and remedy, and a program that prints it ends with exit code 2.
 fn refused(text: &str, place: &str, problem: &str, remedy: &str) {
     told(&try_plan(text).unwrap_err(), place, problem, remedy);
 }
@@ -63,7 +63,7 @@ fn materials_that_meet_without_a_word() {
     };
     assert!(try_plan(&lumps("stuff")).is_ok());
     refused(&lumps("other"), "[contacts]", "other", "-");
-    // A body that is fed meets its like.
+    // Fed bodies meet copies of themselves.
     let fed = format!(
         "{HEAD}{other}contacts.other-stuff = {{ restitution = 0.5 }}\n{}\
          [regions.gate]\nsphere = {{ centre = [0, 0, 0], radius = 0.1 }}\n\
@@ -110,7 +110,7 @@ fn clumps_in_other_bodies_at_the_start() {
             pair("upper", &format!("position = [0, 0, 1.9e-3]\n{first}")),
             pair("under", second)
         );
-        // Both are named, and how deep they are in each other.
+        // Both are named, with the depth of their overlap.
         refused(&text, "test.toml", "'upper'", "move the bodies apart");
         refused(&text, "test.toml", "'under'", "move the bodies apart");
         refused(&text, "test.toml", "0.1 mm", "move the bodies apart");

@@ -1,4 +1,4 @@
-//! Regions against what they are by definition.
+//! Regions compared with their definitions.
 
 use dem_run::geometry::Bounds;
 use dem_run::state::regions::Region;
@@ -17,8 +17,8 @@ fn regions(text: &str) -> Vec<Region> {
         .regions
 }
 
-/// Whether points are inside, and that points asked for are inside and spread over all of it: the
-/// mean is the centre.
+/// Checks which points are inside, and that sampled points are inside and spread over the entire
+/// region: their mean is the centre.
 fn compare(region: &Region, is_inside: impl Fn(&Vector3<f64>) -> Option<bool>, half: f64) {
     let mut random = Random(5);
     let (mut inside, mut outside) = (0, 0);
@@ -50,8 +50,8 @@ fn compare(region: &Region, is_inside: impl Fn(&Vector3<f64>) -> Option<bool>, h
         }
     }
     assert!(count > 100.0);
-    // The same mean as that of points of which a larger box is full, within four times what chance
-    // allows.
+    // The same mean as that of points that fill a larger box, within four times the effect of
+    // chance.
     let (mut mean, mut n) = (Vector3::zeros(), 0.0);
     for _ in 0..20_000 {
         let point = Vector3::from(random.point(half));
@@ -86,8 +86,7 @@ fn shapes_contain_what_they_should() {
         (!on(depth)).then_some(depth > 0.0)
     };
     compare(&all[1], ball, 1.0);
-    // By the distance from the axis as twice the area of a triangle, and by the ends as half
-    // spaces.
+    // The distance from the axis as twice the area of a triangle, and the ends as half-spaces.
     let (from, to) = (Vector3::new(-0.3, -0.2, -0.4), Vector3::new(0.4, 0.3, 0.2));
     let cylinder = |p: &Vector3<f64>| {
         let axis = to - from;
@@ -97,7 +96,7 @@ fn shapes_contain_what_they_should() {
             .then_some(beside > 0.0 && above > 0.0 && below > 0.0)
     };
     compare(&all[2], cylinder, 1.0);
-    // Ends and faces belong to them.
+    // Ends and faces are included.
     assert!(all[0].contains([0.3, 0.6, 0.9]) && all[0].contains([-0.5, -0.2, 0.1]));
     assert!(all[2].contains(from.into()));
 }
@@ -145,7 +144,7 @@ fn the_inside_of_a_closed_surface_is_a_region_whichever_way_its_facets_look() {
             assert!((all[1].bounds().low[k] - 1e-3 * low[k]).abs() < 1e-15);
             assert!((all[1].bounds().high[k] - 1e-3 * high[k]).abs() < 1e-15);
         }
-        // The same points but for those within rounding of a face.
+        // The same points except those within rounding of a face.
         let near = |p: &Vector3<f64>| {
             (0..3).any(|k| {
                 [low[k], high[k]]
@@ -158,7 +157,7 @@ fn the_inside_of_a_closed_surface_is_a_region_whichever_way_its_facets_look() {
             |p| (!near(p)).then(|| all[0].contains((*p).into())),
             1.0,
         );
-        // In line with corners and edges, where rays have a hard time.
+        // In line with corners and edges, which is difficult for rays.
         for (point, wanted) in [
             ([-0.1, 0.2, 0.5], true),
             ([-0.1, 0.2, 0.95], false),

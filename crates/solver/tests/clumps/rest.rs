@@ -1,4 +1,4 @@
-//! Clumps at rest on a plane sink in as the closed form says.
+//! The depth of clumps at rest on a plane is that of the closed form.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -12,13 +12,13 @@ use super::{HEAD, planned};
 const RADIUS_M: f64 = 4e-3;
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// Depth, m, at which a sphere rests under a force, N: F = 4/3 E* sqrt(R) d^(3/2).
+/// Depth, m, of a sphere at rest under a force, N: F = 4/3 E* sqrt(R) d^(3/2).
 fn hertz_m(force_n: f64) -> f64 {
     let reduced_pa = 1e8 / (2.0 * (1.0 - 0.25 * 0.25));
     (0.75 * force_n / (reduced_pa * RADIUS_M.sqrt())).powf(2.0 / 3.0)
 }
 
-/// So many equal spheres, in a ring around one more where there are two heights.
+/// This number of equal spheres, in a ring around one more if there are two heights.
 fn settled(count: u32, hat: bool, turned_rad: f64) {
     let mut particles = String::new();
     for n in 0..count {
@@ -51,12 +51,12 @@ fn settled(count: u32, hat: bool, turned_rad: f64) {
     let weight_n = template.mass_kg * GRAVITY_M_S2;
     let share_n = weight_n / f64::from(count);
     let depth_m = hertz_m(share_n);
-    // The contacts are springs of 3/2 F/d each: they swing at about sqrt(3/2 g/d), damped by more
-    // than a half of the critical damping.
+    // The contacts are springs of 3/2 F/d each: they oscillate at about sqrt(3/2 g/d), damped by
+    // more than half of critical damping.
     let swing_rad_s = (1.5 * GRAVITY_M_S2 / depth_m).sqrt();
     while state.time_s < 100.0 / swing_rad_s {
         if state.steps.is_multiple_of(50) {
-            // Against the momentum of the fall.
+            // Compared with the momentum of the fall.
             interact(&mut state);
             let balance = balance(&mut state);
             assert!(balance.momentum_error < 1e-10);

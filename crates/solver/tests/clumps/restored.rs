@@ -1,5 +1,5 @@
-//! Clusters and fragments that become rigid clumps again: what is conserved, what is lost and
-//! booked, what is kept.
+//! Clusters and fragments that become rigid clumps again: conserved quantities, recorded losses,
+//! and retained data.
 
 use dem_run::stages::population::apply_topology_change;
 use dem_run::stages::restoring::restore_clumps;
@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use super::books::{booked, feed};
 use super::{HEAD, Whole, lump, planned};
 
-/// A lump that flies and spins, is replaced at once, and may become rigid again wherever it is.
+/// A lump that flies and spins, is replaced at once, and may become rigid again anywhere.
 fn flying() -> State {
     let body = lump(
         "lump",
@@ -48,7 +48,7 @@ fn a_cluster_swapped_in_and_out_ten_times_does_not_drift() {
             matches!(&state.scratch.events.population[..], [PopulationEvent::Restored { particles: 11, lost_j, .. }] if *lost_j < 1e-12 * start.kinetic_j)
         );
         let clump = state.clumps.all[0];
-        // The template of the scene serves again.
+        // The template of the scene is used again.
         assert_eq!((clump.template, state.clumps.templates.len()), (0, 1));
         let first = first.get_or_insert(clump);
         let close = |a: &[f64], b: &[f64], size: f64| {
@@ -83,13 +83,13 @@ fn a_cluster_swapped_in_and_out_ten_times_does_not_drift() {
 #[test]
 fn a_fragment_keeps_its_strain_and_its_broken_bonds() {
     let mut state = flying();
-    // A bond less, and a sphere out of its place: the rest still holds together.
+    // One bond missing, and a sphere displaced: the rest is still connected.
     state.bonds.set_broken(0);
     let broken = state.bonds.ends[0];
     let aside = Vector3::new(0.0, 2e-6, 0.0);
     let place = state.particles.poses[3].place() + aside;
     state.particles.poses[3].put_at(place.into());
-    // It moves as a part of the rigid body does there.
+    // It moves with the rigid body at that position.
     let motion = &mut state.particles.motions[3];
     let spin = Vector3::from(motion.spin_rad_s);
     motion.velocity_m_s = (Vector3::from(motion.velocity_m_s) + spin.cross(&aside)).into();
@@ -128,7 +128,7 @@ fn a_fragment_keeps_its_strain_and_its_broken_bonds() {
     let end = whole(&state);
     assert!((end.momentum - start.momentum).norm() < 1e-12 * start.momentum.norm());
     assert!((end.kinetic_j / start.kinetic_j - 1.0).abs() < 1e-12);
-    // Strain is a difference of places that are rounded to 1e-16 m, of 2e-6 m.
+    // Strain is a difference of positions rounded to 1e-16 m, of 2e-6 m.
     assert!((elastic_energy(&state).total() / strain_j - 1.0).abs() < 1e-8);
 }
 

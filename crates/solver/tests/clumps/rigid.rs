@@ -1,4 +1,4 @@
-//! Clumps that nothing acts on move as rigid bodies do.
+//! Clumps without forces move as rigid bodies.
 
 use dem_run::physics::rotation::rotation;
 use dem_run::physics::rotation::{drift, kinetic_j};
@@ -31,7 +31,7 @@ fn two_and_three_spheres_turn_as_free_rotation_says_to_the_last_bit() {
         let mut state = flying(particles);
         let template = state.clumps.templates[0].clone();
         let start = state.clumps.all[0];
-        // The spin is as the scene says.
+        // The spin is that of the scene.
         let spin = start.spin_rad_s(&template);
         assert!((spin - Vector3::new(30.0, -20.0, 50.0)).norm() < 1e-13 * spin.norm());
         let mut turned = start.turned;
@@ -65,7 +65,7 @@ fn a_tumbling_clump_keeps_its_energy_over_a_hundred_thousand_steps() {
     let other = lump("other", "position = [0, 1, 0]");
     let mut state = planned(&format!("{HEAD}{MEETS}{}{other}", lump("lump", tumbles))).state;
     let template = state.clumps.templates[0].clone();
-    // 50 steps in the time in which a body of the least moment would turn once: see `drift`.
+    // 50 steps in the time of one revolution of a body with the smallest moment: see `drift`.
     let clump = state.clumps.all[0];
     let fastest = Vector3::from(clump.angular_momentum).norm() / template.moments_kg_m2[0];
     state.time_step_s = std::f64::consts::TAU / fastest / 50.0;
@@ -92,8 +92,8 @@ fn numbers<const N: usize>(value: &Value) -> [f64; N] {
     std::array::from_fn(|k| value[k].as_f64().unwrap())
 }
 
-/// The largest error of the spin along the axes of the body at eighths of a period, relative to 5
-/// rad/s, and of the orientation; through the whole solver.
+/// The largest errors of the spin in body axes, relative to 5 rad/s, and of the orientation, at
+/// eighths of a period; through the complete solver.
 fn flip(steps_per_period: usize) -> (f64, f64) {
     let all: Value = serde_json::from_str(include_str!("../shape/data/clump.json")).unwrap();
     let case = &all["dzhanibekov_I_1_2_3"];
@@ -128,7 +128,7 @@ fn flip(steps_per_period: usize) -> (f64, f64) {
         turn = turn.max(rotation(clump.turned).angle_to(&rotation([x, y, z, w])));
         middle.push(own[1]);
     }
-    // It turns over, and back.
+    // It flips over, and back.
     assert!(
         middle.iter().any(|w| *w < -4.9) && middle.iter().any(|w| *w > 4.9),
         "{middle:?}"
@@ -140,7 +140,7 @@ fn flip(steps_per_period: usize) -> (f64, f64) {
 fn a_body_that_spins_about_its_middle_axis_flips_when_it_should() {
     let [rough, fine] = [10_000, 20_000].map(flip);
     eprintln!("spin and turn: {rough:?}, {fine:?}");
-    // As the rotation alone does; and with the square of the step.
+    // Equal to the error of the rotation alone, and proportional to the square of the step.
     assert!(fine.0 < 5e-7 && fine.1 < 7.5e-7);
     for (a, b) in [(rough.0, fine.0), (rough.1, fine.1)] {
         assert!(((a / b).log2() - 2.0).abs() < 0.1, "{a:e} {b:e}");

@@ -8,7 +8,7 @@ use super::again::same;
 use super::books::{booked, feed};
 use super::{HEAD, MEETS, go, planned};
 
-/// Lumps that come through an inlet and stay clumps while they fall on a plate.
+/// Lumps that enter through an inlet and stay clumps while they fall on a plate.
 fn unbreakable() -> String {
     let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.015] }");
     text.split_inclusive('\n')
@@ -16,7 +16,7 @@ fn unbreakable() -> String {
         .collect()
 }
 
-/// Whether clumps touch something when it is asked or not.
+/// The query has no effect, whether or not clumps touch something at that time.
 #[test]
 fn to_look_for_the_limit_changes_nothing() {
     let [mut quiet, mut asked] = [planned(&unbreakable()), planned(&unbreakable())];
@@ -51,7 +51,7 @@ fn a_clump_of_one_sphere_takes_the_step_of_the_sphere() {
     }
 }
 
-/// At the start there is nothing, and no clump ever has bonds.
+/// There is nothing at the start, and clumps never have bonds.
 #[test]
 fn impacts_of_clumps_that_are_to_come_are_foreseen() {
     let Plan { state, step, .. } = planned(&unbreakable());
@@ -61,7 +61,7 @@ fn impacts_of_clumps_that_are_to_come_are_foreseen() {
     let touched = books.last.contact_damping_j > 0.0;
     eprintln!("{:e} s: {:?}", step.step_s, books.worst);
     assert!(touched && books.worst[0] < 1e-2 && books.worst[1] < 1e-11);
-    // What the contacts became is what was foreseen, but for several that one clump has at once.
+    // The contacts are as predicted, except for several of one clump at the same time.
     let [k, c, _] = at_impact(&books.state, step.impact_speed_m_s);
     assert!((safe_step(k, c) / step.foreseen_s - 1.0).abs() < 1e-12);
 }

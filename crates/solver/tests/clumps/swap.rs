@@ -1,5 +1,5 @@
-//! Mass, momentum, angular momentum and energy are the same before and after a bonded cluster has
-//! taken the place of a clump, and the path goes on.
+//! Mass, momentum, angular momentum and energy are the same before and after a bonded cluster
+//! replaces a clump, and the path continues.
 
 use dem_run::physics::rotation::numbers;
 use dem_run::physics::rotation::rotation;
@@ -15,7 +15,7 @@ use proptest::prelude::*;
 use super::{HEAD, MEETS, Whole, go, lump, planned};
 use crate::helpers::Random;
 
-/// A lump that becomes a cluster at a time.
+/// A lump that becomes a cluster at this time.
 fn one(time_s: f64) -> Plan {
     let body = lump("lump", "start_as = \"clump\"");
     planned(&format!(
@@ -54,8 +54,8 @@ fn swapped(far_m: f64, seed: u64) {
 
     let about = Vector3::from(before.place_m);
     let whole = Whole::of(&state.particles, 0..count, &about);
-    // What stands far away is rounded: places are right to `eps * far`, which is a share of arms
-    // that are no longer than the reach.
+    // Positions far from the origin are rounded: they are accurate to `eps * far`, a fraction of
+    // arms no longer than the reach.
     let fraction = 1e-12 + 2.0 * f64::EPSILON * about.norm() / template.reach_m;
     let spin = before.spin_rad_s(&template);
     let speed = Vector3::from(before.velocity_m_s).norm() + spin.norm() * template.reach_m;
@@ -70,10 +70,10 @@ fn swapped(far_m: f64, seed: u64) {
     assert!((whole.kinetic_j - kinetic).abs() < fraction * mass * speed * speed);
     if far_m <= 1.0 {
         assert!((whole.kinetic_j / kinetic - 1.0).abs() < 1e-12);
-        // About the origin as well.
+        // Also about the origin.
         let origin = Whole::of(&state.particles, 0..count, &Vector3::zeros()).angular_momentum;
         let wanted = about.cross(&momentum) + Vector3::from(before.angular_momentum);
-        // The momenta of the spheres cancel, but for rounding.
+        // The momenta of the spheres cancel, except for rounding.
         let size = (about.norm() + template.reach_m) * mass * speed;
         assert!((origin - wanted).norm() < 1e-12 * size);
     }
@@ -173,7 +173,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
         for (sphere, &number) in template.file_number.iter().enumerate() {
             let i = body.particles[number as usize];
             assert_eq!(clusters.of_particle[i as usize], was.cluster);
-            // It stands where the clump's sphere stood, and has moved on for one step.
+            // It starts at the position of the clump's sphere, and has moved for one step.
             let pose = template.pose(sphere, &was);
             let motion = was.motion_at(template, &pose.place());
             let wanted = pose.place() + Vector3::from(motion.velocity_m_s) * 1e-6;
@@ -188,7 +188,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
                 .all(|i| clusters.of_particle[*i as usize] == was.cluster)
         );
     }
-    // The others are what they were.
+    // The others are unchanged.
     place_all(&state.clumps, &mut state.particles);
     for name in ["d", "e"] {
         let (was, is) = (clump_of(&start, name), clump_of(&state, name));
@@ -212,7 +212,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
     assert_eq!((state.population.replaced, state.clumps.all.len()), (4, 1));
 }
 
-/// How the path of a body that is replaced on the way differs from that of one that never is.
+/// Difference between the path of a body that is replaced on the way and one that never is.
 #[test]
 fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
     let spin = [40.0, -25.0, 60.0];
@@ -230,8 +230,8 @@ fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
     let shape: Vec<[f64; 3]> = template.spheres.iter().map(|s| s.place_m).collect();
     let count = shape.len();
 
-    // All that centrifugal forces could pull at once on one bond of the body, twice as it acts
-    // suddenly.
+    // Upper bound of the sudden load by centrifugal forces on one bond of the body, with a factor
+    // of two for its suddenness.
     let omega = Vector3::from(spin).norm();
     let pulled: f64 = template
         .spheres
@@ -254,15 +254,15 @@ fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
         } else if rigid.steps.is_multiple_of(100) {
             let about = Vector3::from(clump.place_m);
             let whole = Whole::of(&elastic.particles, 0..count, &about);
-            // Each step rounds places and velocities of all spheres once.
+            // Each step rounds positions and velocities of all spheres once.
             let rounds = rigid.steps as f64 * f64::EPSILON;
             let momentum = Vector3::from(clump.velocity_m_s) * template.mass_kg;
             let turning = Vector3::from(clump.angular_momentum).norm();
             centre = centre.max((whole.centre - about).norm() / about.norm());
             assert!((whole.centre - about).norm() < rounds * about.norm());
             assert!((whole.momentum - momentum).norm() < rounds * momentum.norm());
-            // Places are rounded as the body's place is, and turn the momentum of each sphere into
-            // a wrong one.
+            // Positions are rounded relative to the position of the body, which gives errors in the
+            // momentum of each sphere.
             let moved = about.norm() * momentum.norm();
             let angular = whole.angular_momentum - Vector3::from(clump.angular_momentum);
             assert!(angular.norm() < rounds * (moved + turning), "{angular:e}");
@@ -272,7 +272,8 @@ fn a_body_that_is_replaced_in_flight_goes_on_as_the_clump_would() {
             let found = best_rotation(&shape, &places, &weights);
             let apart = rotation(found).angle_to(&rotation(clump.turned));
             let since = elastic.time_s - 0.01;
-            // Inertia is off by twice the strain, and with it the spin; in all three directions.
+            // The error of the inertia is twice the strain, and that of the spin too; in all three
+            // directions.
             let bound = 2.0 * 3.0_f64.sqrt() * strain * (1.0 + omega * since);
             assert!(apart < bound, "{apart:e} {bound:e} at {since}");
             (angle, angle_bound) = (angle.max(apart), bound);

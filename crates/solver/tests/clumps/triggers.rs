@@ -10,7 +10,7 @@ use super::{HEAD, block, happens, planned};
 
 const STEP_S: f64 = 1e-6;
 
-/// Two spheres that fall side by side at 1 m/s onto a plane that gives all back, 1 mm below.
+/// Two spheres that fall side by side at 1 m/s onto a perfectly elastic plane, 1 mm below.
 fn falling(when: &str) -> State {
     let pair = block(
         "pair",
@@ -29,7 +29,7 @@ fn falling(when: &str) -> State {
     plan.state
 }
 
-/// When it is replaced and why, and the clump in that step and in the one before.
+/// Time and cause of its replacement, and the clump in that step and in the one before.
 fn replaced(when: &str) -> Option<(f64, &'static str, [Clump; 2])> {
     let mut state = falling(when);
     let mut before = state.clumps.all[0];
@@ -80,15 +80,15 @@ fn a_region_a_time_a_force_and_an_energy_replace_when_they_are_reached() {
     assert!(replaced(&format!("when = {{ force = {} }}", 1.01 * largest_n)).is_none());
     assert!(replaced(&format!("when = {{ force = {} }}", 0.99 * largest_n)).is_some());
 
-    // Contacts take all of its energy, and give it back: what they took stays counted, once.
+    // Contacts absorb all of its energy and return it: the absorbed energy stays counted, once.
     let whole_j = 0.5 * mass_kg();
     let (_, cause, [before, now]) =
         replaced(&format!("when = {{ impact_energy = {} }}", 0.5 * whole_j)).unwrap();
     assert_eq!(cause, "impact_energy");
     assert!(before.impact_energy_j <= 0.5 * whole_j && now.impact_energy_j > 0.5 * whole_j);
     let left = 0.5 * mass_kg() * now.velocity_m_s[2].powi(2);
-    // Forces stand at the end of the step over which their power is summed: that is too much by
-    // half a step's rise of the force times the speed.
+    // Forces are those at the end of the step over which their power is summed: the excess is half
+    // of a step's increase of the force times the speed.
     let part = largest_n * STEP_S;
     assert!(
         (left - 0.5 * whole_j).abs() < 1.5 * part,
@@ -118,7 +118,8 @@ fn any_takes_the_first_and_all_waits_for_the_last() {
     assert_eq!(replaced(both).unwrap().0, early_s);
     let (late_s, ..) = replaced(&format!("{both}\nrequire = \"all\"")).unwrap();
     assert!((early_s - 3e-4).abs() < 1.01 * STEP_S && (late_s - 5e-4).abs() < 1.01 * STEP_S);
-    // All at once: it is in the region before it feels a force, and there is none when it has left.
+    // All at once: it is in the region before a force acts on it, and there is none when it has
+    // left.
     let force = "when = { enters = \"low\", force = 1e-3 }\nrequire = \"all\"";
     let (at_s, _, [_, now]) = replaced(force).unwrap();
     assert!((at_s - 1e-3).abs() < 10.0 * STEP_S && now.force_n[2] > 1e-3);

@@ -1,4 +1,4 @@
-//! Bonds break in any order; clusters are what a search of all from scratch says.
+//! Bonds break in any order; clusters equal those of a full search from scratch.
 
 use std::collections::VecDeque;
 
@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use super::{between, bonds, chain};
 
-/// The smallest particle that each one is joined to, breadth first.
+/// The smallest particle connected to each particle, by breadth-first search.
 fn breadth_first(particles: usize, bonds: &Bonds) -> Vec<u32> {
     let mut smallest = vec![u32::MAX; particles];
     for seed in 0..particles as u32 {
@@ -33,7 +33,7 @@ fn breadth_first(particles: usize, bonds: &Bonds) -> Vec<u32> {
     smallest
 }
 
-/// The smallest particle of the cluster of each one.
+/// The smallest particle of the cluster of each particle.
 fn smallest_of(clusters: &Clusters) -> Vec<u32> {
     let id = |p: &u32| *p as usize;
     clusters
@@ -44,8 +44,8 @@ fn smallest_of(clusters: &Clusters) -> Vec<u32> {
         .collect()
 }
 
-/// What must hold for any clusters: each particle in the one whose list it is in; pieces make up
-/// what they broke off; numbers by smallest particle.
+/// Invariants of any clusters: each particle belongs to the cluster in whose list it is; pieces add
+/// up to the cluster from which they broke off; clusters are numbered by smallest particle.
 fn assert_consistent(clusters: &Clusters) {
     let mut listed = 0;
     for id in clusters.living() {
@@ -82,7 +82,8 @@ fn assert_consistent(clusters: &Clusters) {
     }
 }
 
-/// Breaks some bonds, searches, and compares. Particles that had to be looked at.
+/// Breaks some bonds, searches, and compares. Returns the number of particles that had to be
+/// visited.
 fn break_and_compare(
     clusters: &mut Clusters,
     bonds: &mut Bonds,
@@ -162,13 +163,13 @@ proptest! {
                 prop_assert_eq!(resumed.members(id), clusters.members(id));
             }
         }
-        // All that is left, in one go.
+        // All remaining bonds at once.
         break_and_compare(&mut clusters, &mut bonds, &left, 100.0);
         prop_assert_eq!(clusters.living().count(), particles as usize);
     }
 }
 
-/// The rest of a ring of which one bond broke is whole; of two, it is two.
+/// A ring with one broken bond is still one piece; with two, it is two.
 #[test]
 fn damaged_is_not_broken() {
     let mut bonds = bonds(chain(0, 6).chain([[0, 5]]));
@@ -186,11 +187,12 @@ fn damaged_is_not_broken() {
         }]
     );
     assert_eq!(clusters.of_particle, [1, 1, 2, 2, 2, 1]);
-    // Known by now: nothing to be done again, and what ended stays so.
+    // Already known: nothing changes, and ended clusters stay ended.
     assert!(clusters.update(3.0, &[0, 1, 1, 2, 99], &bonds).is_empty());
 }
 
-/// What algorithm 2 as printed gets wrong: two clusters found apart that a later bond joins.
+/// A case for which algorithm 2 as printed is wrong: two clusters found apart that a later bond
+/// joins.
 #[test]
 fn clusters_that_meet_late_are_one() {
     let mut bonds = bonds([[0, 3], [1, 4], [3, 4]]);
@@ -221,7 +223,7 @@ fn only_damaged_clusters_are_looked_at() {
         }]
     );
     assert_eq!(clusters.visited, 20_020);
-    // Next time, only the piece.
+    // The next time, only the piece is searched.
     let bond = between(&bonds, 20 * 77 + 1, 20 * 77 + 2);
     bonds.set_broken(bond as usize);
     let damaged = clusters.damaged_by(&[bond], &bonds);
@@ -229,7 +231,7 @@ fn only_damaged_clusters_are_looked_at() {
     assert_eq!(clusters.visited, 20_025);
 }
 
-/// A chain of a million, cut at every hundredth bond: names do not pile up into long rows.
+/// A chain of a million, cut at every hundredth bond: no long chains of names build up.
 #[test]
 fn a_long_chain_is_searched_in_one_go() {
     let count = 1_000_000;

@@ -1,4 +1,4 @@
-//! What fragments weigh and how they move: sums over the whole, and rigid bodies.
+//! Masses and motion of fragments: sums over the total, and rigid bodies.
 
 use dem_run::state::clumps::Clumps;
 use dem_run::state::clusters::fragments::{Fragment, mass_fraction_of_largest, size_distribution};
@@ -11,7 +11,7 @@ use super::{bonds, chain};
 
 type Vector = Vector3<f64>;
 
-/// Place, velocity, spin, force, radius.
+/// Position, velocity, spin, force, radius.
 type Sphere = ([f64; 3], [f64; 3], [f64; 3], [f64; 3], f64);
 
 fn sphere() -> impl Strategy<Value = Sphere> {
@@ -106,7 +106,7 @@ proptest! {
         }
     }
 
-    /// Far from the origin, too.
+    /// Also far from the origin.
     #[test]
     fn a_rigid_body_has_its_own_motion(
         spheres in prop::collection::vec(sphere(), 2..20),

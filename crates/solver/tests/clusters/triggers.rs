@@ -2,7 +2,7 @@
 
 use dem_run::state::clusters::Triggers;
 
-/// Steps out of 1 to 400 in which there is a search, when one bond breaks at each of these steps.
+/// Steps from 1 to 400 with a search, if one bond breaks at each of these steps.
 fn searches(triggers: Triggers, breaks: &[u64]) -> Vec<u64> {
     let mut broken = 0;
     let mut found = Vec::new();
@@ -45,7 +45,7 @@ fn nothing_broken_is_nothing_to_search_for() {
     for triggers in [Triggers::every_step(), Triggers::combined(1, 0, 1)] {
         assert!(searches(triggers, &[]).is_empty());
     }
-    // An interval of 0 is taken as 1, and no bond as enough is not.
+    // An interval of 0 counts as 1, and a threshold of no bonds is ignored.
     let odd = Triggers {
         interval: 0,
         min_broken: 0,

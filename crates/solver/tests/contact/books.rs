@@ -1,4 +1,4 @@
-//! The books of energy are exact to second order in the time step, and momentum is kept to
+//! The energy balance is exact to second order in the time step, and momentum is conserved to
 //! rounding.
 
 use super::world::{Body, World, ZERO, material};
@@ -9,15 +9,15 @@ use dem_run::physics::contact::pair_parameters::PairInput;
 use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic, RollingFriction};
 use dem_run::physics::number::Vec3;
 
-/// An oblique impact of two uneven spheres that spin: what is missing in the books, over the energy
-/// at the start, and each loss over it.
+/// An oblique impact of two unequal spinning spheres. Returns the missing energy and each loss,
+/// over the initial energy.
 fn missing<L: NormalLaw<f64>, R: RollingFriction<f64>>(
     law: L,
     rolling: R,
     dt: f64,
 ) -> (f64, [f64; 4]) {
     let mut a = Body::sphere(0.01, 2500.0, ZERO);
-    // Apart by a little, so that the contact begins between steps.
+    // Slightly apart, so that the contact begins between steps.
     let direction = Vec3(2.0, 3.0, 6.0);
     let mut b = Body::sphere(0.02, 2500.0, direction * (0.03001 / 7.0));
     a.velocity = Vec3(0.3, -0.2, 0.5);
@@ -51,7 +51,7 @@ fn check<L: NormalLaw<f64> + Copy, R: RollingFriction<f64> + Copy>(law: L, rolli
     let steps = [16e-7, 8e-7, 4e-7, 2e-7, 1e-7];
     let errors = steps.map(|dt| missing(law, rolling, dt).0);
     let (_, lost) = missing(law, rolling, 1e-7);
-    // Each loss takes part.
+    // Every loss contributes.
     for lost in lost {
         assert!(lost > 1e-7, "{name}");
     }

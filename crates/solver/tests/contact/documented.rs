@@ -1,4 +1,4 @@
-//! The formulas of doc/contacts.md, computed here from what the page says, against the program.
+//! The formulas of doc/contacts.md, computed here from the page, compared with the program.
 
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::kinematics::{
@@ -93,7 +93,8 @@ fn touches() -> [(ContactKinematics, f64, f64); 2] {
     ]
 }
 
-/// Velocity of b against a at the surfaces, along the normal and across it, by the page.
+/// Velocity of b relative to a at the surfaces, along the normal and perpendicular to it, by the
+/// page.
 fn sliding(touch: &ContactKinematics) -> [Vector3<f64>; 2] {
     let [a, b] = balls();
     let n = vector(touch.normal);
@@ -106,7 +107,7 @@ fn sliding(touch: &ContactKinematics) -> [Vector3<f64>; 2] {
     [along, whole - along]
 }
 
-/// With no spring yet, what acts across the normal is the dashpot alone.
+/// Without a spring force yet, only the dashpot acts perpendicular to the normal.
 fn check_dashpots(
     law: &impl NormalLaw<f64>,
     touch: &ContactKinematics,
@@ -120,7 +121,7 @@ fn check_dashpots(
     assert_near(force.dot(&n), normal_n, 1e-9);
     let off = (force - n * force.dot(&n) + c_t * across).norm();
     assert!(off < 1e-9 * c_t * across.norm(), "{off:e}");
-    // Friction turns each end by its lever.
+    // Friction rotates each end by its lever.
     let [on_a, on_b] = torques(touch, found.force_on_b, Vec3(0.0, 0.0, 0.0)).map(vector);
     let arm = (-c_t * across).cross(&n);
     let lever_b = balls()[1].radius_m - 0.5 * OVERLAP_M;
@@ -133,7 +134,7 @@ fn check_dashpots(
 
 #[test]
 fn dashpots_and_levers_are_those_of_the_page() {
-    // Friction so high that it never bounds them.
+    // Friction so high that it never limits them.
     let pair_input = PairInput::new(RESTITUTION, 1e3);
     let materials = [0, 1].map(|k| Elastic {
         young_modulus_pa: YOUNG_PA[k],
@@ -175,7 +176,7 @@ fn dashpots_and_levers_are_those_of_the_page() {
     }
 }
 
-/// Where they slide, spring and dashpot together are mu N; with restitution 1 there is no dashpot.
+/// When sliding, spring and dashpot together are mu N; with restitution 1 there is no dashpot.
 #[test]
 fn friction_bounds_the_dashpot() {
     for (touch, ..) in touches() {
@@ -192,7 +193,7 @@ fn friction_bounds_the_dashpot() {
     }
 }
 
-/// Moment on b of a contact that has rolled by so much across the normal, N m.
+/// Moment on b of a contact that has rolled by this amount perpendicular to the normal, N m.
 fn moment(
     rolling: &impl RollingFriction<f64>,
     touch: &ContactKinematics,
@@ -208,7 +209,8 @@ fn moment(
     vector(response(&law, rolling, touch, &history, 0.0).moment_on_b)
 }
 
-/// Rolling friction is a moment of mu_r R* N at most, across the normal, whatever the lever.
+/// Rolling friction is a moment of at most mu_r R* N, perpendicular to the normal, independent of
+/// the lever.
 #[test]
 fn rolling_friction_is_bounded_by_the_reduced_radius() {
     for (touch, radius_m, _) in touches() {
@@ -217,7 +219,7 @@ fn rolling_friction_is_bounded_by_the_reduced_radius() {
             friction: 0.05,
             damping_ratio: 0.0,
         };
-        // The spring rolled so far that it slips.
+        // A spring rolled so far that it slips.
         for moment in [
             moment(&constant, &touch, 0.0),
             moment(&spring, &touch, 100.0),

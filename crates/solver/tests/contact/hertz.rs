@@ -11,15 +11,15 @@ use dem_run::physics::contact::{ContactSprings, NormalLaw, linearised, response}
 use dem_run::physics::number::Vec3;
 use std::f64::consts::PI;
 
-/// What a central impact was.
+/// Results of a central impact.
 pub(crate) struct Central {
-    /// Until the force was 0.
+    /// Time until the force was 0.
     pub(crate) duration: f64,
     pub(crate) overlap: f64,
     pub(crate) force: f64,
 }
 
-/// A central impact; moments between steps by straight lines.
+/// A central impact; values between steps by linear interpolation.
 pub(crate) fn central_impact<L: NormalLaw<f64>>(
     world: &mut World<L, NoRolling>,
     speed: f64,
@@ -113,7 +113,7 @@ fn a_sphere_sinks_in_by_its_weight() {
     assert_near(found.force_on_b.2, 9.81 / ball.per_mass, 1e-11);
 }
 
-/// The stiffnesses that the limit of the time step takes are derivatives of the forces.
+/// The stiffnesses used for the limit of the time step are derivatives of the forces.
 #[test]
 fn stiffnesses_are_derivatives() {
     let cake = material(26e6, 0.3);

@@ -51,10 +51,10 @@ fn row_behaviour(e: f64, mu: f64, kept: TangentialUnloading) -> PairInput {
 }
 
 /// The reference's two variants keep the spring's force and its elongation. At 20 degrees and more
-/// this law keeps the elongation, too: the contact sticks only while the load falls.
+/// this law also keeps the elongation: the contact sticks only while the load decreases.
 ///
-/// Errors fall in proportion to the step at least: the load that the tangential stiffness follows
-/// begins like a root.
+/// Errors decrease at least in proportion to the step: the load, which determines the tangential
+/// stiffness, starts like a square root.
 #[test]
 fn impacts_at_all_angles_are_those_of_the_independent_implementation() {
     for row in reference().chung_ooi_4.rows {
@@ -86,7 +86,7 @@ fn impacts_at_all_angles_are_those_of_the_independent_implementation() {
     }
 }
 
-/// A contact that sticks loses energy with this law, and would win it if it kept the elongation.
+/// A sticking contact loses energy with this law, and would gain it if it kept the elongation.
 #[test]
 fn a_grazing_impact_wins_no_energy() {
     let energy = |kept| {

@@ -1,4 +1,4 @@
-//! What every law must keep, whatever it is.
+//! Invariants of every contact law.
 
 use super::world::{Body, Vector, World, ZERO, material};
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
@@ -29,7 +29,7 @@ pub(crate) fn linear() -> Linear {
     Linear::new(1e6, 0.8, &PairInput::new(0.5, 0.3))
 }
 
-/// Two balls that touch and what they remember.
+/// Two touching balls and their contact history.
 #[derive(Debug, Clone, Copy)]
 struct Scene {
     apart: Vector,
@@ -128,7 +128,7 @@ fn turned(scene: &Scene, by: &Rotation3<f64>) -> Scene {
     }
 }
 
-/// Everything that holds for one scene.
+/// Checks every condition for one scene.
 fn check(
     law: &impl NormalLaw<f64>,
     rolling: &impl RollingFriction<f64>,
@@ -139,7 +139,7 @@ fn check(
     let met = contact_kinematics(scene.apart, scene.balls, DT);
     let n = met.normal;
 
-    // Never a pull; never more friction than there may be.
+    // Never attractive; friction never above its limit.
     let normal = found.force_on_b.dot(n);
     let across = found.force_on_b - n * normal;
     let room = 1e-9 * normal.abs();
@@ -170,9 +170,9 @@ fn check(
     let left = on_a + on_b + scene.apart.cross(found.force_on_b);
     prop_assert!(left.square().sqrt() <= 1e-13 * normal.abs());
 
-    // Turned as a whole, the same but turned. The overlap has the rounding of the distance, and
-    // where sliding begins the damper's share is the root of a difference that may be rounding:
-    // half the digits.
+    // Rotated as a whole, the result is the same but rotated. The overlap has the rounding error of
+    // the distance, and where sliding begins the contribution of the damper is the square root of a
+    // difference that may be rounding: half the digits.
     let normal_response = law.evaluate(&met, scene.history.overlap_m, DT);
     let speed = met.velocity_m_s.square().sqrt();
     let size = normal_response.elastic_n + normal_response.normal_damping_n_s_m * speed;
@@ -231,7 +231,7 @@ proptest! {
     }
 }
 
-/// Steady sliding: friction is mu N against the motion, and loses its power.
+/// Steady sliding: friction is mu N against the motion, and dissipates its power.
 #[test]
 fn sliding_loses_friction_times_way() {
     let mut world = World::new(
@@ -262,7 +262,7 @@ fn sliding_loses_friction_times_way() {
     }
 }
 
-/// All that a contact needs to go on is its history.
+/// A contact can continue from its history alone.
 #[test]
 fn a_contact_goes_on_from_its_history() {
     let ball = Body {

@@ -10,8 +10,8 @@ use dem_run::physics::contact::{ContactEnergy, ContactSprings, NormalLaw, Respon
 use dem_run::physics::number::Vec3;
 use proptest::prelude::*;
 
-/// A state of a contact that is led: overlap over 1e-5 m, displacement across over 1e-6 m, turn
-/// across over 1e-3 rad.
+/// A state of a prescribed contact: overlap over 1e-5 m, tangential displacement over 1e-6 m,
+/// tangential rotation over 1e-3 rad.
 type Place = [f64; 5];
 
 const ROLLING: ElasticPlastic = ElasticPlastic {
@@ -46,17 +46,17 @@ fn touch(overlap_m: f64, moved: Vector, turned: Vector) -> ContactKinematics {
     }
 }
 
-/// What a path did: work put in across and by turning, and what the law says it lost.
+/// Result of a path: work done tangentially and by rotation, and the loss given by the law.
 struct Led {
     work: f64,
     lost: f64,
-    /// The least that the law may have lost by its own bound, and the largest energy stored.
+    /// The smallest loss of the law by its own bound, and the largest energy stored.
     bound: f64,
     scale: f64,
     last: Response,
 }
 
-/// Leads a contact along straight lines between places, in so many steps each, of 1 s.
+/// Moves a contact along straight lines between states, in this many steps each, of 1 s.
 fn lead<L: NormalLaw<f64>>(law: &L, places: &[Place], steps: u32) -> Led {
     let start = touch(places[0][0] * 1e-5, ZERO, ZERO);
     let mut last = response(law, &ROLLING, &start, &ContactSprings::default(), 0.0);
@@ -110,11 +110,11 @@ fn lead<L: NormalLaw<f64>>(law: &L, places: &[Place], steps: u32) -> Led {
     }
 }
 
-/// The least a step can lose. With W the mean of the old and the new force times the motion x, and
-/// c the share to which sliding cuts the spring back, W - (U_new - U_old) is concave in c; at c = 0
-/// it is not below -k_old x^2 / 8, at c = 1 not below -(k_old - k_new) x^2 / 8 while the load falls
-/// and not below 0 while it rises. Both come only where the motion takes more than the whole force
-/// back.
+/// The smallest loss of a step. With W the mean of the old and the new force times the motion x,
+/// and c the factor to which sliding reduces the spring, W - (U_new - U_old) is concave in c. At
+/// c = 0 it is at least -k_old x^2 / 8; at c = 1 at least -(k_old - k_new) x^2 / 8 while the load
+/// decreases, and at least 0 while it increases. Both bounds are reached only if the motion
+/// reverses more than the entire force.
 fn least(before: f64, now: f64, kept: f64, old: Vector, moved: Vector, new: Vector) -> f64 {
     let stuck = old * kept + moved * (0.5 * (1.0 + kept));
     let cut = (new.square() / stuck.square().max(f64::MIN_POSITIVE))
@@ -130,8 +130,8 @@ fn stored(energy: &ContactEnergy) -> f64 {
     energy.tangential + energy.rolling
 }
 
-/// Pressed, displaced, pressed less, let back: a spring that keeps its force wins energy, this law
-/// does not.
+/// Pressed, displaced, partly unloaded, moved back: a spring that keeps its force gains energy,
+/// this law does not.
 #[test]
 fn a_stuck_contact_creates_no_energy() {
     let places = [
@@ -146,7 +146,7 @@ fn a_stuck_contact_creates_no_energy() {
     assert!(careful.work > 0.0, "{}", careful.work);
 }
 
-/// The normal force is the derivative of the energy, so pressing and letting go loses nothing.
+/// The normal force is the derivative of the energy, so loading and unloading loses nothing.
 #[test]
 fn the_normal_force_comes_from_an_energy() {
     check_energy(&hertz(TangentialUnloading::LesserForce));
@@ -194,7 +194,7 @@ fn check<L: NormalLaw<f64>>(
         led.lost,
         led.bound
     );
-    // The losses are what was put in and is not there.
+    // The losses are the work done minus the stored energy.
     let there = stored(&led.last.energy);
     prop_assert!(
         (led.work - there - led.lost).abs() <= rounding,
@@ -203,7 +203,7 @@ fn check<L: NormalLaw<f64>>(
         there,
         led.lost
     );
-    // Once apart, nothing is left to give back.
+    // Once apart, no energy is left to return.
     places.push([-0.1, 0.0, 0.0, 0.0, 0.0]);
     let led = lead(law, &places, steps);
     prop_assert_eq!(stored(&led.last.energy), 0.0);

@@ -1,4 +1,4 @@
-//! Pairs that are moved as one body, and walls.
+//! Pairs that move as one body, and walls.
 
 use super::keeping::{DT, SPRING, hertz, linear, triple, vectors};
 use super::world::{Body, Z, ZERO};
@@ -10,8 +10,8 @@ use dem_run::physics::number::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::TAU;
 
-/// A pair that is turned as one body in so many steps a turn: how far its force leaves the pair,
-/// over the force.
+/// A pair that is rotated as one body in this many steps per revolution: the deviation of its force
+/// from the pair, over the force.
 fn whole_turn(law: &impl NormalLaw<f64>, axis: Vector3<f64>, steps: u32) -> f64 {
     let (radius, overlap) = (0.01, 1e-4);
     let axis = axis.normalize();
@@ -55,9 +55,9 @@ fn whole_turn(law: &impl NormalLaw<f64>, axis: Vector3<f64>, steps: u32) -> f64 
     worst
 }
 
-/// Turning of the whole changes no force. What is left is that of leapfrog, for which a turn by an
-/// angle moves the ends by the chord: at most angle^2 / 24 of their distance for each radian,
-/// against a spring that is stretched by 1.1e-5 m.
+/// Rotation of the whole pair changes no force. The remaining error is that of leapfrog, for which
+/// a rotation by an angle moves the ends by the chord: at most angle^2 / 24 of their distance for
+/// each radian, for a spring elongation of 1.1e-5 m.
 #[test]
 fn turning_of_the_whole_changes_no_force() {
     for axis in [Vector3::z(), Vector3::x(), Vector3::new(1.0, -2.0, 1.5)] {
@@ -74,8 +74,8 @@ fn turning_of_the_whole_changes_no_force() {
     }
 }
 
-/// A wall is the limit of a large held sphere, and what moves along with a wall feels no more than
-/// on one at rest.
+/// A wall is the limit of a large fixed sphere, and a ball that moves along with a wall has the
+/// same contact as on a wall at rest.
 #[test]
 fn a_wall_is_an_end_of_endless_mass_and_radius() {
     let ball = ContactSphere {
@@ -102,7 +102,7 @@ fn a_wall_is_an_end_of_endless_mass_and_radius() {
         &history,
         DT,
     );
-    // Against a sphere of this radius, held, whose surface is a plane to rounding.
+    // Compared with a fixed sphere of this radius, whose surface is a plane to rounding.
     let radius = 1e6;
     let huge = ContactSphere {
         velocity_m_s: ZERO,

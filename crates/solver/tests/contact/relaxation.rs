@@ -1,4 +1,4 @@
-//! Overlaps of pairs that part by breakage.
+//! Overlaps of pairs that separate by breakage.
 
 use super::world::{Body, RIGID, World, frictionless, material};
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
@@ -27,15 +27,15 @@ fn a_pair_presses_from_where_it_parted() {
     let origins: Vec<f64> = found.iter().map(|r| r.origin_m).collect();
     assert_eq!(forces, [0.0, 2.0, 0.0, 0.0, 0.5, 0.0, 0.4, 0.6]);
     assert_eq!(origins, [3.0, 3.0, 3.0, 2.0, 2.0, 1.0, 0.0, 0.0]);
-    // Ordinary pairs stay as they are, apart or not.
+    // Ordinary pairs are unchanged, apart or not.
     for overlap in [-1.0, 0.0, 2.0] {
         let found = relaxed(overlap, 0.0, 0.5);
         assert_eq!((found.overlap_m, found.origin_m), (overlap, 0.0));
     }
 }
 
-/// Two overlapping spheres let go of each other, meet with some speed and separate: never faster
-/// than they met.
+/// Two overlapping spheres separate after bond breakage, meet with some speed and part: never
+/// faster than they met.
 #[test]
 fn faces_that_part_never_fly_apart() {
     let law = HertzMindlin::new([RIGID, material(26e6, 0.3)], &frictionless());
@@ -61,7 +61,7 @@ fn faces_that_part_never_fly_apart() {
             ball.place = ball.place + ball.velocity * world.dt;
             world.before = world.dt;
         }
-        // The first kick is one whole step late: first order in the step, 2e-8 s of some 1e-4 s.
+        // The first kick is one step late: first order in the step, 2e-8 s of about 1e-4 s.
         assert!(world.kinetic() <= start * (1.0 + 1e-3), "{speed}");
         assert!(world.touch().overlap_m <= 20e-6);
         if speed > 0.0 {
@@ -71,8 +71,8 @@ fn faces_that_part_never_fly_apart() {
 }
 
 proptest! {
-    /// Whatever the path, no more work is given back than was done: the origin never rises, and
-    /// with it none of the pair's energy is out of nothing.
+    /// Whatever the path, no more work is returned than was done: the origin never increases, and
+    /// no energy of the pair is created with it.
     #[test]
     fn origins_only_fall(path in prop::collection::vec(-1.0..3.0_f64, 1..50), least in 0.0..0.5_f64) {
         let mut before = 2.0;

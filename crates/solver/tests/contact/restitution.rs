@@ -1,4 +1,4 @@
-//! Damping ratios that give a wanted restitution.
+//! Damping ratios for a given restitution.
 
 use super::hertz::central_impact;
 use super::world::{Body, RIGID, World, material};
@@ -18,21 +18,21 @@ use std::f64::consts::PI;
 const RADIUS: f64 = 0.0025;
 const SPEED: f64 = 3.9;
 
-/// An impact: restitution, and over those of the elastic one how long the force pressed and the
-/// largest overlap.
+/// An impact: its restitution, and its contact duration and largest overlap over those of the
+/// elastic impact.
 struct Impact {
     e: f64,
     pressed: f64,
     overlap: f64,
 }
 
-/// An impact in so many steps for the duration of the elastic one, which begins with the first of
+/// An impact in this many steps for the duration of the elastic one, which begins with the first of
 /// them.
 fn impact<L: NormalLaw<f64>>(law: L, elastic: (f64, f64), steps: f64) -> Impact {
     impact_within(law, elastic, steps, 0.0)
 }
 
-/// The same where the ends meet after this share of the first step.
+/// The same if the ends meet after this fraction of the first step.
 fn impact_within<L: NormalLaw<f64>>(
     law: L,
     (duration, overlap): (f64, f64),
@@ -65,8 +65,8 @@ fn pair_input(restitution: f64, pull: AttractiveDamping) -> PairInput {
 }
 
 /// The reference integrates impacts numerically: its restitution until the overlap is 0, which
-/// should be the nominal one, is off by 1.6e-8. Its ratios for a wanted restitution were searched
-/// for less sharply: an integration of the impact to 1e-12 gives 0.499999934 for that of 0.5.
+/// should be the nominal one, has an error of 1.6e-8. Its ratios for a given restitution are less
+/// accurate: an integration of the impact to 1e-12 gives 0.499999934 for that of 0.5.
 const REFERENCE_ERROR: f64 = 2e-8;
 const SEARCH_ERROR: f64 = 1e-7;
 
@@ -96,7 +96,7 @@ fn a_ratio_gives_back_the_restitution_it_is_made_for() {
         let wanted = f64::from(step) / 1000.0;
         assert_near(restitution(damping_ratio(wanted)), wanted, 1e-14);
     }
-    // Critical damping gives exp(-2); the formula's two halves meet there.
+    // Critical damping gives exp(-2), where the two branches of the formula meet.
     assert_near(restitution(1.0), (-2.0_f64).exp(), 1e-15);
     for away in [1e-9, 1e-8, 1e-7, 1e-6] {
         // d(loss)/d(zeta) at 1 is 4/3.
@@ -154,8 +154,7 @@ fn a_wanted_restitution_comes_out_of_both_laws() {
     }
 }
 
-/// Smallest, mean and largest restitution over the moments within a step at which the ends may
-/// meet.
+/// Smallest, mean and largest restitution over the times within a step at which the ends may meet.
 fn over_moments<L: NormalLaw<f64> + Copy>(law: L, elastic: (f64, f64), steps: f64) -> [f64; 3] {
     let moments = (0..50).map(|n| (f64::from(n) + 0.5) / 50.0);
     let found: Vec<f64> = moments
@@ -177,9 +176,9 @@ fn restitution_of_the_linear_law_is_of_second_order_in_the_step() {
     }
 }
 
-/// Hertz's stiffness grows as the ends come nearer, so that what the lag of the velocity takes is
-/// not met to the last: a tenth of it is left, an eighth in few steps. The lag by itself takes
-/// these shares over the number of steps.
+/// Hertz's stiffness increases as the ends approach, so the effect of the velocity's lag is not
+/// fully compensated: a tenth of it is left, an eighth with few steps. The lag by itself gives
+/// these fractions over the number of steps.
 #[test]
 fn little_is_left_of_the_lag_of_the_velocity_in_hertz_law() {
     for (wanted, lag) in [(0.1, 2.15), (0.3, 0.61), (0.6, 0.11)] {
@@ -191,8 +190,8 @@ fn little_is_left_of_the_lag_of_the_velocity_in_hertz_law() {
     }
 }
 
-/// The step is an eighth of what is stable: 12.6 for the elastic impact. Without the share of the
-/// first kick that is due, a restitution of 0.6 would come out between 0.575 and 0.621.
+/// The step is an eighth of the stable one: 12.6 for the elastic impact. Without the fraction of
+/// the first kick that is due, a restitution of 0.6 would vary between 0.575 and 0.621.
 #[test]
 fn at_the_automatic_step_the_linear_law_keeps_its_restitution_within_a_percent() {
     for wanted in [0.1, 0.3, 0.6, 0.9, 1.0] {

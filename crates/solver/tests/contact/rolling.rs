@@ -13,7 +13,7 @@ use dem_run::physics::number::Vec3;
 const DT: f64 = 1e-5;
 const DENSITY: f64 = 2500.0;
 
-/// A sphere that lies on a plane under `gravity` with the overlap of its weight.
+/// A sphere on a plane under `gravity` with the overlap due to its weight.
 fn lying<R: RollingFriction<f64>>(
     rolling: R,
     radius: f64,
@@ -37,7 +37,7 @@ fn run<R: RollingFriction<f64>>(world: &mut World<HertzMindlin, R>, seconds: f64
     world.step()
 }
 
-/// The lever is the radius less half the overlap l, so a sphere rolls at v0 m l^2 / (m l^2 + I):
+/// The lever is the radius less half the overlap, l, so a sphere rolls at v0 m l^2 / (m l^2 + I):
 /// 5/7 v0 for a hard one.
 #[test]
 fn a_sphere_that_slides_comes_to_roll() {
@@ -91,7 +91,7 @@ fn spheres_and_blocks_on_inclines() {
         let slip = ball.velocity.0 - ball.spin.1 * world.touch().levers_m[1];
         assert_eq!(slip.abs() < 1e-6, row.sphere_rolls, "{slip}");
 
-        // A block cannot turn.
+        // A block cannot rotate.
         let mut world = lying(NoRolling, wanted.radius, row.mu, gravity);
         world.bodies[1].per_inertia = 0.0;
         run(&mut world, 0.1);
@@ -103,7 +103,8 @@ fn spheres_and_blocks_on_inclines() {
     }
 }
 
-/// Rolling against the constant moment slows down by mu_r R N l / (m l^2 + I), stops and stays.
+/// Rolling against the constant moment decelerates by mu_r R N l / (m l^2 + I), stops and stays at
+/// rest.
 #[test]
 fn a_constant_moment_stops_a_sphere_for_good() {
     let mut world = lying(ConstantMoment { friction: 0.05 }, 0.01, 0.5, (0.0, 9.81));
@@ -116,8 +117,8 @@ fn a_constant_moment_stops_a_sphere_for_good() {
     let before = world.bodies[1].velocity.0;
     run(&mut world, 0.1);
     assert_near((before - world.bodies[1].velocity.0) / 0.1, rate, 1e-6);
-    // It stops after 0.285 s. What is stored in the tangential spring then swings out, by no more
-    // than this at first.
+    // It stops after 0.285 s. The energy of the tangential spring then causes an oscillation of at
+    // most this initial size.
     let touch = world.touch();
     let k_t =
         8.0 * world.law.shear_modulus_pa * (touch.effective_radius_m * touch.overlap_m).sqrt();
@@ -134,7 +135,7 @@ fn a_constant_moment_stops_a_sphere_for_good() {
     assert_near(world.all_lost(), energy, 1e-3);
 }
 
-/// The elastic-plastic spring holds a sphere on a slope as steep as mu_r, and gives way above.
+/// The elastic-plastic spring holds a sphere on a slope up to mu_r, and yields above.
 #[test]
 fn an_elastic_plastic_spring_holds_a_sphere_on_a_slope() {
     let law = ElasticPlastic {

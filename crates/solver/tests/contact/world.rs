@@ -1,4 +1,4 @@
-//! Two bodies that touch, moved by leapfrog, with books of their energy.
+//! Two touching bodies, integrated by leapfrog, with their energy balance.
 
 use dem_run::physics::contact::kinematics::{
     ContactKinematics, ContactSphere, WallPoint, contact_kinematics, relative_velocity, torques,
@@ -37,7 +37,7 @@ impl Body {
         }
     }
 
-    /// The plane z = 0, or where it has moved to.
+    /// The plane z = 0, or its moved position.
     pub(crate) fn floor() -> Self {
         Self {
             radius: 0.0,
@@ -77,11 +77,11 @@ pub(crate) struct World<L, R> {
     pub(crate) history: ContactSprings,
     pub(crate) gravity: Vector,
     pub(crate) dt: f64,
-    /// Step before: 0 at the start.
+    /// Previous step: 0 at the start.
     pub(crate) before: f64,
-    /// The whole radius as lever, for comparison.
+    /// True to use the full radius as lever, for comparison.
     pub(crate) whole_lever: bool,
-    /// Lost so far: normal damping, tangential damping, sliding, rolling.
+    /// Energy lost so far: normal damping, tangential damping, sliding, rolling.
     pub(crate) lost: [f64; 4],
     pending: [f64; 4],
 }
@@ -125,7 +125,7 @@ impl<L: NormalLaw<f64>, R: RollingFriction<f64>> World<L, R> {
         }
     }
 
-    /// A step: forces, kick, drift. Books and what is given back are of the time of the forces.
+    /// A step: forces, kick, drift. The balance and the result refer to the time of the forces.
     pub(crate) fn step(&mut self) -> Response {
         let touch = self.touch();
         let response = response(&self.law, &self.rolling, &touch, &self.history, self.before);
@@ -201,7 +201,7 @@ pub(crate) fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Elastic {
     }
 }
 
-/// A pair that neither damps nor rubs.
+/// A pair without damping and friction.
 pub(crate) fn frictionless() -> PairInput {
     PairInput::new(1.0, 0.0)
 }

@@ -1,4 +1,4 @@
-//! What a break says of itself, and that nothing comes after it.
+//! The data of a break, and the absence of later effects.
 
 use std::sync::Arc;
 
@@ -12,12 +12,12 @@ use super::bodies::{
     ALL, LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, YOUNG_PA, area_m2, bonded, on_one_thread, rod,
 };
 
-/// Two spheres fly apart fast enough to break their bond, turning and shearing a little.
+/// Two spheres fly apart fast enough to break their bond, with a little rotation and shear.
 fn flying_apart(incremental: bool) -> State {
     let mut state = rod(1, NORMAL, incremental);
     let m = 1.0 / state.particles.motions[0].inverse_mass;
     let k = state.bonds.normal(0);
-    // Twice the speed that the bond can hold.
+    // Twice the speed that the bond can resist.
     let force = STRENGTH_PA * area_m2();
     let speed = 2.0 * force / (0.5 * m * k).sqrt();
     for (motion, sign) in state.particles.motions.iter_mut().zip([-0.5, 0.5]) {
@@ -39,8 +39,8 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
                     assert_eq!(state.scratch.events.broken.len(), 1);
                     assert_eq!(state.broken_count, 1);
                     assert_eq!(state.broken_by_cause.of(Cause::Tension), 1);
-                    // The bond as it was: with the increments of this step, which need the forces
-                    // to be found once more without strength.
+                    // The bond before the break: with the increments of this step, for which the
+                    // forces must be computed again without strength.
                     let mut whole = before;
                     Arc::make_mut(&mut whole.bonds.rules)[0].criteria = None;
                     interact(&mut whole);
@@ -71,7 +71,7 @@ fn an_event_tells_step_place_ends_cause_and_energy() {
     });
 }
 
-/// After the break the ends fly on straight, also when they are driven into each other and out
+/// After the break the ends move straight on, also when they are driven into each other and out
 /// again, and are turned over.
 #[test]
 fn a_broken_bond_never_acts_again() {
@@ -103,8 +103,8 @@ fn a_broken_bond_never_acts_again() {
     });
 }
 
-/// The ends of a bond get the half of the kick that the bond still gives in the step of its break:
-/// so momentum and the velocities at the time of the break are those of the bonded pair.
+/// The ends of a bond get half of the bond's kick in the step of its break: so momentum and the
+/// velocities at the time of the break are those of the bonded pair.
 #[test]
 fn the_break_comes_in_the_middle_of_the_kick() {
     on_one_thread(|| {
@@ -132,8 +132,8 @@ fn the_break_comes_in_the_middle_of_the_kick() {
     });
 }
 
-/// A block of 4 x 4 x 4 spheres at rest, whose bonds break at a strain of 1e-8: half of the bonds
-/// are taken away, and nothing happens.
+/// A block of 4 x 4 x 4 spheres at rest, whose bonds break at a strain of 1e-8: removing half of
+/// the bonds has no effect.
 #[test]
 fn taking_bonds_from_an_unloaded_body_breaks_nothing() {
     on_one_thread(|| {

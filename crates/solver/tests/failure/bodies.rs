@@ -1,4 +1,4 @@
-//! Rods that the tests break.
+//! Rods for the failure tests.
 
 use std::sync::Arc;
 
@@ -20,15 +20,15 @@ use dem_scene::{Factor, Hold};
 pub(crate) const RADIUS_M: f64 = 1e-3;
 /// Length of a bond, m.
 pub(crate) const LENGTH_M: f64 = 2e-3;
-/// Strength in tension; the others are near it, Pa.
+/// Tensile strength, Pa; the others are similar.
 pub(crate) const STRENGTH_PA: f64 = 1e6;
-/// So stiff that the deflected shape does not matter: a force along a rod of five bonds that is
+/// So stiff that the deflected shape does not matter: an axial force on a rod of five bonds that is
 /// bent to its strength changes the moment by about (stress over stiffness) (length over radius)^2,
-/// 1e-5, a tenth of the load's step; less by the shares of the loads. Softer, and it would matter;
-/// stiffer, and the rounding of places would.
+/// 1e-5, a tenth of the load's step, and less for combined loads. With a softer rod it would
+/// matter; with a stiffer one the rounding of positions would.
 pub(crate) const YOUNG_PA: f64 = 1e13;
 
-/// Strengths that do not matter.
+/// Criteria without strengths.
 pub(crate) const NONE: Criteria = Criteria {
     tensile_strength_pa: f64::INFINITY,
     compressive_strength_pa: f64::INFINITY,
@@ -40,7 +40,7 @@ pub(crate) const NORMAL: Criteria = Criteria {
     tensile_strength_pa: STRENGTH_PA,
     ..NONE
 };
-/// Strength at the pressed edge.
+/// Strength at the compressed edge.
 pub(crate) const PRESSED: Criteria = Criteria {
     compressive_strength_pa: 1.3 * STRENGTH_PA,
     ..NONE
@@ -68,7 +68,7 @@ pub(crate) fn area_m2() -> f64 {
     PI * RADIUS_M * RADIUS_M
 }
 
-/// A row of spheres from the origin along x, with these many bonds, free and at rest. Its step is
+/// A row of spheres from the origin along x, with this many bonds, free and at rest. Its step is
 /// half of the limit.
 pub(crate) fn rod(bonds: usize, criteria: Criteria, incremental: bool) -> State {
     let mut particles = Particles::default();
@@ -114,7 +114,7 @@ pub(crate) fn bonded(
     state
 }
 
-/// Holds these spheres, except that they move along x at this speed.
+/// Fixes these spheres, except for a motion along x at this speed.
 pub(crate) fn hold(state: &mut State, particles: impl Iterator<Item = u32>, speed_m_s: f64) {
     let mut holds = [Some(Hold::Fixed); 6];
     holds[0] = Some(Hold::Velocity(speed_m_s));
@@ -130,14 +130,15 @@ pub(crate) fn hold(state: &mut State, particles: impl Iterator<Item = u32>, spee
     });
 }
 
-/// Steps in which a load of [`push`] comes to its full slope, in twice as many to its value.
+/// Number of steps in which a load of [`push`] reaches its full slope; it reaches its value in
+/// twice as many.
 pub(crate) const SOFT_STEPS: u32 = 8000;
-/// What such a load grows by in a step, of its value.
+/// Growth of such a load per step, as a fraction of its value.
 pub(crate) const LOAD_STEP: f64 = 2.0 / (3.0 * SOFT_STEPS as f64);
 
-/// Loads a sphere so slowly, and from so soft a beginning, that the body does not swing: the slope
-/// of the load rises as the square of a sine and then stays. Swings that this leaves are pi^2 / 2 /
-/// (N^2 (omega dt)^3) of the load's step, N = 8000: a fiftieth for a rod of five bonds, whose
+/// Loads a sphere so slowly and smoothly that the body does not oscillate: the slope of the load
+/// increases as the square of a sine and then stays constant. The remaining oscillations are pi^2 /
+/// 2 / (N^2 (omega dt)^3) of the load's step, N = 8000: a fiftieth for a rod of five bonds, whose
 /// slowest omega dt is 0.017.
 pub(crate) fn push(state: &mut State, particle: u32, force_n: [f64; 3], torque_n_m: [f64; 3]) {
     let soft = f64::from(SOFT_STEPS);

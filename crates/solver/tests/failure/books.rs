@@ -1,4 +1,4 @@
-//! The ledgers of energy and momentum stay closed when bonds break: their errors fall with the
+//! The balances of energy and momentum stay closed when bonds break: their errors decrease with the
 //! square of the time step.
 
 use std::f64::consts::PI;
@@ -14,7 +14,7 @@ use super::bodies::{
     LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, area_m2, damp, hold, on_one_thread, rod,
 };
 
-/// What acts on a rod besides its bonds.
+/// Effects on a rod besides its bonds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Besides {
     Nothing,
@@ -23,7 +23,7 @@ enum Besides {
     Damping,
 }
 
-/// A rod that is shaken so that its bonds break one after another, or is torn.
+/// A rod that is shaken so that its bonds break one after another, or is pulled apart.
 fn shaken(incremental: bool, besides: Besides) -> State {
     let both_edges = Criteria {
         compressive_strength_pa: STRENGTH_PA,
@@ -118,7 +118,7 @@ fn books_stay_closed_through_breaks() {
     });
 }
 
-/// A sphere that is held does not move when its bond breaks, and what holds it does no work.
+/// A fixed sphere does not move when its bond breaks, and its support does no work.
 #[test]
 fn a_support_at_rest_does_no_work_in_a_break() {
     on_one_thread(|| {
@@ -141,9 +141,9 @@ fn a_support_at_rest_does_no_work_in_a_break() {
     });
 }
 
-/// A bond between a sphere that is held and one that is moved away: all forces are those of the
-/// supports, so the books close to rounding also in the step in which it breaks, and the reaction
-/// measured there is that of the bond.
+/// A bond between a fixed sphere and one that is moved away: all forces are those of the supports,
+/// so the balance closes to rounding also in the step in which it breaks, and the measured reaction
+/// is that of the bond.
 #[test]
 fn a_bond_between_supports_breaks_without_an_error() {
     for steps in [20.0, 200.0, 2000.0] {
@@ -165,7 +165,7 @@ fn a_bond_between_supports_breaks_without_an_error() {
             assert!(balance.momentum_error < 1e-12, "{balance:?}");
             last_reaction = state.supports[1].held[0].reactions[0][0];
         }
-        // Places are rounded in every step, against the way that is made in it.
+        // Positions are rounded in every step, relative to the displacement in it.
         let rounding = f64::EPSILON * LENGTH_M / (speed * state.time_step_s) + 1e-12;
         assert!(
             largest_j < rounding * scale_j,

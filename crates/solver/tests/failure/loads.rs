@@ -1,5 +1,5 @@
-//! Rods whose load rises slowly break at the load that the closed form of the criterion says, to
-//! the load of one step.
+//! Rods under a slowly increasing load break at the load given by the closed form of the criterion,
+//! to within one step of the load.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use super::bodies::{
     area_m2, hold, on_one_thread, push, rod,
 };
 
-/// A load at the free end of a rod whose other end is held: force and torque, N and N m, in some
+/// A load at the free end of a rod whose other end is fixed: force and torque, N and N m, in some
 /// proportion.
 #[derive(Debug, Clone, Copy)]
 struct End {
@@ -35,7 +35,7 @@ fn closed_form(end: &End, to_contact_m: f64) -> [f64; 4] {
     ]
 }
 
-/// How much of its strengths such a bond uses (tension, compression, shear, equivalent).
+/// Utilisation of each strength of such a bond (tension, compression, shear, equivalent).
 fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64; 4] {
     let pulled = axial.max(0.0) + bending;
     let sheared = shear + torsion;
@@ -47,7 +47,7 @@ fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64
     ]
 }
 
-/// A rod held at one end, with a load on the other that slowly grows to `end` and beyond.
+/// A rod fixed at one end, with a load on the other that slowly grows to `end` and beyond.
 fn loaded(bonds: usize, criteria: Criteria, incremental: bool, end: &End) -> State {
     let mut state = rod(bonds, criteria, incremental);
     hold(&mut state, std::iter::once(0), 0.0);
@@ -55,13 +55,14 @@ fn loaded(bonds: usize, criteria: Criteria, incremental: bool, end: &End) -> Sta
     state
 }
 
-/// The load at this moment, less the whole, in steps of the load.
+/// The present load minus the full load, in steps of the load.
 fn beyond(state: &State) -> f64 {
     (factor_at(&state.loads[0].factor, state.time_s) - 1.0) / LOAD_STEP
 }
 
-/// Runs until the first break: how far beyond the whole load, in steps of the load, which bond, and
-/// the cause. The bond has not reached its criterion the step before, and has at the break.
+/// Runs until the first break. Returns the load beyond the full load, in steps of the load, the
+/// bond, and the cause. The bond has not reached its criterion in the step before, and has at the
+/// break.
 fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
     let fraction = |state: &State, at: usize| {
         let forces = state.bonds.forces(at, &state.particles.poses);
@@ -77,7 +78,7 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
         if let Some(&first) = state.scratch.events.broken.first() {
             let at = first.bond as usize;
             let bonds = std::mem::replace(&mut state.bonds, whole);
-            // Increments are those of this step, which the bonds had before they broke.
+            // The increments are those of this step, before the bonds broke.
             if bonds.histories.is_empty() {
                 assert!(fraction(state, at) >= 1.0, "{at} broke before its strength");
             }
@@ -94,11 +95,11 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
     None
 }
 
-/// Proportions of loads at the end of a rod of this length; the last number of each is a stress.
+/// Load proportions at the end of a rod of this length; the last number of each is a stress.
 fn ends(length_m: f64) -> [End; 8] {
     let force = STRENGTH_PA * area_m2();
     let moment = STRENGTH_PA * PI * RADIUS_M.powi(3) / 4.0;
-    // In the middle of the last bond, the moment of the force is taken back.
+    // In the middle of the last bond, the moment of the force is subtracted.
     let back = 0.5 * LENGTH_M;
     let end = |name, force, torque| End {
         name,
@@ -133,7 +134,7 @@ fn ends(length_m: f64) -> [End; 8] {
     ]
 }
 
-/// Breaks rods of this many bonds in every way, by both formulations, one bond being the weakest.
+/// Breaks rods of this many bonds in every way, with both formulations, one bond being the weakest.
 fn breaks_at_the_closed_form(bonds: usize, weakest: usize) {
     let length = LENGTH_M * bonds as f64;
     let mut rods = 0;
@@ -197,9 +198,9 @@ fn a_chain_breaks_at_the_closed_form() {
     on_one_thread(|| breaks_at_the_closed_form(5, 2));
 }
 
-/// Tension breaks at the pulled edge, also while a small push acts on the bond; compression at the
-/// pressed edge, if there is a strength for it. The equivalent stress always counts bending, and
-/// pressure never.
+/// Failure in tension at the tensile edge, also under a small compression of the bond; in
+/// compression at the compressed edge, if there is a strength for it. The equivalent stress always
+/// includes bending, and never compression.
 #[test]
 fn each_edge_breaks_at_its_own_strength() {
     let force = STRENGTH_PA * area_m2();

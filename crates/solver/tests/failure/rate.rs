@@ -10,11 +10,11 @@ use super::bodies::{
     LENGTH_M, NORMAL, PRESSED, SHEAR, STRENGTH_PA, VON_MISES, YOUNG_PA, hold, on_one_thread, rod,
 };
 
-/// Steps until the strain of the static strength is reached.
+/// Number of steps until the strain of the static strength is reached.
 const STEPS: f64 = 2000.0;
 
-/// Both ends of a bond are moved apart at this rate (together if negative). What it had of the
-/// strain of the static strength when it broke, if it did before eight times that, and how.
+/// Moves both ends of a bond apart at this rate (together if negative). Returns its strain at the
+/// break over that of the static strength, if it breaks before eight times that, and the cause.
 fn pulled(
     rate_1_s: f64,
     criteria: Criteria,
@@ -58,8 +58,8 @@ fn pulled_by(
 fn assert_breaks_at(found: Option<(f64, Cause)>, wanted: f64, cause: Cause, what: &str) {
     let (strain, by) = found.unwrap_or_else(|| panic!("{what}: does not break"));
     assert_eq!(by, cause, "{what}");
-    // At the first step beyond. Places are rounded by up to 4e-6 of what they move in a step, ten
-    // thousand times.
+    // At the first step beyond. Positions are rounded by up to 4e-6 of their displacement per step,
+    // ten thousand times.
     let late = (strain - wanted) * STEPS;
     assert!(
         (-0.05..1.05).contains(&late),
@@ -67,7 +67,7 @@ fn assert_breaks_at(found: Option<(f64, Cause)>, wanted: f64, cause: Cause, what
     );
 }
 
-/// Worked by hand from Platzer 2022, eq. 20, with its parentheses.
+/// Computed by hand from Platzer 2022, eq. 20, with its parentheses.
 const TABLE: [(f64, f64); 9] = [
     (1e-6, 1.0),
     (4.64e-6, 1.0),
@@ -136,8 +136,8 @@ fn pressed_bonds_are_not_strengthened() {
     });
 }
 
-/// Two bonds in a row reach their strength in the same step, at the same rate, and both break: that
-/// one does is no faster pull on the other yet.
+/// Two bonds in a row reach their strength in the same step, at the same rate, and both break: the
+/// break of one does not yet accelerate the elongation of the other.
 #[test]
 fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
     on_one_thread(|| {
@@ -158,8 +158,8 @@ fn a_break_does_not_strengthen_its_neighbour_in_the_same_step() {
     });
 }
 
-/// A pair that turns as one body is pulled by its own turning, whose relative velocity is across
-/// the bond: no rate of elongation, but one of eq. 21 as it is printed.
+/// A pair that rotates as one body is pulled by its own rotation, whose relative velocity is
+/// perpendicular to the bond: no rate of elongation, but a rate by eq. 21 as printed.
 #[test]
 fn turning_strengthens_by_the_printed_rate_alone() {
     on_one_thread(|| {
@@ -167,7 +167,7 @@ fn turning_strengthens_by_the_printed_rate_alone() {
             let mut state = rod(1, NORMAL, false);
             Arc::make_mut(&mut state.bonds.rules)[0].strengthening_from_1_s = Some(1.0);
             Arc::make_mut(&mut state.bonds.rules)[0].strain_rate_measure = strain_rate_measure;
-            // 40/s: a factor of 5.46; the turning pulls at twice the strength.
+            // 40/s: a factor of 5.46; the rotation pulls at twice the strength.
             let spin_1_s = 40.0;
             let half_m = 0.5 * LENGTH_M;
             let per_mass = state.particles.motions[0].inverse_mass;

@@ -57,8 +57,8 @@ fn the_weakest_bond_of_a_chain_breaks_first() {
     });
 }
 
-/// Two thousand bonds, pulled alike, break at strengths of Weibull's distribution: Kolmogorov and
-/// Smirnov's test at one per cent.
+/// Two thousand bonds under equal elongation break at Weibull-distributed strengths:
+/// Kolmogorov-Smirnov test at one per cent.
 #[test]
 fn strengths_are_those_of_weibull() {
     const COUNT: usize = 2000;
@@ -117,7 +117,7 @@ fn strengths_are_those_of_weibull() {
     assert!(largest < 1.63 / (COUNT as f64).sqrt(), "off by {largest}");
 }
 
-/// Bonds of a lump, which touch neighbours in several directions.
+/// Bonds of a lump, which connects neighbours in several directions.
 const BONDS: [[u32; 2]; 9] = [
     [0, 1],
     [1, 2],
@@ -144,7 +144,7 @@ fn lump(bonds: &[[u32; 2]]) -> Body {
     Body::from_spheres(&spheres, bonds).unwrap()
 }
 
-/// A scene of lumps of these names; `more` stands in the table of the one called lump.
+/// A scene of lumps with these names; `more` is added to the table of the one called lump.
 fn scene_of(names: &[&str], more: &str) -> String {
     let mut text = "version = 1\nrun = { end_time = 1, seed = 12 }\n\
         materials.stuff = { density = 2500, young_modulus = 1e8, poisson_ratio = 0.25 }\n\
@@ -174,7 +174,7 @@ fn strengths(state: &State, body: &PlacedBody) -> BTreeMap<[u32; 2], f64> {
         .collect()
 }
 
-/// Strengths of the body called lump in a scene of these lumps, which are as `body`.
+/// Strengths of the body called lump in a scene of these lumps, which equal `body`.
 fn planned_strengths(text: &str, body: &Body) -> BTreeMap<[u32; 2], f64> {
     let scene = scene_from_text(text, "lumps.toml", &[]).unwrap();
     let bodies = (scene.bodies.keys())
@@ -204,7 +204,7 @@ fn strengths_do_not_depend_on_the_order_of_bonds_or_on_other_bodies() {
     assert_eq!(planned_strengths(&alone, &lump(&turned)), wanted);
     assert_eq!(planned_strengths(&alone, &lump(&reversed)), wanted);
 
-    // Written and read in every format that keeps both particles and bonds.
+    // Written and read in every format that stores both particles and bonds.
     let folder = tempfile::tempdir().unwrap();
     for name in ["lump.vtp", "lump.csv", "lump.txt", "lump.data"] {
         let path = folder.path().join(name);
@@ -228,7 +228,7 @@ fn strengths_do_not_depend_on_the_order_of_bonds_or_on_other_bodies() {
     }
 }
 
-/// Two bodies of one file are not the same body twice.
+/// Two bodies of one file do not have the same strengths.
 #[test]
 fn bodies_of_one_file_have_strengths_of_their_own() {
     let wanted = planned_strengths(&scene_of(&["lump"], ""), &lump(&BONDS));

@@ -1,4 +1,4 @@
-//! Fragments taken out of a run as bodies, by the program.
+//! Fragments extracted from a run as bodies, by the program.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -101,7 +101,7 @@ fn the_first_frame_gives_back_the_body_under_the_stress_that_it_began_with() {
     for (read, wanted) in read.bond_lengths.iter().zip(&wanted.bond_lengths) {
         assert!((read / wanted - 1.0).abs() < 1e-15);
     }
-    // It runs again, and its bonds push as they did.
+    // It can be run again, and its bonds have the same forces.
     let mut bodies = read_bodies(&scene).unwrap();
     bodies.insert("rod".to_owned(), read);
     let again = plan(&scene, bodies, 1, false).unwrap();
@@ -158,7 +158,7 @@ fn what_cannot_be_written_is_told() {
         "{said}"
     );
     assert!(said.contains("; the heaviest are "), "{said}");
-    // The rod ended when it broke; in the first frame it is there.
+    // The rod ended when it broke; it exists in the first frame.
     bad(here, &["--id", "1", "-o", "piece.vtp"]);
     assert!(!here.join("piece.vtp").exists());
     good(here, &["--id", "1", "--frame", "0", "-o", "piece.vtp"]);

@@ -26,7 +26,7 @@ struct Row {
     box_diagonal_m: f64,
 }
 
-/// The moments of fragments.csv, each with its fragments.
+/// The times of fragments.csv, each with its fragments.
 fn moments(folder: &ResultsFolder) -> Vec<(f64, Vec<Row>)> {
     let (header, rows) = table(&folder.fragments());
     assert_eq!(header.join(","), COLUMNS);
@@ -55,7 +55,7 @@ fn moments(folder: &ResultsFolder) -> Vec<(f64, Vec<Row>)> {
     moments
 }
 
-/// Id, parent, born, ended, particles.
+/// Id, parent, creation time, end time, particles.
 type TreeRow = (u32, Option<u32>, f64, Option<f64>, u32);
 
 fn tree(folder: &ResultsFolder) -> Vec<TreeRow> {
@@ -75,7 +75,7 @@ fn tree(folder: &ResultsFolder) -> Vec<TreeRow> {
         .collect()
 }
 
-/// How many fragments the tree knows at a time.
+/// Number of fragments in the tree at a time.
 fn count_at(tree: &[TreeRow], time_s: f64) -> u64 {
     let lives = |row: &&TreeRow| row.2 <= time_s && row.3.is_none_or(|ended_s| ended_s > time_s);
     tree.iter().filter(lives).count() as u64
@@ -97,7 +97,7 @@ fn fragments_of_every_moment_make_up_the_whole() {
         assert_eq!(particles as usize, PARTICLES + 2);
         let mass: f64 = fragments.iter().map(|f| f.mass_kg).sum();
         assert!((mass / (rod + pair) - 1.0).abs() < 1e-12, "{mass}");
-        // Nothing acts from outside: momentum stays, and forces cancel.
+        // No external force: momentum is conserved, and forces cancel.
         let carried: Vector3<f64> = fragments.iter().map(|f| f.mass_kg * f.velocity).sum();
         let scale: f64 = fragments
             .iter()
@@ -110,7 +110,7 @@ fn fragments_of_every_moment_make_up_the_whole() {
             assert!(fragment.box_diagonal_m > fragment.equivalent_diameter_m);
         }
     }
-    // Before anything has happened: two bodies, the first by name the pair.
+    // Before any event: two bodies, the first by name the pair.
     let (time_s, first) = &moments[0];
     assert_eq!(*time_s, 0.0);
     assert_eq!(first.len(), 2);
@@ -128,7 +128,7 @@ fn fragments_of_every_moment_make_up_the_whole() {
     let heaviest = last.iter().map(|f| f.mass_kg).fold(0.0, f64::max);
     assert!((said.mass_fraction_of_largest * (rod + pair) / heaviest - 1.0).abs() < 1e-12);
     assert!(last.len() > 12, "{} fragments", last.len());
-    // The pair is what it was, and has its number.
+    // The pair is unchanged, and has its number.
     assert_eq!((last[0].id, last[0].particles), (0, 2));
 }
 
@@ -151,7 +151,7 @@ fn fragments_are_written_at_frames_and_whenever_they_have_become_many_more() {
         let is_frame = times(6).any(|time_s| (pair[1].0 - time_s).abs() < 1e-6);
         assert!(is_frame || after > before + before / 20);
     }
-    // And no row of the time series at which there were many more was passed over.
+    // And no row of the time series with many more was skipped.
     for time_s in read_series(&folder.series()).unwrap().times_s {
         let last = moments.iter().rfind(|moment| moment.0 <= time_s).unwrap();
         let written = last.1.len() as u64;

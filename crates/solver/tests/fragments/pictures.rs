@@ -71,7 +71,7 @@ fn shares_step_at_every_size_up_to_all_of_the_mass() {
     );
 }
 
-/// The points of the one line of a plot, and the box that they must lie in: x, y, width, height.
+/// The points of the only line of a plot, and the box around it: x, y, width, height.
 fn line_and_area(text: &str) -> (Vec<[f64; 2]>, [f64; 4]) {
     let (_, points) = text.split_once("<polyline points=\"").unwrap();
     let points = points.split_once('"').unwrap().0;
@@ -119,7 +119,7 @@ fn plots_of_a_rod_that_burst() {
         let (points, [x, y, width, height]) = line_and_area(&text);
         assert!(points.len() > 4);
         for pair in points.windows(2) {
-            // Up or to the right: a stair.
+            // Upwards or to the right: a staircase.
             assert!(pair[1][0] >= pair[0][0] && pair[1][1] <= pair[0][1]);
             assert!(pair[1][0] == pair[0][0] || pair[1][1] == pair[0][1]);
         }
@@ -128,7 +128,7 @@ fn plots_of_a_rod_that_burst() {
         }
     }
     let text = fs::read_to_string(folder.plot("fragment_sizes")).unwrap();
-    // A decade by itself has numbers in between.
+    // A single decade has numbers in between.
     let (_, numbers) = text.split_once("<g class=\"x\"").unwrap();
     let numbers = numbers.split_once("</g>").unwrap().0;
     assert!(numbers.matches("</text>").count() > 2, "{numbers}");

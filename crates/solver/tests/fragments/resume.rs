@@ -1,4 +1,4 @@
-//! A run that is interrupted and goes on writes the same fragments.
+//! A run that is interrupted and continued writes the same fragments.
 
 use std::fs;
 use std::io::Write;
@@ -22,7 +22,7 @@ fn after_an_interruption_the_tables_are_the_same_bytes() {
     let kept = fs::read(folder.fragments()).unwrap();
     assert_eq!(kept.iter().filter(|byte| **byte == b'\n').count(), 3);
     drop(folder);
-    // Rows after the checkpoint, of which the last one is not whole.
+    // Rows after the checkpoint, of which the last one is incomplete.
     let file = fs::OpenOptions::new()
         .append(true)
         .open(path.join("fragments.csv"));

@@ -1,4 +1,4 @@
-//! What is made of a record that is known.
+//! Evaluation of known records.
 
 use std::f64::consts::PI;
 
@@ -19,9 +19,9 @@ const BEAM: Beam = Beam {
 };
 const MODULUS: f64 = 12.05e6;
 const STRENGTH: f64 = 0.21e6;
-/// Play before the pins touch, m.
+/// Clearance before the pins touch, m.
 const PLAY: f64 = 0.0002;
-/// What gives way at the pins, m/N.
+/// Compliance at the pins, m/N.
 const SOFT: f64 = 4e-6;
 
 pub(crate) fn test(kind: TestType) -> Test {
@@ -60,8 +60,8 @@ pub(crate) fn setup(specimen: Specimen) -> Setup {
     }
 }
 
-/// Force in proportion to the deflection of the body up to `largest`, then a fall to a tenth; the
-/// load travels further by what gives way at it.
+/// Force in proportion to the deflection of the body up to `largest`, then a drop to a tenth; the
+/// crosshead moves farther by its compliance.
 pub(crate) fn record(stiffness: f64, largest: f64) -> Record {
     let rows = (0..=1100).map(|i| {
         let fraction = f64::from(i) / 1000.0;
@@ -97,7 +97,7 @@ pub(crate) fn evaluated(test: &Test, setup: &Setup, record: &Record, broken: boo
     evaluated_at(40.0, test, setup, record, broken)
 }
 
-/// Bonds of the body, broken ones included.
+/// Number of bonds of the body, including broken ones.
 const ALL_BONDS: usize = 20;
 
 fn evaluated_at(
@@ -151,7 +151,7 @@ fn assert_near(got: Option<f64>, wanted: f64) {
 #[test]
 fn a_beam_by_its_force_and_way() {
     let test = test(TestType::FourPointBending);
-    // A body a tenth stiffer and stronger than wanted.
+    // A body a tenth stiffer and stronger than the target.
     let stiffness = 1.1 * BEAM.stiffness_n_m(MODULUS, 0.3, KAPPA);
     let force = 1.1 * BEAM.force_n(STRENGTH);
     let record = record(stiffness, force);
@@ -191,7 +191,7 @@ fn a_beam_by_its_force_and_way() {
 
     let first = result.first_broken.clone().unwrap();
     assert_near(Some(first.force_n), 0.8 * force);
-    // From where the fitted line has no load, as the failure travel.
+    // From the zero of the fitted line, like the displacement at failure.
     assert_near(Some(first.travel_m), 0.8 * force / by_travel);
     assert_eq!(first.place_m, PLACES[0]);
     let crack = result.crack.clone().unwrap();
@@ -202,7 +202,7 @@ fn a_beam_by_its_force_and_way() {
     assert!(result.doubts().is_empty());
 }
 
-/// A body that is accelerated pushes less on what holds it than what loads it pushes on the body.
+/// An accelerated body exerts less force on its supports than the loading pins exert on it.
 #[test]
 fn inertia_of_the_body_is_no_load() {
     let test = test(TestType::FourPointBending);
@@ -220,14 +220,14 @@ fn inertia_of_the_body_is_no_load() {
     }
 }
 
-/// What swings faster than a twentieth of the lowest period is averaged out.
+/// Oscillations faster than a twentieth of the lowest period are averaged out.
 #[test]
 fn fast_oscillations_are_left_out() {
     let test = test(TestType::FourPointBending);
     let setup = setup(Specimen::Beam(BEAM));
     let mut record = record(2e4, 50.0);
     // Rows are 1 ms apart, the lowest period is 100 ms: means are over five rows, which is the
-    // period of this.
+    // period of this oscillation.
     for (at, row) in record.rows.iter_mut().enumerate() {
         let swing_n = 4.0 * (0.4 * PI * at as f64).sin();
         row.force_n += swing_n;
@@ -235,7 +235,7 @@ fn fast_oscillations_are_left_out() {
     }
     let result = evaluated_at(10.0, &test, &setup, &record, true);
     assert_near(result.figure("specimen stiffness"), 2e4);
-    // The mean over five rows that end with the fall.
+    // The mean over five rows that end with the drop.
     assert_near(result.figure("failure force"), 50.0 * 0.998);
     let raw = evaluated(&test, &setup, &record, true);
     assert!(raw.figure("failure force").unwrap() > 53.0);
@@ -261,7 +261,7 @@ fn means_at_the_ends_and_of_rows_that_become_shorter() {
     uneven
         .rows
         .extend((0..20).map(|i| row(10.0 + 0.25 * f64::from(i), f64::from(i == 8))));
-    // Three rows are within 1 s of one before, nine of the one at 12 s.
+    // Three rows are within 1 s of an earlier one, nine of the one at 12 s.
     let smooth = uneven.smoothed(2.0);
     assert_near(Some(smooth[18].force_n), 1.0 / 9.0);
     assert_near(Some(smooth[5].time_s), 5.0);
@@ -294,14 +294,14 @@ fn a_body_that_holds_has_no_strength() {
         doubts[0].contains(&format!("although {fraction:.0} % of the bonds are broken")),
         "{doubts:?}"
     );
-    // Whoever asks for a stiffness alone has it.
+    // A request for stiffness alone is fulfilled.
     let mut elastic = test.clone();
     elastic.strength_pa = None;
     let result = evaluated(&elastic, &setup(Specimen::Beam(BEAM)), &record, false);
     assert!(result.doubts().is_empty(), "{:?}", result.doubts());
 }
 
-/// No strength of bonds makes a body stronger in proportion if they have none.
+/// Strengths of bonds do not increase the strength of a body in proportion if they have none.
 #[test]
 fn bonds_without_strength_are_not_calibrated() {
     let result = evaluate(&TestInput {
@@ -345,7 +345,7 @@ fn bars_and_discs() {
     for kind in [TestType::Compression, TestType::Tension] {
         let result = evaluated(&test(kind), &setup(bar), &record, true);
         assert_near(result.figure("strength"), 200.0 / 0.0009);
-        // By the elongation of the middle, which is 50 mm long.
+        // From the elongation of the middle, which is 50 mm long.
         assert_near(result.figure("specimen modulus"), 3e5 * 0.05 / 0.0009);
         assert_near(result.figure("stiffness"), 1.0 / (1.0 / 3e5 + SOFT));
     }

@@ -27,7 +27,7 @@ fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
         names,
         ["crosshead travel", "deflection of the specimen", "theory"]
     );
-    // The body's line goes through the origin and ends where it broke.
+    // The body's line passes through the origin and ends at the break.
     let of_body = &plot.lines[1].points;
     assert!(of_body[0].iter().all(|x| x.abs() < 1e-9));
     let end = of_body.last().unwrap();
@@ -43,7 +43,7 @@ fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
 #[test]
 fn the_crack_is_drawn_where_the_bonds_were() {
     let setup = setup(Specimen::Beam(BEAM));
-    // Two particles at opposite corners: the picture reaches from 0 to 180 mm and from 0 to 35 mm.
+    // Two particles at opposite corners: the picture extends from 0 to 180 mm and from 0 to 35 mm.
     let spheres = [[0.001, 0.015, 0.001, 0.001], [0.179, 0.015, 0.034, 0.001]];
     let broken = [(PLACES[0], 0.8), (PLACES[1], 1.0)];
     let picture = CrackPicture {

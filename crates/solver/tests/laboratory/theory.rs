@@ -1,4 +1,4 @@
-//! Closed forms against numbers of an independent implementation.
+//! Closed forms compared with an independent implementation.
 
 use std::f64::consts::PI;
 
@@ -58,7 +58,7 @@ fn reference() -> (Reference, Beam) {
     (read, beam)
 }
 
-/// Equal but for the rounding of a few operations.
+/// Equal except for the rounding of a few operations.
 #[track_caller]
 fn assert_same(got: f64, wanted: f64) {
     assert!(
@@ -110,7 +110,7 @@ fn four_point_bending_is_that_of_the_reference() {
     }
 }
 
-/// Solids by finite elements bend a little less than Timoshenko's beam, and their stress is that of
+/// Finite-element solids bend slightly less than Timoshenko's beam, and their stress is that of
 /// eq. 19.
 #[test]
 fn finite_elements_agree_with_the_beam_with_shear() {

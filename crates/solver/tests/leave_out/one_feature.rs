@@ -1,10 +1,10 @@
-//! Scenes that need one thing each: that alone is done and stored, besides what every such scene
-//! needs.
+//! Scenes with one feature each: only that feature is active and stored, in addition to the
+//! requirements of every such scene.
 
 use super::{busy, go, planned, stored};
 
-/// Spheres in a row that moves, bonded to their neighbours unless `apart`; with more lines of the
-/// body's own.
+/// Moving spheres in a row, bonded to their neighbours unless `apart`; with further lines for the
+/// body.
 fn row(name: &str, y_m: f64, more: &str) -> String {
     format!(
         "[bodies.{name}]
@@ -32,7 +32,7 @@ const MEETS: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0
 const FREE: [&str; 2] = ["bond forces", "motion"];
 const RIGID: [&str; 2] = ["rigid clumps", "motion"];
 
-/// What a scene does and stores: both compared with what is expected, in any order.
+/// Compares the active and the stored stages of a scene with the expected ones, in any order.
 fn expect(name: &str, text: &str, does: &[&str], stores: &[&str]) {
     let (_, mut plan) = planned(text);
     go(&mut plan.state, 300);
@@ -194,7 +194,7 @@ fn of_what_touches() {
         &with(&searches, &["sleep"]),
         &with(&searches, &["sleep"]),
     );
-    // Neighbours overlap; the pull tears them.
+    // Neighbours overlap and are pulled apart.
     let tears = scene(
         "",
         ", failure = { tensile_strength = 10 }",

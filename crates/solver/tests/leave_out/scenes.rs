@@ -1,4 +1,4 @@
-//! What the plans of all scenes say is left out, is.
+//! The stages reported as inactive in the plans of all scenes are inactive.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ fn scenes_in(folder: &str) -> Vec<PathBuf> {
     all
 }
 
-/// Leaving out changes no bit.
+/// Leaving stages out does not change a bit.
 fn assert_same(one: &State, other: &State) {
     let (a, b) = (&one.particles, &other.particles);
     assert!(a.poses == b.poses && a.motions == b.motions);
@@ -58,7 +58,7 @@ fn what_is_said_to_be_left_out_does_nothing_and_takes_no_memory() {
     for path in [scenes_in("data/scenes"), scenes_in("tests/scenes/good")].concat() {
         let scene = dem_scene::read_scene(&path, &[]).unwrap();
         if scene.test.is_some() {
-            // Their supports and loads come from the test, of a body that is made for it.
+            // Their supports and loads come from the test, for a body that is made for it.
             continue;
         }
         let missing = |name: &str| {

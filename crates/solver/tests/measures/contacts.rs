@@ -1,4 +1,4 @@
-//! Forces, overlaps and durations of contacts, against closed forms, read once at the end.
+//! Forces, overlaps and durations of contacts compared with closed forms, read once at the end.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ fn mass_kg() -> f64 {
     DENSITY * 4.0 / 3.0 * PI * RADIUS_M.powi(3)
 }
 
-/// A ball that comes down at this speed, m/s, to hit `with`, which `more` describes.
+/// A falling ball that hits `with` at this speed, m/s; `more` describes the object.
 fn ball(speed_m_s: f64, with: &str, law: &str, more: &str) -> String {
     let mut text = format!(
         "version = 1
@@ -49,7 +49,8 @@ const FLOOR: &str =
     "walls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"m\" }
 measures.on_floor = { of = \"floor\", quantity = \"force_z\", statistic = \"smallest\" }";
 
-/// Largest force, largest overlap and duration, each to 1 %; and the force on the ball as such.
+/// Checks the largest force, largest overlap and duration, each to 1 %, and the total force on the
+/// ball.
 fn assert_impact(text: &str, [force_n, overlap_m, duration_s]: [f64; 3], end_s: f64) {
     let values = Measured::new(text).run(end_s);
     for name in ["contact_force", "contact_force_z", "force", "force_z"] {
@@ -101,8 +102,8 @@ fn a_sphere_on_a_wall_by_the_linear_law() {
     assert_impact(&text, [(mass * stiffness).sqrt(), root, PI * root], 5e-3);
 }
 
-/// The time integral of the force is the change of the momentum, to rounding: also of a body that
-/// becomes a cluster while it touches.
+/// The time integral of the force is the change of the momentum, to rounding, also for a body that
+/// becomes a cluster during contact.
 #[test]
 fn force_times_time_is_momentum_through_a_replacement() {
     let text = "version = 1
@@ -135,7 +136,7 @@ speed_z = { of = \"lump\", quantity = \"velocity_z\" }
     let end_s = 4e-3;
     let values = run.run(end_s);
     assert!(run.state.clumps.all.is_empty());
-    // It has parted from the floor.
+    // It has separated from the floor.
     assert!(run.state.walls[0].touching.is_empty());
     assert!(values["duration"] > 4e-4 && values["duration"] < end_s);
     assert!(values["deepest"] > 0.0);
@@ -147,7 +148,7 @@ speed_z = { of = \"lump\", quantity = \"velocity_z\" }
     }
 }
 
-/// Each of two pushes the other as much, and a third counts with neither.
+/// Each of two exerts the same force on the other, and a third counts with neither.
 #[test]
 fn what_two_do_to_each_other_is_opposite() {
     let text = "version = 1
@@ -173,7 +174,7 @@ all = { quantity = \"force\", statistic = \"largest\" }
     assert_eq!((values["ac"], values["all"]), (0.0, 0.0));
 }
 
-/// Bodies that sleep are still pushed and still touch.
+/// Forces and contacts of sleeping bodies are still measured.
 #[test]
 fn a_body_that_sleeps_rests_on_its_floor() {
     let text = "version = 1

@@ -13,7 +13,7 @@ use crate::helpers::Random;
 /// A sphere: centre and radius.
 type Sphere = (Vector3<f64>, f64);
 
-/// A cone of this height and slope that stands on the plane z = 0.
+/// A cone of this height and slope on the plane z = 0.
 #[derive(Clone, Copy)]
 struct Cone {
     height: f64,
@@ -36,8 +36,8 @@ impl Cone {
     }
 }
 
-/// Layers of spheres of radius 1: in squares or hexagons, how high a layer is, after how many they
-/// repeat.
+/// Layers of spheres of radius 1: squares or hexagons, the layer height, and the number of layers
+/// after which they repeat.
 #[derive(Clone, Copy)]
 struct Lattice {
     hexagonal: bool,
@@ -65,8 +65,8 @@ const FACES: Lattice = Lattice {
     ..HEXAGONAL
 };
 
-/// The spheres of a lattice within the cone, layer by layer. `shift`: of a sphere of the lowest
-/// layer from the axis; `turn_rad` of the lattice about it.
+/// The spheres of a lattice within the cone, layer by layer. `shift`: offset of a sphere of the
+/// lowest layer from the axis; `turn_rad`: rotation of the lattice about it.
 fn regular(lattice: &Lattice, cone: &Cone, shift: [f64; 2], turn_rad: f64) -> Vec<Vec<Sphere>> {
     let shift = Vector3::new(shift[0], shift[1], 1.0);
     let turn = UnitQuaternion::from_scaled_axis(Vector3::z() * turn_rad);
@@ -96,7 +96,7 @@ fn regular(lattice: &Lattice, cone: &Cone, shift: [f64; 2], turn_rad: f64) -> Ve
     layers
 }
 
-/// A lattice of at least this many layers that stands anywhere in a cone of this slope.
+/// A lattice of at least this many layers at a random position in a cone of this slope.
 fn regular_anywhere(
     lattice: &Lattice,
     degrees: f64,
@@ -115,7 +115,7 @@ fn regular_anywhere(
     }
 }
 
-/// Spheres dropped one by one until 600 in succession find no place in the cone, with radii from
+/// Spheres dropped one by one until 600 in succession do not fit into the cone, with radii from
 /// `1 - spread` to `1 + spread`.
 fn dropped(cone: &Cone, spread: f64, random: &mut Random) -> Vec<Sphere> {
     let cell = 2.0 * (1.0 + spread);
@@ -198,7 +198,7 @@ fn lattices_cut_to_a_cone_have_its_slope() {
     }
 }
 
-/// A steep cone of six layers has some 200 spheres, few enough to depend on where each of them is:
+/// A steep cone of six layers has about 200 spheres, few enough to depend on the position of each:
 /// the largest of many errors would be a matter of luck.
 #[test]
 fn steep_cones_of_six_layers_have_their_slope_to_half_a_degree() {
@@ -221,8 +221,9 @@ fn steep_cones_of_six_layers_have_their_slope_to_half_a_degree() {
     assert!(within_1 as f64 >= 0.97 * count, "{within_1} of {count}");
 }
 
-/// Cones of 37.9 and 41.75 degrees that hold the same spheres: no measure of where these are can be
-/// right to 1 degree for both. This is why a small regular heap is not promised it.
+/// Cones of 37.9 and 41.75 degrees that contain the same spheres: no measure based on their
+/// positions can be right to 1 degree for both. This is why this accuracy is not promised for a
+/// small regular heap.
 #[test]
 fn the_same_spheres_can_fill_cones_of_different_slopes() {
     let flat = Cone::of(11.058, 37.9);
@@ -248,8 +249,8 @@ fn dropped_spheres_within_a_cone_have_its_slope() {
     }
 }
 
-/// Where a heap stands and how the world is tilted does not matter, and a few that have rolled away
-/// hardly do.
+/// The position of a heap and the direction of gravity do not matter, and a few spheres that rolled
+/// away hardly do.
 #[test]
 fn places_and_tilt_and_what_rolled_away_do_not_matter() {
     let mut random = Random(3);

@@ -1,4 +1,4 @@
-//! Values outside their tolerances, and values that are missing.
+//! Values outside their tolerances, and missing values.
 
 use super::{Measured, assert_near};
 

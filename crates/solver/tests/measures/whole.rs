@@ -1,4 +1,4 @@
-//! A set as a whole: the same before and after a cluster takes the place of a clump, and that of a
+//! A group as one object: the same before and after a cluster replaces a clump, and equal to a
 //! rigid motion.
 
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ const VECTORS: [&str; 5] = [
     "angular_velocity",
 ];
 
-/// A lump of unequal spheres that flies and tumbles, turned at the start, with all measures of it.
+/// A lump of unequal spheres that flies and tumbles, rotated at the start, with all its measures.
 fn lump(more: &str) -> String {
     let mut text = format!(
         "version = 1
@@ -59,7 +59,7 @@ fn vector(values: &BTreeMap<String, f64>, what: &str) -> Vector3<f64> {
     Vector3::from(["x", "y", "z"].map(|axis| values[&format!("{what}_{axis}")]))
 }
 
-/// Size of what is compared: 1 m, 1 m/s, 1 rad, 100 rad/s.
+/// Scale of the comparison: 1 m, 1 m/s, 1 rad, 100 rad/s.
 fn assert_same(one: &BTreeMap<String, f64>, other: &BTreeMap<String, f64>, fraction: f64) {
     for (name, value) in one {
         let size = if name.starts_with("angular") {
@@ -99,7 +99,7 @@ fn a_clump_that_is_replaced_in_flight_shows_the_same_before_and_after() {
     let (velocity, gravity) = (Vector3::new(1.0, -2.0, 3.0), Vector3::new(0.0, 1.0, -9.81));
     let moved = velocity * time_s + gravity * (0.5 * time_s * time_s);
     for values in [&before, &after] {
-        // Each of the steps rounds a place of 0.3 m.
+        // Each of the steps rounds a position of 0.3 m.
         assert_near((vector(values, "displacement") - moved).norm(), 0.0, 2e-14);
         let place = vector(&start, "position") + moved;
         assert_near((vector(values, "position") - place).norm(), 0.0, 2e-14);
@@ -107,7 +107,7 @@ fn a_clump_that_is_replaced_in_flight_shows_the_same_before_and_after() {
         assert_near((vector(values, "velocity") - now).norm(), 0.0, 1e-12);
         assert_near(values["velocity"], now.norm(), 1e-12);
         assert_near(values["displacement"], moved.norm(), 2e-14);
-        // The rotation since the start is that of the spin, which hardly changes meanwhile.
+        // The rotation since the start is that of the spin, which hardly changes in this time.
         let turned = Vector3::new(40.0, -50.0, 60.0) * time_s;
         assert_near(
             (vector(values, "rotation") - turned).norm(),
@@ -140,8 +140,8 @@ fn a_clump_shows_what_the_bonded_body_shows() {
     assert_near(vector(&bonded, "displacement").norm(), 0.0, 1e-16);
 }
 
-/// Two loose spheres that circle each other without a spin of their own: L = 2 m a v, I = 2 m a^2 +
-/// 2 2/5 m r^2.
+/// Two loose spheres that orbit each other without spin of their own: L = 2 m a v, I = 2 m a^2 + 2
+/// 2/5 m r^2.
 #[test]
 fn spheres_that_circle_each_other_turn() {
     let text = "version = 1
@@ -178,7 +178,8 @@ measures.speed = { quantity = \"velocity_x\" }
     assert_near(values["speed"], 8.0, 1e-14);
 }
 
-/// Around half a turn, rotation vectors of almost the same rotation point in opposite ways.
+/// Around half a revolution, rotation vectors of almost the same rotation point in opposite
+/// directions.
 #[test]
 fn rotations_on_both_sides_of_half_a_turn_have_a_mean() {
     let text = "version = 1
@@ -200,7 +201,7 @@ measures.turn = { quantity = \"rotation_z\" }
     assert_near(run.read()["turn"].to_degrees(), -174.0, 1e-12);
 }
 
-/// What goes through an outlet no longer counts, at the start neither.
+/// Particles removed by an outlet no longer count, also not for the initial values.
 #[test]
 fn displacement_is_that_of_the_particles_that_are_still_there() {
     let text = "version = 1

@@ -1,5 +1,5 @@
-//! Overlapping bodies whose bonds vanish, all at once or one by one, with second neighbours
-//! overlapping as well: they part without gaining energy.
+//! Overlapping bodies, including overlapping second neighbours, whose bonds vanish all at once or
+//! one by one: they separate without gaining energy.
 
 use std::sync::Arc;
 
@@ -19,13 +19,13 @@ use dem_scene::read_bodies;
 
 const RADIUS_M: f64 = 1e-3;
 
-/// The plan of a scene whose particles stand in it.
+/// The plan of a scene with inline particles.
 pub(crate) fn planned(text: &str) -> Plan {
     let scene = scene(text);
     plan(&scene, read_bodies(&scene).unwrap(), 2, false).unwrap()
 }
 
-/// A cube of 4 x 4 x 4 spheres on a lattice such that neighbours overlap by this share of r_gen,
+/// A cube of 4 x 4 x 4 spheres on a lattice such that neighbours overlap by this fraction of r_gen,
 /// bonded to their nearest neighbours.
 fn cube(overlap: f64, extra: &str) -> String {
     let apart_m = 2.0 * RADIUS_M / (1.0 + overlap);
@@ -54,7 +54,7 @@ fn cube(overlap: f64, extra: &str) -> String {
     )
 }
 
-/// Breaks a bond behind the back of the step: it holds no energy where the body is at rest.
+/// Breaks a bond outside a step: it stores no energy if the body is at rest.
 fn vanish(state: &mut State, at: usize) {
     state.bonds.set_broken(at);
     state.unsearched.push(at as u32);
@@ -81,7 +81,7 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
             let overlapping = contacts.histories.iter().filter(|m| m.origin_m() > 0.0);
             // 144 nearest neighbours; at 0.5 also the 216 across the squares.
             assert_eq!(overlapping.count(), if overlap < 0.4 { 144 } else { 360 });
-            // Bonds at rest pull by what rounding leaves of their lengths.
+            // Bonds at rest have forces from the rounding of their lengths.
             let rounding_m = 1e-12 * RADIUS_M;
             for (now, then) in state.particles.poses.iter().zip(&start) {
                 let moved = (now.place() - then.place()).norm();
@@ -94,8 +94,8 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
     }
 }
 
-/// Largest energy that has come from nowhere, over the largest energy, while a cube that vibrates
-/// falls apart: at once, or bond by bond.
+/// Largest spurious energy, over the largest energy, while a vibrating cube falls apart: at once,
+/// or bond by bond.
 fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
     let text = cube(
         overlap,
@@ -112,7 +112,7 @@ fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
     let end_s = 2e-3;
     let mut worst = 0.0_f64;
     while state.time_s < end_s {
-        // Weaker and weaker, or nothing at all from a moment on.
+        // Gradually weaker, or no bonds at all from a certain time.
         let gone = state.time_s / end_s;
         let tensile_strength_pa = match at_once {
             true if gone < 0.1 => strong.tensile_strength_pa,
@@ -141,8 +141,8 @@ fn a_vibrating_body_that_falls_apart_gains_no_energy() {
         for at_once in [true, false] {
             let errors = [2e-3, 1e-3].map(|safety| worst_gain(overlap, at_once, safety));
             eprintln!("overlap {overlap}, at once {at_once}: {errors:?}");
-            // What the leapfrog itself is off by in a vibration, (omega dt)^2/8 of its energy,
-            // falls with the square of the step; nothing else is left.
+            // The error of leapfrog itself in a vibration, (omega dt)^2/8 of its energy, decreases
+            // with the square of the step; no other error is left.
             assert!(errors[0] > 3.0 * errors[1], "{errors:?}");
             assert!(errors[1] < 1e-6, "{errors:?}");
         }
@@ -154,8 +154,8 @@ const INTO_EACH_OTHER: [f64; 3] = [0.5, 0.05, 0.0];
 const BY_EACH_OTHER: [f64; 3] = [0.02, 0.5, 0.1];
 const AWAY: [f64; 3] = [-0.5, 0.0, 0.0];
 
-/// Places of the second sphere of a pair from the first, step by step for 1.5 ms, as they fly from
-/// a small overlap; bonded with these criteria of failure.
+/// Positions of the second sphere of a pair relative to the first, step by step for 1.5 ms, from a
+/// small overlap; bonded with these failure criteria.
 fn flight(failure: Option<&str>, velocity_m_s: [f64; 3], time_step_s: f64) -> Vec<Vector3<f64>> {
     let bonded = failure.is_some();
     let list = if bonded { ", bond_list = [[0, 1]]" } else { "" };
@@ -190,8 +190,8 @@ fn a_bond_without_strength_is_none() {
         "tensile_strength = 0, shear_strength = 0, rate_strengthening = true, weibull_modulus = 3",
     ] {
         for velocity_m_s in [INTO_EACH_OTHER, BY_EACH_OTHER, AWAY] {
-            // It acts until it is looked at for the second time, and its cluster is searched a step
-            // later: that much of the approach is lost.
+            // It acts until the second check, and its cluster is searched one step later: that much
+            // of the approach is lost.
             let off = [4e-7, 2e-7, 1e-7].map(|dt| {
                 let bonded = flight(Some(failure), velocity_m_s, dt);
                 let free = flight(None, velocity_m_s, dt);
@@ -211,7 +211,7 @@ fn a_bond_without_strength_is_none() {
     }
 }
 
-/// It carries nothing: nothing of no strength is used.
+/// It carries no force: no utilisation of zero strength.
 #[test]
 fn a_bond_without_strength_holds_a_body_at_rest_together() {
     let text = cube(0.25, "").replace(
@@ -227,8 +227,8 @@ fn a_bond_without_strength_holds_a_body_at_rest_together() {
     assert!(balance.energy_error.is_finite(), "{balance:?}");
 }
 
-/// Which cluster each particle is in, by the smallest particle that unbroken bonds lead to: breadth
-/// first.
+/// The cluster of each particle, as the smallest particle connected by unbroken bonds, by
+/// breadth-first search.
 fn breadth_first(state: &State) -> Vec<u32> {
     let count = state.particles.len();
     let mut beside = vec![Vec::new(); count];

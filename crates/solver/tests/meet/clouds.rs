@@ -1,5 +1,5 @@
-//! A cloud of spheres that fly into each other: nothing is lost, whoever does the work and however
-//! often near pairs are looked for.
+//! A cloud of spheres that fly into each other: no contact is lost, for any partition of the work
+//! and any interval of the neighbour search.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use dem_run::state::contacts::{ContactModel, Contacts};
 use dem_run::state::particles::Particles;
 use dem_run::step::{advance, interact, step};
 
-/// Numbers between -1 and 1 that look random.
+/// Pseudo-random numbers between -1 and 1.
 pub(crate) fn scattered() -> impl FnMut() -> f64 {
     let mut hash = 0x9e37_79b9_7f4a_7c15_u64;
     move || {
@@ -63,8 +63,7 @@ pub(crate) fn kinds() -> [ContactKind; 3] {
     ]
 }
 
-/// 512 spheres of 1 mm, of two materials, all clusters of their own, that fly to their common
-/// centre.
+/// 512 spheres of 1 mm, of two materials, each its own cluster, that fly to their common centre.
 pub(crate) fn cloud(skin_m: f64, partitions: usize, time_step_s: f64) -> State {
     let mut any = scattered();
     let mut particles = Particles::default();
@@ -141,7 +140,8 @@ fn to_look_at_all_pairs_in_each_step_changes_no_bit() {
         for _ in 0..4000 {
             let contacts = state.contacts.as_mut().unwrap();
             if always {
-                // Nothing seems to move: who is close now is not computed longer than now.
+                // No skin is left, as if it were used up: the close pairs are found again in every
+                // step.
                 (contacts.moved_m, contacts.scratch.close_skin_left_m) = (0.0, 0.0);
             }
             looks += usize::from(contacts.scratch.close_skin_left_m <= 0.0);

@@ -1,5 +1,5 @@
-//! A sphere at rest on walls of every kind sinks in as the closed form says, and what is caught
-//! before it goes through one.
+//! The depth of a sphere at rest on walls of every type is that of the closed form, and tunnelling
+//! is detected.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -13,7 +13,7 @@ use super::apart::planned;
 const RADIUS_M: f64 = 5e-3;
 const HALF_M: f64 = 0.02;
 
-/// The sphere stands on the highest point of a wall, at the origin.
+/// A sphere on the highest point of a wall, at the origin.
 fn scene(wall: &str) -> String {
     format!(
         "version = 1\nrun.end_time = 1\nrun.safety_factor = 0.2\nrun.gravity = [0, 0, -9.81]\n\
@@ -24,7 +24,7 @@ fn scene(wall: &str) -> String {
     )
 }
 
-/// A cube around a point as triangles of an STL file, each square of several.
+/// A cube around a point as triangles of an STL file, several for each square.
 fn cube_stl(folder: &Path, centre: [f64; 3]) -> String {
     let mut text = "solid cube\n".to_owned();
     let parts = 4;
@@ -57,7 +57,7 @@ fn cube_stl(folder: &Path, centre: [f64; 3]) -> String {
     path.display().to_string()
 }
 
-/// A cube that stands on nothing, turned such that a face, an edge or a corner is up at the origin.
+/// A free-standing cube, rotated such that a face, an edge or a corner is up at the origin.
 fn cube_walls(folder: &Path) -> Vec<(&'static str, String)> {
     let mut walls = Vec::new();
     let turns = [
@@ -151,8 +151,8 @@ fn a_particle_that_is_pushed_through_a_wall_is_caught() {
     assert_eq!(state.walls[0].scratch.crossed, Some(0));
 }
 
-/// What is thinner than the particle has two sides at once: the far one pushed it out behind, with
-/// its speed, and nobody noticed.
+/// A wall thinner than the particle has two sides at once: without detection the far one pushed the
+/// particle out behind it, at full speed.
 #[test]
 fn a_particle_that_is_shot_through_a_thin_wall_is_caught() {
     for wall in [
@@ -203,7 +203,7 @@ fn impacts_of_walls_that_turn_and_ramp_are_foreseen() {
     }
 }
 
-/// The step that impacts allow follows `safety` as that of stability does.
+/// The step allowed by impacts is scaled by `safety` like that for stability.
 #[test]
 fn half_the_safety_halves_the_step_of_impacts() {
     let plate = "plane = { point = [0, 0, -1], normal = [0, 0, 1] }";
@@ -226,7 +226,7 @@ fn half_the_safety_halves_the_step_of_impacts() {
         let speed_m_s = usual.step.impact_speed_m_s;
         for fraction in [0.5, 0.1] {
             let found = with(0.9 * fraction);
-            // The end time is met.
+            // The end time is reached exactly.
             let ratio = found.step.step_s / usual.step.step_s;
             assert!((ratio / fraction - 1.0).abs() < 1e-3, "{fraction}: {ratio}");
             let in_run =

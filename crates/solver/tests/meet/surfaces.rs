@@ -1,5 +1,4 @@
-//! Walls of STL files that are odd: what they do to a sphere, what is said of them, and what is
-//! refused.
+//! Irregular walls from STL files: their effect on a sphere, their warnings, and their refusal.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -50,7 +49,7 @@ fn box_corners(low: [f64; 3], high: [f64; 3]) -> Vec<Corners> {
     corners.collect()
 }
 
-/// A sphere of 5 mm radius over a wall.
+/// A sphere of 5 mm radius above a wall.
 fn scene(wall: &str, ball: &str, run: &str) -> String {
     format!(
         "version = 1\nrun.end_time = 1\nrun.gravity = [0, 0, -9.81]\n{run}\n\
@@ -61,7 +60,7 @@ fn scene(wall: &str, ball: &str, run: &str) -> String {
     )
 }
 
-/// As [`planned`], of a scene that may be refused.
+/// As [`planned`], for a scene that may be refused.
 fn tried(text: &str) -> Result<Plan, Diagnostic> {
     let scene = scene_from_text(text, "test.toml", &[])?;
     let bodies = (scene.bodies.iter())
@@ -75,8 +74,8 @@ fn tried(text: &str) -> Result<Plan, Diagnostic> {
     plan(&scene, bodies, 2, false)
 }
 
-/// A sphere that bounces and slides over a plate does so alike whichever way its triangles are
-/// wound, and however often they stand there.
+/// A sphere bounces and slides over a plate in the same way for any winding of its triangles and
+/// any number of duplicates.
 #[test]
 fn turned_and_doubled_triangles_push_as_a_clean_plate_does() {
     let folder = tempfile::tempdir().unwrap();
@@ -160,7 +159,7 @@ fn a_body_that_starts_inside_a_solid_surface_is_refused() {
             "55 mm",
             ", the deepest of 2 places",
         ),
-        // Its centre is inside, and it reaches out.
+        // Its centre is inside, and it protrudes.
         ("[0.01, 0.02, -0.002, 5e-3]", "7 mm", ""),
     ] {
         for overlap in ["refuse", "relax"] {
@@ -177,7 +176,7 @@ fn a_body_that_starts_inside_a_solid_surface_is_refused() {
             assert!(said.ends_with(&wanted), "{said}");
         }
     }
-    // Its own corner is turned away from the sphere, which so is free.
+    // Its own corner is turned away from the sphere, which is therefore free.
     let aside = format!("{solid}\nrotation = {{ axis = [1, 0, 0], angle = \"180 deg\" }}");
     let free = "[0.01, 0.02, -0.16, 5e-3]";
     assert!(tried(&scene(&solid, free, "")).is_err());
@@ -199,7 +198,7 @@ fn a_body_that_starts_inside_a_solid_surface_is_refused() {
 fn a_surface_out_of_proportion_asks_for_its_unit() {
     let folder = tempfile::tempdir().unwrap();
     let cube = |edge_m: f64| box_corners([-0.5 * edge_m; 3], [0.5 * edge_m; 3]);
-    // Two spheres of 10 mm, and as many far apart.
+    // Two spheres of 10 mm, and the same number far away.
     let near = "[0, 0, 20, 5e-3], [0.02, 0, 20, 5e-3]";
     let wide = "[0, 0, 20, 5e-3], [8, 0, 20, 5e-3]";
     for (edge_m, balls, said) in [
@@ -259,7 +258,7 @@ fn a_belt_moves_along_its_plane() {
         format!("{level}\nsurface_velocity = [3, -2, 0]"),
         format!("{level}\nsurface_velocity = [3, 0, 1e-7]"),
         format!("{level}\nrotation = {{ axis = [0, 1, 0], angle = \"30 deg\" }}\nsurface_velocity = [0.75, 0, -0.433012702]"),
-        // Of these, each side takes its part.
+        // For these, each side contributes.
         "box = { min = [-1, -1, -1], max = [1, 1, 0] }\nsurface_velocity = [1, 0, 1]".to_owned(),
         "cylinder = { from = [0, -1, -1], to = [0, 1, -1], radius = 0.5 }\nsurface_velocity = [1, 0, 1]"
             .to_owned(),

@@ -1,4 +1,4 @@
-//! Clouds of spheres that fall on walls: fixed, turning, on a belt, pressed by a servo.
+//! Clouds of spheres that fall on walls: fixed, rotating, a belt, loaded by a servo.
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ fn floor(motion: WallMotion, belt_m_s: [f64; 3]) -> Wall {
     wall(Shape::Plane(plane), motion, belt_m_s)
 }
 
-/// The cloud falls on these walls.
+/// A cloud that falls on these walls.
 fn falling(walls: Vec<Wall>, time_step_s: f64) -> State {
     let mut state = cloud(0.1e-3, 2, time_step_s);
     state.model.gravity_m_s2 = [0.0, 0.0, -9.81];
@@ -50,7 +50,7 @@ fn worst_energy_error(walls: &[Wall], time_step_s: f64) -> f64 {
         if state.steps.is_multiple_of(20) {
             let balance = balance(&mut state);
             worst = worst.max(balance.energy_error.abs());
-            // What walls give is summed step by step, with a rounding in each.
+            // Contributions of walls are summed step by step, with rounding in each.
             let rounding = 1e-13 + f64::EPSILON * state.steps as f64;
             let errors = [balance.momentum_error, balance.angular_momentum_error];
             assert!(
@@ -101,8 +101,8 @@ fn the_books_balance_whatever_the_walls_do() {
     }
 }
 
-/// The limit of contacts alone, found quickly and found exactly: the first is never above the
-/// second, and not far below.
+/// The limit of contacts alone, computed by the fast and the exact method: the first is never above
+/// the second, and not far below.
 #[test]
 fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
     let mut state = falling(vec![floor(WallMotion::Fixed, [0.0; 3])], 4e-7);
@@ -138,8 +138,8 @@ fn a_quick_bound_of_the_limit_is_on_the_safe_side() {
     );
 }
 
-/// Contacts that cannot be stiffer than a limit are passed over; the stiffest is found whenever it
-/// is above that.
+/// Contacts that cannot be stiffer than a limit are skipped; the stiffest is found whenever it is
+/// above that limit.
 #[test]
 fn the_stiffest_contact_is_found_among_those_that_matter() {
     let mut state = falling(vec![floor(WallMotion::Fixed, [0.0; 3])], 4e-7);

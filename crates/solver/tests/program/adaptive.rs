@@ -51,7 +51,7 @@ fn it_falls_as_clumps_become_clusters_and_rises_when_it_may() {
         .map(|(_, s)| s[0].min(s[1]))
         .fold(f64::INFINITY, f64::min);
     assert!((of_adaptive["smallest_step_s"].as_f64().unwrap() / smallest_s - 1.0).abs() < 1e-4);
-    // What it costs: hardly more energy missed than without, both small, for fewer steps.
+    // Its cost: hardly more energy error than without, both small, for fewer steps.
     let error = |of: &Value| of["energy_error"].as_f64().unwrap();
     assert!(
         error(&following) < 2.0 * error(&falling).max(1e-4),
@@ -62,7 +62,7 @@ fn it_falls_as_clumps_become_clusters_and_rises_when_it_may() {
 }
 
 /// One of two spheres is pulled until the bond between them breaks, soon; after that nothing
-/// vibrates, and a constant force is followed exactly by any step.
+/// vibrates, and the effect of a constant force is exact for any step.
 const DUMBBELL: &str = "version = 1
 run = { end_time = 4, ADAPTIVE }
 materials.stuff = { density = 2500 }
@@ -109,8 +109,8 @@ fn measure(of: &Value, name: &str) -> f64 {
     of["measures"][name]["value"].as_f64().unwrap()
 }
 
-/// Two elastic spheres that have come to a halt on each other when the step is looked at: their
-/// impact is not over.
+/// Two elastic spheres that are at rest against each other when the step is updated: their impact
+/// is not over.
 const MID_CONTACT: &str = r#"version = 1
 [run]
 end_time = "0.5 s"
@@ -153,8 +153,8 @@ fn the_step_does_not_rise_in_the_middle_of_a_contact() {
     }
 }
 
-/// The step rises as the stiff body leaves, and what is listed as near was listed for small steps:
-/// two soft spheres meet then.
+/// The step increases as the stiff body leaves, and the neighbour list was made for small steps:
+/// then two soft spheres meet.
 const LATE_LISTING: &str = r#"version = 1
 [run]
 end_time = "0.15 s"
@@ -229,7 +229,7 @@ fn who_is_near_is_asked_anew_when_the_step_rises() {
     let (following, falling) = (run("true"), run("false"));
     let largest = following["adaptive"]["largest_step_s"].as_f64().unwrap();
     assert!(largest > 20.0 * falling["time_step_s"].as_f64().unwrap());
-    // How deep they press each other, and how much that takes.
+    // Depth of their compression, and its elastic energy.
     let apart_m = measure(&following, "zz") - measure(&falling, "zz");
     assert!(apart_m.abs() < 2e-5, "{apart_m:e}");
     let fraction = measure(&following, "e") / measure(&falling, "e");

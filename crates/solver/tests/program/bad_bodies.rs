@@ -1,4 +1,4 @@
-//! Bodies that cannot be right, in a scene: named with scene, body, file, particle or bond.
+//! Invalid bodies in a scene: messages with scene, body, file, particle or bond.
 
 use dem_io::Body;
 use dem_io::body::write_body;
@@ -28,7 +28,7 @@ fn assert_refused(bytes: &[u8], parts: &[&str]) {
     {
         assert!(said.contains(part), "'{part}' is not in: {said}");
     }
-    // Through a pipe it is said of standard input.
+    // Through a pipe the message names standard input.
     let output = piped(&[scene.to_str().unwrap(), "--body", "-"], bytes);
     let (said, code) = refused(&output);
     assert_eq!(code, 2);
@@ -98,7 +98,7 @@ fn particles_and_bonds_that_cannot_be() {
 fn two_bonded_particles_at_one_place() {
     let bench = Bench::new();
     let scene = bench.write("scene.toml", SCENE);
-    // Its length is in the file, so that nothing is wrong with the body itself.
+    // Its length is in the file, so that the body itself is valid.
     bench.write("sample.vtp", changed(|b| b.positions[1] = b.positions[0]));
     let said = bench.bad(&scene, &[], 2);
     let file = bench.path("sample.vtp");
@@ -110,7 +110,7 @@ fn two_bonded_particles_at_one_place() {
             file.display()
         )
     );
-    // Of two tables it is that of the bonds.
+    // For two tables the message names that of the bonds.
     let mut body = row(5);
     body.positions[1] = body.positions[0];
     write_body(&body, &bench.path("pair.csv")).unwrap();
@@ -121,8 +121,7 @@ fn two_bonded_particles_at_one_place() {
     );
 }
 
-/// A millimetre is lost at such a distance: of two tables it is that of the particles which says
-/// so.
+/// A millimetre is lost at this distance: for two tables the message names that of the particles.
 #[test]
 fn a_body_that_is_put_too_far_away() {
     let bench = Bench::new();
@@ -158,7 +157,7 @@ fn what_a_scene_lacks_for_a_body() {
         said.contains("[materials.cake]: no density") && said.contains("add density = "),
         "{said}"
     );
-    // A density in the body's file will do.
+    // A density in the body's file is sufficient.
     bench.write("sample.vtp", vtp_bytes(&row(5)));
     bench.good(&scene, &["--quiet"]);
     let said = bench.bad(&scene, &["--set", "groups.one.particles=[5]"], 2);
@@ -168,7 +167,7 @@ fn what_a_scene_lacks_for_a_body() {
     );
 }
 
-/// What is said of tables with these particles and bonds.
+/// The message for tables with these particles and bonds.
 fn said_of_tables(ending: &str, particles: &str, bonds: &str) -> String {
     let bench = Bench::new();
     bench.write(&format!("x.particles.{ending}"), particles);

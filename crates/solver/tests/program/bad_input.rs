@@ -1,9 +1,8 @@
-//! Scenes, options and folders that cannot be right: one message with the place, exit code 2,
-//! nothing left behind.
+//! Invalid scenes, options and folders: one message with the place, exit code 2, no files left.
 
 use super::{Bench, dem_run, good, refused, scene_of_data};
 
-/// What dem-run says of these arguments; nothing may be written.
+/// The message of dem-run for these arguments; nothing may be written.
 fn said_of(bench: &Bench, arguments: &[&str]) -> String {
     let before = bench.files();
     let output = dem_run()

@@ -1,4 +1,4 @@
-//! A body instead of a scene: what it holds.
+//! A body instead of a scene: its contents.
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -30,7 +30,7 @@ fn says_what_a_body_holds_from_a_file_of_each_kind() {
             let output = dem_run().args(arguments).output().unwrap();
             assert!(output.status.success() && output.stderr.is_empty());
             let said = String::from_utf8(output.stdout).unwrap();
-            // What is known of a body stands in a .vtp only, the density in LAMMPS data too.
+            // Information on the origin is only in a .vtp, the density also in LAMMPS data.
             let wanted: Vec<&str> = TEXT
                 .lines()
                 .take(if name == "row.vtp" { 7 } else { 4 })
@@ -165,7 +165,7 @@ fn a_full_disk_behind_standard_output_is_exit_code_1() {
     assert_eq!(code, 1);
 }
 
-/// A pipe that never ends is left at the first bytes that are no body.
+/// An endless pipe is rejected at the first bytes that are not a body.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_endless_pipe_is_refused_at_once() {

@@ -1,5 +1,5 @@
-//! The page of a sweep in a real browser: what is written can be read. Where no Chromium is
-//! installed there is nothing to look with.
+//! The page of a sweep in a real browser: its text is legible. Without an installed Chromium the
+//! test is skipped.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -35,8 +35,8 @@ fn look(chromium: &Path, home: &Path, options: &[&str], page: &Path) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Writes what is wrong with the words of the plots into the page: too small, outside of the plot,
-/// or over each other; and how many words there are.
+/// Writes problems of the words of the plots into the page (too small, outside the plot,
+/// overlapping) and their number.
 const INSPECT: &str = "<script>
 const wrong = [];
 let words = 0;
@@ -102,7 +102,7 @@ fn the_page_of_a_sweep_can_be_read() {
         let picture = bench.path("page.png");
         let shot = format!("--screenshot={}", picture.display());
         look(&chromium, &home, &[&shot], &bench.path("swept/sweep.html"));
-        // White paper, dark words, and the colours of the series.
+        // White background, dark words, and the colours of the series.
         assert!(colours(&picture) > 50);
     }
 }

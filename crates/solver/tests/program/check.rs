@@ -1,4 +1,4 @@
-//! `dem-run check`: what a scene will do. Nothing is run, nothing is written.
+//! `dem-run check`: the prediction for a scene. Nothing is run, nothing is written.
 
 use super::{Bench, corpus, dem_run, scene_of_data, vtp_bytes};
 
@@ -101,7 +101,7 @@ fn only_scenes_can_be_checked() {
     }
 }
 
-/// The bonds of a clump that nothing replaces are not used, and need no kind.
+/// The bonds of a clump that is never replaced are not used, and need no properties.
 #[test]
 fn says_which_bonds_are_not_used() {
     let bench = Bench::new();

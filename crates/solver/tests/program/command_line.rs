@@ -21,7 +21,7 @@ fn help_man_page_and_completions_name_every_option() {
         &["completions", "zsh"],
         &["completions", "fish"],
     ] {
-        // A man page has its hyphens escaped, fish's completions name options without them.
+        // A man page has its hyphens escaped; fish's completions name options without them.
         let text = said(arguments).replace("\\-", "-").replace("-l ", "--");
         for option in [
             "--body",
@@ -38,7 +38,7 @@ fn help_man_page_and_completions_name_every_option() {
             assert!(text.contains(command), "{command} is not in {arguments:?}");
         }
     }
-    // A script knows the options of subcommands too.
+    // A script also has the options of subcommands.
     assert!(said(&["completions", "bash"]).contains("--collect"));
     assert!(said(&["man"]).starts_with(".ie"));
 }

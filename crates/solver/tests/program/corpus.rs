@@ -1,5 +1,5 @@
-//! Scenes that the reader takes and the planner refuses, with the messages of `messages.txt` beside
-//! them, where the folder of a scene is left out.
+//! Scenes that the reader accepts and the planner refuses, with the messages of `messages.txt` next
+//! to them, without the folder of the scene.
 
 use dem_testing::hold_messages;
 
@@ -20,7 +20,7 @@ fn every_bad_scene_is_refused_with_its_message() {
         let folder = format!("{}/", bench.path("").display()).replace("//", "/");
         let message = said.replace(&folder, "");
         messages.push(message.strip_prefix("error: ").unwrap().to_owned());
-        // check says the same.
+        // `check` gives the same message.
         let output = super::dem_run().arg("check").arg(&here).output().unwrap();
         assert_eq!(super::refused(&output), (said, 2));
         assert!(!bench.path("out").exists());

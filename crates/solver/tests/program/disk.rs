@@ -1,4 +1,4 @@
-//! Disks that are full, folders that may not be written to.
+//! Full disks, and folders without write permission.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -7,8 +7,8 @@ use std::process::Command;
 
 use super::{Bench, dem_run, good, names_in, refused};
 
-/// Runs a shell script as the superuser of a namespace of its own, where a small disk is mounted on
-/// ./disk; None where that is not permitted.
+/// Runs a shell script as the superuser of a namespace of its own, with a small disk mounted on
+/// ./disk; None if that is not permitted.
 fn on_a_small_disk(bench: &Bench, size: &str, script: &str) -> Option<std::process::Output> {
     fs::create_dir(bench.path("disk")).unwrap();
     let mount = format!("mount -t tmpfs -o size={size} tmpfs disk");
@@ -35,7 +35,7 @@ fn a_full_disk_ends_the_run_and_keeps_the_last_checkpoint() {
         scene.display()
     );
     let Some(output) = on_a_small_disk(&bench, "300k", &script) else {
-        // Nobody may mount a disk here: /dev/full is tried by the tests of dem-io.
+        // Mounting is not permitted here: the tests of dem-io use /dev/full.
         return;
     };
     let (said, code) = refused(&output);
@@ -50,7 +50,7 @@ fn a_full_disk_ends_the_run_and_keeps_the_last_checkpoint() {
         !files.iter().any(|name| name.starts_with(".unfinished")),
         "{files:?}"
     );
-    // Rows are whole, and with room the run goes on where it stood.
+    // Rows are complete, and with free space the run continues where it stopped.
     let series = fs::read_to_string(bench.path("kept/series.csv")).unwrap();
     assert!(series.ends_with('\n'));
     bench.good(
@@ -94,7 +94,7 @@ fn a_folder_that_may_not_be_written_to() {
     fs::set_permissions(bench.path("locked"), fs::Permissions::from_mode(0o555)).unwrap();
     let may_anyway = fs::write(bench.path("locked/try"), "").is_ok();
     if may_anyway {
-        // The superuser may write anywhere; /proc takes no files from anyone.
+        // The superuser may write anywhere; /proc accepts no files from anyone.
         let said = bench.bad(&good("alone.toml"), &["--output", "/proc/out"], 1);
         assert!(said.contains("/proc/out"), "{said}");
         return;
@@ -120,7 +120,7 @@ fn a_full_disk_behind_standard_output() {
         said.starts_with("error: standard output: no space left"),
         "{said}"
     );
-    // The results are there all the same.
+    // The results exist nevertheless.
     assert!(bench.path("out/summary.json").exists());
 }
 
@@ -152,7 +152,7 @@ fn folders_that_cannot_be_made() {
     );
 }
 
-/// A limit of the shell on the size of files is an error, not a signal that ends the program.
+/// A file size limit of the shell is an error, not a signal that ends the program.
 #[test]
 fn a_file_beyond_the_limit_of_the_shell() {
     let bench = Bench::new();
@@ -179,8 +179,8 @@ fn a_file_beyond_the_limit_of_the_shell() {
     );
 }
 
-/// What a killed run left of a checkpoint and of a fragment is removed by the next that writes
-/// there.
+/// The remains of a checkpoint and of a fragment left by a killed run are removed by the next one
+/// that writes there.
 #[test]
 fn remnants_of_a_killed_run_go_with_the_next() {
     let bench = Bench::new();

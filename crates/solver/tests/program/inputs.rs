@@ -1,4 +1,4 @@
-//! What a run reads is never removed or overwritten by what it writes.
+//! Inputs of a run are never removed or overwritten by its output.
 #![cfg(unix)]
 
 use std::fs;
@@ -6,8 +6,7 @@ use std::path::Path;
 
 use super::{Bench, dem_run, good, names_in, refused, row, vtp_bytes};
 
-/// A scene in the folder of its own results, with a body and a wall that stand there under names of
-/// results.
+/// A scene in the folder of its own results, with a body and a wall in it under names of results.
 fn scene(bench: &Bench, file: &str, wall: &str) {
     bench.write(
         "scene.toml",
@@ -47,7 +46,7 @@ fn results_do_not_take_the_place_of_inputs() {
         }
         assert_eq!(fs::read(&frame).unwrap(), body);
     }
-    // A name of results that leads to an input.
+    // A name of results that is a link to an input.
     scene(&bench, "elsewhere/body.vtp", PLANE);
     for name in ["series.csv", "summary.json"] {
         std::os::unix::fs::symlink(&kept, bench.path(name)).unwrap();
@@ -65,7 +64,7 @@ fn results_do_not_take_the_place_of_inputs() {
         "{said}"
     );
     fs::remove_file(bench.path("events.csv")).unwrap();
-    // Inputs under names of their own stay, in the folder of results as well.
+    // Inputs under other names are kept, also in the folder of results.
     fs::copy(&kept, bench.path("own.vtp")).unwrap();
     scene(&bench, "own.vtp", PLANE);
     let text = fs::read(bench.path("scene.toml")).unwrap();
@@ -118,13 +117,13 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
         fragment("out", "row.vtp"),
         "error: row.vtp: 'row.vtp' is read here and would be overwritten; name another file"
     );
-    // The body that was named on the command line is known from the checkpoint.
+    // The body named on the command line is known from the checkpoint.
     bench.good(
         Path::new("scene.toml"),
         &["--output", "other", "--body", "other.vtp", "--quiet"],
     );
     assert!(fragment("other", "other.vtp").contains("'other.vtp' is read here"));
-    // Others may be written, and written again.
+    // Other files may be written, also repeatedly.
     for _ in 0..2 {
         let mut command = dem_run();
         command.current_dir(bench.path(""));
@@ -136,8 +135,8 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
     }
 }
 
-/// What would fill the disk is refused by its count, before anything is written; `check` says the
-/// same.
+/// Output that would fill the disk is refused by its count, before anything is written; `check`
+/// gives the same message.
 #[test]
 fn a_step_limits_how_often_is_written() {
     let bench = Bench::new();

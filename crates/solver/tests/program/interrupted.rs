@@ -24,14 +24,14 @@ fn start(mut command: Command) -> Child {
         .unwrap()
 }
 
-/// Lines of a file, 0 if there is none.
+/// Number of lines of a file, 0 if it does not exist.
 fn lines(path: &Path) -> usize {
     fs::read(path).map_or(0, |bytes| {
         bytes.iter().filter(|byte| **byte == b'\n').count()
     })
 }
 
-/// Waits until something has happened, or the program has ended.
+/// Waits until a condition holds, or the program has ended.
 fn wait_until(child: &mut Child, happened: impl Fn() -> bool) {
     let since = Instant::now();
     while !happened() && child.try_wait().unwrap().is_none() {
@@ -40,8 +40,8 @@ fn wait_until(child: &mut Child, happened: impl Fn() -> bool) {
     }
 }
 
-/// Sends a signal to a run when its time series has so many rows; what it says, or None if it was
-/// faster than the signal.
+/// Sends a signal to a run when its time series has this number of rows. Returns its messages, or
+/// None if it was faster than the signal.
 pub(super) fn interrupt(
     command: Command,
     signal: &str,
@@ -97,8 +97,8 @@ fn without_a_folder_it_is_said_how_the_state_would_have_been_kept() {
         command.arg("--json");
         command
     });
-    // Nothing shows from outside that it runs; it does after a second at the latest, or it is ended
-    // at once.
+    // Its activity is not visible from outside; it runs after a second at the latest, or it is
+    // ended at once.
     sleep(Duration::from_millis(700));
     send("-INT", &child);
     child.try_wait().unwrap();
@@ -148,7 +148,7 @@ fn a_folder_is_written_to_by_one_run_at_a_time() {
     assert!(lines(&bench.path("out/series.csv")) > 1);
     send("-KILL", &first);
     first.wait().unwrap();
-    // The lock went with the run.
+    // The lock was released with the run.
     bench.good(&scene, &["--output", "out", "--force"]);
 }
 
@@ -158,7 +158,7 @@ fn before_a_run_nothing_is_waited_for() {
     command
         .arg(scene_of_data("clamped.toml"))
         .args(["--body", "-"]);
-    // Nobody writes to its standard input.
+    // Nothing is written to its standard input.
     let mut child = start({
         command.stdin(Stdio::piped());
         command

@@ -8,8 +8,8 @@ use serde_json::Value;
 
 use crate::program::{Bench, dem_pack, root, scene_of_data};
 
-/// A row of 11 spheres of radius 2 mm that is gripped at its first and last one and pulled. The
-/// bonds are rods of 4 mm by which it has a closed form.
+/// A row of 11 spheres of radius 2 mm, gripped at the first and last one and pulled. The bonds are
+/// rods of 4 mm, for which there is a closed form.
 pub(crate) fn bar() -> String {
     let particles: Vec<String> = (0..11)
         .map(|i| format!("[0, 0, {}, 0.002]", 0.004 * f64::from(i)))
@@ -145,7 +145,7 @@ fn a_test_that_goes_on_says_the_same() {
     assert_eq!(first["test"]["broken"], false);
     assert_eq!(first["test"]["target_strength_pa"], 0.2e6);
     let parts = summary(&bench.good(&scene, &[&once[..], &["parts", "--resume"]].concat()));
-    // The step fits the end of the run, which was another one at first.
+    // The step fits the end of the run, which was initially a different one.
     for name in [
         "stiffness",
         "specimen modulus",
@@ -172,7 +172,7 @@ fn a_sample_is_bent_by_four_pins() {
         &bench.path("sample.vtp"),
     );
     let scene = scene_of_data("four-point-bending.toml");
-    // Quiet: dem-pack warned of spheres as large as these, and dem-run repeats it.
+    // Quiet: dem-pack warned of the large spheres, and dem-run repeats it.
     let mut options = vec![
         "--body",
         "sample=sample.vtp",
@@ -197,8 +197,8 @@ fn a_sample_is_bent_by_four_pins() {
         // The spheres do not quite touch the surface everywhere.
         assert!(off.abs() < 2e-3, "{name}: {off}");
     }
-    // What the pins press with, the supports carry, on the mean over the sample's swinging, until
-    // bonds break.
+    // The supports carry the load of the pins, averaged over the sample's oscillation, until bonds
+    // break.
     let series = std::fs::read_to_string(bench.path("out/series.csv")).unwrap();
     let head: Vec<&str> = series.lines().next().unwrap().split(',').collect();
     let column = |name: &str| head.iter().position(|h| *h == name).unwrap();
@@ -219,7 +219,7 @@ fn a_sample_is_bent_by_four_pins() {
         "{carried} {pressed}"
     );
     let force = value(test, "failure force");
-    // The body by itself is stiffer than with what gives way at the pins.
+    // The body by itself is stiffer than with the compliance at the pins.
     assert!(value(test, "specimen stiffness") > value(test, "stiffness"));
     let figure = figure(test, "failure force");
     let off = force / figure["theory"].as_f64().unwrap() - 1.0;
@@ -260,7 +260,7 @@ fn what_a_test_cannot_be_made_of() {
         "{said}"
     );
 
-    // Pushed the other way, a pin and a plate leave the body alone.
+    // In the opposite direction, a pin and a plate move away from the body.
     for (name, body, wall) in [
         ("four-point-bending.toml", "sample", "pin-left"),
         ("compression.toml", "bar", "plate-above"),
@@ -275,7 +275,7 @@ fn what_a_test_cannot_be_made_of() {
             )),
             "{wall}: {said}"
         );
-        // Nothing has been written, and a plan is refused alike.
+        // Nothing has been written, and a plan is refused in the same way.
         let out = format!("{}-out", name.trim_end_matches(".toml"));
         assert!(!bench.path(&out).exists());
         let output = bench
@@ -286,7 +286,7 @@ fn what_a_test_cannot_be_made_of() {
         assert_eq!(crate::program::refused(&output), (said, 2));
     }
 
-    // A bar is no disc: 180 mm by 35 mm across the load and along it.
+    // A bar is not a disc: 180 mm by 35 mm perpendicular to the load and along it.
     let body = format!("sample={}", root().join("data/bodies/sample.vtp").display());
     let disc = "test.type='brazilian-disc'";
     let options = ["--body", &body, "--set", disc, "--output", "disc-out"];
@@ -295,7 +295,7 @@ fn what_a_test_cannot_be_made_of() {
     assert!(said.contains(wanted), "{said}");
     assert!(!bench.path("disc-out").exists());
 
-    // Speeds and times of which no time step follows.
+    // Speeds and times that do not allow a time step.
     for key in ["rate", "stroke"] {
         let set = format!("test.{key}=1e300");
         let options = ["--body", &body, "--set", &set, "--output", "fast-out"];

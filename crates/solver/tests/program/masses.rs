@@ -1,10 +1,10 @@
-//! What bodies weigh, and what dem-pack warned of: told by check, by runs, to scripts.
+//! Masses of bodies, and warnings of dem-pack: printed by `check`, by runs, and for scripts.
 
 use serde_json::Value;
 
 use super::{Bench, dem_run, row, vtp_bytes};
 
-/// Two rows of five spheres of 2050 kg/m3, of a shape that would weigh 1.025e-4 kg.
+/// Two rows of five spheres of 2050 kg/m3, with a shape whose mass would be 1.025e-4 kg.
 const SHAPE_M3: f64 = 5e-8;
 const MASS_KG: f64 = 2050.0 * 10.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9;
 
@@ -64,7 +64,7 @@ fn mass_of_spheres_and_of_the_shape() {
         ),
         "{info}"
     );
-    // A note spoils no verdict.
+    // A note does not change the verdict.
     let summary = std::fs::read(bench.path("out/summary.json")).unwrap();
     let summary: Value = serde_json::from_slice(&summary).unwrap();
     assert_eq!(summary["verdict"]["sound"], true);
@@ -90,8 +90,8 @@ fn mass_of_spheres_and_of_the_shape() {
             100.0 * (MASS_KG / (2050.0 * SHAPE_M3) - 1.0),
         );
         near("/centre_m/0", 9e-3);
-        // A row of spheres: along it only their own inertia, 2/5 m r^2; across also that of ten
-        // places 2 mm apart.
+        // A row of spheres: along it only their own inertia, 2/5 m r^2; perpendicular to it also
+        // that of ten positions 2 mm apart.
         let own = 0.4 * MASS_KG * 1e-6;
         let apart = MASS_KG * 4e-6 * (100.0 - 1.0) / 12.0;
         near("/inertia_kg_m2/0/0", own);
@@ -126,7 +126,7 @@ fn without_a_shape_the_mass_alone_is_told() {
     assert_eq!(found["bodies"]["row"]["shape_mass_kg"], Value::Null);
 }
 
-/// The weight on a plate is m g, of loose spheres as of bonded ones.
+/// The weight on a plate is m g, for loose and for bonded spheres.
 #[test]
 fn a_plate_carries_the_weight() {
     let bench = Bench::new();

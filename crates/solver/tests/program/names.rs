@@ -1,4 +1,4 @@
-//! Names that hold what a terminal would obey and a browser would run: shown, never obeyed.
+//! Names with characters that control a terminal or a browser: they are shown, never executed.
 #![cfg(unix)]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::process::Output;
 
 use super::{Bench, good};
 
-/// Red letters, a line of its own, the other direction of writing, and a script.
+/// Red letters, a line of its own, reversed writing direction, and a script.
 const NASTY: &str = "\u{1b}[31mred\n\u{9b}2J\u{202e}\u{2066}<script>alert(1)<";
 
 fn is_obeyed(letter: char) -> bool {
@@ -26,7 +26,7 @@ fn assert_plain(what: &str, bytes: &[u8]) {
     );
 }
 
-/// Standard output and standard error, which have to be plain.
+/// Standard output and standard error, which must be plain.
 fn plain(what: &str, output: &Output) -> String {
     assert_plain(what, &output.stdout);
     assert_plain(what, &output.stderr);
@@ -34,7 +34,7 @@ fn plain(what: &str, output: &Output) -> String {
     String::from_utf8(all).unwrap()
 }
 
-/// The pages and pictures of a folder and its folders, as text.
+/// The pages and pictures of a folder and its subfolders, as text.
 fn assert_pages_plain(folder: &Path) -> usize {
     let mut count = 0;
     for entry in fs::read_dir(folder).unwrap() {
@@ -128,7 +128,7 @@ fn of_a_test_are_shown_on_its_page() {
     );
 }
 
-/// Bodies, sets, walls, measures, materials have names of letters and digits: others are refused,
+/// Bodies, groups, walls, measures, materials have names of letters and digits: others are refused,
 /// and shown.
 #[test]
 fn in_a_scene_are_refused_and_shown() {

@@ -1,5 +1,5 @@
-//! Pictures of a run and the film of them. That they are the same bits for any number of threads
-//! and after an interruption, the tests of both say: their scenes have pictures.
+//! Pictures of a run and its film. The tests of threads and interruptions check that they are the
+//! same bits for any number of threads and after an interruption: their scenes have pictures.
 
 use std::fs;
 use std::io::BufReader;

@@ -1,5 +1,5 @@
-//! Small scenes of random values, sensible and senseless: never a panic, always one of the exit
-//! codes, one message if it is not 0.
+//! Small scenes of random values, sensible or not: never a panic, always one of the exit codes, one
+//! message if it is not 0.
 
 use std::cell::RefCell;
 
@@ -8,7 +8,7 @@ use proptest::test_runner::TestRunner;
 
 use super::Bench;
 
-/// A number as a scene may have it: most often near what makes sense, sometimes far off.
+/// A number in a scene: most often near a sensible value, sometimes far off.
 fn number(usual: f64) -> impl Strategy<Value = f64> {
     prop_oneof![
         60 => (0.3..3.0_f64).prop_map(move |f| f * usual),
@@ -19,8 +19,8 @@ fn number(usual: f64) -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Particles on a grid, a millimetre of radius or so, and bonds between them; sometimes two at one
-/// place, a bond to nowhere, to itself or twice.
+/// Particles on a grid, with radii of about a millimetre, and bonds between them; sometimes two at
+/// one position, or a bond to a missing particle, to itself or twice.
 fn body() -> impl Strategy<Value = String> {
     let particle = (0..50_u32, number(1e-3));
     let pair = (0..100_u32, 0..100_u32, 0..60_u32);
@@ -32,7 +32,7 @@ fn body() -> impl Strategy<Value = String> {
         let count = particles.len() as u32;
         let mut rows = Vec::new();
         for (i, (odd, radius)) in (0..).zip(&particles) {
-            // One after another round a 2 x 2 x 2 grid; one in 50 stands on the first.
+            // One after another on a 2 x 2 x 2 grid; one in 50 at the position of the first.
             let i = if *odd == 0 { 0 } else { i };
             let place = [i & 1, i >> 1 & 1, i >> 2 & 1].map(|k| f64::from(k) * 2e-3);
             rows.push(format!(
@@ -104,7 +104,7 @@ prop_compose! {
     ) -> String {
         let (run, rest) = extras.split_once("#BODY\n").unwrap();
         let mut text = format!("version = 1\nrun.end_time = {end:e}\n{run}materials.m.density = {density:e}\n");
-        // A given step bounds the time that a case can take.
+        // A given step limits the run time of a case.
         if given || !(1e-5..1e-2).contains(&end) { text += &format!("run.time_step = {:e}\n", end / steps); }
         text += &format!("[bonds.k]\nmodel = \"{model}\"\nformulation = \"{formulation}\"\nyoung_modulus = {modulus:e}\npoisson_ratio = {poisson:e}\n");
         if let Some(eta) = viscous { text += &format!("damping = {{ damping_ratio = {eta:e} }}\n"); }
@@ -116,7 +116,7 @@ prop_compose! {
     }
 }
 
-/// Runs a scene that may be anything; its exit code.
+/// Runs an arbitrary scene. Returns its exit code.
 fn run(scene: &str, forced: bool) -> Result<i32, TestCaseError> {
     let bench = Bench::new();
     let path = bench.write("scene.toml", scene);
@@ -136,7 +136,7 @@ fn run(scene: &str, forced: bool) -> Result<i32, TestCaseError> {
     let said = super::without_warnings(&said);
     let is_one = said.starts_with("error: ") && said.matches('\n').count() == 1;
     prop_assert!(is_one, "{}\n{}", scene, said);
-    // What takes longer than a moment is stopped, and says so.
+    // A run that takes longer than a moment is stopped, and reports it.
     let is_known = matches!(code, 2 | 3) || code == 130 && was_stopped;
     prop_assert!(is_known, "{}\n{}", scene, said);
     // One that is stopped while it is still planned has no results yet.
@@ -166,7 +166,7 @@ fn never_a_panic() {
     if let Err(error) = result {
         panic!("{error}");
     }
-    // They are no use if all are refused.
+    // The test is useless if all are refused.
     let [good, _, bad, unstable] = *counts.borrow();
     assert!(good >= 50 && bad >= 50 && unstable >= 1, "{counts:?}");
 }

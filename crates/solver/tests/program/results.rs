@@ -1,4 +1,4 @@
-//! The folder of results: what is in it, and what happens to what was there.
+//! The folder of results: its contents, and the treatment of existing files.
 
 use std::fs;
 
@@ -183,7 +183,7 @@ fn measures_named_like_other_columns_and_plots_stand_beside_them() {
     }
 }
 
-/// Every frame is one header and the arrays that it announces, one after another.
+/// Every frame is one header and the arrays declared in it, one after another.
 #[test]
 fn frames_have_every_array_at_full_length() {
     let bench = breaking();
@@ -238,7 +238,7 @@ fn frames_have_every_array_at_full_length() {
         ] {
             assert!(header.contains(&format!("Name=\"{array}\"")), "{array}");
         }
-        // It is not taken for a body: bonds that broke would be whole again.
+        // It is not accepted as a body: broken bonds would be intact again.
         assert!(vtp::read(&mut bytes.as_slice()).is_err());
     }
 }
@@ -255,7 +255,7 @@ fn a_folder_with_something_in_it_is_refused_or_replaced() {
         "{said}"
     );
     assert!(before == results(&bench.path("out")));
-    // Only what dem-run wrote goes.
+    // Only files written by dem-run are removed.
     bench.write("out/notes.txt", "mine");
     bench.write("out/frames/frame_mine.vtp", "mine");
     bench.write("out/plots/mine.svg", "<svg/>");
@@ -269,7 +269,7 @@ fn a_folder_with_something_in_it_is_refused_or_replaced() {
     }
     assert_eq!(names_in(&bench.path("out/frames")).len(), 6);
     assert!(!bench.path("out/plots/pull.svg").exists());
-    // A run that is refused removes nothing.
+    // A refused run removes nothing.
     let before = results(&bench.path("out"));
     bench.bad(
         &good("bodies.toml"),

@@ -1,4 +1,4 @@
-//! A run that was interrupted and taken up again leaves the same bits as one that was not.
+//! A run that was interrupted and continued leaves the same bits as one that was not.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use super::interrupted::{interrupt, kill_after_checkpoint};
 use super::{Bench, assert_same, good, numbers, refused, table};
 
-/// Scenes that do all there is to do, and the signals and threads they meet.
+/// Scenes that cover all features, with the signals and threads for each.
 const SCENES: [(&str, &str, &str); 7] = [
     ("breaking.toml", "-INT", "2"),
     ("incremental.toml", "-TERM", "1"),
@@ -17,7 +17,7 @@ const SCENES: [(&str, &str, &str); 7] = [
     ("following.toml", "-TERM", "2"),
 ];
 
-/// Makes a scene take longer, so that a signal meets it half way.
+/// Makes a scene take longer, so that a signal arrives half-way.
 fn slow(name: &str) -> &'static str {
     match name {
         "breaking.toml" => "run.safety_factor=0.02",
@@ -40,7 +40,7 @@ fn after_a_signal_a_run_goes_on_as_if_nothing_had_been() {
             &[&options[..], &["--output", "whole"]].concat(),
         );
         let mut times = 0;
-        // Again and again: each time it is interrupted a little later.
+        // Repeatedly: each time it is interrupted a little later.
         let (mut rows, mut resume) = (10, false);
         loop {
             let first: &[&str] = if resume { &["--resume"] } else { &[] };
@@ -131,7 +131,7 @@ fn a_run_that_is_over_says_so_and_can_be_taken_further() {
     let times = numbers(&bench.path("out/series.csv"), "time_s");
     assert!(times.is_sorted_by(|a, b| a < b));
     assert!((times[times.len() - 1] / 2e-3 - 1.0).abs() < 1e-3);
-    // The second half has rows as well, twice as far apart.
+    // The second half also has rows, twice as far apart.
     let late = times.iter().filter(|t| **t > 1.01e-3).count();
     assert!((400..600).contains(&late), "{late}");
 
@@ -177,7 +177,7 @@ fn a_step_that_is_given_is_taken_when_a_run_goes_on() {
     assert!(summary["energy_error"].as_f64().unwrap() < 1e-3);
 }
 
-/// What is said of a folder whose checkpoint holds these bytes.
+/// The message for a folder whose checkpoint contains these bytes.
 fn said_of(bench: &Bench, checkpoint: &[u8]) -> String {
     fs::write(bench.path("out/checkpoint.dem"), checkpoint).unwrap();
     let said = bench.bad(
@@ -221,7 +221,7 @@ fn checkpoints_that_cannot_be_used() {
             "{said}"
         );
     }
-    // Nothing else was touched.
+    // No other file was changed.
     fs::write(bench.path("out/checkpoint.dem"), &whole).unwrap();
     assert!(before == super::results(&bench.path("out")));
 
@@ -259,7 +259,7 @@ fn a_scene_that_has_changed_is_not_gone_on_with() {
             "{change}: {said}"
         );
     }
-    // A scene that reads the same, with another body in it.
+    // A scene with the same text, but with a different body.
     let text = fs::read_to_string(good("bodies.toml")).unwrap();
     let other = text.replace("[\"6 mm\", 0, 0, \"1 mm\"]", "[\"6.1 mm\", 0, 0, \"1 mm\"]");
     assert!(other != text);
@@ -282,8 +282,8 @@ fn there_has_to_be_a_folder_to_resume() {
     );
 }
 
-/// A run that was killed while it wrote what it writes at its end, and one of which something was
-/// removed since.
+/// A run that was killed while it wrote its final output, and one of which something was removed
+/// since.
 #[test]
 fn what_is_missing_at_the_end_is_written() {
     let tension = super::laboratory::bar();
@@ -333,8 +333,8 @@ fn what_is_missing_at_the_end_is_written() {
             );
             assert!(whole == bytes_of(&bench), "{name} without {file}");
         }
-        // All at once, as where the run was killed when it had written its last checkpoint, with
-        // another summary in the way.
+        // All at once, as if the run was killed after its last checkpoint, with another summary in
+        // the way.
         for file in missing {
             fs::remove_file(bench.path("out").join(file)).unwrap();
         }
@@ -351,7 +351,7 @@ fn what_is_missing_at_the_end_is_written() {
     }
 }
 
-/// All files of the results as they are.
+/// All files of the results, unchanged.
 fn bytes_of(bench: &Bench) -> std::collections::BTreeMap<String, Vec<u8>> {
     let mut found = super::results(&bench.path("out"));
     found.insert(
@@ -361,7 +361,7 @@ fn bytes_of(bench: &Bench) -> std::collections::BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// Particles are counted anew when a body has left: loads and supports keep to theirs.
+/// Particles are renumbered when a body has left: loads and supports keep their particles.
 #[test]
 fn loads_keep_to_their_particles_where_a_body_has_left_before() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! The scenes of the repository, as its pages tell people to run them.
+//! The scenes of the repository, run as described on its pages.
 
 use super::{Bench, corpus, dem_pack, dem_run, names_in, root, scene_of_data};
 
@@ -88,8 +88,8 @@ fn materials_of_data_fit_into_a_scene() {
     }
 }
 
-/// The page of the materials reads the sizes of Platzer's tables as radii: so do their time steps
-/// keep to eq. 15, and not with spheres half as large.
+/// The page on materials interprets the sizes of Platzer's tables as radii: with radii his time
+/// steps are consistent with eq. 15, with half of them not.
 #[test]
 fn spheres_of_the_tables_allow_the_time_steps_printed_there() {
     let page = std::fs::read_to_string(root().join("data/materials/README.md")).unwrap();
@@ -105,7 +105,8 @@ fn spheres_of_the_tables_allow_the_time_steps_printed_there() {
         let (smallest, _) = after("--diameter").split_once("..").unwrap();
         let radius_m = 0.5 * dem_io::units::length_m(smallest).unwrap();
         let overlap: f64 = after("--overlap").parse().unwrap();
-        // m/K of the smallest sphere with a bond of its radius to its like, 2 R/(1 + overlap) away.
+        // m/K of the smallest sphere with a bond of its radius to an equal one, 2 R/(1 + overlap)
+        // away.
         let squared_s2 = 8.0 / 3.0 / (1.0 + overlap) * radius_m.powi(2) * 2050.0 / young_modulus_pa;
         let limit_s = 0.17 * squared_s2.sqrt();
         assert!(limit_s > printed_s, "table {table}: {limit_s:e}");
@@ -138,9 +139,9 @@ fn every_good_scene_of_the_corpus_runs() {
     }
 }
 
-/// How far each scene is run to see whether anything is stopped that should not be, and of which
-/// shape and diameters its body is if it asks for one. Tests of the laboratory, which have no end
-/// of their own, load within one period of the body.
+/// End time of each scene for a test without false alarms, and the shape and diameters of its body
+/// if it needs one. Laboratory tests, which have no end time of their own, load within one period
+/// of the body.
 const SHORT: [[&str; 4]; 16] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -198,12 +199,12 @@ fn no_scene_of_data_is_stopped() {
         let said = bench.good(&scene_of_data(&format!("{name}.toml")), &options);
         let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
         let error = summary["energy_error"].as_f64().unwrap();
-        // A tensile test breaks at its first blow when it is so fast.
+        // A tensile test breaks immediately at this rate.
         assert!(error < 0.01, "{name}: {error}");
     }
 }
 
-/// Two bodies of one shape, of which one has damped bonds: the step is that of the damped ones.
+/// Two bodies of one shape, one with damped bonds: the step is that of the damped one.
 const ONE_SHAPE: &str = r#"version = 1
 [run]
 end_time = "0.3 s"
@@ -250,8 +251,8 @@ fn bodies_of_one_shape_may_have_bonds_of_two_kinds() {
     let step_s = |options: &[&str]| {
         let said = bench.good(&scene, &[options, &["--json"]].concat());
         let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
-        // An adaptive step still is that of clumps in the step in which they become clusters, and
-        // what spins is stretched in it.
+        // In the step in which clumps become clusters, an adaptive step is still that of the
+        // clumps, in which spinning bodies are stretched.
         let allowed = if summary["adaptive"].is_null() {
             1e-5
         } else {

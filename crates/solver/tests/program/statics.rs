@@ -1,4 +1,4 @@
-//! Scenes that go to their equilibrium at once: `run.integrator = "static"`.
+//! Scenes solved for their static equilibrium: `run.integrator = "static"`.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use super::{Bench, assert_same, dem_run, names_in, numbers, refused, scene_of_da
 
 const STATIC: [&str; 2] = ["--set", "run.integrator=static"];
 
-/// The cantilever with these options on top.
+/// The cantilever with these additional options.
 fn cantilever(bench: &Bench, options: &[&str]) -> String {
     let options = [&STATIC[..], options].concat();
     bench.good(&scene_of_data("cantilever.toml"), &options)
@@ -60,7 +60,7 @@ fn says_how_the_equilibrium_was_found() {
     assert!(bench.files().is_empty());
 }
 
-/// Run on by steps until rounding alone is left, the tip stands where it does at once.
+/// When continued by time steps until only rounding is left, the tip stays at its static position.
 #[test]
 fn the_tip_is_where_steps_bring_it() {
     let bench = Bench::new();
@@ -92,7 +92,7 @@ fn the_tip_is_where_steps_bring_it() {
     assert_eq!(at_once["steps"], found["newton_steps"]);
     assert_eq!(at_once["energy_error"], Value::Null);
     assert!(stepped.get("equilibrium").is_none());
-    // A run of less than a millisecond has its times, too.
+    // A run of less than a millisecond also has its times.
     for time in ["wall_s", "processor_s"] {
         let [found, steps] = [&at_once, &stepped].map(|s| s[time].as_f64().unwrap());
         assert!(
@@ -126,7 +126,7 @@ fn writes_one_frame_and_one_row() {
     assert_eq!(numbers(&series, "kinetic_energy_j"), [0.0]);
     let tip = numbers(&series, "tip_deflection_m")[0];
     assert_eq!(tip, measured(&summary(&said), "tip_deflection"));
-    // Of a load that rises, half of load times way is stored.
+    // For a load that increases, half of load times displacement is stored.
     let elastic = numbers(&series, "elastic_energy_j")[0];
     assert!((elastic / (-0.5e5 * tip) - 1.0).abs() < 1e-4, "{elastic}");
     assert!(numbers(&series, "load_work_j")[0].is_nan());
@@ -186,7 +186,7 @@ fn a_body_beyond_its_strength_is_not_sound() {
     let bench = Bench::new();
     let weak = ["--set", "bonds.steel.failure.tensile_strength=50 MPa"];
     let said = cantilever(&bench, &weak);
-    // The moment falls evenly from the clamp: of 64 MPa there.
+    // The moment decreases linearly from the clamp, where it gives 64 MPa.
     let line = said
         .lines()
         .find(|line| line.starts_with("warning "))
@@ -255,7 +255,7 @@ fn there_is_nothing_to_resume() {
     assert!(bench.files().is_empty());
 }
 
-/// Both ways in one sweep: the same values, at very different times.
+/// Both integrators in one sweep: the same values, at very different times.
 #[test]
 fn a_sweep_compares_it_with_steps() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! `dem-run stress` as a person and a script meet it.
+//! `dem-run stress` from the side of a user and of a script.
 
 use std::process::Output;
 
@@ -49,7 +49,7 @@ fn a_table_of_the_cases_asked_for() {
     );
 }
 
-/// The pages have the table as it is printed, with all cases.
+/// The pages contain the printed table, with all cases.
 #[test]
 fn pages_have_the_table() {
     let table = said(&stress(&["mesh-wall", "size"]));

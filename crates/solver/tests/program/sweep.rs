@@ -1,4 +1,4 @@
-//! Sweeps: studies in; tables, pages, the fastest setting out.
+//! Sweeps: studies as input; tables, pages and the fastest setting as output.
 
 mod curves;
 mod failed;
@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use super::{Bench, dem_pack, root};
 
-/// A mass on a spring, which a force sets swinging: the end of two bonded spheres.
+/// A mass on a spring, excited by a force: the end of two bonded spheres.
 const SCENE: &str = r#"version = 1
 
 [run]
@@ -90,8 +90,7 @@ fn good(bench: &Bench, options: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// A sweep of which some runs have no values: what it says on standard output and on standard
-/// error.
+/// A sweep of which some runs have no values: its standard output and standard error.
 fn partly(bench: &Bench, options: &[&str]) -> (String, String) {
     let output = sweep(bench, options).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
@@ -143,7 +142,7 @@ fn csv(path: &Path) -> Vec<BTreeMap<String, String>> {
         .collect()
 }
 
-/// A table without what the clock decides.
+/// A table without the columns that depend on the clock.
 fn timeless(path: &Path) -> Vec<BTreeMap<String, String>> {
     let mut rows = csv(path);
     for row in &mut rows {
@@ -155,13 +154,13 @@ fn timeless(path: &Path) -> Vec<BTreeMap<String, String>> {
     rows
 }
 
-/// The reader of JSON may be off by the last bit.
+/// The JSON reader may have an error in the last bit.
 fn assert_same_number(one: f64, other: &Value) {
     let other = other.as_f64().unwrap();
     assert!((one - other).abs() <= 1e-15 * other.abs(), "{one} {other}");
 }
 
-/// Every tag that opens is closed, in order.
+/// Checks that every opened tag is closed, in order.
 fn assert_well_formed(html: &str) {
     let mut open: Vec<&str> = Vec::new();
     for tag in html.split('<').skip(1) {
@@ -196,7 +195,7 @@ fn tables_and_pages_of_a_sweep() {
         let number = |column: &str| row[column].parse::<f64>().unwrap();
         assert_eq!(row["run.safety_factor"], run["settings"][1]);
         assert_same_number(number("time_s"), &run["time_s"]);
-        // Until half a second has been measured, as the first two let expect.
+        // Until half a second has been measured, extrapolated from the first two.
         let times = run["times_s"].as_array().unwrap();
         let first: f64 = times[..2].iter().map(|time| time.as_f64().unwrap()).sum();
         let wanted = (0.5 / (0.5 * first)).ceil().clamp(2.0, 25.0);
@@ -252,7 +251,7 @@ fn tables_and_pages_of_a_sweep() {
             assert!(svg.contains(part), "{part}");
         }
     }
-    // All of it for a script, and none.
+    // All of it for a script, and an empty one.
     let again: Value = serde_json::from_str(&good(&bench, &["--collect", "--json"])).unwrap();
     assert_eq!(again["runs"], table["runs"]);
     assert_eq!(good(&bench, &["--collect", "--quiet"]), "");
@@ -293,7 +292,7 @@ fn an_interrupted_sweep_goes_on() {
         said.contains("a sweep is in this folder; go on with it by --resume"),
         "{said}"
     );
-    // What is there can be looked at in between.
+    // Existing results can be viewed in between.
     let (table, said) = partly(&bench, &["--collect"]);
     assert!(table.contains("it has not been run to its end"));
     assert!(
@@ -329,7 +328,7 @@ fn listed_commands_give_the_same_table() {
         assert!(status.unwrap().success());
     };
     run(&commands);
-    // Once all are done, it is known which are short.
+    // Once all are done, the short ones are known.
     let further = good(&bench, &["--list", "--resume", "--output", "apart"]);
     assert!(further.lines().all(|line| line.contains("apart/runs/000")));
     run(&further);
@@ -385,7 +384,7 @@ fn the_fastest_setting_is_said_and_written() {
         let other_time = other["time_s"].as_f64().unwrap() + other["spread_s"].as_f64().unwrap();
         assert!(!is_exact || other_time + spread >= time, "{other}");
     }
-    // The scene that was written does what the run did, and so does the command.
+    // The written scene gives the same as the run, and so does the command.
     let written: Value =
         serde_json::from_str(&bench.good(Path::new("fast.toml"), &["--json"])).unwrap();
     assert_eq!(
@@ -415,7 +414,7 @@ fn the_fastest_setting_is_said_and_written() {
     }
 }
 
-/// The written scene lies elsewhere than the scene and the body, whose names are relative.
+/// The written scene is in another folder than the scene and the body, whose names are relative.
 #[test]
 fn a_scene_with_another_body_is_written() {
     let bench = bench(
@@ -508,8 +507,8 @@ fn what_is_refused() {
     );
 }
 
-/// Those of the repository can be run as they stand, once the bodies are there that their first
-/// lines tell how to make.
+/// The studies of the repository can be run unchanged, once the bodies have been made as described
+/// in their first lines.
 #[test]
 fn studies_of_data() {
     let bench = Bench::new();

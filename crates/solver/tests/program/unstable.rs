@@ -1,4 +1,4 @@
-//! A step that is too large: refused, or stopped with the bond that cannot stand it.
+//! A step that is too large: refused, or stopped with the unstable bond.
 
 use std::fs;
 
@@ -26,7 +26,7 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
     let bench = Bench::new();
     let scene = bench.write("scene.toml", uneven().replace("output", "#"));
     let options = ["--set", "run.time_step=20 us", "--force-step"];
-    // Without a folder there is no checkpoint to speak of.
+    // Without a folder there is no checkpoint to mention.
     let said = bench.bad(&scene, &options, 3);
     assert!(
         said.contains("unstable at step ") && said.contains("of energy were created"),
@@ -122,7 +122,7 @@ fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
     let step = format!("run.time_step={}", 0.2 * limit);
     let said = bench.good(&scene, &["--set", &step, "--output", "out", "--resume"]);
     assert!(said.contains("resumed      time step "), "{said}");
-    // Or with one that is found.
+    // Or with one that is found automatically.
     fs::remove_dir_all(bench.path("out")).unwrap();
     let step = format!("run.time_step={}", 1.05 * limit);
     bench.bad(
@@ -135,7 +135,7 @@ fn its_last_good_checkpoint_can_be_taken_up_with_a_smaller_step() {
 }
 
 /// Two loose spheres that just touch, and a ball that falls and bounces without loss: at rest, and
-/// at the top of its way, there is next to no energy.
+/// at the top of its path, there is almost no energy.
 const TOUCHING: &str = r#"version = 1
 [run]
 end_time = "0.1 s"

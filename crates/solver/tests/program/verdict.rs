@@ -1,5 +1,5 @@
-//! Scenes that run and whose results mislead unless somebody says so: what the verdict and `check`
-//! say stands in `messages.txt` beside them.
+//! Scenes whose results are misleading without a warning: the texts of the verdict and of `check`
+//! are in `messages.txt` next to them.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ fn strings(value: &Value) -> Vec<String> {
     values.map(|one| one.as_str().unwrap().to_owned()).collect()
 }
 
-/// What is printed as JSON.
+/// The JSON output.
 fn json(bench: &Bench, scene: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&bench.good(scene, arguments)).unwrap()
 }
@@ -67,7 +67,7 @@ fn a_run_that_was_stopped_leaves_its_summary_and_what_happened() {
     assert_eq!(inputs["set"], serde_json::json!(["run.time_step=20 us"]));
     assert_eq!(inputs["scene"]["run.time_step"], "2e-5 s");
     assert_eq!(inputs["seed"], 0);
-    // It is no result of a run that came to its end.
+    // It is not a result of a completed run.
     let said = bench.bad(&scene, &["--output", "out"], 2);
     assert!(said.contains("--force"), "{said}");
 }
@@ -92,7 +92,7 @@ fn bodies_are_told_apart_by_their_hashes() {
     assert_ne!(hash(&["--body", "longer.vtp"]), first);
 }
 
-/// A bar that breaks at once: without a search at the end it would be one fragment to the last.
+/// A bar that breaks at once: without a search at the end it would remain one fragment.
 #[test]
 fn the_end_of_a_run_looks_for_pieces() {
     let bench = Bench::new();
@@ -183,7 +183,7 @@ fn what_an_inlet_feeds_bonded_is_no_replacement_and_a_sphere_no_clump() {
     assert_eq!((kinds("bonded"), kinds("replaced")), (3, 0));
 }
 
-/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766) with the material of the particles, which are not there
+/// pi R sqrt(rho/G) / (0.1631 nu + 0.8766) with the material of the particles, which are not fed
 /// yet.
 #[test]
 fn check_speaks_of_what_inlets_will_feed() {

@@ -1,4 +1,4 @@
-//! The best rotation against known ones.
+//! The best-fit rotation compared with known ones.
 
 use super::{turned, unit};
 use crate::helpers::Random;
@@ -17,7 +17,7 @@ fn centred(mut points: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     points
 }
 
-/// The largest distance left, and the largest distance from the centre.
+/// The largest remaining distance, and the largest distance from the centre.
 fn left(q: [f64; 4], from: &[[f64; 3]], to: &[[f64; 3]]) -> (f64, f64) {
     let far = |p: &[f64; 3]| Vector3::from(*p).norm();
     let rest = turned(&unit(q), from);

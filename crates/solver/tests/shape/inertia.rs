@@ -1,4 +1,4 @@
-//! Mass properties against published numbers, closed forms and samples.
+//! Mass properties compared with published values, closed forms and samples.
 
 use std::f64::consts::PI;
 use std::time::Instant;
@@ -13,7 +13,7 @@ fn tensor(p: &MassProperties) -> Matrix3<f64> {
     r.matrix() * Matrix3::from_diagonal(&p.moments_kg_m2.into()) * r.matrix().transpose()
 }
 
-/// The largest relative difference of two bodies, the second turned by `q` and moved by `by`.
+/// The largest relative difference of two bodies, the second rotated by `q` and moved by `by`.
 fn apart(a: &MassProperties, b: &MassProperties, q: &UnitQuaternion<f64>, by: [f64; 3]) -> f64 {
     let r = q.to_rotation_matrix();
     let inertia = r.matrix() * tensor(a) * r.matrix().transpose();
@@ -85,9 +85,8 @@ fn collinear_unions_match_the_reference() {
     );
 }
 
-/// Three spheres that overlap all together. The numbers are plain integrals of the height of the
-/// union over the plane of the centres, over the three sectors of its power diagram, with 30
-/// digits.
+/// Three spheres with a common overlap. The reference values are integrals of the height of the
+/// union over the plane of the centres, over the three sectors of its power diagram, to 30 digits.
 #[test]
 fn three_spheres_match_integrals_with_thirty_digits() {
     let centres = [[0.0, 0.0, 0.0], [1.1, 0.0, 0.0], [0.4, 0.8, 0.0]];
@@ -211,7 +210,7 @@ fn spheres_that_touch_barely_or_nearly_coincide_are_right() {
         let lens = PI * (4.0 + d) * (2.0 - d) * (2.0 - d) / 12.0;
         let body = of_union(&[[0.0; 3], [0.6 * d, 0.0, 0.8 * d]], &[1.0; 2], 1.0);
         close(body.mass_kg, 2.0 * ball - lens, 1e-14);
-        // Three near one place, with a fourth across.
+        // Three near one point, with a fourth transverse to them.
         let four = [
             [0.0; 3],
             [d, 0.0, 0.0],
@@ -225,7 +224,7 @@ fn spheres_that_touch_barely_or_nearly_coincide_are_right() {
         let other = of_union(&turned(&q, &four), &[1.0; 4], 1.0);
         assert!(apart(&body, &other, &q, [0.0; 3]) < 1e-13);
     }
-    // A pencil of spheres through one circle.
+    // A set of spheres through one circle.
     let pencil: Vec<[f64; 3]> = (-5..=5).map(|k| [0.1 * f64::from(k), 0.0, 0.0]).collect();
     let radii: Vec<f64> = pencil.iter().map(|c| (1.0 + c[0] * c[0]).sqrt()).collect();
     let ends = of_union(&[pencil[0], pencil[10]], &[radii[0], radii[10]], 1.0);
@@ -268,7 +267,7 @@ fn hidden_equal_and_separate_spheres_add_nothing_or_all() {
 #[test]
 fn sums_hold_far_from_the_origin() {
     let mut random = Random(6);
-    // On a grid that a shift by 2^20 keeps exactly.
+    // On a grid that is represented exactly after a shift by 2^20.
     let centres: Vec<[f64; 3]> = (0..10_000)
         .map(|_| {
             random

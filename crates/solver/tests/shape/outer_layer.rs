@@ -1,4 +1,4 @@
-//! The outer layer of arrangements where it is known, and against sampled points.
+//! The outer layer of known arrangements, and compared with sampled points.
 
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -24,7 +24,7 @@ fn one_two_and_nested_spheres() {
             );
         }
     }
-    // Inside, inside and touching, across the surface, and free by the growth alone.
+    // Inside, inside and touching, across the surface, and free only because of the growth.
     assert_eq!(outer_layer(&[at(0.0), at(0.3)], &[1.0, 0.5], 0.0, 0.0), [0]);
     assert_eq!(outer_layer(&[at(0.0), at(0.5)], &[1.0, 0.5], 0.0, 0.0), [0]);
     assert_eq!(
@@ -92,7 +92,7 @@ fn shells_of_12_and_42_hide_the_middle_until_one_is_gone() {
             radii[0] = 1.0;
             let wanted: Vec<u32> = (1..points.len() as u32).collect();
             assert_eq!(outer_layer(&points, &radii, 0.0, 0.0), wanted);
-            // The middle one again, smaller, so that the hole of a missing one shows it or not.
+            // The middle one again, smaller, so that the hole of a missing one exposes it or not.
             for gone in 1..points.len() {
                 let mut fewer = points.clone();
                 fewer.remove(gone);
@@ -145,11 +145,11 @@ fn dense_blocks_have_their_skin() {
                 skin
             );
         }
-        // Past 2 / sqrt 3, there are voids between eight spheres.
+        // Above 2 / sqrt 3, there are voids between eight spheres.
         let (points, _) = lattice(6, 1.16);
         let all: Vec<u32> = (0..216).collect();
         assert_eq!(outer_layer(&points, &[1.0; 216], 0.0, 0.0), all);
-        // Just at it, the last points are single and count as hidden or not; nothing else may
+        // Exactly there, the last points are single and count as hidden or not; nothing else may
         // change.
         let (points, skin) = lattice(6, 2.0 / 3.0_f64.sqrt());
         let points = turned(&random.rotation(), &points);

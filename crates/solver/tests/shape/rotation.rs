@@ -1,4 +1,4 @@
-//! Free rotation against solutions in closed form.
+//! Free rotation compared with closed-form solutions.
 
 use super::{reference, unit};
 use crate::helpers::Random;
@@ -14,7 +14,7 @@ fn body_spin(q: &[f64; 4], l: [f64; 3], moments: [f64; 3]) -> Vector3<f64> {
     unit(*q).inverse() * Vector3::from(spin_rad_s(q, l, moments))
 }
 
-/// The largest errors of the spin, relative to 5 rad/s, and of the quaternion up to a time, at a
+/// The largest errors of the spin, relative to 5 rad/s, and of the quaternion up to a time, for a
 /// number of steps per period.
 fn errors(steps_per_period: usize, parts: usize) -> (f64, f64) {
     let all = reference();
@@ -59,7 +59,7 @@ fn dzhanibekov_matches_the_closed_form() {
             period.as_f64().unwrap() / 20_000.0,
         );
         assert!((kinetic_j(&q, l, [1.0, 2.0, 3.0]) / start - 1.0).abs() < 1e-8);
-        // The angular momentum back from the spin.
+        // The angular momentum computed back from the spin.
         let spin = body_spin(&q, l, [1.0, 2.0, 3.0]);
         let back = unit(q) * spin.component_mul(&Vector3::new(1.0, 2.0, 3.0));
         assert!((back - Vector3::from(l)).norm() < 1e-13);
@@ -212,7 +212,7 @@ fn energy_is_right_to_a_hundred_thousandth_for_any_body() {
 
 #[test]
 fn order_of_the_axes_does_not_matter() {
-    // The same body with its axes named the other way round.
+    // The same body with its axes in reverse order.
     let l = [0.4, -1.1, 2.0];
     let third = 1.0 / 3.0_f64.sqrt();
     let cycle = nalgebra::UnitQuaternion::from_scaled_axis(

@@ -1,5 +1,5 @@
-//! What is thrown at a packed body, from anywhere and turned anyhow, first touches a sphere of its
-//! outer layer: balls, planes, edges and corners of cubes.
+//! Objects thrown at a packed body from any direction and in any orientation first touch a sphere
+//! of its outer layer: balls, planes, edges and corners of cubes.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::helpers::Random;
 
-/// Fraction of the smallest radius.
+/// Radius of the ball as a fraction of the smallest radius.
 const BALL: f64 = 0.7;
 
 struct Packed {
@@ -41,12 +41,12 @@ impl Packed {
         self.is_outer.iter().filter(|outer| **outer).count()
     }
 
-    /// Which sphere something touches first that flies towards the middle. `distance`: of a point
-    /// from it, in the place where it starts.
+    /// The sphere that an object flying towards the middle touches first. `distance`: distance of a
+    /// point from the object at its starting position.
     fn first(&self, direction: &Vector3<f64>, distance: impl Fn(Vector3<f64>) -> f64) -> usize {
         let mut gone = 0.0;
         loop {
-            // As far as it may go whatever lies before it.
+            // A move by the smallest gap cannot pass any sphere.
             let (nearest, gap) = (self.centres.iter().zip(&self.radii).enumerate())
                 .map(|(i, (c, r))| (i, distance(c - gone * direction) - r))
                 .min_by(|a, b| a.1.total_cmp(&b.1))
@@ -67,13 +67,13 @@ fn throw(packed: &Packed, random: &mut Random) -> (Vector3<f64>, Vector3<f64>) {
     (from, (target - from).normalize())
 }
 
-/// Of the part of space where all three coordinates are positive.
+/// Distance from the octant of space where all three coordinates are positive.
 fn from_octant(p: Vector3<f64>) -> f64 {
     let out = p.map(|x| (-x).max(0.0));
     out.norm()
 }
 
-/// Of the part of space where two are.
+/// Distance from the wedge of space where two are positive.
 fn from_wedge(p: Vector3<f64>) -> f64 {
     from_octant(Vector3::new(p.x, p.y, 1.0))
 }
@@ -88,7 +88,7 @@ fn a_third_of_a_cake_lies_within() {
         all.outer()
     );
     assert!(all.outer() == 493 && packed.outer() < 350);
-    // Smaller balls get farther in, larger ones not so far, until corners are too far from them.
+    // Smaller balls reach farther in, larger ones less far, until corners are too far from them.
     let counts = [0.1, 0.2, 0.3, 0.5].map(|ball| cake(ball).outer());
     assert!(counts.is_sorted_by(|a, b| a >= b), "{counts:?}");
 }
@@ -105,7 +105,7 @@ fn balls_edges_and_corners_touch_the_outer_layer_first() {
         let seen = |p: Vector3<f64>| turned.inverse_transform_vector(&(p - from));
         let first = match n % 4 {
             0 => packed.first(&direction, |p| (p - from).norm() - ball),
-            // A corner with its point ahead, more or less.
+            // A corner pointing forwards, more or less.
             1 => {
                 let ahead = turned * Vector3::repeat(-1.0);
                 if ahead.dot(&direction) < 0.5 {
@@ -130,8 +130,8 @@ fn balls_edges_and_corners_touch_the_outer_layer_first() {
     assert!(count > 250, "{count}");
 }
 
-/// What is sharper than a cube, or smaller than the balls, does get in: with it the layer is
-/// everything that is not covered.
+/// Objects sharper than a cube, or smaller than the balls, do reach inside: for them the layer
+/// contains everything that is not covered.
 #[test]
 fn needles_touch_spheres_within() {
     let packed = cake(BALL);

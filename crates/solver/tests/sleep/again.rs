@@ -1,4 +1,4 @@
-//! The same bits on any number of threads, and after any interruption.
+//! The same bits for any number of threads, and after any interruption.
 
 use dem_run::plan::Plan;
 use dem_run::run::Progress;
@@ -9,7 +9,7 @@ use dem_run::state::partitions::divide;
 
 use super::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, plan_of, slab, sleep};
 
-/// A pile that sleeps, a ball that rolls up to it slowly, and one that comes down from above.
+/// A sleeping pile, a ball that slowly rolls up to it, and one that falls from above.
 fn pile(threads: usize) -> Plan {
     let low = slab("low", [0.0, 0.0, 0.0], CLUMP);
     let middle = slab("middle", [0.0, 0.0, 2e-3], "");
@@ -21,7 +21,7 @@ fn pile(threads: usize) -> Plan {
         head(0.0)
     ));
     let state = &mut plan.state;
-    // So few particles are not worth a second thread but for this test.
+    // Outside this test, this few particles do not justify a second thread.
     state.scratch.threads = threads;
     state.scratch.partitions = divide(&state.bonds, state.particles.free, threads);
     let count = state.particles.len();
@@ -31,7 +31,7 @@ fn pile(threads: usize) -> Plan {
     plan
 }
 
-/// All that a run goes on from or tells.
+/// All data that a run continues from or reports.
 fn same(a: &State, b: &State) -> bool {
     let mut states = [a.clone(), b.clone()];
     for state in &mut states {

@@ -1,4 +1,4 @@
-//! The books of energy and momentum close over sleep.
+//! The balances of energy and momentum stay closed during sleep.
 
 use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
@@ -6,7 +6,7 @@ use dem_run::step::{advance, interact};
 
 use super::{CLUMP, GROUND, SLEEP, ball, head, planned, slab, sleep};
 
-/// Bodies that land, sleep, and are hit by a ball that comes down later.
+/// Bodies that land, sleep, and are later hit by a falling ball.
 fn scene() -> String {
     let clump = slab("clump", [0.0, 0.0, 1e-4], CLUMP);
     let cluster = slab("cluster", [1e-3, 0.0, 2.2e-3], "");
@@ -30,8 +30,8 @@ fn errors(balance: &Balance) -> [f64; 3] {
     .map(f64::abs)
 }
 
-/// The largest errors on the way, how often somebody fell asleep and woke, and what motion they
-/// lost.
+/// The largest errors on the way, the numbers of bodies that fell asleep and woke, and the lost
+/// kinetic energy.
 fn follow(asks: &str, until_s: f64) -> ([f64; 3], [u32; 2], f64) {
     let mut state = planned(&format!("{}{asks}", scene()));
     let mass_kg = state.ledger.mass_kg();
@@ -43,7 +43,7 @@ fn follow(asks: &str, until_s: f64) -> ([f64; 3], [u32; 2], f64) {
             *worst = worst.max(error);
         }
         if let Some(before) = before.take() {
-            // The first balance without the motion of those who fell asleep.
+            // The first balance without the motion of the bodies that fell asleep.
             let lost_j = before.flow_energy_j - now.flow_energy_j;
             all_lost_j += lost_j;
             let jump_j = (now.energy_error_j - before.energy_error_j).abs();
@@ -104,7 +104,7 @@ fn damping_of_bonds_is_booked_until_the_motion_stops() {
     let after = look(&mut state);
     let lost_j = before.kinetic_j - after.kinetic_j;
     assert!(after.kinetic_j == 0.0 && after.bond_damping_j > before.bond_damping_j);
-    // What it takes in half a step is some 1e-4 of the motion.
+    // Its effect in half a step is about 1e-4 of the motion.
     let jump_j = (after.energy_error_j - before.energy_error_j).abs();
     eprintln!("lost {lost_j:.2e} J, off by {jump_j:.1e} J");
     assert!(jump_j < 1e-6 * lost_j, "{jump_j:e}");

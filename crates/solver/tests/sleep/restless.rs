@@ -1,4 +1,4 @@
-//! Who never sleeps, and who wakes of what is not near.
+//! Bodies that never sleep, and bodies that are woken by distant events.
 
 use super::{
     CLUMP, GROUND, SLEEP, ball, go, go_until, go_until_asleep, head, planned, slab, sleep,
@@ -12,7 +12,7 @@ fn never_sleeps(text: &str, until_s: f64) {
     }
 }
 
-/// A slab that lies on the ground, and the ground.
+/// A slab on the ground, and the ground.
 fn lying(start: &str, ground: &str) -> String {
     format!(
         "{}{}{GROUND}{ground}\n",
@@ -23,7 +23,7 @@ fn lying(start: &str, ground: &str) -> String {
 
 #[test]
 fn nobody_sleeps_on_what_moves() {
-    // All of it slower than the speed at which bodies fall asleep.
+    // All motions are slower than the speed limit for sleep.
     for motion in [
         "surface_velocity = [1e-4, 0, 0]",
         "velocity = [0, 0, 1e-4]",
@@ -50,8 +50,8 @@ fn nobody_sleeps_who_is_held_or_loaded_or_lies_on_such() {
 
 #[test]
 fn who_touches_somebody_restless_does_not_sleep() {
-    // A ball that rolls on, slower than a body that falls asleep may be, is quiet; one that spins
-    // faster is not, and rests on the slab.
+    // A rolling ball, slower than the limit for sleep, is quiet; one that spins faster is not, and
+    // rests on the slab.
     let spinner = ball(
         "spinner",
         [1e-3, 1e-3, 2e-3 * 0.5_f64.sqrt()],
@@ -110,7 +110,7 @@ fn a_clump_that_is_replaced_wakes_and_its_island_with_it() {
     }
     assert_eq!((sleep(&state).bodies, state.particles.free), (0, 4));
     go(&mut state);
-    // What the lower one remembered of the upper one is there.
+    // The lower one's history of its contact with the upper one is kept.
     let contacts = state.contacts.as_ref().unwrap();
     let pressed = contacts.histories.iter().filter(|m| m.overlap_m() > 0.0);
     assert_eq!(pressed.count(), 4);
@@ -130,7 +130,7 @@ fn sleepers_leave_and_keep_their_place_against_those_who_come() {
     let mut state = planned(&format!("{text}{SLEEP}"));
     go_until_asleep(&mut state, 1);
     go_until(&mut state, 0.05);
-    // No place is free within the slab.
+    // No position is free within the slab.
     assert_eq!((state.clumps.all.len(), sleep(&state).bodies), (1, 1));
     assert_eq!(state.population.inlets[0].bodies, 0);
 }

@@ -1,4 +1,4 @@
-//! Bodies that have come to rest sleep where they lie.
+//! Bodies that have come to rest sleep at their position.
 
 use dem_run::stages::clumps::place_all;
 use dem_run::step::interact;
@@ -39,8 +39,8 @@ fn bodies_that_land_fall_asleep_and_lie_where_they_would_lie() {
     for state in [&mut state, &mut awake] {
         place_all(&state.clumps, &mut state.particles);
     }
-    // Contacts swing with sqrt(3/2 g/d): a body that is as slow as asked is no further than this
-    // from where it comes to rest.
+    // Contacts oscillate with sqrt(3/2 g/d): a body below the speed limit is no farther than this
+    // from its rest position.
     let swing_rad_s = (1.5 * super::GRAVITY_M_S2 / depth_m(slab_kg())).sqrt();
     let apart_m = apart_m(&state, &awake);
     eprintln!("{apart_m:e} m of {:e}", SPEED_M_S / swing_rad_s);
@@ -55,9 +55,9 @@ fn the_ground_still_feels_those_who_sleep() {
     let [force_n, torque_n_m] = state.walls[0].total_load();
     let weight_n = 2.25 * slab_kg() * super::GRAVITY_M_S2;
     assert_eq!(state.walls[0].push.force_n, [0.0; 3]);
-    // They still swung a little, by at most `speed` times the frequency over gravity.
+    // They still oscillated a little, by at most `speed` times the frequency over gravity.
     assert!((force_n[2] / weight_n - 1.0).abs() < 1e-2, "{force_n:?}");
-    // Slabs have their middle a millimetre from where they begin.
+    // The middle of a slab is a millimetre from its beginning.
     let arm_n_m = -(1e-3 + 21e-3 + 0.25 * 40e-3) / 2.25 * weight_n;
     assert!(
         (torque_n_m[1] / arm_n_m - 1.0).abs() < 1e-2,
@@ -74,7 +74,7 @@ fn a_stack_falls_asleep_at_once_when_its_last_body_rests() {
         text += &slab(name, [0.0, 0.0, z_m + 1e-6 * (n as f64 + 1.0)], start);
     }
     let apart = slab("apart", [0.02, 0.0, 0.0], CLUMP);
-    // Comes to lie on the stack, long after it has come to rest.
+    // Lands on the stack, long after that has come to rest.
     let late = ball("late", [1e-3, 1e-3, 6e-3 + 1e-3], "velocity = [0, 0, 0.3]");
     let mut state = planned(&format!("{text}{apart}{late}{GROUND}{SLEEP}"));
     let mut seen = Vec::new();
@@ -84,7 +84,7 @@ fn a_stack_falls_asleep_at_once_when_its_last_body_rests() {
             seen.push((news.kind, news.bodies));
         }
     }
-    // The stack sleeps and the one apart; the ball wakes the stack alone; all four fall asleep as
+    // The stack and the separate body sleep; the ball wakes only the stack; all four fall asleep as
     // one.
     assert_eq!(
         seen,

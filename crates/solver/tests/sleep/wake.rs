@@ -1,4 +1,4 @@
-//! What comes near wakes those who sleep, and they go on as they fell asleep.
+//! Approaching objects wake sleeping bodies, which continue as they fell asleep.
 
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
@@ -10,7 +10,7 @@ use super::{
     head, planned, slab, slab_kg, sleep,
 };
 
-/// A slab that rests, and a ball that is thrown up and comes down on it.
+/// A slab at rest, and a ball that is thrown up and falls on it.
 fn thrown(start: &str) -> String {
     let lying = slab("lying", [0.0, 0.0, 0.0], start);
     let ball = ball("ball", [1e-3, 1e-3, 4e-3], "velocity = [0, 0, 0.25]");
@@ -30,7 +30,7 @@ fn a_ball_that_comes_down_wakes_what_it_hits() {
             woke_s = state.time_s;
         }
         assert!((0.055..0.06).contains(&woke_s), "{woke_s}");
-        // Not by a touch: there was room left.
+        // Not by contact: there was a gap left.
         let contacts = state.contacts.as_ref().unwrap();
         assert!(contacts.histories.iter().all(|m| m.overlap_m() == 0.0));
         let mut largest_m = 0.0_f64;
@@ -49,15 +49,15 @@ fn a_ball_that_comes_down_wakes_what_it_hits() {
             "{start:?}: apart {largest_m:.1e} m, woke at {woke_s} s, {:e}",
             moved(&state)
         );
-        // The slab was within this of its rest when it fell asleep, and the ball hits it so much
-        // sooner or later.
+        // The slab was within this distance of its rest position when it fell asleep, and the ball
+        // hits it earlier or later by the same.
         assert!(largest_m < 1e-2 * depth_m(slab_kg()), "{largest_m:e}");
     }
 }
 
 #[test]
 fn on_a_slope_friction_holds_as_before() {
-    // A plate comes down, close enough to wake the slab, and stays above it.
+    // A plate approaches, close enough to wake the slab, and stays above it.
     let lid = "[walls.lid]\nplane = { point = [0, 0, 2.1e-3], normal = [0, 0, -1] }\nmaterial = \"stuff\"\n\
          displacement = [0, 0, -5e-6]\ntable = [[0, 0], [0.1, 0], [0.101, 1]]\n";
     let slope_rad = 0.4;
@@ -80,7 +80,7 @@ fn on_a_slope_friction_holds_as_before() {
         }
     }
     assert!((state.time_s - 0.1).abs() < 2.0 * state.time_step_s);
-    // In the first step after it, everything acts as when it fell asleep, and that is the weight.
+    // In the first step after it, all forces are as when it fell asleep, equal to the weight.
     let weight_n = -slab_kg() * Vector3::from(state.model.gravity_m_s2);
     let off = (force_on_clump(&state, 0) - weight_n).norm() / weight_n.norm();
     assert!(off < 1e-3, "{off:e}");
@@ -107,7 +107,7 @@ fn on_a_slope_friction_holds_as_before() {
     }
     eprintln!("force off by {off:.1e}, moved {moved_m:.1e} m of {spring_m:.1e}");
     assert!(moved_m < 1e-2 * spring_m, "{moved_m:e} {spring_m:e}");
-    // And sleeps again.
+    // And falls asleep again.
     go_until_asleep(&mut state, 1);
     assert!((place(&state) - start).norm() < 1e-2 * spring_m);
 }
@@ -119,7 +119,7 @@ fn a_pile_wakes_as_one() {
     for n in 0..3 {
         text += &slab(&format!("s{n}"), [0.0, 0.0, piled(n)], CLUMP);
     }
-    // Far enough apart from the pile.
+    // Far enough from the pile.
     text += &slab("apart", [0.02, 0.0, 0.0], CLUMP);
     let ball = ball(
         "ball",

@@ -1,10 +1,10 @@
-//! The energy error of a bounce, as doc/contacts.md says it.
+//! The energy error of a bounce, as documented in doc/contacts.md.
 
 use super::{assert_near, run_of};
 
 const PAGE: &str = include_str!("../../../../doc/contacts.md");
 
-/// The page's scene gives the page's numbers, which fall with the square of the step.
+/// The page's scene gives the page's numbers, which decrease with the square of the step.
 #[test]
 fn the_energy_error_of_a_bounce_is_that_of_the_page() {
     let (_, rest) = PAGE.split_once("```toml\n").unwrap();
@@ -30,7 +30,7 @@ fn the_energy_error_of_a_bounce_is_that_of_the_page() {
         assert_near(summary.balance.energy_error, left, 5e-3);
         largest.push(summary.energy_error);
     }
-    // A quarter of the step: a sixteenth of the error, but for where rows of the series fall.
+    // A quarter of the step: a sixteenth of the error, except for the timing of rows of the series.
     let order = (largest[0] / largest[2]).log(4.0);
     assert!((order - 2.0).abs() < 0.2, "{order}");
 }

@@ -10,7 +10,7 @@ use dem_run::step::{advance, interact};
 
 use super::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned, run_of, try_planned};
 
-/// A force F that ends after T leaves a body of mass m with F T/m, whatever the steps.
+/// A force F that ends after T leaves a body of mass m with the velocity F T/m, for any step.
 #[test]
 fn a_load_that_ends_gives_its_whole_impulse_and_no_more() {
     let (force_n, end_s) = (1e-3, 0.1234e-3);
@@ -31,7 +31,7 @@ fn a_load_that_ends_gives_its_whole_impulse_and_no_more() {
         for motion in &state.particles.motions {
             assert_near(motion.velocity_m_s[1], speed_m_s, 1e-12);
         }
-        // Leapfrog's own difference, dt^2 f^2/(8 m) of each particle as long as f acts on it.
+        // Leapfrog's own difference, dt^2 f^2/(8 m) for each particle while f acts on it.
         let own_j = 2.0 * (state.time_step_s * 0.5 * force_n).powi(2) / (8.0 * MASS_KG);
         let last = balances.last().unwrap();
         assert_near(last.kinetic_j, MASS_KG * speed_m_s * speed_m_s, 1e-11);
@@ -43,7 +43,7 @@ fn a_load_that_ends_gives_its_whole_impulse_and_no_more() {
     }
 }
 
-/// Pulls the second sphere of the pair by 1 um against the clamped first, and lets it go at 0.4 ms.
+/// Pulls the second sphere of the pair by 1 um against the fixed first, and releases it at 0.4 ms.
 fn pulled(step_s: f64, end: &str) -> String {
     format!(
         "{PAIR}run = {{ end_time = 2e-3, time_step = {step_s} }}\n\
@@ -52,8 +52,8 @@ fn pulled(step_s: f64, end: &str) -> String {
     )
 }
 
-/// Released at rest it swings about the length at rest with that amplitude, w^2 = k/m, as leapfrog
-/// swings; books stay as right as those of the swing alone.
+/// Released from rest it oscillates about the rest length with that amplitude, w^2 = k/m, as in
+/// leapfrog; the balance is as accurate as for the oscillation alone.
 #[test]
 fn a_pair_that_is_let_go_swings_with_the_amplitude_of_its_release() {
     let step_s = 1e-6;
@@ -91,7 +91,7 @@ fn a_pair_that_is_let_go_swings_with_the_amplitude_of_its_release() {
     }
 }
 
-/// What is let go while it moves flies on: the velocity of the support is that of the body.
+/// A body released while moving continues with the velocity of the support.
 #[test]
 fn a_body_that_is_let_go_in_motion_keeps_its_velocity() {
     let text = format!(
@@ -111,12 +111,12 @@ fn a_body_that_is_let_go_in_motion_keeps_its_velocity() {
         assert!(now.momentum_error < 1e-12, "{:e}", now.momentum_error);
         advance(&mut state);
     }
-    // It falls freely since 0.5 ms, and goes on along x.
+    // In free fall since 0.5 ms, and moving along x.
     assert!((place(&state, 0).z / (-0.5 * 10.0 * 1e-6) - 1.0).abs() < 1e-9);
     assert!((state.particles.motions[1].velocity_m_s[0] - 2.0).abs() < 1e-12);
 }
 
-/// The step is right for the body that is let go, from the start.
+/// The step is right for the released body, from the start.
 #[test]
 fn the_limit_of_the_step_counts_on_what_is_let_go() {
     let of = |more: &str| {
@@ -135,7 +135,7 @@ fn the_limit_of_the_step_counts_on_what_is_let_go() {
     assert_near(ending, free, 1e-9);
 }
 
-/// Held freedoms may be loaded if they are let go before the load ends.
+/// Fixed degrees of freedom may be loaded if they are released before the load ends.
 #[test]
 fn a_load_may_wait_for_the_end_of_a_support() {
     let of = |end: &str| {
@@ -155,7 +155,7 @@ fn a_load_may_wait_for_the_end_of_a_support() {
     );
 }
 
-/// Damped and at rest long before, the run waits for the last end.
+/// Damped and at rest long before, the run continues until the last end.
 #[test]
 fn rest_waits_for_the_end_of_supports_and_loads() {
     let damped = PAIR.replace(
@@ -187,7 +187,7 @@ fn rest_waits_for_the_end_of_supports_and_loads() {
     assert!(why == "rest" && at_s > 0.02 && at_s < 0.04, "{why} {at_s}");
 }
 
-/// Interrupted before, about and after the ends, a run goes on with the same bits.
+/// A run interrupted before, near and after the ends continues with the same bits.
 #[test]
 fn a_resumed_run_ends_what_the_whole_one_ends() {
     let text = format!(

@@ -1,12 +1,12 @@
-//! `[initial]`: what is displaced swings, what is set in motion moves.
+//! `[initial]`: displaced particles oscillate, particles with a velocity move.
 
 use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact};
 
 use super::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned};
 
-/// Stretched by u and let go, the pair swings about its length at rest as leapfrog swings: after n
-/// steps it is stretched by u cos(n phi) with cos(phi) = 1 - (w dt)^2/2 and w^2 = 2 k/m.
+/// Stretched by u and released, the pair oscillates about its rest length as in leapfrog: after n
+/// steps the elongation is u cos(n phi) with cos(phi) = 1 - (w dt)^2/2 and w^2 = 2 k/m.
 #[test]
 fn a_pair_pulled_apart_swings_with_the_amplitude_it_had() {
     let stretch_m = 1e-6;
@@ -40,12 +40,12 @@ fn a_pair_pulled_apart_swings_with_the_amplitude_it_had() {
         );
         advance(&mut state);
     }
-    // The centre of mass stays where it was put.
+    // The centre of mass stays at its initial position.
     let centre_m = 0.5 * (place(&state, 0) + place(&state, 1));
     assert!((centre_m.x - 1.0e-3 - 0.1e-6).abs() < 1e-15);
 }
 
-/// Two tables and the body itself add up; a turning set turns about its own centre of mass.
+/// Two tables and the body itself add up; a rotating group rotates about its own centre of mass.
 #[test]
 fn velocities_of_a_set_come_on_top_of_those_of_its_body() {
     let text = PAIR.replace(
@@ -70,7 +70,7 @@ fn velocities_of_a_set_come_on_top_of_those_of_its_body() {
     }
 }
 
-/// Sets are picked where particles stand without displacement, and displacements are not counted as
+/// Groups are selected by positions without displacement, and initial displacements do not count as
 /// displacement since the start.
 #[test]
 fn sets_are_picked_before_anything_is_displaced() {
@@ -86,7 +86,7 @@ fn sets_are_picked_before_anything_is_displaced() {
     assert!((place(&plan.state, 0).y - 1e-3).abs() < 1e-18);
 }
 
-/// Displaced by nothing and moved by nothing, a scene is what it is without: to the bit.
+/// With zero displacement and velocity, a scene is the same as without, to the bit.
 #[test]
 fn a_start_of_zero_changes_nothing() {
     let text = format!("{PAIR}run = {{ end_time = 1e-3, gravity = [1, 2, 3] }}\n");
@@ -97,8 +97,8 @@ fn a_start_of_zero_changes_nothing() {
     assert_eq!(with.time_step_s, without.time_step_s);
 }
 
-/// The search for the longest stable step tries motions out; a balance before the first step knows
-/// nothing of them.
+/// The search for the longest stable step uses trial motions; a balance before the first step is
+/// not affected by them.
 #[test]
 fn a_plan_with_damped_bonds_has_the_energy_that_it_was_given() {
     let speed_m_s = 0.3;

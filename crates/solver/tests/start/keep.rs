@@ -1,4 +1,4 @@
-//! `initial_overlap = "keep"`: what rests goes on resting.
+//! `initial_overlap = "keep"`: bodies at rest stay at rest.
 
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -10,14 +10,14 @@ use super::{assert_near, place, planned, try_planned};
 
 const RADIUS_M: f64 = 5e-3;
 const GRAVITY_M_S2: f64 = 9.81;
-/// E* of a sphere of the glass below on a plane of it, Pa.
+/// E* of a sphere of the glass below on a plane of the same, Pa.
 const E_STAR_PA: f64 = 50e6 / (2.0 * (1.0 - 0.25 * 0.25));
 
 fn mass_kg() -> f64 {
     2500.0 * 4.0 / 3.0 * PI * RADIUS_M.powi(3)
 }
 
-/// Overlap at which Hertz presses with this force at this reduced radius, m.
+/// Overlap, m, for this Hertz force at this reduced radius.
 fn overlap_m(force_n: f64, radius_m: f64) -> f64 {
     (0.75 * force_n / (E_STAR_PA * radius_m.sqrt())).powf(2.0 / 3.0)
 }
@@ -38,7 +38,8 @@ fn scene(start: &str, particles: &[[f64; 3]]) -> String {
     )
 }
 
-/// A sphere on a plane, and one on top of another, at the overlaps at which Hertz carries them.
+/// A sphere on a plane, and one on top of another, at the overlaps for which Hertz forces carry
+/// them.
 #[test]
 fn spheres_at_their_static_overlap_stay() {
     let weight_n = mass_kg() * GRAVITY_M_S2;
@@ -72,7 +73,7 @@ fn spheres_at_their_static_overlap_stay() {
     }
 }
 
-/// The ledger opens with what is stored: 2/5 F d of every contact by Hertz, with plane and sphere.
+/// The ledger opens with the stored energy: 2/5 F d of every Hertz contact, with plane and sphere.
 #[test]
 fn the_energy_of_what_is_kept_is_counted_from_the_start() {
     let weight_n = mass_kg() * GRAVITY_M_S2;
@@ -89,7 +90,7 @@ fn the_energy_of_what_is_kept_is_counted_from_the_start() {
     assert!(now.energy_error.abs() < 1e-12, "{:e}", now.energy_error);
 }
 
-/// Pressed deeper than they carry, they fly apart with what was stored in them.
+/// Pressed deeper than equilibrium, they fly apart with the stored energy.
 #[test]
 fn what_is_kept_pushes_with_its_full_force() {
     let depth_m = 1e-4;
@@ -104,7 +105,7 @@ fn what_is_kept_pushes_with_its_full_force() {
     let stored_j = 8.0 / 15.0 * E_STAR_PA * RADIUS_M.sqrt() * depth_m.powf(2.5);
     let speed_m_s = (2.0 * stored_j / mass_kg()).sqrt();
     assert_near(state.particles.motions[0].velocity_m_s[2], speed_m_s, 5e-3);
-    // With "relax" the overlap is where they begin to press.
+    // With "relax" the overlap is the origin of their contact law.
     let mut relaxed = planned(&text.replace("keep", "relax")).state;
     for _ in 0..1000 {
         step(&mut relaxed);
@@ -112,7 +113,7 @@ fn what_is_kept_pushes_with_its_full_force() {
     assert_eq!(place(&relaxed, 0).z, RADIUS_M - depth_m);
 }
 
-/// A heap that has come to rest is taken up from where its spheres are and stays.
+/// A heap at rest is restarted from the positions of its spheres and stays at rest.
 #[test]
 fn a_bed_taken_up_from_its_places_goes_on_resting() {
     let mut places = Vec::new();
@@ -151,7 +152,7 @@ fn a_bed_taken_up_from_its_places_goes_on_resting() {
             "{moved_m:e} m of {deepest_m:e} m"
         );
     }
-    // Taken up as it is without: refused. With "relax" it sinks as it did before.
+    // Restarted without it: refused. With "relax" it sinks as before.
     assert!(try_planned(&text.replace("keep", "refuse")).is_err());
     let mut sinking = planned(&text.replace("keep", "relax")).state;
     for _ in 0..2000 {

@@ -1,4 +1,4 @@
-//! Walls that are rigid, materials that keep their volume, and clumps that nothing replaces.
+//! Rigid walls, incompressible materials, and clumps that are never replaced.
 
 use std::f64::consts::PI;
 
@@ -24,8 +24,8 @@ fn dropped(anvil: &str) -> Plan {
     ))
 }
 
-/// Hertz's impact on a rigid wall: only the sphere is soft, 1/E* = (1 - nu^2)/E. Deepest
-/// d = (15 m v^2 / (16 E* sqrt(R)))^(2/5), after 1.4716 d/v.
+/// Hertz impact on a rigid wall: only the sphere deforms, 1/E* = (1 - nu^2)/E. The maximum is d =
+/// (15 m v^2 / (16 E* sqrt(R)))^(2/5), after 1.4716 d/v.
 #[test]
 fn an_impact_on_a_rigid_wall_is_that_of_hertz() {
     let Plan {
@@ -58,9 +58,8 @@ fn an_impact_on_a_rigid_wall_is_that_of_hertz() {
     assert!(choice.step_s > 0.0 && choice.rayleigh_s.is_finite());
 }
 
-/// Rayleigh's estimate is that of what deforms, and a wall of a stiff material comes near to a
-/// rigid
-/// one.
+/// Rayleigh's estimate is that of deformable materials, and a wall of a stiff material comes close
+/// to a rigid one.
 #[test]
 fn a_rigid_wall_leaves_the_step_to_what_deforms() {
     let rigid = dropped("rigid = true");
@@ -70,7 +69,7 @@ fn a_rigid_wall_leaves_the_step_to_what_deforms() {
     assert_near(rigid.step.step_s, stiff.step.step_s, 1e-3);
 }
 
-/// At nu = 0.5 all is finite: E* = E/(1 - 1/4), G = E/3.
+/// At nu = 0.5 all values are finite: E* = E/(1 - 1/4), G = E/3.
 #[test]
 fn a_material_that_keeps_its_volume_is_like_any_other() {
     let soft = Elastic {
@@ -102,7 +101,7 @@ fn a_material_that_keeps_its_volume_is_like_any_other() {
     }
 }
 
-/// Its bonds are ignored where nothing replaces it, and needed where something does.
+/// Its bonds are ignored if it is never replaced, and needed otherwise.
 #[test]
 fn a_clump_that_is_never_replaced_needs_no_kind_of_bonds() {
     let text = "version = 1\nrun.end_time = 1\nmaterials.m.density = 1000\n\

@@ -1,4 +1,4 @@
-//! How fast Newton's method goes, and the same bits for any number of threads.
+//! Convergence of Newton's method, and the same bits for any number of threads.
 
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
@@ -6,8 +6,8 @@ use dem_run::state::State;
 use super::{fix, load, rest};
 use crate::bars::{ELASTIC, MODELS, random_body, with_threads};
 
-/// Asserts that each residual is at most as large as the square of the one before: of those that a
-/// tangent of their own is made for.
+/// Asserts that each residual is at most as large as the square of the previous one, for those with
+/// a tangent of their own.
 fn assert_quadratic(residuals: &[f64]) {
     let mut seen = 0;
     for pair in residuals.windows(2).filter(|p| p[0] < 0.2 && p[0] > 1e-6) {
@@ -17,8 +17,8 @@ fn assert_quadratic(residuals: &[f64]) {
     assert!(seen >= 2, "too few to tell: {residuals:?}");
 }
 
-/// With the symmetric part of the tangent, which is exact where no torque acts. A body as wide as
-/// it is long: in a slender one every other step rule_runs what the one before has bent.
+/// With the symmetric part of the tangent, which is exact without torques. A body as wide as it is
+/// long: in a slender one every other step stretches what the previous one has bent.
 #[test]
 fn residuals_fall_quadratically_under_forces() {
     for (model, name) in MODELS {
@@ -30,8 +30,8 @@ fn residuals_fall_quadratically_under_forces() {
     }
 }
 
-/// With the tangent itself, which is not symmetric where torques act. Along and across together, so
-/// that what is not symmetric matters.
+/// With the full tangent, which is not symmetric under torques. Axial and transverse loads
+/// together, so that the asymmetry matters.
 #[test]
 fn residuals_fall_quadratically_under_torques() {
     for (model, name) in MODELS {
@@ -44,7 +44,7 @@ fn residuals_fall_quadratically_under_torques() {
     }
 }
 
-/// The random body, clamped on one side and loaded on the other.
+/// The random body, fixed on one side and loaded on the other.
 fn random(model: BondModel, threads: usize) -> State {
     let mut state = random_body(model, ELASTIC, 1e-6);
     let mut state = State::new(
@@ -83,7 +83,7 @@ fn bits_are_the_same_for_any_number_of_threads() {
     }
 }
 
-/// Forces and moments of loads, weight and supports are in balance.
+/// Forces and moments of loads, weight and supports are balanced.
 #[test]
 fn reactions_balance_the_loads() {
     let mut state = random(BondModel::Timoshenko, 1);

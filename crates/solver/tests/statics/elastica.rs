@@ -1,15 +1,15 @@
-//! A slender cantilever under a large force at its end against the elastica, EI theta'' = -P cos
-//! theta, integrated here to rounding.
+//! A slender cantilever under a large force at its end compared with the elastica, EI theta'' = -P
+//! cos theta, integrated here to rounding.
 
 use dem_run::physics::bond::stiffness::BondModel;
 
 use super::{bar, fix, load, rest};
 
-/// Where the end of the elastica of length 1 comes to under P/EI = `load`: along and across; by
-/// shooting from the free end, where the moment is 0.
+/// End position of the elastica of length 1 under P/EI = `load`, axial and transverse; by shooting
+/// from the free end, where the moment is 0.
 fn elastica(load: f64) -> [f64; 2] {
-    // From the clamp: the curvature there is the moment, load times the lever, which is along at
-    // the end.
+    // From the clamp: the curvature there is the moment, load times the lever, which is the axial
+    // position of the end.
     let end = |curvature: f64| {
         let steps = 4000;
         let h = 1.0 / f64::from(steps);
@@ -28,7 +28,7 @@ fn elastica(load: f64) -> [f64; 2] {
         }
         state
     };
-    // The curvature at the free end rises with that at the clamp.
+    // The curvature at the free end increases with that at the clamp.
     let (mut low, mut high) = (0.0, load);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -42,7 +42,7 @@ fn elastica(load: f64) -> [f64; 2] {
     [along, across]
 }
 
-/// Values of Mattiasson 1981 by elliptic integrals: the integration here is right.
+/// Values of Mattiasson 1981 by elliptic integrals verify this integration.
 #[test]
 fn elastica_is_that_of_the_table() {
     for (load, shortening, deflection) in [(1.0, 0.05643, 0.30172), (10.0, 0.55500, 0.81061)] {
@@ -52,8 +52,8 @@ fn elastica_is_that_of_the_table() {
     }
 }
 
-/// Second order in the length of the bonds. Bonds as thin as a thousandth of the bar: what they
-/// stretch and shear by is 1e-6 of it.
+/// Second order in the length of the bonds. The bonds are as thin as a thousandth of the bar: their
+/// elongation and shear are 1e-6 of it.
 #[test]
 fn the_end_tends_to_the_elastica() {
     for strength in [1.0, 10.0] {

@@ -1,4 +1,4 @@
-//! What runs that step come to when they have come to rest.
+//! The rest state of time-stepping runs.
 
 use dem_run::check::limit::limit;
 use dem_run::physics::bond::stiffness::BondModel;
@@ -35,8 +35,8 @@ fn step_to_rest(state: &mut State, size_m: f64) {
     }
 }
 
-/// Asserts that a state is the same at once and after steps, places and reactions, to 1e-8 of the
-/// largest.
+/// Asserts that a static solution and time stepping agree in positions and reactions, to 1e-8 of
+/// the largest.
 fn assert_same(state: &State, size_m: f64) {
     let (mut at_once, mut stepped) = (state.clone(), state.clone());
     let found = rest(&mut at_once);

@@ -1,4 +1,4 @@
-//! Bars that are bent into arcs: closed forms of the bonds themselves, whatever the angle.
+//! Bars bent into arcs: closed forms of the bonds themselves, for any angle.
 
 use std::f64::consts::PI;
 
@@ -10,8 +10,8 @@ use crate::bars::MODELS;
 
 const BONDS: u32 = 20;
 
-/// In pure bending all bonds are chords of their initial length, each turned against the one before
-/// by the same angle.
+/// In pure bending all bonds are chords of their initial length, each rotated relative to the
+/// previous one by the same angle.
 fn assert_arc(state: &State, angle: f64) {
     let (mut x, mut y) = (0.0, 0.0);
     for (i, pose) in state.particles.poses.iter().enumerate() {
@@ -46,7 +46,7 @@ fn a_moment_at_the_end_bends_a_bar_into_an_arc() {
     }
 }
 
-/// The same arc where the end is turned and its moment follows.
+/// The same arc with a prescribed rotation of the end, which gives the moment.
 #[test]
 fn an_end_that_is_turned_bends_a_bar_into_an_arc() {
     for (model, name) in MODELS {
@@ -73,7 +73,7 @@ fn an_end_that_is_turned_bends_a_bar_into_an_arc() {
     }
 }
 
-/// Twisted by a turn of the end: torsion is k/2 (2 sin(angle/2))^2 too.
+/// Torsion by a rotation of the end: its energy is also k/2 (2 sin(angle/2))^2.
 #[test]
 fn an_end_that_is_turned_twists_a_bar() {
     for (model, _) in MODELS {

@@ -1,4 +1,4 @@
-//! Scenes that have no equilibrium to find, or none that is found.
+//! Scenes without an equilibrium, or for which none is found.
 
 use dem_io::Diagnostic;
 use dem_run::plan::plan;
@@ -6,7 +6,7 @@ use dem_scene::scene_from_text;
 
 use dem_scene::read_bodies;
 
-/// A scene of a body of these particles and bonds, and what else it has.
+/// The error for a scene of a body of these particles and bonds, with these additions.
 fn refusal(particles: &str, bonds: &str, more: &str) -> Diagnostic {
     let text = format!(
         r#"version = 1
@@ -67,7 +67,7 @@ fn a_body_that_is_held_too_little() {
         .to_string();
         assert!(said.contains(free), "{said}");
     }
-    // Two points hold all but the turn about the line through them.
+    // Two points fix all motions except the rotation about the line through them.
     let hinges = "[groups.ends]\nparticles = [0, 2]\n[supports.ends]\ngroup = \"ends\"\nfixed = [\"x\", \"y\", \"z\"]";
     let said = refusal(THREE, "bond_list = [[0, 1], [1, 2]]", hinges).to_string();
     assert!(said.contains("1 of its 6 rigid motions is free"), "{said}");

@@ -1,5 +1,5 @@
-//! Bars under small loads: statically determinate, so each bond gives way by what it carries over
-//! its stiffness.
+//! Bars under small loads: statically determinate, so each bond deforms by its load over its
+//! stiffness.
 
 use dem_run::physics::rigid::rotation_vector;
 use dem_run::state::State;
@@ -8,7 +8,7 @@ use super::{assert_near, bar, fix, load, moved, rest};
 use crate::bars::MODELS;
 
 const BONDS: u32 = 10;
-/// Small, so that the lever of a load stays: what is neglected is its square.
+/// Small, so that the lever of a load is constant: its square is neglected.
 const SMALL: f64 = 1e-9;
 
 /// A bar of each model, clamped at its first particle, under a load at its last.
@@ -51,7 +51,7 @@ fn a_force_along_stretches() {
     each([1e3, 0.0, 0.0], [0.0; 3], |state| {
         let k = state.bonds.stiffness(0).normal;
         for i in 1..=BONDS as usize {
-            // A place is known to 4e-16 m of 4 m, and the move is some 1e-8 m.
+            // A position is accurate to 4e-16 m of 4 m, and the displacement is about 1e-8 m.
             assert_near(moved(state, i).x, i as f64 * 1e3 / k, 1e-6, "stretch");
         }
     });
@@ -86,7 +86,7 @@ fn weight_hangs_on_the_support() {
         state.model.gravity_m_s2 = [9.81, 0.0, 0.0];
         rest(&mut state);
         let weight_n = 9.81 / state.particles.motions[1].inverse_mass;
-        // Bond n carries what hangs below it.
+        // Bond n carries the weight below it.
         let carried: f64 = (1..=10).map(|n| weight_n * f64::from(n)).sum();
         let k = state.bonds.stiffness(0).normal;
         assert_near(moved(&state, 10).x, carried / k, 1e-6, "stretch");

@@ -1,4 +1,4 @@
-//! Columns that buckle, loads that are stepped, and runs that are told to stop.
+//! Buckling columns, loads applied in steps, and interrupted runs.
 
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -11,7 +11,7 @@ use super::{END_S, assert_near, bar, fix, load, rest};
 
 const BONDS: u32 = 40;
 
-/// A column that is clamped at one end, and Euler's load of it.
+/// A column clamped at one end, and its Euler load.
 fn column() -> (State, f64) {
     let mut state = bar(BondModel::EulerBernoulli, BONDS, 0.5);
     fix(&mut state, &[0]);
@@ -35,7 +35,7 @@ fn a_column_stands_below_eulers_load() {
     assert!(rest(&mut state).stable);
 }
 
-/// Newton's method would find the straight column above it as well, where it does not stand.
+/// Newton's method would also find the straight column above the Euler load, where it is unstable.
 #[test]
 fn a_column_buckles_above_eulers_load() {
     for over in [1.02, 2.5] {
@@ -48,14 +48,14 @@ fn a_column_buckles_above_eulers_load() {
         );
         let problem = equilibrium(&mut state, END_S, &|_| true).unwrap_err();
         assert_eq!(problem.cause, Cause::Pivot);
-        // The load is stepped down to a thousandth; shorter bonds would be nearer by (pi/2n)^2 /
-        // 12.
+        // The load steps are reduced down to a thousandth; shorter bonds would be closer by
+        // (pi/2n)^2 / 12.
         assert_near(over * problem.fraction, 1.0, 5e-3, "Euler's load");
     }
 }
 
-/// A column that leans a little bends aside and stands on: its end comes down where Euler's load is
-/// left behind.
+/// A slightly inclined column bends sideways and remains stable: its end comes down beyond the
+/// Euler load.
 #[test]
 fn a_column_with_a_force_across_bends_aside() {
     let (mut state, critical_n) = column();

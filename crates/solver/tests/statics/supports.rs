@@ -1,5 +1,5 @@
-//! Supports that move, by displacements and by velocities, with factors over time; and freedoms
-//! that are held one by one.
+//! Supports that move, by displacements and by velocities, with factors over time; and individually
+//! fixed degrees of freedom.
 
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::physics::rigid::rotation_vector;
@@ -9,7 +9,7 @@ use super::{END_S, assert_near, bar, fix, hold, load, moved, rest};
 
 const BONDS: u32 = 10;
 
-/// What the end of a bar takes to be pulled along by so much: all bonds stretch alike.
+/// Force for a given axial displacement of the end of a bar: all bonds stretch equally.
 fn pulled(hold_x: Hold, factor: Factor) -> [f64; 2] {
     let mut state = bar(BondModel::Timoshenko, BONDS, 1.0);
     fix(&mut state, &[0]);
@@ -42,18 +42,19 @@ fn supports_move_as_their_factors_say() {
         (Hold::Displacement(1e-3), table.clone(), 1e-3),
         (Hold::Velocity(1e-3), Factor::One, 1e-3),
         (Hold::Velocity(1e-3), ramp, 0.75e-3),
-        // 0.5 for 0.2 s, rising for 0.2 s, 1.5 for 0.6 s.
+        // 0.5 for 0.2 s, increasing for 0.2 s, 1.5 for 0.6 s.
         (Hold::Velocity(1e-3), table, (0.1 + 0.2 + 0.9) * 1e-3),
     ] {
         let [moved, stretched] = pulled(hold, factor);
-        // A place is known to 4e-16 m.
+        // A position is accurate to 4e-16 m.
         assert_near(moved, way, 1e-11, "way");
         assert_near(stretched, way, 1e-9, "force over stiffness");
     }
     assert_eq!(END_S, 1.0);
 }
 
-/// A support that moves the end across gives the force that moves it as far.
+/// A support that displaces the end transversely reacts with the force that gives the same
+/// displacement.
 #[test]
 fn a_moved_end_and_a_loaded_end_are_the_same() {
     let mut loaded = bar(BondModel::Timoshenko, BONDS, 0.5);
@@ -81,8 +82,8 @@ fn a_moved_end_and_a_loaded_end_are_the_same() {
     }
 }
 
-/// A bar on two hinges, each of which holds places and the turn about the bar, so that torques act
-/// where it is free to turn: sags as a beam on two supports.
+/// A bar on two hinges, each of which fixes the position and the rotation about the bar, so that
+/// torques act where it is free to rotate: it deflects as a beam on two supports.
 #[test]
 fn hinges_hold_places_only() {
     let mut state = bar(BondModel::EulerBernoulli, BONDS, 1.0);
@@ -105,8 +106,8 @@ fn hinges_hold_places_only() {
     let stiffness_n_m2 = 0.4 * state.bonds.stiffness(0).bending;
     let length_m = 0.4 * f64::from(BONDS);
     let sag_m = 1e3 * length_m.powi(3) / (48.0 * stiffness_n_m2);
-    // Bonds bend in their middles; a moment that is linear over them is met to (1/n)^2 of half of
-    // it.
+    // Bonds bend in their middles; a moment that varies linearly over them is represented to
+    // (1/n)^2 of half of it.
     let turn = rotation_vector(state.particles.poses[0].turned);
     assert_near(
         turn[1],
@@ -120,7 +121,7 @@ fn hinges_hold_places_only() {
     }
 }
 
-/// Both ends of a bond are moved: nothing is unknown, and the supports carry it all.
+/// Both ends of a bond are moved: nothing is unknown, and the supports carry the entire load.
 #[test]
 fn nothing_is_left_to_find_where_all_is_held() {
     let mut state = bar(BondModel::Timoshenko, 1, 1.0);

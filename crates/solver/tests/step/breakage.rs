@@ -1,5 +1,5 @@
-//! Bonds that break in mid-run: their energy is booked, and the error that each leaves falls with
-//! the step.
+//! Bonds that break during a run: their energy is recorded, and the error of each break decreases
+//! with the step.
 
 use crate::bars::{
     BondDamping, ELASTIC, bar, damp, random_body, reopen, step_and_balance, with_threads,
@@ -22,19 +22,19 @@ fn breaking(tensile_strength_pa: f64, incremental: bool) -> BondRule {
     }
 }
 
-/// What is left of a run in which bonds break.
+/// Results of a run in which bonds break.
 #[derive(Debug)]
 struct Left {
     /// Mean of the energy error that each break adds, over the mean energy that one releases.
     per_break: f64,
     broken: u64,
-    /// Largest of the run.
+    /// Largest energy error of the run.
     energy: f64,
     momentum: f64,
     angular_momentum: f64,
-    /// What flies straight on is moved by the same length in every step and so rounded the same
-    /// way: its place, and with it the angular momentum about a point, is off by up to the number
-    /// of steps times this.
+    /// A free particle moves by the same length in every step and is rounded in the same direction:
+    /// its position, and with it the angular momentum about a point, has an error of up to the
+    /// number of steps times this.
     rounding: f64,
 }
 
@@ -66,7 +66,7 @@ fn left(mut state: State, steps: u64) -> Left {
     left
 }
 
-/// The bar flies apart: its halves are pulled away from each other and turn, so that bonds break
+/// The bar flies apart: its halves are pulled away from each other and rotate, so that bonds break
 /// one after another.
 fn torn(incremental: bool, step_s: f64) -> State {
     let mut state = bar(BondModel::Timoshenko, breaking(100e6, incremental), step_s);
@@ -100,7 +100,7 @@ fn the_error_of_a_break_falls_with_the_step() {
                         "{run:?}"
                     );
                 }
-                // Sixteen times finer: at least sixteen times smaller.
+                // A sixteenth of the step: at most a sixteenth of the error.
                 assert!(runs[4].per_break < runs[0].per_break / 16.0);
                 assert!(runs[4].energy < runs[0].energy / 16.0);
             }

@@ -1,4 +1,4 @@
-//! Energy and momentum of bodies left to themselves: order of the step, long runs, rest.
+//! Energy and momentum of isolated bodies: order of the step, long runs, rest.
 
 use crate::bars::{
     BAR_LIMIT_S, Bonding, ELASTIC, MODELS, bar, body, orders, random_spheres, run, soft, spheres,
@@ -41,7 +41,7 @@ fn energy_error_falls_with_the_square_of_the_step() {
     });
 }
 
-/// Where the first particle is after 300 steps of the limit.
+/// Position of the first particle after 300 steps of the limit.
 fn end(mut state: State, finer: u32) -> Vector3<f64> {
     for _ in 0..300 * u64::from(finer) {
         step(&mut state);
@@ -66,8 +66,8 @@ fn places_are_of_second_order() {
     });
 }
 
-/// The step becomes a third longer after a third of the run and half as long after two thirds, at
-/// the same moments for all steps.
+/// The step increases by a third after a third of the run and is halved after two thirds, at the
+/// same times for all steps.
 #[test]
 fn a_step_that_changes_in_mid_run_keeps_the_order() {
     with_threads(1, || {
@@ -98,8 +98,8 @@ fn a_step_that_changes_in_mid_run_keeps_the_order() {
     });
 }
 
-/// A million steps at a tenth of the limit: as well as the independent implementation, whose error
-/// was 1.3e-7.
+/// A million steps at a tenth of the limit: as accurate as the independent implementation, whose
+/// error was 1.3e-7.
 #[test]
 fn a_million_steps_of_tumbling_lose_nothing() {
     with_threads(1, || {
@@ -113,7 +113,7 @@ fn a_million_steps_of_tumbling_lose_nothing() {
         );
         assert!((60e3..100e3).contains(&all.elastic_j), "{all:?}");
         assert!(all.energy <= 2e-7, "{all:?}");
-        // Bounded: the first tenth has seen nearly all of it.
+        // Bounded: the first tenth contains nearly the largest error.
         assert!(all.energy < 1.3 * early.energy, "{early:?} {all:?}");
         assert!(
             all.momentum <= 1e-12 && all.angular_momentum <= 1e-12,
@@ -135,7 +135,7 @@ fn the_incremental_formulation_keeps_its_energy_too() {
     });
 }
 
-/// Not along an axis, of spheres of many sizes: nothing in it is a round number.
+/// Not along an axis, of spheres of many sizes: it contains no round numbers.
 fn oblique_chain() -> (Particles, Vec<[u32; 2]>) {
     let mut particles = Particles::default();
     let mut next = crate::bars::scattered();
@@ -171,7 +171,7 @@ fn what_rests_does_not_move_by_a_single_bit() {
     });
 }
 
-/// The bar turned in space before it starts.
+/// The bar rotated in space before it starts.
 #[test]
 fn a_bar_at_rest_in_any_direction_is_at_rest() {
     let (straight, pairs) = spheres(11);

@@ -1,4 +1,4 @@
-//! Frequencies of small motion, measured on runs, against an independent eigenvalue solver.
+//! Frequencies of small motions measured in runs, compared with an independent eigenvalue solver.
 
 use crate::bars::{Bonding, ELASTIC, bar, body, steel, with_threads};
 use dem_run::physics::bond::stiffness::BondModel;
@@ -72,8 +72,8 @@ fn set_moving(motion: &mut Motion, (velocity_m_s, spin_rad_s): Moving) {
     motion.spin_rad_s = spin_rad_s;
 }
 
-/// Circular frequency of a mode that starts with these velocities, from the times at which its
-/// velocity changes sign.
+/// Angular frequency of a mode that starts with these velocities, from the times of the zero
+/// crossings of its velocity.
 fn measured(mut state: State, motions: [Moving; 2], near: f64) -> f64 {
     let along = |state: &State| -> f64 {
         let p = &state.particles;
@@ -94,7 +94,7 @@ fn measured(mut state: State, motions: [Moving; 2], near: f64) -> f64 {
         step(&mut state);
         let now = along(&state);
         if before * now < 0.0 {
-            // Velocities stand half a step back.
+            // Velocities are those of half a step earlier.
             crossings.push(state.time_s - state.time_step_s * (0.5 + now / (now - before)));
         }
         before = now;
@@ -133,7 +133,7 @@ fn two_particles_swing_with_the_frequencies_of_the_reference() {
                 ([0.0; 3], [-small / harder_to_turn, 0.0, 0.0]),
             ),
         ];
-        // In the plane of y and in that of z, where a slope has the other sign.
+        // In the y plane and in the z plane, where a slope has the opposite sign.
         for bend in &pair.bend_modes_state {
             let [ya, yb, ta, tb] =
                 [bend.ya, bend.yb, bend.theta_za, bend.theta_zb].map(|v| small * v);
@@ -153,7 +153,7 @@ fn two_particles_swing_with_the_frequencies_of_the_reference() {
             let found = measured(state.clone(), [a, b], omega);
             let off = found / omega - 1.0;
             eprintln!("{} {} {omega:.1}: {off:e}", pair.name, pair.model);
-            // A step of 0.02 of a radian makes it 2e-5 too fast.
+            // With a step of 0.02 radian it is 2e-5 too fast.
             assert!(
                 (off - 1.667e-5).abs() < 5e-6,
                 "{} {} {omega}: {found}",
@@ -189,8 +189,8 @@ fn peak(velocities: &[f64], every_s: f64, near: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Velocities of the last particle of the bar after a blow: every so many seconds, all freedoms
-/// added that were struck.
+/// Velocities of the last particle of the bar after an impact, at regular intervals, summed over
+/// all excited degrees of freedom.
 fn rung(mut state: State, steps: usize, every: usize) -> Vec<f64> {
     set_moving(
         &mut state.particles.motions[10],

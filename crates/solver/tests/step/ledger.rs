@@ -1,4 +1,4 @@
-//! The ledger: nothing goes in or out unbooked.
+//! The ledger: all energy and momentum exchanged is recorded.
 
 use crate::bars::{
     BAR_LIMIT_S, BondDamping, ELASTIC, Errors, bar, damp, damp_particles, orders, reopen, run,
@@ -11,7 +11,7 @@ use dem_run::state::supports::GroupSupport;
 use dem_run::state::supports::HeldParticle;
 use dem_scene::{Factor, Hold};
 
-/// Steps of the limit over this that a run lasts, and of which times are made that all steps meet.
+/// Duration of a run, s: a multiple of all its step sizes. Changes happen at fractions of it.
 const LENGTH: f64 = 300.0 * BAR_LIMIT_S;
 
 fn load(particle: u32, factor: Factor) -> GroupLoad {
@@ -63,7 +63,7 @@ fn swing(state: &mut State) {
 
 type Change = fn(&mut State);
 
-/// All that can be done to a bar, one after another.
+/// All possible changes of a bar, one after another.
 fn smooth() -> Vec<(&'static str, Change)> {
     vec![
         ("alone", swing),
@@ -162,8 +162,8 @@ fn errors(change: Change, incremental: bool, finer: u32) -> Errors {
     run(&mut state, 300 * u64::from(finer), 1)
 }
 
-/// Steps of a 10th, a 20th, a 40th and an 80th of the limit. Loads and supports change their course
-/// at moments that are steps of all of them.
+/// Steps of a 10th, a 20th, a 40th and an 80th of the limit. Loads and supports change at times
+/// that are steps of all of them.
 #[test]
 fn energy_error_falls_with_the_square_of_the_step_whatever_acts() {
     let mut failed = Vec::new();

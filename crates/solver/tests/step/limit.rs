@@ -1,4 +1,4 @@
-//! The largest stable step against an independent eigenvalue solver.
+//! The largest stable step compared with an independent eigenvalue solver.
 
 use crate::bars::{
     BAR_LIMIT_S, BondDamping, ELASTIC, MODELS, bar, body, damp, damp_particles, random_body, soft,
@@ -10,11 +10,11 @@ use dem_run::state::particles::Particles;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Of one model and body.
+/// Values of one model and body.
 #[derive(Deserialize)]
 struct Reference {
     step_s: f64,
-    /// Damped over undamped, by eta.
+    /// Damped over undamped limit, by eta.
     chen: BTreeMap<String, f64>,
     chen_by_mode: BTreeMap<String, f64>,
 }
@@ -44,7 +44,7 @@ fn undamped_limits_are_those_of_the_reference() {
         let found = limit(&mut body(model, ELASTIC, 1e-9));
         let ratio = found.step_s / reference.step_s;
         eprintln!("{name}: {ratio:.7} after {} iterations", found.iterations);
-        // Never too long, by more than the reference may be wrong.
+        // Never too long, by more than the error of the reference.
         assert!((1.0 - 1e-5..1.0 + 1e-6).contains(&ratio), "{name}: {ratio}");
         assert_eq!(found.step_s, found.undamped_step_s);
     }
@@ -75,8 +75,8 @@ fn damped_limits_are_those_of_the_reference() {
     }
 }
 
-/// A bound near a step that is stable is not below it, one near a step that is not is not above the
-/// limit: so it tells the two apart.
+/// A bound near a stable step is not below it, one near an unstable step is not above the limit: so
+/// it distinguishes the two.
 #[test]
 fn a_bound_tells_whether_a_step_is_stable() {
     for (name, model, body, _) in all() {
@@ -91,7 +91,7 @@ fn a_bound_tells_whether_a_step_is_stable() {
                 let bound = bound_near(&mut state, fraction * limit_s);
                 let found = bound.step_s / limit_s;
                 assert_eq!(bound.is_damped, damping > 0.0);
-                // A damped limit is found too small by up to 1e-3.
+                // A damped limit is underestimated by up to 1e-3.
                 assert!(
                     found < 1.0 + 1e-3 && (fraction > 1.0 || found > fraction * (1.0 - 1e-5)),
                     "{name}, damping {damping}, {fraction} of the limit: {found}"
@@ -123,7 +123,7 @@ fn damping_of_particles_stiffens() {
     assert!((found.undamped_step_s / BAR_LIMIT_S - 1.0).abs() < 1e-4);
 }
 
-/// Spheres on a cubic grid, each moved a little, bonded to those nearer than the diagonal of a
+/// Spheres on a cubic grid, each displaced slightly, bonded to those closer than the diagonal of a
 /// face: about 12 bonds each.
 fn shaken_grid(side: i32) -> (Particles, Vec<[u32; 2]>) {
     let mut next = crate::bars::scattered();
@@ -136,7 +136,7 @@ fn shaken_grid(side: i32) -> (Particles, Vec<[u32; 2]>) {
     let side = side as usize;
     let mut pairs = Vec::new();
     for a in 0..count {
-        // The next layer holds all that are near enough.
+        // The next layer contains all that are near enough.
         for b in a + 1..count.min(a + side * side + side + 2) {
             let apart = particles.poses[b].place() - particles.poses[a].place();
             if apart.norm() < 3.0e-3 {
@@ -147,8 +147,8 @@ fn shaken_grid(side: i32) -> (Particles, Vec<[u32; 2]>) {
     (particles, pairs)
 }
 
-/// Iterations hardly grow with the body; and from another start, as the same body with its numbers
-/// backwards has it, the same limit is found.
+/// The number of iterations hardly grows with the body; and from another starting vector, obtained
+/// by reversed numbering, the same limit is found.
 #[test]
 fn the_limit_of_a_large_body_is_found_from_any_start() {
     let (particles, pairs) = shaken_grid(18);

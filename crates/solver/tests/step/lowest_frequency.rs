@@ -9,8 +9,8 @@ use dem_run::state::particles::Particles;
 
 use crate::bars::{ELASTIC, bar, body, random_body, spheres, steel};
 
-/// Of the bar of 11 spheres, rad/s, by an independent eigenvalue solver: `free_free_first_8` of
-/// `data/oscillation.json`.
+/// Lowest frequency of the bar of 11 spheres, rad/s, by an independent eigenvalue solver:
+/// `free_free_first_8` of `data/oscillation.json`.
 fn of_reference(model: &str) -> f64 {
     let read: serde_json::Value =
         serde_json::from_str(include_str!("data/oscillation.json")).unwrap();
@@ -34,8 +34,8 @@ fn is_above_that_of_the_reference_by_little() {
     }
 }
 
-/// omega = 22.3733 sqrt(EI/(rho A L^4)); masses in points and bonds that end at the centres of the
-/// last spheres change it by about the slenderness squared.
+/// omega = 22.3733 sqrt(EI/(rho A L^4)); point masses and bonds that end at the centres of the last
+/// spheres change it by about the slenderness squared.
 #[test]
 fn of_a_slender_bar_is_that_of_euler_and_bernoulli() {
     let count = 101_u32;
@@ -50,14 +50,14 @@ fn of_a_slender_bar_is_that_of_euler_and_bernoulli() {
     let found = TAU * lowest_frequency_hz(&mut state).unwrap();
     let (spacing, radius) = (0.4_f64, 0.2_f64);
     let second_moment = std::f64::consts::PI * radius.powi(4) / 4.0;
-    // Each sphere stands for a piece of beam as long as their distance.
+    // Each sphere represents a piece of beam as long as their distance.
     let length = spacing * f64::from(count);
     let per_length = mass_kg / spacing;
     let wanted = 22.373_285_448 * (200e9 * second_moment / per_length).sqrt() / length.powi(2);
     let off = found / wanted - 1.0;
     eprintln!("{off:e}");
-    // Its ends are stiffer by half a bond each, 1/100 of the length in all, and the polynomial is
-    // 0.3 % high.
+    // Its ends are stiffer by half a bond each, 1/100 of the length in total, and the polynomial
+    // is 0.3 % high.
     assert!((0.0..0.03).contains(&off), "{off}");
 }
 

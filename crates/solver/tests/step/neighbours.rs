@@ -1,4 +1,4 @@
-//! The list of near pairs against every pair looked at.
+//! The list of near pairs compared with a test of every pair.
 
 use dem_run::stages::neighbours::near_pairs;
 use dem_run::state::particles::{Particles, Pose};
@@ -46,8 +46,8 @@ proptest! {
     }
 }
 
-/// Two bodies of many particles each, side by side: only the faces that look at each other are
-/// near, and the other ends are left out.
+/// Two bodies of many particles each, side by side: only the facing sides are near, and the other
+/// ends are left out.
 #[test]
 fn large_clusters_meet_where_their_boxes_do() {
     for gap in [-0.3, 0.05, 0.5] {
@@ -67,7 +67,7 @@ fn large_clusters_meet_where_their_boxes_do() {
     }
 }
 
-/// One body alone has no near pairs, whatever it overlaps.
+/// A single body has no near pairs, whatever its overlaps.
 #[test]
 fn a_cluster_alone_is_near_to_nothing() {
     let poses = cloud(&[[0.0; 3], [0.5, 0.0, 0.0], [1.0, 0.0, 0.0]], &[1.0; 3]);

@@ -1,4 +1,4 @@
-//! Space has no preferred direction, place or numbering, and rigid motion costs nothing.
+//! Space has no preferred direction, position or numbering, and rigid motion does not deform bonds.
 
 use crate::bars::{
     BondDamping, ELASTIC, MODELS, body, damp, random_body, random_spheres, reopen, soft, turned,
@@ -50,7 +50,7 @@ fn a_body_moved_as_a_whole_feels_no_force() {
             let force = of_all(|w| w.force_n) / (stiffest * size);
             let torque = of_all(|w| w.torque_n_m) / (stiffest * size * 1e-3);
             eprintln!("{model:?}: {force:e} {torque:e}");
-            // Places are rounded to 1e-16 of the size of the body; a particle has up to a dozen
+            // Positions are rounded to 1e-16 of the size of the body; a particle has up to a dozen
             // bonds.
             assert!(
                 force < 1e-14 && torque < 1e-14,
@@ -103,7 +103,7 @@ fn in_motion() -> (Particles, Vec<[u32; 2]>) {
     (particles, pairs)
 }
 
-/// Largest distance and difference of velocities, over their largest values.
+/// Largest differences of positions and velocities, over their largest values.
 fn apart(
     a: &State,
     b: &State,
@@ -143,7 +143,7 @@ fn apart(
         .fold(0.0, f64::max)
 }
 
-/// Relative differences after 300 steps in which everything has moved: rounding.
+/// Relative differences after 300 steps with motion everywhere: rounding.
 const ROUNDING: f64 = 1e-10;
 
 #[test]
@@ -187,8 +187,7 @@ fn a_mirrored_scene_gives_the_mirrored_result() {
     assert!(found < ROUNDING, "{found:e}");
 }
 
-/// Numbers from last to first: every bond has its ends the other way round, and every sum another
-/// order.
+/// Reversed numbering: every bond has its ends exchanged, and every sum another order.
 #[test]
 fn numbers_do_not_matter() {
     let (particles, pairs) = in_motion();

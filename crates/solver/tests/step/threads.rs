@@ -1,4 +1,4 @@
-//! The same bits for any number of shares and threads, with everything on.
+//! The same bits for any number of partitions and threads, with all features active.
 
 use crate::bars::{
     BondDamping, add_bonds, damp, damp_particles, random_spheres, reopen, soft, step_and_balance,
@@ -106,7 +106,7 @@ fn scene(partitions: usize) -> State {
     state
 }
 
-/// All that a run leaves.
+/// All results of a run.
 #[derive(Debug, PartialEq)]
 struct Left {
     limit: Limit,

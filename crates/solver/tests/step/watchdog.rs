@@ -1,4 +1,4 @@
-//! Just below the limit a run stays bounded, just above it is caught.
+//! Just below the limit a run stays bounded, just above it the instability is detected.
 
 use crate::bars::{
     BondDamping, ELASTIC, MODELS, bar, damp, damp_particles, random_body, shake, with_threads,
@@ -33,7 +33,7 @@ fn stopped_at(state: &mut State, steps: u64) -> Option<u64> {
     })
 }
 
-/// `body` with all dampings at 0.98 and 1.02 of its limit.
+/// Runs `body` with all dampings at 0.98 and 1.02 of its limit.
 fn try_all(name: &str, body: impl Fn() -> State, speed_m_s: f64, steps: u64) {
     for (bonds, particles) in DAMPING {
         let mut state = body();
@@ -53,7 +53,7 @@ fn try_all(name: &str, body: impl Fn() -> State, speed_m_s: f64, steps: u64) {
         eprintln!("{name} {bonds:?} {particles}: {stable:?} {unstable:?}");
         assert_eq!(stable, None, "{name} {bonds:?} {particles}");
         assert!(
-            // Strong damping grows slowly: 4 % a step.
+            // Strong damping grows slowly: 4 % per step.
             unstable.is_some_and(|at| at < 400),
             "{name} {bonds:?} {particles}: {unstable:?}"
         );

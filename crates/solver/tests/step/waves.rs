@@ -7,11 +7,11 @@ use dem_run::step::step;
 use std::f64::consts::PI;
 
 const SPACING_M: f64 = 0.4;
-/// Along a straight chain bonds are linear, however large this is; a small one would drown in the
-/// rounding of places.
+/// Bonds along a straight chain are linear, however large this is; a small one would vanish in the
+/// rounding of positions.
 const SPEED_M_S: f64 = 1.0;
 
-/// A chain, and the root of its normal stiffness over mass, 1/s.
+/// A chain, and the square root of its normal stiffness over mass, 1/s.
 fn chain(count: u32, model: BondModel) -> (State, f64) {
     let (particles, pairs) = spheres(count);
     let state = body(particles, &pairs, &steel(model, ELASTIC), 1e-6);
@@ -19,8 +19,8 @@ fn chain(count: u32, model: BondModel) -> (State, f64) {
     (state, rate)
 }
 
-/// A standing wave of wave number q of a free chain keeps its shape and swings with 2 sqrt(k/m)
-/// sin(q L/2), at a step dt with sin(omega dt/2) of that.
+/// A standing wave of wave number q of a free chain keeps its shape and oscillates with 2 sqrt(k/m)
+/// sin(q L/2); with a step dt, sin(omega dt/2) follows from that.
 #[test]
 fn standing_waves_have_the_dispersion_of_the_discrete_chain() {
     with_threads(1, || {
@@ -38,7 +38,7 @@ fn standing_waves_have_the_dispersion_of_the_discrete_chain() {
             let mut worst = 0.0_f64;
             for _ in 0..2000 {
                 step(&mut state);
-                // Velocities start with the poses and then stand half a step before them.
+                // Velocities start at the time of the poses and are then half a step before them.
                 let at_s = state.time_s - 0.5 * state.time_step_s;
                 let start = (0.5 * omega * state.time_step_s).cos();
                 for (i, motion) in state.particles.motions.iter().enumerate() {
@@ -76,7 +76,7 @@ fn a_long_pulse_travels_with_the_speed_of_the_continuum() {
             state.time_step_s = 0.1 / rate;
             let (start, width) = (180.0, 30.0);
             for i in 0..state.particles.len() {
-                // Displacement exp(-z^2/2) that moves on: its velocity is minus the speed times its
+                // Displacement exp(-z^2/2) that travels: its velocity is minus the speed times its
                 // slope.
                 let back = -0.5 * state.time_step_s * rate;
                 let (z, z_back) = (
@@ -89,7 +89,7 @@ fn a_long_pulse_travels_with_the_speed_of_the_continuum() {
                     1e-6 * z_back * (-0.5 * z_back * z_back).exp() * speed / (width * SPACING_M);
                 state.particles.motions[i].velocity_m_s[0] = velocity;
             }
-            // As if it had been running: velocities stand half a step before the poses.
+            // As if it had been running: velocities are half a step before the poses.
             state.previous_time_step_s = state.time_step_s;
             let (from, at_s) = (centre(&state), state.time_s);
             for _ in 0..3000 {
@@ -97,7 +97,7 @@ fn a_long_pulse_travels_with_the_speed_of_the_continuum() {
             }
             let found = (centre(&state) - from) * SPACING_M / (state.time_s - at_s);
             let off = found / speed - 1.0;
-            // Group velocity c cos(q L/2), on the mean of q^2 in the energy of the pulse, 3/(2
+            // Group velocity c cos(q L/2), averaged over q^2 in the energy of the pulse, 3/(2
             // width^2).
             let discrete = -3.0 / (16.0 * width * width);
             eprintln!("{model:?}: {off:e}, as a discrete chain {discrete:e}");

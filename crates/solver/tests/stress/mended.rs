@@ -1,4 +1,4 @@
-//! What the suite has found in the solver stays mended.
+//! Regression tests for defects of the solver found by the suite.
 
 use std::sync::atomic::AtomicBool;
 
@@ -63,7 +63,7 @@ fn a_clump_that_stands_there_from_the_start_is_measured() {
     assert!((value("speed") - 1.0).abs() < 1e-12, "{}", value("speed"));
 }
 
-/// Rounding over rounding was an error of 30 % before.
+/// Regression: rounding divided by rounding gave an error of 30 %.
 #[test]
 fn a_clump_that_falls_flat_has_no_error_of_angular_momentum() {
     let summary = ended(&clump("[0, 0, -3]"));
@@ -93,8 +93,8 @@ fn a_wall_is_called_by_its_name() {
     );
 }
 
-/// Two spheres whose centres met went on as if nothing had been, or ended as a step that was too
-/// large.
+/// Regression: two spheres whose centres met continued without notice, or ended as a step that was
+/// too large.
 #[test]
 fn spheres_that_would_go_through_each_other_are_named() {
     for (radius_m, other_m) in [(1e-3, 1e-3), (1e-3, 5e-3), (5e-3, 1e-3)] {

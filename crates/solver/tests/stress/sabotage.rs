@@ -1,5 +1,4 @@
-//! A suite that cannot fail proves nothing: predictions that are wrong, and scenes that are
-//! spoiled, are found out.
+//! A suite that cannot fail proves nothing: wrong predictions and corrupted scenes are detected.
 
 use std::sync::atomic::AtomicBool;
 
@@ -13,7 +12,7 @@ fn judged(member: &Member) -> Judged {
     judge(member, &AtomicBool::new(false)).unwrap()
 }
 
-/// What is said to be wrong with a member, which did as predicted before.
+/// The reported problem of a corrupted member, which behaved as predicted before.
 fn wrong(good: &Member, spoil: impl FnOnce(&mut Member)) -> String {
     assert_eq!(judged(good).wrong, None, "{}", good.what);
     let mut spoiled = good.clone();
@@ -164,7 +163,7 @@ fn spins_that_lose_and_bodies_that_creep_are_found() {
     });
     assert_eq!(said, "elastic_energy is off");
     let rest = member("rest", "a tetrahedron on a slope of 15 degrees, clump");
-    // Carried along by 1e-6 m in the day.
+    // Carried along by 1e-6 m in a day.
     let belt = "normal = [0, 0, 1] }, surface_velocity = [1e-11, 0, 0]";
     let said = wrong(&rest, |rest| {
         replace(&mut rest.trial, "normal = [0, 0, 1] }", belt);

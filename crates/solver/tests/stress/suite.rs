@@ -1,4 +1,4 @@
-//! The suite as it stands.
+//! The unchanged suite.
 
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -26,7 +26,7 @@ fn every_case_does_as_predicted() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What the suite has to hold, so that no case is lost: predictions of each kind, a map of all
+/// Required contents of the suite, so that no case is lost: predictions of each type, a map of all
 /// models, families over all their orders.
 #[test]
 fn nothing_is_missing() {
@@ -70,7 +70,7 @@ fn nothing_is_missing() {
     let shatter = members("shatter");
     let bonds = shatter[0].trial.bodies[0].1.bonds.len();
     assert!(bonds > 100_000, "{bonds}");
-    // A day of seconds.
+    // A day in seconds.
     let rests = members("rest");
     assert!(
         rests
@@ -95,8 +95,8 @@ fn results_are_the_same_for_any_number_of_threads() {
     assert_eq!(one.len(), 3);
 }
 
-/// The observed limit of a pair is that in closed form, 2 over its largest frequency: what is
-/// observed stands on its own, whatever the program predicts.
+/// The observed limit of a pair is the closed form, 2 over its largest frequency: the observation
+/// is independent of the program's prediction.
 #[test]
 fn the_observed_limit_is_the_closed_form() {
     for fraction in [1e-2, 1e-9] {
@@ -104,8 +104,8 @@ fn the_observed_limit_is_the_closed_form() {
         let pair = member("short-bonds", &what);
         let observed_s = largest_step_s(&pair.trial, &AtomicBool::new(false)).unwrap();
         // Equal spheres of radius R: stretch 2 k_n / m is faster than bending 2 k_b / I, with k_b =
-        // k_n R^2 / 4 and I = 0.4 m R^2, and than shear, 2 k_s / m with k_s < k_n, as a lever so
-        // short turns nothing.
+        // k_n R^2 / 4 and I = 0.4 m R^2, and than shear, 2 k_s / m with k_s < k_n, as such a short
+        // lever causes no rotation.
         let radius_m = 1e-3_f64;
         let mass_kg = 2500.0 * 4.0 / 3.0 * PI * radius_m.powi(3);
         let normal_n_m = 1e9 * PI * radius_m.powi(2) / (fraction * radius_m);

@@ -1,4 +1,4 @@
-//! Meshes against looking at every face, edge and vertex by itself.
+//! Meshes compared with a separate test of every face, edge and vertex.
 
 use dem_run::geometry::{Shape, Touch};
 use nalgebra::Vector3;
@@ -9,11 +9,11 @@ use super::{Surface, add_tiles, apart, mesh, touches};
 type Vector = Vector3<f64>;
 
 /// Points nearer than all surface around them, found without any tolerance: over a face; over an
-/// edge from which every triangle at it leads away; over a vertex from which every edge at it leads
-/// away.
+/// edge from which every adjacent triangle leads away; over a vertex from which every adjacent edge
+/// leads away.
 ///
-/// None: not in general position. The foot on an edge is so near to an end of it that the least
-/// point there is none for who rounds, if beyond the end the surface comes nearer.
+/// None if not in general position: the foot on an edge is so near to one of its ends that the
+/// nearest point is undecided within rounding, if the surface comes nearer beyond the end.
 fn everything(
     (vertices, triangles): &Surface,
     c: Vector,
@@ -72,7 +72,7 @@ fn everything(
     }
     found.retain(|(p, _)| (c - p).norm() < reach);
     found.sort_by(|a, b| (c - a.0).norm().total_cmp(&(c - b.0).norm()));
-    // Of faces that look the same way within 8 degrees, the nearest.
+    // Of faces with the same direction within 8 degrees, the nearest.
     let mut kept: Vec<(Vector, bool)> = Vec::new();
     for (p, is_face) in found {
         let hidden = |(q, other): &(Vector, bool)| {
@@ -124,7 +124,7 @@ proptest! {
         assert_finds_everything(&surface, &centres, reach);
     }
 
-    /// Triangles anywhere, which share vertices at random: edges of one to several triangles.
+    /// Triangles anywhere, with random shared vertices: edges of one to several triangles.
     #[test]
     fn of_a_heap_of_triangles(
         vertices in places(12),
@@ -146,9 +146,9 @@ proptest! {
     }
 }
 
-/// A ridge that rises to a peak, beyond which a slope leads to a nearer point. Over the ridge, all
-/// points nearer to the peak than rounding counts are passed over for that slope; a little farther
-/// down they are touches of their own.
+/// A ridge that rises to a peak, beyond which a slope leads to a nearer point. Above the ridge, all
+/// points within the rounding tolerance of the peak are replaced by that slope; a little farther
+/// down they are contacts of their own.
 #[test]
 fn next_to_a_peak_only_what_stands_out_is_touched() {
     let vertices = vec![

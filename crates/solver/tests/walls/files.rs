@@ -61,8 +61,8 @@ fn a_closed_box_is_read_the_same_way() {
 
 #[test]
 fn gaps_splits_doubles_and_slivers_are_seen_to() {
-    // The second half of the plate is off by a ten-thousandth of a tile, and has one of its tiles
-    // twice, the other way round, and one facet on a line.
+    // The second half of the plate is displaced by a ten-thousandth of a tile, and has one tile
+    // twice, with reversed winding, and one degenerate facet.
     let (vertices, mut triangles) = plate();
     let near = triangles.split_off(16);
     let mut text = stl(&(vertices.clone(), triangles));
@@ -93,8 +93,7 @@ fn gaps_splits_doubles_and_slivers_are_seen_to() {
     assert_eq!((read.t_junctions, read.triangles.len()), (1, 4));
 }
 
-/// Facets that are turned against their neighbours are counted, those that stand there both ways
-/// are none of them.
+/// Facets wound against their neighbours are counted, except duplicates with both windings.
 #[test]
 fn turned_facets_are_counted() {
     let read = |surface: &Surface| {
@@ -122,15 +121,15 @@ fn turned_facets_are_counted() {
     one_doubled.1.push(plate.1[9]);
     let [a, b, c] = plate.1[10];
     one_doubled.1.extend([[b, a, c]; 2]);
-    // Two of three lie the other way round: that is its way.
+    // Two of three have the reversed winding, which is therefore the reference.
     assert_eq!(read(&one_doubled), (4, 3));
 
-    // The tiles of this box are wound as they come: half of its sides look inwards.
+    // The tiles of this box are wound arbitrarily: half of its sides face inwards.
     let tiles = box_surface([0.0; 3], [1.0; 3], 2);
     let (turned, _) = read(&tiles);
     assert_eq!(turned, 24);
 
-    // A hollow within a box is wound against it, but hangs together with nothing of it.
+    // A cavity within a box is wound the other way, but is not connected to it.
     let (mut vertices, mut triangles) = closed_box([0.0; 3], [1.0; 3]);
     let (inner, hollow) = closed_box([0.25; 3], [0.75; 3]);
     let first = vertices.len() as u32;

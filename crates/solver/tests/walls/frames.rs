@@ -1,4 +1,4 @@
-//! Walls that stand elsewhere and are turned.
+//! Walls that are displaced and rotated.
 
 use dem_run::geometry::{Frame, Shape, SolidBox};
 use nalgebra::{UnitQuaternion, Vector3};

@@ -1,4 +1,4 @@
-//! What closed surfaces enclose.
+//! The inside of closed surfaces.
 
 use dem_run::geometry::{Mesh, Shape, SolidBox};
 use nalgebra::{Rotation3, Vector3};
@@ -22,7 +22,7 @@ fn both(one: &Surface, other: &Surface) -> Surface {
 }
 
 proptest! {
-    /// However it is turned, also over and under its edges and corners.
+    /// In any orientation, also above and below its edges and corners.
     #[test]
     fn a_box_holds_what_is_in_it(
         angles in prop_oneof![
@@ -92,7 +92,7 @@ fn what_is_open_or_not_wound_one_way_has_no_inside() {
     }
 }
 
-/// From inside, a mesh of a box tells what the box does, where one side is the nearest.
+/// From inside, a mesh of a box gives the same as the box, where one side is the nearest.
 #[test]
 fn the_nearest_way_out_is_that_of_the_solid() {
     let (low, high) = ([0.0; 3], [0.5, 0.625, 0.75]);

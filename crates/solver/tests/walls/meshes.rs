@@ -1,4 +1,4 @@
-//! Meshes are what they stand for.
+//! Meshes are equivalent to the shapes that they represent.
 
 use dem_run::geometry::{Mesh, Plane, Shape, SolidBox, Touch};
 use nalgebra::{Rotation3, Vector3};
@@ -21,7 +21,7 @@ fn tiled_plane(jitter: &[f64]) -> Surface {
     surface
 }
 
-/// The only touch of a shape.
+/// The only contact of a shape.
 #[track_caller]
 fn only(shape: &Shape, centre: [f64; 3], reach: f64) -> Touch {
     let found = touches(shape, centre, reach);
@@ -34,7 +34,7 @@ fn turned(surface: &Surface, by: &Rotation3<f64>) -> Surface {
     (surface.0.iter().map(turn).collect(), surface.1.clone())
 }
 
-/// Distances from an edge or a vertex at which rounding has its say.
+/// Distances from an edge or a vertex at which rounding matters.
 const NEAR: [f64; 12] = [
     0.0, 1e-17, 1e-16, 1e-15, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, 3e-9, 1e-8, 1e-6,
 ];
@@ -83,8 +83,7 @@ proptest! {
         }
     }
 
-    /// Outside, with a reach that is much larger than the box or so small that the rear is out of
-    /// it.
+    /// Outside, with a reach much larger than the box or so small that it excludes the rear.
     #[test]
     fn a_mesh_of_a_box_is_a_box(
         n in 1_u32..5,
@@ -108,7 +107,7 @@ proptest! {
             prop_assert_eq!(found.len(), wanted.len(), "{:?} {:?}", found, wanted);
             for (found, wanted) in found.iter().zip(&wanted) {
                 // On an edge, and next to a vertex of its tiles within the tolerance, the point may
-                // be off along it.
+                // be displaced along it.
                 let is_on_face = wanted.normal.iter().filter(|x| **x != 0.0).count() == 1;
                 let error = if is_on_face { 1e-12 } else { 5e-8 * reach };
                 assert_same(found, wanted, error, "box");
@@ -148,7 +147,7 @@ fn inside_a_corner_every_side_is_touched() {
 fn over_an_edge_or_corner_from_outside_there_is_one_touch() {
     let shape = Shape::Mesh(mesh(&box_surface([0.0; 3], [1.0; 3], 3)));
     for near in NEAR {
-        // Outside by so little, and inside the edges of the top by so little.
+        // Outside by this distance, and inside the edges of the top by the same.
         for x in [1.0 + near, 1.0 - near] {
             only(&shape, [x, 0.4, 1.1], 0.2);
             only(&shape, [x, x, 1.1], 0.2);
@@ -174,14 +173,14 @@ fn the_feature_stays_while_a_sphere_slides_over_it() {
         features.dedup();
         features
     };
-    // Over the top, along an edge (outside of it), and from the top over an edge to the side.
+    // Over the top, along an edge (outside it), and from the top over an edge to the side.
     assert_eq!(along([0.0, 0.03, 1.1], [1.0, 0.97, 1.1]).len(), 1);
     assert_eq!(along([1.1, 0.0, 1.1], [1.1, 1.0, 1.1]).len(), 1);
     assert_eq!(along([0.9, 0.5, 1.15], [1.15, 0.5, 0.9]).len(), 3);
     assert_eq!(along([0.5, 1.1, 1.1], [1.2, 1.1, 1.1]).len(), 2);
 }
 
-/// Tiles that share no vertices where they meet, and two plates one on the other.
+/// Tiles that share no vertices where they meet, and two plates on top of each other.
 #[test]
 fn triangles_need_not_share_vertices() {
     let vertices = vec![
@@ -214,7 +213,7 @@ fn triangles_need_not_share_vertices() {
     }
 }
 
-/// Coordinates as an STL in single precision has them, turned askew: faces are not quite flat.
+/// Single-precision coordinates of an STL, rotated: faces are not quite flat.
 #[test]
 fn single_precision_costs_no_second_touch() {
     let by = Rotation3::from_euler_angles(0.3, 0.8, -1.1);
@@ -252,7 +251,7 @@ fn a_bent_straight_edge_is_touched_once() {
     assert_eq!(feature(0.5), feature(1.5));
 }
 
-/// A drum of 90 flat strips, rolled around in: one touch, and never without.
+/// A drum of 90 flat strips, with a sphere rolling inside: always exactly one contact.
 #[test]
 fn a_round_hollow_pushes_once() {
     let mut surface = (Vec::new(), Vec::new());
@@ -315,7 +314,7 @@ fn over_a_hole_the_rim_is_touched() {
     assert!(rolling.iter().all(|feature| *feature == rolling[0]));
 }
 
-/// A plate that a modeller gave two sides.
+/// A plate modelled with two sides.
 #[test]
 fn facets_that_stand_there_both_ways_are_touched_once() {
     let mut surface = tiled_plane(&[0.0]);

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 
 use super::{apart, touches};
 
-/// Whether a point is inside, and its distance from the surface, by the textbook's formula
-/// (negative inside).
+/// True if a point is inside, and its distance from the surface, by the textbook formula (negative
+/// inside).
 fn box_distance(p: [f64; 3], half: [f64; 3]) -> f64 {
     let q = [0, 1, 2].map(|k| p[k].abs() - half[k]);
     let outside = Vector3::from(q.map(|x| x.max(0.0))).norm();
@@ -20,8 +20,8 @@ fn cylinder_distance(p: [f64; 3], half: f64, radius: f64) -> f64 {
     q[0].max(0.0).hypot(q[1].max(0.0)) + q[0].max(q[1]).min(0.0)
 }
 
-/// What holds for every touch of a solid: the point is where the normal and the distance say, and
-/// lies on the surface.
+/// Conditions for every contact of a solid: the point matches the normal and the distance, and lies
+/// on the surface.
 fn assert_touch(shape: &Shape, p: [f64; 3], distance: f64, surface: impl Fn([f64; 3]) -> f64) {
     let found = touches(shape, p, 100.0);
     assert_eq!(found.len(), 1, "{p:?}");
@@ -42,7 +42,7 @@ fn assert_touch(shape: &Shape, p: [f64; 3], distance: f64, surface: impl Fn([f64
     assert_eq!(touches(shape, p, distance + 1e-12).len(), 1);
 }
 
-/// Coordinates of which many are the same: over faces, edges, corners and exactly on them.
+/// Coordinates with many equal values: over faces, edges, corners and exactly on them.
 fn coordinate() -> impl Strategy<Value = f64> {
     prop_oneof![-2.0..2.0, Just(-0.5), Just(0.75), Just(0.0), Just(1.0)]
 }

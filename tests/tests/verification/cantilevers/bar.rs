@@ -23,26 +23,26 @@ pub(crate) const YOUNG: f64 = 200e9;
 pub(crate) const POISSON: f64 = 0.3;
 /// The load of the paper, N.
 pub(crate) const LOAD: f64 = 1e5;
-/// Any; it only sets how long it takes to come to rest.
+/// Arbitrary; it only determines the time to reach rest.
 const DENSITY: f64 = 7850.0;
-/// Particle damping gamma (Chen et al. 2022, eqs. 11 and 12). The paper's 0.001 gives the same
-/// rest, later.
+/// Particle damping gamma (Chen et al. 2022, eqs. 11 and 12). The paper's 0.001 gives the same rest
+/// state, later.
 const DAMPING: f64 = 0.7;
 
-/// A straight row of bonded spheres along x, from 0 to `length_m`, whose first sphere is held.
+/// A straight row of bonded spheres along x, from 0 to `length_m`, with its first sphere fixed.
 #[derive(Debug, Clone)]
 pub(crate) struct Bar {
-    /// Between the centres of its ends, m.
+    /// Distance between the centres of its ends, m.
     pub(crate) length_m: f64,
-    /// Radii of the spheres, which stand at equal distances, m.
+    /// Radii of the spheres, which are equally spaced, m.
     pub(crate) radii_m: Vec<f64>,
     /// Radius of all bonds, m.
     pub(crate) bond_radius_m: f64,
-    /// What the bonds are taken for.
+    /// Model of the bonds.
     pub(crate) model: BondModel,
-    /// Forces are summed step by step.
+    /// True for the incremental formulation.
     pub(crate) incremental: bool,
-    /// From the bar's axes (along it, towards the load) to those of the simulation.
+    /// Rotation from the bar's axes (along it, towards the load) to those of the simulation.
     pub(crate) turned: UnitQuaternion<f64>,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Rest {
     pub(crate) deflections_m: Vec<f64>,
     /// Their rotations, rad.
     pub(crate) rotations: Vec<f64>,
-    /// How much nearer the tip has come to the support along the bar, m.
+    /// Displacement of the tip along the bar towards the support, m.
     pub(crate) shortening_m: f64,
     /// Force and moment of the support in the bar's axes, N and N m.
     pub(crate) reaction: [Vector3<f64>; 2],
@@ -93,8 +93,8 @@ impl Bar {
         stiffness(self.model, &shape, YOUNG, POISSON)
     }
 
-    /// The bar, held at its first sphere, with a load across it at its last that rises from 0 to
-    /// `load_n` until the time `ramp_s`.
+    /// The bar, fixed at its first sphere, with a transverse load at its last that increases from 0
+    /// to `load_n` until the time `ramp_s`.
     fn loaded(&self, load_n: f64, ramp_s: f64) -> State {
         let count = self.radii_m.len();
         let along = self.turned * Vector3::x();
@@ -146,8 +146,8 @@ impl Bar {
         state
     }
 
-    /// Period of the slowest swing, s: that of a mass-less beam with a quarter of the bar's mass at
-    /// its tip.
+    /// Period of the slowest oscillation, s: that of a massless beam with a quarter of the bar's
+    /// mass at its tip.
     fn period_s(&self) -> f64 {
         let second_moment = 0.25 * PI * self.bond_radius_m.powi(4);
         let stiffness = 3.0 * YOUNG * second_moment / self.length_m.powi(3);
@@ -159,8 +159,8 @@ impl Bar {
         2.0 * PI * (0.25 * mass / stiffness).sqrt()
     }
 
-    /// Loads the bar in one period of its slowest swing and runs it to rest: until in each of three
-    /// periods no sphere has moved, in any step, by more than the rounding of its place.
+    /// Loads the bar in one period of its slowest oscillation and runs it to rest: until in each of
+    /// three periods no sphere has moved, in any step, by more than the rounding of its position.
     pub(crate) fn at_rest(&self, load_n: f64) -> Rest {
         let period = self.period_s();
         let mut state = self.loaded(load_n, period);
@@ -202,9 +202,9 @@ impl Bar {
         }
     }
 
-    /// Deflections, m, and rotations, rad, of the spheres under a small load, exactly: the bar is
-    /// statically determinate, so each bond carries the load across and its moment about the
-    /// contact point, and gives way by these over its stiffnesses.
+    /// Exact deflections, m, and rotations, rad, of the spheres under a small load: the bar is
+    /// statically determinate, so each bond carries the transverse load and its moment about the
+    /// contact point, and deforms by these over its stiffnesses.
     pub(crate) fn exact(&self, load_n: f64) -> (Vec<f64>, Vec<f64>) {
         let (mut deflections, mut rotations) = (vec![0.0], vec![0.0]);
         let mut start = 0.0;

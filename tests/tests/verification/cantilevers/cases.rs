@@ -4,14 +4,14 @@ use dem_run::physics::bond::stiffness::BondModel;
 
 use super::bar::{Bar, LOAD, Rest};
 
-/// Numbers of bonds that the bars of case 2 and 4 are run with.
+/// Numbers of bonds of the bars of cases 2 and 4.
 pub(crate) const COUNTS: [usize; 7] = [1, 2, 3, 4, 6, 8, 10];
 
-/// Tip deflection over length at which bars are run that are compared with small-deflection theory.
-/// The deflection is then off by about the square of this: 2.5e-9.
+/// Ratio of tip deflection to length of bars that are compared with small-deflection theory. The
+/// error of the deflection is then about the square of this: 2.5e-9.
 const SMALL: f64 = 5e-5;
 
-/// What rest is compared with: geometry and rest together.
+/// Tolerance for the rest state: geometry and rest together.
 pub(crate) const TOLERANCE: f64 = 1e-8;
 
 /// Case 1: the reference bar.
@@ -24,12 +24,12 @@ pub(crate) fn case2(bonds: usize, model: BondModel) -> Bar {
     Bar::even(0.4 * bonds as f64, bonds, 0.2, 0.2, model)
 }
 
-/// Case 3: the bar of case 1 in this number of bonds, with gaps between the spheres.
+/// Case 3: the bar of case 1 with this number of bonds, with gaps between the spheres.
 pub(crate) fn case3(bonds: usize, model: BondModel) -> Bar {
     Bar::even(4.0, bonds, 0.2, 0.2, model)
 }
 
-/// Case 4: a bar half as thick in this number of bonds, the spheres in contact.
+/// Case 4: a bar of half the thickness with this number of bonds, the spheres in contact.
 pub(crate) fn case4(bonds: usize, model: BondModel) -> Bar {
     Bar::even(4.0, bonds, 2.0 / bonds as f64, 0.1, model)
 }
@@ -41,12 +41,12 @@ pub(crate) fn case5(middle_radius_m: f64, model: BondModel) -> Bar {
     bar
 }
 
-/// Normal over shear stiffness of an Euler-Bernoulli bond of case 5, which the paper gives to the
-/// parallel bond there: L^2 / (3 r^2).
+/// Ratio of normal to shear stiffness of an Euler-Bernoulli bond of case 5, which the paper uses
+/// for the parallel bond there: L^2 / (3 r^2).
 pub(crate) const KAPPA_OF_CASE_5: f64 = 2.0 * 2.0 / (3.0 * 0.2 * 0.2);
 
-/// A bar at rest under a load so small that theory for small deflections holds, scaled to the
-/// paper's load.
+/// A bar at rest under a load so small that small-deflection theory holds, scaled to the paper's
+/// load.
 #[derive(Debug, Clone)]
 pub(crate) struct Small {
     /// Displacements of the spheres along the load, m.
@@ -62,7 +62,8 @@ impl Small {
     }
 }
 
-/// Runs a bar so, and holds it against the exact solution: deflections, rotations, reactions.
+/// Runs a bar in this way, and compares deflections, rotations and reactions with the exact
+/// solution.
 pub(crate) fn small(bar: &Bar, tolerance: f64) -> Small {
     let (deflections, rotations) = bar.exact(LOAD);
     let load = LOAD * SMALL * bar.length_m / deflections[bar.bonds()];
@@ -78,7 +79,7 @@ pub(crate) fn small(bar: &Bar, tolerance: f64) -> Small {
     found
 }
 
-/// Each relative to itself; the first is 0.
+/// Compares each value, relative to itself; the first is 0.
 pub(crate) fn assert_profile(found: &[f64], exact: &[f64], tolerance: f64) {
     assert_eq!(found.len(), exact.len());
     assert_eq!([found[0], exact[0]], [0.0, 0.0]);
@@ -87,7 +88,7 @@ pub(crate) fn assert_profile(found: &[f64], exact: &[f64], tolerance: f64) {
     }
 }
 
-/// A number near another, relative to it.
+/// Checks that a number is close to another, relative to it.
 pub(crate) fn assert_near(found: f64, exact: f64, tolerance: f64, what: &str) {
     let off = found / exact - 1.0;
     assert!(
@@ -96,7 +97,7 @@ pub(crate) fn assert_near(found: f64, exact: f64, tolerance: f64, what: &str) {
     );
 }
 
-/// The support carries the load and its moment.
+/// Checks that the support carries the load and its moment.
 fn assert_reaction(rest: &Rest, load_n: f64, length_m: f64, tolerance: f64) {
     let [force, moment] = rest.reaction;
     assert_near(-force.y, load_n, tolerance, "reaction");

@@ -6,11 +6,11 @@ use serde_json::Value;
 /// A bond model.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Named {
-    /// For the page.
+    /// Name on the page.
     pub(crate) name: &'static str,
-    /// In the reference values.
+    /// Name in the reference values.
     pub(crate) key: &'static str,
-    /// Itself.
+    /// The model.
     pub(crate) model: BondModel,
 }
 
@@ -52,17 +52,17 @@ pub(crate) fn small_load() -> Value {
     serde_json::from_str(include_str!("data/cantilever.json")).unwrap()
 }
 
-/// The bar of case 1 under the paper's load, by an independent implementation.
+/// Solutions of an independent implementation for the bar of case 1 under the paper's load.
 pub(crate) fn whole_load() -> Value {
     serde_json::from_str(include_str!("data/static_case1.json")).unwrap()
 }
 
-/// A number there.
+/// A number in the reference values.
 pub(crate) fn number(values: &Value, path: &str) -> f64 {
     values.pointer(path).and_then(Value::as_f64).unwrap()
 }
 
-/// The numbers of a list there.
+/// The numbers of a list in the reference values.
 pub(crate) fn numbers(values: &Value, path: &str) -> Vec<f64> {
     let list = values.pointer(path).and_then(Value::as_array).unwrap();
     list.iter().map(|value| value.as_f64().unwrap()).collect()

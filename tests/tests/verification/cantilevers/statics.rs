@@ -1,4 +1,4 @@
-//! Bars at rest against exact solutions.
+//! Bars at rest compared with exact solutions.
 
 use dem_run::physics::bond::stiffness::BondModel;
 use nalgebra::UnitQuaternion;
@@ -10,8 +10,8 @@ use super::cases::{
 use super::models::{MODELS, PARALLEL, number, numbers, small_load, whole_load};
 use crate::verification::page::on_one_thread;
 
-/// The closed form that the bars are held against is what an independent implementation finds by
-/// direct stiffness.
+/// The closed form used for the bars equals the result of an independent implementation by direct
+/// stiffness.
 #[test]
 fn exact_solution_is_that_of_the_direct_stiffness_method() {
     let reference = small_load();
@@ -77,9 +77,9 @@ fn both_formulations_bend_alike() {
     });
 }
 
-/// In a turned bar, places are rounded along the load as well, by up to 4e-16 m; what the stiffness
-/// along the bar makes of that is 3e-5 N. Particle damping acts on it as dry friction, and the load
-/// is 2 kN: 1e-8, and more in deflections that add it up.
+/// In a rotated bar, positions are also rounded along the load, by up to 4e-16 m; with the axial
+/// stiffness of the bar this gives 3e-5 N. Particle damping acts on it as dry friction, and the
+/// load is 2 kN: 1e-8, and more in deflections that accumulate it.
 #[test]
 fn a_turned_bar_bends_as_one_along_x() {
     on_one_thread(|| {
@@ -94,8 +94,8 @@ fn a_turned_bar_bends_as_one_along_x() {
     });
 }
 
-/// Under the paper's load the bar comes to rest in the least of the energy that its bonds state,
-/// which was found without any time stepping.
+/// Under the paper's load the bar comes to rest at the minimum of the energy of its bonds, which
+/// was found without time stepping.
 #[test]
 fn at_the_whole_load_energy_is_least() {
     let reference = whole_load();
@@ -111,7 +111,7 @@ fn at_the_whole_load_energy_is_least() {
     });
 }
 
-/// The same by increments, against the independent implementation's increments.
+/// The same with increments, compared with the independent implementation's increments.
 #[test]
 fn at_the_whole_load_increments_agree() {
     let reference = whole_load();
@@ -129,7 +129,7 @@ fn at_the_whole_load_increments_agree() {
     });
 }
 
-/// The independent implementation's total formulation has another energy, the same to second order.
+/// The independent implementation's total formulation has another energy, equal to second order.
 /// Its tips are those of that energy, and differ from ours by the difference of the two.
 #[test]
 fn the_other_total_formulation_is_another_energy() {
@@ -143,9 +143,9 @@ fn the_other_total_formulation_is_another_energy() {
     }
 }
 
-/// The bar under the paper's load bends less than theory for small deflections says, by the square
-/// of the load: its tip comes nearer to the support, which shortens the lever of the load. The
-/// elastica says 4/35 (F L^2/EI)^2.
+/// Under the paper's load the bar deflects less than small-deflection theory predicts, by the
+/// square of the load: its tip approaches the support, which shortens the lever of the load. The
+/// elastica gives 4/35 (F L^2/EI)^2.
 #[test]
 fn the_lever_of_the_load_shortens() {
     on_one_thread(|| {

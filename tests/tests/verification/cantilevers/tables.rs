@@ -1,4 +1,4 @@
-//! What the page shows: results of the five cases as tables and plots.
+//! The content of the page: results of the five cases as tables and plots.
 
 use dem_plots::{Axis, Line, Plot};
 use dem_run::physics::bond::stiffness::BondModel;
@@ -11,7 +11,7 @@ use super::models::{MODELS, PARALLEL};
 use crate::verification::table::{digits, head, row};
 
 /// Names of the lines of plots; models without a name are not drawn. The elastic solid bond has the
-/// stiffnesses of the parallel bond where spheres are equal.
+/// stiffnesses of the parallel bond if spheres are equal.
 const DRAWN: [&str; 5] = [
     "parallel, elastic solid",
     "Euler-Bernoulli",
@@ -20,7 +20,7 @@ const DRAWN: [&str; 5] = [
     "shear coefficient",
 ];
 
-/// The same where the shear coefficient hardly matters: within 0.06 %.
+/// The same if the shear coefficient hardly matters: within 0.06 %.
 const DRAWN_TOGETHER: [&str; 5] = [
     "parallel, elastic solid, shear coefficient",
     "Euler-Bernoulli",
@@ -38,7 +38,7 @@ pub(crate) fn mm(deflection_m: f64, decimals: usize) -> String {
     )
 }
 
-/// How far a deflection is off a theory, in per cent.
+/// Deviation of a deflection from a theory, per cent.
 pub(crate) fn off(deflection_m: f64, theory_m: f64) -> String {
     digits(
         100.0 * (deflection_m / theory_m - 1.0),
@@ -47,7 +47,7 @@ pub(crate) fn off(deflection_m: f64, theory_m: f64) -> String {
     )
 }
 
-/// For a plot: without the digits that differ from machine to machine.
+/// A value for a plot, without the digits that differ from machine to machine.
 fn steady(value: f64, unit: f64) -> f64 {
     (value / unit).round() * unit + 0.0
 }
@@ -67,7 +67,7 @@ fn line(name: &str, points: Vec<[f64; 2]>, dashed: bool) -> Line {
     }
 }
 
-/// One line for each model that has a name, through its results at these places along the axis.
+/// One line for each model that has a name, through its results at these positions along the axis.
 fn lines(names: [&str; 5], places: &[f64], of: impl Fn(usize, usize) -> f64) -> Vec<Line> {
     (0..MODELS.len())
         .filter(|&m| !names[m].is_empty())
@@ -87,7 +87,7 @@ fn dots(mut lines: Vec<Line>) -> Vec<Line> {
     lines
 }
 
-/// Per cent, for a plot.
+/// Deviation from a theory for a plot, per cent.
 fn per_cent(deflection_m: f64, theory_m: f64) -> f64 {
     steady(100.0 * (deflection_m / theory_m - 1.0), 1e-4)
 }
@@ -175,8 +175,8 @@ pub(crate) fn of_case1() -> (String, [Plot; 2]) {
     (table, plots)
 }
 
-/// Tips of bars of these numbers of bonds: as a table of what is off Timoshenko's theory, per cent,
-/// and for each bar its tips and the theory.
+/// Tips of bars with these numbers of bonds: a table of the deviations from Timoshenko's theory,
+/// per cent, and for each bar its tips and the theory.
 fn swept(
     counts: &[usize],
     bar: fn(usize, BondModel) -> Bar,
@@ -195,7 +195,7 @@ fn swept(
     (table, tips)
 }
 
-/// Heads of the tables of cases 2 to 4.
+/// Headers of the tables of cases 2 to 4.
 fn swept_head(first: &str) -> String {
     let mut cells = vec![first, "theory, mm"];
     cells.extend(MODELS.iter().map(|named| named.name));
@@ -297,7 +297,7 @@ pub(crate) fn of_case5() -> (String, Plot) {
     (table, plot)
 }
 
-/// Table 5 of the paper: stiffnesses of the bonds of case 3, with the printed ones beside.
+/// Table 5 of the paper: stiffnesses of the bonds of case 3, next to the printed ones.
 pub(crate) fn of_stiffnesses() -> String {
     let printed = [
         (1, ["6.283", "2.416", "0.04712", "0.04612"]),
@@ -334,7 +334,7 @@ pub(crate) fn of_stiffnesses() -> String {
     table
 }
 
-/// Tips of case 1 under the whole load of the paper, against small-deflection theory.
+/// Tips of case 1 under the full load of the paper, compared with small-deflection theory.
 pub(crate) fn of_whole_load() -> String {
     let mut table = head(&[
         "",

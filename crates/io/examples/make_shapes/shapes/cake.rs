@@ -8,7 +8,7 @@ const SEED: u64 = 5;
 /// Cells along x, y and z.
 const CELLS: [usize; 3] = [44, 30, 11];
 
-/// A plate of about 120 x 80 x 30 mm: the top and bottom as the filter press left them, slightly
+/// A plate of about 120 x 80 x 30 mm: the top and bottom as pressed by the filter press, slightly
 /// uneven; the four sides broken, slanted and rough, with chipped edges. It is a box of cells with
 /// its sides moved.
 pub(crate) fn filter_cake() -> Mesh {
@@ -37,7 +37,7 @@ pub(crate) fn filter_cake() -> Mesh {
     mesh
 }
 
-/// Where a corner of the cells lies, mm.
+/// Position of a corner of the cells, mm.
 fn place(at: [usize; 3]) -> [f64; 3] {
     let [s, t, w]: [f64; 3] = std::array::from_fn(|k| at[k] as f64 / CELLS[k] as f64);
     let slant = |by: f64| by * (w - 0.5);
@@ -66,7 +66,7 @@ fn place(at: [usize; 3]) -> [f64; 3] {
         ],
         s,
     ) + slant(5.0);
-    // What is broken off one side is not felt far inside.
+    // The roughness of one side does not reach far inside.
     let x = left + s * (right - left) + (1.0 - s).powi(6) * broken_mm(1, t, 80.0, w)
         - s.powi(6) * broken_mm(2, t, 80.0, w);
     let y = front + t * (back - front) + (1.0 - t).powi(4) * broken_mm(3, s, 120.0, w)
@@ -76,8 +76,8 @@ fn place(at: [usize; 3]) -> [f64; 3] {
     [x, y, bottom + w * (top - bottom)]
 }
 
-/// How far a broken side lies behind its plan line, mm: rough, and chipped along its upper and
-/// lower edge. `along` goes from 0 to 1 over `length` mm, `w` from 0 at the bottom to 1 at the top.
+/// Distance of a broken side behind its plan line, mm: rough, and chipped along its upper and lower
+/// edge. `along` goes from 0 to 1 over `length` mm, `w` from 0 at the bottom to 1 at the top.
 fn broken_mm(side: u64, along: f64, length: f64, w: f64) -> f64 {
     let place = along * length;
     let rough = 2.4

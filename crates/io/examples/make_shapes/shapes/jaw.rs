@@ -2,8 +2,8 @@
 
 use super::mesh::Mesh;
 
-/// Ribs side by side, how wide and how deep each is, how thick the plate behind them is, and how
-/// high all is, mm.
+/// Number of ribs, their width and depth, the thickness of the plate behind them and the total
+/// height, mm.
 const RIBS: u32 = 8;
 const WIDE: f64 = 20.0;
 const DEEP: f64 = 8.0;
@@ -14,7 +14,7 @@ const HIGH: f64 = 200.0;
 pub(crate) fn jaw() -> Mesh {
     let mut mesh = Mesh::default();
     let count = 2 * RIBS + 1;
-    // At each place along y: front and back at the foot, front and back at the top.
+    // At each position along y: front and back at the foot, front and back at the top.
     for place in 0..count {
         let y = 0.5 * WIDE * (f64::from(place) - f64::from(RIBS));
         let front = if place % 2 == 1 { DEEP } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Triangles, and how they become the bytes of an STL file.
+//! Triangles, and their export as the bytes of an STL file.
 
 /// A closed triangulated surface in mm, counter-clockwise seen from outside.
 #[derive(Default)]
@@ -51,7 +51,7 @@ impl Mesh {
             .extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
     }
 
-    /// Turns every normal round, which makes a cavity of a solid.
+    /// Reverses every normal, which turns a solid into a cavity.
     pub(crate) fn turn_inside_out(&mut self) {
         for triangle in &mut self.triangles {
             triangle.swap(1, 2);
@@ -76,8 +76,7 @@ impl Mesh {
     }
 }
 
-/// To 0.1 um, which hides that sine and cosine differ in their last bit between platforms; never
-/// -0.
+/// Rounded to 0.1 um, since sine and cosine differ in their last bit between platforms; never -0.
 fn rounded_mm(length: f64) -> f64 {
     (length * 1e4).round() / 1e4 + 0.0
 }

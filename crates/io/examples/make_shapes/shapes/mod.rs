@@ -41,8 +41,8 @@ pub(crate) fn write_all(folder: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// A ball of radius 12 mm with a spherical cavity of radius 5 mm off its centre, and a block beside
-/// it.
+/// A ball of radius 12 mm with a spherical cavity of radius 5 mm off its centre, and a block next
+/// to it.
 fn hollow_pair() -> Mesh {
     let mut pair = rock::ball([0.0, 0.0, 0.0], 12.0, 4);
     let mut cavity = rock::ball([2.0, 1.0, -1.0], 5.0, 3);

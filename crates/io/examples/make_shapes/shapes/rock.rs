@@ -4,8 +4,8 @@ use super::mesh::{Mesh, cross, dot, unit};
 use super::noise::{Random, layered};
 use std::collections::BTreeMap;
 
-/// A sphere of triangles: the icosahedron with every triangle cut in four `times` times, corners on
-/// the sphere.
+/// A sphere of triangles: an icosahedron with every triangle divided into four `times` times,
+/// corners on the sphere.
 pub(crate) fn ball(centre: [f64; 3], radius: f64, times: u32) -> Mesh {
     let mut mesh = directions(times);
     for vertex in &mut mesh.vertices {

@@ -3,8 +3,8 @@
 use super::mesh::{Mesh, cross, sub, unit};
 use std::f64::consts::TAU;
 
-/// Joins rings of as many corners into a tube; with `closed` the last is joined to the first. The
-/// corners go round clockwise, seen along the tube from its end.
+/// Joins rings with equal numbers of corners into a tube; with `closed` the last is joined to the
+/// first. The corners run clockwise, seen along the tube from its end.
 fn join_rings(mesh: &mut Mesh, rings: &[Vec<u32>], closed: bool) {
     let pairs = if closed { rings.len() } else { rings.len() - 1 };
     for i in 0..pairs {
@@ -16,7 +16,7 @@ fn join_rings(mesh: &mut Mesh, rings: &[Vec<u32>], closed: bool) {
     }
 }
 
-/// A torus with R = 20 mm and r = 6 mm: 120 sections with 48 corners on the circle each.
+/// A torus with R = 20 mm and r = 6 mm: 120 sections with 48 corners each.
 pub(crate) fn torus() -> Mesh {
     let mut mesh = Mesh::default();
     let rings: Vec<Vec<u32>> = (0..120)
@@ -57,7 +57,7 @@ pub(crate) fn c_shape() -> Mesh {
 }
 
 /// An infinity knot: a round tube 14 mm thick along (45 sin t, 20 sin 2t, 8 cos t) mm, which passes
-/// over itself with 2 mm of air between.
+/// over itself with a gap of 2 mm.
 pub(crate) fn infinity_knot() -> Mesh {
     const STEPS: u32 = 240;
     const CORNERS: u32 = 30;

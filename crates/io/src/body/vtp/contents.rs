@@ -1,4 +1,4 @@
-//! What the arrays of a .vtp file say of a body.
+//! The arrays of a .vtp file as the data of a body.
 
 use super::decode::{DAMAGED, Number, Values};
 use super::header::{Array, Counts, Role};
@@ -10,7 +10,7 @@ use crate::body::parts::{Body, Parts};
 use crate::body::stored_frame::{self as frame, StoredFrame};
 use crate::diagnostic::{Diagnostic, Result};
 
-/// What has been read of a body so far.
+/// The data of a body read so far.
 #[derive(Default)]
 pub(super) struct Contents {
     counts: Option<Counts>,
@@ -18,12 +18,12 @@ pub(super) struct Contents {
     point_data: Vec<String>,
     radii: Option<Vec<f64>>,
     lines_ended: u64,
-    /// All but the radii.
+    /// All data except the radii.
     parts: Parts,
     of_frame: OfFrame,
 }
 
-/// What frames have and bodies have not.
+/// Data of frames that bodies do not have.
 #[derive(Default)]
 struct OfFrame {
     time_s: Option<f64>,
@@ -33,7 +33,7 @@ struct OfFrame {
 }
 
 impl Contents {
-    /// Takes in how many points and cells there are.
+    /// Stores the number of points and cells.
     pub(super) fn set_counts(&mut self, counts: Counts) -> Result<()> {
         if self.counts.replace(counts).is_some() {
             return Err(Diagnostic::input(
@@ -45,9 +45,9 @@ impl Contents {
         Ok(())
     }
 
-    /// How many values an array can have at most.
+    /// Largest possible number of values of an array.
     pub(super) fn most_values(&self, role: Role) -> u64 {
-        // A field holds a text at most; what others add may be larger.
+        // A field holds at most a text; fields of other programs may be larger.
         const OF_FIELD: u64 = 1 << 14;
         const OF_OTHER: u64 = 1 << 16;
         const OF_OTHER_PER_CELL: u64 = 1 << 10;
@@ -69,12 +69,12 @@ impl Contents {
         }
     }
 
-    /// Takes in that there is point data of this name.
+    /// Records that there is point data of this name.
     pub(super) fn add_point_data(&mut self, name: &str) {
         self.point_data.push(name.to_owned());
     }
 
-    /// Takes in the values of an array.
+    /// Stores the values of an array.
     pub(super) fn fill(&mut self, array: &Array, values: Values<'_>) -> Result<()> {
         let filled = match array.role {
             Role::Other => Ok(()),
@@ -203,7 +203,7 @@ impl Contents {
         Ok(())
     }
 
-    /// The body, if everything that it needs was there.
+    /// The body, if everything that it needs was present.
     pub(super) fn into_body(self) -> Result<Body> {
         self.check_counts()?;
         if self.of_frame.broken.is_some() {
@@ -227,7 +227,7 @@ impl Contents {
         })
     }
 
-    /// The frame, if all that says what its fragments are was there.
+    /// The frame, if all data of its fragments were present.
     pub(super) fn into_frame(self) -> Result<StoredFrame> {
         self.check_counts()?;
         let missing = |name: &str| {
@@ -271,7 +271,7 @@ impl Contents {
         })
     }
 
-    /// What point data there are, for a person.
+    /// The names of the point data, human-readable.
     fn known_point_data(&self) -> String {
         match self.point_data.as_slice() {
             [] => "there are no point data".to_owned(),
@@ -300,7 +300,7 @@ fn line_values(array: &Array, values: Values<'_>, counts: Counts) -> Result<Vec<
     )
 }
 
-/// The values in the middle: `counts` are those before, those wanted, those after.
+/// The values in the middle: `counts` are those before, those wanted and those after.
 fn floats(array: &Array, values: Values<'_>, counts: [u64; 3]) -> Result<Vec<f64>> {
     let [before, wanted, after] = counts.map(u128::from);
     let mut kept = Vec::new();
@@ -393,7 +393,7 @@ fn whole(number: Number) -> Result<u64> {
     ))
 }
 
-/// Texts of one line, each of which ends at a zero.
+/// Texts of one line, each terminated by a zero.
 fn texts(numbers: &[Number]) -> Result<Vec<String>> {
     let each = numbers.split(|number| *number == Number::Integer(0));
     let each = each.filter(|text| !text.is_empty()).map(text);
@@ -401,7 +401,7 @@ fn texts(numbers: &[Number]) -> Result<Vec<String>> {
     each.map(|text| text.map(on_one_line)).collect()
 }
 
-/// A text, which ends at the first zero. Its bytes may be signed or not.
+/// A text, terminated by the first zero. Its bytes may be signed or not.
 fn text(numbers: &[Number]) -> Result<String> {
     let mut bytes = Vec::new();
     for &number in numbers {

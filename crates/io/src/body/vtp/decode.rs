@@ -1,4 +1,4 @@
-//! The values of one data array, from each of the encodings that VTK writes without compression.
+//! The values of one data array, in each of the uncompressed encodings of VTK.
 
 use std::io::{self, BufRead, ErrorKind, Read};
 
@@ -60,22 +60,22 @@ pub(super) enum Number {
     Float(f64),
 }
 
-/// What to do about a file that makes no sense.
+/// The remedy for an invalid file.
 pub(super) const DAMAGED: &str = "the file is damaged: write or copy it again";
 
-/// Where the values of an array come from.
+/// Source of the values of an array.
 pub(super) enum Values<'a> {
     /// Numbers as text, separated by white space.
     Text(&'a str),
-    /// So many bytes, little endian.
+    /// This number of bytes, little endian.
     Bytes(&'a mut dyn Read, u64),
 }
 
 impl Values<'_> {
-    /// Gives every value to `take`, in order.
+    /// Passes every value to `take`, in order.
     ///
     /// # Errors
-    /// Of `take`; text that is no number; bytes that end too early.
+    /// Those of `take`; text that is not a number; bytes that end too early.
     pub(super) fn for_each(
         self,
         scalar: Scalar,
@@ -180,8 +180,8 @@ fn each_chunk<const SIZE: usize>(
         .try_for_each(|&value| take(number(value)))
 }
 
-/// What an error while reading means: an early end, bytes that are no body, or a disk that does not
-/// answer.
+/// The error for a failure while reading: an early end, bytes that are not a body, or a disk that
+/// does not respond.
 pub(super) fn unreadable(error: &io::Error) -> Diagnostic {
     let refused = error
         .get_ref()
@@ -204,7 +204,7 @@ pub(super) fn truncated() -> Diagnostic {
     )
 }
 
-/// Number of bytes of the array that `input` is at, which its first four or eight bytes tell.
+/// Number of bytes of the array at the position of `input`, given by its first four or eight bytes.
 pub(super) fn array_bytes(input: &mut dyn Read, header_bytes: usize) -> Result<u64> {
     let mut count = [0_u8; 8];
     input
@@ -213,7 +213,7 @@ pub(super) fn array_bytes(input: &mut dyn Read, header_bytes: usize) -> Result<u
     Ok(u64::from_le_bytes(count))
 }
 
-/// Reads past so many bytes.
+/// Skips this number of bytes.
 pub(super) fn skip(input: &mut dyn BufRead, bytes: u64) -> Result<()> {
     match io::copy(&mut input.take(bytes), &mut io::sink()) {
         Ok(skipped) if skipped == bytes => Ok(()),
@@ -222,8 +222,8 @@ pub(super) fn skip(input: &mut dyn BufRead, bytes: u64) -> Result<()> {
     }
 }
 
-/// The bytes of one array in base64: its size in bytes, then its values. Text after its end is not
-/// looked at.
+/// The bytes of one array in base64: its size in bytes, then its values. Text after its end is
+/// ignored.
 pub(super) fn base64_array(text: &[u8], header_bytes: usize) -> Result<Vec<u8>> {
     let header = base64(text, header_bytes)?;
     let bytes = array_bytes(&mut header.as_slice(), header_bytes)?;
@@ -236,7 +236,8 @@ pub(super) fn base64_array(text: &[u8], header_bytes: usize) -> Result<Vec<u8>> 
     Ok(decoded)
 }
 
-/// The first `wanted` bytes of a text in base64. Padding may stand at the end of each part of it.
+/// The first `wanted` bytes of a text in base64. There may be padding at the end of each part of
+/// it.
 fn base64(text: &[u8], wanted: usize) -> Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(wanted.min(text.len()) + 2);
     let (mut bits, mut digits, mut padding) = (0_u32, 0, 0);

@@ -1,6 +1,5 @@
-//! A limit on what the XML of a .vtp file makes its reader keep, so that an endless pipe ends at
-//! the
-//! first bytes that are no body.
+//! A limit on the memory that the XML of a .vtp file makes its reader use, so that an endless pipe
+//! ends at the first bytes that are not a body.
 
 use std::io::{self, BufRead, Read};
 
@@ -8,25 +7,25 @@ use super::decode::DAMAGED;
 use super::header::not_vtp;
 use crate::diagnostic::Diagnostic;
 
-/// Bytes in front of the first element: a declaration, comments.
+/// Largest number of bytes before the first element: a declaration, comments.
 const BEFORE_FIRST: u64 = 1 << 16;
-/// Bytes of all XML but the values of arrays.
+/// Largest number of bytes of all XML except the values of arrays.
 const MARKUP: u64 = 1 << 20;
-/// Bytes of a value as text: more than any program writes.
+/// Largest number of bytes of a value as text: more than any program writes.
 const PER_VALUE: u64 = 64;
 
-/// An input whose XML may only be as long as that of a body.
+/// An input whose XML may not be longer than that of a body.
 pub(super) struct Guarded<'a> {
     input: &'a mut dyn BufRead,
-    /// Whether the first element has been read.
+    /// True if the first element has been read.
     has_begun: bool,
     markup_left: u64,
-    /// Of the array that is open.
+    /// Number of values left in the open array.
     values_left: u64,
-    /// Whether the text that comes is that of an array; and if so, whether it is decimal numbers.
+    /// True if the following text is that of an array; and if so, true if it is decimal numbers.
     in_values: bool,
     is_decimal: bool,
-    /// Whether the next byte stands between < and >.
+    /// True if the next byte is between < and >.
     in_tag: bool,
 }
 
@@ -48,7 +47,7 @@ impl<'a> Guarded<'a> {
         self.input
     }
 
-    /// An element has begun: the file is one of VTK.
+    /// Records the start of an element: the file is one of VTK.
     pub(super) fn begin(&mut self) {
         if !self.has_begun {
             self.has_begun = true;
@@ -56,13 +55,14 @@ impl<'a> Guarded<'a> {
         }
     }
 
-    /// An array has begun, of at most so many values, as decimal numbers or in base64.
+    /// Records the start of an array of at most this number of values, as decimal numbers or in
+    /// base64.
     pub(super) fn expect_values(&mut self, most: u64, is_decimal: bool) {
         self.values_left = most.saturating_mul(PER_VALUE).saturating_add(BEFORE_FIRST);
         self.is_decimal = is_decimal;
     }
 
-    /// Says whether the text that comes is that of the array that is open.
+    /// Sets whether the following text is that of the open array.
     pub(super) fn set_in_values(&mut self, in_values: bool) {
         self.in_values = in_values;
         self.in_tag = false;
@@ -81,12 +81,12 @@ impl<'a> Guarded<'a> {
     }
 }
 
-/// The first byte in front of the next element that is no part of a value.
+/// The first byte before the next element that is not part of a value.
 fn foreign(chunk: &[u8], is_decimal: bool) -> Option<u8> {
     let belongs = |byte: u8| {
         byte.is_ascii_whitespace()
             || if is_decimal {
-                // With those of nan and inf.
+                // Including those of nan and inf.
                 b"0123456789+-.eEnaNAifIF".contains(&byte)
             } else {
                 byte.is_ascii_alphanumeric() || b"+/=".contains(&byte)
@@ -130,7 +130,7 @@ impl BufRead for Guarded<'_> {
 
     fn consume(&mut self, bytes: usize) {
         if self.in_values {
-            // What was given out before is there still.
+            // The bytes returned before are still there.
             let chunk = self.input.fill_buf().unwrap_or_default();
             let used = &chunk[..bytes.min(chunk.len())];
             if let Some(last) = used.iter().rfind(|byte| b"<>".contains(byte)) {

@@ -1,4 +1,5 @@
-//! The XML of a .vtp file: which arrays it declares, what they are for, and where their values are.
+//! The XML of a .vtp file: the arrays that it declares, their roles, and the places of their
+//! values.
 
 use quick_xml::events::BytesStart;
 
@@ -10,7 +11,7 @@ use super::names::{
 use crate::body::stored_frame as frame;
 use crate::diagnostic::{Diagnostic, Result};
 
-/// What a file is read as: it says what its arrays are called.
+/// The type of content as which a file is read, which determines the names of the arrays.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Layout {
     #[default]
@@ -18,7 +19,7 @@ pub(super) enum Layout {
     Frame,
 }
 
-/// What the values of an array are.
+/// The role of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
     Positions,
@@ -27,23 +28,22 @@ pub(super) enum Role {
     Offsets,
     BondRadii,
     BondLengths,
-    /// Of the frames of a run: the fragment of each particle, its density, and which bonds are
-    /// broken.
+    /// For the frames of a run: the fragment of each particle, its density, and the broken bonds.
     Clusters,
     Densities,
     Broken,
     /// Field data of this name.
     Field(&'static str),
-    /// Nothing that is asked for.
+    /// Not used.
     Other,
 }
 
-/// How the values of an array are written.
+/// The encoding of the values of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Format {
     Ascii,
     Base64,
-    /// At this place of the appended data.
+    /// At this offset of the appended data.
     Appended(u64),
 }
 
@@ -95,7 +95,7 @@ impl Array {
         Scalar::named(&self.scalar)
     }
 
-    /// The same message, said of this array.
+    /// The same message, with this array as its place.
     pub(super) fn within(&self, error: Diagnostic) -> Diagnostic {
         error.within(&format!("array '{}'", self.name))
     }
@@ -147,14 +147,14 @@ fn role_in_frame(section: &str, name: &str) -> Role {
     }
 }
 
-/// How many points and cells there are.
+/// The numbers of points and cells.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Counts {
     pub(super) points: u64,
     pub(super) lines: u64,
-    /// Vertex cells, whose cell data stand before those of the lines.
+    /// Number of vertex cells, whose cell data precede those of the lines.
     pub(super) cells_before: u64,
-    /// Polygons and strips, whose cell data stand after those of the lines.
+    /// Number of polygons and strips, whose cell data follow those of the lines.
     pub(super) cells_after: u64,
 }
 
@@ -171,10 +171,10 @@ impl Counts {
     }
 }
 
-/// How the file is encoded.
+/// The encoding of the file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Encoding {
-    /// Bytes of the number that tells how long an array is: 4 or 8.
+    /// Number of bytes of the number that gives the length of an array: 4 or 8.
     pub(super) header_bytes: usize,
     pub(super) compressed: bool,
 }
@@ -257,7 +257,7 @@ fn missing(name: &str) -> Diagnostic {
     Diagnostic::input("", format!("the attribute {name} is missing"), DAMAGED)
 }
 
-/// The file is none of VTK.
+/// The error for a file that is not a VTK file.
 pub(super) fn not_vtp() -> Diagnostic {
     Diagnostic::input(
         "",
@@ -266,7 +266,7 @@ pub(super) fn not_vtp() -> Diagnostic {
     )
 }
 
-/// XML that is not well formed.
+/// The error for XML that is not well formed.
 pub(super) fn damaged(error: &dyn std::fmt::Display) -> Diagnostic {
     Diagnostic::input(
         "",

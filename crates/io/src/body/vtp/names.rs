@@ -1,6 +1,6 @@
-//! Names of what a .vtp file of a body holds.
+//! Names used in a .vtp file of a body.
 
-/// Version of this layout. Files of a later one are refused.
+/// Version of this layout. Files of a later version are refused.
 pub const FORMAT_VERSION: u64 = 1;
 
 pub(super) const RADIUS: &str = "radius_m";

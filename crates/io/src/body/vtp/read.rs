@@ -17,10 +17,10 @@ use crate::diagnostic::{Diagnostic, Result};
 
 /// Reads a body from a .vtp file, which ends with the input.
 ///
-/// Files of other programs are read too, in any encoding without compression, if each line has two
-/// points and there is point data `radius`. Without cell data `bond_radius` a bond is as thick as
-/// the smaller of its particles; without `bond_initial_length` it is as long as its particles are
-/// apart. Further arrays are left out.
+/// Files of other programs are read too, in any uncompressed encoding, if each line has two points
+/// and there is point data `radius`. Without cell data `bond_radius` a bond has the radius of the
+/// smaller of its particles; without `bond_initial_length` their distance as its length. Other
+/// arrays are ignored.
 ///
 /// # Errors
 /// Damaged or cut off, a later version, compressed, wrong counts, or not a body by [`Body::check`].
@@ -28,7 +28,7 @@ pub fn read(input: &mut dyn BufRead) -> Result<Body> {
     contents(input, Layout::Body)?.into_body()
 }
 
-/// Reads what a frame of a run says of its fragments.
+/// Reads the fragments of a frame of a run.
 ///
 /// # Errors
 /// Damaged or cut off, compressed, wrong counts, or an array of fragments is missing.
@@ -50,20 +50,20 @@ fn contents(input: &mut dyn BufRead, layout: Layout) -> Result<Contents> {
     Ok(file.contents)
 }
 
-/// What follows the XML header.
+/// The data after the XML header.
 enum Appended {
     None,
     Raw,
     Base64,
 }
 
-/// What has been read so far.
+/// The contents read so far.
 #[derive(Default)]
 struct File {
     layout: Layout,
     encoding: Option<Encoding>,
     contents: Contents,
-    /// Arrays whose values are still to come, with their place in the appended data.
+    /// Arrays whose values follow later, with their offset in the appended data.
     appended: Vec<(u64, Array)>,
 }
 
@@ -71,7 +71,7 @@ struct File {
 fn read_xml(xml: &mut Reader<Guarded<'_>>, file: &mut File) -> Result<Appended> {
     let mut buffer = Vec::new();
     let mut open: Vec<String> = Vec::new();
-    // The array that is open, and its text so far.
+    // The open array, and its text so far.
     let mut array: Option<(Array, String)> = None;
     loop {
         buffer.clear();
@@ -148,7 +148,7 @@ fn is_array(element: &str) -> bool {
 }
 
 impl File {
-    /// Takes in an element that begins inside `section`. If it is an array, it is given back.
+    /// Processes an element that begins inside `section`. If it is an array, it is returned.
     fn element(
         &mut self,
         element: &BytesStart<'_>,
@@ -175,7 +175,7 @@ impl File {
         Ok(Some(array))
     }
 
-    /// Takes in an array whose values are `text`, or notes where they will come.
+    /// Processes an array whose values are `text`, or records where they will follow.
     fn declared(&mut self, array: Array, text: &str) -> Result<()> {
         match array.format {
             Format::Ascii => self.contents.fill(&array, Values::Text(text)),
@@ -198,14 +198,14 @@ impl File {
         )
     }
 
-    /// How many bytes an array can have at most.
+    /// Largest number of bytes of an array.
     fn most_bytes(&self, array: &Array) -> u64 {
         let of_value = array.scalar().map_or(8, Scalar::bytes);
         let most = self.contents.most_values(array.role);
         most.saturating_mul(of_value as u64)
     }
 
-    /// Whether an array can have so many bytes.
+    /// Checks that an array can have this number of bytes.
     fn check_size(&self, array: &Array, bytes: u64) -> Result<()> {
         let most = self.most_bytes(array);
         if bytes <= most {
@@ -219,7 +219,7 @@ impl File {
         self.encoding.map_or(8, |encoding| encoding.header_bytes)
     }
 
-    /// The arrays of the appended data, in the order in which they come.
+    /// The arrays of the appended data, in their order.
     fn take_appended(&mut self) -> Vec<(u64, Array)> {
         let mut appended = std::mem::take(&mut self.appended);
         appended.sort_by_key(|(offset, _)| *offset);
@@ -284,7 +284,7 @@ fn read_base64(input: &mut dyn BufRead, file: &mut File) -> Result<()> {
     Ok(())
 }
 
-/// Reads up to the underscore at which the appended data begin.
+/// Reads up to the underscore before the appended data.
 fn to_appended_data(input: &mut dyn BufRead) -> Result<()> {
     loop {
         let mut byte = [0];
@@ -305,8 +305,8 @@ fn to_appended_data(input: &mut dyn BufRead) -> Result<()> {
     }
 }
 
-/// The elements that are open at the appended data must be closed: a file that was cut off shows it
-/// here at the latest.
+/// The elements that are open at the appended data must be closed: at the latest, a truncated file
+/// is detected here.
 fn check_end(end: &[u8]) -> Result<()> {
     let closed = String::from_utf8_lossy(end)
         .split_ascii_whitespace()

@@ -1,4 +1,4 @@
-//! Forces of overlaps, and the largest overlap: the loop in which settling spends its time.
+//! Forces of overlaps, and the largest overlap: settling spends most of its time in this loop.
 
 use super::neighbours::NeighbourLists;
 use crate::geometry::boundary::Boundary;
@@ -7,21 +7,21 @@ use pulp::NullaryFnOnce;
 
 /// Relative surplus of the radii while settling.
 pub(super) const MARGIN: f64 = 5e-5;
-/// At its true size no sphere may stand out of the wall by more than this part of its radius when
-/// settling ends. Two spheres overlap by less than the surplus of one of them then, so not at all
+/// Largest protrusion of a sphere from the wall at its true size when settling ends, as a fraction
+/// of its radius. Two spheres then overlap by less than the surplus of one of them, so not at all
 /// at their true sizes.
 const STANDS_OUT: f64 = 1e-10;
-/// A centre that is nearer to the wall than this fraction of its radius may have been pushed
+/// Distance from the wall, as a fraction of the radius, below which a centre may have been pushed
 /// through it.
 const BEYOND: f64 = 0.9;
 /// A coordinate far from everything, in local units.
 const FAR: f64 = 1e6;
-/// Neighbours handled at once.
+/// Number of neighbours processed at once.
 const LANES: usize = 4;
 
-/// By how much a sphere of this radius, `MARGIN` larger than true, stands out of a wall at this
-/// distance from its centre, as a fraction of the radius. Not at all if it fits at its true size: a
-/// sphere between two walls may have no room for the surplus.
+/// Protrusion of a sphere of this radius, `MARGIN` larger than true, from a wall at this distance
+/// from its centre, as a fraction of the radius. Zero if it fits at its true size: a sphere between
+/// two walls may have no room for the surplus.
 pub(super) fn wall_overlap(radius: f64, distance: f64) -> f64 {
     let stands_out = radius / (1.0 + MARGIN) * (1.0 - STANDS_OUT) > distance;
     if stands_out {
@@ -31,7 +31,7 @@ pub(super) fn wall_overlap(radius: f64, distance: f64) -> f64 {
     }
 }
 
-/// The forces on the spheres from number `first` on, one for each of `force`: a call that is
+/// The forces on the spheres from index `first` on, one for each entry of `force`: a call that is
 /// compiled for AVX2 as well.
 pub(super) struct ForcesOn<'a> {
     pub(super) force: &'a mut [[f64; 4]],
@@ -66,7 +66,7 @@ impl NullaryFnOnce for ForcesOn<'_> {
                 push.add(&ball, group.map(|j| balls[j as usize]));
             }
             if !rest.is_empty() {
-                // Filled up with points far away, which touch nothing.
+                // Padded with points far away, which touch nothing.
                 let mut last = [[FAR, FAR, FAR, 0.0]; LANES];
                 for (other, j) in last.iter_mut().zip(rest) {
                     *other = balls[*j as usize];
@@ -79,7 +79,7 @@ impl NullaryFnOnce for ForcesOn<'_> {
             if !walls.is_empty() {
                 let (centre, radius) = (Vector3::new(ball[0], ball[1], ball[2]), ball[3] * enlarge);
                 boundary.walls(walls.iter().copied(), &centre, radius, &mut touched);
-                // A centre that was pushed through the wall is drawn back.
+                // A centre that was pushed through the wall is pulled back.
                 let side = match touched.first() {
                     Some(wall)
                         if wall.distance < BEYOND * radius
@@ -105,8 +105,8 @@ impl NullaryFnOnce for ForcesOn<'_> {
     }
 }
 
-/// Forces and largest overlaps of the neighbours of one sphere, in `LANES` sums that are added up
-/// at the end.
+/// Forces and largest overlaps of the neighbours of one sphere, in `LANES` partial sums that are
+/// added at the end.
 #[derive(Default)]
 struct ForceLanes {
     force: [[f64; LANES]; 3],
@@ -114,8 +114,8 @@ struct ForceLanes {
 }
 
 impl ForceLanes {
-    /// Adds `LANES` neighbours of `ball`, all at once and without a branch: whether near spheres
-    /// touch changes too often to be predicted.
+    /// Adds `LANES` neighbours of `ball` at once and without a branch: contacts of near spheres
+    /// change too often to be predicted.
     #[expect(
         clippy::needless_range_loop,
         reason = "several arrays side by side, lane by lane"
@@ -157,7 +157,7 @@ impl ForceLanes {
         }
     }
 
-    /// The whole force and the largest overlap.
+    /// The total force and the largest overlap.
     fn sum(&self) -> ([f64; 3], f64) {
         (
             self.force.map(|lanes| lanes.iter().sum()),

@@ -9,27 +9,26 @@ use dem_io::{Diagnostic, Result};
 use pulp::Arch;
 use rayon::prelude::*;
 
-/// Neighbours are listed this far beyond contact, in mean radii.
+/// Skin: distance beyond contact up to which neighbours are listed, in mean radii.
 const SKIN: f64 = 0.8;
-/// Fraction of the velocity that damping takes in step n: `DAMPING` / n, between the two limits.
+/// Fraction of the velocity that damping removes in step n: `DAMPING` / n, between the two limits.
 const DAMPING: f64 = 9.0;
 const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
-/// Velocity that a unit of force gives in a step to a sphere of few neighbours; with half as much
-/// again the dynamics becomes unstable.
+/// Velocity that a unit of force gives per step to a sphere of few neighbours; 1.5 times this value
+/// makes the dynamics unstable.
 const LARGEST_RESPONSE: f64 = 0.75;
-/// So many listed neighbours are few: 6 of them touch. With more the response is less in
-/// proportion.
+/// Number of listed neighbours up to which they are few: 6 of them touch. With more, the response
+/// decreases in proportion.
 const FEW_NEIGHBOURS: f64 = 10.0;
-/// No sphere moves farther in a step, in mean radii: centres that begin almost on each other are
-/// not shot through a wall.
+/// Largest move of a sphere in a step, in mean radii: centres that begin almost at the same place
+/// are not shot through a wall.
 const LARGEST_MOVE: f64 = 0.2;
 
-/// Steps before spheres are taken out, at first and then between one time and the next.
+/// Number of steps before spheres are taken out: the first time, and between later times.
 const PATIENCE: [usize; 2] = [1500, 200];
-/// Fraction of the spheres taken out the first time; each further time twice as many, up to the
-/// second fraction.
+/// Fraction of the spheres taken out the first time; it doubles each time, up to the second value.
 const TAKEN_OUT: [f64; 2] = [0.001, 0.016];
-/// After so many steps settling is given up.
+/// Number of steps after which settling fails.
 const MOST_STEPS: usize = 60_000;
 
 /// Treatment of spheres that are jammed.
@@ -37,48 +36,48 @@ const MOST_STEPS: usize = 60_000;
 pub enum WhenJammed {
     /// A few are taken out, until the rest has room.
     TakeOut,
-    /// Settling ends: they are to be fewer from the start.
+    /// Settling ends: the front is to have fewer spheres from the start.
     Stop,
 }
 
-/// The end of a settling run.
+/// Result of a settling run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Settled {
-    /// Steps of the minimiser.
+    /// Number of steps of the minimiser.
     pub steps: usize,
-    /// Spheres taken out because they were jammed.
+    /// Number of spheres taken out because they were jammed.
     pub taken_out: usize,
-    /// True if it was stopped because spheres were jammed: they still overlap.
+    /// True if settling was stopped because spheres were jammed: they still overlap.
     pub is_stopped: bool,
 }
 
-/// Spheres with what the minimiser knows of them.
+/// Spheres with the variables of the minimiser.
 struct State<'a> {
     boundary: &'a Boundary,
     balls: Vec<ReducedSphere>,
     /// Radius over reduced radius: 1 + overlap.
     enlarge: f64,
-    /// x, y, z and 0, as `force`: four numbers each, like the spheres, so that all four are handled
-    /// at once.
+    /// x, y, z and 0, like `force`: four numbers each, as for the spheres, so that all four are
+    /// processed at once.
     velocity: Vec<[f64; 4]>,
     force: Vec<[f64; 4]>,
     /// Velocity gained per step and unit of force: less for spheres with many neighbours.
     response: Vec<f64>,
     near: NeighbourLists,
-    /// The spheres as they were when neighbours were listed.
+    /// The spheres when neighbours were listed last.
     listed_at: Vec<ReducedSphere>,
     skin: f64,
     largest_move: f64,
 }
 
-/// Moves spheres (reduced radii at full size) until none overlaps another or the wall. Where they
-/// are jammed, some are taken out, if that is wanted: of the pairs that overlap most the one with
-/// the higher index, which favours no size, and spheres that overlap the wall as much.
+/// Moves spheres (reduced radii at full size) until none overlaps another or the wall. If they are
+/// jammed, some are taken out on request: of the pairs that overlap most the one with the higher
+/// index, which favours no size, and spheres that overlap the wall as much.
 ///
-/// `progress` is told the fraction of the work done.
+/// `progress` is called with the completed fraction of the work.
 ///
 /// # Errors
-/// What `progress` returns; no end after very many steps.
+/// Errors of `progress`; no convergence after very many steps.
 pub fn minimise_overlaps(
     boundary: &Boundary,
     balls: &mut Vec<ReducedSphere>,
@@ -139,7 +138,7 @@ pub fn minimise_overlaps(
     Ok(settled)
 }
 
-/// Removes spheres that began almost on the wall and were pushed through it. Returns how many.
+/// Removes spheres that began almost on the wall and were pushed through it. Returns their number.
 fn remove_outside(boundary: &Boundary, spheres: &mut Vec<ReducedSphere>) -> usize {
     let inside: Vec<bool> = spheres
         .par_iter()
@@ -171,8 +170,8 @@ impl<'a> State<'a> {
         state
     }
 
-    /// Takes spheres out of the pairs that overlap most, and lets the rest come to rest. Returns
-    /// how many.
+    /// Takes spheres out of the pairs that overlap most, and lets the others come to rest. Returns
+    /// the number taken out.
     fn take_out_jammed(&mut self, fraction: f64) -> usize {
         let mut worst: Vec<(f64, usize)> = (0..self.balls.len())
             .into_par_iter()
@@ -209,11 +208,10 @@ impl<'a> State<'a> {
         worst.len()
     }
 
-    /// Lists, for each sphere, the others that could come to touch it before the lists are made
-    /// again.
+    /// Lists, for each sphere, the others that it could touch before the lists are rebuilt.
     fn list_neighbours(&mut self) {
         let balls = &self.balls;
-        // The old lists make room for the new ones.
+        // Frees the old lists before the new ones are allocated.
         self.near = NeighbourLists::default();
         self.near = NeighbourLists::new(self.boundary, balls, self.enlarge, self.skin);
         self.listed_at.clone_from(balls);
@@ -245,8 +243,8 @@ impl<'a> State<'a> {
             .reduce(|| 0.0, f64::max)
     }
 
-    /// v = (1 - damping) v + response F; x += v. Returns whether a sphere is now farther than half
-    /// the skin from where it was listed.
+    /// v = (1 - damping) v + response F; x += v. Returns true if a sphere has moved by more than
+    /// half the skin since it was listed.
     fn accelerate_and_move(&mut self, damping: f64) -> bool {
         let keep = 1.0 - damping;
         let most = self.largest_move;

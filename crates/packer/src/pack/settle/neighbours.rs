@@ -1,18 +1,18 @@
 //! Neighbour lists (Verlet lists): the other spheres and triangles of the wall that each sphere
-//! could come to touch, listed from a grid of cells and from the tree of the facets.
+//! could touch, listed from a grid of cells and from the tree of the facets.
 
 use crate::geometry::boundary::Boundary;
 use crate::grid::Lattice;
 use crate::spheres::{ReducedSphere, Vector3};
 use rayon::prelude::*;
 
-/// Cells of a search at most, for each sphere.
+/// Largest number of cells of a search per sphere.
 const MOST_CELLS_PER_SPHERE: f64 = 8.0;
-/// Spheres handled by one task.
+/// Number of spheres processed by one task.
 pub(super) const CHUNK: usize = 1024;
 
-/// The other spheres and the triangles of the wall that each sphere could come to touch before the
-/// lists are made again.
+/// The other spheres and the triangles of the wall that each sphere could touch before the lists
+/// are rebuilt.
 #[derive(Default)]
 pub(super) struct NeighbourLists {
     pub(super) spheres: Lists,
@@ -30,8 +30,8 @@ impl NeighbourLists {
         skin: f64,
     ) -> Self {
         let largest = balls.iter().map(|b| b[3]).fold(0.0, f64::max);
-        // Cells of half the largest reach: nearer to a ball in shape than 3 x 3 x 3 cells of all of
-        // it.
+        // Cells of half the largest reach: closer to the shape of a ball than 3 x 3 x 3 cells of
+        // the full reach.
         let cells = Cells::new(balls, largest + 0.5 * skin);
         let spheres = lists_of(balls, |i, ball, list| {
             let reach = ball[3] + largest + skin;
@@ -61,7 +61,7 @@ impl NeighbourLists {
 #[derive(Default)]
 pub(super) struct Lists {
     all: Vec<u32>,
-    /// Begin of each, and end of the last. Spheres + 1.
+    /// Begin of each list, and end of the last. Spheres + 1.
     first: Vec<u32>,
 }
 
@@ -122,7 +122,7 @@ fn bounds(balls: &[ReducedSphere]) -> ([f64; 3], [f64; 3]) {
 /// Spheres sorted by cell (counting sort), for one search.
 struct Cells {
     lattice: Lattice,
-    /// For each cell where its spheres begin; and where the last ends.
+    /// Index of the first sphere of each cell, and the end of the last.
     first: Vec<u32>,
     balls: Vec<ReducedSphere>,
     numbers: Vec<u32>,
@@ -131,8 +131,8 @@ struct Cells {
 impl Cells {
     fn new(balls: &[ReducedSphere], cell: f64) -> Self {
         let (low, high) = bounds(balls);
-        // Balls that fill little of their box would have too many cells: fewer, larger ones hold
-        // them as well.
+        // Spheres that fill little of their box would need too many cells: fewer, larger ones are
+        // used instead.
         let most = MOST_CELLS_PER_SPHERE * (balls.len() as f64 + 1.0);
         let volume: f64 = (0..3).map(|k| (high[k] - low[k]).max(cell)).product();
         let cell = cell.max((volume / most).cbrt());

@@ -1,4 +1,4 @@
-//! As much of JSON Schema as our schemas use; anything else in a schema fails.
+//! The part of JSON Schema that our schemas use; anything else in a schema fails.
 
 use std::collections::BTreeSet;
 
@@ -33,7 +33,7 @@ fn as_json(value: &DeValue<'_>) -> Value {
     }
 }
 
-/// Checks `value` at `path` against `schema`, part of `root`, and collects the keys that it has.
+/// Checks `value` at `path` against `schema`, part of `root`, and collects its keys.
 pub(super) fn check(
     value: &Value,
     schema: &Value,

@@ -5,7 +5,7 @@ use std::fs;
 use super::{assert_same_number, assert_well_formed, bad, bench, csv, good, json};
 use crate::program::laboratory::bar;
 
-/// A bar that is pulled until it breaks, once.
+/// A bar that is pulled once until it breaks.
 fn pulled() -> String {
     bar().replace("[test]\n", "[test]\nrate_check = false\n")
 }
@@ -66,7 +66,7 @@ fn curves_of_tests_are_compared() {
         let times = [0, run].map(|run| table["runs"][run]["time_s"].as_f64().unwrap());
         assert_same_number(times[0] / times[1], &judged["times_as_fast"]);
     }
-    // Both break at one force, so that the stiffness_ratio one goes on longer.
+    // Both break at the same force, so the softer one reaches a larger displacement.
     let soft = table["runs"][1]["results"][0]["error"].as_f64().unwrap();
     assert!((0.2..0.8).contains(&soft), "{soft}");
     assert!(table["runs"][0]["results"][0]["times_as_fast"].is_null());

@@ -32,8 +32,8 @@ reference = { value = 1 }
             && said.ends_with("--resume tries them again\n"),
         "{said}"
     );
-    // The same where nothing is run, and where nothing else is said; the tables are written all the
-    // same.
+    // The same if nothing is run, and if nothing else is printed; the tables are written in any
+    // case.
     let written = fs::read(bench.path("study-sweep/sweep.csv")).unwrap();
     for options in [
         &["--collect"][..],
@@ -68,7 +68,7 @@ reference = { value = 1 }
 #[test]
 fn a_measure_that_is_no_number_is_a_failure() {
     let bench = Bench::new();
-    // Before the first body has come, it has no place.
+    // It has no position before the first body is fed.
     bench.write(
         "spring.toml",
         r#"version = 1
@@ -112,7 +112,7 @@ quantity = "position_x"
     assert!(html.contains("<h2>Failed</h2>") && html.contains("is not a number"));
 }
 
-/// A step above the largest stable one is refused, or taken and found unstable.
+/// A step above the largest stable one is refused, or accepted and found unstable.
 #[test]
 fn steps_above_the_limit_are_for_trials() {
     let study = STEPS
@@ -130,7 +130,7 @@ fn steps_above_the_limit_are_for_trials() {
     assert!(said.contains("1.05: unstable at step"), "{said}");
     let table = json(&forced);
     assert!(table["runs"][0]["failed"].is_null() && table["runs"][1]["failed"].is_string());
-    // What failed is tried again.
+    // Failed runs are repeated.
     let failed = (table["runs"].as_array().unwrap().iter())
         .filter(|run| run["failed"].is_string())
         .count();

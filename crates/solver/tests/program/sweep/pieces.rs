@@ -4,7 +4,7 @@ use std::fs;
 
 use super::{bad, bench, good, json};
 
-/// Pieces that leave.
+/// Pieces that are discharged.
 const PIECES: &str = r#"version = 1
 scene = "SCENE"
 repeats = 1
@@ -40,7 +40,7 @@ fn distributions_of_masses_are_compared() {
     };
     let (own, other) = (masses(1), masses(3));
     assert!(own.len() > 3 && other.len() > 3 && own != other);
-    // At every value, and just below it, what share of each is not above.
+    // At every value, and just below it, the fraction of each at or below it.
     let fraction =
         |all: &[f64], x: f64| all.iter().filter(|m| **m <= x).count() as f64 / all.len() as f64;
     let apart = own

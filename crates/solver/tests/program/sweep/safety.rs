@@ -1,5 +1,5 @@
-//! What a sweep must not do: run what a name says, remove what it has not made, start a run twice,
-//! take all memory.
+//! Things that a sweep must not do: execute text in names, remove files that it has not made, start
+//! a run twice, use all memory.
 #![cfg(target_os = "linux")]
 
 use std::fs;
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use super::{SCENE, STEPS, bad, bench, good, partly, sweep};
 use crate::program::Bench;
 
-/// A study of one run and no more.
+/// A study of a single run.
 const ONE: &str = "version = 1\nscene = \"spring.toml\"\nrepeats = 1\n[vary]\n\"run.safety_factor\" = [0.1]\n[measures.energy]\nbalance = \"energy\"\n";
 
 fn names_in(folder: &Path) -> Vec<String> {
@@ -48,7 +48,7 @@ fn a_name_that_would_split_a_listed_line_is_refused() {
         );
         assert!(!bench.path("out").exists());
     }
-    // What sh would obey within a line is quoted.
+    // Text that sh would execute within a line is quoted.
     let bench = Bench::new();
     let folder = "a; touch pwned; $(touch pwned) `touch pwned` 'x' \"y\" \\ {} # &";
     fs::create_dir(bench.path(folder)).unwrap();
@@ -141,7 +141,7 @@ fn what_is_read_is_not_written_over() {
         );
         assert!(!bench.path("study-sweep").exists());
     }
-    // Nor removed: a body that an earlier run of the same sweep has left.
+    // Nor removed: a body left by an earlier run of the same sweep.
     good(&bench, &["--quiet"]);
     let piece = "study-sweep/runs/0001-1/piece.vtp";
     bench.write(piece, super::super::vtp_bytes(&super::super::row(3)));
@@ -194,7 +194,7 @@ fn force_removes_what_a_sweep_makes_and_nothing_else() {
     for file in mine {
         assert_eq!(fs::read(bench.path(file)).unwrap(), b"mine", "{file}");
     }
-    // The plots and runs of the sweep before are gone.
+    // The plots and runs of the previous sweep are gone.
     assert!(!bench.path("study-sweep/tip.svg").exists());
     assert_eq!(
         names_in(&bench.path("study-sweep/runs")),
@@ -214,7 +214,7 @@ fn force_removes_what_a_sweep_makes_and_nothing_else() {
             "sweep.json"
         ]
     );
-    // A folder of others, even one that has a file of that name.
+    // An unrelated folder, even one with a file of that name.
     fs::create_dir_all(bench.path("other/runs/0001-1")).unwrap();
     for identity in ["{}", "[1]", "my study", "{ \"scene\": \"a.toml\" }"] {
         bench.write("other/study.json", identity);
@@ -250,7 +250,7 @@ fn wait_until(happened: impl Fn() -> bool) {
     }
 }
 
-/// The sweep is killed, its process goes on.
+/// The sweep is killed, its process continues.
 #[test]
 fn a_run_that_is_still_alive_is_named() {
     let bench = bench(&ONE.replace("[vary]", "[set]\n\"run.end_time\" = \"1e6 s\"\n[vary]"));
@@ -261,7 +261,7 @@ fn a_run_that_is_still_alive_is_named() {
         .unwrap();
     wait_until(|| !children(parent.id()).is_empty());
     let child = children(parent.id())[0];
-    // At once: the process may not have come to its folder of results.
+    // At once: the process may not have reached its folder of results.
     send("-KILL", parent.id());
     parent.wait().unwrap();
     let lives = || Path::new(&format!("/proc/{child}")).exists();
@@ -273,7 +273,7 @@ fn a_run_that_is_still_alive_is_named() {
         assert_eq!(bad(&bench, options, 2), named);
     }
     assert!(lives());
-    // It is neither done nor failed.
+    // It is neither finished nor failed.
     let said = bad(&bench, &["--collect"], 1);
     assert!(
         said.contains("no run came to its end") && said.contains("it has not been run to its end"),
@@ -285,7 +285,7 @@ fn a_run_that_is_still_alive_is_named() {
     good(&bench, &["--force"]);
 }
 
-/// What a study may ask for is bounded before it is computed: within a second and little memory.
+/// The demands of a study are bounded before they are computed: within a second and little memory.
 #[test]
 fn studies_of_extreme_numbers_are_refused_at_once() {
     let range = |count: &str| {
@@ -340,7 +340,7 @@ fn studies_of_extreme_numbers_are_refused_at_once() {
         if !options.is_empty() {
             command.arg(options);
         }
-        // 1 GB of addresses, threads and program included.
+        // 1 GB of address space, including threads and program.
         let line: Vec<String> = std::iter::once(command.get_program())
             .chain(command.get_args())
             .map(|word| format!("'{}'", word.to_str().unwrap()))
@@ -377,7 +377,7 @@ fn an_endless_scene_or_study_is_refused() {
     bench.write("spring.toml", SCENE);
     let failing = ONE.replace("[0.1]", "[0.1, 1.5]");
     bench.write("study.toml", failing);
-    // Run 2 fails; the first is there.
+    // Run 2 fails; the first exists.
     let (table, said) = partly(&bench, &["--quiet"]);
     assert!(
         table.is_empty()
