@@ -3,7 +3,7 @@
 //! [`check`] contains the rules for every body, [`files`] reads and writes bodies by the ending of
 //! the file's name, [`summary`] lists the contents of a body, [`mass`] computes its mass.
 
-pub mod check;
+pub(crate) mod check;
 pub mod csv;
 pub mod files;
 pub mod inertia;
@@ -11,7 +11,7 @@ pub mod lammps;
 pub mod mass;
 mod parts;
 pub mod stored_frame;
-pub mod summary;
+pub(crate) mod summary;
 mod table;
 pub mod txt;
 pub mod vtp;

@@ -9,7 +9,7 @@ mod ascii;
 mod facets;
 
 use crate::diagnostic::{Diagnostic, Result};
-pub use facets::Facets;
+pub(crate) use facets::Facets;
 use facets::{REMEDY_AGAIN, is_blank};
 use std::io::{Cursor, Read, Seek, SeekFrom};
 
@@ -28,7 +28,7 @@ const REMEDY_OTHER: &str = "give an ASCII or binary STL file";
 /// file are accepted if all are zeros or blanks), a coordinate that is not a finite number (with
 /// the facet counted from 1, and the line of an ASCII file), or ASCII that does not follow the
 /// grammar (with the line). The place does not name the file.
-pub fn read_facets(bytes: &[u8]) -> Result<Facets> {
+pub(crate) fn read_facets(bytes: &[u8]) -> Result<Facets> {
     if bytes.is_empty() {
         return Err(Diagnostic::input(
             "",

@@ -6,7 +6,7 @@
 //! The solid is where it is positive. For shells that do not cross, this is "inside an outer shell
 //! and in no cavity"; shells that cross or overlap form their union.
 
-pub mod build;
+pub(crate) mod build;
 
 mod duplicates;
 mod frame;
@@ -14,7 +14,7 @@ mod holes;
 mod intersections;
 mod mesh;
 mod nesting;
-pub mod open;
+pub(crate) mod open;
 mod rays;
 mod refusals;
 mod sets;

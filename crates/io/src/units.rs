@@ -17,7 +17,7 @@ pub const LENGTH_UNITS: [(&str, f64); 7] = [
 ];
 
 /// Units of density and their size in kg/m3.
-pub const DENSITY_UNITS: [(&str, f64); 3] = [("kg/m3", 1.0), ("g/cm3", 1e3), ("t/m3", 1e3)];
+pub(crate) const DENSITY_UNITS: [(&str, f64); 3] = [("kg/m3", 1.0), ("g/cm3", 1e3), ("t/m3", 1e3)];
 
 /// A physical dimension and its usual units.
 #[derive(Debug, Clone, Copy)]

@@ -241,7 +241,7 @@ impl Specimen {
     /// Factor by which the force on this specimen becomes that on another at the same travel: the
     /// ratio of the second moments of area in bending (Platzer 2022, 4.4.1.2), of the thicknesses
     /// of discs, of the stiffnesses of bars.
-    pub fn force_factor(&self, other: &Self) -> f64 {
+    pub(crate) fn force_factor(&self, other: &Self) -> f64 {
         let stiffness = |specimen: &Self| match specimen {
             Self::Beam(beam) => beam.bending_shape_m(),
             Self::Disc { thickness_m, .. } => *thickness_m,

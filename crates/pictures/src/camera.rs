@@ -90,7 +90,7 @@ impl Camera {
     }
 
     /// Width and height of the picture, px.
-    pub fn size_px(&self) -> [u32; 2] {
+    pub(crate) fn size_px(&self) -> [u32; 2] {
         self.size_px
     }
 

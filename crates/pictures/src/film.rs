@@ -6,14 +6,14 @@ use super::image::{Image, MAX_SIDE_PX};
 use super::png_file::{encoder, fault};
 
 /// Largest number of pictures of a film strip.
-pub const OF_STRIP: usize = 8;
+pub(crate) const OF_STRIP: usize = 8;
 /// Number of pictures in a row of it.
 pub const COLUMNS: usize = 4;
 /// Factor by which the pictures of the strip are reduced.
 pub const SMALLER: u32 = 2;
 
 /// Largest number of pictures of a film, without the last one.
-pub const OF_FILM: usize = 200;
+pub(crate) const OF_FILM: usize = 200;
 /// Duration of a film, if that is neither too fast nor too slow for a picture, ms.
 const FILM_MS: usize = 8000;
 const PICTURE_MS: [usize; 2] = [40, 400];

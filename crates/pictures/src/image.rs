@@ -1,7 +1,7 @@
 //! A picture in memory.
 
 /// Largest side of a picture, px.
-pub const MAX_SIDE_PX: u32 = 16_384;
+pub(crate) const MAX_SIDE_PX: u32 = 16_384;
 
 /// A picture: rows from the top, three bytes (red, green, blue) per pixel.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,7 +25,7 @@ impl Image {
 
     /// A picture of these pixels, in the form of [`Image::rgb`]. None if their number is wrong, or
     /// a side is too long.
-    pub fn of_rgb(width: u32, height: u32, rgb: Vec<u8>) -> Option<Self> {
+    pub(crate) fn of_rgb(width: u32, height: u32, rgb: Vec<u8>) -> Option<Self> {
         let fits =
             width.max(height) <= MAX_SIDE_PX && rgb.len() == 3 * width as usize * height as usize;
         fits.then_some(Self { width, height, rgb })
@@ -68,7 +68,7 @@ impl Image {
 
     /// Copies a picture into this one, with its top left pixel at `x`, `y`. Parts outside are cut
     /// off.
-    pub fn paste(&mut self, from: &Self, x: u32, y: u32) {
+    pub(crate) fn paste(&mut self, from: &Self, x: u32, y: u32) {
         if x >= self.width {
             return;
         }

@@ -5,10 +5,10 @@
 //!
 //! Equal input gives equal bytes. Nothing here panics: values that are not finite are ignored.
 
-pub mod camera;
+pub(crate) mod camera;
 pub mod colours;
 pub mod film;
-pub mod image;
+pub(crate) mod image;
 pub mod label;
 pub mod png_file;
 pub mod render;

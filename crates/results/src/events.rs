@@ -11,7 +11,7 @@ use super::growing::{GrowingTable, field};
 use dem_io::diagnostic::Result;
 
 /// The first line of the file.
-pub const COLUMNS: &str =
+pub(crate) const COLUMNS: &str =
     "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail";
 
 /// One event.

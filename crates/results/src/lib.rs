@@ -5,15 +5,15 @@
 //! one that was not.
 
 pub mod checkpoint;
-pub mod events;
+pub(crate) mod events;
 pub mod folder;
 pub mod fragments;
-pub mod frames;
+pub(crate) mod frames;
 mod growing;
-pub mod pictures;
-pub mod plot_file;
-pub mod series;
-pub mod summary;
+pub(crate) mod pictures;
+pub(crate) mod plot_file;
+pub(crate) mod series;
+pub(crate) mod summary;
 
 pub use events::{Event, EventFile};
 pub use folder::{Existing, ResultsFolder};

@@ -1,7 +1,7 @@
 //! Checks that a run makes of itself.
 
-pub mod flight;
-pub mod laws;
+pub(crate) mod flight;
+pub(crate) mod laws;
 pub mod limit;
 pub mod linear;
 pub mod lowest_frequency;

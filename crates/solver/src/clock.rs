@@ -7,7 +7,7 @@
 use std::time::{Duration, Instant};
 
 /// One step in this many is timed.
-pub const EVERY: u64 = 16;
+pub(crate) const EVERY: u64 = 16;
 
 /// Largest number of stages.
 const MOST: usize = 32;
@@ -38,7 +38,7 @@ impl StageClock {
     }
 
     /// Adds the time since the last call to a stage.
-    pub fn book(&mut self, stage: usize) {
+    pub(crate) fn book(&mut self, stage: usize) {
         if let Some(since) = self.since {
             let now = Instant::now();
             self.times[stage] += now - since;
@@ -48,7 +48,7 @@ impl StageClock {
 
     /// Adds a time of the entire run, not of one step in `EVERY`: for work done in few steps, of
     /// which the timed ones are not a representative sample.
-    pub fn book_all(&mut self, stage: usize, time: Duration) {
+    pub(crate) fn book_all(&mut self, stage: usize, time: Duration) {
         self.times[stage] += time / EVERY as u32;
         self.did(stage, 1);
     }

@@ -7,11 +7,11 @@
 //! [`Mesh`] is a surface with two sides, open or closed: it pushes towards the side of the centre,
 //! and a sphere whose centre has passed through is pushed on.
 
-pub mod cylinder;
-pub mod frame;
-pub mod mesh;
-pub mod plane;
-pub mod solid_box;
+pub(crate) mod cylinder;
+pub(crate) mod frame;
+pub(crate) mod mesh;
+pub(crate) mod plane;
+pub(crate) mod solid_box;
 
 pub use dem_io::Bounds;
 use nalgebra::Vector3;

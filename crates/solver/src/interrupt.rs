@@ -19,7 +19,7 @@ impl Interrupt {
 
     /// Does work that stops by itself when the flag is set. Whatever follows it is short, and is
     /// completed as well.
-    pub fn run_interruptible<T>(&self, work: impl FnOnce(&AtomicBool) -> T) -> T {
+    pub(crate) fn run_interruptible<T>(&self, work: impl FnOnce(&AtomicBool) -> T) -> T {
         self.heeded.store(true, Ordering::Relaxed);
         work(&self.asked)
     }

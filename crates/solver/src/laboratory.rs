@@ -3,10 +3,10 @@
 //! [`theory`](dem_laboratory::theory), [`page`] presents the results; [`watch`] connects these to
 //! a run.
 
-pub mod arrange;
+pub(crate) mod arrange;
 pub mod crack;
 pub mod evaluate;
 pub mod page;
 pub mod record;
 mod text;
-pub mod watch;
+pub(crate) mod watch;

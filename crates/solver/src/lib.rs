@@ -30,7 +30,7 @@ pub mod clock;
 pub mod geometry;
 pub mod interrupt;
 pub mod laboratory;
-pub mod machine;
+pub(crate) mod machine;
 pub mod measure;
 pub mod output;
 pub mod physics;

@@ -2,7 +2,7 @@
 //! program.
 
 /// Processor and number of cores: `AMD EPYC 7763, 16 cores`. Identical nodes count as one machine.
-pub fn machine() -> String {
+pub(crate) fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info
@@ -17,13 +17,13 @@ pub fn machine() -> String {
 
 /// Processor time of this program, all threads together, s. None: the system does not provide it.
 #[cfg(unix)]
-pub fn processor_time_s() -> Option<f64> {
+pub(crate) fn processor_time_s() -> Option<f64> {
     let spent = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Some(spent.tv_sec as f64 + 1e-9 * spent.tv_nsec as f64)
 }
 
 /// Processor time of this program, all threads together, s. None: the system does not provide it.
 #[cfg(not(unix))]
-pub fn processor_time_s() -> Option<f64> {
+pub(crate) fn processor_time_s() -> Option<f64> {
     None
 }

@@ -409,7 +409,7 @@ pub fn bond_utilisation(state: &State, at: usize) -> f64 {
 }
 
 /// The same for a given load.
-pub fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
+pub(crate) fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
     let bonds = &state.bonds;
     match &bonds.rules[bonds.rule_of(at)].criteria {
         Some(criteria) if !bonds.is_broken(at) => {

@@ -1,10 +1,10 @@
 //! Output of a run: frames, pictures, time series, events, fragments, plots, and the summary at its
 //! end.
 
-pub mod equilibrium;
+pub(crate) mod equilibrium;
 pub mod fragments;
-pub mod frames;
+pub(crate) mod frames;
 pub mod pictures;
-pub mod plots;
-pub mod series;
+pub(crate) mod plots;
+pub(crate) mod series;
 pub mod summary;

@@ -1,16 +1,16 @@
 //! Turns a scene and its bodies into a simulation ready to step: its state, the stages it needs,
 //! and why the others are skipped.
 
-pub mod bodies;
+pub(crate) mod bodies;
 mod clumps;
 mod contacts;
 mod forecast;
-pub mod groups;
-pub mod held;
+pub(crate) mod groups;
+pub(crate) mod held;
 mod initial;
-pub mod inputs;
-pub mod masses;
-pub mod measures;
+pub(crate) mod inputs;
+pub(crate) mod masses;
+pub(crate) mod measures;
 mod outputs;
 mod rules;
 mod stages;

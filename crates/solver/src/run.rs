@@ -49,7 +49,7 @@ pub fn run(
 ///
 /// # Errors
 /// Its files cannot be written, or there is no equilibrium.
-pub fn run_as_far_as_it_goes(
+pub(crate) fn run_as_far_as_it_goes(
     plan: Plan,
     scene: &Scene,
     settings: RunSettings<'_>,

@@ -7,20 +7,20 @@ pub mod clumps;
 pub mod clusters;
 pub mod contacts;
 pub mod events;
-pub mod ledger;
+pub(crate) mod ledger;
 pub mod loads;
-pub mod model;
+pub(crate) mod model;
 pub mod order;
 pub mod particles;
 pub mod partitions;
-pub mod population;
+pub(crate) mod population;
 pub mod regions;
-pub mod rules;
-pub mod scratch;
+pub(crate) mod rules;
+pub(crate) mod scratch;
 pub mod sleep;
 pub mod supports;
 pub mod walls;
-pub mod watches;
+pub(crate) mod watches;
 
 use std::sync::Arc;
 
@@ -143,7 +143,7 @@ impl State {
     }
 
     /// Whether there are clumps, or bodies can be added, removed or replaced.
-    pub fn bodies_change(&self) -> bool {
+    pub(crate) fn bodies_change(&self) -> bool {
         !(self.clumps.templates.is_empty() && self.model.rules.are_none())
     }
 
@@ -196,7 +196,7 @@ impl State {
     }
 
     /// The template of the scene that a template comes from.
-    pub fn base_of(&self, template: u32) -> u32 {
+    pub(crate) fn base_of(&self, template: u32) -> u32 {
         let of_scene = self.model.templates.len();
         match (template as usize).checked_sub(of_scene) {
             Some(fragment) => self.population.fragments[fragment].base,
@@ -220,7 +220,7 @@ impl State {
     }
 
     /// Radius of the largest sphere that exists or may be added, m; 0 if there is none.
-    pub fn largest_radius_m(&self) -> f64 {
+    pub(crate) fn largest_radius_m(&self) -> f64 {
         let of_clumps = self.clumps.templates.iter().flat_map(|template| {
             let radii = template.spheres.iter().map(|sphere| sphere.radius_m);
             radii.map(|radius| template.scale * radius)
@@ -229,19 +229,19 @@ impl State {
     }
 
     /// Radius of the smallest sphere that exists or may be added, m; infinite if there is none.
-    pub fn smallest_radius_m(&self) -> f64 {
+    pub(crate) fn smallest_radius_m(&self) -> f64 {
         let templates = self.clumps.templates.iter();
         let of_clumps = templates.flat_map(|t| t.spheres.iter().map(|sphere| sphere.radius_m));
         of_clumps.fold(self.particles.smallest_radius_m(), f64::min)
     }
 
     /// Length of the kick of this step: half of the previous step and half of the next, s.
-    pub fn kick_s(&self) -> f64 {
+    pub(crate) fn kick_s(&self) -> f64 {
         0.5 * (self.previous_time_step_s + self.time_step_s)
     }
 
     /// The previous step and the next, s.
-    pub fn steps_s(&self) -> [f64; 2] {
+    pub(crate) fn steps_s(&self) -> [f64; 2] {
         [self.previous_time_step_s, self.time_step_s]
     }
 }

@@ -4,13 +4,13 @@
 //! scene is read, planned and run like any other -> [`verdict`]. No scene may go wrong silently: it
 //! ends with the right result, is refused before it starts, or is stopped with the cause.
 
-pub mod breakage;
+pub(crate) mod breakage;
 pub mod cases;
-pub mod families;
+pub(crate) mod families;
 pub mod impact;
 pub mod limit_map;
-pub mod long;
-pub mod oscillator;
+pub(crate) mod long;
+pub(crate) mod oscillator;
 pub mod prediction;
 pub mod text;
 pub mod trial;

@@ -2,7 +2,7 @@
 
 /// A run by its error and run time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub(crate) struct Point {
     /// Median run time, s.
     pub time_s: f64,
     /// Uncertainty of the run time, s: smaller differences are not significant.
@@ -14,7 +14,7 @@ pub struct Point {
 
 impl Point {
     /// True if it is faster by more than the spread of both.
-    pub fn is_clearly_faster(&self, other: &Self) -> bool {
+    pub(crate) fn is_clearly_faster(&self, other: &Self) -> bool {
         self.time_s + self.spread_s.max(other.spread_s) < other.time_s
     }
 }
@@ -25,7 +25,7 @@ impl Point {
 ///
 /// So chance does not decide between hardly different run times: of two equally fast runs the more
 /// accurate one is taken, of two equal ones the first.
-pub fn front(points: &[Point]) -> Vec<bool> {
+pub(crate) fn front(points: &[Point]) -> Vec<bool> {
     let errors: Vec<f64> = points.iter().map(|point| two_digits(point.error)).collect();
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| errors[a].total_cmp(&errors[b]));

@@ -57,7 +57,7 @@ impl Job {
 
     /// True if its process is running at this moment, although the sweep that started it may have
     /// ended.
-    pub fn is_alive(&self, runs: &Path) -> bool {
+    pub(crate) fn is_alive(&self, runs: &Path) -> bool {
         is_locked(&self.complaint(runs)) || is_written_to(&self.folder(runs))
     }
 

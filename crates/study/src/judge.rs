@@ -13,7 +13,7 @@ use super::reference::{Extrapolated, richardson};
 use super::rows::{Judged, Row};
 
 /// Determines the references of one measure, and from them the errors.
-pub fn judge(
+pub(crate) fn judge(
     study: &Study,
     runs: &[Run],
     done: &[Option<&Done>],
@@ -184,7 +184,7 @@ fn set_error(judged: &mut Judged, reference: f64, uncertainty: Option<f64>) {
 }
 
 /// The reference of a measure, as text.
-pub fn in_words(study: &Study, measure: usize) -> String {
+pub(crate) fn in_words(study: &Study, measure: usize) -> String {
     let measure = &study.measures[measure];
     match (&measure.of, &measure.reference) {
         (MeasureOf::Balance(_), _) => "an error by itself".to_owned(),

@@ -13,7 +13,7 @@ const FEWEST: usize = 3;
 
 /// For each measure, along each axis with sizes. Errors below the uncertainty of their reference
 /// are not significant and are left out.
-pub fn orders(study: &Study, runs: &[Run], rows: &[Row]) -> Vec<Order> {
+pub(crate) fn orders(study: &Study, runs: &[Run], rows: &[Row]) -> Vec<Order> {
     let mut found = Vec::new();
     for (measure, of) in study.measures.iter().enumerate() {
         for (along, axis) in study.axes.iter().enumerate() {

@@ -3,7 +3,7 @@
 
 /// The limit of values as their size goes to 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extrapolated {
+pub(crate) struct Extrapolated {
     /// The value at size 0.
     pub value: f64,
     /// Its uncertainty.
@@ -17,7 +17,7 @@ pub struct Extrapolated {
 /// Objections to an extrapolation. The value is then that of the finest size, and the uncertainty
 /// three times the range of the finest three.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Warning {
+pub(crate) enum Warning {
     /// The values are not monotone.
     NotMonotone,
     /// Their differences do not decrease.
@@ -26,7 +26,7 @@ pub enum Warning {
 
 impl Warning {
     /// As text.
-    pub fn text(self) -> &'static str {
+    pub(crate) fn text(self) -> &'static str {
         match self {
             Self::NotMonotone => "its values go up and down with the size",
             Self::DoesNotConverge => {
@@ -51,7 +51,7 @@ const LEAST: f64 = 0.02;
 /// four sizes the uncertainty follows from the difference between the extrapolations of the finest
 /// and the next finest three, but is at most three times the extrapolated difference; with three it
 /// is the grid convergence index. None for fewer than three sizes.
-pub fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
+pub(crate) fn richardson(points: &[(f64, f64)]) -> Option<Extrapolated> {
     let mut points = points.to_vec();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points.dedup_by(|a, b| a.0 == b.0);
@@ -121,7 +121,7 @@ fn through([(h1, f1), (h2, f2), (h3, f3)]: [(f64, f64); 3]) -> Extrapolated {
 
 /// Slope of log(error) over log(size): the order with which the error decreases with the size. None
 /// for fewer than two different sizes with an error.
-pub fn observed_order(points: &[(f64, f64)]) -> Option<f64> {
+pub(crate) fn observed_order(points: &[(f64, f64)]) -> Option<f64> {
     let logs: Vec<[f64; 2]> = points
         .iter()
         .filter(|(size, error)| *size > 0.0 && *error > 0.0)

@@ -77,7 +77,7 @@ fn line(cells: &[String]) -> String {
 }
 
 /// The runs on the front of a measure, the fastest first.
-pub fn front_of(table: &SweepTable, measure: usize) -> Vec<&Row> {
+pub(crate) fn front_of(table: &SweepTable, measure: usize) -> Vec<&Row> {
     let on = |row: &&Row| row.results.get(measure).is_some_and(|j| j.is_on_front);
     let mut rows: Vec<&Row> = table.runs.iter().filter(on).collect();
     rows.sort_by(|a, b| {

@@ -17,7 +17,7 @@ use crate::diagnostic::{Diagnostic, Result};
 use crate::lines::{Lines, float, on_line};
 
 /// Density that is written if none is known, kg/m3. LAMMPS requires one.
-pub const DENSITY_IF_UNKNOWN_KG_M3: f64 = 1000.0;
+pub(crate) const DENSITY_IF_UNKNOWN_KG_M3: f64 = 1000.0;
 
 /// Tolerance for different densities of atoms: rounding, as LAMMPS itself computes them from
 /// masses.

@@ -5,7 +5,7 @@ pub(super) const REMEDY_AGAIN: &str = "export or copy the file again";
 
 /// The facets of an STL file, unchanged.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Facets {
+pub(crate) struct Facets {
     /// Three corners each, in units of the file; all finite. Normals are not kept: the order of the
     /// corners is more reliable.
     pub corners: Vec<[[f64; 3]; 3]>,

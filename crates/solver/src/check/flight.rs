@@ -24,7 +24,7 @@ const MOVES: usize = 2000;
 
 /// A body that flies freely, as a rigid assembly of spheres.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FreeBody {
+pub(crate) struct FreeBody {
     /// Name of the body in the scene.
     pub name: String,
     /// Centre of mass, m.
@@ -40,7 +40,7 @@ pub struct FreeBody {
 
 /// First meeting of a flying body.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Meeting {
+pub(crate) enum Meeting {
     /// With a wall, after this time, s, at this speed of its centre, m/s.
     At {
         /// Time from the present, s.
@@ -57,14 +57,14 @@ pub enum Meeting {
 }
 
 /// Whether bodies can touch walls or each other at all.
-pub fn can_meet(state: &State, scene: &Scene) -> bool {
+pub(crate) fn can_meet(state: &State, scene: &Scene) -> bool {
     let others = scene.bodies.len() > 1 || state.clumps.all.len() > 1 || !scene.inlets.is_empty();
     state.contacts.is_some() && (!state.walls.is_empty() || others)
 }
 
 /// The bodies of the scene in free flight: neither held nor loaded, nor asleep. Their velocities
 /// are those of `ahead_s` after their positions.
-pub fn free_bodies(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<FreeBody> {
+pub(crate) fn free_bodies(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<FreeBody> {
     let held = state.supports.iter().flat_map(|support| &support.held);
     let held = held.map(|held| held.particle);
     let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
@@ -153,7 +153,7 @@ impl FreeBody {
     }
 
     /// Centre of mass after a time, s, in m.
-    pub fn centre_after(&self, time_s: f64) -> Vector3<f64> {
+    pub(crate) fn centre_after(&self, time_s: f64) -> Vector3<f64> {
         self.centre_m + time_s * (self.velocity_m_s + 0.5 * time_s * self.gravity_m_s2)
     }
 
@@ -162,7 +162,7 @@ impl FreeBody {
     }
 
     /// Its first meeting with the walls and the other bodies.
-    pub fn first_meeting(&self, walls: &[Wall], others: &[Self]) -> Meeting {
+    pub(crate) fn first_meeting(&self, walls: &[Wall], others: &[Self]) -> Meeting {
         let mut first = Meeting::Never;
         let mut first_s = f64::INFINITY;
         for wall in walls {
@@ -215,7 +215,7 @@ impl FreeBody {
     }
 
     /// Gap between its surface and a wall after a time, s, in m; at most 0 if they touch.
-    pub fn gap_after(&self, wall: &Wall, time_s: f64) -> f64 {
+    pub(crate) fn gap_after(&self, wall: &Wall, time_s: f64) -> f64 {
         let to_wall = wall.frame.all_to_wall();
         let centre = self.centre_after(time_s);
         let mut found = Vec::new();

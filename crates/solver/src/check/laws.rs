@@ -14,13 +14,13 @@ use crate::state::events::REMOVED;
 
 /// Strain at the edge of a bond above which linear elasticity is doubtful: its error is of the same
 /// order.
-pub const LARGEST_STRAIN: f64 = 0.1;
+pub(crate) const LARGEST_STRAIN: f64 = 0.1;
 /// Ratio of overlap to the smaller radius above which the contact laws are doubtful: the radius of
 /// Hertz's contact, which should be small, is then 0.55 of the sphere's.
-pub const LARGEST_OVERLAP: f64 = 0.3;
+pub(crate) const LARGEST_OVERLAP: f64 = 0.3;
 
 /// Warning that bonds are strained beyond the validity of their law, `where_`. None: they are not.
-pub fn strain_warning(largest: f64, where_: &str) -> Option<String> {
+pub(crate) fn strain_warning(largest: f64, where_: &str) -> Option<String> {
     (largest > LARGEST_STRAIN).then(|| {
         format!(
             "a bond was strained by {} %{where_}: bonds are linear elastic, which holds up to about {} %; check its Young's modulus, the loads and the speeds",
@@ -31,7 +31,7 @@ pub fn strain_warning(largest: f64, where_: &str) -> Option<String> {
 }
 
 /// Warning that a contact overlaps beyond the validity of its law, `where_`. None: it does not.
-pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
+pub(crate) fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     (largest > LARGEST_OVERLAP).then(|| {
         format!(
             "a contact was pressed in by {} of the smaller radius{where_}: contact laws hold for small overlaps, up to about {LARGEST_OVERLAP}; check the moduli of the materials, the loads and the speeds",
@@ -42,7 +42,7 @@ pub fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
 
 /// Predicted effects of loads, weight and impacts at this speed, m/s (None: nothing can touch),
 /// beyond the validity of the laws, a sentence each.
-pub fn foreseen(
+pub(crate) fn foreseen(
     state: &State,
     bodies: &[PlacedBody],
     impact_speed_m_s: Option<f64>,

@@ -29,7 +29,7 @@ pub struct LinearContact {
 }
 
 /// All touching contacts of a state.
-pub fn linear_contacts(state: &State) -> Vec<LinearContact> {
+pub(crate) fn linear_contacts(state: &State) -> Vec<LinearContact> {
     let mut found = Vec::new();
     let p = &state.particles;
     if let Some(contacts) = &state.contacts {
@@ -81,7 +81,7 @@ fn at_wall(
 /// An upper bound of the largest eigenvalues of stiffness over mass, 1/s2, and of damping over
 /// mass, 1/s, of clumps: the sum of all contacts of a clump, each acting where it rotates the clump
 /// most easily. 0 if no clump touches anything.
-pub fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
+pub(crate) fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
     let clumps = &state.clumps;
     let mut sums = vec![[0.0; 2]; clumps.all.len()];
     for contact in contacts {
@@ -152,7 +152,7 @@ pub struct Weights {
 
 /// Sets `wrenches` to the contact forces on particles with the displacements, or velocities,
 /// `motions`; one of each for each particle.
-pub fn linear_wrenches(
+pub(crate) fn linear_wrenches(
     contacts: &[LinearContact],
     weights: Weights,
     motions: &[Motion],
@@ -322,7 +322,7 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
 /// Largest ratio of overlap to radius in an impact at a speed, m/s, of a single sphere with a wall
 /// or another of its size: a particle pushed by a body behind it overlaps more. One sphere of each
 /// material represents all, as the ratio does not depend on the radius with Hertz's law.
-pub fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
+pub(crate) fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
     };

@@ -43,7 +43,7 @@ impl Watchdog {
     }
 
     /// Whether the kinetic energy calls for a check of the ledger. Cheap; called after every kick.
-    pub fn is_due(&self, state: &State) -> bool {
+    pub(crate) fn is_due(&self, state: &State) -> bool {
         if !state.steps.is_multiple_of(EVERY) {
             return false;
         }

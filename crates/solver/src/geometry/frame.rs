@@ -38,7 +38,7 @@ impl Frame {
     }
 
     /// The same for many points.
-    pub fn all_to_wall(&self) -> impl Fn([f64; 3]) -> [f64; 3] + use<> {
+    pub(crate) fn all_to_wall(&self) -> impl Fn([f64; 3]) -> [f64; 3] + use<> {
         let rotation = self.rotation().inverse().to_rotation_matrix();
         let origin = Vector3::from(self.position_m);
         move |point| (rotation * (Vector3::from(point) - origin)).into()
@@ -50,7 +50,7 @@ impl Frame {
     }
 
     /// A vector of the wall's frame in space.
-    pub fn direction_to_space(&self, vector: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn direction_to_space(&self, vector: [f64; 3]) -> [f64; 3] {
         (self.rotation() * Vector3::from(vector)).into()
     }
 

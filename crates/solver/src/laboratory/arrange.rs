@@ -18,7 +18,7 @@ use dem_laboratory::theory::ON_PINS;
 ///
 /// # Errors
 /// A support with the name of one of the test's.
-pub fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<Scene> {
+pub(crate) fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<Scene> {
     let mut scene = scene.clone();
     let Some(test) = scene.test.clone() else {
         return Ok(scene);
@@ -63,7 +63,7 @@ pub fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> Result<S
 }
 
 /// Name of the support with which a test moves a set.
-pub fn support_of(set: &str) -> String {
+pub(crate) fn support_of(set: &str) -> String {
     format!("test-{set}")
 }
 
@@ -85,7 +85,7 @@ fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
 ///
 /// # Errors
 /// The body has no bonds.
-pub fn lowest_in_test_hz(
+pub(crate) fn lowest_in_test_hz(
     scene: &Scene,
     bodies: &BTreeMap<String, Body>,
     threads: usize,

@@ -196,7 +196,7 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
 
 /// Travel at which the line fitted to the load over the travel has no load, m: play until
 /// everything touches. 0 without a line.
-pub fn play_m(rows: &[Row]) -> f64 {
+pub(crate) fn play_m(rows: &[Row]) -> f64 {
     slope(rows, |row| row.travel_m).map_or(0.0, |slope| slope.start_m)
 }
 
@@ -368,7 +368,7 @@ const EQ_18: &str = "modulus without shear";
 /// Modulus of the body from its own deflection or elongation, including shear.
 pub const MODULUS: &str = "specimen modulus";
 /// Largest load before the body broke.
-pub const FAILURE_FORCE: &str = "failure force";
+pub(crate) const FAILURE_FORCE: &str = "failure force";
 /// Stress at that force according to the formula of the test.
 pub const STRENGTH: &str = "strength";
 

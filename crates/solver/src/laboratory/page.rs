@@ -32,7 +32,7 @@ pub struct TestFiles<'a> {
 ///
 /// # Errors
 /// Those of the files.
-pub fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
+pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
     let rows = rows_of(files.record, files.result.lowest_frequency_hz);
     let curve = curve(&rows, files.result).svg();
     let crack = crack_map(&files.picture).svg();

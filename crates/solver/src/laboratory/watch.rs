@@ -24,7 +24,7 @@ pub struct TestSettings {
 
 /// A test that is monitored.
 #[derive(Debug, Clone)]
-pub struct Watch<'a> {
+pub(crate) struct Watch<'a> {
     scene: &'a Scene,
     test: &'a Test,
     settings: TestSettings,
@@ -36,7 +36,7 @@ pub struct Watch<'a> {
 
 impl<'a> Watch<'a> {
     /// For a test arranged as in `setup`, in a plan that has not been stepped.
-    pub fn new(
+    pub(crate) fn new(
         scene: &'a Scene,
         test: &'a Test,
         setup: Setup,
@@ -70,7 +70,7 @@ impl<'a> Watch<'a> {
     }
 
     /// Records a step; returns whether the body is broken.
-    pub fn note(&self, record: &mut Record, state: &State) -> bool {
+    pub(crate) fn note(&self, record: &mut Record, state: &State) -> bool {
         record.note(&self.setup, &self.loading, state)
     }
 
@@ -78,7 +78,7 @@ impl<'a> Watch<'a> {
     ///
     /// # Errors
     /// Those of the files.
-    pub fn finish(
+    pub(crate) fn finish(
         &self,
         record: &Record,
         state: &State,

@@ -59,7 +59,7 @@ pub fn rows(fragments: &[Fragment]) -> Vec<FragmentRow> {
 ///
 /// # Errors
 /// Those of the files.
-pub fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
+pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     let row = |(id, cluster): (u32, &Cluster)| TreeRow {
         fragment_id: id,
         parent_id: cluster.parent,
@@ -101,7 +101,7 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
 ///
 /// # Errors
 /// Those of the files.
-pub fn write_fragment_plots(
+pub(crate) fn write_fragment_plots(
     folder: &ResultsFolder,
     clusters: &Clusters,
     fragments: &[Fragment],

@@ -17,7 +17,7 @@ use crate::state::events::REMOVED;
 /// Numbering in a frame: particles and bonds of all bodies, in the order of their files, followed
 /// by the spheres of clumps.
 #[derive(Debug, Clone)]
-pub struct FrameOrder {
+pub(crate) struct FrameOrder {
     particles: Vec<u32>,
     bodies: Vec<u32>,
     bonds: Vec<u32>,
@@ -30,7 +30,7 @@ pub struct FrameOrder {
 
 impl FrameOrder {
     /// From a state at its start.
-    pub fn new(bodies: &[PlacedBody], state: &State) -> Self {
+    pub(crate) fn new(bodies: &[PlacedBody], state: &State) -> Self {
         let mut order = Self {
             particles: Vec::new(),
             bodies: Vec::new(),
@@ -73,7 +73,7 @@ impl FrameOrder {
     ///
     /// # Errors
     /// Those of the files.
-    pub fn write(&self, state: &State, files: &mut FrameFiles) -> Result<()> {
+    pub(crate) fn write(&self, state: &State, files: &mut FrameFiles) -> Result<()> {
         let (p, bonds) = (&state.particles, &state.bonds);
         let motions = synchronous_motions(state);
         let particle = |i: usize| self.particles[i] as usize;

@@ -1,6 +1,6 @@
 //! Pictures of a state: the visible objects, and the view.
 
-pub mod subject;
-pub mod view;
+pub(crate) mod subject;
+pub(crate) mod view;
 
 pub use view::View;

@@ -18,7 +18,7 @@ const BROKEN: &str = "broken_bonds";
 ///
 /// # Errors
 /// Those of the files.
-pub fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()> {
+pub(crate) fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()> {
     let series = read_series(&folder.series())?;
     let changing: Vec<&str> = ENERGIES
         .into_iter()
@@ -76,7 +76,7 @@ fn plot_name(probe: &Probe) -> String {
 }
 
 /// Names of the plots of a run with these measures, whatever its results.
-pub fn plots_of_every_run(probes: &[Probe]) -> Vec<String> {
+pub(crate) fn plots_of_every_run(probes: &[Probe]) -> Vec<String> {
     let overall = [ENERGY, ERRORS].map(str::to_owned);
     overall
         .into_iter()

@@ -30,7 +30,10 @@ const OTHERS: [&str; 5] = [
 
 /// Names of all columns after the time, with units, all different: energies and errors, force on
 /// and work of each wall, measures.
-pub fn columns<'a>(walls: impl Iterator<Item = &'a String>, probes: &[Probe]) -> Vec<String> {
+pub(crate) fn columns<'a>(
+    walls: impl Iterator<Item = &'a String>,
+    probes: &[Probe],
+) -> Vec<String> {
     let mut columns: Vec<String> = ENERGIES
         .iter()
         .chain(&OTHERS)
@@ -58,7 +61,7 @@ pub fn columns<'a>(walls: impl Iterator<Item = &'a String>, probes: &[Probe]) ->
 }
 
 /// A row in the order of [`columns`].
-pub fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64> {
+pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64> {
     let always = [
         balance.kinetic_j,
         balance.elastic_j(),

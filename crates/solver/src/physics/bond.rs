@@ -1,18 +1,18 @@
 //! Elastic bonds between two spheres.
 
-pub mod causes;
-pub mod criteria;
+pub(crate) mod causes;
+pub(crate) mod criteria;
 pub mod damping;
 pub mod damping_models;
 pub mod failure;
 pub mod incremental;
-pub mod models;
+pub(crate) mod models;
 pub mod pair;
 pub mod rod;
 pub mod scatter;
 pub mod stiffness;
 pub mod strain_rate;
-pub mod stresses;
+pub(crate) mod stresses;
 pub mod tangent;
 pub mod total;
 

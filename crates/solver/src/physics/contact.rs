@@ -23,7 +23,7 @@
 //! When forces are computed, the leapfrog only has the velocity of half a step ago; c_n is adjusted
 //! to that.
 
-pub mod assembly;
+pub(crate) mod assembly;
 pub mod hertz_mindlin;
 pub mod kinematics;
 pub mod law;
@@ -32,7 +32,7 @@ pub mod pair_parameters;
 pub mod relaxation;
 pub mod restitution;
 pub mod rolling;
-pub mod slider;
+pub(crate) mod slider;
 
 use crate::physics::number::{Number, Vec3};
 use kinematics::{ContactKinematics, FrameRotation};

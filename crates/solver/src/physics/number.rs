@@ -192,7 +192,7 @@ impl<T: Number> Rotation<T> {
 
     /// The rotation, in space, from `before` to this one: this times the conjugate of `before`.
     #[inline(always)]
-    pub fn relative_to(self, before: Self) -> Self {
+    pub(crate) fn relative_to(self, before: Self) -> Self {
         let (Self(b, wb), Self(a, wa)) = (self, before);
         Self(b * wa - a * wb - b.cross(a), wb * wa + b.dot(a))
     }

@@ -22,14 +22,14 @@ pub fn turn(turned: [f64; 4], turn: [f64; 3]) -> [f64; 4] {
 
 /// The same for an angle that [is small](room_to_small).
 #[inline(always)]
-pub fn turn_a_little<T: Number>(turned: [T; 4], turn: [T; 3]) -> [T; 4] {
+pub(crate) fn turn_a_little<T: Number>(turned: [T; 4], turn: [T; 3]) -> [T; 4] {
     let half = half_angles(turn);
     after(turned, half, small_angle(half.square()))
 }
 
 /// Above 0 if a rotation vector, rad, is small enough for [`turn_a_little`].
 #[inline(always)]
-pub fn room_to_small<T: Number>(turn: [T; 3]) -> T {
+pub(crate) fn room_to_small<T: Number>(turn: [T; 3]) -> T {
     (-half_angles(turn).square()).plus(SMALL)
 }
 

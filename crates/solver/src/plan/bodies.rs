@@ -40,7 +40,7 @@ const SAME_LENGTH: f64 = 1e-9;
 /// # Errors
 /// Bonds without a rule; no density; a bond without length; masses or stiffnesses that are out of
 /// range.
-pub fn place_bodies(
+pub(crate) fn place_bodies(
     scene: &Scene,
     mut read: BTreeMap<String, Body>,
 ) -> Result<(Particles, Bonds, Vec<PlacedBody>)> {

@@ -13,7 +13,7 @@ use crate::state::supports::GroupSupport;
 ///
 /// # Errors
 /// A set that selects no particles, or a number that the body does not have.
-pub fn resolve_groups(
+pub(crate) fn resolve_groups(
     scene: &Scene,
     bodies: &[PlacedBody],
     particles: &Particles,

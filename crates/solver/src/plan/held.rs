@@ -16,7 +16,7 @@ const HELD: f64 = 1e-12;
 ///
 /// # Errors
 /// The first such piece, with the number of its six rigid motions that are free.
-pub fn refuse_loose(state: &State, bodies: &[PlacedBody], scene: &str) -> Result<()> {
+pub(crate) fn refuse_loose(state: &State, bodies: &[PlacedBody], scene: &str) -> Result<()> {
     let count = state.particles.len();
     let mut names: Vec<u32> = (0..count as u32).collect();
     let whole = (0..state.bonds.len()).filter(|at| !state.bonds.is_broken(*at));

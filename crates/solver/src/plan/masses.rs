@@ -25,7 +25,7 @@ const LISTED: usize = 8;
 
 /// Mass of each body of a scene, by name: in its initial state, or as in its file if it comes
 /// through an inlet. `about`: information on the bodies.
-pub fn masses(
+pub(crate) fn masses(
     scene: &Scene,
     about: &BTreeMap<String, About>,
     templates: &[Arc<Template>],
@@ -88,7 +88,7 @@ fn of_particles(body: &PlacedBody, particles: &Particles) -> MassProperties {
 
 /// Bodies whose mass differs from that of their shape although the scene does not set it: a
 /// sentence each.
-pub fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<String> {
+pub(crate) fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<String> {
     let is_said = |name: &String| (scene.bodies.get(name)).is_some_and(|b| b.whole_mass.is_some());
     let unsaid = masses.iter().filter(|(name, _)| !is_said(name));
     let note = |(name, mass): (&String, &BodyMass)| {
@@ -104,7 +104,7 @@ pub fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<String> 
 }
 
 /// Warnings of the programs that made the bodies, a sentence each.
-pub fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<String> {
+pub(crate) fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<String> {
     let mut warnings = Vec::new();
     for (name, about) in about {
         let file = scene
@@ -125,7 +125,7 @@ pub fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<String> {
 }
 
 /// Human-readable lines, the first preceded by a label: two for each body.
-pub fn lines(masses: &BTreeMap<String, BodyMass>) -> Vec<(&'static str, String)> {
+pub(crate) fn lines(masses: &BTreeMap<String, BodyMass>) -> Vec<(&'static str, String)> {
     let mut lines = Vec::new();
     for (name, mass) in masses.iter().take(LISTED) {
         let head = if lines.is_empty() { "mass" } else { "" };

@@ -8,7 +8,7 @@ use dem_scene::{Measure, Quantity, Scene};
 use crate::state::State;
 
 /// Smallest number of particles for which an angle of repose has a meaning.
-pub const FEWEST_IN_HEAP: usize = 50;
+pub(crate) const FEWEST_IN_HEAP: usize = 50;
 
 /// Refuses a force or a contact if nothing can touch, a contact between two groups with common
 /// particles, and a slope of a heap of few particles.

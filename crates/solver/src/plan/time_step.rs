@@ -21,7 +21,7 @@ use crate::state::particles::Particles;
 use crate::state::walls::Wall;
 
 /// Largest fraction of the smallest radius that a particle may move in a step.
-pub const FARTHEST: f64 = 0.5;
+pub(crate) const FARTHEST: f64 = 0.5;
 
 /// The chosen step and its basis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -153,7 +153,11 @@ impl StepChoice {
 ///
 /// # Errors
 /// A given step above the limit, unless any step is allowed.
-pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Result<StepChoice> {
+pub(crate) fn choose_step(
+    scene: &Scene,
+    state: &mut State,
+    allow_any_step: bool,
+) -> Result<StepChoice> {
     let run = &scene.run;
     let replaced = StepBasis::of(scene, state, coming(state, true).as_mut());
     let basis = if run.adaptive {
@@ -219,12 +223,12 @@ pub fn choose_step(scene: &Scene, state: &mut State, allow_any_step: bool) -> Re
 
 /// One body of each template as it is added: a clump, or a bonded cluster if its inlet feeds bonded
 /// bodies. Their positions are such that they do not touch. None: there are no templates.
-pub fn arriving(state: &State) -> Option<State> {
+pub(crate) fn arriving(state: &State) -> Option<State> {
     coming(state, false)
 }
 
 /// The same with all bodies bonded that can be.
-pub fn arriving_as_clusters(state: &State) -> Option<State> {
+pub(crate) fn arriving_as_clusters(state: &State) -> Option<State> {
     coming(state, true)
 }
 

@@ -52,7 +52,7 @@ impl<'a> Snapshot<'a> {
         }
     }
     /// The files of bodies, walls and regions named in its scene.
-    pub fn files_of_scene(&self) -> Vec<PathBuf> {
+    pub(crate) fn files_of_scene(&self) -> Vec<PathBuf> {
         let of_line = |line: &str| {
             let (key, file) = line.split_once(' ')?;
             let is_file = ["bodies.", "walls.", "regions."]
@@ -94,7 +94,7 @@ impl<'a> Snapshot<'a> {
     ///
     /// # Errors
     /// Names the differences.
-    pub fn check_scene(&self, scene: &str) -> Result<()> {
+    pub(crate) fn check_scene(&self, scene: &str) -> Result<()> {
         let may_change = |key: &str| {
             const RUN: [&str; 4] = [
                 "run.end_time",

@@ -10,12 +10,12 @@
 //! rotations about those axes. If the particle also rotates far about the others, the result
 //! depends on its path, which here is that of the Newton steps.
 
-pub mod degrees_of_freedom;
-pub mod displacements;
+pub(crate) mod degrees_of_freedom;
+pub(crate) mod displacements;
 mod estimate;
-pub mod factor;
-pub mod matrix;
-pub mod newton;
+pub(crate) mod factor;
+pub(crate) mod matrix;
+pub(crate) mod newton;
 mod record;
 
 pub use estimate::StaticsEstimate;

@@ -17,7 +17,7 @@ pub const HIDDEN: f64 = 0.05;
 
 /// Radius of balls that cannot enter, as a fraction of that of the smallest sphere that clumps can
 /// meet: less than 1, as edges and corners are farther from such balls.
-pub const FRACTION_OF_SMALLEST: f64 = 0.7;
+pub(crate) const FRACTION_OF_SMALLEST: f64 = 0.7;
 
 /// Distance of the centre of a ball from the corner of three walls at right angles that it touches
 /// from within, in its radii. For edges and faces it is less.

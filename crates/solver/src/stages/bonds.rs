@@ -76,7 +76,7 @@ pub(super) fn any_bond(state: &State, is_so: impl Fn(&BondRule) -> bool) -> bool
 
 /// Sets the wrenches to 0 if there are no bonds. Otherwise the bond forces, which come first, set
 /// them.
-pub fn clear_wrenches(state: &mut State) -> usize {
+pub(crate) fn clear_wrenches(state: &mut State) -> usize {
     if state.bonds.is_empty() {
         let p = &mut state.particles;
         bond_wrenches(
@@ -90,7 +90,7 @@ pub fn clear_wrenches(state: &mut State) -> usize {
 }
 
 /// Sets the wrenches to the bond forces. Returns the number of bonds computed.
-pub fn compute_bonds(state: &mut State) -> usize {
+pub(crate) fn compute_bonds(state: &mut State) -> usize {
     if state.bonds.is_empty() {
         return 0;
     }
@@ -135,12 +135,12 @@ pub fn bond_wrenches(
 }
 
 /// Largest ratio of change of length to initial length of the unbroken bonds.
-pub fn largest_strain(bonds: &Bonds, poses: &[Pose]) -> f64 {
+pub(crate) fn largest_strain(bonds: &Bonds, poses: &[Pose]) -> f64 {
     most_strained(bonds, poses).map_or(0.0, |(strain, _)| strain)
 }
 
 /// The bond with the largest strain, and that strain. None: all bonds are broken.
-pub fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
+pub(crate) fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
     let strain = |at: usize| {
         let [a, b] = bonds.ends[at].map(|end| poses[end as usize].place());
         (
@@ -158,7 +158,7 @@ pub fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
 
 /// Largest strain at the edge of a bond, broken or not: of elongation and bending together, or of
 /// shear and torsion together.
-pub fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
+pub(crate) fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
     let load = bonds.forces(at, poses).load;
     let (stiffness, radius_m) = (bonds.stiffness(at), bonds.radius_m(at));
     let normal_m =
@@ -169,7 +169,7 @@ pub fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
 
 /// The unbroken bond with the largest [edge](edge_strain) strain, and that strain. Ten times as
 /// costly as [`most_strained`].
-pub fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
+pub(crate) fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
     (0..bonds.len())
         .into_par_iter()
         .with_min_len(CHUNK)

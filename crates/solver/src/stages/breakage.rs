@@ -72,7 +72,7 @@ pub const SCATTER: Stage = Stage {
 
 /// Breaks the bonds that have reached their strength. Returns the number of bonds compared with
 /// their strength.
-pub fn break_failed_bonds(state: &mut State) -> usize {
+pub(crate) fn break_failed_bonds(state: &mut State) -> usize {
     let compared = state
         .scratch
         .partitions
@@ -98,12 +98,12 @@ pub fn break_failed_bonds(state: &mut State) -> usize {
 }
 
 /// Number of bonds checked whose strength depends on the strain rate.
-pub fn count_rates(state: &mut State) -> usize {
+pub(crate) fn count_rates(state: &mut State) -> usize {
     state.scratch.events.work.rates
 }
 
 /// Number of bonds compared with an individual strength.
-pub fn count_scattered(state: &mut State) -> usize {
+pub(crate) fn count_scattered(state: &mut State) -> usize {
     if state.bonds.strength_factors.is_empty() {
         return 0;
     }
@@ -141,7 +141,7 @@ fn leave_out_broken(state: &mut State) {
 /// The bond acts until this moment: its ends get their half of the kick, `half_kick_s`, and its
 /// force is subtracted from the wrenches that move them on. Returns the number of bonds checked
 /// whose strength depends on the strain rate.
-pub fn break_bonds(
+pub(crate) fn break_bonds(
     bonds: &mut Bonds,
     particles: &mut Particles,
     partitions: &[Partition],

@@ -15,7 +15,7 @@ use crate::state::clumps::{Clump, Clumps};
 use crate::state::particles::{Particles, Wrench};
 
 /// Rigid clumps.
-pub const CLUMPS: Stage = Stage {
+pub(crate) const CLUMPS: Stage = Stage {
     name: "rigid clumps",
     within: None,
     need: |state, _| {
@@ -48,7 +48,7 @@ pub const CLUMPS: Stage = Stage {
 };
 
 /// Sums the contact forces on the spheres of clumps.
-pub fn gather_clumps(state: &mut State) -> usize {
+pub(crate) fn gather_clumps(state: &mut State) -> usize {
     if state.contacts.is_some() {
         gather(
             &mut state.clumps,
@@ -60,14 +60,14 @@ pub fn gather_clumps(state: &mut State) -> usize {
 }
 
 /// Updates the velocities of clumps. Returns the number of clumps that are awake.
-pub fn kick_clumps(state: &mut State) -> usize {
+pub(crate) fn kick_clumps(state: &mut State) -> usize {
     let kick_s = state.kick_s();
     kick(&mut state.clumps, state.model.gravity_m_s2, kick_s);
     awake(&state.clumps)
 }
 
 /// Moves clumps and those of their spheres that are near something.
-pub fn drift_clumps(state: &mut State) -> usize {
+pub(crate) fn drift_clumps(state: &mut State) -> usize {
     let (clumps, particles) = (&mut state.clumps, &mut state.particles);
     let fastest_m_s = drift(clumps, particles, state.time_step_s);
     state.fastest_m_s = state.fastest_m_s.max(fastest_m_s);
@@ -81,7 +81,11 @@ pub(super) fn awake(clumps: &Clumps) -> usize {
 
 /// Records which spheres of clumps are near something, after the search for pairs and walls.
 /// `near`: particles that are, in any order, with duplicates.
-pub fn list_near(clumps: &mut Clumps, particles: &mut Particles, near: impl Iterator<Item = u32>) {
+pub(crate) fn list_near(
+    clumps: &mut Clumps,
+    particles: &mut Particles,
+    near: impl Iterator<Item = u32>,
+) {
     let free = particles.free as u32;
     let mut now: Vec<u32> = near.filter(|&i| i >= free).collect();
     now.sort_unstable();
@@ -206,7 +210,7 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
 
 /// Velocities and angular momenta at the time of the positions, between a kick and the drift after
 /// it. One for each clump.
-pub fn synchronous(clumps: &Clumps, gravity_m_s2: [f64; 3], time_step_s: f64) -> Vec<Clump> {
+pub(crate) fn synchronous(clumps: &Clumps, gravity_m_s2: [f64; 3], time_step_s: f64) -> Vec<Clump> {
     let mut now = clumps.clone();
     kick(&mut now, gravity_m_s2, -0.5 * time_step_s);
     now.all

@@ -112,7 +112,7 @@ fn can_break(state: &State) -> bool {
 
 /// Adds the contact forces between particles to the wrenches. Returns the number of pairs in
 /// contact.
-pub fn compute_contacts(state: &mut State) -> usize {
+pub(crate) fn compute_contacts(state: &mut State) -> usize {
     match &mut state.contacts {
         Some(contacts) if !contacts.model.alone => {
             contact_wrenches(contacts, &mut state.particles, state.previous_time_step_s);
@@ -128,12 +128,12 @@ pub fn compute_contacts(state: &mut State) -> usize {
 }
 
 /// Number of pairs listed in this step whose law begins at an overlap.
-pub fn count_relaxing(state: &mut State) -> usize {
+pub(crate) fn count_relaxing(state: &mut State) -> usize {
     state.scratch.events.work.relaxing
 }
 
 /// Number of touching contacts with rolling friction.
-pub fn count_rolling(state: &mut State) -> usize {
+pub(crate) fn count_rolling(state: &mut State) -> usize {
     let partitions = state
         .contacts
         .iter()

@@ -40,7 +40,7 @@ pub const BOND_DAMPING: Stage = Stage {
 };
 
 /// Sets the damping forces of bonds. Returns the number of bonds computed.
-pub fn compute_bond_damping(state: &mut State) -> usize {
+pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
     if !state.scratch.bond_resistance.is_empty() {
         let p = &state.particles;
         let resisting = &mut state.scratch.bond_resistance;
@@ -61,7 +61,7 @@ pub fn compute_bond_damping(state: &mut State) -> usize {
 }
 
 /// Sets `resisting` (one for each particle) to the damping forces of the bonds.
-pub fn damping_wrenches(
+pub(crate) fn damping_wrenches(
     bonds: &Bonds,
     poses: &[Pose],
     motions: &[Motion],

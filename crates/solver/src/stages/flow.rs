@@ -8,7 +8,7 @@ use crate::state::State;
 use crate::state::events::TopologyChange;
 
 /// Inlets and outlets.
-pub const FLOW: Stage = Stage {
+pub(crate) const FLOW: Stage = Stage {
     name: "inlets and outlets",
     within: None,
     need: |state, _| {
@@ -28,7 +28,7 @@ pub const FLOW: Stage = Stage {
 
 /// Adds and removes bodies, between a kick and the drift after it. Returns the number of inlets and
 /// outlets checked.
-pub fn apply_inlets_and_outlets(state: &mut State) -> usize {
+pub(crate) fn apply_inlets_and_outlets(state: &mut State) -> usize {
     let leaving = leaving(state);
     let coming = coming(state);
     if !(leaving.is_empty() && coming.is_empty()) {
@@ -44,7 +44,7 @@ pub fn apply_inlets_and_outlets(state: &mut State) -> usize {
 }
 
 /// Counts the existing bonds, and those skipped because their bodies are clumps.
-pub fn count_bond_steps(state: &mut State) -> usize {
+pub(crate) fn count_bond_steps(state: &mut State) -> usize {
     if !state.model.rules.are_none() {
         let clumps = state.clumps.all.iter();
         let left_out = clumps.map(|clump| state.clumps.template(clump).bonds.len() as u64);

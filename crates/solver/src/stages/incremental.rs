@@ -39,7 +39,7 @@ pub const HISTORIES: Stage = Stage {
 
 /// Updates the histories and adds their forces to the wrenches. Returns the number of bonds
 /// computed.
-pub fn compute_incremental_bonds(state: &mut State) -> usize {
+pub(crate) fn compute_incremental_bonds(state: &mut State) -> usize {
     let (before_s, p) = (state.previous_time_step_s, &mut state.particles);
     if !state.bonds.histories.is_empty() {
         if before_s > 0.0 {
@@ -62,7 +62,7 @@ pub fn compute_incremental_bonds(state: &mut State) -> usize {
 
 /// Updates the histories to the present positions, after a drift of `time_step_s` with these
 /// motions.
-pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {
+pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {
     let (poses, motions) = (&particles.poses, &particles.motions);
     let mut histories = std::mem::take(&mut bonds.histories);
     let known = &*bonds;
@@ -90,7 +90,7 @@ pub fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: 
 
 /// Adds the forces of incremental bonds to the wrenches, and the bonds that have reached their
 /// strength to the partitions' lists.
-pub fn add_incremental_wrenches(
+pub(crate) fn add_incremental_wrenches(
     bonds: &Bonds,
     poses: &[Pose],
     partitions: &mut [Partition],

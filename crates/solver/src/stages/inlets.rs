@@ -172,7 +172,11 @@ fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
 }
 
 /// Angular momentum of a clump with this orientation and spin, kg m2/s.
-pub fn angular_momentum(template: &Template, turned: [f64; 4], spin_rad_s: [f64; 3]) -> [f64; 3] {
+pub(crate) fn angular_momentum(
+    template: &Template,
+    turned: [f64; 4],
+    spin_rad_s: [f64; 3],
+) -> [f64; 3] {
     let turned = rotation(turned);
     let spin = turned.inverse() * Vector3::from(spin_rad_s);
     let own = spin.component_mul(&Vector3::from(template.moments_kg_m2));

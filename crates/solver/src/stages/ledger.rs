@@ -20,7 +20,7 @@ use crate::state::walls::{Wall, WallLoad};
 use serde::Serialize;
 
 /// The ledgers of energy and momentum.
-pub const LEDGER: Stage = Stage {
+pub(crate) const LEDGER: Stage = Stage {
     name: "energy balance",
     within: None,
     need: |_, _| Need::Needed("energy and momentum".to_owned()),
@@ -29,7 +29,7 @@ pub const LEDGER: Stage = Stage {
 };
 
 /// Checks of the time step limit and of energy.
-pub const CHECKS: Stage = Stage {
+pub(crate) const CHECKS: Stage = Stage {
     name: "checks",
     within: None,
     need: |_, _| Need::Needed("of energy, and of the limit of the step".to_owned()),
@@ -38,19 +38,19 @@ pub const CHECKS: Stage = Stage {
 };
 
 /// Records the work of the half step that ends with the coming kick.
-pub fn book_before_kick(state: &mut State) -> usize {
+pub(crate) fn book_before_kick(state: &mut State) -> usize {
     before_kick(state);
     0
 }
 
 /// Records the kick that has just been done.
-pub fn book_after_kick(state: &mut State) -> usize {
+pub(crate) fn book_after_kick(state: &mut State) -> usize {
     after_kick(state);
     0
 }
 
 /// Advances the time to the end of the drift.
-pub fn advance_time(state: &mut State) -> usize {
+pub(crate) fn advance_time(state: &mut State) -> usize {
     state.ledger.drift(state.time_step_s);
     state.time_s += state.time_step_s;
     state.previous_time_step_s = state.time_step_s;
@@ -207,7 +207,7 @@ fn powers(state: &State) -> Work {
 }
 
 /// Records the work of the half step that ends with the coming kick.
-pub fn before_kick(state: &mut State) {
+pub(crate) fn before_kick(state: &mut State) {
     let powers = powers(state);
     state.ledger.settle();
     let half_s = 0.5 * state.previous_time_step_s;
@@ -220,7 +220,7 @@ pub fn before_kick(state: &mut State) {
 
 /// Records the kick that has just been done: work of supports, work of the next half step,
 /// impulses.
-pub fn after_kick(state: &mut State) {
+pub(crate) fn after_kick(state: &mut State) {
     let pending = powers(state);
     let half_s = 0.5 * state.time_step_s;
     for wall in &mut state.walls {

@@ -13,7 +13,7 @@ use super::walls::list_near;
 use crate::state::State;
 
 /// The neighbour search.
-pub const SEARCH: Stage = Stage {
+pub(crate) const SEARCH: Stage = Stage {
     name: "neighbour search",
     within: None,
     need: |state, _| {
@@ -34,7 +34,7 @@ pub const SEARCH: Stage = Stage {
 };
 
 /// Subtracts the displacement in a drift from the skin left until the lists are rebuilt.
-pub fn use_up_skin(state: &mut State) -> usize {
+pub(crate) fn use_up_skin(state: &mut State) -> usize {
     if let Some(contacts) = &mut state.contacts {
         let moved_m = state.fastest_m_s * state.time_step_s;
         contacts.moved_m = moved_m;
@@ -50,7 +50,7 @@ pub fn use_up_skin(state: &mut State) -> usize {
 
 /// Rebuilds the lists if something may have come near since the last time. Returns the number of
 /// particles processed.
-pub fn renew_lists(state: &mut State) -> usize {
+pub(crate) fn renew_lists(state: &mut State) -> usize {
     let Some(contacts) = &mut state.contacts else {
         return 0;
     };

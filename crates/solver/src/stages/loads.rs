@@ -29,7 +29,7 @@ pub(super) fn on_particles(count: usize) -> String {
 }
 
 /// Adds the loads to the wrenches. Returns the number of particles on which they act.
-pub fn apply_loads(state: &mut State) -> usize {
+pub(crate) fn apply_loads(state: &mut State) -> usize {
     let steps_s = state.steps_s();
     add_loads(
         &state.loads,
@@ -104,7 +104,7 @@ pub fn loads_resultant(
 }
 
 /// Adds a force and a torque at a particle to a resultant about a point.
-pub fn add_resultant(
+pub(crate) fn add_resultant(
     total: &mut [[f64; 3]; 2],
     pose: &Pose,
     force: [f64; 3],

@@ -62,7 +62,7 @@ pub const GRAVITY: Stage = Stage {
 };
 
 /// Sets the damping forces on particles. Returns the number of particles on which they act.
-pub fn compute_particle_damping(state: &mut State) -> usize {
+pub(crate) fn compute_particle_damping(state: &mut State) -> usize {
     if state.scratch.particle_resistance.is_empty() {
         return 0;
     }
@@ -77,7 +77,7 @@ pub fn compute_particle_damping(state: &mut State) -> usize {
 }
 
 /// Updates the velocities of particles. Returns the number of particles.
-pub fn kick_particles(state: &mut State) -> usize {
+pub(crate) fn kick_particles(state: &mut State) -> usize {
     let kick_s = state.kick_s();
     let resistance = [
         &state.scratch.bond_resistance[..],
@@ -93,7 +93,7 @@ pub fn kick_particles(state: &mut State) -> usize {
 }
 
 /// Number of particles and clumps on which gravity acts.
-pub fn count_falling(state: &mut State) -> usize {
+pub(crate) fn count_falling(state: &mut State) -> usize {
     if state.model.gravity_m_s2 == [0.0; 3] {
         return 0;
     }
@@ -101,7 +101,7 @@ pub fn count_falling(state: &mut State) -> usize {
 }
 
 /// Moves particles.
-pub fn drift_particles(state: &mut State) -> usize {
+pub(crate) fn drift_particles(state: &mut State) -> usize {
     state.fastest_m_s = drift(&mut state.particles, state.time_step_s);
     0
 }
@@ -321,13 +321,13 @@ pub fn power_w(wrenches: &[Wrench], particles: &Particles) -> f64 {
 }
 
 /// The sum of `term` over 0..count, in an order that does not depend on the number of threads.
-pub fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+pub(crate) fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     let [sum] = ordered_sums(count, |i| [term(i)]);
     sum
 }
 
 /// Sums of several terms over 0..count, in an order that does not depend on the number of threads.
-pub fn ordered_sums<const N: usize>(
+pub(crate) fn ordered_sums<const N: usize>(
     count: usize,
     terms: impl Fn(usize) -> [f64; N] + Sync,
 ) -> [f64; N] {

@@ -4,7 +4,7 @@ use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
 
 /// The search for fragments.
-pub const CLUSTERS: Stage = Stage {
+pub(crate) const CLUSTERS: Stage = Stage {
     name: "cluster search",
     within: None,
     need: |state, _| {
@@ -26,7 +26,7 @@ pub const CLUSTERS: Stage = Stage {
 
 /// Searches for fragments if it is due. Particles that are no longer in the same cluster may touch
 /// from the next step on. Returns the number of clusters searched.
-pub fn find_pieces(state: &mut State) -> usize {
+pub(crate) fn find_pieces(state: &mut State) -> usize {
     if state.clusters.is_none() {
         return 0;
     }
@@ -40,7 +40,7 @@ pub fn find_pieces(state: &mut State) -> usize {
 }
 
 /// The same, whether due or not.
-pub fn find_pieces_now(state: &mut State) -> usize {
+pub(crate) fn find_pieces_now(state: &mut State) -> usize {
     let Some(clusters) = &mut state.clusters else {
         return 0;
     };

@@ -11,7 +11,7 @@ use crate::state::events::{PopulationEvent, STARTS_BONDED};
 use crate::state::rules::Trigger;
 
 /// Clumps that become clusters, and clusters that become clumps.
-pub const REPLACEMENT: Stage = Stage {
+pub(crate) const REPLACEMENT: Stage = Stage {
     name: "replacement",
     within: None,
     need: |state, _| {
@@ -29,7 +29,7 @@ pub const REPLACEMENT: Stage = Stage {
 
 /// Replaces the clumps whose trigger has fired, between a kick and the drift after it. Returns the
 /// number of clumps checked.
-pub fn replace_clumps(state: &mut State) -> usize {
+pub(crate) fn replace_clumps(state: &mut State) -> usize {
     if state.model.rules.are_none() {
         return 0;
     }

@@ -24,7 +24,7 @@ use dem_io::disjoint::{find, join};
 use dem_io::units::significant;
 
 /// Sleeping bodies.
-pub const SLEEP: Stage = Stage {
+pub(crate) const SLEEP: Stage = Stage {
     name: "sleep",
     within: None,
     need: |state, scene| match (&state.model.sleep, &scene.sleep) {
@@ -52,7 +52,7 @@ const EVERY: u64 = 100;
 
 /// Puts to sleep the bodies that have been slow for long enough and touch only such bodies, between
 /// a kick and the drift after it.
-pub fn update_sleep(state: &mut State) -> usize {
+pub(crate) fn update_sleep(state: &mut State) -> usize {
     if let Some(sleep) = &mut state.sleep {
         let (all, left_out) = (state.particles.len() as u64, sleep.particles as u64);
         sleep.particle_steps[0] += all - left_out;
@@ -187,7 +187,7 @@ fn moves(wall: &Wall, [time_s, time_step_s]: [f64; 2]) -> bool {
 }
 
 /// Whether any body sleeps and a wall at rest begins to move: then no body may sleep on it.
-pub fn begins_to_move(
+pub(crate) fn begins_to_move(
     sleep: Option<&Sleep>,
     walls: &[Wall],
     [time_s, time_step_s]: [f64; 2],
@@ -270,7 +270,7 @@ fn power_w(wrench: &Wrench, velocity_m_s: &[f64; 3], spin_rad_s: &[f64; 3]) -> f
 }
 
 /// Sleeping clusters near an awake particle, by the list of pairs, or near a moving wall.
-pub fn disturbed(state: &State) -> Vec<u32> {
+pub(crate) fn disturbed(state: &State) -> Vec<u32> {
     let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
         return Vec::new();
     };
@@ -303,7 +303,7 @@ pub fn disturbed(state: &State) -> Vec<u32> {
 }
 
 /// Wakes clusters and all that sleep with them, through contacts, directly or indirectly.
-pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
+pub(crate) fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;
     };
@@ -344,7 +344,7 @@ pub fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
 
 /// Wakes the bodies that are about to be removed or replaced, with all that sleep with them.
 /// Returns the frozen contacts of the others to the lists, where they are renumbered.
-pub fn prepare_change(state: &mut State, changes: &TopologyChange) {
+pub(crate) fn prepare_change(state: &mut State, changes: &TopologyChange) {
     let Some(sleep) = &state.sleep else {
         return;
     };
@@ -391,7 +391,7 @@ fn put_back(
 }
 
 /// Moves the contact histories of sleeping bodies out of the lists and keeps them.
-pub fn freeze_contacts(state: &mut State) {
+pub(crate) fn freeze_contacts(state: &mut State) {
     let (Some(sleep), Some(contacts)) = (&mut state.sleep, &state.contacts) else {
         return;
     };
@@ -450,7 +450,7 @@ fn sum_pushes(touches: &[FrozenWallContact], walls: &mut [Wall]) {
 
 /// Updates everything that depends on which bodies sleep: particles, clumps, the division of work,
 /// and the gravity term of the ledger.
-pub fn count_sleepers(state: &mut State) {
+pub(crate) fn count_sleepers(state: &mut State) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;
     };

@@ -31,13 +31,13 @@ pub const SUPPORTS: Stage = Stage {
 
 /// Records the motion of the held particles before the kick, and before bonds break: a break gives
 /// its ends their half of the kick at once.
-pub fn remember_held(state: &mut State) -> usize {
+pub(crate) fn remember_held(state: &mut State) -> usize {
     remember(&mut state.supports, &state.particles.motions);
     0
 }
 
 /// Sets held degrees of freedom to the prescribed velocities. Returns the number of particles.
-pub fn hold_supports(state: &mut State) -> usize {
+pub(crate) fn hold_supports(state: &mut State) -> usize {
     let steps_s = state.steps_s();
     let broken = &state.scratch.events.broken;
     hold(
@@ -174,7 +174,7 @@ fn of_broken(broken: &[Break], particle: u32) -> [f64; 6] {
 ///
 /// At the first step it is the velocity before the kick: a support that moves from the start begins
 /// after that moment, with a jump.
-pub fn velocity_at_kick(before: f64, after: f64, steps_s: [f64; 2]) -> f64 {
+pub(crate) fn velocity_at_kick(before: f64, after: f64, steps_s: [f64; 2]) -> f64 {
     let [before_s, after_s] = steps_s;
     before + (after - before) * before_s / (before_s + after_s)
 }
@@ -182,7 +182,7 @@ pub fn velocity_at_kick(before: f64, after: f64, steps_s: [f64; 2]) -> f64 {
 /// Work of the reactions in the half steps before and after a kick, J: their powers, plus the
 /// remaining change of kinetic energy, as prescribed velocities may jump. So a jump is recorded
 /// with its actual work, not with the velocity after it.
-pub fn reactions_work_j(
+pub(crate) fn reactions_work_j(
     supports: &[GroupSupport],
     particles: &Particles,
     time_s: f64,

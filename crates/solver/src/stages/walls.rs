@@ -39,7 +39,7 @@ pub const WALLS: Stage = Stage {
 };
 
 /// Adds the wall forces to the wrenches. Returns the number of particles near walls.
-pub fn compute_wall_contacts(state: &mut State) -> usize {
+pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
     if let Some(contacts) = &mut state.contacts {
         wall_wrenches(
             &mut state.walls,
@@ -52,7 +52,7 @@ pub fn compute_wall_contacts(state: &mut State) -> usize {
 }
 
 /// Determines the motion of the walls in the coming drift.
-pub fn plan_wall_motions(state: &mut State) -> usize {
+pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
     plan_motions(&mut state.walls, state.time_s, state.time_step_s);
     0
 }
@@ -66,7 +66,7 @@ const SAME_WAY: f64 = 0.9;
 const SERVO: f64 = 0.1;
 
 /// Lists the particles whose surface is less than `skin_m` from a wall, without sleeping ones.
-pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
+pub(crate) fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
     for wall in walls {
         let near: Vec<u32> = {
             let is_near = nearness(wall, skin_m);
@@ -83,7 +83,7 @@ pub fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
 }
 
 /// Test whether the surface of a sphere is less than `skin_m` from a wall.
-pub fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
+pub(crate) fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
     let bounds = wall.model.shape.bounds();
     let in_space = wall.bounds_in_space();
     let to_wall = wall.frame.all_to_wall();
@@ -103,7 +103,7 @@ pub fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
 
 /// Adds the wall forces to the wrenches after a step of `dt`, s, and records their reactions on the
 /// walls.
-pub fn wall_wrenches(
+pub(crate) fn wall_wrenches(
     walls: &mut [Wall],
     contacts: &mut Contacts,
     particles: &mut Particles,
@@ -358,7 +358,7 @@ fn meet_at(
 }
 
 /// Force of a wall at rest on a particle at rest at one point, from its contact history.
-pub fn push_at_rest(
+pub(crate) fn push_at_rest(
     wall: &Wall,
     contacts: &Contacts,
     particles: &Particles,
@@ -391,7 +391,7 @@ pub fn push_at_rest(
 
 /// Contact of a particle at rest with a wall at rest; `normal` from the wall to its centre, overlap
 /// `overlap_m`.
-pub fn wall_contact(
+pub(crate) fn wall_contact(
     particles: &Particles,
     i: usize,
     normal: &Vector3<f64>,
@@ -408,7 +408,7 @@ pub fn wall_contact(
 }
 
 /// Elastic energy of a recorded wall contact, J.
-pub fn touch_energy_j(
+pub(crate) fn touch_energy_j(
     wall: &Wall,
     contacts: &Contacts,
     particles: &Particles,
@@ -422,7 +422,7 @@ pub fn touch_energy_j(
 }
 
 /// Force of a wall on a particle in a recorded contact, N.
-pub fn touch_force_n(
+pub(crate) fn touch_force_n(
     wall: &Wall,
     contacts: &Contacts,
     particles: &Particles,
@@ -436,7 +436,7 @@ pub fn touch_force_n(
 }
 
 /// Distance of a sphere from a wall, m; infinite if it exceeds the radius of the sphere.
-pub fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
+pub(crate) fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
     let centre = wall.frame.to_wall(pose.place().into());
     let mut touches = Vec::new();
     let reach_m = 2.0 * pose.radius_m();
@@ -448,7 +448,7 @@ pub fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
 }
 
 /// Determines the motion of the walls in the step of `dt`, s, that begins at `time_s`.
-pub fn plan_motions(walls: &mut [Wall], time_s: f64, dt: f64) {
+pub(crate) fn plan_motions(walls: &mut [Wall], time_s: f64, dt: f64) {
     for wall in walls {
         let [velocity, spin] = planned(wall, time_s, dt);
         wall.velocities_m_s[1] = velocity;
@@ -507,7 +507,7 @@ fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
 }
 
 /// Whether a wall moved in the previous step, or its surface moves while it is at rest.
-pub fn has_moved(wall: &Wall) -> bool {
+pub(crate) fn has_moved(wall: &Wall) -> bool {
     let moving = [
         wall.velocities_m_s[0],
         wall.spins_rad_s[0],
@@ -517,12 +517,12 @@ pub fn has_moved(wall: &Wall) -> bool {
 }
 
 /// Whether a wall moves in the step of `dt`, s, that begins at `time_s`.
-pub fn will_move(wall: &Wall, time_s: f64, dt: f64) -> bool {
+pub(crate) fn will_move(wall: &Wall, time_s: f64, dt: f64) -> bool {
     planned(wall, time_s, dt) != [[0.0; 3]; 2]
 }
 
 /// Moves the walls. Returns the largest speed of a wall's point near particles, m/s.
-pub fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
+pub(crate) fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
     let mut fastest = 0.0_f64;
     for wall in walls {
         let ([_, velocity], [_, spin]) = (wall.velocities_m_s, wall.spins_rad_s);
@@ -547,7 +547,7 @@ pub fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
 }
 
 /// Moves the walls.
-pub fn drift_walls(state: &mut State) -> usize {
+pub(crate) fn drift_walls(state: &mut State) -> usize {
     if state.contacts.is_some() {
         state.fastest_m_s += move_walls(&mut state.walls, &state.particles, state.time_step_s);
     }

@@ -14,7 +14,7 @@ use crate::state::watches::{Seen, Watch, WatchTarget};
 use dem_scene::Quantity;
 
 /// Measures, files and pictures.
-pub const OUTPUT: Stage = Stage {
+pub(crate) const OUTPUT: Stage = Stage {
     name: "output",
     within: None,
     need: |_, _| Need::Needed("measures, files and pictures".to_owned()),
@@ -34,7 +34,7 @@ struct Met {
 }
 
 /// Evaluates the watches, between the forces of a step and its end.
-pub fn watch(state: &mut State) -> usize {
+pub(crate) fn watch(state: &mut State) -> usize {
     if state.watches.is_empty() {
         return 0;
     }

@@ -73,7 +73,7 @@ pub fn renumber(bodies: &mut Vec<PlacedBody>, by: &Renumbering) {
 }
 
 /// The body of a bond of the state, and the bond's number in that body's file.
-pub fn bond_of_file(bodies: &[PlacedBody], at: usize) -> Option<(&PlacedBody, u32)> {
+pub(crate) fn bond_of_file(bodies: &[PlacedBody], at: usize) -> Option<(&PlacedBody, u32)> {
     bodies.iter().find_map(|body| {
         let number = body.bonds.get(at.checked_sub(body.first_bond)?)?;
         Some((body, *number))

@@ -89,7 +89,7 @@ impl BondBlock {
 
 /// Bending stiffness of a round bond, N m/rad, from its normal stiffness, N/m: E I/L0 from E A/L0.
 #[inline(always)]
-pub fn bending_stiffness<T: Number>(normal: T, radius_m: T) -> T {
+pub(crate) fn bending_stiffness<T: Number>(normal: T, radius_m: T) -> T {
     normal.scale(0.25) * radius_m * radius_m
 }
 
@@ -130,7 +130,7 @@ impl Bonds {
     }
 
     /// Reserves room for exactly this many more bonds.
-    pub fn reserve_exact(&mut self, count: usize) {
+    pub(crate) fn reserve_exact(&mut self, count: usize) {
         self.ends.reserve_exact(count);
         let blocks = (self.len() + count).div_ceil(BLOCK);
         self.blocks.reserve_exact(blocks - self.blocks.len());
@@ -175,7 +175,7 @@ impl Bonds {
 
     /// Adds a copy of bond `at` of another set with the same rules, between these ends, with its
     /// strength multiplied by a factor.
-    pub fn push_copy(&mut self, other: &Self, at: usize, ends: [u32; 2], factor: f64) {
+    pub(crate) fn push_copy(&mut self, other: &Self, at: usize, ends: [u32; 2], factor: f64) {
         let rule = other.rule_of(at);
         let (from, k) = (&other.blocks[at / BLOCK], at % BLOCK);
         let direction = [0, 1, 2].map(|axis| from.direction[axis][k]);
@@ -284,7 +284,7 @@ impl Bonds {
     }
 
     /// Number of the rule of bond `at`.
-    pub fn rule_of(&self, at: usize) -> usize {
+    pub(crate) fn rule_of(&self, at: usize) -> usize {
         let stretch = self.rule_runs.partition_point(|(end, _)| *end <= at);
         self.rule_runs[stretch].1
     }

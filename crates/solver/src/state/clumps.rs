@@ -28,7 +28,7 @@ pub struct SubSphere {
 }
 
 /// The spheres of a rigid body with these mass properties, from particles at their present poses.
-pub fn sub_spheres<'a>(
+pub(crate) fn sub_spheres<'a>(
     particles: impl Iterator<Item = (&'a Pose, &'a Motion)>,
     properties: &MassProperties,
 ) -> Vec<SubSphere> {
@@ -154,14 +154,14 @@ impl Template {
     }
 
     /// The particles that a clump of this template carries, given the first.
-    pub fn spheres_from(&self, first: u32) -> Range<usize> {
+    pub(crate) fn spheres_from(&self, first: u32) -> Range<usize> {
         let first = first as usize;
         first..first + self.outer.len()
     }
 
     /// Inverse mass and inverse mean moment of inertia, 1/kg and 1/(kg m2): the values that
     /// contacts use for each of its spheres.
-    pub fn inert(&self) -> [f64; 2] {
+    pub(crate) fn inert(&self) -> [f64; 2] {
         let mean = self.moments_kg_m2.iter().sum::<f64>() / 3.0;
         [1.0 / self.mass_kg, 1.0 / mean]
     }
@@ -201,12 +201,12 @@ impl Clumps {
     }
 
     /// The particles that a clump carries.
-    pub fn spheres_of(&self, clump: &Clump) -> Range<usize> {
+    pub(crate) fn spheres_of(&self, clump: &Clump) -> Range<usize> {
         self.template(clump).spheres_from(clump.first)
     }
 
     /// Number of the clump that carries a particle. None: the particle is free.
-    pub fn carrier_of(&self, particle: usize) -> Option<usize> {
+    pub(crate) fn carrier_of(&self, particle: usize) -> Option<usize> {
         let after = self
             .all
             .partition_point(|clump| clump.first as usize <= particle);
@@ -214,7 +214,7 @@ impl Clumps {
     }
 
     /// Sets the spheres, in ascending order, that are near something, and the range of each clump.
-    pub fn set_near(&mut self, near: Vec<u32>) {
+    pub(crate) fn set_near(&mut self, near: Vec<u32>) {
         for clump in &mut self.all {
             let Range { start, end } =
                 self.templates[clump.template as usize].spheres_from(clump.first);
@@ -242,7 +242,7 @@ impl Clumps {
 
     /// Appends the contact spheres of a clump to the particles and records their position in the
     /// clump.
-    pub fn push_spheres(template: &Template, clump: &mut Clump, particles: &mut Particles) {
+    pub(crate) fn push_spheres(template: &Template, clump: &mut Clump, particles: &mut Particles) {
         clump.first = particles.len() as u32;
         for &sphere in &template.outer {
             let mut pose = template.pose(sphere as usize, clump);

@@ -9,7 +9,7 @@
 //! depends only on the number of their particles and bonds.
 
 pub mod fragments;
-pub mod triggers;
+pub(crate) mod triggers;
 
 use serde::{Deserialize, Serialize};
 

@@ -25,7 +25,7 @@ pub struct ContactHistory {
 
 impl ContactHistory {
     /// The history of a pair whose law begins at this overlap, m.
-    pub fn separated_at(overlap_m: f64) -> Self {
+    pub(crate) fn separated_at(overlap_m: f64) -> Self {
         Self {
             damping: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
             ..Self::default()
@@ -33,7 +33,7 @@ impl ContactHistory {
     }
 
     /// The history of a pair with this overlap of the law, m, and nothing else.
-    pub fn pressed_by(overlap_m: f64) -> Self {
+    pub(crate) fn pressed_by(overlap_m: f64) -> Self {
         Self {
             tangential: [0.0, 0.0, 0.0, overlap_m.max(0.0)],
             ..Self::default()
@@ -185,7 +185,7 @@ impl Contacts {
     }
 
     /// Number of pairs whose law begins at an overlap that they separated with.
-    pub fn relaxing(&self) -> usize {
+    pub(crate) fn relaxing(&self) -> usize {
         let relaxes = |history: &&ContactHistory| history.origin_m() > 0.0;
         self.histories.iter().filter(relaxes).count()
     }

@@ -124,7 +124,7 @@ pub enum PopulationEvent {
 }
 
 /// Cause of replacement for a body that comes through an inlet and starts as bonded.
-pub const STARTS_BONDED: &str = "start";
+pub(crate) const STARTS_BONDED: &str = "start";
 
 /// Bodies that fell asleep or woke together.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -142,7 +142,7 @@ pub struct SleepEvent {
 }
 
 /// Number of a particle or bond that has been removed.
-pub const REMOVED: u32 = u32::MAX;
+pub(crate) const REMOVED: u32 = u32::MAX;
 
 /// A clump that has become a bonded cluster.
 #[derive(Debug, Clone, PartialEq)]

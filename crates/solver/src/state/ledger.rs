@@ -54,7 +54,7 @@ pub(crate) struct Work {
 impl EnergyLedger {
     /// Energy at which all bonds are stretched, and all particles that can touch something are
     /// pressed, by a millionth: anything less is rounding, J.
-    pub fn rounding_floor_j(&self) -> f64 {
+    pub(crate) fn rounding_floor_j(&self) -> f64 {
         self.rounding_floor_j
     }
 
@@ -65,7 +65,7 @@ impl EnergyLedger {
 
     /// Upper bound of the energy of a run: that at the start plus that supplied by loads, supports,
     /// walls, gravity and added bodies, J.
-    pub fn energy_supplied_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
+    pub(crate) fn energy_supplied_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
         let fallen = self.fallen_j.max(self.fallen_now_j(gravity_m_s2));
         let pushed = walls_work_j(walls).abs();
         let given = self.work.loads.abs() + self.work.supports.abs() + pushed + fallen;
@@ -130,7 +130,7 @@ impl EnergyLedger {
     }
 
     /// Sets the sleeping bodies: masses, kg, and positions, m.
-    pub fn set_asleep(&mut self, sleepers: impl Iterator<Item = (f64, [f64; 3])>) {
+    pub(crate) fn set_asleep(&mut self, sleepers: impl Iterator<Item = (f64, [f64; 3])>) {
         self.asleep_kg = 0.0;
         self.asleep_moment = [0.0; 3];
         for (mass_kg, place_m) in sleepers {

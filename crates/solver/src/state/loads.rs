@@ -23,7 +23,7 @@ impl GroupLoad {
     /// Factor on the load in the kick at `time_s`, which covers half of the previous step and half
     /// of the next, `steps_s`. If the load ends in between, the factor is reduced to its fraction
     /// of that time, so that its impulse does not depend on the steps.
-    pub fn factor_in_kick(&self, time_s: f64, steps_s: [f64; 2]) -> f64 {
+    pub(crate) fn factor_in_kick(&self, time_s: f64, steps_s: [f64; 2]) -> f64 {
         let factor = factor_at(&self.factor, time_s);
         if self.end_s.is_infinite() {
             return factor;

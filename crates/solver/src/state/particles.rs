@@ -70,14 +70,14 @@ pub struct Motion {
 impl Motion {
     /// Velocity x, y, z, m/s, and inverse mass, 1/kg: as in memory.
     #[inline(always)]
-    pub fn velocity_row(&self) -> [f64; 4] {
+    pub(crate) fn velocity_row(&self) -> [f64; 4] {
         let [x, y, z] = self.velocity_m_s;
         [x, y, z, self.inverse_mass]
     }
 
     /// Spin x, y, z, rad/s, and inverse moment of inertia, 1/(kg m2): as in memory.
     #[inline(always)]
-    pub fn spin_row(&self) -> [f64; 4] {
+    pub(crate) fn spin_row(&self) -> [f64; 4] {
         let [x, y, z] = self.spin_rad_s;
         [x, y, z, self.inverse_inertia]
     }
@@ -146,13 +146,13 @@ impl Particles {
     }
 
     /// Radius of the smallest sphere, m; infinite if there is none.
-    pub fn smallest_radius_m(&self) -> f64 {
+    pub(crate) fn smallest_radius_m(&self) -> f64 {
         let radii = self.poses.iter().map(Pose::radius_m);
         radii.fold(f64::INFINITY, f64::min)
     }
 
     /// Radius of the largest sphere, m; 0 if there is none.
-    pub fn largest_radius_m(&self) -> f64 {
+    pub(crate) fn largest_radius_m(&self) -> f64 {
         self.poses.iter().map(Pose::radius_m).fold(0.0, f64::max)
     }
 
@@ -163,7 +163,7 @@ impl Particles {
     }
 
     /// Particle `i` as a contact sphere at rest.
-    pub fn contact_sphere_at_rest(&self, i: usize) -> ContactSphere {
+    pub(crate) fn contact_sphere_at_rest(&self, i: usize) -> ContactSphere {
         ContactSphere {
             velocity_m_s: Vec3(0.0, 0.0, 0.0),
             spin_rad_s: Vec3(0.0, 0.0, 0.0),
@@ -174,7 +174,7 @@ impl Particles {
     }
 
     /// Reserves room for exactly this many more particles.
-    pub fn reserve_exact(&mut self, count: usize) {
+    pub(crate) fn reserve_exact(&mut self, count: usize) {
         self.poses.reserve_exact(count);
         self.motions.reserve_exact(count);
         self.wrenches.reserve_exact(count);

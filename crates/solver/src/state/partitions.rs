@@ -90,7 +90,7 @@ pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Partition> {
 }
 
 /// Divides the particles and bonds that are not `asleep` (one for each particle; empty: none is).
-pub fn divide_awake(
+pub(crate) fn divide_awake(
     bonds: &Bonds,
     particles: usize,
     count: usize,
@@ -145,7 +145,7 @@ fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
 
 /// Reassigns the bonds to the partitions, without those that have broken since and those of
 /// sleeping bodies.
-pub fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
+pub(crate) fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
     let particles = partitions
         .last()
         .map_or(0, |partition| partition.particles.end);

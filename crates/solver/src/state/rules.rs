@@ -134,7 +134,7 @@ pub struct Start {
 impl Rules {
     /// The condition under which a fragment of a template that became a clump becomes a cluster:
     /// the same as for the body, but without the time, which has passed. None: never.
-    pub fn trigger_of_fragment(&self, base: usize) -> Option<Trigger> {
+    pub(crate) fn trigger_of_fragment(&self, base: usize) -> Option<Trigger> {
         let trigger = self.triggers.get(base)?.clone()?;
         let asks = trigger.enters.is_some()
             || trigger.force_n.is_some()
@@ -146,7 +146,7 @@ impl Rules {
     }
 
     /// Whether there are no rules.
-    pub fn are_none(&self) -> bool {
+    pub(crate) fn are_none(&self) -> bool {
         self.inlets.is_empty()
             && self.outlets.is_empty()
             && self.triggers.iter().all(Option::is_none)

@@ -26,7 +26,7 @@ pub struct Scratch {
 impl Scratch {
     /// The lists of damping forces that are recorded separately: of bonds and on particles; each
     /// with one for each particle, or empty.
-    pub fn resistances(&self) -> [&[Wrench]; 2] {
+    pub(crate) fn resistances(&self) -> [&[Wrench]; 2] {
         [&self.bond_resistance, &self.particle_resistance]
     }
 }

@@ -45,7 +45,7 @@ pub struct ClusterSleep {
 
 impl ClusterSleep {
     /// For a body that is awake and moves.
-    pub const AWAKE: Self = Self {
+    pub(crate) const AWAKE: Self = Self {
         asleep: false,
         slow_since_s: f64::INFINITY,
     };
@@ -77,7 +77,7 @@ pub struct FrozenWallContact {
 
 impl Sleep {
     /// Whether a cluster sleeps.
-    pub fn is_asleep(&self, cluster: u32) -> bool {
+    pub(crate) fn is_asleep(&self, cluster: u32) -> bool {
         let body = self.of_cluster.get(cluster as usize);
         body.is_some_and(|body| body.asleep)
     }

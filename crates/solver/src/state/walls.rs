@@ -103,7 +103,7 @@ impl Wall {
     }
 
     /// Bounding box in space, m: infinite for a plane.
-    pub fn bounds_in_space(&self) -> Bounds {
+    pub(crate) fn bounds_in_space(&self) -> Bounds {
         if matches!(self.model.shape, Shape::Plane(_)) {
             return self.model.shape.bounds();
         }

@@ -20,7 +20,7 @@ const STRAIN: f64 = 1e-5;
 ///
 /// # Errors
 /// None: these are bodies.
-pub fn overlaps() -> Result<Vec<Member>> {
+pub(crate) fn overlaps() -> Result<Vec<Member>> {
     let member = |overlap: f64| {
         let body = block(4, overlap, STRAIN)?;
         Ok(breaks(format!("overlap {overlap}"), body, "5 ms"))
@@ -46,7 +46,7 @@ pub fn overlaps() -> Result<Vec<Member>> {
 ///
 /// # Errors
 /// None: this is a body.
-pub fn shatter() -> Result<Vec<Member>> {
+pub(crate) fn shatter() -> Result<Vec<Member>> {
     let body = block(24, 0.25, STRAIN)?;
     Ok(vec![breaks(
         format!("{} bonds", body.bonds.len()),
@@ -125,7 +125,7 @@ fn kinetic_j(body: &Body, spin_rad_s: f64) -> f64 {
 ///
 /// # Errors
 /// None: these are bodies.
-pub fn one_particle() -> Result<Vec<Member>> {
+pub(crate) fn one_particle() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for start_as in ["bonded", "clump"] {
         for restitution in [1.0, 0.5] {

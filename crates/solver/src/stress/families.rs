@@ -16,7 +16,7 @@ const TIMOSHENKO: (BondModel, &str) = (BondModel::Timoshenko, "timoshenko");
 ///
 /// # Errors
 /// None: these are bodies.
-pub fn stiffness_ratios() -> Result<Vec<Member>> {
+pub(crate) fn stiffness_ratios() -> Result<Vec<Member>> {
     let member = |ratio: f64| {
         let row = Row {
             radii_m: vec![1e-3; 3],
@@ -34,7 +34,7 @@ pub fn stiffness_ratios() -> Result<Vec<Member>> {
 ///
 /// # Errors
 /// None: these are bodies.
-pub fn mass_ratios() -> Result<Vec<Member>> {
+pub(crate) fn mass_ratios() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for ratio in [10.0, 100.0_f64] {
         let row = Row {
@@ -58,7 +58,7 @@ pub fn mass_ratios() -> Result<Vec<Member>> {
 ///
 /// # Errors
 /// None: these are bodies.
-pub fn coordinates() -> Result<Vec<Member>> {
+pub(crate) fn coordinates() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for at_m in [0.0, 1e6] {
         let row = Row {
@@ -91,7 +91,7 @@ pub fn coordinates() -> Result<Vec<Member>> {
 ///
 /// # Errors
 /// None: these are bodies.
-pub fn sizes() -> Result<Vec<Member>> {
+pub(crate) fn sizes() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for radius_m in [1e-6, 1e-3, 1.0, 1e3] {
         let row = Row {
@@ -114,7 +114,7 @@ pub fn sizes() -> Result<Vec<Member>> {
 ///
 /// # Errors
 /// None: these are bodies.
-pub fn moduli() -> Result<Vec<Member>> {
+pub(crate) fn moduli() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for young_modulus_pa in [1e3, 1e6, 1e9, 1e12_f64] {
         let row = Row {
@@ -138,7 +138,7 @@ pub fn moduli() -> Result<Vec<Member>> {
 ///
 /// # Errors
 /// None: these are bodies.
-pub fn short_bonds() -> Result<Vec<Member>> {
+pub(crate) fn short_bonds() -> Result<Vec<Member>> {
     let models = [
         (BondModel::Parallel { kappa: None }, "parallel"),
         TIMOSHENKO,

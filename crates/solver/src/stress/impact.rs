@@ -317,7 +317,7 @@ pub fn impacts() -> Vec<Member> {
 
 /// A sheet that a sphere would jump over with the requested step, which is refused; with force, the
 /// run is stopped. With its own step the sphere rebounds.
-pub fn at_mesh() -> Vec<Member> {
+pub(crate) fn at_mesh() -> Vec<Member> {
     let mut members = Vec::new();
     for restitution in [1.0, 0.5] {
         for speed_m_s in [1.0, 300.0] {

@@ -225,7 +225,7 @@ pub fn block(side: usize, overlap: f64, strain: f64) -> Result<Body> {
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
-pub fn beside_the_limit() -> Result<Vec<Member>> {
+pub(crate) fn beside_the_limit() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for eta in ["0", "0.3", "3"] {
         let text = |time_step: &str, end_s: f64| {

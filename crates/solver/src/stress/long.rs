@@ -31,7 +31,7 @@ const REST_STEP_S: f64 = 0.05;
 ///
 /// # Errors
 /// None.
-pub fn spin() -> Result<Vec<Member>> {
+pub(crate) fn spin() -> Result<Vec<Member>> {
     let (radius_m, density, young_pa, spin_rad_s) = (1e-3_f64, 2500.0, 1e9, 1e4_f64);
     let mass_kg = density * 4.0 / 3.0 * PI * radius_m.powi(3);
     let own_kg_m2 = 0.4 * mass_kg * radius_m.powi(2);
@@ -120,7 +120,7 @@ angular_velocity = [0, 0, {spin_rad_s:e}]
 ///
 /// # Errors
 /// Interrupted.
-pub fn rest(interrupted: &AtomicBool) -> Result<Vec<Member>> {
+pub(crate) fn rest(interrupted: &AtomicBool) -> Result<Vec<Member>> {
     let (radius_m, density, young_pa, g) = (20.0_f64, 2000.0, 1.5e7, 9.81);
     let scene = |end_s: f64, gravity: &str, body: &str| {
         format!(

@@ -16,7 +16,7 @@ use crate::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 /// Spheres that touch along x, the first at `at_m`, joined by bonds, the last of which is
 /// stretched.
 #[derive(Debug, Clone)]
-pub struct Row {
+pub(crate) struct Row {
     /// Radii of two or three spheres, m.
     pub radii_m: Vec<f64>,
     /// Initial distances of neighbours, m. One fewer than spheres.
@@ -39,7 +39,7 @@ pub struct Row {
 
 impl Row {
     /// Two spheres of 1 mm and 1 GPa that touch, at the origin.
-    pub fn pair() -> Self {
+    pub(crate) fn pair() -> Self {
         Self {
             radii_m: vec![1e-3; 2],
             distances_m: vec![2e-3],
@@ -118,7 +118,7 @@ impl Row {
     ///
     /// # Errors
     /// What the reader of bodies refuses.
-    pub fn member(&self, what: String, (model, name): (BondModel, &str)) -> Result<Member> {
+    pub(crate) fn member(&self, what: String, (model, name): (BondModel, &str)) -> Result<Member> {
         let step_s = self.step_s(model);
         let modes = self.modes();
         let angle = |square: f64| 2.0 * (0.5 * square.sqrt() * step_s).asin();

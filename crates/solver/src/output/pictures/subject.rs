@@ -12,7 +12,7 @@ use crate::state::clusters::Cluster;
 use crate::state::walls::Wall;
 
 /// All particles: by cluster, or by body if there are no clusters.
-pub fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
+pub(crate) fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
     let (of_particle, colours) = match &state.clusters {
         Some(clusters) => (clusters.of_particle.clone(), of_clusters(&clusters.history)),
         None => by_body(state.particles.len(), bodies),
@@ -29,7 +29,7 @@ pub fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
 
 /// All walls in their present position. Planes are infinite: only the part around a scene is drawn,
 /// up to other walls.
-pub fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
+pub(crate) fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
     let planes: Vec<HalfSpace> = walls.iter().filter_map(half_space).collect();
     let surface = |wall: &Wall| match half_space(wall) {
         Some(plane) => Some(Surface::plane(&plane, around, &planes)),

@@ -9,7 +9,7 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 
 /// Width and height of a picture, px.
-pub const SIZE_PX: [u32; 2] = [960, 540];
+pub(crate) const SIZE_PX: [u32; 2] = [960, 540];
 
 /// Distance to which planes are drawn beyond the particles, as a fraction of the width of these.
 const ROOM: f64 = 0.55;

@@ -25,7 +25,10 @@ impl CauseCounts {
     ///
     /// # Errors
     /// Those of the serializer.
-    pub fn serialize_by_name<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize_by_name<S: Serializer>(
+        &self,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         serializer.collect_map(Cause::ALL.map(|cause| (cause.name(), self.of(cause))))
     }
 }

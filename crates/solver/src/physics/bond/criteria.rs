@@ -27,7 +27,7 @@ macro_rules! criteria {
         }
 
         /// Number of criteria.
-        pub const COUNT: usize = [$($criterion::NAME),+].len();
+        pub(crate) const COUNT: usize = [$($criterion::NAME),+].len();
 
         impl Cause {
             /// All, in the order of the criteria.
@@ -41,7 +41,7 @@ macro_rules! criteria {
             }
 
             /// How bonds fail by it, in words: "by equivalent stress".
-            pub fn phrase(self) -> &'static str {
+            pub(crate) fn phrase(self) -> &'static str {
                 match self {
                     $(Self::$criterion => $criterion::PHRASE,)+
                 }

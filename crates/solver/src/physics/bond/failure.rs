@@ -35,7 +35,7 @@ impl Factors {
 }
 
 /// Whether any criterion has a strength that a stress can reach.
-pub fn has_strength(criteria: &Criteria) -> bool {
+pub(crate) fn has_strength(criteria: &Criteria) -> bool {
     let mut strengths = strengths(criteria).into_iter();
     strengths.any(|(strength_pa, _)| strength_pa.is_finite())
 }

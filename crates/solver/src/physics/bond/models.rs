@@ -1,7 +1,7 @@
 //! Bond models, one per file.
 
-pub mod elastic_solid;
-pub mod euler_bernoulli;
-pub mod parallel;
-pub mod shear_coefficient;
-pub mod timoshenko;
+pub(crate) mod elastic_solid;
+pub(crate) mod euler_bernoulli;
+pub(crate) mod parallel;
+pub(crate) mod shear_coefficient;
+pub(crate) mod timoshenko;

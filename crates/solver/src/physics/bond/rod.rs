@@ -62,7 +62,7 @@ impl Rod {
     }
 
     /// 12 E I/L^3, N/m: transverse stiffness of a slender beam whose ends do not rotate.
-    pub fn beam_n_m(&self) -> f64 {
+    pub(crate) fn beam_n_m(&self) -> f64 {
         12.0 * self.young_modulus_pa * self.second_moment_m4() / self.shape.length_m.powi(3)
     }
 

@@ -10,7 +10,7 @@ use dem_io::random::{hash, uniform};
 
 /// Key of a body for [`strength_factor`]: its name in the scene, and for bodies that come through
 /// inlets the number of bodies before it. 0: it was there at the start, bonded or as a clump.
-pub fn body_key(name: &str, instance: u32) -> u64 {
+pub(crate) fn body_key(name: &str, instance: u32) -> u64 {
     hash(u64::from(instance), name.bytes().map(u64::from))
 }
 

@@ -67,7 +67,7 @@ pub fn stresses(load: &BondLoad, radius_m: f64) -> Stresses {
 }
 
 /// A criterion: a stress that is compared with a strength.
-pub trait FailureCriterion {
+pub(crate) trait FailureCriterion {
     /// Its name in results: `von_mises`.
     const NAME: &'static str;
     /// How bonds fail by it, in words: "by equivalent stress".

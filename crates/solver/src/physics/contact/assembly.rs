@@ -9,7 +9,7 @@ use crate::physics::number::{Number, Vec3};
 
 /// History of a contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StoredContact<T = f64> {
+pub(crate) struct StoredContact<T = f64> {
     /// Its springs.
     pub springs: ContactSprings<T>,
     /// Its previous damping force and moment on the second end.
@@ -20,7 +20,7 @@ pub struct StoredContact<T = f64> {
 
 /// Result for a contact in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Assembled<T = f64> {
+pub(crate) struct Assembled<T = f64> {
     /// New history.
     pub remembered: StoredContact<T>,
     /// Overlap of its law, m.
@@ -38,7 +38,7 @@ pub struct Assembled<T = f64> {
 /// Result for a contact after a step of `dt`, s. A pair that separated while overlapping becomes
 /// ordinary below `least_overlap` times its effective radius.
 #[inline(always)]
-pub fn assemble<T: Number>(
+pub(crate) fn assemble<T: Number>(
     law: &impl NormalLaw<T>,
     rolling: &impl RollingFriction<T>,
     touch: &ContactKinematics<T>,

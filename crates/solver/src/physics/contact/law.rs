@@ -111,7 +111,7 @@ impl ContactKind {
     }
 
     /// Result for a contact after a step of `dt`, s: see [`assemble`].
-    pub fn assemble(
+    pub(crate) fn assemble(
         &self,
         touch: &ContactKinematics,
         before: &StoredContact,

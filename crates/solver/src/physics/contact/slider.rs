@@ -30,7 +30,7 @@ pub struct TangentialStep<T> {
 /// limited such that both together do not exceed it: a sliding contact is not damped, and there is
 /// no jump when it begins to slide.
 #[inline(always)]
-pub fn coulomb_return_map<T: Number>(
+pub(crate) fn coulomb_return_map<T: Number>(
     carry: &FrameRotation<T>,
     before: Vec3<T>,
     moved: Vec3<T>,

@@ -8,7 +8,7 @@ use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 /// Displacements, m, and rotations, rad: rotation vectors in space, applied after the present
 /// rotation.
 #[derive(Debug, Clone, Copy)]
-pub struct Displacements<'a> {
+pub(crate) struct Displacements<'a> {
     /// Of the unknowns.
     pub by: &'a [f64],
     /// Displacements of particles that supports move, by their numbers, ascending. Length 6 each.
@@ -40,7 +40,7 @@ impl Displacements<'_> {
 }
 
 /// Sets `poses` to `from` plus the displacements.
-pub fn displace(
+pub(crate) fn displace(
     poses: &mut [Pose],
     from: &[Pose],
     degrees_of_freedom: &DegreesOfFreedom,
@@ -55,7 +55,10 @@ pub fn displace(
 }
 
 /// The largest rotation of a particle, rad.
-pub fn largest_turn(moves: &Displacements<'_>, degrees_of_freedom: &DegreesOfFreedom) -> f64 {
+pub(crate) fn largest_turn(
+    moves: &Displacements<'_>,
+    degrees_of_freedom: &DegreesOfFreedom,
+) -> f64 {
     let turns = moves
         .of_all(degrees_of_freedom)
         .map(|[.., x, y, z]| x.hypot(y).hypot(z));

@@ -10,7 +10,7 @@ use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 
 /// A square matrix over the unknowns. Its pattern is fixed while its entries change.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Matrix {
+pub(crate) struct Matrix {
     /// Only the lower triangle of the symmetric part, (K + K^T)/2, is stored.
     pub symmetric: bool,
     /// Start of each column, followed by the end of the last one.
@@ -24,7 +24,11 @@ pub struct Matrix {
 impl Matrix {
     /// The pattern of a state: every particle with itself and with its bonded neighbours. All
     /// entries are 0.
-    pub fn pattern(state: &State, degrees_of_freedom: &DegreesOfFreedom, symmetric: bool) -> Self {
+    pub(crate) fn pattern(
+        state: &State,
+        degrees_of_freedom: &DegreesOfFreedom,
+        symmetric: bool,
+    ) -> Self {
         let mut neighbours: Vec<Vec<u32>> =
             (0..state.particles.len() as u32).map(|i| vec![i]).collect();
         for (at, &[a, b]) in state.bonds.ends.iter().enumerate() {
@@ -56,7 +60,7 @@ impl Matrix {
     }
 
     /// Sets the entries to the tangents of all bonds at these poses, in the order of the bonds.
-    pub fn assemble(
+    pub(crate) fn assemble(
         &mut self,
         bonds: &Bonds,
         degrees_of_freedom: &DegreesOfFreedom,
@@ -101,7 +105,7 @@ impl Matrix {
 
 /// Forces on the unknowns when supports move by these displacements, m and rad, before the others
 /// follow: minus the tangent times the displacements, N and N m.
-pub fn pulled_by_supports(
+pub(crate) fn pulled_by_supports(
     bonds: &Bonds,
     degrees_of_freedom: &DegreesOfFreedom,
     poses: &[Pose],

@@ -75,7 +75,7 @@ fn as_fragment(clump: &Clump, template: &Template, outer: &Fragment) -> Fragment
 }
 
 /// Mass, kg, and centre of mass, m, of some particles.
-pub fn mass_and_centre(members: &[u32], particles: &Particles) -> (f64, Vector3<f64>) {
+pub(crate) fn mass_and_centre(members: &[u32], particles: &Particles) -> (f64, Vector3<f64>) {
     let place = |i: u32| particles.poses[i as usize].place();
     // Relative to one of them, so that a position far from the origin costs no digits.
     let origin = members.first().map_or(Vector3::zeros(), |i| place(*i));

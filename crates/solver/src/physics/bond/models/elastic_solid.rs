@@ -4,7 +4,7 @@ use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
 /// Each mode as for a rod of the bond's length.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ElasticSolid;
+pub(crate) struct ElasticSolid;
 
 impl RodModel for ElasticSolid {
     fn stiffness(&self, rod: &Rod) -> Stiffness {

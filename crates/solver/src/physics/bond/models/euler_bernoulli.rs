@@ -5,7 +5,7 @@ use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
 /// Slender beam: no shear deformation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EulerBernoulli;
+pub(crate) struct EulerBernoulli;
 
 impl RodModel for EulerBernoulli {
     fn stiffness(&self, rod: &Rod) -> Stiffness {

@@ -5,7 +5,7 @@ use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 /// Shear stiffness is the normal stiffness divided by `kappa`; shear acts halfway between the
 /// surfaces of the spheres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parallel {
+pub(crate) struct Parallel {
     /// Ratio of normal to shear stiffness, 2 (1 + nu) unless given.
     pub kappa: Option<f64>,
 }

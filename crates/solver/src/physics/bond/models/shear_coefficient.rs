@@ -4,7 +4,7 @@ use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
 /// Like the elastic solid bond, with the shear stiffness multiplied by a coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShearCoefficient {
+pub(crate) struct ShearCoefficient {
     /// Shear coefficient, 0.9 for a circular section.
     pub alpha: f64,
 }

@@ -4,7 +4,7 @@ use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
 /// Beam with shear deformation, shear form factor 10/9.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Timoshenko;
+pub(crate) struct Timoshenko;
 
 impl RodModel for Timoshenko {
     fn stiffness(&self, rod: &Rod) -> Stiffness {
