@@ -64,7 +64,11 @@ pub(super) static GROUP: Schema = Schema {
             "Particles by their numbers in the body's file, from 0. Requires a `body`, or a scene with one body.",
         ),
         Key::table("box", &BOX, "Particles whose centres are in this box."),
-        Key::table("sphere", &SPHERE, "Particles whose centres are in this sphere."),
+        Key::table(
+            "sphere",
+            &SPHERE,
+            "Particles whose centres are in this sphere.",
+        ),
     ],
 };
 

@@ -21,7 +21,11 @@ pub(super) static OUTLET: Schema = Schema {
             "a name in [regions]",
             "Remove bodies and fragments inside this region, which must not be the region of an inlet.",
         ),
-        Key::text("outside", "a name in [regions]", "Remove bodies and fragments outside this region."),
+        Key::text(
+            "outside",
+            "a name in [regions]",
+            "Remove bodies and fragments outside this region.",
+        ),
     ],
 };
 

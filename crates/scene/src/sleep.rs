@@ -27,9 +27,13 @@ pub(super) static SLEEP: Schema = Schema {
         )
         .positive()
         .or(1e-3),
-        Key::quantity("after", &TIME, "Time for which it must have been that slow.")
-            .positive()
-            .or(0.05),
+        Key::quantity(
+            "after",
+            &TIME,
+            "Time for which it must have been that slow.",
+        )
+        .positive()
+        .or(0.05),
     ],
 };
 

@@ -15,8 +15,7 @@ pub(super) fn page(what: &str, root: &'static Schema) -> String {
             text += &format!("\n## {}\n", heading(schema));
         }
         text += &format!("\n{}\n\n", escaped(schema.doc));
-        text +=
-            "| key | type | unit | default | limits | meaning |\n|---|---|---|---|---|---|\n";
+        text += "| key | type | unit | default | limits | meaning |\n|---|---|---|---|---|---|\n";
         for key in schema.keys {
             text += &row(key);
         }

@@ -198,8 +198,6 @@ pub(super) static REFERENCE: Schema = Schema {
 pub(super) static PAGE: Schema = Schema {
     title: "[page]",
     doc: "Display of the runs on the page.",
-    keys: &[
-        Key::text("series", "an axis", "Axis shown by colours.")
-            .otherwise("the first that is no number"),
-    ],
+    keys: &[Key::text("series", "an axis", "Axis shown by colours.")
+        .otherwise("the first that is no number")],
 };
