@@ -80,50 +80,50 @@ const INDEX: Kind = Kind::Whole {
 
 pub(super) static BODY: Schema = Schema {
     title: "[bodies.NAME]",
-    doc: "A body, its position and its velocity at the start. It has a `file` or `particles`.",
+    doc: "A body with its initial position and velocity. Give either a `file` or `particles`.",
     keys: &[
         Key::text(
             "file",
             "a file",
-            "From the folder of the scene; `-` is standard input. `--body` counts from where you stand.",
+            "File of the body, relative to the folder of the scene; `-` is standard input. `--body` is relative to the working directory.",
         ),
         Key::new(
             "particles",
             Kind::List(&PARTICLE),
-            "Instead of a file: `[[x, y, z, radius], ...]`.",
+            "Particles, instead of a file: `[[x, y, z, radius], ...]`.",
         ),
         Key::new(
             "bond_list",
             Kind::List(&Kind::Row(&[INDEX, INDEX])),
-            "Bonds between `particles` by their numbers, from 0: `[[0, 1], ...]`.",
+            "Bonds between `particles`, which are numbered from 0: `[[0, 1], ...]`.",
         ),
         Key::text("material", "a name in [materials]", "Its material.")
             .required("\"NAME\", a name in [materials]"),
         Key::quantity(
             "body_density",
             &DENSITY,
-            "Mass of the body over the volume of its shape, which its file names.",
+            "Mass of the body over the volume of its shape, which is stored in its file.",
         )
         .positive(),
         Key::quantity(
             "mass",
             &MASS,
-            "Mass of the body. Without either its spheres have the density of the material, or else of the file.",
+            "Mass of the body. Without `mass` and `body_density`, its spheres have the density of the material, or else that of the file.",
         )
         .positive()
         .otherwise("that of its particles"),
-        Key::text("bonds", "a name in [bonds]", "The properties of its bonds; a body without bonds needs none.")
+        Key::text("bonds", "a name in [bonds]", "Properties of its bonds; not required for a body without bonds.")
             .sometimes_required("\"NAME\", a name in [bonds]"),
         Key::vector("position", &LENGTH, "Translation of the body, after `rotation`."),
-        Key::table("rotation", &ROTATION, "Rotation about the origin of its file.").or(0.0),
-        Key::vector("velocity", &VELOCITY, "Of the centre of mass."),
+        Key::table("rotation", &ROTATION, "Initial rotation about the origin of its file.").or(0.0),
+        Key::vector("velocity", &VELOCITY, "Velocity of the centre of mass."),
         Key::vector(
             "angular_velocity",
             &ANGULAR_VELOCITY,
-            "About the centre of mass, as a rigid body.",
+            "Angular velocity of the rigid body about its centre of mass.",
         ),
         clump::START_AS,
-        Key::table("clump", &clump::CLUMP, "Only with `start_as = \"clump\"`."),
+        Key::table("clump", &clump::CLUMP, "Settings of the clump; only with `start_as = \"clump\"`."),
     ],
 };
 

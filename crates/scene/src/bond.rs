@@ -114,7 +114,7 @@ const RATE_STRENGTHENING_FROM: f64 = 4.64e-6;
 
 pub(super) static BOND: Schema = Schema {
     title: "[bonds.NAME]",
-    doc: "What bonds are made of.",
+    doc: "Properties of bonds.",
     keys: &[
         Key::new(
             "model",
@@ -124,21 +124,21 @@ pub(super) static BOND: Schema = Schema {
         .or_word("timoshenko"),
         Key::number(
             "stiffness_ratio",
-            "Of the model `parallel`: normal over shear stiffness.",
+            "Normal over shear stiffness of the model `parallel`.",
         )
         .positive()
         .otherwise("2 (1 + nu)"),
         Key::number(
             "shear_coefficient",
-            "Of the model `shear-coefficient`: that of the section.",
+            "Shear coefficient of the section, for the model `shear-coefficient`.",
         )
         .positive()
         .or(0.9),
         Key::word::<Formulation>(
             "formulation",
             "total",
-            "Forces are the gradient of an energy of positions and orientations; or `incremental`, for comparison: \
-             summed step by step.",
+            "`total`: forces are the gradient of an energy of positions and orientations; `incremental`, for comparison: \
+             forces are summed step by step.",
         ),
         Key::quantity("young_modulus", &STRESS, "Young's modulus of the beam.")
             .positive()
@@ -146,7 +146,7 @@ pub(super) static BOND: Schema = Schema {
         poisson_ratio("Poisson's ratio of the beam.").required("0.3"),
         Key::number(
             "radius_factor",
-            "Radius of the bond over the smaller of the two particles'.",
+            "Radius of the bond over that of the smaller particle.",
         )
         .positive()
         .otherwise("radii of the body"),
@@ -154,14 +154,14 @@ pub(super) static BOND: Schema = Schema {
         Key::table(
             "failure",
             &FAILURE,
-            "What breaks a bond; nothing, unless given.",
+            "Failure criteria; without them no bond breaks.",
         ),
     ],
 };
 
 pub(super) static DAMPING: Schema = Schema {
     title: "Damping",
-    doc: "Viscous damping at the bond. Both kinds may act together.",
+    doc: "Viscous damping at the bond. Both types may act together.",
     keys: &[
         Key::number(
             "damping_ratio",
@@ -172,7 +172,7 @@ pub(super) static DAMPING: Schema = Schema {
         Key::flag(
             "per_mode",
             false,
-            "`damping_ratio` refers to the stiffness of each mode instead of the normal and the torsional one.",
+            "`damping_ratio` refers to the stiffness of each mode instead of the normal and torsional stiffness.",
         ),
         Key::quantity(
             "damping_coefficient",
@@ -192,40 +192,40 @@ pub(super) static DAMPING: Schema = Schema {
 
 pub(super) static FAILURE: Schema = Schema {
     title: "Failure",
-    doc: "What breaks a bond, whichever comes first. At least one strength is given.",
+    doc: "Failure criteria of a bond; the first that is met breaks it. At least one strength is required.",
     keys: &[
-        Key::quantity("tensile_strength", &STRESS, "Largest tensile stress at the edge of the bond.").not_negative(),
+        Key::quantity("tensile_strength", &STRESS, "Largest tensile stress that the edge of the bond can bear.").not_negative(),
         Key::quantity(
             "compressive_strength",
             &STRESS,
-            "Largest compressive stress at the edge of the bond; without it no bond breaks in compression.",
+            "Largest compressive stress that the edge of the bond can bear; without it no bond breaks in compression.",
         )
         .not_negative(),
-        Key::quantity("shear_strength", &STRESS, "Largest shear stress.").not_negative(),
+        Key::quantity("shear_strength", &STRESS, "Largest shear stress that the bond can bear.").not_negative(),
         Key::quantity(
             "von_mises_strength",
             &STRESS,
-            "Largest equivalent stress (Platzer 2022, eqs. 11 to 13).",
+            "Largest equivalent stress that the bond can bear (Platzer 2022, eqs. 11 to 13).",
         )
         .not_negative(),
         Key::new(
             "rate_strengthening",
             Kind::Either(&[Kind::Boolean, Kind::Quantity(&RATE)]),
-            "Strain rate from which all strengths but that in compression rise with the rate (Platzer 2022, eqs. 20 \
-             and 21); `true` stands for 4.64e-6 1/s.",
+            "Strain rate above which all strengths except the compressive one rise with the rate (Platzer 2022, eqs. 20 \
+             and 21); `true` means 4.64e-6 1/s.",
         )
         .positive()
         .remedy("write true, or a strain rate such as \"4.64e-6 1/s\""),
         Key::number(
             "weibull_modulus",
-            "Strengths scatter by a Weibull distribution of this modulus whose scale is the strength given.",
+            "Strengths follow a Weibull distribution with this modulus; the given strength is its scale.",
         )
         .positive(),
         Key::word::<StrainRateMeasure>(
             "strain_rate_measure",
             "elongation",
-            "What strain rate `rate_strengthening` uses: the relative velocity along the bond over its length, or, as \
-             printed in Platzer 2022, eq. 21, the full relative velocity over it.",
+            "Strain rate that `rate_strengthening` uses: the relative velocity along the bond over its length, or, as \
+             printed in Platzer 2022, eq. 21, the full relative velocity over its length.",
         ),
     ],
 };

@@ -56,7 +56,7 @@ const STARTS: [(&str, bool); 2] = [("bonded", false), ("clump", true)];
 pub(super) const START_AS: Key = Key::new(
     "start_as",
     Kind::Word(|| words_of(&STARTS)),
-    "Bonded particles, or a rigid clump until `[replacement]` replaces it.",
+    "`bonded` particles, or a rigid `clump` until `[replacement]` replaces it.",
 )
 .or_word("bonded");
 
@@ -66,7 +66,7 @@ pub(super) static CLUMP: Schema = Schema {
     keys: &[
         Key::number(
             "scale",
-            "Radii with which its spheres touch others, over those of the particles, about their own centres.",
+            "Contact radius of each sphere over the radius of its particle; the centres stay.",
         )
         .within(Included(1.0), Included(1.5))
         .remedy("it is a factor on the radii: 1 leaves them as they are")
@@ -74,8 +74,8 @@ pub(super) static CLUMP: Schema = Schema {
         Key::word::<ClumpMass>(
             "mass",
             "spheres",
-            "Mass, centre and inertia are sums over the particles, as of the bonded cluster; or `union`: of what they \
-             fill together, overlaps once.",
+            "`spheres`: mass, centre and inertia are sums over the particles, as for the bonded cluster; `union`: those \
+             of the volume that the particles fill, with overlaps counted once.",
         ),
     ],
 };

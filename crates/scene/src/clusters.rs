@@ -20,7 +20,7 @@ pub struct Clusters {
 
 pub(super) static CLUSTERS: Schema = Schema {
     title: "[clusters]",
-    doc: "How often broken bodies are searched for fragments.",
+    doc: "Frequency of the search for fragments in broken bodies.",
     keys: &[
         Key::new(
             "interval",
@@ -36,7 +36,7 @@ pub(super) static CLUSTERS: Schema = Schema {
         Key::whole(
             "min_broken_bonds",
             1,
-            "Bonds that must have broken since the last search for another.",
+            "Number of bonds that must break before the next search.",
         )
         .remedy("1 stands for any bond")
         .or(1.0),
@@ -47,7 +47,7 @@ pub(super) static CLUSTERS: Schema = Schema {
                 most: Some(u64::MAX),
                 of: "intervals",
             },
-            "After so many intervals there is a search in any case; 0: never.",
+            "Number of intervals after which a search is made in any case; 0: never.",
         )
         .remedy("write 0 for never")
         .otherwise("never"),

@@ -34,7 +34,7 @@ const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpo
 
 pub(super) static CONTACT: Schema = Schema {
     title: "[contacts.NAME-NAME]",
-    doc: "Contact law of two materials, in either order of their names, which may contain a -.",
+    doc: "Contact law of two materials. Their names may be in either order and may contain a hyphen.",
     keys: &[
         Key::new(
             "law",
@@ -45,42 +45,42 @@ pub(super) static CONTACT: Schema = Schema {
         Key::quantity(
             "normal_stiffness",
             &STIFFNESS,
-            "Of the law `linear`, which needs it.",
+            "Normal stiffness of the law `linear`, which requires it.",
         )
         .positive()
         .sometimes_required("\"100 kN/m\""),
         Key::number(
             "tangential_stiffness_ratio",
-            "Of the law `linear`: tangential over normal stiffness; 2/7 unless given.",
+            "Tangential over normal stiffness of the law `linear`; the default is 2/7.",
         )
         .within(Excluded(0.0), Included(1.0))
         .remedy("leave it out for 2/7")
         .or(2.0 / 7.0),
         Key::number(
             "restitution",
-            "Coefficient of restitution: speed after a head-on collision over that before it.",
+            "Coefficient of restitution: relative speed after a head-on collision over that before it.",
         )
         .within(Included(LEAST_RESTITUTION), Included(1.0))
         .remedy("1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step")
         .required("0.5"),
-        Key::number("friction", "Coefficient of sliding friction: largest tangential force over the normal one.")
+        Key::number("friction", "Coefficient of sliding friction: largest tangential force over the normal force.")
             .not_negative()
             .or(0.0),
         Key::new(
             "rolling",
             Kind::Word(|| words_of(&ROLLINGS)),
-            "Model of rolling friction; `constant-torque` where only `rolling_friction` is given.",
+            "Model of rolling friction; `constant-torque` if only `rolling_friction` is given.",
         ),
         Key::number(
             "rolling_friction",
-            "Coefficient of rolling friction. Needs a `friction` above 0.",
+            "Coefficient of rolling friction. Requires a `friction` above 0.",
         )
         .positive()
         .remedy("a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists")
         .sometimes_required("0.05"),
         Key::number(
             "rolling_damping_ratio",
-            "Of `spring-dashpot`: fraction of critical damping.",
+            "Damping ratio of the model `spring-dashpot`, as a fraction of critical damping.",
         )
         .within(Included(0.0), Included(1.0))
         .remedy("it is a fraction of critical damping: a usual value is 0.3")

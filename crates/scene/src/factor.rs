@@ -28,7 +28,7 @@ pub enum Factor {
 pub(super) const RAMP: Key = Key::quantity(
     "ramp",
     &TIME,
-    "The factor on it rises linearly from 0 to 1 until this time, and stays 1.",
+    "The factor rises linearly from 0 to 1 until this time, then stays 1.",
 )
 .positive();
 
@@ -39,7 +39,7 @@ pub(super) const TABLE: Key = Key::new(
         Kind::Quantity(&TIME),
         Kind::Quantity(&NUMBER),
     ])),
-    "Instead of `ramp`: `[[time, factor], ...]`, straight between the rows, constant outside them. Times rise.",
+    "Factor over time, instead of `ramp`: `[[time, factor], ...]` with increasing times, linear between the rows, constant before and after them.",
 );
 
 /// The key `end`.

@@ -51,10 +51,10 @@ const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
 
 pub(super) static GROUP: Schema = Schema {
     title: "[groups.NAME]",
-    doc: "A group of particles, selected in one way at the start of the run. The name of a body and `all` are groups as well.",
+    doc: "A group of particles, selected by one key at the start of the run. Each body name and `all` are groups as well.",
     keys: &[
-        Key::text("body", "a name in [bodies]", "Of this body only.").otherwise("all"),
-        Key::new("all", Kind::True, "All of them."),
+        Key::text("body", "a name in [bodies]", "Select only from this body.").otherwise("all"),
+        Key::new("all", Kind::True, "All particles."),
         Key::new(
             "particles",
             Kind::List(&Kind::Whole {
@@ -62,10 +62,14 @@ pub(super) static GROUP: Schema = Schema {
                 most: None,
                 of: "",
             }),
-            "By their numbers in the body's file, from 0. Needs a `body`, or a scene with one body.",
+            "Particles by their numbers in the body's file, from 0. Requires a `body`, or a scene with one body.",
         ),
-        Key::table("box", &BOX, "Those whose centres are in it."),
-        Key::table("sphere", &SPHERE, "Those whose centres are in it."),
+        Key::table("box", &BOX, "Particles whose centres are in this box."),
+        Key::table(
+            "sphere",
+            &SPHERE,
+            "Particles whose centres are in this sphere.",
+        ),
     ],
 };
 

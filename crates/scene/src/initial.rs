@@ -26,19 +26,19 @@ pub struct Initial {
 
 pub(super) static INITIAL: Schema = Schema {
     title: "[initial.NAME]",
-    doc: "Initial state of a group, added to that of its bodies.",
+    doc: "Initial motion and displacement of a group, added to those of its bodies.",
     keys: &[
         GROUP_KEY,
-        Key::vector("velocity", &VELOCITY, "Of each particle."),
+        Key::vector("velocity", &VELOCITY, "Velocity of each particle."),
         Key::vector(
             "angular_velocity",
             &ANGULAR_VELOCITY,
-            "Of the group as one rigid body, about its centre of mass.",
+            "Angular velocity of the group as one rigid body about its centre of mass.",
         ),
         Key::vector(
             "displacement",
             &LENGTH,
-            "Of each particle, from where its bonds are at rest.",
+            "Displacement of each particle from where its bonds are stress-free.",
         ),
     ],
 };

@@ -18,7 +18,7 @@ const ORIENTATIONS: [(&str, bool); 2] = [("random", true), ("as-is", false)];
 
 pub(super) static INLET: Schema = Schema {
     title: "[inlets.NAME]",
-    doc: "Feeds bodies during the run, at a `rate` or a `mass_rate`. They are not in the scene at the start.",
+    doc: "Feeds bodies during the run at a `rate` or a `mass_rate`. These bodies are not in the scene at the start.",
     keys: &[
         Key::new(
             "bodies",
@@ -26,7 +26,7 @@ pub(super) static INLET: Schema = Schema {
                 Kind::List(&Kind::Text("a name in [bodies]")),
                 Kind::Named("NAME", &Kind::Quantity(&NUMBER)),
             ]),
-            "`[\"NAME\", ...]`, as many of each, or `{ NAME = 0.7, OTHER = 0.3 }`, proportions by number, of any sum.",
+            "`[\"NAME\", ...]`, equal numbers of each, or `{ NAME = 0.7, OTHER = 0.3 }`, proportions by number with any sum.",
         )
         .required("[\"NAME\"], names in [bodies]"),
         Key::text(
@@ -38,19 +38,19 @@ pub(super) static INLET: Schema = Schema {
         Key::quantity("rate", &RATE, "Bodies per second.")
             .positive()
             .remedy("write bodies per second, such as \"4 /s\""),
-        Key::quantity("mass_rate", &MASS_RATE, "Instead of `rate`: mass per second.").positive(),
-        Key::vector("velocity", &VELOCITY, "Of new bodies."),
-        Key::vector("angular_velocity", &ANGULAR_VELOCITY, "Of new bodies."),
+        Key::quantity("mass_rate", &MASS_RATE, "Mass per second, instead of `rate`.").positive(),
+        Key::vector("velocity", &VELOCITY, "Velocity of new bodies."),
+        Key::vector("angular_velocity", &ANGULAR_VELOCITY, "Angular velocity of new bodies."),
         Key::new(
             "orientation",
             Kind::Word(|| words_of(&ORIENTATIONS)),
-            "Orientation of new bodies: random, or that of their `rotation`.",
+            "Orientation of new bodies: random, or as given by their `rotation`.",
         )
         .or_word("as-is"),
-        Key::quantity("start", &TIME, "When it begins.")
+        Key::quantity("start", &TIME, "Time at which feeding begins.")
             .not_negative()
             .or(0.0),
-        Key::quantity("end", &TIME, "When it ends, later than `start`; with the run unless given.")
+        Key::quantity("end", &TIME, "Time at which feeding ends, later than `start`; by default the end of the run.")
             .otherwise("never"),
         Key::new(
             "count",
@@ -59,7 +59,7 @@ pub(super) static INLET: Schema = Schema {
                 most: Some(u32::MAX as u64),
                 of: "",
             },
-            "Maximum number of bodies.",
+            "Maximum number of bodies fed.",
         )
         .remedy("leave it out for no limit")
         .otherwise("no limit"),

@@ -30,11 +30,11 @@ pub(super) static LOAD: Schema = Schema {
     doc: "A force or a torque on a group, shared equally among its particles.",
     keys: &[
         GROUP_KEY,
-        Key::vector("force", &FORCE, "On the whole group."),
-        Key::vector("torque", &TORQUE, "On the whole group."),
+        Key::vector("force", &FORCE, "Total force on the group."),
+        Key::vector("torque", &TORQUE, "Total torque on the group."),
         RAMP,
         TABLE,
-        until("Time from which on it is zero; not before the last change of `ramp` or `table`."),
+        until("Time from which the load is zero; not before the last change of `ramp` or `table`."),
     ],
 };
 

@@ -29,7 +29,7 @@ const OF_ELASTIC: [&str; 4] = ["density", "young_modulus", "shear_modulus", "poi
 
 pub(super) static MATERIAL: Schema = Schema {
     title: "[materials.NAME]",
-    doc: "What particles and walls are made of.",
+    doc: "Material of particles and walls.",
     keys: &[
         Key::quantity("density", &DENSITY, "Density of the spheres.")
             .positive()
@@ -37,7 +37,7 @@ pub(super) static MATERIAL: Schema = Schema {
         Key::quantity(
             "young_modulus",
             &STRESS,
-            "Young's modulus; the law `hertz-mindlin` and Rayleigh's estimate of the step need it.",
+            "Young's modulus; required for the law `hertz-mindlin` and for Rayleigh's estimate of the step.",
         )
         .positive(),
         Key::quantity(
@@ -50,7 +50,7 @@ pub(super) static MATERIAL: Schema = Schema {
         Key::flag(
             "rigid",
             false,
-            "Does not deform; instead of all others, and of walls only.",
+            "The material does not deform; for walls only, and instead of all other keys.",
         ),
     ],
 };

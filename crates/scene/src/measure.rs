@@ -226,37 +226,37 @@ impl Quantity {
 
 pub(super) static MEASURE: Schema = Schema {
     title: "[measures.NAME]",
-    doc: "A measured quantity, with its reference value where one is known.",
+    doc: "A measured quantity, with its reference value if one is known.",
     keys: &[
-        Key::text("of", "a group, a body, a wall, `all` or `fragments`", "What is measured.")
+        Key::text("of", "a group, a body, a wall, `all` or `fragments`", "Object that is measured.")
             .or_word(ALL),
         Key::new(
             "quantity",
             Kind::Word(|| words_of(&QUANTITIES)),
-            "Of a wall: `force`, `torque` about its pivot, `position` of its pivot; of `fragments`: `count`, \
-             `mass_of_largest`, `mass_fraction_of_largest`; of groups all others and `position`, `force`.",
+            "For a wall: `force`, `torque` about its pivot, `position` of its pivot; for `fragments`: `count`, \
+             `mass_of_largest`, `mass_fraction_of_largest`; for groups: all others, and `position` and `force`.",
         )
         .required("\"displacement_x\""),
         Key::text(
             "with",
             "a group, a body or a wall",
-            "The other side of the contact, for contact quantities, which need it.",
+            "Other side of the contact; required for contact quantities.",
         ),
         Key::word::<Statistic>(
             "statistic",
             "end",
-            "Value of its history that is reported; `mean` is over time.",
+            "Statistic of the history that is reported; `mean` is over time.",
         ),
         Key::new("reference", Kind::Measured, "Reference value; the error of the result is reported."),
         Key::number(
             "tolerance",
-            "A larger relative error gives a warning. Needs a `reference` other than 0.",
+            "Relative error above which the run warns. Requires a `reference` other than 0.",
         )
         .positive(),
         Key::new(
             "absolute_tolerance",
             Kind::Measured,
-            "A larger difference from `reference`, which it needs, gives a warning.",
+            "Difference from `reference` above which the run warns. Requires a `reference`.",
         )
         .positive(),
     ],

@@ -19,9 +19,13 @@ pub(super) static OUTLET: Schema = Schema {
         Key::text(
             "inside",
             "a name in [regions]",
-            "What is in it; not the region of an inlet.",
+            "Remove bodies and fragments inside this region, which must not be the region of an inlet.",
         ),
-        Key::text("outside", "a name in [regions]", "What is not in it."),
+        Key::text(
+            "outside",
+            "a name in [regions]",
+            "Remove bodies and fragments outside this region.",
+        ),
     ],
 };
 

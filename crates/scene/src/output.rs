@@ -32,13 +32,13 @@ pub struct Output {
 
 pub(super) static OUTPUT: Schema = Schema {
     title: "[output]",
-    doc: "Output files and their intervals in simulated time. Without this table and without `--output` no file is written.",
+    doc: "Output files and their intervals in simulated time. Without this table and `--output`, no file is written.",
     keys: &[
         Key::text(
             "folder",
             "a folder",
-            "Results go here, from the folder of the scene; without it and `--output` into the scene's name with -out \
-             where you stand.",
+            "Folder of the results, relative to the folder of the scene; without it and `--output`, the folder SCENE-out in \
+             the working directory, named after the scene.",
         )
         .otherwise("the scene's name with -out"),
         Key::quantity("frames", &TIME, "Time between frames.")
@@ -47,18 +47,18 @@ pub(super) static OUTPUT: Schema = Schema {
         Key::quantity(
             "series",
             &TIME,
-            "Time between rows of the time series; in scenes of more than 20,000 particles and bonds at least 200 \
-             steps unless given.",
+            "Time between rows of the time series; the default is at least 200 steps in scenes of more than 20,000 \
+             particles and bonds.",
         )
         .positive()
         .otherwise("a thousandth of the run"),
         Key::quantity("pictures", &TIME, "Time between pictures.").positive(),
-        Key::table("view", &VIEW, "View of the pictures.")
+        Key::table("view", &VIEW, "Camera of the pictures.")
             .otherwise("front, right and above"),
         Key::quantity(
             "checkpoint",
             &TIME,
-            "Time between checkpoints; every minute that the program runs, unless given.",
+            "Simulated time between checkpoints; by default one every minute of run time.",
         )
         .positive()
         .otherwise("at the end"),
@@ -67,11 +67,11 @@ pub(super) static OUTPUT: Schema = Schema {
 
 pub(super) static VIEW: Schema = Schema {
     title: "View",
-    doc: "View of the pictures.",
+    doc: "Camera of the pictures.",
     keys: &[Key::new(
         "from",
         Kind::Direction("a direction"),
-        "As seen from the bodies; its length does not matter.",
+        "Direction from the bodies to the camera; its length does not matter.",
     )
     .required("[1, -2, 1]")],
 };

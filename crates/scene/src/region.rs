@@ -16,7 +16,7 @@ const SHAPES: [&str; 4] = ["box", "sphere", "cylinder", "stl"];
 
 pub(super) static REGION: Schema = Schema {
     title: "[regions.NAME]",
-    doc: "A part of space without any surface, of one shape.",
+    doc: "A part of space of one shape. It has no surface.",
     keys: &[
         Key::table("box", &BOX, "A box."),
         Key::table("sphere", &SPHERE, "A sphere."),
@@ -24,7 +24,7 @@ pub(super) static REGION: Schema = Schema {
         Key::text(
             "stl",
             "a file",
-            "A closed surface, from the folder of the scene, with `unit`.",
+            "STL file of a closed surface, relative to the folder of the scene; requires `unit`.",
         ),
         UNIT,
     ],

@@ -25,11 +25,11 @@ pub(super) static RELAXATION: Schema = Schema {
         Key::flag(
             "enabled",
             true,
-            "Their overlap is the origin of their contact law.",
+            "Their contact law begins at this overlap, which therefore exerts no force.",
         ),
         Key::number(
             "min_overlap",
-            "Down to this overlap, as a fraction of the reduced radius; smaller ones press at once.",
+            "Smallest overlap that is relaxed, as a fraction of the effective radius; smaller ones act at once.",
         )
         .within(Included(0.0), Excluded(1.0))
         .remedy("it is a fraction of the reduced radius: a usual value is 1e-5")

@@ -17,20 +17,20 @@ const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
 
 pub(super) static REPLACEMENT: Schema = Schema {
     title: "[replacement.NAME]",
-    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when that becomes rigid again.",
+    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when the cluster becomes rigid again.",
     keys: &[
-        Key::table("when", &WHEN, "Conditions; at least one of its keys.")
+        Key::table("when", &WHEN, "Conditions for replacement; at least one.")
             .required("{ enters = \"NAME\" }, a name in [regions]"),
         Key::new(
             "require",
             Kind::Word(|| words_of(&REQUIRE)),
-            "Any of the conditions in `when`, or all of them.",
+            "`any` or `all` of the conditions in `when` must hold.",
         )
         .or_word("any"),
         Key::table(
             "restore",
             &RESTORE,
-            "When a fragment becomes rigid again; all of it must hold.",
+            "Conditions for a fragment to become rigid again; all must hold.",
         )
         .otherwise("never"),
     ],
@@ -38,29 +38,29 @@ pub(super) static REPLACEMENT: Schema = Schema {
 
 pub(super) static WHEN: Schema = Schema {
     title: "When",
-    doc: "What turns a clump into its bonded cluster.",
+    doc: "Conditions that turn a clump into its bonded cluster.",
     keys: &[
         Key::text(
             "enters",
             "a name in [regions]",
-            "Its centre of mass is in this region.",
+            "The centre of mass of the clump is in this region.",
         )
         .otherwise("not used"),
         Key::quantity(
             "force",
             &FORCE,
-            "The resultant contact force on it reaches this.",
+            "The resultant contact force on the clump reaches this value.",
         )
         .positive()
         .otherwise("not used"),
         Key::quantity(
             "impact_energy",
             &ENERGY,
-            "Kinetic energy that contacts have taken from it reaches this.",
+            "The kinetic energy that contacts have taken from the clump reaches this value.",
         )
         .positive()
         .otherwise("not used"),
-        Key::quantity("time", &TIME, "This time is reached.")
+        Key::quantity("time", &TIME, "The run reaches this time.")
             .not_negative()
             .otherwise("not used"),
     ],
@@ -68,9 +68,9 @@ pub(super) static WHEN: Schema = Schema {
 
 pub(super) static RESTORE: Schema = Schema {
     title: "Restore",
-    doc: "What makes a fragment rigid again.",
+    doc: "Conditions that make a fragment rigid again.",
     keys: &[
-        Key::text("leaves", "a name in [regions]", "Its centre is outside this region.")
+        Key::text("leaves", "a name in [regions]", "The centre of the fragment is outside this region.")
             .required("\"NAME\", a name in [regions]"),
         Key::new(
             "min_particles",
@@ -79,7 +79,7 @@ pub(super) static RESTORE: Schema = Schema {
                 most: Some(u32::MAX as u64),
                 of: "",
             },
-            "It has at least so many particles.",
+            "It has at least this many particles.",
         )
         .remedy("a usual value is 10")
         .or(10.0),

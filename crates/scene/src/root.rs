@@ -85,7 +85,7 @@ pub struct Scene {
 
 pub(super) static SCENE: Schema = Schema {
     title: "",
-    doc: "A scene: bodies, walls, materials, loads, and what is measured and written.",
+    doc: "A scene: bodies, walls, materials, loads, measures and output.",
     keys: &[
         Key::whole("version", 1, "Version of the format.").required("1"),
         Key::table("run", &run::RUN, run::RUN.doc).required("{ end_time = \"1 s\" }"),

@@ -62,9 +62,9 @@ pub const SAFETY: f64 = 0.9;
 
 pub(super) static RUN: Schema = Schema {
     title: "[run]",
-    doc: "End of the run, time step, and what acts on everything.",
+    doc: "End of the run, time step, gravity and damping.",
     keys: &[
-        Key::quantity("end_time", &TIME, "Simulated time at the end. Needed where no `[test]` says when it ends.")
+        Key::quantity("end_time", &TIME, "Simulated time at the end. Required unless a `[test]` determines it.")
             .positive()
             .otherwise("that of the test"),
         Key::word::<Integrator>(
@@ -74,7 +74,7 @@ pub(super) static RUN: Schema = Schema {
         ),
         Key::number(
             "rest_energy_ratio",
-            "The run ends sooner, once the kinetic energy has been below this fraction of the elastic energy during the \
+            "The run ends early once the kinetic energy has stayed below this fraction of the elastic energy for the \
              last fifth of the run and no load or support changes any more.",
         )
         .within(Excluded(0.0), Excluded(1.0))
@@ -83,15 +83,15 @@ pub(super) static RUN: Schema = Schema {
         Key::new(
             "time_step",
             Kind::Auto(&TIME),
-            "The step; `auto` is `safety_factor` times the exact limit.",
+            "Time step; `auto` is `safety_factor` times the exact stability limit.",
         )
         .positive()
         .remedy("write \"auto\" or a time such as \"1 us\"")
         .or_word("auto"),
         Key::number(
             "safety_factor",
-            "The automatic step over the largest stable one; the step that impacts allow is more or less by \
-             safety_factor/0.9. 1 and more are for trials only.",
+            "Automatic step as a fraction of the largest stable step; the step that impacts allow is scaled by \
+             safety_factor/0.9. Use values of 1 and more for trials only.",
         )
         .within(Excluded(0.0), Excluded(2.0))
         .remedy("a usual value is 0.9")
@@ -99,7 +99,7 @@ pub(super) static RUN: Schema = Schema {
         Key::flag(
             "adaptive",
             false,
-            "The automatic step follows the limit up as well as down.",
+            "The automatic step follows the stability limit up as well as down.",
         ),
         Key::vector("gravity", &ACCELERATION, "Gravity."),
         Key::number("local_damping", "Local (non-viscous) damping of particles: gamma of Chen et al. 2022, eqs. 11 and 12.")
@@ -109,15 +109,15 @@ pub(super) static RUN: Schema = Schema {
         Key::new(
             "seed",
             Kind::Whole { least: 0, most: Some(u64::MAX), of: "" },
-            "Seed of everything random: scattered strengths, inlets.",
+            "Seed of all random numbers: scattered strengths, inlets.",
         )
         .remedy("write any such number")
         .or(0.0),
         Key::word::<InitialOverlap>(
             "initial_overlap",
             "refuse",
-            "Bodies or walls that overlap at the start are refused; or `relax`: the overlap is the origin of their \
-             contact law; or `keep`: they press with all of it.",
+            "Bodies or walls that overlap at the start: `refuse` the scene; `relax`: their contact law begins at this \
+             overlap; `keep`: the full overlap acts.",
         ),
     ],
 };

@@ -280,7 +280,7 @@ impl Key {
     /// Its default, as shown in the listing of a scene.
     pub(super) fn usual(&self) -> String {
         match self.unless_given {
-            Unless::Required(_) => "needed".to_owned(),
+            Unless::Required(_) => "required".to_owned(),
             Unless::SometimesRequired(_) => "none".to_owned(),
             Unless::Number(usual) => match self.kind {
                 Kind::Vector(_) => vector([usual; 3], self.unit()),

@@ -20,7 +20,7 @@ pub(super) static SEARCH: Schema = Schema {
     doc: "Neighbour search.",
     keys: &[Key::number(
         "skin",
-        "How far beyond touching pairs are listed, as a fraction of the largest radius.",
+        "Verlet skin: largest gap of pairs in the neighbour list, as a fraction of the largest radius.",
     )
     .within(Excluded(0.0), Included(2.0))
     .remedy("it is a fraction of the largest radius: leave it out, and the program chooses")

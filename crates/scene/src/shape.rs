@@ -39,7 +39,7 @@ pub(super) static CYLINDER: Schema = Schema {
         Key::new(
             "to",
             Kind::Vector(&LENGTH),
-            "Centre of the other end, elsewhere.",
+            "Centre of the other end, different from `from`.",
         )
         .required("[0, 0, \"10 mm\"]"),
         Key::quantity("radius", &LENGTH, "Its radius.")
@@ -55,7 +55,7 @@ pub(super) const UNIT: Key = Key::new(
         Kind::Word(|| words_of(&LENGTH_UNITS)),
         Kind::Text("a unit of length"),
     ]),
-    "Of the file that `stl` names, which needs it.",
+    "Unit of length of the STL file; required with `stl`.",
 )
 .sometimes_required("\"mm\", the file's unit of length");
 

@@ -18,18 +18,22 @@ pub struct Sleep {
 
 pub(super) static SLEEP: Schema = Schema {
     title: "[sleep]",
-    doc: "Bodies at rest sleep: they are not stepped. Without this table none do.",
+    doc: "Sleep of bodies at rest, which are then not stepped. Without this table no body sleeps.",
     keys: &[
         Key::quantity(
             "speed",
             &VELOCITY,
-            "A body falls asleep when no point of it is faster than this.",
+            "A body falls asleep when no point of it moves faster than this.",
         )
         .positive()
         .or(1e-3),
-        Key::quantity("after", &TIME, "Time for which it has been that slow.")
-            .positive()
-            .or(0.05),
+        Key::quantity(
+            "after",
+            &TIME,
+            "Time for which it must have been that slow.",
+        )
+        .positive()
+        .or(0.05),
     ],
 };
 

@@ -41,35 +41,35 @@ pub struct Support {
 
 pub(super) static SUPPORT: Schema = Schema {
     title: "[supports.NAME]",
-    doc: "Boundary conditions: holds or moves each particle of a group along x, y, z and about them: rx, ry, rz.",
+    doc: "Boundary conditions: hold or move each particle of a group along x, y, z and about these axes (rx, ry, rz).",
     keys: &[
         GROUP_KEY,
         Key::new(
             "fixed",
             Kind::Either(&[Kind::True, Kind::List(&Kind::Word(|| FREEDOMS.to_vec()))]),
-            "Freedoms that do not move: all, or a list such as `[\"x\", \"rz\"]`.",
+            "Fixed degrees of freedom: `true` for all, or a list such as `[\"x\", \"rz\"]`.",
         ),
         Key::table(
             "velocity",
             &VELOCITIES,
-            "Freedoms that move, times the factor.",
+            "Prescribed velocities, multiplied by the factor of `ramp` or `table`.",
         ),
         Key::table(
             "displacement",
             &DISPLACEMENTS,
-            "Freedoms that are displaced, times the factor; needs a `ramp` or `table` that begins at 0.",
+            "Prescribed displacements, multiplied by the factor; requires a `ramp` or `table` that begins at 0.",
         ),
         RAMP,
         TABLE,
         until(
-            "Time at which the freedoms are released; not before the last change of `ramp` or `table`.",
+            "Time at which the degrees of freedom are released; not before the last change of `ramp` or `table`.",
         ),
     ],
 };
 
 pub(super) static VELOCITIES: Schema = Schema {
-    title: "Velocities of freedoms",
-    doc: "Velocities of freedoms.",
+    title: "Prescribed velocities",
+    doc: "Velocities of degrees of freedom.",
     keys: &[
         Key::quantity("x", &VELOCITY, "Along x.").otherwise("free"),
         Key::quantity("y", &VELOCITY, "Along y.").otherwise("free"),
@@ -81,8 +81,8 @@ pub(super) static VELOCITIES: Schema = Schema {
 };
 
 pub(super) static DISPLACEMENTS: Schema = Schema {
-    title: "Displacements of freedoms",
-    doc: "Displacements of freedoms.",
+    title: "Prescribed displacements",
+    doc: "Displacements of degrees of freedom.",
     keys: &[
         Key::quantity("x", &LENGTH, "Along x.").otherwise("free"),
         Key::quantity("y", &LENGTH, "Along y.").otherwise("free"),

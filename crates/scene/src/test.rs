@@ -19,14 +19,14 @@ use dem_laboratory::TestType;
 
 pub(super) static TEST: Schema = Schema {
     title: "[test]",
-    doc: "A laboratory test. `run.end_time` may be left out then.",
+    doc: "A laboratory test. `run.end_time` is then optional.",
     keys: &[
         Key::new("type", Kind::Word(|| words_of(&TestType::NAMES)), "Type of test.").required("\"four-point-bending\""),
-        Key::text("body", "a name in [bodies]", "The body that is tested.").otherwise("the only one"),
+        Key::text("body", "a name in [bodies]", "Body under test.").otherwise("the only one"),
         Key::new(
             "crosshead",
             Kind::List(&Kind::Text("a name in [walls], for tension in [groups]")),
-            "Walls that load the body and do not move otherwise; for tension, groups that are gripped and pulled.",
+            "Walls that load the body and have no other motion; for tension, groups that are gripped and pulled.",
         )
         .required("[\"NAME\"], walls that load the body"),
         Key::new(
@@ -38,14 +38,14 @@ pub(super) static TEST: Schema = Schema {
         Key::quantity(
             "stroke",
             &LENGTH,
-            "Maximum crosshead travel; the run ends sooner when the body has broken.",
+            "Maximum crosshead travel; the run ends early when the body has broken.",
         )
         .positive()
         .required("\"4 mm\""),
         Key::new(
             "rate",
             Kind::Auto(&VELOCITY),
-            "Crosshead velocity; `auto`: such that the stroke takes `periods`.",
+            "Crosshead velocity; with `auto` the stroke takes `periods`.",
         )
         .positive()
         .remedy("write \"auto\" or a velocity such as \"0.2 mm/s\"")
@@ -54,22 +54,22 @@ pub(super) static TEST: Schema = Schema {
             .within(Included(1.0), Unbounded)
             .remedy("a usual value is 20: more are slower, and nearer to rest")
             .or(20.0),
-        Key::flag("rate_check", true, "The test is done at twice the rate as well."),
+        Key::flag("rate_check", true, "Repeat the test at twice the rate and compare."),
         Key::quantity(
             "young_modulus",
             &STRESS,
-            "Young's modulus of the body as a whole, to compare with.",
+            "Young's modulus of the entire body, for comparison.",
         )
         .positive(),
-        poisson_ratio("Poisson's ratio of the body as a whole, for its shear in bending.").or(0.3),
-        Key::quantity("strength", &STRESS, "Strength of the body as a whole, to compare with.")
+        poisson_ratio("Poisson's ratio of the entire body, for its shear in bending.").or(0.3),
+        Key::quantity("strength", &STRESS, "Strength of the entire body, for comparison.")
             .positive(),
-        size("support_span", "Between the supports of a beam."),
-        size("loading_span", "Between the two loading pins."),
-        size("width", "Of a beam, or thickness of a disc."),
-        size("height", "Of a beam, or diameter of a disc."),
-        size("length", "Of a body that is pressed or pulled."),
-        Key::quantity("area", &AREA, "Of its section.")
+        size("support_span", "Distance between the supports of a beam."),
+        size("loading_span", "Distance between the two loading pins."),
+        size("width", "Width of a beam, or thickness of a disc."),
+        size("height", "Height of a beam, or diameter of a disc."),
+        size("length", "Length of a body that is pressed or pulled."),
+        Key::quantity("area", &AREA, "Area of its cross-section.")
             .positive()
             .otherwise(MEASURED),
     ],

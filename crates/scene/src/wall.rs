@@ -25,23 +25,23 @@ use dem_io::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
 pub(super) static WALL: Schema = Schema {
     title: "[walls.NAME]",
-    doc: "A rigid wall of one shape. It is fixed, unless it moves at a velocity, by a displacement or as \
-          a servo.",
+    doc: "A rigid wall of one shape. It is fixed unless it has a velocity, a displacement or a \
+          servo.",
     keys: &[
-        Key::table("plane", &shape::PLANE, "A plane without end."),
-        Key::table("box", &BOX, "Solid, with particles outside."),
+        Key::table("plane", &shape::PLANE, "An infinite plane."),
+        Key::table("box", &BOX, "A solid box, with particles outside."),
         Key::table(
             "cylinder",
             &CYLINDER,
-            "A solid pin, with particles outside.",
+            "A solid cylinder, with particles outside.",
         ),
         Key::text(
             "stl",
             "a file",
-            "Triangles, from the folder of the scene, with `unit`.",
+            "STL file of the surface, relative to the folder of the scene; requires `unit`.",
         ),
         UNIT,
-        Key::number("scale", "Of `stl`: a factor on all its lengths.")
+        Key::number("scale", "Factor on all lengths of the STL file.")
             .positive()
             .or(1.0),
         Key::text("material", "a name in [materials]", "Its material.")
@@ -51,29 +51,29 @@ pub(super) static WALL: Schema = Schema {
         Key::vector(
             "surface_velocity",
             &VELOCITY,
-            "Of a belt: its surface moves, its shape stays; in space, not rotated with the wall.",
+            "Velocity of the surface of a belt, whose shape stays in place; in space, not rotated with the wall.",
         ),
-        Key::vector("velocity", &VELOCITY, "Of the pivot."),
+        Key::vector("velocity", &VELOCITY, "Velocity of the pivot."),
         Key::vector(
             "angular_velocity",
             &ANGULAR_VELOCITY,
-            "About the pivot, which moves along.",
+            "Angular velocity about the pivot, which moves with the wall.",
         ),
         Key::vector(
             "displacement",
             &LENGTH,
-            "Of the pivot. Needs a `ramp` or `table` that begins at 0.",
+            "Displacement of the pivot. Requires a `ramp` or `table` that begins at 0.",
         ),
         Key::table(
             "angular_displacement",
             &ROTATION,
-            "About the pivot. Needs a `ramp` or `table` that begins at 0.",
+            "Rotation about the pivot. Requires a `ramp` or `table` that begins at 0.",
         )
         .or(0.0),
         Key::table(
             "servo",
             &motion::SERVO,
-            "Servo control: it moves such that it exerts a given force.",
+            "Servo control: the wall moves such that it exerts a given force.",
         ),
         RAMP,
         TABLE,

@@ -485,7 +485,7 @@ fn sliding_to_rolling() -> String {
         &[
             Case::new("slides until, s", rolls.unwrap(), rolls_s, bound),
             Case::new(
-                "has come so far, m",
+                "distance, m",
                 x_m,
                 12.0 * start * start / (49.0 * friction * GRAVITY_M_S2),
                 bound,
@@ -497,7 +497,7 @@ fn sliding_to_rolling() -> String {
                 5.0 / 7.0 * start / RADIUS_M,
                 bound,
             ),
-            Case::new("share of energy lost", lost, 2.0 / 7.0, bound),
+            Case::new("fraction of energy lost", lost, 2.0 / 7.0, bound),
         ],
     )
 }

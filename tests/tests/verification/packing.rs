@@ -306,8 +306,8 @@ fn touching() -> String {
         "overlap",
         "",
         &[
-            Case::new("0.1: share of the radii", little, 0.1 / 1.1, EXACT),
-            Case::new("0.25: share of the radii", much, 0.25 / 1.25, EXACT),
+            Case::new("0.1: fraction of the radii", little, 0.1 / 1.1, EXACT),
+            Case::new("0.25: fraction of the radii", much, 0.25 / 1.25, EXACT),
             Case::new(
                 "0.1: of 1 mm and 0.7 mm, mm",
                 1.7 * little,

@@ -52,7 +52,7 @@ fn property(key: &Key) -> Value {
         key.unless_given,
         Unless::Required(_) | Unless::SometimesRequired(_)
     ) {
-        description += &format!("\n\nUnless given: {}.", key.usual());
+        description += &format!("\n\nDefault: {}.", key.usual());
     }
     property["description"] = json!(description);
     let usual = match key.unless_given {

@@ -11,7 +11,7 @@ const ANYTHING: Kind = Kind::Anything("a value");
 
 pub(crate) static STUDY: Schema = Schema {
     title: "",
-    doc: "A study: a scene, what varies in it, what is measured and what it is compared with.",
+    doc: "A study: a scene, the settings that vary, the measures, and their references.",
     keys: &[
         Key::whole("version", 1, "Version of the format.")
             .remedy("write version = 1")
@@ -19,7 +19,7 @@ pub(crate) static STUDY: Schema = Schema {
         Key::text(
             "scene",
             "a file",
-            "The scene, from the folder of the study.",
+            "File of the scene, relative to the folder of the study.",
         )
         .required("\"scene.toml\""),
         Key::whole(
@@ -30,24 +30,24 @@ pub(crate) static STUDY: Schema = Schema {
         .up_to(MOST)
         .remedy("write repeats = 3")
         .or(3.0),
-        Key::whole("threads", 1, "Of each run.")
+        Key::whole("threads", 1, "Threads of each run.")
             .up_to(MOST)
             .remedy("write threads = 1")
             .or(1.0),
         Key::flag(
             "force_step",
             false,
-            "Steps above the largest stable one are taken: `run.time_step`, or `run.safety_factor` of 1 and more.",
+            "Allow steps above the largest stable one: `run.time_step`, or a `run.safety_factor` of 1 and more.",
         ),
         Key::word::<RunTime>(
             "time",
             "wall",
-            "Time that is compared; `processor` depends less on other programs on the machine.",
+            "Run time that is compared; `processor` depends less on other programs on the machine.",
         ),
         Key::word::<Combine>(
             "combine",
             "grid",
-            "Each value with each; or `paired`: the first with the first, the second with the second.",
+            "`grid`: every combination of values; `paired`: the first with the first, the second with the second.",
         ),
         Key::new(
             "set",
@@ -64,12 +64,12 @@ pub(crate) static STUDY: Schema = Schema {
                     Kind::Table(&RANGE),
                 ]),
             ),
-            "What varies: paths as in `[set]`, each with its values.",
+            "Settings that vary: paths as in `[set]`, each with its values.",
         ),
         Key::new(
             "together",
             Kind::Named("NAME", &Kind::Open(&TOGETHER, &Kind::List(&ANYTHING))),
-            "Paths that change together, with lists of as many values: one axis.",
+            "Paths that change together along one axis, with lists of equal length.",
         ),
         Key::new(
             "measures",
@@ -85,13 +85,13 @@ pub(crate) static STUDY: Schema = Schema {
 const SIZE: Key = Key::new(
     "size",
     Kind::List(&ANYTHING),
-    "How coarse each value is, above 0; the value itself where it is a number. Needed for `finest`, `richardson` and \
-     orders.",
+    "Size of each value, above 0: its coarseness; by default the value itself if it is a number. Required for `finest`, \
+     `richardson` and orders.",
 );
 const NAMES: Key = Key::new(
     "names",
     Kind::List(&Kind::Text("a name")),
-    "What each value is called on the page.",
+    "Label of each value on the page.",
 );
 
 pub(super) static VALUES: Schema = Schema {
@@ -106,7 +106,7 @@ pub(super) static VALUES: Schema = Schema {
 
 pub(super) static RANGE: Schema = Schema {
     title: "Range",
-    doc: "Values of a path from one end to another.",
+    doc: "A range of values of a path.",
     keys: &[
         Key::new(
             "from",
@@ -115,11 +115,11 @@ pub(super) static RANGE: Schema = Schema {
         )
         .required("0.1"),
         Key::new("to", ANYTHING, "Last value, in the same unit.").required("0.9"),
-        Key::whole("count", 2, "How many there are, both ends among them.").required("5"),
+        Key::whole("count", 2, "Number of values, both ends included.").required("5"),
         Key::new(
             "spacing",
             Kind::Word(|| words_of(&SPACINGS)),
-            "How they are spread.",
+            "Spacing of the values.",
         )
         .or_word("linear"),
     ],
@@ -130,7 +130,7 @@ pub(super) const SPACINGS: [(&str, bool); 2] = [("linear", false), ("log", true)
 
 pub(super) static TOGETHER: Schema = Schema {
     title: "[together.NAME]",
-    doc: "Paths that change together: `\"TABLE.KEY\" = [...]`, as many values for each.",
+    doc: "Paths that change together: `\"TABLE.KEY\" = [...]`, with equal numbers of values.",
     keys: &[SIZE, NAMES],
 };
 
@@ -166,8 +166,8 @@ pub(crate) static MEASURE: Schema = Schema {
                 Kind::Word(|| vec!["closed-form", "finest", "richardson"]),
                 Kind::Table(&REFERENCE),
             ]),
-            "What it is compared with: the `reference` of the scene's measure or the theory of the test's result, a \
-             value, the run of the smallest size along an axis, or what the runs come to at size 0.",
+            "Reference of the error: that of the scene's measure or the theory of the test's result, a value, the run of \
+             the smallest size along an axis, or the extrapolation of the runs to size 0.",
         )
         .or_word("closed-form"),
     ],
@@ -185,21 +185,19 @@ pub(super) static REFERENCE: Schema = Schema {
         Key::text(
             "finest",
             "an axis",
-            "The run of the smallest size along this axis, all else equal.",
+            "Run of the smallest size along this axis, all else equal.",
         ),
         Key::text(
             "richardson",
             "an axis",
-            "What the values tend to at size 0, through the three finest. Needs three sizes.",
+            "Extrapolation of the values to size 0 from the three finest. Requires three sizes.",
         ),
     ],
 };
 
 pub(super) static PAGE: Schema = Schema {
     title: "[page]",
-    doc: "How the page shows the runs.",
-    keys: &[
-        Key::text("series", "an axis", "The axis that is shown by colours.")
-            .otherwise("the first that is no number"),
-    ],
+    doc: "Display of the runs on the page.",
+    keys: &[Key::text("series", "an axis", "Axis shown by colours.")
+        .otherwise("the first that is no number")],
 };

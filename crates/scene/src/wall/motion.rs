@@ -55,7 +55,7 @@ pub(crate) static SERVO: Schema = Schema {
         Key::quantity(
             "force",
             &FORCE,
-            "Force to exert along `direction`; below 0 against it.",
+            "Force to exert along `direction`; negative values act against it.",
         )
         .required("\"100 N\""),
         Key::new(

@@ -49,13 +49,13 @@ pub enum WallShape {
 
 pub(super) static PLANE: Schema = Schema {
     title: "Plane",
-    doc: "A plane without end.",
+    doc: "An infinite plane.",
     keys: &[
-        Key::new("point", Kind::Vector(&LENGTH), "A point of it.").required("[0, 0, 0]"),
+        Key::new("point", Kind::Vector(&LENGTH), "A point on the plane.").required("[0, 0, 0]"),
         Key::new(
             "normal",
             Kind::Direction("a normal"),
-            "Into the free side; its length does not matter.",
+            "Normal into the free side; its length does not matter.",
         )
         .required("[0, 0, 1], into the free side"),
     ],
