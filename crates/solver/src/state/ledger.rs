@@ -23,6 +23,35 @@ pub struct EnergyLedger {
     pub(crate) fallen_j: f64,
     /// Largest energy and work seen, J.
     pub(crate) scale_j: f64,
+    /// Energy at which all bonds are stretched, and all particles that can touch something are
+    /// pressed, by a millionth: anything less is rounding, J.
+    pub(crate) rounding_floor_j: f64,
+    /// The centre of mass at the start, about which moments are taken, m.
+    pub(crate) about_m: [f64; 3],
+    pub(crate) mass_kg: f64,
+    /// Sum of mass times position relative to `about_m`, kg m.
+    pub(crate) first_moment: [f64; 3],
+    /// The same two for sleeping bodies, on which gravity does not act.
+    pub(crate) asleep_kg: f64,
+    pub(crate) asleep_moment: [f64; 3],
+    /// Expected momentum and angular momentum, N s and N m s.
+    pub(crate) momentum: [f64; 3],
+    pub(crate) angular_momentum: [f64; 3],
+    /// Largest sums of magnitudes so far, N s and N m s.
+    pub(crate) momentum_scale: f64,
+    pub(crate) angular_momentum_scale: f64,
+}
+
+/// Work by cause, J. Dissipation counts as positive.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Work {
+    pub(crate) loads: f64,
+    pub(crate) supports: f64,
+    pub(crate) bond_damping: f64,
+    pub(crate) particle_damping: f64,
+}
+
+impl EnergyLedger {
     /// Mass of all particles, kg.
     pub fn mass_kg(&self) -> f64 {
         self.mass_kg
