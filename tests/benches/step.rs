@@ -1,5 +1,5 @@
 //! The time step of dem-run for free bodies packed by dem-pack, on one thread and on all: `cargo
-//! bench -p dem-tests`.
+//! bench -p dem-tests --features benchmarks`.
 //!
 //! "bonds" is the pass over the bonds alone; "step" the complete step with failure, without
 //! damping; "damped" the same with damping of the bonds.

@@ -444,6 +444,25 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// A value in an SI unit for a person: four digits, in the unit that suits its size.
+pub fn show_quantity(value: f64, unit: &str) -> String {
+    let size = value.abs();
+    let (factor, unit) = match unit {
+        "m" if size < 1.0 => (1e3, "mm"),
+        "m2" if size < 1.0 => (1e6, "mm2"),
+        "m/s" if size < 1.0 => (1e3, "mm/s"),
+        "Pa" if size >= 1e9 => (1e-9, "GPa"),
+        "Pa" if size >= 1e5 => (1e-6, "MPa"),
+        "Pa" if size >= 1e3 => (1e-3, "kPa"),
+        "N" if size >= 1e4 => (1e-3, "kN"),
+        "N/m" if size >= 1e4 => (1e-3, "kN/m"),
+        unit => (1.0, unit),
+    };
+    format!("{} {unit}", significant(factor * value, 4))
+        .trim_end()
+        .to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,9 +10,11 @@ mod fit;
 mod list;
 mod mean_curve;
 mod numbers;
+mod page;
 mod regions;
 mod specimen;
 mod table;
+mod target;
 pub mod theory;
 
 pub use curve::{ColumnChoice, Curve};
@@ -22,6 +24,8 @@ pub use evaluation::{
 };
 pub use list::{ListedSpecimen, read_list};
 pub use mean_curve::CurvePoint;
+pub use page::{page, regions_plot, statistics};
 pub use regions::Regions;
 pub use specimen::{Dimensions, Specimen, TestType};
 pub use table::{Column, Table, read_text};
+pub use target::{area_between, read_material, write_material};

@@ -154,21 +154,6 @@ fn modulus_and_strength_come_back() {
             ..USUAL
         };
         let one = &evaluate(vec![specimen("a", &made)])[0];
-        if std::env::var_os("SHOW").is_some() {
-            let k = one.regions.stiffness_n_m / made.stiffness_n_m - 1.0;
-            let f = one.regions.largest_n / made.failure_n - 1.0;
-            let lin = [one.regions.linear.start, one.regions.linear.end - 1]
-                .map(|r| one.regions.corrected_n[r] / made.failure_n);
-            println!(
-                "{k:+.5} {f:+.5} drift {:+.3} of {:+.3} bend {:.2} lin {lin:.2?} noise {:.3} seat {:.2}",
-                one.regions.drift_n_m * made.end_m(),
-                made.drift_n,
-                made.bend,
-                made.noise_n,
-                1e3 * made.seating_m
-            );
-            continue;
-        }
         let modulus_pa = reference.modulus_pa(made.stiffness_n_m).unwrap();
         assert_within(one.young_modulus_pa.unwrap(), modulus_pa, 0.005, &made);
         assert_within(

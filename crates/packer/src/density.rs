@@ -9,11 +9,11 @@ use std::cell::Cell;
 use std::time::Instant;
 
 /// Relative error of the density at which the search ends.
-pub(crate) const NEAR_ENOUGH: f64 = 1e-3;
+pub const NEAR_ENOUGH: f64 = 1e-3;
 /// Relative error up to which a density is near the target: more than chance causes.
 const NEAR: f64 = 0.01;
 /// Largest number of packings begun.
-const MOST_PACKINGS: usize = 30;
+pub const MOST_PACKINGS: usize = 30;
 /// Smallest difference between two overlaps that are both tried: smaller ones change the density by
 /// less than chance does.
 const FINEST_STEP: f64 = 1e-5;
@@ -57,21 +57,23 @@ impl DensitySearch {
 
 /// A packing that was tried.
 #[derive(Debug, Clone, Copy)]
-struct Try {
-    overlap: f64,
+pub struct Try {
+    /// Overlap o.
+    pub overlap: f64,
     /// Sum of the spheres' volumes / volume of the shape; the expected value if the packing was not
     /// completed.
-    filled: f64,
+    pub filled: f64,
 }
 
 /// A packing that was begun.
 #[derive(Debug, Clone, Copy)]
-struct Begun {
-    overlap: f64,
+pub struct Begun {
+    /// Overlap o.
+    pub overlap: f64,
     /// Sum of the spheres' volumes / volume of the shape after the front.
-    front: f64,
+    pub front: f64,
     /// The same fraction after settling and filling, if the packing was completed.
-    filled: Option<f64>,
+    pub filled: Option<f64>,
 }
 
 /// Expected ratio of the final fraction to that of the front: the mean over the completed packings.
@@ -82,7 +84,7 @@ fn gain(begun: &[Begun]) -> f64 {
 }
 
 /// The packings begun, each with the fraction that it fills or is expected to.
-fn judged(begun: &[Begun]) -> Vec<Try> {
+pub fn judged(begun: &[Begun]) -> Vec<Try> {
     let gain = gain(begun);
     let judge = |b: &Begun| Try {
         overlap: b.overlap,
@@ -238,7 +240,7 @@ pub(crate) fn pack_to_density(
 /// The next overlap to try: a Newton step on the mean of the tries near the target, so that chance
 /// averages out, or else on the nearest one. The fraction filled in r_gen hardly changes, so the
 /// density is proportional to (1 + overlap)^3.
-fn next_overlap(tries: &[Try], target: f64) -> f64 {
+pub fn next_overlap(tries: &[Try], target: f64) -> f64 {
     let off = |t: &Try| (t.filled / target - 1.0).abs();
     let least = tries.iter().map(off).fold(f64::INFINITY, f64::min);
     let (mut sum, mut count) = (0.0, 0.0);
@@ -259,9 +261,10 @@ fn next_overlap(tries: &[Try], target: f64) -> f64 {
 
 /// Approximate fraction of the shape that spheres reduced to r_gen fill. Volumes of true radii are
 /// (1 + overlap)^3 times as large.
-const USUAL_FRACTION: f64 = 0.59;
+pub const USUAL_FRACTION: f64 = 0.59;
 
-fn overlap_for(target: f64, reduced: f64) -> f64 {
+/// Overlap at which spheres that fill the fraction `reduced` with their reduced radii fill `target`.
+pub fn overlap_for(target: f64, reduced: f64) -> f64 {
     (target / reduced).cbrt() - 1.0
 }
 
@@ -281,73 +284,4 @@ fn unreachable(wanted: f64, particle: f64, limit: Try) -> Diagnostic {
         ),
         "change --solid-density or --particle-density",
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The overlaps tried for a body whose fraction in r_gen falls with the overlap and scatters by
-    /// up to `scatter`.
-    fn search(target: f64, scatter: f64) -> Vec<Try> {
-        let mut tries = vec![];
-        let mut overlap = overlap_for(target, USUAL_FRACTION).max(0.0);
-        while tries.len() < MOST_PACKINGS {
-            let chance = (overlap * 1e6).sin() * scatter;
-            let reduced = (0.60 - 0.05 * overlap) * (1.0 + chance);
-            let filled = reduced * (1.0 + overlap).powi(3);
-            tries.push(Try { overlap, filled });
-            if (filled / target - 1.0).abs() <= NEAR_ENOUGH {
-                break;
-            }
-            overlap = next_overlap(&tries, target);
-        }
-        tries
-    }
-
-    #[test]
-    fn a_smooth_density_is_met_in_few_packings_and_a_scattering_one_in_more() {
-        for target in [0.62, 0.7, 0.8, 1.0, 1.5, 2.5] {
-            for (scatter, most) in [(0.0, 3), (0.002, MOST_PACKINGS)] {
-                let tries = search(target, scatter);
-                let last = tries[tries.len() - 1];
-                assert!(
-                    tries.len() <= most && (last.filled / target - 1.0).abs() <= NEAR_ENOUGH,
-                    "{target} {scatter}: {tries:?}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn fronts_are_judged_by_what_settling_and_filling_did_before() {
-        let one = |overlap, front, filled| Begun {
-            overlap,
-            front,
-            filled,
-        };
-        let mut begun = vec![one(0.1, 0.80, None)];
-        assert_eq!(judged(&begun)[0].filled, 0.80);
-        begun.push(one(0.2, 0.90, Some(0.90 * 1.01)));
-        begun.push(one(0.3, 1.00, Some(1.03)));
-        let filled: Vec<f64> = judged(&begun).iter().map(|t| t.filled).collect();
-        for (got, wanted) in filled.iter().zip([0.80 * 1.02, 0.90 * 1.01, 1.03]) {
-            assert!((got - wanted).abs() < 1e-12, "{filled:?}");
-        }
-        assert_eq!(filled.len(), 3);
-    }
-
-    #[test]
-    fn no_overlap_is_tried_twice() {
-        // No packing is near enough: the density has a step at the target.
-        let mut tries: Vec<Try> = Vec::new();
-        let mut overlap = 0.3;
-        for _ in 0..MOST_PACKINGS {
-            let filled = if overlap < 0.31 { 0.98 } else { 1.02 };
-            assert!(tries.iter().all(|t| t.overlap != overlap), "{tries:?}");
-            tries.push(Try { overlap, filled });
-            overlap = next_overlap(&tries, 1.0);
-            assert!((0.0..1.0).contains(&overlap), "{tries:?}");
-        }
-    }
 }

@@ -42,6 +42,9 @@ pub use spheres::Spheres;
 #[doc(hidden)]
 pub mod internals {
     pub use crate::bonds::{close_pairs, suggested_bond_range};
+    pub use crate::density::{
+        Begun, MOST_PACKINGS, NEAR_ENOUGH, Try, USUAL_FRACTION, judged, next_overlap, overlap_for,
+    };
     pub use crate::front::halo::{Halo, Neighbours};
     pub use crate::geometry::boundary::Boundary;
     pub use crate::geometry::depth_map::DepthMap;
@@ -49,9 +52,12 @@ pub mod internals {
     pub use crate::geometry::union::outer_pieces;
     pub use crate::pack::settle::{Settled, WhenJammed, minimise_overlaps};
     pub use crate::pack::shrink::FillTarget;
-    pub use crate::quality::{BondedPacking, DEFAULT_GAP_LIMIT, assess, depth_needed};
+    pub use crate::quality::{
+        BondedPacking, DEFAULT_GAP_LIMIT, assess, chi_squared_5_exceeds, depth_needed,
+    };
     pub use crate::seed::{
         InscribedSphere, deepest_point, first_spheres, inner_points, spread_points,
     };
+    pub use crate::sizes::{Curve, SieveCurve, parse_sieve_curve};
     pub use crate::spheres::{ReducedSphere, Vector3};
 }

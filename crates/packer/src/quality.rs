@@ -16,7 +16,7 @@ pub use self::bonded_packing::{BondedPacking, DEFAULT_GAP_LIMIT, depth_needed};
 use self::bonded_packing::{INTERIOR_DEPTH_IN_LARGEST_DIAMETERS, mean_diameter};
 pub use self::contacts::Contacts;
 pub use self::densities::{Fraction, Layer};
-pub use self::fabric::Fabric;
+pub use self::fabric::{Fabric, chi_squared_5_exceeds};
 pub use self::pieces::Pieces;
 pub use self::report::Report;
 pub use self::thickness::Thinnest;

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod bonds;
+mod density_search;
 mod helpers;
 mod packing;
 mod program;

@@ -28,6 +28,8 @@ impl Scene {
                 files.push(file.clone());
             }
         }
+        let measured = self.test.as_ref().and_then(|test| test.measured.as_ref());
+        files.extend(measured.map(|measured| measured.file.clone()));
         files
     }
 }

@@ -76,5 +76,5 @@ pub use run::{InitialOverlap, Integrator, Run, SAFETY};
 pub use search::Search;
 pub use sleep::Sleep;
 pub use support::{Hold, Support};
-pub use test::Test;
+pub use test::{MeasuredReference, Test};
 pub use wall::{Wall, WallMotion, WallShape};

@@ -15,7 +15,10 @@ use super::table::Table;
 use super::wall::{Wall, WallMotion};
 use dem_io::diagnostic::Result;
 use dem_io::units::{AREA, LENGTH, STRESS, VELOCITY};
-use dem_laboratory::TestType;
+use std::path::{Path, PathBuf};
+
+use super::paths::named_path;
+use dem_laboratory::{MeasuredMaterial, TestType, read_material};
 
 pub(super) static TEST: Schema = Schema {
     title: "[test]",
@@ -64,6 +67,11 @@ pub(super) static TEST: Schema = Schema {
         poisson_ratio("Poisson's ratio of the entire body, for its shear in bending.").or(0.3),
         Key::quantity("strength", &STRESS, "Strength of the entire body, for comparison.")
             .positive(),
+        Key::text(
+            "measured",
+            "a file written by dem-run lab",
+            "Measured material: its modulus and strength are the reference values unless given, and its mean curve is drawn with the simulated one.",
+        ),
         size("support_span", "Distance between the supports of a beam."),
         size("loading_span", "Distance between the two loading pins."),
         size("width", "Width of a beam, or thickness of a disc."),
@@ -111,6 +119,8 @@ pub struct Test {
     /// `strength`: target strength of the entire body, by the formula of the test, Pa. None: not
     /// compared.
     pub strength_pa: Option<f64>,
+    /// `measured`: the measured material of the test. None: nothing is compared with a curve.
+    pub measured: Option<MeasuredReference>,
     /// `support_span` between the supports of a beam, m. None: that of the walls.
     pub support_span_m: Option<f64>,
     /// `loading_span` between the two loading pins, m. None: that of the walls.
@@ -126,8 +136,19 @@ pub struct Test {
     pub area_m2: Option<f64>,
 }
 
+/// A measured material and its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredReference {
+    /// The file.
+    pub file: PathBuf,
+    /// Its content.
+    pub material: MeasuredMaterial,
+}
+
 /// The names that a test can use.
 pub(super) struct Known<'a> {
+    /// Folder of the scene.
+    pub(super) folder: &'a Path,
     pub(super) presence: &'a Presence<'a>,
     pub(super) groups: &'a BTreeMap<String, ParticleGroup>,
     pub(super) walls: &'a BTreeMap<String, Wall>,
@@ -152,6 +173,12 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
         let along = table.need("direction")?;
         return Err(along.wrong("along x, y or z, as what a support moves", remedy));
     }
+    let measured = measured(&table, kind, known.folder)?;
+    let of_material = measured.as_ref().map(|measured| &measured.material);
+    let modulus = of_material.and_then(|material| material.young_modulus_pa);
+    let strength = of_material.map(|material| material.strength_pa.mean);
+    let given_modulus: Option<f64> = table.read("young_modulus")?;
+    let given_strength: Option<f64> = table.read("strength")?;
     Ok(Test {
         kind,
         body: body(&table, known)?,
@@ -161,9 +188,10 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
         rate_m_s: table.read("rate")?,
         periods: table.read("periods")?,
         rate_check: table.read("rate_check")?,
-        young_modulus_pa: table.read("young_modulus")?,
+        young_modulus_pa: given_modulus.or(modulus.map(|modulus| modulus.mean)),
         poisson_ratio: table.read("poisson_ratio")?,
-        strength_pa: table.read("strength")?,
+        strength_pa: given_strength.or(strength),
+        measured,
         support_span_m: table.read("support_span")?,
         loading_span_m: table.read("loading_span")?,
         width_m: table.read("width")?,
@@ -185,6 +213,14 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
     listing.value("young_modulus", &test.young_modulus_pa);
     listing.value("poisson_ratio", &test.poisson_ratio);
     listing.value("strength", &test.strength_pa);
+    let file = test
+        .measured
+        .as_ref()
+        .map(|measured| measured.file.display());
+    listing.text(
+        "measured",
+        file.map_or("none".to_owned(), |file| file.to_string()),
+    );
     for (key, given) in [
         ("support_span", test.support_span_m),
         ("loading_span", test.loading_span_m),
@@ -197,6 +233,30 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
             listing.value(key, &given);
         }
     }
+}
+
+/// The measured material of a test, which has to be of the same type.
+fn measured(table: &Table<'_>, kind: TestType, folder: &Path) -> Result<Option<MeasuredReference>> {
+    let Some(field) = table.get("measured") else {
+        return Ok(None);
+    };
+    let file = named_path(&field, folder)?;
+    let material = read_material(&file).map_err(|error| {
+        field.refuse(
+            format!("{}: {}: {}", field.path, error.place, error.problem),
+            error.remedy,
+        )
+    })?;
+    if material.test != kind {
+        let problem = format!(
+            "{} is of the type \"{}\", not \"{}\"",
+            field.path,
+            material.test.name(),
+            kind.name()
+        );
+        return Err(field.refuse(problem, "name a material measured in the same test"));
+    }
+    Ok(Some(MeasuredReference { file, material }))
 }
 
 /// Refuses dimensions that do not apply to this type of test.

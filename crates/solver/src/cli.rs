@@ -2,6 +2,7 @@
 
 mod check;
 mod fragment;
+mod lab;
 mod statics;
 mod stress;
 mod sweep;
@@ -70,6 +71,13 @@ enum Command {
                       Example:\n  dem-run fragment results --largest -o piece.vtp"
     )]
     Fragment(fragment::FragmentArguments),
+    /// Evaluate measured force-displacement curves: modulus, strength, mean curve
+    #[command(
+        after_help = "Finds in each curve the offset of the load cell, the seating and the linear part; leaves out specimens in doubt, and says why.\n\
+                      Example:\n  \
+                      dem-run lab a.csv b.csv c.csv --type four-point-bending --support-span 180mm --loading-span 80mm --width 30mm --height 35mm"
+    )]
+    Lab(Box<lab::LabArguments>),
     /// Parameter study: run a scene with many settings, and compare error and run time
     #[command(
         after_help = "A study names a scene, what varies, what is measured and what it is compared with. Every run is a separate process.\n\
@@ -157,6 +165,7 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
             check::check(&scene_data, &plan, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
+        Some(Command::Lab(arguments)) => lab::lab(arguments),
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
         Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),

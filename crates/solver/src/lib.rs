@@ -48,6 +48,15 @@ pub use stages::ledger::{Balance, balance};
 pub use state::State;
 pub use step::step;
 
+/// What only tests of this crate reach.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::check::flight::{FreeBody, Meeting};
+    pub use crate::output::pictures::subject::{by_body, of_clusters};
+    pub use crate::shape::union::{Patch, Solid, patches, solid};
+    pub use crate::stages::bonds::bond_wrenches_one_by_one;
+}
+
 /// The code on the page is compiled and run with the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../doc/adding-a-model.md")]

@@ -5,4 +5,4 @@ mod cells;
 pub mod fit;
 pub mod inertia;
 pub mod outer_layer;
-mod union;
+pub(crate) mod union;

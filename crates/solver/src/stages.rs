@@ -1,6 +1,6 @@
 //! The physics of the time step, one stage per file.
 
-mod blocks;
+pub(crate) mod blocks;
 pub mod bonds;
 pub mod breakage;
 pub mod clumps;
@@ -9,7 +9,7 @@ pub mod damping;
 pub(crate) mod flow;
 pub mod incremental;
 pub(crate) mod inlets;
-mod lanes;
+pub(crate) mod lanes;
 pub mod ledger;
 pub(crate) mod listing;
 pub mod loads;

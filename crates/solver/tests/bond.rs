@@ -3,6 +3,7 @@
 mod damping;
 mod failure;
 mod incremental;
+mod lanes;
 mod pair;
 mod scatter;
 mod stiffness;

@@ -24,6 +24,7 @@ mod measures;
 mod meet;
 mod notation;
 mod pictures;
+mod pictures_colours;
 mod program;
 mod shape;
 mod sleep;

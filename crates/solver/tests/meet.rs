@@ -2,6 +2,7 @@
 
 mod apart;
 mod clouds;
+mod flight;
 mod rest;
 mod surfaces;
 mod walls;

@@ -1,6 +1,7 @@
 //! Geometry of bodies made of spheres, and free rotation: compared with published values, closed
 //! forms and samples.
 
+mod closed;
 mod fit;
 mod inertia;
 mod outer_layer;

@@ -67,13 +67,13 @@ impl Cell {
 /// A cumulative distribution of diameters. Lengths in the unit of the density from which it was
 /// made.
 #[derive(Debug, Clone)]
-pub(super) struct Curve {
+pub struct Curve {
     cells: Vec<Cell>,
     guide: Vec<u32>,
     /// Integral of the density from which it was made.
-    pub(super) total: f64,
+    pub total: f64,
     /// Mean of the diameter under this distribution.
-    pub(super) mean: f64,
+    pub mean: f64,
 }
 
 impl Curve {
@@ -98,7 +98,7 @@ impl Curve {
     /// The distribution whose density in the piece `[knots[i], knots[i + 1]]` is `density(i,
     /// diameter)`: it must be smooth and without a peak much narrower than the piece, but need not
     /// be normalised. None if the total is zero or not finite.
-    pub(super) fn from_density(knots: &[f64], density: impl Fn(usize, f64) -> f64) -> Option<Self> {
+    pub fn from_density(knots: &[f64], density: impl Fn(usize, f64) -> f64) -> Option<Self> {
         let pieces = || {
             knots
                 .windows(2)
@@ -150,7 +150,7 @@ impl Curve {
     }
 
     /// Fraction of the distribution at or below `diameter`.
-    pub(super) fn cdf(&self, diameter: f64) -> f64 {
+    pub fn cdf(&self, diameter: f64) -> f64 {
         let last = &self.cells[self.cells.len() - 1];
         if diameter >= last.start + last.width {
             return 1.0;
@@ -165,7 +165,7 @@ impl Curve {
 
     /// The diameter below which the fraction `u` of the distribution lies. `u` outside [0, 1]
     /// counts as the nearer end.
-    pub(super) fn quantile(&self, u: f64) -> f64 {
+    pub fn quantile(&self, u: f64) -> f64 {
         let u = u.clamp(0.0, 1.0);
         let mut index =
             self.guide[((u * GUIDE_CELLS as f64) as usize).min(GUIDE_CELLS - 1)] as usize;
@@ -238,66 +238,5 @@ fn refine(
             slope_start: slope(first),
             slope_end: slope(last),
         });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-
-    #[test]
-    fn a_parabola_is_exact() {
-        // Density 6 x (1 - x): the distribution is 3 x^2 - 2 x^3, a cubic, with mean 1/2.
-        let curve = Curve::from_density(&[0.0, 1.0], |_, x| 6.0 * x * (1.0 - x)).unwrap();
-        assert!((curve.total - 1.0).abs() < 1e-14);
-        assert!((curve.mean - 0.5).abs() < 1e-14);
-        for i in 0..=100 {
-            let x = f64::from(i) / 100.0;
-            assert!(
-                (curve.cdf(x) - x * x * (3.0 - 2.0 * x)).abs() < 1e-14,
-                "{x}"
-            );
-            assert!((curve.cdf(curve.quantile(x)) - x).abs() < 1e-13, "{x}");
-        }
-    }
-
-    #[test]
-    fn a_steep_power_law_stays_within_tolerance() {
-        // Density x^-4 on [1, 100]: (1 - x^-3)/(1 - 1e-6), mean 3/2 (1 - 1e-4)/(1 - 1e-6).
-        let curve = Curve::from_density(&[1.0, 100.0], |_, x: f64| x.powi(-4)).unwrap();
-        let mut x = 1.0_f64;
-        while x < 100.0 {
-            let exact = (1.0 - x.powi(-3)) / (1.0 - 1e-6);
-            assert!(
-                (curve.cdf(x) - exact).abs() < 1e-8,
-                "{x}: {} {exact}",
-                curve.cdf(x)
-            );
-            x *= 1.003;
-        }
-        assert!(
-            (curve.mean - 1.5 * (1.0 - 1e-4) / (1.0 - 1e-6)).abs() < 1e-7,
-            "{}",
-            curve.mean
-        );
-    }
-
-    #[test]
-    fn nothing_is_drawn_from_a_gap() {
-        let curve =
-            Curve::from_density(&[1.0, 2.0, 3.0, 4.0], |i, _| if i == 1 { 0.0 } else { 1.0 })
-                .unwrap();
-        for i in 0..1000 {
-            let d = curve.quantile(f64::from(i) / 1000.0);
-            assert!(!(d > 2.0 + 1e-9 && d < 3.0 - 1e-9), "{d}");
-        }
-        assert!((curve.cdf(2.5) - 0.5).abs() < 1e-15);
-    }
-
-    #[test]
-    fn no_mass_is_no_curve() {
-        assert!(Curve::from_density(&[1.0, 2.0], |_, _| 0.0).is_none());
-        assert!(Curve::from_density(&[1.0, 2.0], |_, _| f64::NAN).is_none());
     }
 }

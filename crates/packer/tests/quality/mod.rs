@@ -1,5 +1,6 @@
 //! The report compared with closed forms: lattices, lenses, lines, plates and necks.
 
+mod chi_squared;
 mod densities;
 mod structure;
 mod whole;

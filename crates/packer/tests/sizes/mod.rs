@@ -2,8 +2,10 @@
 //! program's tables.
 
 mod closed_forms;
+mod curve;
 mod draws;
 mod parsing;
+mod sieve;
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};

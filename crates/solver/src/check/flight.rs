@@ -24,12 +24,13 @@ const MOVES: usize = 2000;
 
 /// A body that flies freely, as a rigid assembly of spheres.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct FreeBody {
+pub struct FreeBody {
     /// Name of the body in the scene.
     pub name: String,
     /// Centre of mass, m.
     centre_m: Vector3<f64>,
-    velocity_m_s: Vector3<f64>,
+    /// m/s.
+    pub velocity_m_s: Vector3<f64>,
     spin_rad_s: Vector3<f64>,
     gravity_m_s2: Vector3<f64>,
     /// Centres relative to the centre of mass, m, and radii, m.
@@ -40,7 +41,7 @@ pub(crate) struct FreeBody {
 
 /// First meeting of a flying body.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Meeting {
+pub enum Meeting {
     /// With a wall, after this time, s, at this speed of its centre, m/s.
     At {
         /// Time from the present, s.
@@ -132,7 +133,8 @@ impl FreeBody {
         )
     }
 
-    fn new(name: &str, spheres: Vec<(Vector3<f64>, f64)>, gravity_m_s2: Vector3<f64>) -> Self {
+    /// A body at rest at the origin: centres and radii of its spheres, m.
+    pub fn new(name: &str, spheres: Vec<(Vector3<f64>, f64)>, gravity_m_s2: Vector3<f64>) -> Self {
         let reach_m = spheres.iter().map(|(arm, radius_m)| arm.norm() + radius_m);
         Self {
             name: name.to_owned(),
@@ -145,7 +147,13 @@ impl FreeBody {
         }
     }
 
-    fn moving(mut self, centre: Vector3<f64>, velocity: Vector3<f64>, spin: Vector3<f64>) -> Self {
+    /// The same body at a position, m, with a velocity, m/s, and a spin, rad/s.
+    pub fn moving(
+        mut self,
+        centre: Vector3<f64>,
+        velocity: Vector3<f64>,
+        spin: Vector3<f64>,
+    ) -> Self {
         self.centre_m = centre;
         self.velocity_m_s = velocity;
         self.spin_rad_s = spin;
@@ -162,7 +170,7 @@ impl FreeBody {
     }
 
     /// Its first meeting with the walls and the other bodies.
-    pub(crate) fn first_meeting(&self, walls: &[Wall], others: &[Self]) -> Meeting {
+    pub fn first_meeting(&self, walls: &[Wall], others: &[Self]) -> Meeting {
         let mut first = Meeting::Never;
         let mut first_s = f64::INFINITY;
         for wall in walls {
@@ -297,79 +305,5 @@ impl FreeBody {
         let (a, b) = (velocity.norm_squared(), apart.dot(&velocity));
         let root = b * b - a * c;
         (b < 0.0 && root >= 0.0).then(|| (-b - root.sqrt()) / a)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
-
-    use super::*;
-    use crate::geometry::{Frame, Plane, SolidBox};
-
-    fn ball(at: [f64; 3], velocity: [f64; 3], gravity: [f64; 3]) -> FreeBody {
-        let spheres = vec![(Vector3::zeros(), 0.1)];
-        FreeBody::new("ball", spheres, gravity.into()).moving(
-            at.into(),
-            velocity.into(),
-            Vector3::zeros(),
-        )
-    }
-
-    fn floor() -> Wall {
-        let plane = Plane::new([0.0; 3], [0.0, 0.0, 1.0]).unwrap();
-        let mut wall = Wall::standing(Shape::Plane(plane), Frame::default());
-        std::sync::Arc::make_mut(&mut wall.model).name = "floor".to_owned();
-        wall
-    }
-
-    #[test]
-    fn a_ball_falls_as_galilei_says() {
-        let g = [0.0, 0.0, -9.81];
-        let falling = ball([0.0, 0.0, 1.1], [3.0, 0.0, 0.0], g);
-        let Meeting::At {
-            after_s, speed_m_s, ..
-        } = falling.first_meeting(&[floor()], &[])
-        else {
-            panic!("it meets the floor");
-        };
-        assert!(
-            (after_s - (2.0_f64 / 9.81).sqrt()).abs() < 1e-6,
-            "{after_s}"
-        );
-        assert!((speed_m_s - (9.0 + 2.0 * 9.81_f64).sqrt()).abs() < 1e-5);
-    }
-
-    #[test]
-    fn what_flies_away_or_falls_beside_meets_nothing() {
-        let up = ball([0.0, 0.0, 1.1], [0.0, 0.0, 1.0], [0.0; 3]);
-        assert_eq!(up.first_meeting(&[floor()], &[]), Meeting::Never);
-        let still = ball([0.0, 0.0, 1.1], [0.0; 3], [0.0; 3]);
-        assert_eq!(still.first_meeting(&[floor()], &[]), Meeting::Never);
-        let plate = SolidBox::new([-1.0, -1.0, -0.1], [1.0, 1.0, 0.0]).unwrap();
-        let plate = Wall::standing(Shape::Box(plate), Frame::default());
-        let g = [0.0, 0.0, -9.81];
-        let beside = ball([1.2, 0.0, 1.0], [0.0; 3], g);
-        assert_eq!(
-            beside.first_meeting(std::slice::from_ref(&plate), &[]),
-            Meeting::Never
-        );
-        let over = ball([1.05, 0.0, 1.0], [0.0; 3], g);
-        let at = over.first_meeting(&[plate], &[]);
-        assert!(matches!(at, Meeting::At { .. }), "{at:?}");
-    }
-
-    #[test]
-    fn another_body_in_the_way_leaves_it_open() {
-        let g = [0.0, 0.0, -9.81];
-        let one = ball([0.0, 0.0, 1.1], [1.0, 0.0, 0.0], g);
-        let mut other = ball([0.3, 0.0, 1.1], [0.0; 3], g);
-        let walls = [floor()];
-        assert_eq!(
-            one.first_meeting(&walls, std::slice::from_ref(&other)),
-            Meeting::Unknown
-        );
-        other.velocity_m_s.x = 1.0;
-        assert_ne!(one.first_meeting(&walls, &[other]), Meeting::Unknown);
     }
 }

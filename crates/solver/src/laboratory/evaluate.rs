@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
-use dem_laboratory::Specimen;
 use dem_laboratory::theory::Beam;
 use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_stress_pa};
+use dem_laboratory::{Specimen, area_between};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
 /// settle into the surface; above, bonds break.
@@ -246,6 +246,12 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     if !evidence.broken {
         measured.add("largest force", largest, "N", None);
     }
+    let wanted = measured_curve(test, &setup.specimen);
+    if !wanted.is_empty() {
+        let points = rows.iter().map(|row| [row.travel_m - play_m, row.load_n()]);
+        let apart = area_between(&wanted, &points.collect::<Vec<[f64; 2]>>());
+        measured.add(APART, Some(apart), "", None);
+    }
     let first_broken = first_broken(evidence).map(|first| FirstBroken {
         travel_m: first.travel_m - play_m,
         ..first
@@ -266,6 +272,13 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     };
     result.calibration = calibration(&result, evidence);
     result
+}
+
+/// The mean curve of the measured material of a test, for the simulated specimen: displacement, m,
+/// and load, N. Empty: the test names none.
+pub fn measured_curve(test: &Test, specimen: &Specimen) -> Vec<[f64; 2]> {
+    let measured = test.measured.as_ref();
+    measured.map_or_else(Vec::new, |measured| measured.material.curve_of(specimen))
 }
 
 /// Results read from the curve of a test.
@@ -369,6 +382,8 @@ const EQ_18: &str = "modulus without shear";
 pub const MODULUS: &str = "specimen modulus";
 /// Largest load before the body broke.
 pub(crate) const FAILURE_FORCE: &str = "failure force";
+/// Area between the measured and the simulated curve, over the area below the measured one.
+const APART: &str = "area between the curves";
 /// Stress at that force according to the formula of the test.
 pub const STRENGTH: &str = "strength";
 

@@ -3,13 +3,15 @@
 use std::fmt::Write;
 
 use dem_io::Result;
-use dem_io::units::significant;
+use dem_io::units::show_quantity;
 use dem_plots::{Axis, Column, Line, Page, Plot, Svg, Table};
 use dem_results::ResultsFolder;
 use dem_scene::Test;
 
 use super::crack::{CrackPicture, crack_map};
-use super::evaluate::{FAILURE_FORCE, Figure, TestResult, peak, play_m, rows_of, slope};
+use super::evaluate::{
+    FAILURE_FORCE, Figure, TestResult, measured_curve, peak, play_m, rows_of, slope,
+};
 use super::record::{Record, Row};
 
 /// Content of the files of a test.
@@ -34,7 +36,8 @@ pub struct TestFiles<'a> {
 /// Those of the files.
 pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
     let rows = rows_of(files.record, files.result.lowest_frequency_hz);
-    let curve = curve(&rows, files.result).svg();
+    let measured = measured_curve(files.test, &files.picture.setup.specimen);
+    let curve = curve(&rows, files.result, &measured).svg();
     let crack = crack_map(&files.picture).svg();
     folder.write_plot("force-displacement", &curve.file())?;
     folder.write_plot("crack", &crack.file())?;
@@ -71,8 +74,8 @@ fn curve_csv(record: &Record, play_m: f64) -> String {
 }
 
 /// Load over displacement of the rows used in the evaluation ([`rows_of`]), with the theory's line
-/// if the scene gives a modulus.
-pub fn curve(rows: &[Row], result: &TestResult) -> Plot {
+/// if the scene gives a modulus, and the measured curve ([`measured_curve`]) unless it is empty.
+pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
     let play_m = play_m(rows);
     let points = |way: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
         rows.iter().map(|row| [way(row), row.load_n()]).collect()
@@ -105,6 +108,13 @@ pub fn curve(rows: &[Row], result: &TestResult) -> Plot {
             dashed: true,
         });
     }
+    if !measured.is_empty() {
+        lines.push(Line {
+            name: "measured".to_owned(),
+            points: measured.to_vec(),
+            dashed: true,
+        });
+    }
     let failure = named(result, FAILURE_FORCE).and_then(|figure| figure.theory);
     Plot {
         title: result.kind.replace('-', " "),
@@ -118,25 +128,6 @@ pub fn curve(rows: &[Row], result: &TestResult) -> Plot {
 
 fn named<'a>(result: &'a TestResult, name: &str) -> Option<&'a Figure> {
     result.figures.iter().find(|figure| figure.name == name)
-}
-
-/// A value with a suitable unit.
-pub fn shown(value: f64, unit: &str) -> String {
-    let size = value.abs();
-    let (factor, unit) = match unit {
-        "m" if size < 1.0 => (1e3, "mm"),
-        "m2" if size < 1.0 => (1e6, "mm2"),
-        "m/s" if size < 1.0 => (1e3, "mm/s"),
-        "Pa" if size >= 1e9 => (1e-9, "GPa"),
-        "Pa" if size >= 1e5 => (1e-6, "MPa"),
-        "Pa" if size >= 1e3 => (1e-3, "kPa"),
-        "N" if size >= 1e4 => (1e-3, "kN"),
-        "N/m" if size >= 1e4 => (1e-3, "kN/m"),
-        unit => (1.0, unit),
-    };
-    format!("{} {unit}", significant(factor * value, 4))
-        .trim_end()
-        .to_owned()
 }
 
 /// A fraction as a percentage with its sign.
@@ -186,9 +177,14 @@ fn add_figures(page: &mut Page, title: &str, figures: &[Figure]) {
     let mut columns = vec![Column::text("")];
     columns.extend(names.iter().map(|name| Column::number(name)));
     let cells = |figure: &Figure| {
-        let mut cells = vec![figure.name.clone(), shown(figure.value, &figure.unit)];
+        let mut cells = vec![
+            figure.name.clone(),
+            show_quantity(figure.value, &figure.unit),
+        ];
         if with_theory {
-            let theory = figure.theory.map(|value| shown(value, &figure.unit));
+            let theory = figure
+                .theory
+                .map(|value| show_quantity(value, &figure.unit));
             let error = figure.error.map(percent);
             cells.extend([theory, error].map(Option::unwrap_or_default));
         }

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use dem_io::units::significant;
+use dem_io::units::{show_quantity, significant};
 
 use super::evaluate::{Figure, STIFFNESS, TestResult};
-use super::page::{percent, shown};
+use super::page::percent;
 
 /// Smallest change at half the rate that is reported.
 const MUCH: f64 = 0.02;
@@ -62,7 +62,7 @@ impl TestResult {
             "rate",
             format!(
                 "{}; lowest frequency about {} Hz",
-                shown(self.rate_m_s, "m/s"),
+                show_quantity(self.rate_m_s, "m/s"),
                 significant(self.lowest_frequency_hz, 3)
             ),
         );
@@ -81,8 +81,8 @@ impl TestResult {
                 "first bond",
                 format!(
                     "at {}, crosshead travel {}, in {} at [{place}] mm",
-                    shown(first.force_n, "N"),
-                    shown(first.travel_m, "m"),
+                    show_quantity(first.force_n, "N"),
+                    show_quantity(first.travel_m, "m"),
                     first.cause.name().replace('_', " "),
                 ),
             );
@@ -98,9 +98,9 @@ impl TestResult {
                 format!(
                     "{} broken bonds, mean {} from the middle, standard deviation {}; {is} {}, as are {:.0} % of them",
                     crack.bonds,
-                    shown(crack.offset_m, "m"),
-                    shown(crack.spread_m, "m"),
-                    shown(crack.within_m, "m"),
+                    show_quantity(crack.offset_m, "m"),
+                    show_quantity(crack.spread_m, "m"),
+                    show_quantity(crack.within_m, "m"),
                     100.0 * crack.fraction_within
                 ),
             );
@@ -136,12 +136,12 @@ fn line(figure: &Figure, width: usize) -> String {
     let mut text = format!(
         "{:width$} {}",
         figure.name,
-        shown(figure.value, &figure.unit)
+        show_quantity(figure.value, &figure.unit)
     );
     if let (Some(theory), Some(error)) = (figure.theory, figure.error) {
         text += &format!(
             "   theory {}   error {}",
-            shown(theory, &figure.unit),
+            show_quantity(theory, &figure.unit),
             percent(error)
         );
     }

@@ -19,29 +19,29 @@ use super::caps::{Arc, Cap, Hidden, free_arcs, hidden, prune};
 use super::cells::Cells;
 
 /// Integrals over a solid.
-pub(crate) struct Solid {
+pub struct Solid {
     /// m^3.
-    pub(crate) volume: f64,
+    pub volume: f64,
     /// Of x, m^4.
-    pub(crate) first: Vector3<f64>,
+    pub first: Vector3<f64>,
     /// Of x x^T, m^5.
-    pub(crate) second: Matrix3<f64>,
+    pub second: Matrix3<f64>,
 }
 
 /// Integrals over a part of the unit sphere, of points u, and for a vector c.
-struct Patch {
+pub struct Patch {
     /// Of 1.
-    area: f64,
+    pub area: f64,
     /// Of u.
-    first: Vector3<f64>,
+    pub first: Vector3<f64>,
     /// Of u u^T.
-    second: Matrix3<f64>,
+    pub second: Matrix3<f64>,
     /// Of u u^T (u . c).
-    third: Matrix3<f64>,
+    pub third: Matrix3<f64>,
 }
 
 /// The integrals over the union of balls around `centres`, m, with `radii`, m, of the same number.
-pub(crate) fn solid(centres: &[[f64; 3]], radii: &[f64]) -> Solid {
+pub fn solid(centres: &[[f64; 3]], radii: &[f64]) -> Solid {
     let mut sum = Solid {
         volume: 0.0,
         first: Vector3::zeros(),
@@ -62,7 +62,11 @@ pub(crate) fn solid(centres: &[[f64; 3]], radii: &[f64]) -> Solid {
 }
 
 /// Calls `each` with the centre, m, the radius, m, and the free part of each sphere that has one.
-fn patches(centres: &[[f64; 3]], radii: &[f64], mut each: impl FnMut(Vector3<f64>, f64, &Patch)) {
+pub fn patches(
+    centres: &[[f64; 3]],
+    radii: &[f64],
+    mut each: impl FnMut(Vector3<f64>, f64, &Patch),
+) {
     let largest = radii.iter().fold(0.0_f64, |most, &r| most.max(r));
     let cells = Cells::new(centres, 2.0 * largest);
     let (mut near, mut caps, mut free) = (Vec::new(), Vec::new(), Vec::new());
@@ -227,38 +231,4 @@ fn stereographic_turn(
     let (tangent, chord) = (image(tangent), image(chord));
     let along = tangent.dot(&chord) - tangent.dot(sight) * chord.dot(sight);
     sight.dot(&tangent.cross(&chord)).atan2(along)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The integral of the normal over a closed surface is zero, and that of x n^T the volume times
-    /// one.
-    #[test]
-    fn surface_is_closed() {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        for count in [2, 3, 5, 20, 200, 2000] {
-            let centres: Vec<[f64; 3]> = (0..count).map(|_| [0; 3].map(|_| 3.0 * next())).collect();
-            let radii: Vec<f64> = (0..count).map(|_| 0.1 + 0.9 * next()).collect();
-            let (mut normal, mut moment) = (Vector3::zeros(), Matrix3::zeros());
-            patches(&centres, &radii, |centre, r, patch| {
-                normal += patch.first * (r * r);
-                moment += (centre * patch.first.transpose() + patch.second * r) * (r * r);
-            });
-            let volume = solid(&centres, &radii).volume;
-            let wanted = Matrix3::from_diagonal_element(volume);
-            assert!(normal.amax() < 1e-14 * volume, "{count}: {normal}");
-            assert!(
-                (moment - wanted).amax() < 1e-13 * volume,
-                "{count}: {moment}"
-            );
-        }
-    }
 }

@@ -37,6 +37,7 @@ pub(crate) fn test(kind: TestType) -> Test {
         young_modulus_pa: Some(MODULUS),
         poisson_ratio: 0.3,
         strength_pa: Some(STRENGTH),
+        measured: None,
         support_span_m: None,
         loading_span_m: None,
         width_m: None,

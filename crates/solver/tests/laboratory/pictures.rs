@@ -21,7 +21,7 @@ fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
     let record = record(2e4, 50.0);
     let test = test(TestType::FourPointBending);
     let result = evaluated(&test, &setup(Specimen::Beam(BEAM)), &record, true);
-    let plot = curve(&rows_of(&record, result.lowest_frequency_hz), &result);
+    let plot = curve(&rows_of(&record, result.lowest_frequency_hz), &result, &[]);
     let names: Vec<&str> = plot.lines.iter().map(|line| line.name.as_str()).collect();
     assert_eq!(
         names,

@@ -67,7 +67,7 @@ pub(super) fn finite(wall: &Wall) -> Option<Surface> {
 
 /// The colour of each cluster. The largest fragment of a broken one keeps its colour, so that a
 /// body that loses a crumb does not flicker.
-fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
+pub fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
     let mut heirs: Vec<Option<usize>> = vec![None; history.len()];
     for (id, cluster) in history.iter().enumerate() {
         let Some(heir) = (cluster.parent).and_then(|parent| heirs.get_mut(parent as usize)) else {
@@ -97,7 +97,7 @@ fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
 }
 
 /// The body of each particle, and the colour of each body.
-fn by_body(particles: usize, bodies: &[PlacedBody]) -> (Vec<u32>, Vec<[u8; 3]>) {
+pub fn by_body(particles: usize, bodies: &[PlacedBody]) -> (Vec<u32>, Vec<[u8; 3]>) {
     let mut of_particle = vec![u32::MAX; particles];
     for (number, body) in (0..).zip(bodies) {
         for &i in &body.particles {
@@ -119,55 +119,5 @@ fn colour(number: u32, particles: u32, whole: u32) -> [u8; 3] {
         SINGLE
     } else {
         of_fragment(number, f64::from(particles) / f64::from(whole.max(1)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn cluster(parent: Option<u32>, particles: u32) -> Cluster {
-        Cluster {
-            parent,
-            created_s: 0.0,
-            ended_s: None,
-            particles,
-        }
-    }
-
-    #[test]
-    fn the_largest_piece_keeps_the_colour_and_singles_are_grey() {
-        let history = [
-            cluster(None, 100),
-            cluster(None, 100),
-            cluster(Some(0), 30),
-            cluster(Some(0), 69),
-            cluster(Some(0), 1),
-            cluster(Some(3), 40),
-            cluster(Some(3), 29),
-        ];
-        let found = of_clusters(&history);
-        assert_eq!(found[0], of_fragment(0, 1.0));
-        assert_eq!(found[1], of_fragment(1, 1.0));
-        assert_eq!(found[2], of_fragment(2, 0.3));
-        assert_eq!(found[3], of_fragment(0, 0.69));
-        assert_eq!(found[4], SINGLE);
-        assert_eq!(found[5], of_fragment(0, 0.4));
-        assert_eq!(found[6], of_fragment(6, 0.29));
-    }
-
-    #[test]
-    fn without_clusters_bodies_have_colours() {
-        let body = |particles: Vec<u32>| PlacedBody {
-            name: String::new(),
-            first_particle: 0,
-            particles,
-            first_bond: 0,
-            bonds: Vec::new(),
-        };
-        let (of_particle, colours) = by_body(4, &[body(vec![2, 0]), body(vec![1]), body(vec![9])]);
-        assert_eq!(of_particle, [0, 1, 0, u32::MAX]);
-        assert_eq!(colours[0], of_fragment(0, 1.0));
-        assert_eq!(colours[1], SINGLE);
     }
 }

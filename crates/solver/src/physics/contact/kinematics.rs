@@ -182,7 +182,7 @@ impl<T: Number> FrameRotation<T> {
 
     /// Rotates a vector across the normal from the beginning of the step to its middle.
     #[inline(always)]
-    pub(crate) fn to_middle(&self, vector: Vec3<T>) -> Vec3<T> {
+    pub(crate) fn to_middle(self, vector: Vec3<T>) -> Vec3<T> {
         let [before, middle, _] = self.normals;
         self.spun(vector - (before + middle) * (middle.dot(vector) * self.per_rotation))
     }

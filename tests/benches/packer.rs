@@ -1,5 +1,5 @@
 //! The individual stages of dem-pack for the bending sample with 14,000 and 87,000 spheres, on one
-//! thread and on all: `cargo bench -p dem-pack`.
+//! thread and on all: `cargo bench -p dem-tests --features benchmarks --bench packer`.
 //!
 //! The stages between the surface and the body are timed by the program's own clock, as in the
 //! report of dem-pack: complete bodies are made, and each stage has its times from all of them. The
@@ -25,7 +25,7 @@ use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
 use rayon::ThreadPool;
 
 const SAMPLES: usize = 10;
-const SHAPES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/shapes");
+const SHAPES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../data/shapes");
 /// Diameters, and the approximate numbers of spheres.
 const SIZES: [(&str, &str); 2] = [
     ("2.2mm..2.75mm", "14,000 spheres"),

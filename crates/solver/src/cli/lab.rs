@@ -1,0 +1,255 @@
+//! `dem-run lab`: measured force-displacement curves to modulus, strength and mean curve.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use dem_io::safe_write::{
+    need_folder_of, refuse_to_replace, write_file, write_standard_json, write_standard_output,
+};
+use dem_io::text::visible;
+use dem_io::units::{AREA, LENGTH, quantity, show_quantity};
+use dem_io::{Diagnostic, Result};
+use dem_laboratory::{
+    ColumnChoice, Curve, Dimensions, EvaluatedSpecimen, ListedSpecimen, MeasuredMaterial,
+    MeasuredSpecimen, Specimen, Table, TestType, evaluate, material, page, read_list, read_text,
+    statistics, write_material,
+};
+use serde_json::json;
+
+#[derive(Debug, Args)]
+pub(super) struct LabArguments {
+    /// Files of the test rig, one for each specimen: CSV or text with columns of travel and force
+    #[arg(value_name = "FILE", required_unless_present = "specimens")]
+    files: Vec<PathBuf>,
+    /// Type of test: four-point-bending, three-point-bending, brazilian-disc, compression, tension
+    #[arg(long = "type", value_name = "TYPE")]
+    test: String,
+    /// File to write; a page of the same name, ending in .html, is written with it
+    #[arg(long, short, value_name = "FILE", default_value = "measured.json")]
+    output: PathBuf,
+
+    /// Distance of the supports of a beam, such as 180mm
+    #[arg(long, value_name = "LENGTH", help_heading = "Specimens")]
+    support_span: Option<String>,
+    /// Distance of the two loading pins
+    #[arg(long, value_name = "LENGTH", help_heading = "Specimens")]
+    loading_span: Option<String>,
+    /// Width of a beam, or thickness of a disc
+    #[arg(long, value_name = "LENGTH", help_heading = "Specimens")]
+    width: Option<String>,
+    /// Height of a beam, or diameter of a disc
+    #[arg(long, value_name = "LENGTH", help_heading = "Specimens")]
+    height: Option<String>,
+    /// Length of a specimen that is pressed or pulled
+    #[arg(long, value_name = "LENGTH", help_heading = "Specimens")]
+    length: Option<String>,
+    /// Area of its section, such as 9cm2
+    #[arg(long, value_name = "AREA", help_heading = "Specimens")]
+    area: Option<String>,
+    /// Table of specimens with their own dimensions and cracks, as CSV: columns file, width (mm),
+    /// ..., crack_offset (mm); empty cells are those of the options
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with = "files",
+        help_heading = "Specimens"
+    )]
+    specimens: Option<PathBuf>,
+
+    /// Column of the crosshead travel: its name or number; found unless given
+    #[arg(long, value_name = "COLUMN", help_heading = "Columns")]
+    travel_column: Option<String>,
+    /// Unit of the travel; the one in the head of its column unless given
+    #[arg(long, value_name = "UNIT", help_heading = "Columns")]
+    travel_unit: Option<String>,
+    /// Column of the force: its name or number; found unless given
+    #[arg(long, value_name = "COLUMN", help_heading = "Columns")]
+    force_column: Option<String>,
+    /// Unit of the force; the one in the head of its column unless given
+    #[arg(long, value_name = "UNIT", help_heading = "Columns")]
+    force_unit: Option<String>,
+
+    /// Print the summary as JSON
+    #[arg(long)]
+    json: bool,
+    /// Only print errors; --json is still printed
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Reads and evaluates the curves, writes the measured material and its page, and prints a summary.
+///
+/// # Errors
+/// Files or options that cannot be understood; no specimen is valid (the page is still written);
+/// files that cannot be written.
+pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
+    let test = arguments.test_type()?;
+    let dimensions = arguments.dimensions()?;
+    let listed = arguments.listed()?;
+    let page_file = arguments.output.with_extension("html");
+    need_folder_of(&arguments.output)?;
+    let inputs: Vec<PathBuf> = listed.iter().map(|one| one.file.clone()).collect();
+    refuse_to_replace(&[arguments.output.clone(), page_file.clone()], &inputs)?;
+    let measured: Vec<MeasuredSpecimen> = listed
+        .iter()
+        .map(|one| arguments.measured(one, test, &dimensions))
+        .collect::<Result<_>>()?;
+    // Curves are scaled to the dimensions of the options, or else to those of the first specimen.
+    let first = listed
+        .first()
+        .map_or_else(Dimensions::default, |one| one.dimensions);
+    let scaled_to = dimensions.or(&first);
+    let reference = Specimen::new(test, &scaled_to)?;
+    let evaluated = evaluate(measured);
+    let found = material(test, &scaled_to, &reference, &evaluated);
+    write_file(&page_file, |out| {
+        out.write_all(page(&evaluated, found.as_ref(), &reference).as_bytes())
+    })?;
+    let Some(found) = found else {
+        let doubts = evaluated
+            .iter()
+            .map(doubts_of)
+            .collect::<Vec<String>>()
+            .join("; ");
+        let problem = format!("no specimen is valid: {doubts}");
+        let remedy = format!("see {}", visible(&page_file.display().to_string()));
+        return Err(Diagnostic::input("", problem, remedy));
+    };
+    write_material(&arguments.output, &found)?;
+    if arguments.json {
+        write_standard_json(&summary(&found, &evaluated))
+    } else if arguments.quiet {
+        Ok(())
+    } else {
+        print(&found, &evaluated, &arguments.output, &page_file)
+    }
+}
+
+impl LabArguments {
+    fn test_type(&self) -> Result<TestType> {
+        let found = TestType::NAMES.iter().find(|(name, _)| *name == self.test);
+        found.map(|(_, test)| *test).ok_or_else(|| {
+            let names = TestType::NAMES.map(|(name, _)| name).join(", ");
+            let problem = format!("'{}' is not a type of test", self.test.escape_debug());
+            Diagnostic::input("--type", problem, format!("use one of {names}"))
+        })
+    }
+
+    /// The dimensions that the options give.
+    fn dimensions(&self) -> Result<Dimensions> {
+        let mut dimensions = Dimensions::default();
+        for (name, text) in [
+            ("support_span", &self.support_span),
+            ("loading_span", &self.loading_span),
+            ("width", &self.width),
+            ("height", &self.height),
+            ("length", &self.length),
+            ("area", &self.area),
+        ] {
+            let dimension = if name == "area" { &AREA } else { &LENGTH };
+            if let Some(text) = text {
+                let option = format!("--{}", name.replace('_', "-"));
+                let value = quantity(text, dimension).map_err(|error| error.within(&option))?;
+                dimensions.set(name, value);
+            }
+        }
+        Ok(dimensions)
+    }
+
+    fn listed(&self) -> Result<Vec<ListedSpecimen>> {
+        if let Some(table) = &self.specimens {
+            return read_list(table);
+        }
+        let listed = |file: &PathBuf| ListedSpecimen {
+            file: file.clone(),
+            dimensions: Dimensions::default(),
+            crack_m: None,
+        };
+        Ok(self.files.iter().map(listed).collect())
+    }
+
+    fn measured(
+        &self,
+        listed: &ListedSpecimen,
+        test: TestType,
+        dimensions: &Dimensions,
+    ) -> Result<MeasuredSpecimen> {
+        let column = |column: &Option<String>, unit: &Option<String>| ColumnChoice {
+            column: column.clone(),
+            unit: unit.clone(),
+        };
+        let travel = column(&self.travel_column, &self.travel_unit);
+        let force = column(&self.force_column, &self.force_unit);
+        let name = listed.file.display().to_string();
+        let specimen = Specimen::new(test, &listed.dimensions.or(dimensions))?;
+        let text = read_text(&listed.file)?;
+        let curve = Table::of(&text).and_then(|table| Curve::of(&table, &travel, &force));
+        Ok(MeasuredSpecimen {
+            curve: curve.map_err(|error| error.within(&name))?,
+            crack_m: listed.crack_m,
+            specimen,
+            name,
+        })
+    }
+}
+
+/// A specimen with what speaks against it.
+fn doubts_of(one: &EvaluatedSpecimen) -> String {
+    format!("{}: {}", one.measured.name, one.doubts.join("; "))
+}
+
+fn summary(found: &MeasuredMaterial, evaluated: &[EvaluatedSpecimen]) -> serde_json::Value {
+    let specimens: Vec<serde_json::Value> = evaluated
+        .iter()
+        .map(|one| {
+            let regions = &one.regions;
+            json!({
+                "file": one.measured.name,
+                "young_modulus_pa": one.young_modulus_pa,
+                "strength_pa": one.strength_pa,
+                "failure_force_n": regions.largest_n,
+                "travel_at_failure_m": one.travel_at_failure_m,
+                "stiffness_n_m": regions.stiffness_n_m,
+                "seating_m": regions.seating_m(&one.measured.curve),
+                "offset_n": regions.offset_n,
+                "drift_n_m": regions.drift_n_m,
+                "noise_n": regions.noise_n,
+                "notes": one.measured.curve.notes,
+                "left_out": one.doubts,
+            })
+        })
+        .collect();
+    json!({ "material": found, "specimens": specimens })
+}
+
+fn print(
+    found: &MeasuredMaterial,
+    evaluated: &[EvaluatedSpecimen],
+    output: &Path,
+    page_file: &Path,
+) -> Result<()> {
+    write_standard_output(|out| {
+        for one in evaluated {
+            for note in &one.measured.curve.notes {
+                writeln!(out, "note         {}: {note}", visible(&one.measured.name))?;
+            }
+            if !one.doubts.is_empty() {
+                writeln!(out, "left out     {}", visible(&doubts_of(one)))?;
+            }
+        }
+        let count = found.specimens.len();
+        writeln!(out, "specimens    {count} of {} valid", evaluated.len())?;
+        for (name, unit, value) in statistics(found) {
+            let mean = show_quantity(value.mean, unit);
+            let scatter = show_quantity(value.standard_deviation, unit);
+            writeln!(out, "{name:27}  {mean}, standard deviation {scatter}")?;
+        }
+        let [output, page_file] = [output, page_file].map(|path| path.display().to_string());
+        writeln!(
+            out,
+            "written      {}, {}",
+            visible(&output),
+            visible(&page_file)
+        )
+    })
+}
