@@ -112,6 +112,7 @@ impl Table {
             .windows(ROWS_OF_TABLE)
             .position(starts_table)
             .ok_or_else(none)?;
+        let first = with_damaged_rows(&rows, first, &notation);
         let last = rows
             .iter()
             .rposition(|(_, cells)| is_row(cells))
@@ -264,6 +265,28 @@ fn numbered(text: &str) -> Vec<(usize, &str)> {
         .map(|(at, line)| (at + 1, line))
         .filter(|(_, line)| !line.trim().is_empty())
         .collect()
+}
+
+/// The first row of a table whose first good row is `first`: damaged ones between the line with the
+/// units and that row belong to the table, so that they are refused and not taken for a head.
+fn with_damaged_rows(rows: &[(usize, Vec<&str>)], first: usize, notation: &Notation) -> usize {
+    let width = rows[first].1.len();
+    let has_number = |cells: &[&str]| cells.iter().any(|cell| notation.number(cell).is_some());
+    let above = rows[..first].iter().rev();
+    let damaged = above
+        .take_while(|(_, cells)| cells.len() == width && has_number(cells))
+        .count();
+    let head = (first - damaged).checked_sub(1).map(|at| &rows[at].1);
+    let has_units = |cells: &Vec<&str>| {
+        cells
+            .iter()
+            .any(|cell| is_unit(bare(cell)) || !named(cell).unit.is_empty())
+    };
+    if head.is_some_and(has_units) {
+        first - damaged
+    } else {
+        first
+    }
 }
 
 /// The cells of a line above the numbers. None: it has other columns than the numbers.

@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use dem_laboratory::{ColumnChoice, Curve, Table, TestType, evaluate};
 
-use crate::synthetic::{Made, USUAL, dimensions, specimen};
+use dem_testing::made_test::{Made, USUAL};
+
+use crate::synthetic::{curve, dimensions, specimen};
 
 fn read(text: &str) -> dem_io::Result<Curve> {
     Curve::of(
@@ -31,7 +33,7 @@ fn comma(value: f64) -> String {
 /// Equal curves come out of all of them.
 #[test]
 fn files_of_many_kinds_give_the_same_curve() {
-    let wanted = USUAL.curve();
+    let wanted = curve(&USUAL);
     for text in [
         file("travel (mm),force (N)\n", |x, f| format!("{x:.5},{f:.5}")),
         file("\u{feff}Travel [mm];Force [N]\n", |x, f| {
@@ -62,12 +64,12 @@ fn files_of_many_kinds_give_the_same_curve() {
             format!("{:.5};{:.5}\r", -x, -f)
         }),
     ] {
-        let curve = read(&text).unwrap_or_else(|error| panic!("{error}\n{}", &text[..200]));
-        assert_eq!(curve.travel_m.len(), wanted.travel_m.len());
-        for (a, b) in curve.travel_m.iter().zip(&wanted.travel_m) {
+        let found = read(&text).unwrap_or_else(|error| panic!("{error}\n{}", &text[..200]));
+        assert_eq!(found.travel_m.len(), wanted.travel_m.len());
+        for (a, b) in found.travel_m.iter().zip(&wanted.travel_m) {
             assert!((a - b).abs() < 6e-9, "{a} {b}");
         }
-        for (a, b) in curve.force_n.iter().zip(&wanted.force_n) {
+        for (a, b) in found.force_n.iter().zip(&wanted.force_n) {
             assert!((a - b).abs() < 6e-6, "{a} {b}");
         }
     }
@@ -81,8 +83,8 @@ fn columns_and_units_can_be_named() {
         unit: Some(unit.to_owned()),
     };
     let table = Table::of(&text).unwrap();
-    let curve = Curve::of(&table, &named("3", "mm"), &named("2", "N")).unwrap();
-    assert!((curve.travel_m[700] - USUAL.curve().travel_m[700]).abs() < 6e-9);
+    let found = Curve::of(&table, &named("3", "mm"), &named("2", "N")).unwrap();
+    assert!((found.travel_m[700] - curve(&USUAL).travel_m[700]).abs() < 6e-9);
 }
 
 /// The message of each damaged file.

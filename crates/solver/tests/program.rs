@@ -12,6 +12,7 @@ mod corpus;
 mod disk;
 mod inputs;
 mod interrupted;
+mod lab;
 mod laboratory;
 mod masses;
 mod names;

@@ -6,6 +6,7 @@
     reason = "a test stops where it fails"
 )]
 
+pub mod made_test;
 mod messages;
 
 pub use messages::{hold_messages, messages_of};

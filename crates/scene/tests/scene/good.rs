@@ -548,6 +548,35 @@ output                          none
     assert_eq!(scene.describe(), wanted);
 }
 
+/// A measured material gives the reference values that the test does not.
+#[test]
+fn a_test_with_a_measured_material() {
+    let file = folder().join("measured-test.toml");
+    let read = |options: &[&str]| {
+        let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
+        read_scene(&file, &options)
+    };
+    let scene = read(&[]).unwrap();
+    let test = scene.test.as_ref().unwrap();
+    assert_eq!(test.young_modulus_pa, Some(12.05e6));
+    assert_eq!(test.strength_pa, Some(0.21e6));
+    assert_eq!(test.measured.as_ref().unwrap().material.curve.len(), 2);
+    assert!(
+        scene
+            .input_files()
+            .contains(&folder().join("measured.json"))
+    );
+    let scene = read(&["test.strength=0.3 MPa"]).unwrap();
+    assert_eq!(scene.test.unwrap().strength_pa, Some(0.3e6));
+    let error = read(&["test.type=brazilian-disc"]).expect_err("another test");
+    assert!(
+        error.to_string().contains(
+            "test.measured is of the type \"three-point-bending\", not \"brazilian-disc\"; name a material measured in the same test"
+        ),
+        "{error}"
+    );
+}
+
 /// A test determines the end of the run, and all its defaults are shown as text.
 #[test]
 fn a_laboratory_test() {
@@ -578,6 +607,7 @@ test.rate_check                 true
 test.young_modulus              none
 test.poisson_ratio              0.3
 test.strength                   none
+test.measured                   none
 test.support_span               measured on walls and body
 test.width                      measured on walls and body
 test.height                     measured on walls and body
