@@ -4,7 +4,7 @@
 use dem_io::units::{Dimension, FORCE, LENGTH};
 use dem_io::{Diagnostic, Result};
 
-use crate::table::{Table, size_of};
+use crate::table::{Column, Table, size_of};
 
 /// Fewest rows of a curve.
 const FEWEST_ROWS: usize = 20;
@@ -265,8 +265,7 @@ impl Wanted<'_> {
         {
             return Ok(number - 1);
         }
-        let is_it =
-            |column: &crate::table::Column| column.name.trim().eq_ignore_ascii_case(wanted.trim());
+        let is_it = |column: &Column| column.name.trim().eq_ignore_ascii_case(wanted.trim());
         table.columns.iter().position(is_it).ok_or_else(|| {
             let all: Vec<usize> = (0..count).collect();
             let problem = format!(

@@ -8,24 +8,25 @@ mod curve;
 mod evaluation;
 mod fit;
 mod list;
+mod material;
 mod mean_curve;
 mod numbers;
 mod page;
 mod regions;
 mod specimen;
+mod statistic;
 mod table;
 mod target;
 pub mod theory;
 
 pub use curve::{ColumnChoice, Curve};
-pub use evaluation::{
-    EvaluatedSpecimen, FAILED, FORMAT_VERSION, LONGEST_SEATING, MeasuredMaterial, MeasuredSpecimen,
-    Statistic, evaluate, material,
-};
+pub use evaluation::{EvaluatedSpecimen, FAILED, LONGEST_SEATING, MeasuredSpecimen, evaluate};
 pub use list::{ListedSpecimen, read_list};
+pub use material::{FORMAT_VERSION, MeasuredMaterial, material};
 pub use mean_curve::CurvePoint;
 pub use page::{page, regions_plot, statistics};
 pub use regions::Regions;
 pub use specimen::{Dimensions, Specimen, TestType};
+pub use statistic::Statistic;
 pub use table::{Column, Table, read_text};
 pub use target::{area_between, read_material, write_material};

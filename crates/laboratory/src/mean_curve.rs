@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::evaluation::{EvaluatedSpecimen, Statistic};
+use crate::evaluation::EvaluatedSpecimen;
 use crate::specimen::Specimen;
+use crate::statistic::Statistic;
 
 /// Points of a mean curve.
 const POINTS: usize = 201;

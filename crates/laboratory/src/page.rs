@@ -5,8 +5,10 @@ use std::ops::Range;
 use dem_io::units::show_quantity;
 use dem_plots::{Axis, Column, Line, MOST_LINES, Page, Plot, Row, Table};
 
-use crate::evaluation::{EvaluatedSpecimen, MeasuredMaterial, Statistic};
+use crate::evaluation::EvaluatedSpecimen;
+use crate::material::MeasuredMaterial;
 use crate::specimen::{Dimensions, Specimen};
+use crate::statistic::Statistic;
 
 /// Everything about a series on one page that needs no other file. `material`: of the valid
 /// specimens, if there are any; `reference`: the specimen to which curves are scaled.

@@ -5,7 +5,7 @@ use std::path::Path;
 use dem_io::safe_write::{write_file, write_json_text};
 use dem_io::{Diagnostic, Result};
 
-use crate::evaluation::{FORMAT_VERSION, MeasuredMaterial};
+use crate::material::{FORMAT_VERSION, MeasuredMaterial};
 use crate::specimen::Specimen;
 
 /// Writes a measured material as JSON, whole or not at all.
