@@ -1,7 +1,7 @@
 //! A body: spheres, the bonds between them, and information on both.
 //!
-//! [`check`] contains the rules for every body, [`files`] reads and writes bodies by the ending of
-//! the file's name, [`summary`] lists the contents of a body, [`mass`] computes its mass.
+//! `check` contains the rules for every body, [`files`] reads and writes bodies by the ending of
+//! the file's name, `summary` lists the contents of a body, [`mass`] computes its mass.
 
 pub(crate) mod check;
 pub mod csv;

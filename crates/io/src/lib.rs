@@ -1,7 +1,7 @@
 //! What dem-pack and dem-run share: surfaces, bodies and their files. Nothing here knows an
 //! algorithm of either program.
 //!
-//! Data flow: STL bytes -> [`stl`] facets -> [`surface`] welded, oriented shells; [`body`] <->
+//! Data flow: STL bytes -> `stl` facets -> [`surface`] welded, oriented shells; [`body`] <->
 //! files. Lengths are metres unless a name says otherwise.
 
 pub mod body;

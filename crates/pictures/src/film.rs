@@ -21,7 +21,7 @@ const PICTURE_MS: [usize; 2] = [40, 400];
 /// Lines between the frames of a film strip.
 const RULE: [u8; 3] = [222, 225, 229];
 
-/// At most [`OF_STRIP`] of this number of pictures: the first, the last and others evenly between
+/// At most `OF_STRIP` of this number of pictures: the first, the last and others evenly between
 /// them.
 pub fn chosen_for_strip(count: usize) -> Vec<usize> {
     match count {

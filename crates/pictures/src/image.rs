@@ -12,7 +12,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// A picture of one colour. Sides beyond [`MAX_SIDE_PX`] are cut off; without width or height
+    /// A picture of one colour. Sides beyond `MAX_SIDE_PX` are cut off; without width or height
     /// it has no pixels.
     pub fn new(width: u32, height: u32, colour: [u8; 3]) -> Self {
         let [width, height] = [width, height].map(|side| side.min(MAX_SIDE_PX));

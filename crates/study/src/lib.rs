@@ -2,8 +2,8 @@
 //! run time.
 //!
 //! Study -> [`expand`] runs -> [`jobs`] processes with a folder each -> [`collect`] their
-//! outcomes -> [`judge`] errors (of distributions: [`masses`], of tests: [`curves`]) -> [`table`]
-//! medians, [`front`]s, [`order`]s -> CSV, JSON, [`page`] with [`plot`]s, [`want`] the fastest run
+//! outcomes -> `judge` errors (of distributions: [`masses`], of tests: [`curves`]) -> `table`
+//! medians, `front`s, `order`s -> CSV, JSON, [`page`] with [`plot`]s, [`want`] the fastest run
 //! that is accurate enough.
 
 pub mod collect;

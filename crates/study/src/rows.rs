@@ -95,7 +95,7 @@ pub struct Judged {
     pub uncertainty: Option<f64>,
     /// True if this run is the reference of others.
     pub is_reference: bool,
-    /// True if it is on the [front](super::front).
+    /// True if it is on the front.
     pub is_on_front: bool,
     /// Time of its reference run over its own.
     pub times_as_fast: Option<f64>,

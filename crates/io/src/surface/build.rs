@@ -41,7 +41,7 @@ const FLAT: f64 = 1e-10;
 /// just one facet.
 ///
 /// # Errors
-/// A file that is no whole STL (see [`read_facets`]), a surface that is not closed, that has edges
+/// A file that is no whole STL (see `read_facets`), a surface that is not closed, that has edges
 /// with an odd number of facets, that has no two sides, or that encloses nothing. The message names
 /// the number and the place of what is wrong.
 pub fn surface_from_stl(bytes: &[u8], source: &str, settings: ReadSettings) -> Result<Surface> {

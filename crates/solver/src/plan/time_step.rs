@@ -63,7 +63,7 @@ pub struct StepBasis {
 }
 
 impl StepBasis {
-    /// From the present state and, if bodies may be added, `to_come`: see [`arriving`].
+    /// From the present state and, if bodies may be added, `to_come`: see `arriving`.
     pub fn of(scene: &Scene, state: &mut State, to_come: Option<&mut State>) -> Self {
         let run = &scene.run;
         let impact_speed_m_s = impact_speed(scene, state);

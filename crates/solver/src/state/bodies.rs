@@ -12,7 +12,7 @@ pub struct PlacedBody {
     pub name: String,
     /// First of its particles in the state.
     pub first_particle: usize,
-    /// For each particle of the body's file, in order: its number in the state, or [`REMOVED`].
+    /// For each particle of the body's file, in order: its number in the state, or `REMOVED`.
     pub particles: Vec<u32>,
     /// First of its bonds in the state.
     pub first_bond: usize,

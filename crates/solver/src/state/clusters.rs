@@ -1,6 +1,6 @@
 //! Clusters: particles joined by bonds that are not broken (Platzer 2022, section 4.2).
 //!
-//! Replaces algorithms 2 (detection) and 3 (triggers, in [`triggers`]) there. Algorithm 2 is not
+//! Replaces algorithms 2 (detection) and 3 (triggers, in `triggers`) there. Algorithm 2 is not
 //! used as printed: it reads the first partner of a bond twice, and a bond between two clusters
 //! already found adds a particle to one of them instead of joining the two. Here sets are disjoint
 //! by construction (union-find).

@@ -160,9 +160,9 @@ pub struct NewCluster {
 /// New numbers of particles and bonds.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Renumbering {
-    /// For each old particle, its new number, or [`REMOVED`].
+    /// For each old particle, its new number, or `REMOVED`.
     pub particles: Vec<u32>,
-    /// For each old bond, its new number, or [`REMOVED`].
+    /// For each old bond, its new number, or `REMOVED`.
     pub bonds: Vec<u32>,
     /// Particles from this number on are carried by clumps.
     pub free: u32,

@@ -14,7 +14,7 @@ pub(crate) fn body_key(name: &str, instance: u32) -> u64 {
     hash(u64::from(instance), name.bytes().map(u64::from))
 }
 
-/// Factor on the strength of the bond between two particles of a body (its [`body_key`]):
+/// Factor on the strength of the bond between two particles of a body (its `body_key`):
 /// (-ln(1 - u))^(1/m) with u uniform in (0, 1) and m the Weibull modulus.
 ///
 /// The given strength is thus the scale of the distribution: 63.2 % of the bonds are weaker, and
