@@ -4,6 +4,7 @@
 //! Data flow: text of a file -> [`Table`] -> [`Curve`] -> [`Regions`] -> [`EvaluatedSpecimen`] ->
 //! [`MeasuredMaterial`], which scenes take as their target.
 
+mod area;
 mod curve;
 mod evaluation;
 mod fit;
@@ -19,6 +20,7 @@ mod table;
 mod target;
 pub mod theory;
 
+pub use area::area_between;
 pub use curve::{ColumnChoice, Curve};
 pub use evaluation::{EvaluatedSpecimen, FAILED, LONGEST_SEATING, MeasuredSpecimen, evaluate};
 pub use list::{ListedSpecimen, read_list};
@@ -29,4 +31,4 @@ pub use regions::Regions;
 pub use specimen::{Dimensions, Specimen, TestType};
 pub use statistic::Statistic;
 pub use table::{Column, Table, read_text};
-pub use target::{area_between, read_material, write_material};
+pub use target::{read_material, write_material};

@@ -55,32 +55,3 @@ impl MeasuredMaterial {
             .collect()
     }
 }
-
-/// Area between two curves up to the end of the first, over the area below the first. A curve
-/// carries nothing outside its ends. Points: displacement, m, ascending, and load, N.
-pub fn area_between(wanted: &[[f64; 2]], found: &[[f64; 2]]) -> f64 {
-    let (Some(first), Some(last)) = (wanted.first(), wanted.last()) else {
-        return f64::NAN;
-    };
-    let steps = 10 * wanted.len();
-    let mut between = 0.0;
-    let mut below = 0.0;
-    for step in 0..steps {
-        let x = first[0] + (step as f64 + 0.5) / steps as f64 * (last[0] - first[0]);
-        let [wanted_n, found_n] = [wanted, found].map(|curve| load_n(curve, x));
-        between += (found_n - wanted_n).abs();
-        below += wanted_n.abs();
-    }
-    between / below
-}
-
-/// Load of a curve at a displacement, N; 0 outside its ends.
-fn load_n(curve: &[[f64; 2]], x: f64) -> f64 {
-    let next = curve.partition_point(|point| point[0] <= x);
-    match (next.checked_sub(1).map(|at| curve[at]), curve.get(next)) {
-        (Some(before), Some(after)) => {
-            before[1] + (x - before[0]) / (after[0] - before[0]) * (after[1] - before[1])
-        }
-        _ => 0.0,
-    }
-}

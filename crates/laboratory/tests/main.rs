@@ -1,5 +1,6 @@
 //! All that can be tested of this crate from outside.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod area;
 mod files;
 mod synthetic;

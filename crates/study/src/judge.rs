@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use dem_io::units::significant;
 use dem_scene::study::{MeasureOf, Reference, Study};
 
-use super::curves;
 use super::expand::{Run, group};
 use super::masses::{by_chance, distance};
 use super::outcome::Done;
 use super::reference::{Extrapolated, richardson};
 use super::rows::{Judged, Row};
+use dem_laboratory::area_between;
 
 /// Determines the references of one measure, and from them the errors.
 pub(crate) fn judge(
@@ -110,7 +110,7 @@ impl Group<'_> {
                         judged.uncertainty = Some(by_chance(own.len(), other.len()));
                     }
                     MeasureOf::Curve => {
-                        judged.error = Some(curves::distance(&own.curve, &other.curve));
+                        judged.error = Some(area_between(&own.curve, &other.curve));
                     }
                     _ => {}
                 }

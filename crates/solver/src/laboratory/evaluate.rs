@@ -249,7 +249,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     let wanted = measured_curve(test, &setup.specimen);
     if !wanted.is_empty() {
         let points = rows.iter().map(|row| [row.travel_m - play_m, row.load_n()]);
-        let apart = area_between(&wanted, &points.collect::<Vec<[f64; 2]>>());
+        let apart = area_between(&points.collect::<Vec<[f64; 2]>>(), &wanted);
         measured.add(APART, Some(apart), "", None);
     }
     let first_broken = first_broken(evidence).map(|first| FirstBroken {
