@@ -2,22 +2,22 @@
 
 /// A straight line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Line {
+pub struct Line {
     /// Rise per unit of x.
-    pub(crate) slope: f64,
+    pub slope: f64,
     /// Standard error of the slope.
-    pub(crate) slope_error: f64,
+    pub slope_error: f64,
     /// Value at `x0`.
-    pub(crate) at_x0: f64,
+    pub at_x0: f64,
     /// Mean of all x.
-    pub(crate) x0: f64,
+    pub x0: f64,
     /// Standard deviation of the residuals.
-    pub(crate) residual: f64,
+    pub residual: f64,
 }
 
 impl Line {
     /// The line fitted to points; at least three, not all with the same x.
-    pub(crate) fn fitted(x: &[f64], y: &[f64]) -> Self {
+    pub fn fitted(x: &[f64], y: &[f64]) -> Self {
         let count = x.len() as f64;
         let (x0, y0) = (mean(x), mean(y));
         let pairs = || x.iter().zip(y).map(|(x, y)| (x - x0, y - y0));
@@ -33,6 +33,11 @@ impl Line {
             x0,
             residual,
         }
+    }
+
+    /// The x at which its value is 0.
+    pub fn zero(&self) -> f64 {
+        self.x0 - self.at_x0 / self.slope
     }
 
     /// Its value at x.

@@ -23,6 +23,7 @@ pub mod theory;
 pub use area::area_between;
 pub use curve::{ColumnChoice, Curve};
 pub use evaluation::{EvaluatedSpecimen, FAILED, LONGEST_SEATING, MeasuredSpecimen, evaluate};
+pub use fit::Line;
 pub use list::{ListedSpecimen, read_list};
 pub use material::{FORMAT_VERSION, MeasuredMaterial, material};
 pub use mean_curve::CurvePoint;

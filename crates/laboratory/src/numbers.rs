@@ -53,16 +53,19 @@ impl Notation {
     /// 2 for a line of numbers alone, 1 for one with two numbers among other cells.
     fn score(&self, line: &str) -> usize {
         let cells = self.cells(line);
-        let numbers = cells
-            .iter()
-            .filter(|cell| self.number(cell).is_some())
-            .count();
+        let numbers = self.count_numbers(&cells);
         let filled = cells.iter().filter(|cell| !cell.is_empty()).count();
         match numbers {
             0 | 1 => 0,
             _ if numbers == filled => 2,
             _ => 1,
         }
+    }
+
+    /// How many cells are numbers.
+    pub(crate) fn count_numbers(&self, cells: &[&str]) -> usize {
+        let numbers = cells.iter().filter(|cell| self.number(cell).is_some());
+        numbers.count()
     }
 
     /// The cells of a line, without the spaces and quotes around them.

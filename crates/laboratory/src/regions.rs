@@ -94,7 +94,7 @@ impl Regions {
             drift_n_m: baseline.line.slope,
             noise_n,
             stiffness_n_m: line.slope,
-            start_m: line.x0 - line.at_x0 / line.slope,
+            start_m: line.zero(),
             largest_n,
             corrected_n,
             doubts,

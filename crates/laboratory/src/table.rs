@@ -96,13 +96,7 @@ impl Table {
             .iter()
             .map(|(number, line)| (*number, notation.cells(line)))
             .collect();
-        let is_row = |cells: &[&str]| {
-            cells
-                .iter()
-                .filter(|cell| notation.number(cell).is_some())
-                .count()
-                >= 2
-        };
+        let is_row = |cells: &[&str]| notation.count_numbers(cells) >= 2;
         let starts_table = |rows: &[(usize, Vec<&str>)]| {
             let width = rows[0].1.len();
             rows.iter()
@@ -203,8 +197,9 @@ impl TextTable {
         let of = |decimal: char| Notation { separator, decimal };
         // Both signs occur in names of files: numbers decide.
         let numbers = |notation: &Notation| -> usize {
-            let cells = rest.iter().flat_map(|(_, line)| notation.cells(line));
-            cells.filter(|cell| notation.number(cell).is_some()).count()
+            let lines = rest.iter();
+            let of_line = |(_, line): &(usize, &str)| notation.count_numbers(&notation.cells(line));
+            lines.map(of_line).sum()
         };
         let notation =
             if separator != Separator::Character(',') && numbers(&of(',')) > numbers(&of('.')) {
@@ -271,10 +266,9 @@ fn numbered(text: &str) -> Vec<(usize, &str)> {
 /// units and that row belong to the table, so that they are refused and not taken for a head.
 fn with_damaged_rows(rows: &[(usize, Vec<&str>)], first: usize, notation: &Notation) -> usize {
     let width = rows[first].1.len();
-    let has_number = |cells: &[&str]| cells.iter().any(|cell| notation.number(cell).is_some());
     let above = rows[..first].iter().rev();
     let damaged = above
-        .take_while(|(_, cells)| cells.len() == width && has_number(cells))
+        .take_while(|(_, cells)| cells.len() == width && notation.count_numbers(cells) > 0)
         .count();
     let head = (first - damaged).checked_sub(1).map(|at| &rows[at].1);
     let has_units = |cells: &Vec<&str>| {

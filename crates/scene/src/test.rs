@@ -18,7 +18,7 @@ use dem_io::units::{AREA, LENGTH, STRESS, VELOCITY};
 use std::path::{Path, PathBuf};
 
 use super::paths::named_path;
-use dem_laboratory::{MeasuredMaterial, TestType, read_material};
+use dem_laboratory::{Dimensions, MeasuredMaterial, TestType, read_material};
 
 pub(super) static TEST: Schema = Schema {
     title: "[test]",
@@ -261,16 +261,11 @@ fn measured(table: &Table<'_>, kind: TestType, folder: &Path) -> Result<Option<M
 
 /// Refuses dimensions that do not apply to this type of test.
 fn refuse_dimensions(table: &Table<'_>, kind: TestType) -> Result<()> {
-    let all = [
-        "support_span",
-        "loading_span",
-        "width",
-        "height",
-        "length",
-        "area",
-    ];
     let known = kind.dimensions();
-    match table.given(&all).find(|(key, _)| !known.contains(key)) {
+    match table
+        .given(&Dimensions::NAMES)
+        .find(|(key, _)| !known.contains(key))
+    {
         Some((_, field)) => {
             let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
             Err(field.refuse(

@@ -9,7 +9,7 @@ use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use dem_laboratory::theory::Beam;
 use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_stress_pa};
-use dem_laboratory::{Specimen, area_between};
+use dem_laboratory::{Line, Specimen, area_between};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
 /// settle into the surface; above, bonds break.
@@ -182,15 +182,12 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     if elastic.len() < FEWEST_ROWS {
         return None;
     }
-    let count = elastic.len() as f64;
-    let mean = |of: &dyn Fn(&Row) -> f64| elastic.iter().map(of).sum::<f64>() / count;
-    let (way_m, load_n) = (mean(&|row| way(row)), mean(&|row| row.load_n()));
-    let sum = |of: &dyn Fn(&Row) -> f64| elastic.iter().map(of).sum::<f64>();
-    let both = sum(&|row| (way(row) - way_m) * (row.load_n() - load_n));
-    let stiffness_n_m = both / sum(&|row| (way(row) - way_m).powi(2));
-    stiffness_n_m.is_finite().then(|| Slope {
-        stiffness_n_m,
-        start_m: way_m - load_n / stiffness_n_m,
+    let (ways_m, loads_n): (Vec<f64>, Vec<f64>) =
+        elastic.iter().map(|row| (way(row), row.load_n())).unzip();
+    let line = Line::fitted(&ways_m, &loads_n);
+    line.slope.is_finite().then(|| Slope {
+        stiffness_n_m: line.slope,
+        start_m: line.zero(),
     })
 }
 

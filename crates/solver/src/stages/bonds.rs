@@ -124,14 +124,7 @@ pub fn bond_wrenches(
     partitions: &mut [Partition],
     wrenches: &mut [Wrench],
 ) {
-    for_each_partition(partitions, wrenches, &|partition, wrenches| {
-        with_lanes(PartitionWork {
-            bonds,
-            poses,
-            partition,
-            wrenches,
-        });
-    });
+    each_partition(bonds, poses, partitions, wrenches, &|work| with_lanes(work));
 }
 
 /// The same forces, one bond at a time.
@@ -141,14 +134,26 @@ pub fn bond_wrenches_one_by_one(
     partitions: &mut [Partition],
     wrenches: &mut [Wrench],
 ) {
+    each_partition(bonds, poses, partitions, wrenches, &|work| {
+        work.with::<f64>(())
+    });
+}
+
+/// Has the work of each partition done.
+fn each_partition(
+    bonds: &Bonds,
+    poses: &[Pose],
+    partitions: &mut [Partition],
+    wrenches: &mut [Wrench],
+    work: &(impl Fn(PartitionWork<'_>) + Sync),
+) {
     for_each_partition(partitions, wrenches, &|partition, wrenches| {
-        let work = PartitionWork {
+        work(PartitionWork {
             bonds,
             poses,
             partition,
             wrenches,
-        };
-        work.with::<f64>(());
+        });
     });
 }
 
