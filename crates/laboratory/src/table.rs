@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use dem_io::units::{Dimension, FORCE, LENGTH, quantity};
-use dem_io::{Diagnostic, Result};
+use dem_io::{Diagnostic, Result, read_input};
 
 use crate::numbers::{Notation, Separator};
 
@@ -38,13 +38,7 @@ pub struct Table {
 /// # Errors
 /// No such file; it cannot be read; it is not text (all exit code 2).
 pub fn read_text(path: &Path) -> Result<String> {
-    let bytes = std::fs::read(path).map_err(|error| {
-        Diagnostic::input(
-            path.display().to_string(),
-            format!("cannot be read: {error}"),
-            "check its name and folder",
-        )
-    })?;
+    let bytes = read_input(path, "the curve of a test")?;
     text_of(&bytes).ok_or_else(|| {
         Diagnostic::input(
             path.display().to_string(),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dem_io::safe_write::{write_file, write_json_text};
-use dem_io::{Diagnostic, Result};
+use dem_io::{Diagnostic, Result, read_input};
 
 use crate::material::{FORMAT_VERSION, MeasuredMaterial};
 use crate::specimen::Specimen;
@@ -25,9 +25,8 @@ pub fn read_material(path: &Path) -> Result<MeasuredMaterial> {
         let remedy = "name the file measured.json that dem-run lab wrote";
         Diagnostic::input(path.display().to_string(), problem, remedy)
     };
-    let text = std::fs::read_to_string(path)
-        .map_err(|error| refuse(format!("cannot be read: {error}")))?;
-    let material: MeasuredMaterial = serde_json::from_str(&text)
+    let bytes = read_input(path, "a measured material")?;
+    let material: MeasuredMaterial = serde_json::from_slice(&bytes)
         .map_err(|error| refuse(format!("is not a measured material: {error}")))?;
     if material.version != FORMAT_VERSION {
         return Err(refuse(format!(

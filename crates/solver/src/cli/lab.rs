@@ -86,9 +86,10 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
     let test = arguments.test_type()?;
     let dimensions = arguments.dimensions()?;
     let listed = arguments.listed()?;
-    let page_file = arguments.output.with_extension("html");
+    let page_file = arguments.page_file()?;
     need_folder_of(&arguments.output)?;
-    let inputs: Vec<PathBuf> = listed.iter().map(|one| one.file.clone()).collect();
+    let curves = listed.iter().map(|one| one.file.clone());
+    let inputs: Vec<PathBuf> = curves.chain(arguments.specimens.clone()).collect();
     refuse_to_replace(&[arguments.output.clone(), page_file.clone()], &inputs)?;
     let measured: Vec<MeasuredSpecimen> = listed
         .iter()
@@ -133,6 +134,17 @@ impl LabArguments {
             let problem = format!("'{}' is not a type of test", self.test.escape_debug());
             Diagnostic::input("--type", problem, format!("use one of {names}"))
         })
+    }
+
+    /// The page beside the output.
+    fn page_file(&self) -> Result<PathBuf> {
+        let page_file = self.output.with_extension("html");
+        if page_file == self.output {
+            let problem = format!("{} is the name of the page", self.output.display());
+            let remedy = "write the material to a name that ends in .json";
+            return Err(Diagnostic::input("--output", problem, remedy));
+        }
+        Ok(page_file)
     }
 
     /// The dimensions that the options give.

@@ -143,7 +143,7 @@ fn what_cannot_be_evaluated_is_refused_with_one_message() {
         (&good, &["--type", "brazilian-disc", "--width", "30mm"], "error: brazilian-disc needs the height; add --height 30mm".to_owned()),
         (&good, &["--type", "tension", "--length", "4 parsec"], "error: --length: '4 parsec' is not a length: unknown unit 'parsec'".to_owned()),
         (&torn, &BENDING, format!("error: {}: line 3: the travel is 'x", place(&torn))),
-        (&bench.path("none.csv"), &BENDING, format!("error: {}: cannot be read", place(&bench.path("none.csv")))),
+        (&bench.path("none.csv"), &BENDING, format!("error: {}: there is no such file; check its name and folder", place(&bench.path("none.csv")))),
     ] {
         let (said, code) = lab(file, options);
         assert!(said.starts_with(&wanted), "{said}\nnot\n{wanted}");
@@ -158,17 +158,47 @@ fn what_cannot_be_evaluated_is_refused_with_one_message() {
     );
     assert_eq!(code, 2);
     assert!(!bench.path("m.json").exists() && bench.path("m.html").exists());
-    // Nothing overwrites a curve.
-    let mut command = dem_run();
-    command
-        .arg("lab")
-        .arg(&good)
-        .args(BENDING)
-        .arg("--output")
-        .arg(&good);
-    let (said, code) = refused(&command.output().unwrap());
-    assert_eq!(code, 2, "{said}");
+    // Nothing overwrites a curve or a table of specimens, and the page is not the material.
+    let list = "file,width (mm)\ngood.csv,30\n";
+    let specimens = bench.write("list.csv", list);
+    let page = bench.path("m.html");
+    for (source, output, problem) in [
+        (
+            vec![&good],
+            &good,
+            "it would replace the file that it is made from",
+        ),
+        (
+            vec![&PathBuf::from("--specimens"), &specimens],
+            &specimens,
+            "it would replace the file that it is made from",
+        ),
+        (vec![&good], &page, "is the name of the page"),
+    ] {
+        let mut command = dem_run();
+        command.arg("lab").args(source).args(BENDING);
+        let (said, code) = refused(&command.arg("--output").arg(output).output().unwrap());
+        assert!(said.contains(problem), "{said}");
+        assert_eq!(code, 2, "{said}");
+    }
     assert_eq!(std::fs::read_to_string(&good).unwrap(), csv(&USUAL));
+    assert_eq!(std::fs::read_to_string(&specimens).unwrap(), list);
+}
+
+/// A file without an end is refused.
+#[cfg(unix)]
+#[test]
+fn a_file_without_an_end_is_refused() {
+    let bench = Bench::new();
+    let mut command = dem_run();
+    command.arg("lab").arg("/dev/zero").args(BENDING);
+    command.arg("--output").arg(bench.path("m.json"));
+    let (said, code) = refused(&command.output().unwrap());
+    assert!(
+        said.contains("/dev/zero: this is larger than 256 MB"),
+        "{said}"
+    );
+    assert_eq!(code, 2);
 }
 
 /// A bar whose bonds have the measured modulus and strength lies on the measured curve.
