@@ -58,3 +58,27 @@ pub fn print_completions(shell: Shell, mut command: Command) -> Result<()> {
 pub fn print_man_page(command: Command) -> Result<()> {
     write_standard_output(|mut out| clap_mangen::Man::new(command).render(&mut out))
 }
+
+/// The present day in universal time, as in 2026-01-31.
+pub fn today() -> String {
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    date_of_day(now.map_or(0, |since| since.as_secs() / 86_400))
+}
+
+/// The date of a day counted from 1970-01-01, in the Gregorian calendar: years of March to February
+/// in cycles of 400 years, which have 146,097 days each.
+pub fn date_of_day(day: u64) -> String {
+    let day = day + 719_468;
+    let (cycle, day) = (day / 146_097, day % 146_097);
+    let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let from_march = (5 * day + 2) / 153;
+    let month = if from_march < 10 {
+        from_march + 3
+    } else {
+        from_march - 9
+    };
+    let year = 400 * cycle + year + u64::from(month < 3);
+    let day = day - (153 * from_march + 2) / 5 + 1;
+    format!("{year:04}-{month:02}-{day:02}")
+}

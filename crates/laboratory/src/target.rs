@@ -53,4 +53,11 @@ impl MeasuredMaterial {
             .map(|point| [point.displacement_m, factor * point.load_n])
             .collect()
     }
+
+    /// The mean stiffness of a specimen of other dimensions, N/m. None: the dimensions of the
+    /// material are incomplete.
+    pub fn stiffness_of(&self, specimen: &Specimen) -> Option<f64> {
+        let own = Specimen::new(self.test, &self.dimensions).ok()?;
+        Some(own.force_factor(specimen) * self.stiffness_n_m.mean)
+    }
 }

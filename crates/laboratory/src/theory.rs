@@ -96,6 +96,22 @@ pub fn disc_stress_pa(force_n: f64, diameter_m: f64, thickness_m: f64) -> f64 {
     2.0 * force_n / (std::f64::consts::PI * diameter_m * thickness_m)
 }
 
+/// Young's modulus of a disc from the approach of two points of its loaded diameter, Pa:
+/// E = 2 k/(pi t) [2 ln((D + G)/(D - G)) - (1 - nu) G/D] for a force of k per approach, N/m, of two
+/// points at G/2 on both sides of the centre, m. It is the integral of the strain under two opposite
+/// point loads, in plane stress (Timoshenko and Goodier 1970, article 41).
+pub fn disc_modulus_pa(
+    stiffness_n_m: f64,
+    diameter_m: f64,
+    thickness_m: f64,
+    gauge_m: f64,
+    poisson_ratio: f64,
+) -> f64 {
+    let ends = ((diameter_m + gauge_m) / (diameter_m - gauge_m)).ln();
+    let shape = 2.0 * ends - (1.0 - poisson_ratio) * gauge_m / diameter_m;
+    2.0 * stiffness_n_m * shape / (std::f64::consts::PI * thickness_m)
+}
+
 /// Stress of a bar under a force along it, Pa.
 pub fn bar_stress_pa(force_n: f64, area_m2: f64) -> f64 {
     force_n / area_m2

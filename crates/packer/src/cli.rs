@@ -1,13 +1,15 @@
 //! The command line of dem-pack.
 
 mod arguments;
+mod recipe;
 mod report;
 mod shape;
 
 pub use self::arguments::{Arguments, RENAMED};
 use self::arguments::{Command, PackArguments, Reading};
+pub use self::recipe::Recipe;
 use self::report::{summary_text, surface_summary, surface_text};
-use self::shape::read_surface;
+use self::shape::{check_unit_of_diameter, read_surface};
 use crate::body::{BodySettings, make_body};
 use crate::sizes::Sizes;
 use clap::CommandFactory;
@@ -16,8 +18,7 @@ use dem_io::program::{print_completions, print_man_page};
 use dem_io::safe_write::{
     need_folder_of, refuse_to_replace, write_standard_json, write_standard_output,
 };
-use dem_io::units::show_length;
-use dem_io::{Diagnostic, Result, Surface};
+use dem_io::{Diagnostic, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -112,29 +113,6 @@ fn pack_and_write(
         }
         Ok(())
     }
-}
-
-/// Refuses a diameter without a unit that is larger than the shape, which was hardly meant in
-/// metres.
-fn check_unit_of_diameter(text: Option<&str>, sizes: &Sizes, surface: &Surface) -> Result<()> {
-    let text = text.unwrap_or_default();
-    let numbers = text.rsplit(':').next().unwrap_or(text);
-    let has_unit = numbers
-        .chars()
-        .any(|c| c.is_alphabetic() && !matches!(c, 'e' | 'E'));
-    let longest = surface.extent().iter().copied().fold(0.0, f64::max) * surface.unit_m;
-    if has_unit || sizes.min_m() <= longest {
-        return Ok(());
-    }
-    Err(Diagnostic::input(
-        format!("--diameter '{text}'"),
-        format!(
-            "no sphere fits: {} is larger than the shape, which is {} long",
-            show_length(sizes.min_m()),
-            show_length(longest)
-        ),
-        "a number without a unit is metres: write one, such as 2mm..3mm",
-    ))
 }
 
 /// The requested number of threads, or one per core.

@@ -29,6 +29,11 @@ impl Scene {
     /// The same as keys and values, in the same order.
     pub fn values(&self) -> Vec<(String, String)> {
         let mut lines = Lines(Vec::new());
+        if !self.included.is_empty() {
+            let files = self.included.iter().map(|file| file.display().to_string());
+            let files: Vec<String> = files.collect();
+            lines.0.push(("include".to_owned(), files.join(", ")));
+        }
         lines.table("run", &run::RUN, &self.run, run::list);
         lines.each(
             "materials",

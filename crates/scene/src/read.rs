@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::include::{document_of, folder_of};
 use super::paths::text_of;
 use super::presence::Presence;
 use super::root::SCENE;
@@ -10,7 +11,6 @@ use super::root::{SCENE_VERSION, Scene};
 use super::run::Integrator;
 use super::table::Table;
 use super::targets::Targets;
-use super::tree::Document;
 use super::{
     body, bond, clusters, contact, group, initial, inlet, load, material, measure, outlet, output,
     region, relaxation, replacement, run, search, sleep, statics, support, test, wall,
@@ -35,14 +35,11 @@ pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
 /// # Errors
 /// Those of [`read_scene`], except for reading the file.
 pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result<Scene> {
-    let mut document = Document::parse(source, text)?;
-    for text in overrides {
-        document.set(text)?;
-    }
+    let (document, included) = document_of(text, source, overrides)?;
     let root = Table::root(&document, &SCENE)?;
     check_version(&root)?;
     root.refuse_unknown()?;
-    let folder = Path::new(source).parent().unwrap_or(Path::new(""));
+    let folder = folder_of(source);
 
     let run = run::read(&root)?;
     let materials = each(&root, "materials", material::read)?;
@@ -80,6 +77,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     }
     Ok(Scene {
         source: source.to_owned(),
+        included,
         run,
         materials,
         bonds,

@@ -2,6 +2,7 @@
 
 use super::schema::{Key, Kind, Schema};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use super::body::BodyEntry;
 use super::bond::BondKind;
@@ -37,6 +38,8 @@ pub const SCENE_VERSION: u64 = 1;
 pub struct Scene {
     /// File from which it was read, as named by the user.
     pub source: String,
+    /// `include`: files that its materials, contacts and bonds also come from.
+    pub included: Vec<PathBuf>,
     /// `[run]`
     pub run: Run,
     /// `[materials.NAME]`
@@ -88,6 +91,11 @@ pub(super) static SCENE: Schema = Schema {
     doc: "A scene: bodies, walls, materials, loads, measures and output.",
     keys: &[
         Key::whole("version", 1, "Version of the format.").required("1"),
+        Key::new(
+            "include",
+            Kind::List(&Kind::Text("a file of materials, contacts and bonds")),
+            "Files with further `[materials]`, `[contacts]` and `[bonds]`, relative to the folder of the scene. Given by `--material` or `--set`, their tables replace those of the scene.",
+        ),
         Key::table("run", &run::RUN, run::RUN.doc).required("{ end_time = \"1 s\" }"),
         named(
             "materials",

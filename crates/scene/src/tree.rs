@@ -13,6 +13,8 @@ pub(super) enum Origin {
     Line(usize),
     /// A `--set`, by its index in [`Document::options`].
     Option(usize),
+    /// An included file, by its index in [`Document::included`], and a line of it, from 1.
+    Included(usize, usize),
 }
 
 /// A value and its origin.
@@ -42,6 +44,8 @@ pub(super) struct Document {
     pub(super) name: String,
     /// The texts of `--set`.
     pub(super) options: Vec<String>,
+    /// Names of the included files.
+    pub(super) included: Vec<String>,
     /// The root table.
     pub(super) root: Node,
 }
@@ -55,17 +59,13 @@ impl Document {
     /// # Errors
     /// Not TOML: line, and what was expected there.
     pub(super) fn parse(name: &str, text: &str) -> Result<Self> {
-        let lines = line_starts(text);
-        let table = DeTable::parse(text).map_err(|error| not_toml(name, text, &lines, &error))?;
-        let value = Value::Table(entries(table.into_inner(), &|byte| {
-            Origin::Line(line_of(&lines, byte))
-        }));
         Ok(Self {
             name: name.to_owned(),
             options: Vec::new(),
+            included: Vec::new(),
             root: Node {
                 origin: Origin::Line(1),
-                value,
+                value: Value::Table(parse_tables(name, text, &Origin::Line)?),
             },
         })
     }
@@ -74,12 +74,31 @@ impl Document {
     pub(super) fn place(&self, origin: Origin) -> String {
         match origin {
             Origin::Line(line) => format!("{}:{line}", self.name),
+            Origin::Included(file, line) => {
+                let name = self.included.get(file).map_or("", String::as_str);
+                format!("{name}:{line}")
+            }
             Origin::Option(number) => {
                 let text = self.options.get(number).map_or("", String::as_str);
                 format!("--set {}", shortened(text, SHOWN_OPTION))
             }
         }
     }
+}
+
+/// The tables of the text of a file `name`; `origin` is that of a line.
+///
+/// # Errors
+/// Not TOML: line, and what was expected there.
+pub(super) fn parse_tables(
+    name: &str,
+    text: &str,
+    origin: &dyn Fn(usize) -> Origin,
+) -> Result<Vec<(String, Node)>> {
+    let lines = line_starts(text);
+    let table = DeTable::parse(text).map_err(|error| not_toml(name, text, &lines, &error))?;
+    let of_byte = |byte| origin(line_of(&lines, byte));
+    Ok(entries(table.into_inner(), &of_byte))
 }
 
 /// The value of a `--set`, if it is TOML.

@@ -3,6 +3,7 @@
 mod corpus;
 mod feed;
 mod good;
+mod include;
 mod laboratory;
 mod options;
 mod properties;

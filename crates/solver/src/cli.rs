@@ -1,8 +1,10 @@
 //! The command line of dem-run: its arguments and their execution.
 
+mod calibrate;
 mod check;
 mod fragment;
 mod lab;
+mod packings;
 mod statics;
 mod stress;
 mod sweep;
@@ -22,7 +24,7 @@ use dem_results::checkpoint::read_checkpoint;
 use dem_results::folder::refuse_inputs_among_results;
 use dem_results::{Existing, ResultsFolder, write_json};
 use dem_scene::read_scene;
-use dem_scene::{BodySource, Integrator, Scene, read_bodies};
+use dem_scene::{BodySource, Integrator, Scene, include_text, read_bodies};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::interrupt::Interrupt;
@@ -78,6 +80,17 @@ enum Command {
                       dem-run lab a.csv b.csv c.csv --type four-point-bending --support-span 180mm --loading-span 80mm --width 30mm --height 35mm"
     )]
     Lab(Box<lab::LabArguments>),
+    /// Find modulus and strength of bonds with which the mean test of several packings gives the
+    /// wanted modulus and strength of the body
+    #[command(
+        after_help = "The scene has a [test] with young_modulus, strength or measured, the targets. Its bonds hold the first guess.\n\
+                      Exit code 1 if a target is not met; the page says why.\n\
+                      Examples:\n  \
+                      dem-run calibrate bending.toml --set test.measured=measured.json -o cake.toml -- sample.stl --diameter 4mm..6mm --overlap 0.296 --bond-range 1.0\n  \
+                      dem-run calibrate bending.toml --body a.vtp --body b.vtp --free strength\n  \
+                      dem-run calibrate drop.toml --free bonds.cake.damping.damping_ratio=rebound:0.4"
+    )]
+    Calibrate(Box<calibrate::CalibrateArguments>),
     /// Parameter study: run a scene with many settings, and compare error and run time
     #[command(
         after_help = "A study names a scene, what varies, what is measured and what it is compared with. Every run is a separate process.\n\
@@ -110,6 +123,10 @@ struct SceneArguments {
     /// out if there is only one body
     #[arg(long, value_name = "[NAME=]FILE")]
     body: Vec<String>,
+    /// File of materials, contacts and bonds, as dem-run calibrate writes it: its tables replace
+    /// those of the scene
+    #[arg(long, value_name = "FILE")]
+    material: Vec<PathBuf>,
     /// Set a value of the scene, such as run.end_time=0.5 or "bonds.bar.young_modulus=20 MPa"
     #[arg(long = "set", value_name = "PATH=VALUE")]
     overrides: Vec<String>,
@@ -161,11 +178,12 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
                 None => scene_data,
             };
             let mut plan = plan(&scene_data, bodies, threads, scene.force_step)?;
-            plan.inputs.set.clone_from(&scene.overrides);
+            plan.inputs.set = scene.all_overrides();
             check::check(&scene_data, &plan, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Lab(arguments)) => lab::lab(arguments),
+        Some(Command::Calibrate(arguments)) => calibrate::calibrate(arguments, interrupt),
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
         Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
@@ -212,6 +230,7 @@ impl RunArguments {
             ("--force", self.force),
             ("--resume", self.resume),
             ("--set", !self.scene.overrides.is_empty()),
+            ("--material", !self.scene.material.is_empty()),
             ("--force-step", self.scene.force_step),
         ];
         if self.scene.body.len() + usize::from(self.scene.file.is_some()) > 1 {
@@ -247,10 +266,20 @@ impl SceneArguments {
         self.file.as_ref().is_some_and(is_scene)
     }
 
+    /// The `--set` values, and `--material` as one.
+    fn all_overrides(&self) -> Vec<String> {
+        let mut overrides = self.overrides.clone();
+        if !self.material.is_empty() {
+            let names = self.material.iter().map(|path| path.display().to_string());
+            overrides.push(include_text(&names.collect::<Vec<String>>()));
+        }
+        overrides
+    }
+
     /// The scene and all its bodies.
     fn read(&self) -> Result<(Scene, BTreeMap<String, Body>)> {
         let file = self.file.as_deref().unwrap_or(Path::new(""));
-        let mut scene = read_scene(file, &self.overrides)?;
+        let mut scene = read_scene(file, &self.all_overrides())?;
         let mut named: BTreeMap<String, &str> = BTreeMap::new();
         for option in &self.body {
             let name = set_body(&mut scene, option)?;
@@ -330,7 +359,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
     let (scene, test, twice) = arranged(scene, &bodies, threads)?;
     let force_step = arguments.scene.force_step;
     let mut prepared = plan(&scene, bodies, threads, force_step)?;
-    prepared.inputs.set.clone_from(&arguments.scene.overrides);
+    prepared.inputs.set = arguments.scene.all_overrides();
     let inputs = prepared.inputs.clone();
     if !arguments.quiet {
         say_beforehand(&prepared);

@@ -24,6 +24,7 @@
 //! [`run()`] does the same as the program: it steps a plan to its end, monitors it and writes
 //! results.
 
+pub(crate) mod calibration;
 pub mod check;
 pub mod cli;
 pub mod clock;

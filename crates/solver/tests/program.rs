@@ -6,6 +6,7 @@ mod bad_bodies;
 mod bad_input;
 mod body_information;
 mod browser;
+mod calibrate;
 mod check;
 mod command_line;
 mod corpus;

@@ -224,7 +224,7 @@ impl Arguments {
 
 /// The message of clap, without its `error:`, the usage and the hint to the help, which are
 /// paragraphs of their own.
-fn on_one_line(said: &str) -> String {
+pub(super) fn on_one_line(said: &str) -> String {
     let paragraphs = said.trim_start_matches("error:").split("\n\n");
     let kept = paragraphs.filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more"));
     let lines = kept.map(|p| p.split_whitespace().collect::<Vec<_>>().join(" "));

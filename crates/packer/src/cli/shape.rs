@@ -1,8 +1,9 @@
 //! The shape: an STL file or standard input.
 
 use super::arguments::Reading;
+use crate::sizes::Sizes;
 use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_io::units::length_unit_m;
+use dem_io::units::{length_unit_m, show_length};
 use dem_io::{Diagnostic, Result, Surface};
 use std::io::Read;
 use std::path::Path;
@@ -51,4 +52,31 @@ pub(super) fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
             fill_holes: reading.fill_holes,
         },
     )
+}
+
+/// Refuses a diameter without a unit that is larger than the shape, which was hardly meant in
+/// metres.
+pub(super) fn check_unit_of_diameter(
+    text: Option<&str>,
+    sizes: &Sizes,
+    surface: &Surface,
+) -> Result<()> {
+    let text = text.unwrap_or_default();
+    let numbers = text.rsplit(':').next().unwrap_or(text);
+    let has_unit = numbers
+        .chars()
+        .any(|c| c.is_alphabetic() && !matches!(c, 'e' | 'E'));
+    let longest = surface.extent().iter().copied().fold(0.0, f64::max) * surface.unit_m;
+    if has_unit || sizes.min_m() <= longest {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("--diameter '{text}'"),
+        format!(
+            "no sphere fits: {} is larger than the shape, which is {} long",
+            show_length(sizes.min_m()),
+            show_length(longest)
+        ),
+        "a number without a unit is metres: write one, such as 2mm..3mm",
+    ))
 }

@@ -8,10 +8,10 @@ use toml::de::{DeTable, DeValue};
 
 use super::check::scene_with;
 use super::contents::{BODY, Setting, Study};
-use super::values::{key, quoted, toml};
 use crate::body::BodySource;
 use crate::read::scene_from_text;
 use crate::root::Scene;
+use crate::toml_text::{key, quoted, toml};
 use crate::tree::{Value, parse_value};
 use dem_io::diagnostic::{Diagnostic, Result};
 

@@ -5,8 +5,8 @@ use std::path::{Component, Path, PathBuf};
 use super::contents::{Axis, AxisValue, BODY, Setting};
 use super::keys::{RANGE, SPACINGS, TOGETHER, VALUES};
 use crate::field::Field;
-use crate::names::well_formed;
 use crate::table::Table;
+use crate::toml_text::{quoted, split, toml};
 use crate::tree::{Node, Value, shortened};
 use dem_io::diagnostic::Result;
 use dem_io::units::{DIMENSIONS, quantity};
@@ -282,22 +282,6 @@ fn named(unit: &str) -> String {
     }
 }
 
-/// A number and its unit.
-fn split(node: &Node) -> Option<(f64, String)> {
-    match &node.value {
-        Value::Number(_, value) => value.is_finite().then(|| (*value, String::new())),
-        Value::Text(text) => {
-            let ends = (1..=text.len())
-                .rev()
-                .filter(|end| text.is_char_boundary(*end));
-            let number = |end: usize| text[..end].trim().parse::<f64>().ok().map(|v| (v, end));
-            let (value, end) = ends.filter_map(number).find(|(v, _)| v.is_finite())?;
-            Some((value, text[end..].trim().to_owned()))
-        }
-        _ => None,
-    }
-}
-
 /// The size of a value, if it is a number above 0.
 fn size_of(node: &Node) -> Option<f64> {
     match &node.value {
@@ -332,43 +316,6 @@ fn label(node: &Node) -> String {
     }
 }
 
-/// A value as TOML.
-pub(super) fn toml(node: &Node) -> String {
-    match &node.value {
-        Value::Text(text) => quoted(text),
-        Value::Number(written, _) | Value::Date(written) => written.clone(),
-        Value::Boolean(boolean) => boolean.to_string(),
-        Value::List(items) => {
-            let items: Vec<String> = items.iter().map(toml).collect();
-            format!("[{}]", items.join(", "))
-        }
-        Value::Table(entries) => {
-            let entries: Vec<String> = entries
-                .iter()
-                .map(|(name, node)| format!("{} = {}", key(name), toml(node)))
-                .collect();
-            format!("{{ {} }}", entries.join(", "))
-        }
-    }
-}
-
-/// A text as TOML.
-pub(super) fn quoted(text: &str) -> String {
-    let mut out = String::from("\"");
-    for letter in text.chars() {
-        match letter {
-            '"' => out.push_str("\\\""),
-            '\\' => out.push_str("\\\\"),
-            control if control.is_control() => {
-                out.push_str(&format!("\\u{:04X}", u32::from(control)));
-            }
-            other => out.push(other),
-        }
-    }
-    out.push('"');
-    out
-}
-
 /// A path without `folder/..`, if that is the same.
 pub(super) fn tidy(path: PathBuf) -> PathBuf {
     let mut short = PathBuf::new();
@@ -383,14 +330,5 @@ pub(super) fn tidy(path: PathBuf) -> PathBuf {
     match (short.canonicalize(), path.canonicalize()) {
         (Ok(one), Ok(other)) if one == other => short,
         _ => path,
-    }
-}
-
-/// A key in TOML syntax.
-pub(super) fn key(name: &str) -> String {
-    if well_formed(name) {
-        name.to_owned()
-    } else {
-        format!("{name:?}")
     }
 }

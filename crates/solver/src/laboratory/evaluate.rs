@@ -8,7 +8,7 @@ use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use dem_laboratory::theory::Beam;
-use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_stress_pa};
+use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_modulus_pa, disc_stress_pa};
 use dem_laboratory::{Line, Specimen, area_between};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
@@ -90,6 +90,8 @@ pub struct TestResult {
     pub broken: bool,
     /// Number of broken bonds, and of all bonds.
     pub broken_bonds: [usize; 2],
+    /// Number of bonds that broke before the largest load.
+    pub broken_at_peak: usize,
     /// Strength given in the scene, Pa.
     pub target_strength_pa: Option<f64>,
     /// Lowest frequency of the body in the test, estimated, Hz.
@@ -108,6 +110,9 @@ pub struct TestResult {
     pub first_broken: Option<FirstBroken>,
     /// None: no bond broke.
     pub crack: Option<Crack>,
+    /// Displacement, m, from where the fitted line has no load, and load, N.
+    #[serde(skip)]
+    pub curve: Vec<[f64; 2]>,
     /// Relative changes of the figures at half the rate: (slow - fast)/fast. Empty: not checked.
     #[serde(rename = "changes_at_half_the_rate")]
     pub half_the_rate_changes: Vec<Figure>,
@@ -229,7 +234,11 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         Specimen::Disc {
             diameter_m,
             thickness_m,
-        } => measured.disc(diameter_m, thickness_m),
+        } => measured.disc(
+            [diameter_m, thickness_m, setup.gauge_m],
+            test.poisson_ratio,
+            stiffness_of_curve(test, &setup.specimen),
+        ),
         Specimen::Bar { length_m, area_m2 } => measured.bar(length_m, area_m2, setup.gauge_m),
     }
     let play_m = play_m(rows);
@@ -241,13 +250,13 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         None,
     );
     if !evidence.broken {
-        measured.add("largest force", largest, "N", None);
+        measured.add(LARGEST_FORCE, largest, "N", None);
     }
+    let points = rows.iter().map(|row| [row.travel_m - play_m, row.load_n()]);
+    let curve: Vec<[f64; 2]> = points.collect();
     let wanted = measured_curve(test, &setup.specimen);
     if !wanted.is_empty() {
-        let points = rows.iter().map(|row| [row.travel_m - play_m, row.load_n()]);
-        let apart = area_between(&points.collect::<Vec<[f64; 2]>>(), &wanted);
-        measured.add(APART, Some(apart), "", None);
+        measured.add(APART, Some(area_between(&curve, &wanted)), "", None);
     }
     let first_broken = first_broken(evidence).map(|first| FirstBroken {
         travel_m: first.travel_m - play_m,
@@ -257,6 +266,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         kind: test.kind.name().to_owned(),
         broken: evidence.broken,
         broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
+        broken_at_peak: broken_at_peak(record, rows),
         target_strength_pa: test.strength_pa,
         lowest_frequency_hz: evidence.lowest_frequency_hz,
         rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),
@@ -265,6 +275,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         calibration: Vec::new(),
         first_broken,
         crack: crack(evidence),
+        curve,
         half_the_rate_changes: Vec::new(),
     };
     result.calibration = calibration(&result, evidence);
@@ -276,6 +287,12 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
 pub fn measured_curve(test: &Test, specimen: &Specimen) -> Vec<[f64; 2]> {
     let measured = test.measured.as_ref();
     measured.map_or_else(Vec::new, |measured| measured.material.curve_of(specimen))
+}
+
+/// The stiffness of the measured material of a test, for the simulated specimen, N/m.
+pub fn stiffness_of_curve(test: &Test, specimen: &Specimen) -> Option<f64> {
+    let material = &test.measured.as_ref()?.material;
+    material.stiffness_of(specimen)
 }
 
 /// Results read from the curve of a test.
@@ -343,10 +360,24 @@ impl Measured {
         self.add(STRENGTH, stress, "Pa", self.strength_pa);
     }
 
-    fn disc(&mut self, diameter_m: f64, thickness_m: f64) {
+    /// Of a disc with this diameter, thickness and gauge length, m; `curve_n_m`: stiffness of the
+    /// measured curve.
+    fn disc(&mut self, sizes_m: [f64; 3], nu: f64, curve_n_m: Option<f64>) {
+        let [diameter_m, thickness_m, gauge_m] = sizes_m;
         self.dimension("diameter", diameter_m, "m");
         self.dimension("thickness", thickness_m, "m");
-        self.add(STIFFNESS, self.stiffness_n_m, "N/m", None);
+        self.add(STIFFNESS, self.stiffness_n_m, "N/m", curve_n_m);
+        if gauge_m > 0.0 {
+            self.dimension("gauge length", gauge_m, "m");
+            // The measured points approach each other.
+            let of_gauge = |k: f64| disc_modulus_pa(k.abs(), diameter_m, thickness_m, gauge_m, nu);
+            self.add(
+                MODULUS,
+                self.of_body_n_m.map(of_gauge),
+                "Pa",
+                self.modulus_pa,
+            );
+        }
         let stress = |force: f64| disc_stress_pa(force, diameter_m, thickness_m);
         let theory = self.strength_pa.map(|strength| strength / stress(1.0));
         self.add(FAILURE_FORCE, self.failure_n, "N", theory);
@@ -359,6 +390,13 @@ impl Measured {
         self.dimension("gauge length", gauge_m, "m");
         let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / length_m);
         self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
+        let of_length = |k: f64| k * length_m / area_m2;
+        self.add(
+            BY_TRAVEL,
+            self.stiffness_n_m.map(of_length),
+            "Pa",
+            self.modulus_pa,
+        );
         let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / gauge_m);
         // In compression, the measured points approach each other.
         let of_body = self.of_body_n_m.map(f64::abs);
@@ -372,13 +410,18 @@ impl Measured {
     }
 }
 
-/// Names of figures that are looked up.
-pub(super) const STIFFNESS: &str = "stiffness";
-const EQ_18: &str = "modulus without shear";
+/// Names of figures that are looked up: ratio of load to travel.
+pub const STIFFNESS: &str = "stiffness";
+/// Modulus of a beam from the travel, without shear: Platzer 2022, eq. 18.
+pub const EQ_18: &str = "modulus without shear";
+/// Modulus of a bar from the travel.
+pub const BY_TRAVEL: &str = "modulus by travel";
 /// Modulus of the body from its own deflection or elongation, including shear.
 pub const MODULUS: &str = "specimen modulus";
 /// Largest load before the body broke.
 pub(crate) const FAILURE_FORCE: &str = "failure force";
+/// Largest load of a body that did not break.
+pub(crate) const LARGEST_FORCE: &str = "largest force";
 /// Area between the measured and the simulated curve, over the area below the measured one.
 const APART: &str = "area between the curves";
 /// Stress at that force according to the formula of the test.
@@ -431,6 +474,14 @@ fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
         }
     }
     found
+}
+
+/// Number of bonds that broke before the largest load.
+fn broken_at_peak(record: &Record, rows: &[Row]) -> usize {
+    let time_s = peak(rows).map_or(0.0, |row| row.time_s);
+    record
+        .broken
+        .partition_point(|broken| broken.time_s <= time_s)
 }
 
 fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {

@@ -39,7 +39,7 @@ pub struct Setup {
     pub moving: Vec<u32>,
     /// The reference particles.
     pub resting: Vec<u32>,
-    /// Their distance along a bar, m; otherwise 0.
+    /// Their distance along a bar, or along the loaded diameter of a disc, m; otherwise 0.
     pub gauge_m: f64,
     /// Mean radius of the particles, m.
     pub mean_radius_m: f64,
@@ -336,7 +336,8 @@ fn bar(
 }
 
 /// Chooses the particles whose displacement is measured: for a beam those at half its height at the
-/// loading points and the supports, for a bar two slices at the ends of its middle half.
+/// loading points and the supports, for a bar two slices at the ends of its middle half, for a disc
+/// two spots at the ends of the middle half of its loaded diameter.
 fn choose_measured(setup: &mut Setup, state: &State, particles: &[u32]) {
     let middle = Vector3::from(setup.middle_m);
     let [along, direction] = [setup.along, setup.direction].map(Vector3::from);
@@ -363,10 +364,22 @@ fn choose_measured(setup: &mut Setup, state: &State, particles: &[u32]) {
             };
             setup.gauge_m = mean(&setup.moving) - mean(&setup.resting);
         }
-        Specimen::Disc { .. } => {}
+        Specimen::Disc { diameter_m, .. } => {
+            let half = 0.5 * GAUGE * diameter_m;
+            let spot = (0.05 * diameter_m).max(2.0 * setup.mean_radius_m);
+            let at = |place: f64| pick(&|x, z| x.abs() < spot && (z - place).abs() < spot);
+            // The load moves forwards: what lies behind the centre moves further.
+            setup.moving = at(-half);
+            setup.resting = at(half);
+            let mean = |of: &[u32]| {
+                of.iter().map(|&i| offset(i).dot(&direction)).sum::<f64>() / of.len() as f64
+            };
+            setup.gauge_m = mean(&setup.resting) - mean(&setup.moving);
+        }
     }
     if setup.moving.is_empty() || setup.resting.is_empty() {
         setup.moving.clear();
         setup.resting.clear();
+        setup.gauge_m = 0.0;
     }
 }

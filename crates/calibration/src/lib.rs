@@ -1,0 +1,24 @@
+//! Calibration: numbers of a scene, above all modulus and strength of its bonds, are varied until
+//! the mean result of a simulated test over several packings of the body is the wanted one
+//! (Platzer 2022, 4.5.1.3).
+//!
+//! The tests themselves are done by the caller. [`calibrate`] says with which factors on the
+//! numbers, and ends when all targets are met, or cannot be met.
+
+mod confidence;
+mod page;
+mod record;
+mod resolution;
+mod rounds;
+mod search;
+mod text;
+mod unknown;
+
+pub use confidence::{half_width, student_95};
+pub use page::page;
+pub use record::{FORMAT_VERSION, Record, read_record, write_record};
+pub use resolution::{coarsest, curve_error};
+pub use rounds::{Case, Round, TestFunction, Trial, calibrate};
+pub use search::{End, Step, next};
+pub use text::{origin, report};
+pub use unknown::{Number, Unknown};

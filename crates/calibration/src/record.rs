@@ -1,0 +1,73 @@
+//! The record of a calibration: everything that was found, so that it can be resumed.
+
+use std::path::Path;
+
+use dem_io::safe_write::{write_file, write_json_text};
+use dem_io::{Diagnostic, Result, read_input};
+use serde::{Deserialize, Serialize};
+
+use crate::rounds::Case;
+use crate::unknown::Unknown;
+
+/// Version of the format of [`Record`].
+pub const FORMAT_VERSION: u32 = 1;
+
+/// The record of a calibration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Version of this format.
+    pub version: u32,
+    /// Program and its version.
+    pub program: String,
+    /// Day on which it began, as in 2026-01-31.
+    pub date: String,
+    /// Hash of the scene, its files and the packings: a calibration of something else cannot be
+    /// resumed.
+    pub identity: u64,
+    /// The scene's file.
+    pub scene: String,
+    /// What is varied, and what it is to give.
+    pub unknowns: Vec<Unknown>,
+    /// Names of the packings.
+    pub packings: Vec<String>,
+    /// The wanted curve: displacement, m, and load, N. Empty: there is none.
+    pub wanted_curve: Vec<[f64; 2]>,
+    /// The calibrations, one for each size of spheres, from coarse to fine.
+    pub cases: Vec<Case>,
+}
+
+impl Record {
+    /// True if every calibration has ended.
+    pub fn is_finished(&self) -> bool {
+        self.cases.iter().all(|case| case.end.is_some())
+    }
+}
+
+/// Writes a record as JSON, whole or not at all.
+///
+/// # Errors
+/// Missing folder, no permission, full disk (all exit code 1).
+pub fn write_record(path: &Path, record: &Record) -> Result<()> {
+    write_file(path, |out| write_json_text(out, record))
+}
+
+/// Reads what [`write_record`] wrote.
+///
+/// # Errors
+/// No such file; it is not the record of a calibration, or of another version (all exit code 2).
+pub fn read_record(path: &Path) -> Result<Record> {
+    let refuse = |problem: String| {
+        let remedy = "name the .json file that dem-run calibrate wrote, or leave out --resume";
+        Diagnostic::input(path.display().to_string(), problem, remedy)
+    };
+    let bytes = read_input(path, "the record of a calibration")?;
+    let record: Record = serde_json::from_slice(&bytes)
+        .map_err(|error| refuse(format!("is not the record of a calibration: {error}")))?;
+    if record.version != FORMAT_VERSION {
+        return Err(refuse(format!(
+            "has version {}, not {FORMAT_VERSION}",
+            record.version
+        )));
+    }
+    Ok(record)
+}

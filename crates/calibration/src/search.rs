@@ -1,0 +1,169 @@
+//! The next factors, from the results so far: the secant method on logarithms.
+
+use serde::{Deserialize, Serialize};
+
+use crate::confidence::half_width;
+use crate::rounds::Round;
+use crate::unknown::Unknown;
+
+/// Rounds of tests after which a calibration ends.
+pub(crate) const MOST_ROUNDS: usize = 4;
+/// Smallest change of the logarithm of a factor from which a slope is taken: below, the scatter of
+/// strengths is larger than their change.
+const FEWEST_CHANGE: f64 = 0.1;
+/// Range of slopes of ln(result) over ln(factor). Results are proportional to the number that
+/// determines them, except for the compliance of contacts at pins.
+const SLOPES: [f64; 2] = [0.5, 2.0];
+/// A result that follows its number less than this does not depend on it.
+const FLAT: f64 = 0.05;
+/// Largest factor on a number of the scene, and the inverse of the smallest.
+const FURTHEST: f64 = 1e3;
+
+/// How a calibration ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum End {
+    /// All mean results are within their tolerances.
+    Met,
+    /// They are not, but each target is within the 95 % confidence interval of its mean.
+    WithinScatter,
+    /// The problem, and a remedy.
+    NotMet(String, String),
+}
+
+/// What is to be done after a round.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step {
+    /// Another round with these factors, one for each unknown.
+    Try(Vec<f64>),
+    /// Nothing: the round with this index is the result.
+    Stop(usize, End),
+}
+
+/// The step after these rounds; at least one.
+pub fn next(unknowns: &[Unknown], rounds: &[Round]) -> Step {
+    let last = rounds.len() - 1;
+    let deviations = rounds[last].deviations(unknowns);
+    let is_met = |(unknown, deviation): (&Unknown, &Option<f64>)| {
+        deviation.is_some_and(|deviation| deviation.abs() <= unknown.tolerance)
+    };
+    if unknowns.iter().zip(&deviations).all(is_met) {
+        return Step::Stop(last, End::Met);
+    }
+    let mut factors = rounds[last].factors.clone();
+    for (at, unknown) in unknowns.iter().enumerate() {
+        match factor(unknown, rounds, at) {
+            Ok(factor) => factors[at] = factor,
+            Err((problem, remedy)) => {
+                return Step::Stop(best(unknowns, rounds), End::NotMet(problem, remedy));
+            }
+        }
+    }
+    if rounds.len() < MOST_ROUNDS && factors != rounds[last].factors {
+        return Step::Try(factors);
+    }
+    stop(unknowns, rounds)
+}
+
+/// The next factor of the unknown `at`, or why there is none.
+fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, (String, String)> {
+    let last = &rounds[rounds.len() - 1];
+    let old = last.factors[at];
+    let name = &unknown.result;
+    let Some(mean) = last.mean(at) else {
+        let Some(least) = last.largest_bound(at) else {
+            let problem = format!("no test gave the {name}");
+            let remedy = "see what dem-run says of the test itself";
+            return Err((problem, remedy.to_owned()));
+        };
+        if least < unknown.target {
+            let problem = format!(
+                "the bodies do not break: at the end of the stroke the {name} is {:.3} of its target",
+                least / unknown.target
+            );
+            return Err((problem, "lengthen test.stroke".to_owned()));
+        }
+        return Ok(old * unknown.target / least);
+    };
+    let wanted = (unknown.target / mean).ln();
+    // As near as this, scatter is larger than what a change would improve.
+    if wanted.abs() <= 0.5 * unknown.tolerance {
+        return Ok(old);
+    }
+    let slope = slope(rounds, at).unwrap_or(1.0);
+    if slope < FLAT {
+        let problem = format!(
+            "the {name} hardly follows {}: its slope is {slope:.2} on logarithmic scales",
+            unknown.numbers[0].path
+        );
+        let remedy = "something else determines it, such as soft contacts at pins or plates; make these stiffer, or correct the target";
+        return Err((problem, remedy.to_owned()));
+    }
+    let new = old * (wanted / slope.clamp(SLOPES[0], SLOPES[1])).exp();
+    if !(1.0 / FURTHEST..=FURTHEST).contains(&new) {
+        let problem = format!(
+            "the target of the {name} is out of reach: {} would be {new:.3e} times that of the scene",
+            unknown.numbers[0].path
+        );
+        return Err((problem, "check the target and its unit".to_owned()));
+    }
+    Ok(new)
+}
+
+/// Slope of ln(mean result) over ln(factor), from the last two rounds that differ enough.
+fn slope(rounds: &[Round], at: usize) -> Option<f64> {
+    let last = &rounds[rounds.len() - 1];
+    let mean = last.mean(at)?;
+    let before = rounds[..rounds.len() - 1].iter().rev();
+    let slope = |round: &Round| {
+        let change = (last.factors[at] / round.factors[at]).ln();
+        let followed = (mean / round.mean(at)?).ln();
+        (change.abs() >= FEWEST_CHANGE).then(|| followed / change)
+    };
+    before.into_iter().find_map(slope)
+}
+
+/// The round with the smallest largest ratio of deviation to tolerance.
+fn best(unknowns: &[Unknown], rounds: &[Round]) -> usize {
+    let apart = |round: &Round| {
+        let deviations = round.deviations(unknowns);
+        let of = |(unknown, deviation): (&Unknown, Option<f64>)| {
+            deviation.map_or(f64::INFINITY, |deviation| {
+                deviation.abs() / unknown.tolerance
+            })
+        };
+        unknowns.iter().zip(deviations).map(of).fold(0.0, f64::max)
+    };
+    let all = rounds.iter().enumerate();
+    let nearest = all.min_by(|(_, a), (_, b)| apart(a).total_cmp(&apart(b)));
+    nearest.map_or(0, |(at, _)| at)
+}
+
+/// The end after the last round.
+fn stop(unknowns: &[Unknown], rounds: &[Round]) -> Step {
+    let at = best(unknowns, rounds);
+    let round = &rounds[at];
+    let outside = unknowns.iter().enumerate().find(|(at, unknown)| {
+        let statistic = round.statistic(*at);
+        !statistic.is_some_and(|statistic| {
+            let off = (statistic.mean - unknown.target).abs();
+            let within = half_width(&statistic).unwrap_or(0.0);
+            off <= within.max(unknown.tolerance * unknown.target)
+        })
+    });
+    let end = match outside {
+        None => End::WithinScatter,
+        Some((n, unknown)) => {
+            let mean = round.mean(n).unwrap_or(f64::NAN);
+            let problem = format!(
+                "the {} is {:.2} % from its target after {} rounds",
+                unknown.result,
+                100.0 * (mean / unknown.target - 1.0),
+                rounds.len()
+            );
+            let remedy =
+                "take more packings (--packings), or smaller spheres: their strengths scatter less";
+            End::NotMet(problem, remedy.to_owned())
+        }
+    };
+    Step::Stop(at, end)
+}

@@ -1,0 +1,105 @@
+//! Bodies by the arguments of dem-pack, for programs that need several packings of a shape.
+
+use super::arguments::{Arguments, PackArguments, RENAMED, on_one_line};
+use super::shape::{check_unit_of_diameter, read_surface};
+use crate::body::{BodyReport, BodySettings, make_body};
+use crate::pack::Progress;
+use clap::Parser;
+use dem_io::program::refuse_renamed;
+use dem_io::{Body, Diagnostic, Result, Surface};
+use std::path::PathBuf;
+
+/// A shape and the settings with which it is packed.
+#[derive(Debug)]
+pub struct Recipe {
+    shape: PathBuf,
+    surface: Surface,
+    settings: BodySettings,
+    arguments: PackArguments,
+}
+
+impl Recipe {
+    /// The shape and the settings of a command line of dem-pack, without the name of the program.
+    ///
+    /// # Errors
+    /// Arguments that dem-pack refuses, that only concern its output, or that name no STL file; an
+    /// STL file that bounds no solid (all exit code 2).
+    pub fn parse(arguments: &[String]) -> Result<Self> {
+        let line = || std::iter::once("dem-pack".to_owned()).chain(arguments.iter().cloned());
+        refuse_renamed(line().map(Into::into), &RENAMED)?;
+        let parsed = Arguments::try_parse_from(line()).map_err(|error| {
+            let problem = on_one_line(&error.to_string());
+            Diagnostic::input("dem-pack", problem, "see dem-pack --help")
+        })?;
+        let arguments = parsed.pack;
+        let no_output = arguments.output.is_none() && arguments.threads.is_none();
+        let (None, true, Some(shape)) = (&parsed.command, no_output, arguments.stl.clone()) else {
+            let problem = "these are not the arguments of a shape that is packed";
+            let remedy = "write the STL file and its options, without --output and --threads";
+            return Err(Diagnostic::input("dem-pack", problem, remedy));
+        };
+        if shape.as_os_str() == "-" {
+            let remedy = "name the STL file";
+            return Err(Diagnostic::input(
+                "dem-pack",
+                "standard input is read once",
+                remedy,
+            ));
+        }
+        let surface = read_surface(&shape, &arguments.reading)?;
+        let recipe = Self {
+            settings: arguments.checked()?,
+            shape,
+            surface,
+            arguments,
+        };
+        recipe.check()?;
+        Ok(recipe)
+    }
+
+    /// The same with spheres of other diameters, written as for `--diameter`.
+    ///
+    /// # Errors
+    /// Diameters that dem-pack refuses.
+    pub fn with_diameter(mut self, diameter: &str) -> Result<Self> {
+        self.arguments.diameter = Some(diameter.to_owned());
+        self.settings = self.arguments.checked()?;
+        self.check()?;
+        Ok(self)
+    }
+
+    /// The diameters, as written.
+    pub fn diameter(&self) -> &str {
+        self.arguments.diameter.as_deref().unwrap_or_default()
+    }
+
+    /// The smallest diameter, m.
+    pub fn smallest_diameter_m(&self) -> f64 {
+        self.settings.packing.sizes.min_m()
+    }
+
+    /// The seed of the first packing.
+    pub fn seed(&self) -> u64 {
+        self.settings.packing.seed
+    }
+
+    /// The STL file.
+    pub fn shape(&self) -> &std::path::Path {
+        &self.shape
+    }
+
+    /// A packing with this seed.
+    ///
+    /// # Errors
+    /// As [`make_body`].
+    pub fn make(&self, seed: u64, progress: Progress) -> Result<(Body, BodyReport)> {
+        let mut settings = self.settings.clone();
+        settings.packing.seed = seed;
+        make_body(&self.surface, &settings, progress)
+    }
+
+    fn check(&self) -> Result<()> {
+        let diameter = self.arguments.diameter.as_deref();
+        check_unit_of_diameter(diameter, &self.settings.packing.sizes, &self.surface)
+    }
+}

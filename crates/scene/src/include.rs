@@ -1,0 +1,210 @@
+//! `include`: materials, contacts and bonds from other files, such as those that `dem-run
+//! calibrate` writes.
+
+use std::path::{Path, PathBuf};
+
+use super::field::Field;
+use super::paths::{named_path, text_of};
+use super::root::SCENE;
+use super::table::Table;
+use super::toml_text::{key, quoted, split, toml};
+use super::tree::{Document, Node, Origin, Value, parse_tables};
+use dem_io::diagnostic::{Diagnostic, Result};
+
+/// Tables that another file may add.
+const TABLES: [&str; 3] = ["materials", "contacts", "bonds"];
+const INCLUDE: &str = "include";
+
+/// A scene's text with its included files and its `--set` values, and the paths of these files.
+///
+/// # Errors
+/// Not TOML, a wrong `--set`, an included file that cannot be read or has other tables.
+pub(super) fn document_of(
+    text: &str,
+    source: &str,
+    overrides: &[String],
+) -> Result<(Document, Vec<PathBuf>)> {
+    let mut document = Document::parse(source, text)?;
+    let sets_include = |text: &&String| {
+        let path = text.split_once('=').map(|(path, _)| path.trim());
+        path == Some(INCLUDE)
+    };
+    let (first, others): (Vec<&String>, Vec<&String>) = overrides.iter().partition(sets_include);
+    for text in first {
+        document.set(text)?;
+    }
+    let included = include(&mut document, folder_of(source))?;
+    for text in others {
+        document.set(text)?;
+    }
+    Ok((document, included))
+}
+
+/// The folder of a scene's file.
+pub(super) fn folder_of(source: &str) -> &Path {
+    Path::new(source).parent().unwrap_or(Path::new(""))
+}
+
+/// Adds the tables of the included files. A table that the scene also has is replaced if `--set`
+/// names the files, and refused otherwise.
+fn include(document: &mut Document, folder: &Path) -> Result<Vec<PathBuf>> {
+    let Some(field) = Table::root(document, &SCENE)?.get(INCLUDE) else {
+        return Ok(Vec::new());
+    };
+    let replaces = matches!(field.node.origin, Origin::Option(_));
+    let path = |item: Field<'_>| named_path(&item, folder);
+    let paths: Vec<PathBuf> = field
+        .items()?
+        .into_iter()
+        .map(path)
+        .collect::<Result<_>>()?;
+    for path in &paths {
+        let name = path.display().to_string();
+        let text = text_of(path, "a file of materials")?;
+        let file = document.included.len();
+        document.included.push(name.clone());
+        let tables = parse_tables(&name, &text, &|line| Origin::Included(file, line))?;
+        for (table, node) in tables {
+            merge(document, &table, node, replaces)?;
+        }
+    }
+    Ok(paths)
+}
+
+/// Adds the entries of a table of an included file to the table of the same name.
+fn merge(document: &mut Document, table: &str, node: Node, replaces: bool) -> Result<()> {
+    let place = document.place(node.origin);
+    if !TABLES.contains(&table) {
+        let problem = format!(
+            "[{table}] is in an included file, which may only have {}",
+            TABLES.map(|name| format!("[{name}]")).join(", ")
+        );
+        return Err(Diagnostic::input(
+            place,
+            problem,
+            "move it into the scene itself",
+        ));
+    }
+    let origin = node.origin;
+    let Value::Table(added) = node.value else {
+        let problem = format!("{table} is not a table");
+        return Err(Diagnostic::input(place, problem, "write [materials.NAME]"));
+    };
+    let mut taken: Vec<(String, Node)> = Vec::new();
+    let Value::Table(root) = &mut document.root.value else {
+        return Ok(());
+    };
+    let at = root.iter().position(|(name, _)| name == table);
+    let own = match at {
+        Some(at) => &mut root[at].1,
+        None => {
+            let value = Value::Table(Vec::new());
+            root.push((table.to_owned(), Node { origin, value }));
+            let last = root.len() - 1;
+            &mut root[last].1
+        }
+    };
+    if let Value::Table(own) = &mut own.value {
+        for (name, node) in added {
+            match own.iter_mut().find(|(other, _)| *other == name) {
+                Some((_, old)) => taken.push((name, std::mem::replace(old, node))),
+                None => own.push((name, node)),
+            }
+        }
+    }
+    match taken.first() {
+        Some((name, old)) if !replaces || matches!(old.origin, Origin::Included(..)) => {
+            let problem = format!("{place} has [{table}.{name}] as well");
+            let remedy = "remove or rename one; dem-run --material replaces tables of a scene";
+            Err(Diagnostic::input(
+                document.place(old.origin),
+                problem,
+                remedy,
+            ))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Materials, contacts and bonds of a scene, with included files and `--set` values, as the text of
+/// a file that other scenes can include.
+///
+/// # Errors
+/// As for reading the scene's text.
+pub fn material_text(text: &str, source: &str, overrides: &[String]) -> Result<String> {
+    let (document, _) = document_of(text, source, overrides)?;
+    let mut found = String::new();
+    for table in TABLES {
+        let Some(Value::Table(entries)) = entry(&document.root, table) else {
+            continue;
+        };
+        if table == "contacts" {
+            found.push_str("\n[contacts]\n");
+            for (name, node) in entries {
+                found.push_str(&format!("{} = {}\n", key(name), toml(node)));
+            }
+            continue;
+        }
+        for (name, node) in entries {
+            found.push_str(&format!("\n[{table}.{}]\n", key(name)));
+            if let Value::Table(values) = &node.value {
+                for (name, node) in values {
+                    found.push_str(&format!("{} = {}\n", key(name), toml(node)));
+                }
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// A number of a scene with included files and `--set` values: as written, and its unit, empty for
+/// a plain number. `path` as for `--set`. None: the scene does not have it.
+///
+/// # Errors
+/// As for reading the scene's text; it is not a number.
+pub fn written_value(
+    text: &str,
+    source: &str,
+    overrides: &[String],
+    path: &str,
+) -> Result<Option<(f64, String)>> {
+    let (document, _) = document_of(text, source, overrides)?;
+    let mut node = &document.root;
+    for name in path.split('.') {
+        match &node.value {
+            Value::Table(entries) => match entries.iter().find(|(other, _)| other == name) {
+                Some((_, inner)) => node = inner,
+                None => return Ok(None),
+            },
+            _ => return Ok(None),
+        }
+    }
+    let place = || document.place(node.origin);
+    let no_number = || Diagnostic::input(place(), format!("{path} is not a number"), "");
+    split(node).map(Some).ok_or_else(no_number)
+}
+
+/// A value with its unit, as `--set` takes it.
+pub fn set_text(path: &str, value: f64, unit: &str) -> String {
+    if unit.is_empty() {
+        format!("{path}={value}")
+    } else {
+        format!("{path}={}", quoted(&format!("{value} {unit}")))
+    }
+}
+
+/// The `--set` value that includes these files.
+pub fn include_text(files: &[String]) -> String {
+    let names: Vec<String> = files.iter().map(|name| quoted(name)).collect();
+    format!("{INCLUDE}=[{}]", names.join(", "))
+}
+
+fn entry<'a>(node: &'a Node, name: &str) -> Option<&'a Value> {
+    match &node.value {
+        Value::Table(entries) => {
+            let found = entries.iter().find(|(other, _)| other == name);
+            found.map(|(_, node)| &node.value)
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,183 @@
+//! `include`: tables from other files, and files made of a scene's tables.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use dem_io::Result;
+use dem_scene::{
+    Scene, include_text, material_text, read_scene, scene_from_text, set_text, written_value,
+};
+
+const SCENE: &str = r#"version = 1
+include = ["cake.toml"]
+[run]
+end_time = "1 s"
+[bodies.cake]
+particles = [[0, 0, 0, 0.01], [0.02, 0, 0, 0.01]]
+bond_list = [[0, 1]]
+material = "cake"
+bonds = "cake"
+"#;
+const CAKE: &str = r#"[materials.cake]
+density = 2050
+shear_modulus = "10 MPa"
+poisson_ratio = 0.3
+[contacts]
+cake-cake = { friction = 0.5, restitution = 0.3 }
+[bonds.cake]
+young_modulus = "15 MPa"
+poisson_ratio = 0.3
+failure = { tensile_strength = "0.2 MPa", shear_strength = 1e5 }
+"#;
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            fs::write(folder.path().join(name), text).unwrap();
+        }
+        Self(folder)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn read(&self, overrides: &[String]) -> Result<Scene> {
+        read_scene(&self.path("scene.toml"), overrides)
+    }
+}
+
+#[test]
+fn tables_of_an_included_file_are_those_of_the_scene() {
+    let folder = Folder::new(&[("scene.toml", SCENE), ("cake.toml", CAKE)]);
+    let included = folder.read(&[]).unwrap();
+    let whole = scene_from_text(
+        &SCENE.replace("include = [\"cake.toml\"]\n", CAKE_FIRST),
+        "s",
+        &[],
+    );
+    // The same tables within the scene.
+    let mut whole = whole.unwrap();
+    whole.source.clone_from(&included.source);
+    whole.included.clone_from(&included.included);
+    assert_eq!(included, whole);
+    assert_eq!(included.included, [folder.path("cake.toml")]);
+    assert!(included.input_files().contains(&folder.path("cake.toml")));
+    assert!(included.describe().contains("cake.toml"));
+    // Values of included tables can be set.
+    let set = folder
+        .read(&["bonds.cake.young_modulus=20 MPa".to_owned()])
+        .unwrap();
+    assert_eq!(set.bonds["cake"].young_modulus_pa, 20e6);
+}
+
+/// The same tables in lines that may stand before others.
+const CAKE_FIRST: &str = r#"materials.cake = { density = 2050, shear_modulus = "10 MPa", poisson_ratio = 0.3 }
+contacts.cake-cake = { friction = 0.5, restitution = 0.3 }
+bonds.cake = { young_modulus = "15 MPa", poisson_ratio = 0.3, failure = { tensile_strength = "0.2 MPa", shear_strength = 1e5 } }
+"#;
+
+#[test]
+fn files_named_by_set_replace_tables_of_the_scene() {
+    let other = CAKE.replace("15 MPa", "30 MPa");
+    let own = SCENE.replace("include = [\"cake.toml\"]\n", CAKE_FIRST);
+    let folder = Folder::new(&[("scene.toml", &own), ("other.toml", &other)]);
+    let name = folder.path("other.toml").display().to_string();
+    let scene = folder.read(&[include_text(&[name.clone()])]).unwrap();
+    assert_eq!(scene.bonds["cake"].young_modulus_pa, 30e6);
+    assert_eq!(scene.contacts.len(), 1);
+    // A value that is set stands above the file, whatever the order.
+    let both = [
+        "bonds.cake.young_modulus=40 MPa".to_owned(),
+        include_text(&[name]),
+    ];
+    let scene = folder.read(&both).unwrap();
+    assert_eq!(scene.bonds["cake"].young_modulus_pa, 40e6);
+}
+
+#[test]
+fn what_cannot_be_included_is_refused_at_its_place() {
+    let refused = |scene: &str, cake: &str, wanted: &str| {
+        let folder = Folder::new(&[("scene.toml", scene), ("cake.toml", cake)]);
+        let said = folder.read(&[]).expect_err(wanted).to_string();
+        let said = said.replace(&format!("{}/", folder.0.path().display()), "");
+        assert!(said.starts_with(wanted), "{said}\nnot\n{wanted}");
+    };
+    refused(
+        &SCENE.replace(
+            "[run]",
+            "[bonds.cake]\nyoung_modulus = 1\npoisson_ratio = 0.3\n[run]",
+        ),
+        CAKE,
+        "scene.toml:3: cake.toml:7 has [bonds.cake] as well; remove or rename one",
+    );
+    refused(
+        SCENE,
+        "[run]\n",
+        "cake.toml:1: [run] is in an included file, which may only have [materials], [contacts], [bonds]",
+    );
+    refused(
+        SCENE,
+        "materials = 3\n",
+        "cake.toml:1: materials is not a table",
+    );
+    refused(SCENE, "[materials.cake\n", "cake.toml:1: not TOML");
+    refused(
+        SCENE,
+        &CAKE.replace("2050", "\"heavy\""),
+        "cake.toml:2: materials.cake.density",
+    );
+    refused(
+        &SCENE.replace("cake.toml", "none.toml"),
+        CAKE,
+        "none.toml: there is no such file",
+    );
+    refused(
+        &SCENE.replace("[\"cake.toml\"]", "\"cake.toml\""),
+        CAKE,
+        "scene.toml:2: include is",
+    );
+    refused(
+        &SCENE.replace("[\"cake.toml\"]", "[\"cake.toml\", \"cake.toml\"]"),
+        CAKE,
+        "cake.toml:1: cake.toml:1 has [materials.cake] as well",
+    );
+}
+
+/// The tables of a scene as text are those tables again, with the values that were set.
+#[test]
+fn a_scene_gives_a_material_file() {
+    let folder = Folder::new(&[("scene.toml", SCENE), ("cake.toml", CAKE)]);
+    let source = folder.path("scene.toml").display().to_string();
+    let set = set_text("bonds.cake.young_modulus", 12.5, "MPa");
+    assert_eq!(set, "bonds.cake.young_modulus=\"12.5 MPa\"");
+    let text = material_text(SCENE, &source, &[set]).unwrap();
+    let again = Folder::new(&[("scene.toml", SCENE), ("cake.toml", &text)]);
+    let (first, second) = (folder.read(&[]).unwrap(), again.read(&[]).unwrap());
+    assert_eq!(second.bonds["cake"].young_modulus_pa, 12.5e6);
+    assert_eq!(first.materials, second.materials);
+    assert_eq!(first.contacts, second.contacts);
+    assert_eq!(first.bonds["cake"].failure, second.bonds["cake"].failure);
+
+    let value = |path: &str| written_value(SCENE, &source, &[], path);
+    assert_eq!(
+        value("bonds.cake.young_modulus").unwrap(),
+        Some((15.0, "MPa".to_owned()))
+    );
+    let shear = value("bonds.cake.failure.shear_strength").unwrap();
+    assert_eq!(shear, Some((1e5, String::new())));
+    assert_eq!(value("bonds.cake.damping.damping_ratio").unwrap(), None);
+    let said = value("bodies.cake.material")
+        .expect_err("a name")
+        .to_string();
+    assert!(
+        said.contains("bodies.cake.material is not a number"),
+        "{said}"
+    );
+    let missing = scene_from_text(SCENE, "nowhere/scene.toml", &[]);
+    assert!(missing.expect_err("no file").place.contains("cake.toml"));
+    assert!(!Path::new("nowhere").exists());
+}

@@ -1,0 +1,10 @@
+//! Tests for a calibration: what a scene's numbers are to give, and a run with other numbers and
+//! another packing.
+
+mod bench;
+mod choice;
+mod prospect;
+
+pub(crate) use bench::{Bench, overrides};
+pub(crate) use choice::{ModulusBy, SceneText, unknowns};
+pub(crate) use prospect::{Prospect, prospect};

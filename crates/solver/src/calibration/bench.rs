@@ -1,0 +1,158 @@
+//! One test of a packing with a factor on the numbers of each unknown.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use dem_calibration::{Trial, Unknown};
+use dem_io::{Body, Diagnostic, Result};
+use dem_scene::{Scene, scene_from_text, set_text};
+
+use super::choice::SceneText;
+use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
+use crate::laboratory::evaluate::{FAILURE_FORCE, LARGEST_FORCE, STRENGTH, TestResult};
+use crate::laboratory::watch::TestSettings;
+use crate::output::summary::Summary;
+use crate::plan::plan;
+use crate::run::{RunSettings, run};
+
+/// The scene of a calibration and its packings.
+pub(crate) struct Bench<'a> {
+    /// The scene.
+    pub(crate) scene: SceneText<'a>,
+    /// What is varied.
+    pub(crate) unknowns: &'a [Unknown],
+    /// Name of the body that is packed several times.
+    pub(crate) body: &'a str,
+    /// Its packings.
+    pub(crate) packings: &'a [Body],
+    /// All other bodies.
+    pub(crate) others: &'a BTreeMap<String, Body>,
+    /// Whether a time step of the scene above the limit is taken.
+    pub(crate) force_step: bool,
+    /// Threads of one test.
+    pub(crate) threads: usize,
+    /// Set to stop.
+    pub(crate) interrupted: &'a AtomicBool,
+}
+
+impl Bench<'_> {
+    /// The test of packing `at` at `faster` times the rate of the scene; `tell` is called with its
+    /// progress, in 0..1.
+    ///
+    /// # Errors
+    /// The scene refuses a number; the run goes unstable, or is interrupted.
+    pub(crate) fn test(
+        &self,
+        factors: &[f64],
+        at: usize,
+        faster: f64,
+        tell: &(dyn Fn(f64) + Sync),
+    ) -> Result<Trial> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()
+            .map_err(|error| {
+                let problem = format!("the threads cannot be started: {error}");
+                Diagnostic::failed("--threads", problem, "ask for fewer")
+            })?;
+        pool.install(|| self.test_here(factors, at, faster, tell))
+    }
+
+    fn test_here(
+        &self,
+        factors: &[f64],
+        at: usize,
+        faster: f64,
+        tell: &(dyn Fn(f64) + Sync),
+    ) -> Result<Trial> {
+        let overrides = overrides(&self.scene, self.unknowns, factors);
+        let SceneText { text, source, .. } = self.scene;
+        let scene = scene_from_text(text, source, &overrides)?;
+        let mut bodies = self.others.clone();
+        bodies.insert(self.body.to_owned(), self.packings[at].clone());
+        let lowest_hz = lowest_in_test_hz(&scene, &bodies, self.threads)?;
+        let scene = match lowest_hz {
+            Some(lowest_hz) => arrange(&scene, lowest_hz, faster)?,
+            None => scene,
+        };
+        let began = Instant::now();
+        let plan = plan(&scene, bodies, self.threads, self.force_step)?;
+        let specimen = plan.test.as_ref().map(|setup| setup.specimen);
+        let settings = RunSettings {
+            folder: None,
+            resume: None,
+            threads: self.threads,
+            interrupted: self.interrupted,
+            test: lowest_hz.map(|lowest_frequency_hz| TestSettings {
+                lowest_frequency_hz,
+                at_twice_the_rate: None,
+            }),
+        };
+        let summary = run(plan, &scene, settings, tell)?;
+        let mut trial = self.trial(&scene, &summary);
+        if let (Some(specimen), Some(test)) = (specimen, &summary.test) {
+            let largest_n = test.figure(LARGEST_FORCE);
+            let stress_pa = largest_n.map(|force| specimen.stress_pa(force));
+            for (unknown, bound) in self.unknowns.iter().zip(&mut trial.at_least) {
+                if unknown.result == STRENGTH {
+                    *bound = stress_pa;
+                }
+            }
+        }
+        trial.wall_s = began.elapsed().as_secs_f64();
+        Ok(trial)
+    }
+
+    /// What a run says.
+    fn trial(&self, scene: &Scene, summary: &Summary) -> Trial {
+        let measures = || summary.measures.iter();
+        let test = summary.test.as_ref();
+        let result = |unknown: &Unknown| {
+            let of_test = test.and_then(|test| test.figure(&unknown.result));
+            let measure = measures().find(|measure| measure.name == unknown.result);
+            let value = of_test.or(measure.map(|measure| measure.value));
+            value.filter(|value| value.is_finite() && *value > 0.0)
+        };
+        Trial {
+            results: self.unknowns.iter().map(result).collect(),
+            at_least: vec![None; self.unknowns.len()],
+            curve: test.map_or_else(Vec::new, |test| test.curve.clone()),
+            doubts: test.map_or_else(Vec::new, |test| doubts(scene, test)),
+            broken_at_peak: test.map_or(0, |test| test.broken_at_peak),
+            wall_s: 0.0,
+        }
+    }
+}
+
+/// `--set` values of a scene with these factors on its numbers.
+pub(crate) fn overrides(
+    scene: &SceneText<'_>,
+    unknowns: &[Unknown],
+    factors: &[f64],
+) -> Vec<String> {
+    let mut overrides = scene.overrides.to_vec();
+    for (unknown, factor) in unknowns.iter().zip(factors) {
+        for number in &unknown.numbers {
+            overrides.push(set_text(&number.path, number.times(*factor), &number.unit));
+        }
+    }
+    overrides
+}
+
+/// Reasons to doubt a test, with the remedy for a crack outside its region.
+fn doubts(scene: &Scene, test: &TestResult) -> Vec<String> {
+    let mut doubts = test.doubts();
+    let is_outside = test.crack.as_ref().is_some_and(|crack| !crack.is_within);
+    let presses = scene.test.as_ref().is_some_and(|test| {
+        let is_wall = |name: &String| scene.walls.contains_key(name);
+        test.crosshead.iter().any(is_wall)
+    });
+    if is_outside && presses && test.figure(FAILURE_FORCE).is_some() {
+        doubts.push(
+            "if bonds break at pins or plates first, use tensile_strength in place of von_mises_strength, thicker pins, or smaller spheres"
+                .to_owned(),
+        );
+    }
+    doubts
+}

@@ -1,0 +1,221 @@
+//! Which numbers are varied, and which result each is to give.
+
+use dem_calibration::{Number, Unknown};
+use dem_io::{Diagnostic, Result};
+use dem_laboratory::TestType;
+use dem_scene::{Scene, Test, written_value};
+
+use crate::laboratory::evaluate::{BY_TRAVEL, EQ_18, MODULUS, STIFFNESS, STRENGTH};
+
+/// Largest deviation of the mean modulus from its target.
+const MODULUS_TOLERANCE: f64 = 0.01;
+/// The same for the strength and other results.
+const STRENGTH_TOLERANCE: f64 = 0.02;
+/// Strengths of bonds, as keys of a scene.
+const STRENGTHS: [&str; 4] = [
+    "von_mises_strength",
+    "tensile_strength",
+    "shear_strength",
+    "compressive_strength",
+];
+
+/// The modulus that is to be met.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum ModulusBy {
+    /// From the crosshead travel, as test rigs measure it.
+    Travel,
+    /// From the deformation of the specimen itself.
+    Specimen,
+}
+
+/// The text of a scene and its `--set` values.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SceneText<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) source: &'a str,
+    pub(crate) overrides: &'a [String],
+}
+
+/// What is varied: modulus and strengths of the bonds of the tested body, or what `free` names.
+/// `stiffness_n_m`: stiffness of the measured curve for the simulated specimen.
+///
+/// # Errors
+/// Nothing to calibrate; `free` names no number of the scene, or no result with a target.
+pub(crate) fn unknowns(
+    scene: &Scene,
+    text: &SceneText<'_>,
+    free: &[String],
+    by: ModulusBy,
+    stiffness_n_m: Option<f64>,
+) -> Result<Vec<Unknown>> {
+    let chooser = Chooser {
+        scene,
+        text,
+        by,
+        stiffness_n_m,
+    };
+    if !free.is_empty() {
+        return free.iter().map(|one| chooser.named(one)).collect();
+    }
+    let both = [chooser.modulus()?, chooser.strength(&STRENGTHS)?];
+    let found: Vec<Unknown> = both.into_iter().flatten().collect();
+    if found.is_empty() {
+        return Err(Diagnostic::input(
+            &scene.source,
+            "the scene has no target",
+            "add young_modulus, strength or measured to [test], or name a result: --free PATH=MEASURE:VALUE",
+        ));
+    }
+    Ok(found)
+}
+
+struct Chooser<'a> {
+    scene: &'a Scene,
+    text: &'a SceneText<'a>,
+    by: ModulusBy,
+    stiffness_n_m: Option<f64>,
+}
+
+impl Chooser<'_> {
+    /// One that `--free` names: `modulus`, `strength`, a strength of the bonds, or
+    /// `PATH=RESULT:VALUE`.
+    fn named(&self, text: &str) -> Result<Unknown> {
+        let place = || format!("--free {text}");
+        let no_target = |key: &str| {
+            let remedy = format!("add {key} or measured to [test]");
+            Diagnostic::input(place(), "the scene has no target for it", remedy)
+        };
+        if let Some((path, result)) = text.split_once('=') {
+            let (result, value) = result.rsplit_once(':').unwrap_or((result, ""));
+            let target: Option<f64> = value.parse().ok();
+            let Some(target) = target.filter(|target| *target > 0.0 && target.is_finite()) else {
+                let problem = format!("'{value}' is not a positive number");
+                let remedy = "write PATH=MEASURE:VALUE with the value in SI units";
+                return Err(Diagnostic::input(place(), problem, remedy));
+            };
+            let is_measure = self.scene.measures.contains_key(result);
+            if !is_measure && self.scene.test.is_none() {
+                let problem = format!("the scene has no measure '{result}'");
+                return Err(Diagnostic::input(place(), problem, "add it to [measures]"));
+            }
+            return Ok(Unknown {
+                numbers: vec![self.number(path)?.ok_or_else(|| {
+                    let remedy = "write its path as for --set, such as contacts.cake-cake.friction";
+                    Diagnostic::input(place(), format!("the scene has no {path}"), remedy)
+                })?],
+                result: result.to_owned(),
+                unit: String::new(),
+                target,
+                tolerance: STRENGTH_TOLERANCE,
+            });
+        }
+        match text {
+            "modulus" => self.modulus()?.ok_or_else(|| no_target("young_modulus")),
+            "strength" => self
+                .strength(&STRENGTHS)?
+                .ok_or_else(|| no_target("strength")),
+            one if STRENGTHS.contains(&one) => {
+                self.strength(&[one])?.ok_or_else(|| no_target("strength"))
+            }
+            _ => {
+                let remedy = format!(
+                    "write modulus, strength, {}, or PATH=MEASURE:VALUE",
+                    STRENGTHS.join(", ")
+                );
+                Err(Diagnostic::input(place(), "it is not known", remedy))
+            }
+        }
+    }
+
+    /// The modulus of the bonds, if the scene has a target for it.
+    fn modulus(&self) -> Result<Option<Unknown>> {
+        let Some(test) = &self.scene.test else {
+            return Ok(None);
+        };
+        let Some((result, unit, target)) = self.stiffness(test) else {
+            return Ok(None);
+        };
+        let path = format!("bonds.{}.young_modulus", self.bonds(test)?);
+        Ok(self.number(&path)?.map(|number| Unknown {
+            numbers: vec![number],
+            result: result.to_owned(),
+            unit: unit.to_owned(),
+            target,
+            tolerance: MODULUS_TOLERANCE,
+        }))
+    }
+
+    /// Name, unit and target of the result that stands for the stiffness of the body.
+    fn stiffness(&self, test: &Test) -> Option<(&'static str, &'static str, f64)> {
+        let modulus = test.young_modulus_pa;
+        match (test.kind, self.by) {
+            (TestType::BrazilianDisc, ModulusBy::Travel) if self.stiffness_n_m.is_some() => {
+                Some((STIFFNESS, "N/m", self.stiffness_n_m?))
+            }
+            (TestType::BrazilianDisc, _) | (_, ModulusBy::Specimen) => {
+                Some((MODULUS, "Pa", modulus?))
+            }
+            (TestType::FourPointBending | TestType::ThreePointBending, _) => {
+                Some((EQ_18, "Pa", modulus?))
+            }
+            (TestType::Compression | TestType::Tension, _) => Some((BY_TRAVEL, "Pa", modulus?)),
+        }
+    }
+
+    /// Those of these strengths that the bonds have, if the scene has a target.
+    fn strength(&self, keys: &[&str]) -> Result<Option<Unknown>> {
+        let Some((test, target)) = self
+            .scene
+            .test
+            .as_ref()
+            .and_then(|test| Some((test, test.strength_pa?)))
+        else {
+            return Ok(None);
+        };
+        let bonds = self.bonds(test)?;
+        let mut numbers = Vec::new();
+        for key in keys {
+            let path = format!("bonds.{bonds}.failure.{key}");
+            numbers.extend(self.number(&path)?.filter(|number| number.value > 0.0));
+        }
+        if numbers.is_empty() {
+            return Err(Diagnostic::input(
+                &self.scene.source,
+                format!("[bonds.{bonds}] has no strength to vary, and [test] has a target"),
+                "add failure = { tensile_strength = \"1 MPa\" }, a first guess",
+            ));
+        }
+        Ok(Some(Unknown {
+            numbers,
+            result: STRENGTH.to_owned(),
+            unit: "Pa".to_owned(),
+            target,
+            tolerance: STRENGTH_TOLERANCE,
+        }))
+    }
+
+    /// Name of the bonds of the tested body.
+    fn bonds(&self, test: &Test) -> Result<&str> {
+        let body = self.scene.bodies.get(&test.body);
+        let bonds = body.and_then(|body| body.bond_kind.as_deref());
+        bonds.ok_or_else(|| {
+            let problem = format!("the body '{}' has no bonds", test.body);
+            Diagnostic::input(&self.scene.source, problem, "name them: bonds = \"NAME\"")
+        })
+    }
+
+    fn number(&self, path: &str) -> Result<Option<Number>> {
+        let SceneText {
+            text,
+            source,
+            overrides,
+        } = self.text;
+        let found = written_value(text, source, overrides, path)?;
+        let number = |(value, unit)| Number {
+            path: path.to_owned(),
+            value,
+            unit,
+        };
+        Ok(found.map(number))
+    }
+}

@@ -1,0 +1,103 @@
+//! What is known of a test before it is run: its specimen, and whether the stroke is long enough.
+
+use std::collections::BTreeMap;
+
+use dem_calibration::Unknown;
+use dem_io::units::{show_length, show_quantity};
+use dem_io::{Body, Diagnostic, Result};
+use dem_laboratory::Specimen;
+use dem_scene::Scene;
+
+use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
+use crate::laboratory::evaluate::{
+    BY_TRAVEL, EQ_18, STIFFNESS, STRENGTH, measured_curve, stiffness_of_curve,
+};
+use crate::plan::plan;
+
+/// Smallest ratio of the stroke to the travel at failure of a body that meets its targets: until
+/// pins touch, and until the load has fallen.
+const ROOM: f64 = 1.2;
+
+/// What is known before the tests.
+pub(crate) struct Prospect {
+    /// The specimen of the first packing. None: the scene has no test.
+    specimen: Option<Specimen>,
+    /// Stiffness of the measured curve for this specimen, N/m.
+    pub(crate) stiffness_n_m: Option<f64>,
+    /// The measured curve for this specimen: displacement, m, and load, N. Empty: there is none.
+    pub(crate) wanted_curve: Vec<[f64; 2]>,
+}
+
+/// Plans the test of a packing of `body`.
+///
+/// # Errors
+/// Those of the plan.
+pub(crate) fn prospect(
+    scene: &Scene,
+    body: &str,
+    packing: &Body,
+    others: &BTreeMap<String, Body>,
+    threads: usize,
+) -> Result<Prospect> {
+    let mut prospect = Prospect {
+        specimen: None,
+        stiffness_n_m: None,
+        wanted_curve: Vec::new(),
+    };
+    let Some(test) = &scene.test else {
+        return Ok(prospect);
+    };
+    let mut bodies = others.clone();
+    bodies.insert(body.to_owned(), packing.clone());
+    if let Some(lowest_hz) = lowest_in_test_hz(scene, &bodies, threads)? {
+        let scene = arrange(scene, lowest_hz, 1.0)?;
+        prospect.specimen = plan(&scene, bodies, threads, true)?
+            .test
+            .map(|setup| setup.specimen);
+    }
+    if let Some(specimen) = &prospect.specimen {
+        prospect.stiffness_n_m = stiffness_of_curve(test, specimen);
+        prospect.wanted_curve = measured_curve(test, specimen);
+    }
+    Ok(prospect)
+}
+
+impl Prospect {
+    /// Refuses a stroke that is too short for a body that meets its targets.
+    ///
+    /// # Errors
+    /// The stroke is shorter than 1.2 times the travel at failure.
+    pub(crate) fn check(&self, scene: &Scene, unknowns: &[Unknown]) -> Result<()> {
+        let (Some(specimen), Some(test)) = (&self.specimen, &scene.test) else {
+            return Ok(());
+        };
+        let target = |names: &[&str]| {
+            let found = unknowns
+                .iter()
+                .find(|one| names.contains(&one.result.as_str()));
+            found.map(|one| one.target)
+        };
+        let stiffness_n_m = target(&[STIFFNESS]).or_else(|| {
+            let modulus_pa = target(&[EQ_18, BY_TRAVEL])?;
+            Some(modulus_pa / specimen.modulus_pa(1.0)?)
+        });
+        let (Some(stiffness_n_m), Some(strength_pa)) = (stiffness_n_m, target(&[STRENGTH])) else {
+            return Ok(());
+        };
+        let force_n = strength_pa / specimen.stress_pa(1.0);
+        let travel_m = force_n / stiffness_n_m;
+        if test.stroke_m >= ROOM * travel_m {
+            return Ok(());
+        }
+        Err(Diagnostic::input(
+            format!("{}: [test]", scene.source),
+            format!(
+                "the stroke of {} is too short: a body with the wanted modulus and strength fails under {} at a travel of {}",
+                show_length(test.stroke_m),
+                show_quantity(force_n, "N"),
+                show_length(travel_m)
+            ),
+            format!("write stroke = \"{:.3} mm\" or more", 1e3 * ROOM * travel_m),
+        ))
+    }
+}

@@ -1,0 +1,432 @@
+//! `dem-run calibrate`: numbers of a scene with which the mean test of several packings gives the
+//! wanted results.
+
+use std::collections::BTreeMap;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
+
+use clap::Args;
+use dem_calibration::{
+    Case, FORMAT_VERSION, Record, Unknown, calibrate as search, page, read_record, report,
+    write_record,
+};
+use dem_io::diagnostic::Kind;
+use dem_io::hash::{file_hash, fnv1a_of_parts};
+use dem_io::program::today;
+use dem_io::safe_write::{
+    need_folder_of, refuse_to_replace, write_file, write_standard_json, write_standard_output,
+};
+use dem_io::text::visible;
+use dem_io::{Body, Diagnostic, Result};
+use dem_pack::cli::Recipe;
+use dem_scene::{Scene, material_text, scene_from_text, text_of};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::SceneArguments;
+use super::packings::{Packings, spheres_across};
+use crate::calibration::{Bench, ModulusBy, Prospect, SceneText, prospect, unknowns};
+use crate::interrupt::Interrupt;
+
+#[derive(Debug, Args)]
+pub(super) struct CalibrateArguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Material file to write, which scenes include; a page (.html) and a record (.json) of the
+    /// same name are written with it
+    #[arg(long, short, value_name = "FILE", default_value = "calibrated.toml")]
+    output: PathBuf,
+    /// Number to vary: modulus, strength (all strengths of the bonds by one factor), one strength
+    /// such as shear_strength, or PATH=MEASURE:VALUE for another number of the scene and a measure
+    /// or test result (SI units) that it determines; modulus and strength unless given
+    #[arg(long, value_name = "NUMBER")]
+    free: Vec<String>,
+    /// Modulus to meet: from the travel, as test rigs measure it, or from the specimen's own
+    /// deformation
+    #[arg(long, value_enum, default_value = "travel")]
+    modulus: ModulusBy,
+    /// Number of packings of the shape after --; their seeds follow that of the arguments
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    packings: usize,
+    /// Diameters of spheres instead of those after --; repeat it for a table over sizes
+    #[arg(long, value_name = "DIAMETERS", requires = "pack")]
+    size: Vec<String>,
+    /// Largest error of the curve, such as 5%: names the coarsest size that keeps it
+    #[arg(long, value_name = "ERROR", requires = "size")]
+    max_error: Option<String>,
+    /// Go on with an interrupted calibration
+    #[arg(long, conflicts_with = "force")]
+    resume: bool,
+    /// Overwrite an earlier calibration
+    #[arg(long)]
+    force: bool,
+    /// Only print errors; --json is still printed
+    #[arg(long, short)]
+    quiet: bool,
+    /// Shape and options of dem-pack: the body is packed anew; otherwise --body names its
+    /// packings, one each, or the scene its only one
+    #[arg(last = true, value_name = "STL OPTIONS")]
+    pack: Vec<String>,
+}
+
+/// Calibrates, writes material, page and record, and prints a summary.
+///
+/// # Errors
+/// Bad input; a test that goes unstable or is interrupted; targets that are not met, once the page
+/// and the record are written.
+pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> Result<()> {
+    let most_error = options.max_error.as_deref().map(fraction).transpose()?;
+    let source = options.scene.place();
+    let file = options.scene.file.as_deref().unwrap_or(Path::new(""));
+    let text = text_of(file, "a scene")?;
+    let overrides = options.scene.all_overrides();
+    let scene = scene_from_text(&text, &source, &overrides)?;
+    let mut packings = Packings::of(options.recipes()?, &options.scene.body, &scene)?;
+    packings.count = options.packings;
+    let files = OutputFiles::of(&options.output)?;
+    files.refuse(options, &scene, &packings)?;
+    let scene_text = SceneText {
+        text: &text,
+        source: &source,
+        overrides: &overrides,
+    };
+    super::in_pool(options.scene.threads, |threads| {
+        let others = packings.other_bodies(&scene)?;
+        let first = packings.make(0, 0)?;
+        let prospect = prospect(&scene, &packings.body, &first, &others, threads)?;
+        let unknowns = unknowns(
+            &scene,
+            &scene_text,
+            &options.free,
+            options.modulus,
+            prospect.stiffness_n_m,
+        )?;
+        prospect.check(&scene, &unknowns)?;
+        let identity = identity(&text, options, &scene, &packings);
+        let mut record = match options.resume {
+            true => resumed(&files.record, identity)?,
+            false => new_record(&scene, &packings, unknowns, &prospect, identity),
+        };
+        let job = Job {
+            options,
+            scene: &scene_text,
+            others: &others,
+            packings: &packings,
+            threads,
+            checks_rate: scene.test.as_ref().is_some_and(|test| test.rate_check),
+            record_file: &files.record,
+        };
+        let worked = interrupt.run_interruptible(|stop| job.do_all(&mut record, stop));
+        worked.map_err(|mut error| {
+            if error.kind == Kind::Interrupted {
+                error.remedy = "go on with --resume".to_owned();
+            }
+            error
+        })?;
+        finish(options, &record, most_error, &files, &scene_text)
+    })
+}
+
+/// A fraction, as in 5% or 0.05.
+fn fraction(text: &str) -> Result<f64> {
+    let (number, factor) = match text.trim().strip_suffix('%') {
+        Some(percent) => (percent.trim(), 0.01),
+        None => (text.trim(), 1.0),
+    };
+    let value: Option<f64> = number.parse().ok();
+    let value = value.filter(|value| *value > 0.0 && value.is_finite());
+    value.map(|value| factor * value).ok_or_else(|| {
+        let problem = format!("'{}' is not a positive error", text.escape_debug());
+        Diagnostic::input("--max-error", problem, "write 5% or 0.05")
+    })
+}
+
+impl CalibrateArguments {
+    /// The shape with each size of spheres, from coarse to fine; none without `--`.
+    fn recipes(&self) -> Result<Vec<Recipe>> {
+        if self.packings == 0 {
+            return Err(Diagnostic::input(
+                "--packings",
+                "0 packings test nothing",
+                "4 is usual",
+            ));
+        }
+        if self.pack.is_empty() {
+            return Ok(Vec::new());
+        }
+        if self.size.is_empty() {
+            return Ok(vec![Recipe::parse(&self.pack)?]);
+        }
+        let sized = self.size.iter().map(|size| {
+            let arguments: Vec<String> = self.pack.clone();
+            Recipe::parse(&arguments)?
+                .with_diameter(size)
+                .map_err(|error| error.within("--size"))
+        });
+        let mut recipes: Vec<Recipe> = sized.collect::<Result<_>>()?;
+        recipes.sort_by(|a, b| b.smallest_diameter_m().total_cmp(&a.smallest_diameter_m()));
+        Ok(recipes)
+    }
+}
+
+/// The files that a calibration writes.
+struct OutputFiles {
+    material: PathBuf,
+    page: PathBuf,
+    record: PathBuf,
+}
+
+impl OutputFiles {
+    fn of(output: &Path) -> Result<Self> {
+        let [page, record] = ["html", "json"].map(|ending| output.with_extension(ending));
+        if page == output || record == output {
+            let problem = format!("{} is the name of the page or the record", output.display());
+            let remedy = "write the material to a name that ends in .toml";
+            return Err(Diagnostic::input("--output", problem, remedy));
+        }
+        need_folder_of(output)?;
+        Ok(Self {
+            material: output.to_owned(),
+            page,
+            record,
+        })
+    }
+
+    /// Refuses to overwrite inputs, or an earlier calibration.
+    fn refuse(
+        &self,
+        options: &CalibrateArguments,
+        scene: &Scene,
+        packings: &Packings,
+    ) -> Result<()> {
+        let mut inputs = scene.input_files();
+        inputs.extend(packings.files());
+        let written = [&self.material, &self.page, &self.record].map(PathBuf::clone);
+        refuse_to_replace(&written, &inputs)?;
+        if self.record.exists() && !options.resume && !options.force {
+            let remedy =
+                "go on with it by --resume, replace it by --force, or write to another --output";
+            return Err(Diagnostic::input(
+                self.record.display().to_string(),
+                "there is a calibration already",
+                remedy,
+            ));
+        }
+        Ok(())
+    }
+
+    /// The material file of a case: numbered if there are several.
+    fn material_of(&self, case: usize, cases: usize) -> PathBuf {
+        if cases == 1 {
+            return self.material.clone();
+        }
+        let stem = self.material.file_stem().unwrap_or_default();
+        let name = format!("{}-{}.toml", stem.to_string_lossy(), case + 1);
+        self.material.with_file_name(name)
+    }
+}
+
+/// Hash of everything that the result depends on.
+fn identity(text: &str, options: &CalibrateArguments, scene: &Scene, packings: &Packings) -> u64 {
+    let mut parts: Vec<String> = vec![
+        env!("CARGO_PKG_VERSION").to_owned(),
+        text.to_owned(),
+        format!("{:?}", options.modulus),
+        options.packings.to_string(),
+    ];
+    for list in [
+        &options.scene.all_overrides(),
+        &options.free,
+        &options.size,
+        &options.pack,
+    ] {
+        parts.push(list.join("\n"));
+    }
+    let files = scene.input_files().into_iter().chain(packings.files());
+    parts.extend(files.map(|file| format!("{:?}", file_hash(&file))));
+    let parts: Vec<&[u8]> = parts.iter().map(String::as_bytes).collect();
+    fnv1a_of_parts(&parts)
+}
+
+fn resumed(file: &Path, identity: u64) -> Result<Record> {
+    let record = read_record(file)?;
+    if record.identity == identity {
+        return Ok(record);
+    }
+    Err(Diagnostic::input(
+        file.display().to_string(),
+        "it is the calibration of another scene, or with other options",
+        "repeat the same command with --resume, or start again with --force",
+    ))
+}
+
+fn new_record(
+    scene: &Scene,
+    packings: &Packings,
+    unknowns: Vec<Unknown>,
+    prospect: &Prospect,
+    identity: u64,
+) -> Record {
+    let case = |name: String| Case {
+        name,
+        particles: 0,
+        bonds: 0,
+        spheres_across: 0.0,
+        rounds: Vec::new(),
+        end: None,
+        at_twice_the_rate: None,
+    };
+    Record {
+        version: FORMAT_VERSION,
+        program: format!("dem-run {}", env!("CARGO_PKG_VERSION")),
+        date: today(),
+        identity,
+        scene: scene.source.clone(),
+        unknowns,
+        packings: packings.names(),
+        wanted_curve: prospect.wanted_curve.clone(),
+        cases: packings.case_names().into_iter().map(case).collect(),
+    }
+}
+
+/// The work of a calibration.
+struct Job<'a> {
+    options: &'a CalibrateArguments,
+    scene: &'a SceneText<'a>,
+    others: &'a BTreeMap<String, Body>,
+    packings: &'a Packings,
+    threads: usize,
+    /// Whether the scene asks for a test at twice the rate.
+    checks_rate: bool,
+    record_file: &'a Path,
+}
+
+impl Job<'_> {
+    /// Calibrates each size that has not ended.
+    fn do_all(&self, record: &mut Record, stop: &AtomicBool) -> Result<()> {
+        for at in 0..record.cases.len() {
+            if record.cases[at].end.is_none() {
+                self.do_case(record, at, stop)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn do_case(&self, record: &mut Record, at: usize, stop: &AtomicBool) -> Result<()> {
+        let count = record.packings.len();
+        let bodies: Vec<Body> = (0..count)
+            .map(|packing| self.packings.make(at, packing))
+            .collect::<Result<_>>()?;
+        let unknowns = record.unknowns.clone();
+        let workers = count.min(self.threads);
+        let bench = Bench {
+            scene: *self.scene,
+            unknowns: &unknowns,
+            body: &self.packings.body,
+            packings: &bodies,
+            others: self.others,
+            force_step: self.options.scene.force_step,
+            threads: self.threads / workers,
+            interrupted: stop,
+        };
+        let mut case = record.cases[at].clone();
+        case.particles = bodies[0].positions.len();
+        case.bonds = bodies[0].bonds.len();
+        case.spheres_across = spheres_across(&bodies[0]);
+        let bar = self.options.progress_bar(&case.name);
+        let parts = Mutex::new(vec![0.0; count]);
+        let tell = |packing: usize, fraction: f64| {
+            if let Ok(mut parts) = parts.lock() {
+                parts[packing] = fraction;
+                let sum: f64 = parts.iter().sum();
+                bar.set_position((1000.0 * sum / count as f64) as u64);
+            }
+        };
+        let shared = Mutex::new(&mut *record);
+        let save = |case: &Case| {
+            let Ok(mut record) = shared.lock() else {
+                return Ok(());
+            };
+            bar.set_message(format!("{} tests done", case.cost().1));
+            record.cases[at].clone_from(case);
+            write_record(self.record_file, &record)
+        };
+        let test = |factors: &[f64], packing: usize| {
+            bench.test(factors, packing, 1.0, &|fraction| tell(packing, fraction))
+        };
+        let mut done = search(&unknowns, count, &mut case, workers, &test, &save);
+        if done.is_ok()
+            && let Some(factors) = case.result().map(|round| round.factors.clone())
+            && self.checks_rate
+        {
+            let fast = bench.test(&factors, 0, 2.0, &|_| ());
+            done = fast.map(|trial| case.at_twice_the_rate = Some(trial));
+        }
+        bar.finish_and_clear();
+        done.and_then(|()| save(&case))
+    }
+}
+
+impl CalibrateArguments {
+    fn progress_bar(&self, name: &str) -> ProgressBar {
+        if self.quiet || !std::io::stderr().is_terminal() {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::new(1000);
+        let template =
+            "calibrate {prefix}[{bar:40}] {percent:>3} % of this round, {eta} left  {msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        if !name.is_empty() {
+            bar.set_prefix(format!("{name} "));
+        }
+        bar
+    }
+}
+
+/// Writes the page and, for each size that met its targets, the material file; prints the result.
+fn finish(
+    options: &CalibrateArguments,
+    record: &Record,
+    most_error: Option<f64>,
+    files: &OutputFiles,
+    scene: &SceneText<'_>,
+) -> Result<()> {
+    write_file(&files.page, |out| {
+        out.write_all(page(record, most_error).as_bytes())
+    })?;
+    let cases = record.cases.len();
+    let mut written = Vec::new();
+    for (at, case) in record.cases.iter().enumerate() {
+        if case.is_met() {
+            let path = files.material_of(at, cases);
+            let text = material_of(record, case, scene)?;
+            write_file(&path, |out| out.write_all(text.as_bytes()))?;
+            written.push(path);
+        }
+    }
+    if options.scene.json {
+        write_standard_json(record)?;
+    } else if !options.quiet {
+        let all = written.iter().chain([&files.page, &files.record]);
+        let all: Vec<String> = all.map(|path| path.display().to_string()).collect();
+        write_standard_output(|out| {
+            write!(out, "{}", report(record, most_error))?;
+            writeln!(out, "{:12} {}", "written", visible(&all.join(", ")))
+        })?;
+    }
+    match record.cases.iter().find_map(Case::problem) {
+        None => Ok(()),
+        Some((problem, remedy)) => Err(Diagnostic::failed(&record.scene, problem, remedy)),
+    }
+}
+
+/// The material file of a case: where its numbers come from, as comments, and the tables.
+fn material_of(record: &Record, case: &Case, scene: &SceneText<'_>) -> Result<String> {
+    let factors = case.result().map_or(&[][..], |round| &round.factors);
+    let overrides = crate::calibration::overrides(scene, &record.unknowns, factors);
+    let tables = material_text(scene.text, scene.source, &overrides)?;
+    Ok(format!("{}{tables}", dem_calibration::origin(record, case)))
+}
