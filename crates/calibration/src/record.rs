@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dem_io::safe_write::{write_file, write_json_text};
+use dem_io::safe_write::write_file;
 use dem_io::{Diagnostic, Result, read_input};
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +41,20 @@ impl Record {
     pub fn is_finished(&self) -> bool {
         self.cases.iter().all(|case| case.end.is_some())
     }
+
+    /// The same without curves.
+    pub fn without_curves(&self) -> Self {
+        let mut record = self.clone();
+        record.wanted_curve.clear();
+        for case in &mut record.cases {
+            let rounds = case.rounds.iter_mut();
+            let trials = rounds.flat_map(|round| round.trials.iter_mut().flatten());
+            for trial in trials.chain(&mut case.at_twice_the_rate) {
+                trial.curve.clear();
+            }
+        }
+        record
+    }
 }
 
 /// Writes a record as JSON, whole or not at all.
@@ -48,7 +62,10 @@ impl Record {
 /// # Errors
 /// Missing folder, no permission, full disk (all exit code 1).
 pub fn write_record(path: &Path, record: &Record) -> Result<()> {
-    write_file(path, |out| write_json_text(out, record))
+    write_file(path, |out| {
+        let text = serde_json::to_string(record).map_err(std::io::Error::other)?;
+        writeln!(out, "{text}")
+    })
 }
 
 /// Reads what [`write_record`] wrote.

@@ -6,14 +6,21 @@ use crate::confidence::half_width;
 use crate::rounds::Round;
 use crate::unknown::Unknown;
 
-/// Rounds of tests after which a calibration ends.
-pub(crate) const MOST_ROUNDS: usize = 4;
+/// Rounds of tests after which a calibration ends if all results are proportional to their numbers.
+const MOST_ROUNDS: usize = 4;
+/// The same for other results.
+const MOST_ROUNDS_OF_OTHERS: usize = 10;
 /// Smallest change of the logarithm of a factor from which a slope is taken: below, the scatter of
 /// strengths is larger than their change.
 const FEWEST_CHANGE: f64 = 0.1;
-/// Range of slopes of ln(result) over ln(factor). Results are proportional to the number that
-/// determines them, except for the compliance of contacts at pins.
+/// Range of slopes of ln(result) over ln(factor) for proportional results, which contacts at pins
+/// and the scatter of strengths change.
 const SLOPES: [f64; 2] = [0.5, 2.0];
+/// Range of the size of slopes for others.
+const SIZES_OF_SLOPES: [f64; 2] = [0.1, 5.0];
+/// Largest change of the logarithm of their factors: in the first step, whose slope is not known,
+/// and in others.
+const CHANGES: [f64; 2] = [0.4, 1.0];
 /// A result that follows its number less than this does not depend on it.
 const FLAT: f64 = 0.05;
 /// Largest factor on a number of the scene, and the inverse of the smallest.
@@ -50,22 +57,53 @@ pub fn next(unknowns: &[Unknown], rounds: &[Round]) -> Step {
         return Step::Stop(last, End::Met);
     }
     let mut factors = rounds[last].factors.clone();
+    let mut unbroken = None;
     for (at, unknown) in unknowns.iter().enumerate() {
         match factor(unknown, rounds, at) {
             Ok(factor) => factors[at] = factor,
-            Err((problem, remedy)) => {
+            Err(Obstacle::StaysWhole(problem)) => unbroken = Some(problem),
+            Err(Obstacle::Final(problem, remedy)) => {
                 return Step::Stop(best(unknowns, rounds), End::NotMet(problem, remedy));
             }
         }
     }
-    if rounds.len() < MOST_ROUNDS && factors != rounds[last].factors {
+    // A stiffer body may break within the same stroke.
+    if rounds.len() < most_rounds(unknowns) && factors != rounds[last].factors {
         return Step::Try(factors);
     }
-    stop(unknowns, rounds)
+    match unbroken {
+        Some(problem) => {
+            let end = End::NotMet(problem, "lengthen test.stroke".to_owned());
+            Step::Stop(best(unknowns, rounds), end)
+        }
+        None => stop(unknowns, rounds),
+    }
+}
+
+fn most_rounds(unknowns: &[Unknown]) -> usize {
+    if unknowns.iter().all(|unknown| unknown.is_proportional) {
+        MOST_ROUNDS
+    } else {
+        MOST_ROUNDS_OF_OTHERS
+    }
+}
+
+/// Why there is no next factor.
+enum Obstacle {
+    /// Problem and remedy.
+    Final(String, String),
+    /// The bodies do not break within the stroke.
+    StaysWhole(String),
+}
+
+impl Obstacle {
+    fn new(problem: String, remedy: &str) -> Self {
+        Self::Final(problem, remedy.to_owned())
+    }
 }
 
 /// The next factor of the unknown `at`, or why there is none.
-fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, (String, String)> {
+fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, Obstacle> {
     let last = &rounds[rounds.len() - 1];
     let old = last.factors[at];
     let name = &unknown.result;
@@ -73,14 +111,14 @@ fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, (String
         let Some(least) = last.largest_bound(at) else {
             let problem = format!("no test gave the {name}");
             let remedy = "see what dem-run says of the test itself";
-            return Err((problem, remedy.to_owned()));
+            return Err(Obstacle::new(problem, remedy));
         };
         if least < unknown.target {
             let problem = format!(
                 "the bodies do not break: at the end of the stroke the {name} is {:.3} of its target",
                 least / unknown.target
             );
-            return Err((problem, "lengthen test.stroke".to_owned()));
+            return Err(Obstacle::StaysWhole(problem));
         }
         return Ok(old * unknown.target / least);
     };
@@ -89,22 +127,27 @@ fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, (String
     if wanted.abs() <= 0.5 * unknown.tolerance {
         return Ok(old);
     }
-    let slope = slope(rounds, at).unwrap_or(1.0);
-    if slope < FLAT {
-        let problem = format!(
-            "the {name} hardly follows {}: its slope is {slope:.2} on logarithmic scales",
-            unknown.numbers[0].path
-        );
+    let slope = slope(rounds, at);
+    if slope.is_some_and(|slope| slope.abs() < FLAT || (unknown.is_proportional && slope < 0.0)) {
+        let problem = format!("the {name} hardly follows {}", unknown.numbers[0].path);
         let remedy = "something else determines it, such as soft contacts at pins or plates; make these stiffer, or correct the target";
-        return Err((problem, remedy.to_owned()));
+        return Err(Obstacle::new(problem, remedy));
     }
-    let new = old * (wanted / slope.clamp(SLOPES[0], SLOPES[1])).exp();
+    let change = match (slope, unknown.is_proportional) {
+        (slope, true) => wanted / slope.unwrap_or(1.0).clamp(SLOPES[0], SLOPES[1]),
+        (None, false) => wanted.clamp(-CHANGES[0], CHANGES[0]),
+        (Some(slope), false) => {
+            let size = slope.abs().clamp(SIZES_OF_SLOPES[0], SIZES_OF_SLOPES[1]);
+            (wanted / size * slope.signum()).clamp(-CHANGES[1], CHANGES[1])
+        }
+    };
+    let new = old * change.exp();
     if !(1.0 / FURTHEST..=FURTHEST).contains(&new) {
         let problem = format!(
             "the target of the {name} is out of reach: {} would be {new:.3e} times that of the scene",
             unknown.numbers[0].path
         );
-        return Err((problem, "check the target and its unit".to_owned()));
+        return Err(Obstacle::new(problem, "check the target and its unit"));
     }
     Ok(new)
 }

@@ -26,6 +26,9 @@ pub struct Unknown {
     pub target: f64,
     /// Largest relative deviation of the mean result from the target.
     pub tolerance: f64,
+    /// True if the result is nearly proportional to the numbers, as modulus and strength of a body
+    /// are to those of its bonds.
+    pub is_proportional: bool,
 }
 
 impl Number {

@@ -21,6 +21,7 @@ fn unknown(path: &str, result: &str, target: f64, tolerance: f64) -> Unknown {
         unit: "Pa".to_owned(),
         target,
         tolerance,
+        is_proportional: true,
     }
 }
 
@@ -194,6 +195,23 @@ fn targets_that_cannot_be_met_are_named_with_a_remedy() {
     assert!(remedy.contains("more packings"), "{remedy}");
 }
 
+/// A result that falls as its number rises, by no simple law: damping and rebound.
+#[test]
+fn a_result_that_falls_is_met() {
+    let mut rebound = unknown("bonds.cake.damping.damping_ratio", "rebound", 0.3, 0.02);
+    rebound.is_proportional = false;
+    for target in [0.02, 0.3, 0.6, 0.75] {
+        rebound.target = target;
+        let mut case = empty("");
+        run(&mut case, std::slice::from_ref(&rebound), |factors, _| {
+            trial(vec![Some((-0.6 * factors[0] - 0.2).exp())])
+        });
+        assert_eq!(case.end.as_ref().unwrap().1, End::Met, "{target}");
+        let mean = case.result().unwrap().mean(0).unwrap();
+        assert!((mean / target - 1.0).abs() <= 0.02, "{target}");
+    }
+}
+
 /// Bodies that were too strong to break in the first round break in a later one.
 #[test]
 fn too_strong_a_first_guess_is_lowered() {
@@ -209,6 +227,22 @@ fn too_strong_a_first_guess_is_lowered() {
     });
     assert_eq!(case.end.as_ref().unwrap().1, End::Met);
     assert!((case.rounds[1].factors[1] - 0.25).abs() < 1e-12);
+}
+
+/// Bodies that are too soft to break within the stroke become stiffer first.
+#[test]
+fn a_body_that_is_too_soft_to_break_becomes_stiffer() {
+    let mut case = empty("");
+    run(&mut case, &both(), |factors, packing| {
+        let mut trial = soft_at_pins(factors, packing);
+        if trial.results[0] < Some(8.0) {
+            trial.results[1] = None;
+            trial.at_least[1] = Some(0.1);
+        }
+        trial
+    });
+    assert_eq!(case.end.as_ref().unwrap().1, End::Met);
+    assert_eq!(case.rounds[1].factors[1], 1.0);
 }
 
 /// Means that are not within 2 %, but whose confidence interval contains the target.

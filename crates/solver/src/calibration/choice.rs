@@ -107,6 +107,7 @@ impl Chooser<'_> {
                 unit: String::new(),
                 target,
                 tolerance: STRENGTH_TOLERANCE,
+                is_proportional: false,
             });
         }
         match text {
@@ -142,6 +143,7 @@ impl Chooser<'_> {
             unit: unit.to_owned(),
             target,
             tolerance: MODULUS_TOLERANCE,
+            is_proportional: true,
         }))
     }
 
@@ -191,6 +193,7 @@ impl Chooser<'_> {
             unit: "Pa".to_owned(),
             target,
             tolerance: STRENGTH_TOLERANCE,
+            is_proportional: true,
         }))
     }
 

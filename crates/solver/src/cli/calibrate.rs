@@ -408,7 +408,7 @@ fn finish(
         }
     }
     if options.scene.json {
-        write_standard_json(record)?;
+        write_standard_json(&record.without_curves())?;
     } else if !options.quiet {
         let all = written.iter().chain([&files.page, &files.record]);
         let all: Vec<String> = all.map(|path| path.display().to_string()).collect();
