@@ -4,24 +4,19 @@ use super::field::Field;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// Tables of contacts, moving or fed objects, and initial conditions.
-const TABLES: [&str; 8] = [
-    "initial",
-    "contacts",
-    "walls",
-    "replacement",
-    "inlets",
-    "outlets",
-    "sleep",
-    "test",
-];
+/// Tables of moving or fed objects, and initial conditions.
+const TABLES: [&str; 5] = ["initial", "replacement", "inlets", "outlets", "sleep"];
+/// Tables of contacts, which only a laboratory test needs.
+const OF_CONTACTS: [&str; 2] = ["contacts", "walls"];
 
-/// Refuses everything except bonded bodies, loads and supports in a scene solved for its static
+/// Refuses everything except bonded bodies, loads, supports and laboratory tests in a scene solved for its static
 /// equilibrium.
 pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
-    if let Some((_, field)) = root.given(&TABLES).next() {
+    let has_test = root.get("test").is_some();
+    let of_contacts = root.given(&OF_CONTACTS).filter(|_| !has_test);
+    if let Some((_, field)) = root.given(&TABLES).chain(of_contacts).next() {
         let problem = format!(
-            "[{}] is not available with run.integrator = \"static\", which handles bonded bodies, loads and supports only",
+            "[{}] is not available with run.integrator = \"static\", which handles bonded bodies, loads, supports and laboratory tests only",
             field.path
         );
         let remedy = "remove it, or write run.integrator = \"leapfrog\"";

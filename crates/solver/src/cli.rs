@@ -462,7 +462,7 @@ fn arranged(
         at_twice_the_rate: None,
     };
     let checked = (scene.test.as_ref()).is_some_and(|test| test.rate_check);
-    let twice = if checked {
+    let twice = if checked && scene.run.integrator == Integrator::Leapfrog {
         let scene = arrange(&scene, lowest_frequency_hz, 2.0)?;
         Some((scene, bodies.clone(), test.clone()))
     } else {

@@ -55,6 +55,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
             ),
         )?;
         let factor = match estimate.factor_entries {
+            _ if estimate.iterative => "conjugate gradients, without factors".to_owned(),
             Some(entries) => format!("Cholesky, {entries} entries in the factor"),
             None => {
                 "L U, as torques act on particles that can turn: several times as long as Cholesky"

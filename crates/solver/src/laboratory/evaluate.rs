@@ -220,27 +220,12 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     let measured = !setup.moving.is_empty();
     let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
     let largest = peak(rows).map(Row::load_n);
-    let mut measured = Measured {
-        stiffness_n_m: by_travel.map(|slope| slope.stiffness_n_m),
-        of_body_n_m: of_body.map(|slope| slope.stiffness_n_m),
-        failure_n: largest.filter(|_| evidence.broken),
-        modulus_pa: test.young_modulus_pa,
-        strength_pa: test.strength_pa,
-        dimensions: Vec::new(),
-        figures: Vec::new(),
-    };
-    match setup.specimen {
-        Specimen::Beam(beam) => measured.beam(&beam, test.poisson_ratio),
-        Specimen::Disc {
-            diameter_m,
-            thickness_m,
-        } => measured.disc(
-            [diameter_m, thickness_m, setup.gauge_m],
-            test.poisson_ratio,
-            stiffness_of_curve(test, &setup.specimen),
-        ),
-        Specimen::Bar { length_m, area_m2 } => measured.bar(length_m, area_m2, setup.gauge_m),
-    }
+    let mut measured = Measured::of(
+        test,
+        setup,
+        [by_travel, of_body].map(|slope| Some(slope?.stiffness_n_m)),
+        largest.filter(|_| evidence.broken),
+    );
     let play_m = play_m(rows);
     let travel = peak(rows).map(|row| row.travel_m - play_m);
     measured.add(
@@ -311,7 +296,53 @@ struct Measured {
     figures: Vec<Figure>,
 }
 
+/// Dimensions, stiffness and moduli of a test: `by_travel` and `of_body` are the ratios of the load to the travel
+/// and to the deformation of the body, N/m.
+pub(crate) fn elastic_figures(
+    test: &Test,
+    setup: &Setup,
+    by_travel: Option<f64>,
+    of_body: Option<f64>,
+) -> (Vec<Figure>, Vec<Figure>) {
+    let measured = Measured::of(test, setup, [by_travel, of_body], None);
+    (measured.dimensions, measured.figures)
+}
+
 impl Measured {
+    /// Dimensions and figures from the ratios of the load to travel and deformation, N/m, and the
+    /// load at failure, N.
+    fn of(
+        test: &Test,
+        setup: &Setup,
+        [stiffness_n_m, of_body_n_m]: [Option<f64>; 2],
+        failure_n: Option<f64>,
+    ) -> Self {
+        let mut measured = Self {
+            stiffness_n_m,
+            of_body_n_m,
+            failure_n,
+            modulus_pa: test.young_modulus_pa,
+            strength_pa: test.strength_pa,
+            dimensions: Vec::new(),
+            figures: Vec::new(),
+        };
+        match setup.specimen {
+            Specimen::Beam(beam) => measured.beam(&beam, test.poisson_ratio),
+            Specimen::Disc {
+                diameter_m,
+                thickness_m,
+            } => measured.disc(
+                [diameter_m, thickness_m, setup.gauge_m],
+                test.poisson_ratio,
+                stiffness_of_curve(test, &setup.specimen),
+            ),
+            Specimen::Bar { length_m, area_m2 } => {
+                measured.bar(length_m, area_m2, setup.gauge_m);
+            }
+        }
+        measured
+    }
+
     fn add(&mut self, name: &str, value: Option<f64>, unit: &str, theory: Option<f64>) {
         let figure = value.map(|value| Figure::new(name, value, unit, theory));
         self.figures.extend(figure);

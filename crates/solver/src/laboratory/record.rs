@@ -1,8 +1,10 @@
 //! Record of a test: force, displacement, and every broken bond.
 
+use dem_scene::{Scene, Test};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::arrange::support_of;
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use crate::state::State;
@@ -89,6 +91,20 @@ pub struct Loading {
 }
 
 impl Loading {
+    /// For a test of a scene, in a state before the first step.
+    pub(crate) fn of_test(scene: &Scene, test: &Test, setup: &Setup, state: &State) -> Self {
+        let walls = scene.walls.keys().map(|name| test.crosshead.contains(name));
+        let grips: Vec<String> = test.crosshead.iter().map(|name| support_of(name)).collect();
+        let supports = scene.supports.keys().map(|name| grips.contains(name));
+        let ([walls, other_walls], [supports, other_supports]) = (split(walls), split(supports));
+        let moving = Holders { walls, supports };
+        let resting = Holders {
+            walls: other_walls,
+            supports: other_supports,
+        };
+        Self::of(moving, resting, setup, state, scene.run.end_time_s)
+    }
+
     /// For a test that takes `end_s`, in a state before the first step.
     pub fn of(moving: Holders, resting: Holders, setup: &Setup, state: &State, end_s: f64) -> Self {
         let every = end_s / INTERVALS / state.time_step_s;
@@ -103,6 +119,11 @@ impl Loading {
         loading.start_m = loading.place_m(setup, state);
         loading.apart_m = apart_m(setup, state);
         loading
+    }
+
+    /// Deflection or elongation of the body between the measured points, m.
+    pub(crate) fn deflection_m(&self, setup: &Setup, state: &State) -> f64 {
+        apart_m(setup, state) - self.apart_m
     }
 
     /// Mean coordinate of the moving side along the direction, m.
@@ -172,7 +193,7 @@ impl Record {
         } else {
             -loading.resting.force_n(setup, state) - loading.weight_n
         };
-        sum.deflection_m += apart_m(setup, state) - loading.apart_m;
+        sum.deflection_m += loading.deflection_m(setup, state);
         *steps += 1;
         if *steps < loading.every {
             return false;
@@ -214,4 +235,13 @@ fn mean(rows: &[Row]) -> Row {
         reaction_n: of(|row| row.reaction_n),
         deflection_m: of(|row| row.deflection_m),
     }
+}
+
+/// The indices of those that load, and those of the others.
+fn split(load: impl Iterator<Item = bool>) -> [Vec<usize>; 2] {
+    let mut found = [Vec::new(), Vec::new()];
+    for (at, loads) in load.enumerate() {
+        found[usize::from(!loads)].push(at);
+    }
+    found
 }

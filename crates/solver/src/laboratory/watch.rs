@@ -4,11 +4,10 @@ use dem_io::Result;
 use dem_results::ResultsFolder;
 use dem_scene::{Scene, Test};
 
-use super::arrange::support_of;
 use super::crack::{CrackPicture, Sphere};
 use super::evaluate::{TestInput, TestResult, evaluate};
 use super::page::{TestFiles, write_test};
-use super::record::{Holders, Loading, Record};
+use super::record::{Loading, Record};
 use crate::plan::Plan;
 use crate::plan::test_setup::Setup;
 use crate::state::State;
@@ -45,16 +44,7 @@ impl<'a> Watch<'a> {
     ) -> Self {
         let state = &plan.state;
         let particles = plan.groups.get(&test.body).map_or(&[][..], Vec::as_slice);
-        let walls = scene.walls.keys().map(|name| test.crosshead.contains(name));
-        let grips: Vec<String> = test.crosshead.iter().map(|name| support_of(name)).collect();
-        let supports = scene.supports.keys().map(|name| grips.contains(name));
-        let ([walls, other_walls], [supports, other_supports]) = (split(walls), split(supports));
-        let moving = Holders { walls, supports };
-        let resting = Holders {
-            walls: other_walls,
-            supports: other_supports,
-        };
-        let loading = Loading::of(moving, resting, &setup, state, scene.run.end_time_s);
+        let loading = Loading::of_test(scene, test, &setup, state);
         let spheres = (0..).zip(&state.particles.poses);
         let spheres = spheres
             .map(|(i, pose)| (pose.position_m, particles.binary_search(&i).is_ok()))
@@ -132,13 +122,4 @@ impl<'a> Watch<'a> {
         }
         Ok(result)
     }
-}
-
-/// The indices of those that load, and those of the others.
-fn split(load: impl Iterator<Item = bool>) -> [Vec<usize>; 2] {
-    let mut found = [Vec::new(), Vec::new()];
-    for (at, loads) in load.enumerate() {
-        found[usize::from(!loads)].push(at);
-    }
-    found
 }

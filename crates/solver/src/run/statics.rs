@@ -10,13 +10,19 @@
 //! rotations about those axes. If the particle also rotates far about the others, the result
 //! depends on its path, which here is that of the Newton steps.
 
+pub(crate) mod conjugate;
+mod contacts;
 pub(crate) mod degrees_of_freedom;
+pub(crate) mod direct;
 pub(crate) mod displacements;
+pub mod elastic_test;
 mod estimate;
 pub(crate) mod factor;
 pub(crate) mod matrix;
 pub(crate) mod newton;
+pub(crate) mod press;
 mod record;
+mod seat;
 
 pub use estimate::StaticsEstimate;
 pub use newton::{Cause, Equilibrium, Unsolved, equilibrium};
@@ -41,6 +47,7 @@ use crate::state::particles::Motion;
 
 use crate::check::laws::strain_warning;
 
+use self::elastic_test::elastic_test;
 use self::newton::{loads, six};
 use self::record::{AtRest, equilibrium_summary};
 
@@ -59,6 +66,7 @@ pub fn run(
     let mut probes = probes(scene, &plan);
     let Plan {
         mut state,
+        test: setup,
         bodies,
         masses,
         notes,
@@ -75,8 +83,18 @@ pub fn run(
         tell(fraction);
         !settings.interrupted.load(Ordering::Relaxed)
     };
-    let found = equilibrium(&mut state, end_s, &goes_on);
-    let found = found.map_err(|unsolved| problem(&unsolved, scene))?;
+    let mut test = None;
+    let found = match (&scene.test, &setup) {
+        (Some(_), Some(setup)) => {
+            let elastic = elastic_test(&mut state, scene, setup, &goes_on)?;
+            test = elastic.result(scene);
+            elastic.equilibrium
+        }
+        _ => {
+            let found = equilibrium(&mut state, end_s, &goes_on);
+            found.map_err(|unsolved| problem(&unsolved, scene))?
+        }
+    };
     set_at_rest(&mut state, end_s, found.newton_steps as u64);
     let wall_s = clock.elapsed().as_secs_f64();
     let processor_s = processor_time_s().zip(processor_before_s);
@@ -94,6 +112,7 @@ pub fn run(
     };
     let processor_s = processor_s.map(|(after, before)| after - before);
     let mut summary = at_rest.summary(settings, found, (wall_s, processor_s), (notes, inputs));
+    summary.test = test;
     warnings.extend(strain_warning(summary.largest_bond_strain, ""));
     summary.judge(warnings);
     if let (Some(folder), Some(order)) = (settings.folder, order) {

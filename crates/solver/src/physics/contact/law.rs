@@ -93,6 +93,21 @@ impl ContactKind {
         law.normal_n_m(overlap_m.max(0.0), effective_radius_m)
     }
 
+    /// Force without damping, N, its derivative with respect to the overlap, N/m, and energy, J, of
+    /// a contact at rest.
+    pub(crate) fn elastic(&self, touch: &ContactKinematics) -> [f64; 3] {
+        struct Elastic<'a>(&'a ContactKinematics);
+        impl ContactWork<f64> for Elastic<'_> {
+            type Output = [f64; 3];
+
+            fn with(self, law: &impl NormalLaw<f64>, _: &impl RollingFriction<f64>) -> [f64; 3] {
+                let normal = law.evaluate(self.0, self.0.overlap_m, 0.0);
+                [normal.elastic_n, normal.normal_n_m[1], normal.energy_j]
+            }
+        }
+        self.with(|number| number, Elastic(touch))
+    }
+
     /// The contact linearised: see [`linearised`].
     pub fn linearised(&self, touch: &ContactKinematics) -> Linearised {
         struct Linearise<'a>(&'a ContactKinematics);

@@ -4,6 +4,9 @@ use dem_scene::{Factor, Hold};
 
 use crate::state::State;
 use crate::state::loads::factor_at;
+use crate::state::particles::Pose;
+
+use super::conjugate::Node;
 
 /// Marks a held degree of freedom.
 pub(crate) const HELD: usize = usize::MAX;
@@ -75,6 +78,20 @@ impl DegreesOfFreedom {
             (0..6).filter(move |k| of[*k] != HELD).map(move |k| (i, k))
         };
         self.unknown.iter().enumerate().flat_map(six)
+    }
+
+    /// The nodes of the unknowns, at the present places of the particles.
+    pub(crate) fn nodes(&self, poses: &[Pose]) -> Vec<Node> {
+        let node = |(particle, freedom): (usize, usize)| {
+            let [x, y, z, radius_m] = poses[particle].position_m;
+            Node {
+                particle,
+                freedom,
+                place_m: [x, y, z],
+                radius_m,
+            }
+        };
+        self.unknowns().map(node).collect()
     }
 
     /// Whether a torque may act, at rest, on a particle with more than one free rotation: then the

@@ -18,7 +18,9 @@ pub struct StaticsEstimate {
     /// Whether the tangent is treated as symmetric: no torque acts on particles with more than one
     /// free rotation.
     pub symmetric: bool,
-    /// Entries of its factor. None: unknown before the factorisation.
+    /// True if conjugate gradients take the place of factors.
+    pub iterative: bool,
+    /// Entries of its factor. None: unknown before the factorisation, or there is none.
     pub factor_entries: Option<usize>,
     /// Largest memory of matrix and factor, bytes; for a tangent that is not symmetric that of the
     /// matrix alone.
@@ -34,17 +36,20 @@ impl StaticsEstimate {
         let degrees_of_freedom = DegreesOfFreedom::new(state, end_s);
         let symmetric = !degrees_of_freedom.has_free_torques(state);
         let matrix = Matrix::pattern(state, &degrees_of_freedom, symmetric);
-        let factor = Factor::new(&matrix).map_err(|_| {
+        let nodes = degrees_of_freedom.nodes(&state.particles.poses);
+        let factor = Factor::new(&matrix, nodes).map_err(|_| {
             let remedy = "use fewer particles, or run.integrator = \"leapfrog\"";
             Diagnostic::failed("", "the stiffness does not fit into memory", remedy)
         })?;
         let factor_entries = factor.entries();
+        let iterative = matches!(factor, Factor::Iterative(..));
         // Values and row indices, in the original order and in that of the factor.
         let of_matrix = 2 * 16 * matrix.rows.len();
         Ok(Self {
             unknowns: degrees_of_freedom.count,
             held: degrees_of_freedom.held(),
             symmetric,
+            iterative,
             factor_entries,
             memory_bytes: of_matrix + 8 * factor_entries.unwrap_or(0),
         })

@@ -1,132 +1,71 @@
-//! Linear systems with the tangent, solved by sparse factorisation with an order that reduces
-//! fill-in: Cholesky if it is symmetric, otherwise LU.
-//!
-//! A single thread does the work, so the results are the same, bit for bit, for any number of
-//! threads.
+//! Linear systems with the tangent: by factors, or without them if they would be large.
 
-use faer::Par;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::solvers::{LltError, SolveCore};
-use faer::mat::MatMut;
-use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky, factorize_symbolic_cholesky};
-use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Side};
-
+use super::conjugate::{ConjugateGradients, Node};
+use super::direct::{DirectFactor, NoFactor};
 use super::matrix::Matrix;
 
-/// Factors of matrices of one pattern.
+/// Number of unknowns from which conjugate gradients need less time and memory than factors, whose
+/// entries grow with the power 4/3 of it.
+const ITERATIVE_FROM: usize = 60_000;
+
+/// The means to solve systems with matrices of one pattern.
 #[derive(Debug)]
 pub(crate) enum Factor {
-    /// For symmetric matrices, L L^T, by an approximate minimum degree order. The pattern of L, and
-    /// its entries.
-    Cholesky(SymbolicCholesky<usize>, Vec<f64>),
-    /// For others, L U with partial pivoting, by an approximate minimum degree order of the
-    /// columns. The patterns, and the factors once computed.
-    Gauss(SymbolicLu<usize>, Option<Lu<usize, f64>>),
-}
-
-/// Reason why there are no factors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum NoFactor {
-    /// A pivot is zero, negative or not a number: the matrix is not positive definite or, if it is
-    /// not symmetric, singular.
-    Pivot,
-    /// They do not fit into memory.
-    Memory,
+    /// Factors.
+    Direct(DirectFactor),
+    /// Conjugate gradients, for symmetric matrices: the nodes of the unknowns, and the last matrix.
+    Iterative(Vec<Node>, Option<Box<ConjugateGradients>>),
 }
 
 impl Factor {
-    /// Finds an order for matrices of this pattern, and the pattern of their factors.
+    /// For matrices of this pattern, whose unknowns have these nodes.
     ///
     /// # Errors
     /// Memory.
-    pub(crate) fn new(matrix: &Matrix) -> Result<Self, NoFactor> {
-        let pattern = pattern(matrix);
-        if !matrix.symmetric {
-            let symbolic = SymbolicLu::try_new(pattern).map_err(|_| NoFactor::Memory)?;
-            return Ok(Self::Gauss(symbolic, None));
+    pub(crate) fn new(matrix: &Matrix, nodes: Vec<Node>) -> Result<Self, NoFactor> {
+        if matrix.symmetric && nodes.len() >= ITERATIVE_FROM {
+            return Ok(Self::Iterative(nodes, None));
         }
-        let usual = (Default::default(), Default::default());
-        let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, usual.0, usual.1);
-        let symbolic = symbolic.map_err(|_| NoFactor::Memory)?;
-        Ok(Self::Cholesky(symbolic, Vec::new()))
+        DirectFactor::new(matrix).map(Self::Direct)
     }
 
-    /// Entries of the factor; None if unknown before the factorisation.
+    /// Entries of the factor; None if unknown before the factorisation, or if there is none.
     pub(crate) fn entries(&self) -> Option<usize> {
         match self {
-            Self::Cholesky(symbolic, _) => Some(symbolic.len_val()),
-            Self::Gauss(..) => None,
+            Self::Direct(factor) => factor.entries(),
+            Self::Iterative(..) => None,
         }
     }
 
-    /// Computes the factors of a matrix of the pattern.
+    /// Takes a matrix of the pattern.
     ///
     /// # Errors
     /// An unsuitable pivot, memory.
     pub(crate) fn compute(&mut self, matrix: &Matrix) -> Result<(), NoFactor> {
-        let values = SparseColMatRef::new(pattern(matrix), &matrix.values);
         match self {
-            Self::Cholesky(symbolic, entries) => {
-                if entries.is_empty() {
-                    let needed = symbolic.len_val();
-                    let got = entries.try_reserve_exact(needed);
-                    got.map_err(|_| NoFactor::Memory)?;
-                    entries.resize(needed, 0.0);
-                }
-                let room =
-                    symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
-                let mut room = MemBuffer::try_new(room).map_err(|_| NoFactor::Memory)?;
-                let done = symbolic.factorize_numeric_llt(
-                    entries,
-                    values,
-                    Side::Lower,
-                    Default::default(),
-                    Par::Seq,
-                    MemStack::new(&mut room),
-                    Default::default(),
-                );
-                match done {
-                    Ok(_) => Ok(()),
-                    Err(LltError::NonPositivePivot { .. }) => Err(NoFactor::Pivot),
-                }
-            }
-            Self::Gauss(symbolic, factors) => {
-                // Frees the old factors first: there may be room for one set only.
-                *factors = None;
-                let new = Lu::try_new_with_symbolic(symbolic.clone(), values);
-                *factors = Some(new.map_err(|error| match error {
-                    faer::sparse::linalg::LuError::SymbolicSingular { .. } => NoFactor::Pivot,
-                    faer::sparse::linalg::LuError::Generic(_) => NoFactor::Memory,
-                })?);
+            Self::Direct(factor) => factor.compute(matrix),
+            Self::Iterative(nodes, last) => {
+                // Frees the old one first.
+                *last = None;
+                *last = Some(Box::new(ConjugateGradients::new(matrix, nodes)?));
                 Ok(())
             }
         }
     }
 
-    /// Replaces the right-hand side by the solution, with the factors computed last; without
-    /// factors it stays as it is.
-    pub(crate) fn solve(&self, side: &mut [f64]) {
-        let rows = side.len();
-        let side = MatMut::from_column_major_slice_mut(side, rows, 1);
+    /// Replaces the right-hand side by the solution, with the matrix computed last; without one it
+    /// stays as it is. `accuracy`: fraction to which conjugate gradients reduce the residual.
+    ///
+    /// # Errors
+    /// Without factors only: the matrix is not positive definite.
+    pub(crate) fn solve(&self, side: &mut [f64], accuracy: f64) -> Result<(), NoFactor> {
         match self {
-            Self::Cholesky(symbolic, entries) if !entries.is_empty() => {
-                let room = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-                LltRef::new(symbolic, entries).solve_in_place_with_conj(
-                    Conj::No,
-                    side,
-                    Par::Seq,
-                    MemStack::new(&mut MemBuffer::new(room)),
-                );
+            Self::Direct(factor) => factor.solve(side),
+            Self::Iterative(_, Some(last)) => {
+                last.solve(side, accuracy)?;
             }
-            Self::Gauss(_, Some(factors)) => factors.solve_in_place_with_conj(Conj::No, side),
-            _ => {}
+            Self::Iterative(_, None) => {}
         }
+        Ok(())
     }
-}
-
-fn pattern(matrix: &Matrix) -> SymbolicSparseColMatRef<'_, usize> {
-    let size = matrix.starts.len() - 1;
-    SymbolicSparseColMatRef::new_checked(size, size, &matrix.starts, None, &matrix.rows)
 }

@@ -73,6 +73,36 @@ impl Matrix {
         }
     }
 
+    /// Adds to the entry of two unknowns, for a symmetric matrix; only its lower triangle counts.
+    pub(crate) fn add_symmetric(&mut self, row: usize, column: usize, value: f64) {
+        if row == HELD || column == HELD || row < column {
+            return;
+        }
+        let entries = self.starts[column]..self.starts[column + 1];
+        let at = entries.start + self.rows[entries.clone()].partition_point(|r| *r < row);
+        if entries.contains(&at) && self.rows[at] == row {
+            self.values[at] += value;
+        }
+    }
+
+    /// Sets `image` to this symmetric matrix times a vector.
+    pub(crate) fn multiply(&self, vector: &[f64], image: &mut [f64]) {
+        image.fill(0.0);
+        for column in 0..vector.len() {
+            let mut sum = 0.0;
+            for at in self.starts[column]..self.starts[column + 1] {
+                let (row, value) = (self.rows[at], self.values[at]);
+                if row == column {
+                    sum += value * vector[column];
+                } else {
+                    image[row] += value * vector[column];
+                    sum += value * vector[row];
+                }
+            }
+            image[column] += sum;
+        }
+    }
+
     fn add(&mut self, unknowns: &[usize; DEGREES_OF_FREEDOM], tangent: &BondTangent) {
         for (j, &column) in unknowns.iter().enumerate() {
             if column == HELD {

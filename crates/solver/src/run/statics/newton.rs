@@ -25,8 +25,9 @@ use crate::state::particles::{Motion, Wrench};
 use rayon::prelude::*;
 
 use super::degrees_of_freedom::DegreesOfFreedom;
+use super::direct::{DirectFactor, NoFactor};
 use super::displacements::{Displacements, displace, largest_turn};
-use super::factor::{Factor, NoFactor};
+use super::factor::Factor;
 use super::matrix::{Matrix, pulled_by_supports};
 
 /// Largest number of Newton steps in a load step.
@@ -45,6 +46,9 @@ const NEARER: f64 = 1e-6;
 const LARGEST: f64 = 1e-9;
 /// If a step leaves more than this fraction of the residual, only rounding is left.
 const STALLED: f64 = 0.5;
+/// Fraction by which a solution without factors reduces the residual.
+const ACCURACY: f64 = 1e-8;
+
 /// An equilibrium and how it was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
@@ -137,10 +141,11 @@ pub fn equilibrium(
         fraction: 0.0,
         residual: 1.0,
     };
+    let nodes = degrees_of_freedom.nodes(&state.particles.poses);
     let mut search = Search {
         load: loads(state, end_s),
         rounding_n: rounding_n(state),
-        factor: Factor::new(&matrix).map_err(out_of_memory)?,
+        factor: Factor::new(&matrix, nodes).map_err(out_of_memory)?,
         degrees_of_freedom,
         matrix,
         state,
@@ -206,7 +211,7 @@ impl Search<'_> {
         for _ in 0..=STEPS {
             let net = self.net(to);
             let residual_n = self.largest(&net);
-            let bond_force_n = self.largest_bond_force_n();
+            let bond_force_n = largest_bond_force_n(self.state);
             if !residual_n.is_finite() {
                 return Err(Cause::NoConvergence);
             }
@@ -253,7 +258,7 @@ impl Search<'_> {
                 );
                 by.iter_mut().zip(pulled).for_each(|(by, pull)| *by += pull);
             }
-            self.factor.solve(&mut by);
+            self.factor.solve(&mut by, ACCURACY).map_err(cause)?;
             self.newton_steps += 1;
             let moves = Displacements {
                 by: &by,
@@ -277,10 +282,7 @@ impl Search<'_> {
         } = &*self.state;
         self.matrix
             .assemble(bonds, &self.degrees_of_freedom, &particles.poses);
-        self.factor.compute(&self.matrix).map_err(|why| match why {
-            NoFactor::Pivot => Cause::Pivot,
-            NoFactor::Memory => Cause::Memory,
-        })
+        self.factor.compute(&self.matrix).map_err(cause)
     }
 
     /// Net forces on the unknowns at this fraction of the loads, N and N m.
@@ -317,30 +319,38 @@ impl Search<'_> {
         })
     }
 
-    /// The largest bond force, N; moments over the bond radius.
-    fn largest_bond_force_n(&self) -> f64 {
-        let (bonds, poses) = (&self.state.bonds, &self.state.particles.poses);
-        let of_bond = |at: usize| {
-            if bonds.is_broken(at) {
-                return 0.0;
-            }
-            let load = bonds.forces(at, poses).load;
-            let moment_n_m = load.torsion_n_m.max(load.bending_n_m);
-            let force_n = load.normal_n.abs().max(load.shear_n);
-            force_n.max(moment_n_m / bonds.radius_m(at))
-        };
-        let all = (0..bonds.len()).into_par_iter().with_min_len(1024);
-        all.map(of_bond).reduce(|| 0.0, f64::max)
-    }
-
     /// Whether the symmetric part of the tangent is positive definite.
     fn is_stable(&mut self) -> bool {
         let mut matrix = Matrix::pattern(self.state, &self.degrees_of_freedom, true);
         let poses = &self.state.particles.poses;
         matrix.assemble(&self.state.bonds, &self.degrees_of_freedom, poses);
-        let factor = Factor::new(&matrix);
+        let factor = DirectFactor::new(&matrix);
         factor.is_ok_and(|mut factor| factor.compute(&matrix).is_ok())
     }
+}
+
+/// The reason for which there is no solution of a linear system.
+pub(super) fn cause(why: NoFactor) -> Cause {
+    match why {
+        NoFactor::Pivot => Cause::Pivot,
+        NoFactor::Memory => Cause::Memory,
+    }
+}
+
+/// The largest bond force, N; moments over the bond radius.
+pub(super) fn largest_bond_force_n(state: &State) -> f64 {
+    let (bonds, poses) = (&state.bonds, &state.particles.poses);
+    let of_bond = |at: usize| {
+        if bonds.is_broken(at) {
+            return 0.0;
+        }
+        let load = bonds.forces(at, poses).load;
+        let moment_n_m = load.torsion_n_m.max(load.bending_n_m);
+        let force_n = load.normal_n.abs().max(load.shear_n);
+        force_n.max(moment_n_m / bonds.radius_m(at))
+    };
+    let all = (0..bonds.len()).into_par_iter().with_min_len(1024);
+    all.map(of_bond).reduce(|| 0.0, f64::max)
 }
 
 /// Loads and gravity on every particle at `end_s`, N and N m.

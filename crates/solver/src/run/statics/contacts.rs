@@ -1,0 +1,157 @@
+//! Contacts of particles with walls at rest: normal forces that can open, without friction.
+//!
+//! Without friction a body slides and rolls on its pins at the slightest imbalance. Weak springs
+//! across the normals hold it during a step of the load, and are released after it.
+
+use nalgebra::Vector3;
+
+use super::degrees_of_freedom::DegreesOfFreedom;
+use super::matrix::Matrix;
+use crate::geometry::{Frame, Touch};
+use crate::stages::walls::{list_near, wall_contact};
+use crate::state::State;
+use crate::state::contacts::Contacts;
+use crate::state::particles::Particles;
+use crate::state::walls::Wall;
+
+/// A particle that touches a wall.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct WallForce {
+    /// Number of the particle.
+    pub(super) particle: usize,
+    /// Number of the wall.
+    pub(super) wall: usize,
+    /// Unit vector from the wall to the particle.
+    pub(super) normal: Vector3<f64>,
+    /// Normal force, N.
+    pub(super) force_n: f64,
+    /// Its derivative with respect to the overlap, N/m.
+    pub(super) stiffness_n_m: f64,
+    /// Energy, J.
+    pub(super) energy_j: f64,
+}
+
+/// Walls with their initial places and their displacements during the test, m. Length 3 each.
+#[derive(Debug, Clone)]
+pub(super) struct MovingWalls {
+    walls: Vec<(Frame, Vector3<f64>)>,
+}
+
+impl MovingWalls {
+    /// The walls of a state before its first step; those in `moving` are displaced by `way_m`.
+    pub(super) fn new(state: &State, moving: &[usize], way_m: Vector3<f64>) -> Self {
+        let place = |(at, wall): (usize, &Wall)| {
+            let moves = moving.contains(&at);
+            (wall.frame, if moves { way_m } else { Vector3::zeros() })
+        };
+        Self {
+            walls: state.walls.iter().enumerate().map(place).collect(),
+        }
+    }
+
+    /// Moves the walls of the state to this fraction of their displacements, and lists the
+    /// particles nearer to them than `skin_m`.
+    pub(super) fn place(&self, state: &mut State, fraction: f64, skin_m: f64) {
+        for (wall, (start, way_m)) in state.walls.iter_mut().zip(&self.walls) {
+            wall.frame = *start;
+            let place = Vector3::from(start.position_m) + fraction * way_m;
+            wall.frame.position_m = place.into();
+        }
+        list_near(&mut state.walls, &state.particles, skin_m);
+    }
+}
+
+/// All contacts with walls of the particles at their present places.
+pub(super) fn wall_forces(state: &State) -> Vec<WallForce> {
+    let mut found = Vec::new();
+    let Some(contacts) = &state.contacts else {
+        return found;
+    };
+    for (number, wall) in state.walls.iter().enumerate() {
+        let to_wall = wall.frame.all_to_wall();
+        let mut touches = Vec::new();
+        for &particle in &wall.near {
+            let pose = &state.particles.poses[particle as usize];
+            touches.clear();
+            let centre = to_wall(pose.place().into());
+            wall.model
+                .shape
+                .touches(centre, pose.radius_m(), &mut touches);
+            // One contact for each wall: the deepest.
+            let deepest = touches
+                .iter()
+                .min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+            if let Some(touch) = deepest {
+                let touch = wall.frame.touch_to_space(touch);
+                found.push(at(
+                    (number, wall),
+                    particle as usize,
+                    &touch,
+                    contacts,
+                    &state.particles,
+                ));
+            }
+        }
+    }
+    found
+}
+
+fn at(
+    (number, wall): (usize, &Wall),
+    particle: usize,
+    touch: &Touch,
+    contacts: &Contacts,
+    particles: &Particles,
+) -> WallForce {
+    let overlap_m = particles.poses[particle].radius_m() - touch.distance_m;
+    let normal = -Vector3::from(touch.normal);
+    let kinematics = wall_contact(particles, particle, &normal, overlap_m);
+    let kind = wall.kind(contacts.materials[particle]);
+    let [force_n, stiffness_n_m, energy_j] = kind.elastic(&kinematics);
+    WallForce {
+        particle,
+        wall: number,
+        normal,
+        force_n,
+        stiffness_n_m,
+        energy_j,
+    }
+}
+
+/// Ratio of the stiffness across the normal of a contact to that along it.
+const ACROSS: f64 = 0.02;
+
+impl WallForce {
+    /// Force on the particle, N, at a place to which it has moved by `moved_m` since the contacts
+    /// across the normal were without force.
+    pub(super) fn on_particle_n(&self, moved_m: &Vector3<f64>) -> Vector3<f64> {
+        let across = moved_m - moved_m.dot(&self.normal) * self.normal;
+        self.force_n * self.normal - ACROSS * self.stiffness_n_m * across
+    }
+}
+
+/// Adds the stiffness of contacts, and of ground springs of `ground_n_m` at every particle, to a
+/// symmetric matrix.
+pub(super) fn add_contacts(
+    matrix: &mut Matrix,
+    degrees_of_freedom: &DegreesOfFreedom,
+    contacts: &[WallForce],
+    ground_n_m: f64,
+) {
+    for unknown in &degrees_of_freedom.unknown {
+        for k in 0..3 {
+            matrix.add_symmetric(unknown[k], unknown[k], ground_n_m);
+        }
+    }
+    for contact in contacts {
+        let unknown = &degrees_of_freedom.unknown[contact.particle];
+        for row in 0..3 {
+            for column in 0..3 {
+                let along = contact.normal[row] * contact.normal[column];
+                let across = f64::from(u8::from(row == column)) - along;
+                let value = contact.stiffness_n_m * (along + ACROSS * across);
+                matrix.add_symmetric(unknown[row], unknown[column], value);
+            }
+        }
+    }
+}
