@@ -18,7 +18,7 @@ pub use confidence::{half_width, student_95};
 pub use page::page;
 pub use record::{FORMAT_VERSION, Record, read_record, write_record};
 pub use resolution::{coarsest, curve_error};
-pub use rounds::{Case, Round, TestFunction, Trial, calibrate};
+pub use rounds::{Case, Round, Start, TestFunction, Trial, calibrate};
 pub use search::{End, Step, next};
 pub use text::{origin, report};
 pub use unknown::{Number, Unknown};

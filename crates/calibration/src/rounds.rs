@@ -37,6 +37,17 @@ pub struct Round {
     pub trials: Vec<Option<Trial>>,
 }
 
+/// The first factors, from equilibria without time steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    /// Factor on the numbers of each unknown.
+    pub factors: Vec<f64>,
+    /// Number of equilibria.
+    pub equilibria: usize,
+    /// Run time, s.
+    pub wall_s: f64,
+}
+
 /// A calibration of one set of packings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Case {
@@ -48,6 +59,8 @@ pub struct Case {
     pub bonds: usize,
     /// Smallest extent of the body over the mean diameter of its spheres.
     pub spheres_across: f64,
+    /// The first factors. None: 1.
+    pub start: Option<Start>,
     /// The rounds.
     pub rounds: Vec<Round>,
     /// The round that is the result, and how it ended. None: it has not ended.
@@ -124,7 +137,8 @@ impl Case {
     }
 }
 
-/// Does rounds of tests until the targets are met or cannot be met. Rounds that `case` already has
+/// Does rounds of tests, from the first factors of `case`, until the targets are met or cannot be
+/// met. Rounds that `case` already has
 /// are not repeated. `workers` tests run at a time; `save` is called after every test.
 ///
 /// # Errors
@@ -137,7 +151,8 @@ pub fn calibrate(
     test: &TestFunction<'_>,
     save: &(dyn Fn(&Case) -> Result<()> + Sync),
 ) -> Result<()> {
-    let mut factors = vec![1.0; unknowns.len()];
+    let start = case.start.as_ref().map(|start| start.factors.clone());
+    let mut factors = start.unwrap_or_else(|| vec![1.0; unknowns.len()]);
     let mut at = 0;
     while case.end.is_none() {
         if at == case.rounds.len() {

@@ -32,7 +32,15 @@ pub fn report(record: &Record, most_error: Option<f64>) -> String {
             line(&mut text, &path, &format!("{new} (scene: {old})"));
         }
         let (wall_s, tests) = case.cost();
-        let cost = format!("{tests} tests, {} s", significant(wall_s, 3));
+        let mut cost = format!("{tests} tests, {} s", significant(wall_s, 3));
+        if let Some(start) = &case.start {
+            let elastic = format!(
+                "; {} equilibria without steps before them, {} s",
+                start.equilibria,
+                significant(start.wall_s, 3)
+            );
+            cost.push_str(&elastic);
+        }
         line(&mut text, "cost", &cost);
         for warning in warnings(record, case) {
             line(&mut text, "warning", &warning);

@@ -4,8 +4,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use dem_calibration::{
-    Case, End, Number, Record, Trial, Unknown, calibrate, coarsest, curve_error, half_width, page,
-    read_record, report, student_95, write_record,
+    Case, End, Number, Record, Start, Trial, Unknown, calibrate, coarsest, curve_error, half_width,
+    page, read_record, report, student_95, write_record,
 };
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::Statistic;
@@ -44,6 +44,7 @@ fn empty(name: &str) -> Case {
         particles: 100,
         bonds: 400,
         spheres_across: 5.0,
+        start: None,
         rounds: Vec::new(),
         end: None,
         at_twice_the_rate: None,
@@ -94,6 +95,26 @@ fn modulus_and_strength_are_met_within_four_rounds() {
     assert_eq!(
         case.cost(),
         (6.0 * case.rounds.len() as f64, 4 * case.rounds.len())
+    );
+}
+
+/// From a good first guess, one round is enough.
+#[test]
+fn a_good_start_saves_rounds() {
+    let mut found = empty("");
+    run(&mut found, &both(), soft_at_pins);
+    let mut case = empty("");
+    case.start = Some(Start {
+        factors: found.result().unwrap().factors.clone(),
+        equilibria: 4,
+        wall_s: 0.5,
+    });
+    run(&mut case, &both(), soft_at_pins);
+    assert_eq!(case.rounds.len(), 1);
+    let text = report(&record(vec![case], Vec::new()), None);
+    assert!(
+        text.contains("cost         4 tests, 6 s; 4 equilibria without steps before them, 0.5 s"),
+        "{text}"
     );
 }
 

@@ -54,6 +54,10 @@ pub use step::step;
 pub mod internals {
     pub use crate::check::flight::{FreeBody, Meeting};
     pub use crate::output::pictures::subject::{by_body, of_clusters};
+    pub use crate::run::statics::conjugate::ConjugateGradients;
+    pub use crate::run::statics::degrees_of_freedom::DegreesOfFreedom;
+    pub use crate::run::statics::direct::DirectFactor;
+    pub use crate::run::statics::matrix::Matrix;
     pub use crate::shape::union::{Patch, Solid, patches, solid};
     pub use crate::stages::bonds::bond_wrenches_one_by_one;
 }

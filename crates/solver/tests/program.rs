@@ -14,7 +14,7 @@ mod disk;
 mod inputs;
 mod interrupted;
 mod lab;
-mod laboratory;
+pub(crate) mod laboratory;
 mod masses;
 mod names;
 mod pictures;
@@ -85,12 +85,12 @@ fn good(name: &str) -> PathBuf {
 }
 
 /// A folder that is removed after the test.
-struct Bench {
+pub(crate) struct Bench {
     folder: TempDir,
 }
 
 impl Bench {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             folder: tempfile::tempdir().unwrap(),
         }
@@ -100,7 +100,7 @@ impl Bench {
         self.folder.path().join(name)
     }
 
-    fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> PathBuf {
+    pub(crate) fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> PathBuf {
         fs::write(self.path(name), contents).unwrap();
         self.path(name)
     }
@@ -126,7 +126,7 @@ impl Bench {
     }
 
     /// Runs a valid scene. Returns its messages.
-    fn good(&self, scene: &Path, options: &[&str]) -> String {
+    pub(crate) fn good(&self, scene: &Path, options: &[&str]) -> String {
         let output = self.run(scene, options);
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{}: {said}", scene.display());

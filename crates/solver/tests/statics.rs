@@ -5,6 +5,7 @@ mod convergence;
 mod elastica;
 mod explicit;
 mod large_turns;
+mod pressed;
 mod refused;
 mod small_loads;
 mod stability;

@@ -1,19 +1,23 @@
 //! One test of a packing with a factor on the numbers of each unknown.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use dem_calibration::{Trial, Unknown};
+use dem_calibration::{Start, Trial, Unknown};
+use dem_io::diagnostic::Kind;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Scene, scene_from_text, set_text};
 
 use super::choice::SceneText;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
-use crate::laboratory::evaluate::{FAILURE_FORCE, LARGEST_FORCE, STRENGTH, TestResult};
+use crate::laboratory::evaluate::{
+    BY_TRAVEL, EQ_18, FAILURE_FORCE, LARGEST_FORCE, MODULUS, STIFFNESS, STRENGTH, TestResult,
+};
 use crate::laboratory::watch::TestSettings;
 use crate::output::summary::Summary;
-use crate::plan::plan;
+use crate::plan::{Plan, plan};
+use crate::run::statics::elastic_test::elastic_test;
 use crate::run::{RunSettings, run};
 
 /// The scene of a calibration and its packings.
@@ -66,18 +70,8 @@ impl Bench<'_> {
         faster: f64,
         tell: &(dyn Fn(f64) + Sync),
     ) -> Result<Trial> {
-        let overrides = overrides(&self.scene, self.unknowns, factors);
-        let SceneText { text, source, .. } = self.scene;
-        let scene = scene_from_text(text, source, &overrides)?;
-        let mut bodies = self.others.clone();
-        bodies.insert(self.body.to_owned(), self.packings[at].clone());
-        let lowest_hz = lowest_in_test_hz(&scene, &bodies, self.threads)?;
-        let scene = match lowest_hz {
-            Some(lowest_hz) => arrange(&scene, lowest_hz, faster)?,
-            None => scene,
-        };
         let began = Instant::now();
-        let plan = plan(&scene, bodies, self.threads, self.force_step)?;
+        let (scene, plan, lowest_hz) = self.planned(factors, at, faster)?;
         let specimen = plan.test.as_ref().map(|setup| setup.specimen);
         let settings = RunSettings {
             folder: None,
@@ -102,6 +96,75 @@ impl Bench<'_> {
         }
         trial.wall_s = began.elapsed().as_secs_f64();
         Ok(trial)
+    }
+
+    /// The scene with these factors and packing `at`, its plan, and the lowest frequency of a test.
+    fn planned(
+        &self,
+        factors: &[f64],
+        at: usize,
+        faster: f64,
+    ) -> Result<(Scene, Plan, Option<f64>)> {
+        let overrides = overrides(&self.scene, self.unknowns, factors);
+        let SceneText { text, source, .. } = self.scene;
+        let scene = scene_from_text(text, source, &overrides)?;
+        let mut bodies = self.others.clone();
+        bodies.insert(self.body.to_owned(), self.packings[at].clone());
+        let lowest_hz = lowest_in_test_hz(&scene, &bodies, self.threads)?;
+        let scene = match lowest_hz {
+            Some(lowest_hz) => arrange(&scene, lowest_hz, faster)?,
+            None => scene,
+        };
+        let plan = plan(&scene, bodies, self.threads, self.force_step)?;
+        Ok((scene, plan, lowest_hz))
+    }
+
+    /// First factors: that on the modulus of the bonds from the stiffness of `packings` packings
+    /// without time steps, by two equilibria each; 1 on all others. None: nothing stands for the
+    /// stiffness, or it cannot be found so.
+    ///
+    /// # Errors
+    /// Those of the plan; interrupted.
+    pub(crate) fn start(&self, packings: usize) -> Result<Option<Start>> {
+        let is_stiffness = |unknown: &Unknown| {
+            [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS].contains(&unknown.result.as_str())
+        };
+        let Some(which) = self.unknowns.iter().position(is_stiffness) else {
+            return Ok(None);
+        };
+        let target = self.unknowns[which].target;
+        let began = Instant::now();
+        let mut factors = vec![1.0; self.unknowns.len()];
+        for _ in 0..2 {
+            let mut sum = 0.0;
+            for at in 0..packings {
+                match self.elastic(&factors, at, which)? {
+                    Some(value) => sum += value / packings as f64,
+                    None => return Ok(None),
+                }
+            }
+            factors[which] *= target / sum;
+        }
+        Ok(Some(Start {
+            factors,
+            equilibria: 2 * packings,
+            wall_s: began.elapsed().as_secs_f64(),
+        }))
+    }
+
+    /// The result `which` of packing `at` without time steps. None: there is no equilibrium.
+    fn elastic(&self, factors: &[f64], at: usize, which: usize) -> Result<Option<f64>> {
+        let (scene, mut plan, _) = self.planned(factors, at, 1.0)?;
+        let goes_on = |_: f64| !self.interrupted.load(Ordering::Relaxed);
+        let Some(setup) = plan.test.take() else {
+            return Ok(None);
+        };
+        match elastic_test(&mut plan.state, &scene, &setup, &goes_on) {
+            Ok(found) => Ok(found.figure(&self.unknowns[which].result)),
+            Err(error) if error.kind == Kind::Interrupted => Err(error),
+            // The tests themselves say more.
+            Err(_) => Ok(None),
+        }
     }
 
     /// What a run says.

@@ -273,6 +273,7 @@ fn new_record(
         particles: 0,
         bonds: 0,
         spheres_across: 0.0,
+        start: None,
         rounds: Vec::new(),
         end: None,
         at_twice_the_rate: None,
@@ -334,6 +335,9 @@ impl Job<'_> {
         case.particles = bodies[0].positions.len();
         case.bonds = bodies[0].bonds.len();
         case.spheres_across = spheres_across(&bodies[0]);
+        if case.start.is_none() && case.rounds.is_empty() {
+            case.start = bench.start(count)?;
+        }
         let bar = self.options.progress_bar(&case.name);
         let parts = Mutex::new(vec![0.0; count]);
         let tell = |packing: usize, fraction: f64| {

@@ -368,6 +368,9 @@ impl Summary {
             results.map_or(String::new(), |folder| format!(" -> {}", visible(folder))),
         )?;
         measure_lines(&self.measures, f)?;
+        if let Some(test) = &self.test {
+            write!(f, "{test}")?;
+        }
         let steps = |count: usize, what: &str| {
             format!("{count} {what}{}", if count == 1 { "" } else { "s" })
         };
@@ -429,7 +432,8 @@ impl Summary {
             doubts.push(format!("{} is outside its tolerance", measure.name));
         }
         doubts.extend(self.test.iter().flat_map(TestResult::doubts));
-        doubts.extend((self.equilibrium.iter()).flat_map(EquilibriumSummary::doubts));
+        let is_test = self.test.is_some();
+        doubts.extend((self.equilibrium.iter()).flat_map(|found| found.doubts(is_test)));
         doubts
     }
 

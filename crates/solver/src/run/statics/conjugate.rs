@@ -22,20 +22,20 @@ const REGULAR: f64 = 1e-12;
 
 /// The particle and the degree of freedom (0 to 5) of an unknown, and the place of the particle, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Node {
+pub struct Node {
     /// Number of the particle.
-    pub(crate) particle: usize,
+    pub particle: usize,
     /// Translation along x, y, z, or rotation about x, y, z.
-    pub(crate) freedom: usize,
+    pub freedom: usize,
     /// Initial centre, m. Length 3.
-    pub(crate) place_m: [f64; 3],
+    pub place_m: [f64; 3],
     /// Radius, m.
-    pub(crate) radius_m: f64,
+    pub radius_m: f64,
 }
 
 /// A matrix, and what approximates its inverse.
 #[derive(Debug)]
-pub(crate) struct ConjugateGradients {
+pub struct ConjugateGradients {
     /// The unknowns of each particle: first, and inverse of its diagonal block.
     blocks: Vec<(usize, DMatrix<f64>)>,
     /// Group of each unknown and its motion under the six rigid motions of the group. Length of
@@ -54,7 +54,7 @@ impl ConjugateGradients {
     ///
     /// # Errors
     /// A diagonal block or the stiffness between groups is not positive definite; memory.
-    pub(crate) fn new(matrix: &Matrix, nodes: &[Node]) -> Result<Self, NoFactor> {
+    pub fn new(matrix: &Matrix, nodes: &[Node]) -> Result<Self, NoFactor> {
         let (groups, rigid) = rigid_motions(nodes);
         let coarse_matrix = coarse(matrix, &rigid, groups);
         let mut coarse = DirectFactor::new(&coarse_matrix)?;
@@ -73,7 +73,7 @@ impl ConjugateGradients {
     ///
     /// # Errors
     /// The matrix is not positive definite, or the iteration does not converge.
-    pub(crate) fn solve(&self, side: &mut [f64], accuracy: f64) -> Result<usize, NoFactor> {
+    pub fn solve(&self, side: &mut [f64], accuracy: f64) -> Result<usize, NoFactor> {
         let mut residual = side.to_vec();
         side.fill(0.0);
         let mut step = self.precondition(&residual);

@@ -11,7 +11,7 @@ use crate::geometry::{Frame, Touch};
 use crate::stages::walls::{list_near, wall_contact};
 use crate::state::State;
 use crate::state::contacts::Contacts;
-use crate::state::particles::Particles;
+use crate::state::particles::{Particles, Pose};
 use crate::state::walls::Wall;
 
 /// A particle that touches a wall.
@@ -131,16 +131,19 @@ impl WallForce {
 }
 
 /// Adds the stiffness of contacts, and of ground springs of `ground_n_m` at every particle, to a
-/// symmetric matrix.
+/// symmetric matrix. Rotations have such springs here alone, and no torque from them: a row of
+/// spheres can spin.
 pub(super) fn add_contacts(
     matrix: &mut Matrix,
     degrees_of_freedom: &DegreesOfFreedom,
     contacts: &[WallForce],
+    poses: &[Pose],
     ground_n_m: f64,
 ) {
-    for unknown in &degrees_of_freedom.unknown {
-        for k in 0..3 {
-            matrix.add_symmetric(unknown[k], unknown[k], ground_n_m);
+    for (unknown, pose) in degrees_of_freedom.unknown.iter().zip(poses) {
+        for (k, &unknown) in unknown.iter().enumerate() {
+            let arm_m = if k < 3 { 1.0 } else { pose.radius_m() };
+            matrix.add_symmetric(unknown, unknown, ground_n_m * arm_m * arm_m);
         }
     }
     for contact in contacts {

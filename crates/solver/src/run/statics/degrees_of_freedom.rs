@@ -14,7 +14,7 @@ pub(crate) const HELD: usize = usize::MAX;
 /// The degrees of freedom of all particles: translations along x, y, z, then rotations about x, y,
 /// z.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct DegreesOfFreedom {
+pub struct DegreesOfFreedom {
     /// For each particle the numbers of its degrees of freedom among the unknowns, ascending; or
     /// [`HELD`]. Length 6 each.
     pub unknown: Vec<[usize; 6]>,
@@ -27,7 +27,7 @@ pub(crate) struct DegreesOfFreedom {
 
 impl DegreesOfFreedom {
     /// For a state at its start, with the motions that its supports prescribe until `end_s`.
-    pub(crate) fn new(state: &State, end_s: f64) -> Self {
+    pub fn new(state: &State, end_s: f64) -> Self {
         let mut held = vec![[false; 6]; state.particles.len()];
         let mut moves = vec![[0.0; 6]; state.particles.len()];
         for support in &state.supports {
@@ -66,13 +66,13 @@ impl DegreesOfFreedom {
     }
 
     /// Number of held degrees of freedom.
-    pub(crate) fn held(&self) -> usize {
+    pub fn held(&self) -> usize {
         6 * self.unknown.len() - self.count
     }
 
     /// The unknowns of all particles, each with its particle and the index, 0 to 5, of its degree
     /// of freedom.
-    pub(crate) fn unknowns(&self) -> impl Iterator<Item = (usize, usize)> {
+    pub fn unknowns(&self) -> impl Iterator<Item = (usize, usize)> {
         let six = |(i, of): (usize, &[usize; 6])| {
             let of = *of;
             (0..6).filter(move |k| of[*k] != HELD).map(move |k| (i, k))
@@ -81,7 +81,7 @@ impl DegreesOfFreedom {
     }
 
     /// The nodes of the unknowns, at the present places of the particles.
-    pub(crate) fn nodes(&self, poses: &[Pose]) -> Vec<Node> {
+    pub fn nodes(&self, poses: &[Pose]) -> Vec<Node> {
         let node = |(particle, freedom): (usize, usize)| {
             let [x, y, z, radius_m] = poses[particle].position_m;
             Node {
@@ -97,7 +97,7 @@ impl DegreesOfFreedom {
     /// Whether a torque may act, at rest, on a particle with more than one free rotation: then the
     /// tangent is not symmetric, even in equilibrium. The torque is that of a load, or of a support
     /// that holds one of the three rotations.
-    pub(crate) fn has_free_torques(&self, state: &State) -> bool {
+    pub fn has_free_torques(&self, state: &State) -> bool {
         let free_turns = |i: usize| self.unknown[i][3..].iter().filter(|n| **n != HELD).count();
         let held_once = || (0..self.unknown.len()).any(|i| free_turns(i) == 2);
         let loaded = || {

@@ -17,7 +17,7 @@ use super::matrix::Matrix;
 
 /// Factors of matrices of one pattern.
 #[derive(Debug)]
-pub(crate) enum DirectFactor {
+pub enum DirectFactor {
     /// For symmetric matrices, L L^T, by an approximate minimum degree order. The pattern of L, and
     /// its entries.
     Cholesky(SymbolicCholesky<usize>, Vec<f64>),
@@ -28,7 +28,7 @@ pub(crate) enum DirectFactor {
 
 /// Reason why there are no factors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum NoFactor {
+pub enum NoFactor {
     /// A pivot is zero, negative or not a number: the matrix is not positive definite or, if it is
     /// not symmetric, singular.
     Pivot,
@@ -41,7 +41,7 @@ impl DirectFactor {
     ///
     /// # Errors
     /// Memory.
-    pub(crate) fn new(matrix: &Matrix) -> Result<Self, NoFactor> {
+    pub fn new(matrix: &Matrix) -> Result<Self, NoFactor> {
         let pattern = pattern(matrix);
         if !matrix.symmetric {
             let symbolic = SymbolicLu::try_new(pattern).map_err(|_| NoFactor::Memory)?;
@@ -54,7 +54,7 @@ impl DirectFactor {
     }
 
     /// Entries of the factor; None if unknown before the factorisation.
-    pub(crate) fn entries(&self) -> Option<usize> {
+    pub fn entries(&self) -> Option<usize> {
         match self {
             Self::Cholesky(symbolic, _) => Some(symbolic.len_val()),
             Self::Gauss(..) => None,
@@ -65,7 +65,7 @@ impl DirectFactor {
     ///
     /// # Errors
     /// An unsuitable pivot, memory.
-    pub(crate) fn compute(&mut self, matrix: &Matrix) -> Result<(), NoFactor> {
+    pub fn compute(&mut self, matrix: &Matrix) -> Result<(), NoFactor> {
         let values = SparseColMatRef::new(pattern(matrix), &matrix.values);
         match self {
             Self::Cholesky(symbolic, entries) => {
@@ -107,7 +107,7 @@ impl DirectFactor {
 
     /// Replaces the right-hand side by the solution, with the factors computed last; without
     /// factors it stays as it is.
-    pub(crate) fn solve(&self, side: &mut [f64]) {
+    pub fn solve(&self, side: &mut [f64]) {
         let rows = side.len();
         let side = MatMut::from_column_major_slice_mut(side, rows, 1);
         match self {

@@ -10,7 +10,7 @@ use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 
 /// A square matrix over the unknowns. Its pattern is fixed while its entries change.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Matrix {
+pub struct Matrix {
     /// Only the lower triangle of the symmetric part, (K + K^T)/2, is stored.
     pub symmetric: bool,
     /// Start of each column, followed by the end of the last one.
@@ -24,11 +24,7 @@ pub(crate) struct Matrix {
 impl Matrix {
     /// The pattern of a state: every particle with itself and with its bonded neighbours. All
     /// entries are 0.
-    pub(crate) fn pattern(
-        state: &State,
-        degrees_of_freedom: &DegreesOfFreedom,
-        symmetric: bool,
-    ) -> Self {
+    pub fn pattern(state: &State, degrees_of_freedom: &DegreesOfFreedom, symmetric: bool) -> Self {
         let mut neighbours: Vec<Vec<u32>> =
             (0..state.particles.len() as u32).map(|i| vec![i]).collect();
         for (at, &[a, b]) in state.bonds.ends.iter().enumerate() {
@@ -60,7 +56,7 @@ impl Matrix {
     }
 
     /// Sets the entries to the tangents of all bonds at these poses, in the order of the bonds.
-    pub(crate) fn assemble(
+    pub fn assemble(
         &mut self,
         bonds: &Bonds,
         degrees_of_freedom: &DegreesOfFreedom,
@@ -74,7 +70,7 @@ impl Matrix {
     }
 
     /// Adds to the entry of two unknowns, for a symmetric matrix; only its lower triangle counts.
-    pub(crate) fn add_symmetric(&mut self, row: usize, column: usize, value: f64) {
+    pub fn add_symmetric(&mut self, row: usize, column: usize, value: f64) {
         if row == HELD || column == HELD || row < column {
             return;
         }
@@ -86,7 +82,7 @@ impl Matrix {
     }
 
     /// Sets `image` to this symmetric matrix times a vector.
-    pub(crate) fn multiply(&self, vector: &[f64], image: &mut [f64]) {
+    pub fn multiply(&self, vector: &[f64], image: &mut [f64]) {
         image.fill(0.0);
         for column in 0..vector.len() {
             let mut sum = 0.0;

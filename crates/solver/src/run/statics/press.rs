@@ -319,6 +319,7 @@ impl<'a> Press<'a> {
             &mut self.matrix,
             &self.degrees_of_freedom,
             contacts,
+            poses,
             self.ground_n_m,
         );
         self.factor.compute(&self.matrix).map_err(cause)
