@@ -6,7 +6,7 @@ use super::matrix::Matrix;
 
 /// Number of unknowns from which conjugate gradients need less time and memory than factors, whose
 /// entries grow with the power 4/3 of it.
-const ITERATIVE_FROM: usize = 60_000;
+const ITERATIVE_FROM: usize = 40_000;
 
 /// The means to solve systems with matrices of one pattern.
 #[derive(Debug)]
