@@ -25,7 +25,7 @@ fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
 }
 
 /// Every command runs, in order, in a folder with a copy of the shapes, scenes and bodies. To save
-/// time, spheres are larger, the chute ends sooner, and a shape with few facets replaces the rock.
+/// time, spheres are larger, packings fewer, the chute ends sooner, and a shape with few facets replaces the rock.
 #[test]
 fn commands_run_as_pasted() {
     let folder = tempfile::tempdir().unwrap();
@@ -42,7 +42,12 @@ fn commands_run_as_pasted() {
         )
         .unwrap();
     }
-    for name in ["data/scenes", "data/bodies", "data/studies"] {
+    for name in [
+        "data/scenes",
+        "data/bodies",
+        "data/studies",
+        "data/measured",
+    ] {
         let copies = folder.path().join(name);
         fs::create_dir_all(&copies).unwrap();
         for file in fs::read_dir(root().join(name)).unwrap() {
@@ -71,6 +76,8 @@ fn commands_run_as_pasted() {
         }
         let small = line
             .replace(" 2mm..3mm", " 4mm..5mm")
+            .replace(" 5mm..7mm", " 7mm..9mm")
+            .replace(" -o cake.toml --", " -o cake.toml --packings 2 --")
             .replace("/chute.toml", "/chute.toml --set run.end_time=0.2")
             .replace(
                 " data/studies/spinning-bar.toml",
@@ -129,45 +136,45 @@ fn files_exist() {
     assert!(files >= 10, "{files} files");
 }
 
-/// Every option outside cargo commands is an option of one of the programs.
+/// The help of these commands.
+fn help(of: impl Fn() -> Command, commands: &[&[&str]]) -> String {
+    let said = commands.iter().map(|arguments| {
+        let output = of().args(*arguments).arg("--help").output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    });
+    said.collect()
+}
+
+/// Every option outside cargo commands is an option of one of the programs, and every option of the
+/// programs is named: in the README, or on the page of its command.
 #[test]
 fn options_exist() {
-    let help: String = [
-        vec!["--help"],
-        vec!["info", "--help"],
-        vec!["convert", "--help"],
-    ]
-    .iter()
-    .map(|arguments| dem_pack().args(arguments).output().unwrap())
-    .chain([
-        dem_run().arg("--help").output().unwrap(),
-        dem_run().args(["check", "--help"]).output().unwrap(),
-        dem_run().args(["fragment", "--help"]).output().unwrap(),
-        dem_run().args(["sweep", "--help"]).output().unwrap(),
-    ])
-    .map(|output| String::from_utf8(output.stdout).unwrap())
-    .collect();
-    let known = options(&help);
-    let readme = readme();
-    let named: Vec<String> = readme
-        .replace("cargo run --release --bin dem-pack -- ", "dem-pack ")
-        .lines()
-        .filter(|line| !line.contains("cargo "))
-        .flat_map(options)
-        .collect();
+    let mut known = help(dem_pack, &[&[], &["info"], &["convert"]]);
+    known += &help(dem_run, &[&[], &["check"], &["fragment"], &["sweep"]]);
+    let of_pages = help(dem_run, &[&["lab"], &["calibrate"]]);
+    let readme = readme().replace("cargo run --release --bin dem-pack -- ", "dem-pack ");
+    let lines = readme.lines().filter(|line| !line.contains("cargo "));
+    let named: Vec<String> = lines.flat_map(options).collect();
     assert!(named.len() >= 20, "{named:?}");
+    let all = options(&(known.clone() + &of_pages));
     for option in &named {
         assert!(
-            known.contains(option),
+            all.contains(option),
             "README.md names {option}, which no program knows"
         );
     }
-    for option in &known {
-        let told_by_help = ["--help", "--version"].contains(&option.as_str());
-        assert!(
-            told_by_help || named.contains(option),
-            "README.md does not name {option}"
-        );
+    let pages = ["doc/measured-curves.md", "doc/calibration.md"]
+        .map(|page| fs::read_to_string(root().join(page)).unwrap())
+        .concat();
+    for (command, text) in [(known, readme.clone()), (of_pages, readme + &pages)] {
+        let named = options(&text);
+        for option in options(&command) {
+            let told_by_help = ["--help", "--version"].contains(&option.as_str());
+            assert!(
+                told_by_help || named.contains(&option),
+                "README.md and the page of its command do not name {option}"
+            );
+        }
     }
 }
 

@@ -421,7 +421,14 @@ fn finish(
             writeln!(out, "{:12} {}", "written", visible(&all.join(", ")))
         })?;
     }
-    match record.cases.iter().find_map(Case::problem) {
+    let problem = |case: &Case| {
+        let (problem, remedy) = case.problem()?;
+        Some(match case.name.as_str() {
+            "" => (problem, remedy),
+            size => (format!("spheres of {size}: {problem}"), remedy),
+        })
+    };
+    match record.cases.iter().find_map(problem) {
         None => Ok(()),
         Some((problem, remedy)) => Err(Diagnostic::failed(&record.scene, problem, remedy)),
     }
