@@ -1,4 +1,4 @@
-//! Labels: the time and a scale.
+//! Labels: the time, a scale of lengths, a scale of colours.
 
 mod font;
 
@@ -13,6 +13,9 @@ const LEAST_TEXT_PX: f64 = 10.0;
 
 /// Largest length of the scale bar, as a fraction of the width of the picture.
 const BAR: f64 = 0.20;
+
+/// Width of the bar of colours as a fraction of the width of the picture.
+const COLOURS: f64 = 0.22;
 
 /// Units of length with their size, m.
 const LENGTHS: [(&str, f64); 4] = [("km", 1e3), ("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)];
@@ -65,6 +68,27 @@ pub fn scale_bar(image: &mut Image, px_per_m: f64) {
     font::stroke(image, &bar, (0.12 * size).max(1.2), INK);
     let middle = 0.5 * (left + right - font::width(&text, size));
     font::write(image, &text, [middle, bottom - 1.75 * size], size, INK);
+}
+
+/// Draws a bar of colours with its name and the values at its ends into the bottom left corner.
+/// `colour`: red, green, blue at a fraction of the bar, from 0 to 1.
+pub fn colour_bar(image: &mut Image, name: &str, ends: [&str; 2], colour: &dyn Fn(f64) -> [u8; 3]) {
+    let size = text_px(image);
+    let bottom = f64::from(image.height()) - 1.3 * size;
+    let left = 1.1 * size;
+    let (width, height) = (COLOURS * f64::from(image.width()), 0.8 * size);
+    let columns = width as i64;
+    for column in 0..columns {
+        let colour = colour((column as f64 + 0.5) / columns as f64);
+        for y in (bottom - height) as i64..bottom as i64 {
+            image.blend(left as i64 + column, y, colour, 1.0);
+        }
+    }
+    let above = bottom - height - 1.4 * size;
+    font::write(image, ends[0], [left, above], size, INK);
+    let last = left + width - font::width(ends[1], size);
+    font::write(image, ends[1], [last, above], size, INK);
+    font::write(image, name, [left, above - 1.6 * size], size, INK);
 }
 
 fn text_px(image: &Image) -> f64 {

@@ -73,7 +73,8 @@ pub(crate) fn shape(kind: usize, [x, y]: [f64; 2], fill: &str) -> Markup {
 }
 
 /// Viridis, from dark violet (0) to yellow (1), in five steps with linear interpolation.
-pub(crate) fn viridis(fraction: f64) -> String {
+/// Red, green, blue.
+pub fn viridis(fraction: f64) -> [u8; 3] {
     const STEPS: [[f64; 3]; 5] = [
         [68.0, 1.0, 84.0],
         [59.0, 82.0, 139.0],
@@ -84,7 +85,10 @@ pub(crate) fn viridis(fraction: f64) -> String {
     let at = 4.0 * fraction.clamp(0.0, 1.0);
     let below = (at as usize).min(3);
     let part = at - below as f64;
-    let [r, g, b] = [0, 1, 2]
-        .map(|k| ((1.0 - part) * STEPS[below][k] + part * STEPS[below + 1][k]).round() as u8);
+    [0, 1, 2].map(|k| ((1.0 - part) * STEPS[below][k] + part * STEPS[below + 1][k]).round() as u8)
+}
+
+/// A colour in the notation of SVG.
+pub(crate) fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }

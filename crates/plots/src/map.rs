@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::colours::{GREY, INK, viridis};
+use crate::colours::{GREY, INK, hex, viridis};
 use crate::numbers::px;
 use crate::svg::{Svg, WIDTH};
 
@@ -105,7 +105,7 @@ impl Map {
             (self.guides(&view))
             g class="dots" {
                 @for Dot { at_m: [x, y], time_s } in &self.dots {
-                    (circle([view.x(*x), view.y(*y)], DOT, Some(viridis(fraction(*time_s, times)))))
+                    (circle([view.x(*x), view.y(*y)], DOT, Some(hex(viridis(fraction(*time_s, times))))))
                 }
             }
             (scale_bar(&view, below))
@@ -156,7 +156,7 @@ fn colour_bar([first_s, last_s]: [f64; 2], y: f64) -> Markup {
         text x=(px(left - 6.0)) y=(px(y + 4.0)) text-anchor="end" { (format!("{first_s:.3} s")) }
         @for cell in 0..CELLS {
             rect x=(px(left + width * f64::from(cell) / f64::from(CELLS))) y=(px(y - 5.0))
-                width="5.2" height="9" fill=(viridis(f64::from(cell) / f64::from(CELLS - 1))) {}
+                width="5.2" height="9" fill=(hex(viridis(f64::from(cell) / f64::from(CELLS - 1)))) {}
         }
         text x=(px(left + width + 6.0)) y=(px(y + 4.0)) { (format!("{last_s:.3} s")) }
     }

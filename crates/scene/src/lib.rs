@@ -68,7 +68,7 @@ pub use load::Load;
 pub use material::Material;
 pub use measure::{Measure, Quantity, Statistic};
 pub use outlet::Outlet;
-pub use output::Output;
+pub use output::{ColourBy, Output};
 pub use paths::text_of;
 pub use read::{read_scene, scene_from_text};
 pub use region::Region;

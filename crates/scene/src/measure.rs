@@ -9,7 +9,7 @@ use super::table::Table;
 use super::targets::{Subject, Targets};
 use dem_io::diagnostic::Result;
 use dem_io::units::{
-    ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, TIME,
+    ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, RATE, TIME,
     TORQUE, VELOCITY,
 };
 use serde::{Deserialize, Serialize};
@@ -45,8 +45,17 @@ pub enum Quantity {
     ElasticEnergy,
     /// "broken_bonds" since the start.
     BrokenBonds,
-    /// "largest_utilisation": stress over strength of the bond nearest to failure.
+    /// "largest_utilisation": stress over strength of the bond nearest to failure, without rate
+    /// strengthening.
     LargestUtilisation,
+    /// "largest_strain_rate" of the bonds by their `strain_rate_measure`, 1/s.
+    LargestStrainRate,
+    /// "largest_dynamic_increase_factor" of the strengths of the bonds, 1 without strengthening.
+    LargestDynamicIncreaseFactor,
+    /// "largest_dynamic_utilisation": stress over strength at the bond's strain rate.
+    LargestDynamicUtilisation,
+    /// "fraction_below_dynamic_utilisation": fraction of the intact bonds below `limit`.
+    FractionBelowDynamicUtilisation,
     /// "angle_of_repose": slope of the heap that the particles form, degrees.
     AngleOfRepose,
     /// "force_x", ... total contact force: of particles on a wall, of other particles and walls on
@@ -96,6 +105,9 @@ pub struct Measure {
     /// `with`: the body, group or wall that `of` touches. Required for contacts, and only allowed
     /// there.
     pub with: Option<String>,
+    /// `limit`: dynamic utilisation below which bonds count. Required for
+    /// `fraction_below_dynamic_utilisation`, and only allowed there.
+    pub limit: Option<f64>,
     /// `statistic`, "end" unless given.
     pub statistic: Statistic,
     /// `reference`: expected result, in the quantity's unit. Not zero if there is a `tolerance`.
@@ -108,7 +120,7 @@ pub struct Measure {
 }
 
 /// Every quantity and its name in a scene.
-pub(super) const QUANTITIES: [(&str, Quantity); 44] = [
+pub(super) const QUANTITIES: [(&str, Quantity); 48] = [
     ("position_x", Quantity::Position(0)),
     ("position_y", Quantity::Position(1)),
     ("position_z", Quantity::Position(2)),
@@ -136,6 +148,19 @@ pub(super) const QUANTITIES: [(&str, Quantity); 44] = [
     ("elastic_energy", Quantity::ElasticEnergy),
     ("broken_bonds", Quantity::BrokenBonds),
     ("largest_utilisation", Quantity::LargestUtilisation),
+    ("largest_strain_rate", Quantity::LargestStrainRate),
+    (
+        "largest_dynamic_increase_factor",
+        Quantity::LargestDynamicIncreaseFactor,
+    ),
+    (
+        "largest_dynamic_utilisation",
+        Quantity::LargestDynamicUtilisation,
+    ),
+    (
+        "fraction_below_dynamic_utilisation",
+        Quantity::FractionBelowDynamicUtilisation,
+    ),
     ("angle_of_repose", Quantity::AngleOfRepose),
     ("force_x", Quantity::Force(0)),
     ("force_y", Quantity::Force(1)),
@@ -191,8 +216,12 @@ impl Quantity {
             Self::ContactDuration => &TIME,
             Self::KineticEnergy | Self::ElasticEnergy => &ENERGY,
             Self::MassOfLargest => &MASS,
+            Self::LargestStrainRate => &RATE,
             Self::BrokenBonds
             | Self::LargestUtilisation
+            | Self::LargestDynamicIncreaseFactor
+            | Self::LargestDynamicUtilisation
+            | Self::FractionBelowDynamicUtilisation
             | Self::Count
             | Self::MassFractionOfLargest => &NUMBER,
         }
@@ -242,6 +271,11 @@ pub(super) static MEASURE: Schema = Schema {
             "a group, a body or a wall",
             "Other side of the contact; required for contact quantities.",
         ),
+        Key::number(
+            "limit",
+            "Dynamic utilisation below which intact bonds count; required for `fraction_below_dynamic_utilisation`.",
+        )
+        .positive(),
         Key::word::<Statistic>(
             "statistic",
             "end",
@@ -274,6 +308,7 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
         targets.presence.refuse_without_start(&field, &of)?;
     }
     let with = counterpart(&table, &of, quantity, targets)?;
+    let limit = limit(&table, quantity)?;
     let dimension = quantity.dimension();
     let reference = table.read_by("reference", |field| field.quantity(dimension))?;
     let tolerance = table.read("tolerance")?;
@@ -301,6 +336,7 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
         of,
         quantity,
         with,
+        limit,
         statistic: table.read("statistic")?,
         reference,
         tolerance,
@@ -350,6 +386,32 @@ fn counterpart(
         problem,
         "name another body, group or wall; quantity = \"force\" is of contacts with all else",
     ))
+}
+
+/// The dynamic utilisation below which bonds count: required if such bonds are counted, refused
+/// otherwise.
+fn limit(table: &Table<'_>, quantity: Quantity) -> Result<Option<f64>> {
+    let counted = Quantity::FractionBelowDynamicUtilisation;
+    match (quantity == counted, table.get("limit")) {
+        (true, None) => {
+            let problem = format!(
+                "{}.quantity is \"{}\", but nothing says below which utilisation",
+                table.path,
+                counted.name()
+            );
+            Err(table.refuse(problem, "add limit = 0.5"))
+        }
+        (false, Some(field)) => {
+            let problem = format!(
+                "{} cannot be combined with the quantity \"{}\"",
+                field.path,
+                quantity.name()
+            );
+            let remedy = format!("remove it, or ask for \"{}\"", counted.name());
+            Err(field.refuse(problem, remedy))
+        }
+        _ => table.read("limit"),
+    }
 }
 
 /// The requested quantity, if `of`, which is a `subject`, has it.
@@ -406,6 +468,9 @@ pub(super) fn list(measure: &Measure, listing: &mut Listing) {
     listing.text("quantity", measure.quantity.name());
     if let Some(with) = &measure.with {
         listing.text("with", with);
+    }
+    if let Some(limit) = &measure.limit {
+        listing.value("limit", limit);
     }
     listing.value("statistic", &measure.statistic);
     listing.text("reference", in_unit(measure.reference));

@@ -5,10 +5,37 @@ use std::path::{Path, PathBuf};
 use super::field::Field;
 use super::listing::Listing;
 use super::paths::named_path;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::TIME;
+
+/// The quantity that colours the particles of pictures. Of a quantity of bonds, a particle has the
+/// largest value of its intact bonds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum ColourBy {
+    /// "fragment": each has its own colour.
+    #[default]
+    Fragment,
+    /// "fragment_mass", kg.
+    FragmentMass,
+    /// "strain_rate" of bonds by their `strain_rate_measure`, 1/s.
+    StrainRate,
+    /// "dynamic_increase_factor" of the strengths of bonds.
+    DynamicIncreaseFactor,
+    /// "dynamic_utilisation" of bonds: stress over strength at their strain rate.
+    DynamicUtilisation,
+}
+
+impl Word for ColourBy {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("fragment", Self::Fragment),
+        ("fragment_mass", Self::FragmentMass),
+        ("strain_rate", Self::StrainRate),
+        ("dynamic_increase_factor", Self::DynamicIncreaseFactor),
+        ("dynamic_utilisation", Self::DynamicUtilisation),
+    ];
+}
 
 /// The results to write, and how often. Times are simulated seconds.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -26,6 +53,8 @@ pub struct Output {
     /// `view = { from }`: direction from the bodies to the camera, of length 1. None: from the
     /// front, the right and above. Length 3.
     pub view_from: Option<[f64; 3]>,
+    /// `colour_by`: the quantity that colours the particles of pictures.
+    pub colour_by: ColourBy,
     /// `checkpoint`: time between checkpoints. None: only at the end and when interrupted.
     pub checkpoint_s: Option<f64>,
 }
@@ -55,6 +84,12 @@ pub(super) static OUTPUT: Schema = Schema {
         Key::quantity("pictures", &TIME, "Time between pictures.").positive(),
         Key::table("view", &VIEW, "Camera of the pictures.")
             .otherwise("front, right and above"),
+        Key::word::<ColourBy>(
+            "colour_by",
+            "fragment",
+            "Quantity that colours the particles of pictures; of a quantity of bonds, a particle has the largest value \
+             of its intact bonds.",
+        ),
         Key::quantity(
             "checkpoint",
             &TIME,
@@ -90,6 +125,7 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
         series_s: table.read("series")?,
         pictures_s: table.read("pictures")?,
         view_from: table.read_by("view", |field| Table::of(&field, &VIEW)?.read("from"))?,
+        colour_by: table.read("colour_by")?,
         checkpoint_s: table.read("checkpoint")?,
     })
 }
@@ -106,5 +142,6 @@ pub(super) fn list(output: &Output, listing: &mut Listing) {
         Some(from) => listing.table("view", &VIEW, |listing| listing.value("from", from)),
         None => listing.text("view.from", listing.usual("view")),
     }
+    listing.value("colour_by", &output.colour_by);
     listing.value("checkpoint", &output.checkpoint_s);
 }

@@ -1,5 +1,6 @@
 //! Measures: named quantities of particle groups, recorded during a run.
 
+mod bonds;
 mod heap;
 mod members;
 mod whole;
@@ -11,8 +12,6 @@ use dem_scene::{Measure, Quantity, Statistic};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
 
-use crate::physics::bond::BondLoad;
-use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::plan::Plan;
 use crate::plan::measures::FEWEST_IN_HEAP;
 use crate::stages::clumps::synchronous;
@@ -27,6 +26,8 @@ use crate::state::watches::{Seen, Watch, WatchTarget};
 use self::members::{Members, wall_number};
 use self::whole::{Motions, Starts, start_centre, starts, turned_before};
 
+pub(crate) use self::bonds::utilisation_under;
+pub use self::bonds::{DynamicUtilisation, bond_utilisation, dynamic_utilisations, load};
 pub use crate::state::watches::History;
 
 /// A measure and its particles.
@@ -49,6 +50,16 @@ pub struct Probe {
     turned_before: BTreeMap<u32, UnitQuaternion<f64>>,
     /// Its values so far.
     pub history: History,
+}
+
+/// Data at one time that several measures need. Each part is empty if none does.
+#[derive(Debug, Default)]
+struct Common {
+    motions: Motions,
+    /// Mass of every intact cluster, kg.
+    masses_kg: Vec<f64>,
+    /// All bonds; broken ones are none.
+    bonds: Vec<Option<DynamicUtilisation>>,
 }
 
 /// Result of a measure.
@@ -151,6 +162,15 @@ pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Ve
                 | Quantity::KineticEnergy
         )
     };
+    let needs_rates = |g: &Probe| {
+        matches!(
+            g.measure.quantity,
+            Quantity::LargestStrainRate
+                | Quantity::LargestDynamicIncreaseFactor
+                | Quantity::LargestDynamicUtilisation
+                | Quantity::FractionBelowDynamicUtilisation
+        )
+    };
     let counts_mass = |g: &Probe| {
         let quantity = g.measure.quantity;
         matches!(
@@ -158,19 +178,19 @@ pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Ve
             Quantity::MassFractionOfLargest | Quantity::MassOfLargest
         )
     };
-    let masses_kg = if probes.iter().any(counts_mass) {
-        masses_of_pieces_kg(state)
-    } else {
-        Vec::new()
-    };
-    let motions = if probes.iter().any(needs_motions) {
-        Motions {
+    let mut common = Common::default();
+    if probes.iter().any(counts_mass) {
+        common.masses_kg = masses_of_pieces_kg(state);
+    }
+    if probes.iter().any(needs_rates) {
+        common.bonds = dynamic_utilisations(state);
+    }
+    if probes.iter().any(needs_motions) {
+        common.motions = Motions {
             particles: synchronous_motions(state),
             clumps: synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s),
-        }
-    } else {
-        Motions::default()
-    };
+        };
+    }
     let mut watches = state.watches.iter();
     let mut values = Vec::new();
     for probe in probes {
@@ -181,7 +201,7 @@ pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Ve
                 watch.seen.value
             }
             None => {
-                let value = probe.read(state, &motions, &masses_kg, balance);
+                let value = probe.read(state, &common, balance);
                 probe.history.note(state.time_s, value);
                 value
             }
@@ -247,7 +267,8 @@ impl Probe {
         })
     }
 
-    fn read(&self, state: &State, motions: &Motions, masses_kg: &[f64], balance: &Balance) -> f64 {
+    fn read(&self, state: &State, common: &Common, balance: &Balance) -> f64 {
+        let (motions, masses_kg) = (&common.motions, &common.masses_kg);
         let wall = self.walls[0].and_then(|wall| state.walls.get(wall));
         let members = &self.members;
         let reactions = |k: usize| {
@@ -293,6 +314,10 @@ impl Probe {
             Quantity::LargestUtilisation => self.over_bonds(state, 0.0, |largest: f64, at, _| {
                 largest.max(bond_utilisation(state, at))
             }),
+            Quantity::LargestStrainRate
+            | Quantity::LargestDynamicIncreaseFactor
+            | Quantity::LargestDynamicUtilisation
+            | Quantity::FractionBelowDynamicUtilisation => self.at_rates(state, common),
             Quantity::AngleOfRepose => {
                 let down = Vector3::from(state.model.gravity_m_s2);
                 let up = (-down).try_normalize(0.0).unwrap_or_else(Vector3::z);
@@ -318,6 +343,27 @@ impl Probe {
         }
     }
 
+    /// Value of a quantity of intact bonds at their strain rates.
+    fn at_rates(&self, state: &State, common: &Common) -> f64 {
+        let largest = |least: f64, of: fn(&DynamicUtilisation) -> f64| {
+            self.over_intact(state, common, least, |largest, bond| largest.max(of(bond)))
+        };
+        match self.measure.quantity {
+            Quantity::LargestStrainRate => largest(f64::NAN, |bond| bond.strain_rate_1_s),
+            Quantity::LargestDynamicIncreaseFactor => largest(1.0, |bond| bond.increase_factor),
+            Quantity::LargestDynamicUtilisation => largest(0.0, |bond| bond.utilisation),
+            _ => {
+                let limit = self.measure.limit.unwrap_or(f64::NAN);
+                let start = [0.0, 0.0];
+                let [below, all] = self.over_intact(state, common, start, |[below, all], bond| {
+                    let is_below = u8::from(bond.utilisation < limit);
+                    [below + f64::from(is_below), all + 1.0]
+                });
+                below / all
+            }
+        }
+    }
+
     /// Reason why it has no value at the end. None: it has one.
     fn missing(&self, value: f64) -> Option<String> {
         let (name, of) = (&self.name, &self.measure.of);
@@ -330,13 +376,18 @@ impl Probe {
             Some(format!(
                 "{name} has no value: an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{of}\" has {left}"
             ))
+        } else if matches!(
+            self.measure.quantity,
+            Quantity::LargestStrainRate | Quantity::FractionBelowDynamicUtilisation
+        ) {
+            Some(format!("{name} has no value: \"{of}\" has no intact bond"))
         } else {
             None
         }
     }
 
     /// Folds over the bonds that have an end in the set, with the number of ends in it.
-    fn over_bonds(&self, state: &State, start: f64, next: impl Fn(f64, usize, f64) -> f64) -> f64 {
+    fn over_bonds<T>(&self, state: &State, start: T, next: impl Fn(T, usize, f64) -> T) -> T {
         let is_in = self.members.marked(state);
         let mut value = start;
         for (at, ends) in state.bonds.ends.iter().enumerate() {
@@ -346,6 +397,20 @@ impl Probe {
             }
         }
         value
+    }
+
+    /// Folds over the intact bonds that have an end in the set.
+    fn over_intact<T>(
+        &self,
+        state: &State,
+        common: &Common,
+        start: T,
+        next: impl Fn(T, &DynamicUtilisation) -> T,
+    ) -> T {
+        self.over_bonds(state, start, |value, at, _| match &common.bonds[at] {
+            Some(bond) => next(value, bond),
+            None => value,
+        })
     }
 
     /// Its result at the end of a run.
@@ -392,31 +457,4 @@ fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
     };
     let all = fragments(clusters, &state.particles, &state.clumps, None);
     all.iter().map(|fragment| fragment.mass_kg).collect()
-}
-
-/// Load of a bond: zero if it is broken.
-pub fn load(state: &State, at: usize) -> BondLoad {
-    if state.bonds.is_broken(at) {
-        return BondLoad::default();
-    }
-    state.bonds.forces(at, &state.particles.poses).load
-}
-
-/// Ratio of stress to strength of a bond, before any rate strengthening; 0 if it is broken or
-/// cannot break.
-pub fn bond_utilisation(state: &State, at: usize) -> f64 {
-    utilisation_under(state, at, &load(state, at))
-}
-
-/// The same for a given load.
-pub(crate) fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
-    let bonds = &state.bonds;
-    match &bonds.rules[bonds.rule_of(at)].criteria {
-        Some(criteria) if !bonds.is_broken(at) => {
-            let stresses = stresses(load, bonds.radius_m(at));
-            let factors = Factors::scattered(bonds.strength_factor(at));
-            utilisation(criteria, &stresses, factors)
-        }
-        _ => 0.0,
-    }
 }

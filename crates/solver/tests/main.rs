@@ -25,6 +25,7 @@ mod meet;
 mod notation;
 mod pictures;
 mod pictures_colours;
+mod pictures_scale;
 mod program;
 mod shape;
 mod sleep;

@@ -40,7 +40,7 @@ fn walls_are_seen_where_they_have_gone() {
         standing(floor(), [0.0; 3]),
         standing(solid, [-0.05, 0.0, 0.05]),
     ];
-    let view = View::of(&state, None);
+    let view = View::of(&state, None, None);
     let before = pixels(&view, &state);
     assert!(before == pixels(&view, &state));
     for wall in [0, 1] {
@@ -55,7 +55,7 @@ fn walls_are_seen_where_they_have_gone() {
 #[test]
 fn the_view_is_that_of_the_direction_whatever_its_length() {
     let state = state(&[[0.0; 3], [0.05, 0.0, 0.0], [0.0, 0.02, 0.0]]);
-    let of = |from| pixels(&View::of(&state, from), &state);
+    let of = |from| pixels(&View::of(&state, from, None), &state);
     let front = of(Some([0.0, -1.0, 0.0]));
     assert!(front == of(Some([0.0, -7.0, 0.0])));
     assert!(front != of(None) && front != of(Some([0.0, 1.0, 0.0])));
@@ -67,6 +67,6 @@ fn the_view_is_that_of_the_direction_whatever_its_length() {
 fn a_scene_that_is_empty_at_its_start_has_pictures_too() {
     let mut state = state(&[]);
     state.walls = vec![standing(floor(), [0.0; 3])];
-    let image = View::of(&state, None).picture(&state, &[], 0.01);
+    let image = View::of(&state, None, None).picture(&state, &[], 0.01);
     assert_eq!((image.width(), image.height()), (960, 540));
 }

@@ -11,6 +11,7 @@ mod check;
 mod command_line;
 mod corpus;
 mod disk;
+mod dynamic;
 mod inputs;
 mod interrupted;
 mod lab;

@@ -18,7 +18,7 @@ const CUTS: usize = 3;
 
 /// Width in units, and strokes: points of two digits each, from the left and from the top. Corners
 /// are rounded, unless a point is repeated.
-const GLYPHS: [(char, usize, &str); 28] = [
+const GLYPHS: [(char, usize, &str); 37] = [
     ('0', 4, "20 40 42 46 48 28 08 06 02 00 20"),
     ('1', 2, "02 20 20 28"),
     ('2', 4, "02 00 20 40 42 44 08 08 48"),
@@ -36,16 +36,25 @@ const GLYPHS: [(char, usize, &str); 28] = [
     ('+', 4, "05 45,23 27"),
     ('=', 4, "04 44,06 46"),
     ('/', 3, "30 09"),
+    ('a', 4, "04 13 33 44 48,45 15 06 08 28 46"),
+    ('c', 4, "44 33 13 04 07 18 38 47"),
+    ('d', 4, "40 48,46 38 18 07 04 13 33 45"),
     ('e', 4, "06 46 46 43 23 03 06 08 28 48 47"),
     ('f', 3, "30 10 18,03 33"),
+    ('g', 4, "43 48 39 19 09,46 38 18 07 04 13 33 45"),
     ('h', 4, "00 08,05 03 23 43 48"),
     ('i', 0, "03 08,01 01"),
     ('k', 3, "00 08,33 06,15 38"),
+    ('l', 0, "00 08"),
     ('m', 6, "03 08,05 03 13 33 38,35 33 43 63 68"),
     ('n', 4, "03 08,05 03 23 43 48"),
+    ('o', 4, "23 43 48 28 08 03 23"),
+    ('r', 3, "03 08,05 03 13 33"),
     ('s', 3, "34 33 03 05 36 38 08 07"),
     ('t', 3, "11 18 38,03 33"),
+    ('u', 4, "03 08 28 48 43,43 48"),
     ('x', 4, "03 48,43 08"),
+    ('y', 4, "03 28,43 28 19 09"),
     ('µ', 4, "03 09 09,06 08 18 38 36,43 48"),
 ];
 
@@ -179,7 +188,7 @@ mod tests {
 
     #[test]
     fn all_signs_of_labels_have_a_glyph() {
-        for sign in "t = -0123456789.e s km mm µm inf".chars() {
+        for sign in "t = -0123456789.e s km mm µm inf fragment mass kg strain rate dynamic increase factor utilisation /s".chars() {
             assert!(
                 sign == ' ' || GLYPHS.iter().any(|glyph| glyph.0 == sign),
                 "{sign}"

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use dem_io::units::DIMENSIONS;
 use dem_scene::{
-    BodySource, BondDamping, BondFailure, BondModel, Clusters, Contact, ContactLaw, Factor,
-    Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity, Relaxation, Rolling, Scene,
-    Search, Statistic, StrainRateMeasure, Wall, WallMotion, WallShape,
+    BodySource, BondDamping, BondFailure, BondModel, Clusters, ColourBy, Contact, ContactLaw,
+    Factor, Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity, Relaxation, Rolling,
+    Scene, Search, Statistic, StrainRateMeasure, Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -486,6 +486,10 @@ fn measures_and_output() {
         (pieces.quantity.name(), pieces.reference),
         ("mass_of_largest", Some(0.02))
     );
+    let calm = &scene.measures["calm"];
+    assert_eq!(calm.quantity, Quantity::FractionBelowDynamicUtilisation);
+    assert_eq!((calm.limit, push.limit), (Some(0.5), None));
+    assert_eq!(Quantity::LargestStrainRate.dimension().si, "1/s");
     let others = good("touching.toml").measures;
     for (name, quantity, unit) in [
         ("hit", Quantity::Force(2), "N"),
@@ -509,6 +513,7 @@ fn measures_and_output() {
     assert_eq!(output.pictures_s, Some(0.01));
     let from = output.view_from.unwrap();
     (0..3).for_each(|k| assert_near(from[k], [0.6, -0.8, 0.0][k]));
+    assert_eq!(output.colour_by, ColourBy::DynamicUtilisation);
     assert_eq!(output.checkpoint_s, Some(0.1));
 }
 

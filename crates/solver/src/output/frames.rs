@@ -6,12 +6,13 @@ use dem_io::Result;
 use dem_io::body::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, RADIUS};
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
-use crate::measure::{load, utilisation_under};
+use crate::measure::{DynamicUtilisation, dynamic_utilisations, load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
 use crate::stages::totals::synchronous_motions;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
+use crate::state::clusters::fragments::fragment_masses_kg;
 use crate::state::events::REMOVED;
 
 /// Numbering in a frame: particles and bonds of all bodies, in the order of their files, followed
@@ -74,7 +75,7 @@ impl FrameOrder {
     /// # Errors
     /// Those of the files.
     pub(crate) fn write(&self, state: &State, files: &mut FrameFiles) -> Result<()> {
-        let (p, bonds) = (&state.particles, &state.bonds);
+        let p = &state.particles;
         let motions = synchronous_motions(state);
         let particle = |i: usize| self.particles[i] as usize;
         let position = |i: usize| p.poses[particle(i)].place().into();
@@ -86,12 +87,40 @@ impl FrameOrder {
         let body = |i: usize| self.bodies[i];
         let velocity = |i: usize| motions[particle(i)].velocity_m_s;
         let spin = |i: usize| motions[particle(i)].spin_rad_s;
-        let cluster = |i: usize| {
-            let clusters = state.clusters.as_ref();
-            clusters.map_or(0, |clusters| clusters.of_particle[particle(i)])
-        };
+        let clusters = state.clusters.as_ref();
+        let cluster = |i: usize| clusters.map_or(0, |clusters| clusters.of_particle[particle(i)]);
+        let masses_kg = clusters.map(|clusters| fragment_masses_kg(clusters, p, &state.clumps));
+        let mass = |i: usize| masses_kg.as_ref().map_or(0.0, |kg| kg[particle(i)]);
         let density = |i: usize| state.density_kg_m3(particle(i));
         let rigid = |i: usize| u32::from(particle(i) >= p.free);
+        let mut arrays = vec![
+            scalars(RADIUS, &radius),
+            counts("body", &body),
+            vectors("velocity_m_s", &velocity),
+            vectors("angular_velocity_rad_s", &spin),
+        ];
+        if self.changes {
+            arrays.push(counts("rigid", &rigid));
+        } else {
+            arrays.insert(2, vectors("displacement_m", &displacement));
+        }
+        if clusters.is_some() {
+            // With these arrays a fragment can be extracted as a body.
+            arrays.push(counts(FRAGMENT_ID, &cluster));
+            arrays.push(scalars(DENSITY, &density));
+            arrays.push(scalars("fragment_mass_kg", &mass));
+        }
+        self.append(state, &arrays, files)
+    }
+
+    /// Appends the frame with these arrays of the particles and those of the bonds.
+    fn append(
+        &self,
+        state: &State,
+        particle_arrays: &[NamedArray<'_>],
+        files: &mut FrameFiles,
+    ) -> Result<()> {
+        let bonds = &state.bonds;
         let bond = |i: usize| self.bonds[i] as usize;
         // Costly to compute, and needed for seven arrays.
         let loads: Vec<BondLoad> = (0..self.bonds.len())
@@ -113,13 +142,17 @@ impl FrameOrder {
         let torsion = |i: usize| loads[i].torsion_n_m;
         let bending = |i: usize| loads[i].bending_n_m;
         let utilisation = |i: usize| utilisation_under(state, bond(i), &loads[i]);
+        let strengthen = bonds.strengthen_with_rate();
+        let dynamic = if strengthen {
+            dynamic_utilisations(state)
+        } else {
+            Vec::new()
+        };
+        let dynamic = |i: usize| dynamic[bond(i)].unwrap_or(DynamicUtilisation::BROKEN);
+        let strain_rate = |i: usize| dynamic(i).strain_rate_1_s;
+        let increase_factor = |i: usize| dynamic(i).increase_factor;
+        let dynamic_utilisation = |i: usize| dynamic(i).utilisation;
         let broken = |i: usize| u32::from(bonds.is_broken(bond(i)));
-        let mut particle_arrays = vec![
-            scalars(RADIUS, &radius),
-            counts("body", &body),
-            vectors("velocity_m_s", &velocity),
-            vectors("angular_velocity_rad_s", &spin),
-        ];
         let mut bond_arrays = vec![
             scalars(BOND_RADIUS, &bond_radius),
             scalars("normal_force_n", &normal_force),
@@ -131,22 +164,20 @@ impl FrameOrder {
             scalars("utilisation", &utilisation),
             counts(BROKEN, &broken),
         ];
-        if self.changes {
-            particle_arrays.push(counts("rigid", &rigid));
-        } else {
-            particle_arrays.insert(2, vectors("displacement_m", &displacement));
+        if strengthen {
+            bond_arrays.push(scalars("strain_rate_1_s", &strain_rate));
+            bond_arrays.push(scalars("dynamic_increase_factor", &increase_factor));
+            bond_arrays.push(scalars("dynamic_utilisation", &dynamic_utilisation));
         }
         if state.clusters.is_some() {
-            // With these arrays a fragment can be extracted as a body.
-            particle_arrays.push(counts(FRAGMENT_ID, &cluster));
-            particle_arrays.push(scalars(DENSITY, &density));
             bond_arrays.push(scalars(BOND_LENGTH, &initial_length));
         }
+        let poses = &state.particles.poses;
         files.append(&Frame {
             time_s: state.time_s,
             particles: self.particles.len(),
-            position_m: &position,
-            particle_arrays: &particle_arrays,
+            position_m: &|i| poses[self.particles[i] as usize].place().into(),
+            particle_arrays,
             bonds: self.bonds.len(),
             ends: &|i| bonds.ends[bond(i)].map(|end| self.place_of[end as usize]),
             bond_arrays: &bond_arrays,

@@ -1,8 +1,9 @@
-//! Columns of the time series: energies, errors, broken bonds, every measure.
+//! Columns of the time series: energies, errors, numbers of bonds and particles, every measure.
 
 use crate::measure::Probe;
 use crate::stages::ledger::Balance;
 use crate::state::State;
+use crate::state::bonds::Bonds;
 
 /// Names of the first columns after the time: energies and works, J.
 pub(super) const ENERGIES: [&str; 12] = [
@@ -20,11 +21,14 @@ pub(super) const ENERGIES: [&str; 12] = [
     "flow_energy_j",
 ];
 /// Names of the columns after those.
-const OTHERS: [&str; 5] = [
+const OTHERS: [&str; 8] = [
     "energy_error",
     "momentum_error",
     "angular_momentum_error",
     "broken_bonds",
+    "intact_bonds",
+    "particles",
+    "clumps",
     "time_step_s",
 ];
 
@@ -79,6 +83,9 @@ pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64
         balance.momentum_error,
         balance.angular_momentum_error,
         state.broken_count as f64,
+        intact_bonds(&state.bonds) as f64,
+        state.particles.len() as f64,
+        state.clumps.of_several_spheres() as f64,
         state.time_step_s,
     ];
     let of_walls = state.walls.iter().flat_map(|wall| {
@@ -91,4 +98,9 @@ pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64
         .chain(of_walls)
         .chain(measured.iter().copied());
     values.map(|value| value + 0.0).collect()
+}
+
+fn intact_bonds(bonds: &Bonds) -> usize {
+    let all = 0..bonds.len();
+    all.filter(|at| !bonds.is_broken(*at)).count()
 }

@@ -18,7 +18,6 @@ use crate::plan::inputs::Inputs;
 use crate::plan::masses;
 use crate::stages::ledger::{Balance, over};
 use crate::state::State;
-use crate::state::clumps::Clump;
 use crate::state::sleep::Sleep;
 
 /// Program and version.
@@ -240,16 +239,15 @@ impl PopulationSummary {
         if !state.bodies_change() {
             return None;
         }
-        let is_single = |clump: &&Clump| clumps.template(clump).spheres.len() == 1;
-        let single = clumps.all.iter().filter(is_single).count();
+        let several = clumps.of_several_spheres();
         let [done, left_out] = population.bond_steps.map(|count| count as f64);
         let inner = clumps.templates.iter();
         let inner: f64 = inner
             .map(|t| 1.0 - t.outer.len() as f64 / t.spheres.len() as f64)
             .sum();
         Some(Self {
-            clumps: clumps.all.len() - single,
-            single_spheres: single,
+            clumps: several,
+            single_spheres: clumps.all.len() - several,
             replaced: population.replaced,
             restored: population.restored,
             fed: population.inlets.iter().map(|come| come.bodies).sum(),

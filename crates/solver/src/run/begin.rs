@@ -87,7 +87,7 @@ impl<'a> Run<'a> {
         place_watches(&probes, &mut state);
         // Of the bonds at the start, broken since or not.
         let mut order = FrameOrder::new(&bodies, &state);
-        let of_pictures = settings.folder.and(Order::of(scene, &state));
+        let of_pictures = settings.folder.and(Order::of(scene, &state, &bodies));
         let size = state.particles.len() + state.bonds.len();
         let schedule = OutputSchedule::of(scene, choice.step_s, size);
         let mut progress = Progress::new(schedule, &choice);

@@ -104,7 +104,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
     if progress.is_over(&state, rhythm, scene).is_none() {
         return Ok(None);
     }
-    let order = Order::of(scene, &plan.state);
+    let order = Order::of(scene, &plan.state, &plan.bodies);
     let probes = probes(scene, plan);
     let missing = missing(
         folder,

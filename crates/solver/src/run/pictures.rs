@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::schedule::{due, first_after, next};
 use crate::output::pictures::View;
+use crate::output::pictures::scale::Scale;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 
@@ -31,12 +32,14 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// From the initial state. None: no pictures.
-    pub(super) fn of(scene: &Scene, start: &State) -> Option<Self> {
+    /// From the initial state and bodies. None: no pictures.
+    pub(super) fn of(scene: &Scene, start: &State, bodies: &[PlacedBody]) -> Option<Self> {
         let output = scene.output.as_ref()?;
+        let every_s = output.pictures_s?;
+        let scale = Scale::of(output.colour_by, start, bodies);
         Some(Self {
-            every_s: output.pictures_s?,
-            view: View::of(start, output.view_from),
+            every_s,
+            view: View::of(start, output.view_from, scale),
         })
     }
 }

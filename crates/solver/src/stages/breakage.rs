@@ -1,13 +1,9 @@
 //! Breaks bonds that have reached their strength. Each is first checked again individually,
 //! including its strain rate where strength depends on it.
 
-use dem_scene::StrainRateMeasure;
-use nalgebra::Vector3;
-
 use super::bonds::bonds_to_come;
 use super::stage::{NO_SAVING, Need, Saving, Stage};
 use crate::physics::bond::failure::{Cause, Factors, cause, stresses, utilisation};
-use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use crate::physics::bond::total::BondForces;
 use crate::state::State;
 use crate::state::bonds::Bonds;
@@ -42,9 +38,8 @@ pub const RATES: Stage = Stage {
     name: "rate strengthening",
     within: Some(FAILURE.name),
     need: |state, _| {
-        let mut rules = state.bonds.rules.iter();
         Need::of(
-            rules.any(|rule| rule.strengthening_from_1_s.is_some()),
+            state.bonds.strengthen_with_rate(),
             || "only for bonds that would break without it".to_owned(),
             "no rate strengthening asked for",
         )
@@ -180,18 +175,9 @@ fn fails(bonds: &Bonds, at: usize, particles: &Particles, forces: &BondForces) -
     let rule = &bonds.rules[bonds.rule_of(at)];
     let criteria = rule.criteria?;
     let stresses = stresses(&forces.load, bonds.radius_m(at));
-    let rate = rule.strengthening_from_1_s.map_or(1.0, |from| {
-        let [a, b] = bonds.ends[at].map(|end| end as usize);
-        let c = (particles.poses[b].place() - particles.poses[a].place()).normalize();
-        let velocities = [a, b].map(|end| Vector3::from(particles.motions[end].velocity_m_s));
-        let length_m = bonds.initial_length_m(at);
-        let rate_1_s = match rule.strain_rate_measure {
-            StrainRateMeasure::Elongation => elongation_rate(&c, &velocities, length_m),
-            StrainRateMeasure::RelativeVelocity => {
-                (velocities[1] - velocities[0]).norm() / length_m
-            }
-        };
-        dynamic_increase_factor(rate_1_s, from)
+    let rate = rule.strengthening_from_1_s.map_or(1.0, |_| {
+        let rate_1_s = bonds.strain_rate_1_s(at, &particles.poses, &particles.motions);
+        bonds.dynamic_increase_factor(at, rate_1_s)
     });
     let scatter = bonds.strength_factor(at);
     let factors = Factors { scatter, rate };

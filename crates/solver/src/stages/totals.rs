@@ -78,6 +78,30 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     motions
 }
 
+/// Velocities half a step before the poses, between a kick and the drift after it: those with which
+/// the bonds of this step have been compared with their strength. One per particle.
+pub fn motions_before_kick(state: &State) -> Vec<Motion> {
+    let mut motions = synchronous_motions(state);
+    // In a static equilibrium nothing moves, and there is no step.
+    if state.time_step_s > 0.0 {
+        let back = state.previous_time_step_s / state.time_step_s;
+        for (motion, after) in motions.iter_mut().zip(&state.particles.motions) {
+            for (now, after) in motion.velocity_m_s.iter_mut().zip(after.velocity_m_s) {
+                *now -= back * (after - *now);
+            }
+        }
+    }
+    // The ends of a bond that broke in this step have had its half of the kick after the comparison.
+    let half_s = 0.5 * state.previous_time_step_s;
+    for (end, on_end) in state.scratch.events.broken.iter().flat_map(|b| b.ends) {
+        let motion = &mut motions[end as usize];
+        for (velocity, force_n) in motion.velocity_m_s.iter_mut().zip(on_end) {
+            *velocity -= half_s * motion.inverse_mass * force_n;
+        }
+    }
+    motions
+}
+
 /// Kinetic energy of the free particles with these motions, J.
 pub fn kinetic_energy(particles: &Particles, motion: impl Fn(usize) -> Motion + Sync) -> f64 {
     ordered_sum(particles.free, |i| particles.kinetic_j(i, &motion(i)))

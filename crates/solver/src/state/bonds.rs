@@ -11,12 +11,13 @@ use serde::{Deserialize, Serialize};
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::stiffness::Stiffness;
+use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use crate::physics::bond::tangent::{BondTangent, bond_tangent};
 use crate::physics::bond::total::BondForces;
 use crate::physics::bond::{incremental, total};
 use crate::physics::number::Number;
 
-use super::particles::Pose;
+use super::particles::{Motion, Pose};
 
 /// Properties that the bonds of a rule share.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -263,6 +264,35 @@ impl Bonds {
     /// Factor on the strengths of bond `at`.
     pub fn strength_factor(&self, at: usize) -> f64 {
         self.strength_factors.get(at).copied().unwrap_or(1.0)
+    }
+
+    /// Whether the strength of any bond depends on its strain rate.
+    pub(crate) fn strengthen_with_rate(&self) -> bool {
+        let mut rules = self.rules.iter();
+        rules.any(|rule| rule.strengthening_from_1_s.is_some())
+    }
+
+    /// Strain rate of bond `at` by the measure of its rule, 1/s. Lengths: particles.
+    pub fn strain_rate_1_s(&self, at: usize, poses: &[Pose], motions: &[Motion]) -> f64 {
+        let [a, b] = self.ends[at].map(|end| end as usize);
+        let velocities = [a, b].map(|end| Vector3::from(motions[end].velocity_m_s));
+        let length_m = self.initial_length_m(at);
+        match self.rules[self.rule_of(at)].strain_rate_measure {
+            StrainRateMeasure::Elongation => {
+                let c = (poses[b].place() - poses[a].place()).normalize();
+                elongation_rate(&c, &velocities, length_m)
+            }
+            StrainRateMeasure::RelativeVelocity => {
+                (velocities[1] - velocities[0]).norm() / length_m
+            }
+        }
+    }
+
+    /// Ratio of dynamic to static strength of bond `at` at this strain rate: 1 without rate
+    /// strengthening.
+    pub fn dynamic_increase_factor(&self, at: usize, rate_1_s: f64) -> f64 {
+        let from = self.rules[self.rule_of(at)].strengthening_from_1_s;
+        from.map_or(1.0, |from_1_s| dynamic_increase_factor(rate_1_s, from_1_s))
     }
 
     /// Whether bond `at` is broken.

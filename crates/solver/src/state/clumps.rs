@@ -195,6 +195,12 @@ impl Clump {
 }
 
 impl Clumps {
+    /// Number of clumps of two or more spheres: an inlet also feeds single loose spheres.
+    pub fn of_several_spheres(&self) -> usize {
+        let several = |clump: &&Clump| self.template(clump).spheres.len() > 1;
+        self.all.iter().filter(several).count()
+    }
+
     /// Template of a clump.
     pub fn template(&self, clump: &Clump) -> &Arc<Template> {
         &self.templates[clump.template as usize]

@@ -170,7 +170,7 @@ fn measures_named_like_other_columns_and_plots_stand_beside_them() {
     ] {
         assert!(plots.contains(&name.to_owned()), "{name} in {plots:?}");
     }
-    assert_eq!(plots.len(), 3 + 33 + 2);
+    assert_eq!(plots.len(), 3 + 37 + 2);
     for name in plots {
         let text = fs::read_to_string(bench.path("out/plots").join(&name)).unwrap();
         assert!(text.starts_with("<!-- dem-run plot -->\n<svg "), "{name}");
@@ -234,6 +234,10 @@ fn frames_have_every_array_at_full_length() {
             "normal_force_n",
             "utilisation",
             "broken",
+            "fragment_mass_kg",
+            "strain_rate_1_s",
+            "dynamic_increase_factor",
+            "dynamic_utilisation",
             "TimeValue",
         ] {
             assert!(header.contains(&format!("Name=\"{array}\"")), "{array}");

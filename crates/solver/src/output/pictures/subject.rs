@@ -1,30 +1,42 @@
-//! The visible objects of a state: its particles, coloured by the fragment that they belong to, and
-//! its walls.
+//! The visible objects of a state: its particles, coloured by their fragment or on a scale, and its
+//! walls.
 
 use dem_pictures::colours::{SINGLE, of_fragment};
 use dem_pictures::surface::HalfSpace;
 use dem_pictures::{Ball, Surface};
 
+use super::scale::Scale;
 use crate::geometry::{Bounds, Shape};
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clusters::Cluster;
 use crate::state::walls::Wall;
 
-/// All particles: by cluster, or by body if there are no clusters.
-pub(crate) fn balls(state: &State, bodies: &[PlacedBody]) -> Vec<Ball> {
-    let (of_particle, colours) = match &state.clusters {
-        Some(clusters) => (clusters.of_particle.clone(), of_clusters(&clusters.history)),
-        None => by_body(state.particles.len(), bodies),
+/// All particles: on a scale, if there is one; otherwise by cluster, or by body if there are no
+/// clusters.
+pub(crate) fn balls(state: &State, bodies: &[PlacedBody], scale: Option<&Scale>) -> Vec<Ball> {
+    let colours = match scale {
+        Some(scale) => scale.colours(state, bodies),
+        None => by_fragment(state, bodies),
     };
-    let colour_of = |i: usize| colours.get(*of_particle.get(i)? as usize).copied();
-    (state.particles.poses.iter().enumerate())
-        .map(|(i, pose)| Ball {
+    (state.particles.poses.iter().zip(colours))
+        .map(|(pose, colour)| Ball {
             centre_m: pose.place().into(),
             radius_m: pose.radius_m(),
-            colour: colour_of(i).unwrap_or(SINGLE),
+            colour,
         })
         .collect()
+}
+
+/// The colour of the fragment of each particle. Length: particles.
+fn by_fragment(state: &State, bodies: &[PlacedBody]) -> Vec<[u8; 3]> {
+    let count = state.particles.len();
+    let (of_particle, colours) = match &state.clusters {
+        Some(clusters) => (clusters.of_particle.clone(), of_clusters(&clusters.history)),
+        None => by_body(count, bodies),
+    };
+    let colour_of = |i: usize| colours.get(*of_particle.get(i)? as usize).copied();
+    (0..count).map(|i| colour_of(i).unwrap_or(SINGLE)).collect()
 }
 
 /// All walls in their present position. Planes are infinite: only the part around a scene is drawn,

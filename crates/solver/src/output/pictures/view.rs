@@ -1,8 +1,9 @@
-//! View of a run: one camera from its first picture to its last.
+//! View of a run: one camera and one scale of colours from its first picture to its last.
 
 use dem_pictures::label::{label, scale_bar, time_text};
 use dem_pictures::{Camera, Image, Surface, render};
 
+use super::scale::Scale;
 use super::subject::{balls, finite, surfaces};
 use crate::geometry::Bounds;
 use crate::state::State;
@@ -17,18 +18,20 @@ const ROOM: f64 = 0.55;
 /// Upward direction in a picture.
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// The camera of a run, and the extent of planes.
+/// The camera of a run, the extent of planes, and the colours of particles.
 #[derive(Debug, Clone, Copy)]
 pub struct View {
     camera: Camera,
     around: Bounds,
+    /// None: each fragment has its own colour.
+    scale: Option<Scale>,
 }
 
 impl View {
     /// Shows all particles, inlets and walls of a state at its start, and of planes a patch around
     /// the rest. `from`: direction of the viewer, of any length; None: from the front, the right
-    /// and above.
-    pub fn of(state: &State, from: Option<[f64; 3]>) -> Self {
+    /// and above. `scale`: colours of particles; None: by fragment.
+    pub fn of(state: &State, from: Option<[f64; 3]>, scale: Option<Scale>) -> Self {
         let poses = &state.particles.poses;
         let mut points_m: Vec<[f64; 3]> = (poses.iter())
             .flat_map(|pose| outermost(pose.place().into(), pose.radius_m()))
@@ -47,13 +50,21 @@ impl View {
             Some(from) => Camera::around(from.map(|c| -c), UP, &points_m, SIZE_PX),
             None => Camera::three_quarter(&points_m, SIZE_PX),
         };
-        Self { camera, around }
+        Self {
+            camera,
+            around,
+            scale,
+        }
     }
 
     /// The picture of a state, with its time. `every_s`: time between pictures, s.
     pub fn picture(&self, state: &State, bodies: &[PlacedBody], every_s: f64) -> Image {
         let surfaces = surfaces(&state.walls, &self.around);
-        let mut image = render(&self.camera, &balls(state, bodies), &surfaces);
+        let balls = balls(state, bodies, self.scale.as_ref());
+        let mut image = render(&self.camera, &balls, &surfaces);
+        if let Some(scale) = &self.scale {
+            scale.draw(&mut image);
+        }
         label(&mut image, &time_text(state.time_s, every_s));
         scale_bar(&mut image, self.camera.px_per_m());
         image

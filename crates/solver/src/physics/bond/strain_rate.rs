@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 /// Below this rate the factor is 1, /s.
 const LOWEST_1_S: f64 = 4.64e-6;
 /// Above this rate the factor no longer rises, /s.
-const HIGHEST_1_S: f64 = 50.0;
+pub const HIGHEST_1_S: f64 = 50.0;
 /// Start of the second branch, /s.
 const BRANCH_1_S: f64 = 0.1;
 

@@ -58,6 +58,20 @@ pub fn fragments(
     fragments
 }
 
+/// Mass of the cluster of each particle, kg. Length: particles.
+pub fn fragment_masses_kg(clusters: &Clusters, particles: &Particles, clumps: &Clumps) -> Vec<f64> {
+    let mut of_cluster_kg = vec![0.0; clusters.history.len()];
+    let free = &particles.motions[..particles.free];
+    for (id, motion) in clusters.of_particle.iter().zip(free) {
+        of_cluster_kg[*id as usize] += 1.0 / motion.inverse_mass;
+    }
+    for clump in &clumps.all {
+        of_cluster_kg[clump.cluster as usize] = clumps.template(clump).mass_kg;
+    }
+    let of_particle = clusters.of_particle.iter();
+    of_particle.map(|id| of_cluster_kg[*id as usize]).collect()
+}
+
 /// A clump, of which the particles contain only the outer spheres.
 fn as_fragment(clump: &Clump, template: &Template, outer: &Fragment) -> Fragment {
     let cubes: f64 = template.spheres.iter().map(|s| s.radius_m.powi(3)).sum();

@@ -1,0 +1,88 @@
+//! Loads of single bonds, and how near they are to failure.
+
+use crate::physics::bond::BondLoad;
+use crate::physics::bond::failure::{Factors, stresses, utilisation};
+use crate::stages::totals::motions_before_kick;
+use crate::state::State;
+use crate::state::particles::Motion;
+
+/// Strain rate of a bond, and the utilisation of the strength that it has at that rate. Both are
+/// those of the failure check: an intact bond that can break has a utilisation below 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DynamicUtilisation {
+    /// By the `strain_rate_measure` of the bond, 1/s.
+    pub strain_rate_1_s: f64,
+    /// Ratio of dynamic to static strength, 1 or more (Platzer 2022, eq. 20).
+    pub increase_factor: f64,
+    /// Largest ratio of stress to dynamic strength; 0 if the bond cannot break.
+    pub utilisation: f64,
+}
+
+impl DynamicUtilisation {
+    /// Of a broken bond.
+    pub const BROKEN: Self = Self {
+        strain_rate_1_s: 0.0,
+        increase_factor: 1.0,
+        utilisation: 0.0,
+    };
+
+    /// Of a bond under this load, with the motions of all particles before the kick.
+    pub(crate) fn under(state: &State, at: usize, load: &BondLoad, motions: &[Motion]) -> Self {
+        let bonds = &state.bonds;
+        if bonds.is_broken(at) {
+            return Self::BROKEN;
+        }
+        let strain_rate_1_s = bonds.strain_rate_1_s(at, &state.particles.poses, motions);
+        let increase_factor = bonds.dynamic_increase_factor(at, strain_rate_1_s);
+        Self {
+            strain_rate_1_s,
+            increase_factor,
+            utilisation: utilisation_at(state, at, load, increase_factor),
+        }
+    }
+}
+
+/// Strain rates and dynamic utilisations of all bonds, as the failure check of this step has found
+/// them, between a kick and the drift after it. None: the bond is broken.
+pub fn dynamic_utilisations(state: &State) -> Vec<Option<DynamicUtilisation>> {
+    let motions = motions_before_kick(state);
+    let of_bond = |at: usize| {
+        let load = load(state, at);
+        DynamicUtilisation::under(state, at, &load, &motions)
+    };
+    let is_intact = |at: usize| !state.bonds.is_broken(at);
+    let all = 0..state.bonds.len();
+    all.map(|at| is_intact(at).then(|| of_bond(at))).collect()
+}
+
+/// Load of a bond: zero if it is broken.
+pub fn load(state: &State, at: usize) -> BondLoad {
+    if state.bonds.is_broken(at) {
+        return BondLoad::default();
+    }
+    state.bonds.forces(at, &state.particles.poses).load
+}
+
+/// Ratio of stress to strength of a bond, before any rate strengthening; 0 if it is broken or
+/// cannot break.
+pub fn bond_utilisation(state: &State, at: usize) -> f64 {
+    utilisation_under(state, at, &load(state, at))
+}
+
+/// The same for a given load.
+pub(crate) fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
+    utilisation_at(state, at, load, 1.0)
+}
+
+/// The same with this factor on the strengths that rise with the strain rate.
+fn utilisation_at(state: &State, at: usize, load: &BondLoad, rate: f64) -> f64 {
+    let bonds = &state.bonds;
+    match &bonds.rules[bonds.rule_of(at)].criteria {
+        Some(criteria) if !bonds.is_broken(at) => {
+            let stresses = stresses(load, bonds.radius_m(at));
+            let scatter = bonds.strength_factor(at);
+            utilisation(criteria, &stresses, Factors { scatter, rate })
+        }
+        _ => 0.0,
+    }
+}
