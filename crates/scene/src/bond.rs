@@ -89,10 +89,10 @@ pub enum StrainRateMeasure {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub enum EquivalentStress {
     /// "forces-only": the axial stress if it is tensile, and the shear force; no moments.
-    #[default]
     ForcesOnly,
     /// "axial-in-tension": the axial stress if it is tensile, and the bending stress always; shear
     /// and torsion.
+    #[default]
     AxialInTension,
     /// "tensile-edge": axial and bending stress at the edge with the largest tension, if their sum
     /// is tensile.
@@ -114,8 +114,8 @@ pub struct BondFailure {
     pub shear_strength_pa: Option<f64>,
     /// `von_mises_strength`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
     pub von_mises_strength_pa: Option<f64>,
-    /// `equivalent_stress`: the stresses that count in it, those of tension and shear force unless
-    /// given.
+    /// `equivalent_stress`: the stresses that count in it, axial stress in tension, bending, shear and
+    /// torsion unless given.
     pub equivalent_stress: EquivalentStress,
     /// `rate_strengthening`: strain rate above which all strengths except the compressive one rise
     /// with the rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
@@ -229,7 +229,7 @@ pub(super) static FAILURE: Schema = Schema {
         .not_negative(),
         Key::word::<EquivalentStress>(
             "equivalent_stress",
-            "forces-only",
+            "axial-in-tension",
             "Stresses that count in the equivalent stress: `forces-only`, the axial stress if it is tensile, and the shear \
              force, but no moments. The others count shear and torsion, and `axial-in-tension` the axial stress if it is tensile \
              and bending always, `tensile-edge` axial and bending stress at the edge with the largest tension, `bond-in-tension` \

@@ -179,7 +179,7 @@ fn named(sample: &Sample) -> String {
     )
 }
 
-/// The tests with the reading of the program unless given.
+/// The tests with eq. 13 at its word.
 fn bending(results: &Path) -> Table {
     bending_table(results, |row| row.reading == READINGS[0])
 }
