@@ -225,6 +225,10 @@ fn crossing_facets_would_be_noticed() {
 #[test]
 fn flat_sided_shapes_have_their_exact_volume() {
     assert_eq!(volume(&facets("bending-sample.stl")), 180.0 * 30.0 * 35.0);
+    assert_eq!(
+        volume(&facets("long-bending-sample.stl")),
+        200.0 * 30.0 * 35.0
+    );
     assert_eq!(volume(&facets("bar.stl")), 30.0 * 30.0 * 60.0);
     // A plate 20 thick, with eight ribs in front of it, 20 wide and 8 deep.
     let jaw = 160.0 * 20.0 + 8.0 * 0.5 * 20.0 * 8.0;

@@ -85,6 +85,22 @@ pub enum StrainRateMeasure {
     RelativeVelocity,
 }
 
+/// The stresses that count in the equivalent stress of Platzer 2022, eq. 13.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub enum EquivalentStress {
+    /// "forces-only": the axial stress if it is tensile, and the shear force; no moments.
+    ForcesOnly,
+    /// "axial-in-tension": the axial stress if it is tensile, and the bending stress always; shear
+    /// and torsion.
+    #[default]
+    AxialInTension,
+    /// "tensile-edge": axial and bending stress at the edge with the largest tension, if their sum
+    /// is tensile.
+    TensileEdge,
+    /// "bond-in-tension": axial and bending stress while the axial force is tensile.
+    BondInTension,
+}
+
 /// Failure criteria of a bond; the first one met breaks it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BondFailure {
@@ -98,6 +114,9 @@ pub struct BondFailure {
     pub shear_strength_pa: Option<f64>,
     /// `von_mises_strength`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
     pub von_mises_strength_pa: Option<f64>,
+    /// `equivalent_stress`: the stresses that count in it, axial stress in tension, bending, shear and
+    /// torsion unless given.
+    pub equivalent_stress: EquivalentStress,
     /// `rate_strengthening`: strain rate above which all strengths except the compressive one rise
     /// with the rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.
     pub rate_strengthening_from_1_s: Option<f64>,
@@ -208,6 +227,14 @@ pub(super) static FAILURE: Schema = Schema {
             "Largest equivalent stress that the bond can bear (Platzer 2022, eqs. 11 to 13).",
         )
         .not_negative(),
+        Key::word::<EquivalentStress>(
+            "equivalent_stress",
+            "axial-in-tension",
+            "Stresses that count in the equivalent stress: `forces-only`, the axial stress if it is tensile, and the shear \
+             force, but no moments. The others count shear and torsion, and `axial-in-tension` the axial stress if it is tensile \
+             and bending always, `tensile-edge` axial and bending stress at the edge with the largest tension, `bond-in-tension` \
+             both, but only while the axial force is tensile.",
+        ),
         Key::new(
             "rate_strengthening",
             Kind::Either(&[Kind::Boolean, Kind::Quantity(&RATE)]),
@@ -233,6 +260,15 @@ pub(super) static FAILURE: Schema = Schema {
 impl Word for Formulation {
     const WORDS: &'static [(&'static str, Self)] =
         &[("total", Self::Total), ("incremental", Self::Incremental)];
+}
+
+impl Word for EquivalentStress {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("forces-only", Self::ForcesOnly),
+        ("axial-in-tension", Self::AxialInTension),
+        ("tensile-edge", Self::TensileEdge),
+        ("bond-in-tension", Self::BondInTension),
+    ];
 }
 
 impl Word for StrainRateMeasure {
@@ -334,6 +370,7 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
         compressive_strength_pa: table.read("compressive_strength")?,
         shear_strength_pa: table.read("shear_strength")?,
         von_mises_strength_pa: table.read("von_mises_strength")?,
+        equivalent_stress: table.read("equivalent_stress")?,
         rate_strengthening_from_1_s: rate_strengthening(&table)?,
         strain_rate_measure: table.read("strain_rate_measure")?,
         weibull_modulus: table.read("weibull_modulus")?,
@@ -348,6 +385,14 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
         let remedy = "add tensile_strength, compressive_strength, shear_strength or von_mises_strength, such as von_mises_strength = \"0.185 MPa\"";
         let field = table.get("rate_strengthening").unwrap_or(field.clone());
         let problem = format!("{} has no strength to exceed", field.path);
+        return Err(field.refuse(problem, remedy));
+    }
+    if let (Some(field), None) = (
+        table.get("equivalent_stress"),
+        failure.von_mises_strength_pa,
+    ) {
+        let problem = format!("{} has no effect without von_mises_strength", field.path);
+        let remedy = "add von_mises_strength = \"0.185 MPa\", or remove equivalent_stress";
         return Err(field.refuse(problem, remedy));
     }
     if let (Some(field), None) = (
@@ -415,6 +460,7 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
         listing.value("compressive_strength", &failure.compressive_strength_pa);
         listing.value("shear_strength", &failure.shear_strength_pa);
         listing.value("von_mises_strength", &failure.von_mises_strength_pa);
+        listing.value("equivalent_stress", &failure.equivalent_stress);
         listing.value("rate_strengthening", &failure.rate_strengthening_from_1_s);
         listing.value("weibull_modulus", &failure.weibull_modulus);
         listing.value("strain_rate_measure", &failure.strain_rate_measure);

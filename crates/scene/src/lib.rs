@@ -55,7 +55,9 @@ mod wall;
 
 pub use bodies::read_bodies;
 pub use body::{BodyEntry, BodySource, WholeMass};
-pub use bond::{BondDamping, BondFailure, BondKind, BondModel, Formulation, StrainRateMeasure};
+pub use bond::{
+    BondDamping, BondFailure, BondKind, BondModel, EquivalentStress, Formulation, StrainRateMeasure,
+};
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;
 pub use contact::{Contact, ContactLaw, Rolling};

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use dem_io::units::DIMENSIONS;
 use dem_scene::{
     BodySource, BondDamping, BondFailure, BondModel, Clusters, ColourBy, Contact, ContactLaw,
-    Factor, Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity, Relaxation, Rolling,
-    Scene, Search, Statistic, StrainRateMeasure, Wall, WallMotion, WallShape,
+    EquivalentStress, Factor, Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity,
+    Relaxation, Rolling, Scene, Search, Statistic, StrainRateMeasure, Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -314,6 +314,7 @@ fn bonds() {
             shear_strength_pa: Some(2e6),
             compressive_strength_pa: Some(15e6),
             von_mises_strength_pa: Some(3e6),
+            equivalent_stress: EquivalentStress::TensileEdge,
             rate_strengthening_from_1_s: Some(1e-5),
             strain_rate_measure: StrainRateMeasure::RelativeVelocity,
             weibull_modulus: Some(7.0),

@@ -28,6 +28,7 @@ fn schema(name: &str) -> Value {
 fn scenes() -> Vec<PathBuf> {
     [
         files(&root().join("data/scenes")),
+        files(&root().join("data/thesis")),
         files(&root().join("tests/scenes/good")),
         files(&root().join("crates/scene/tests/scene/good")),
     ]

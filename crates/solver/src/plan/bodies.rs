@@ -16,7 +16,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::physics::bond::damping::{DampingCoefficients, DampingModel, reduced};
 use crate::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
-use crate::physics::bond::failure::{Criteria, has_strength};
+use crate::physics::bond::failure::{Criteria, EquivalentStress, has_strength};
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::pair::frequencies;
 use crate::physics::bond::scatter::{body_key, strength_factor};
@@ -408,6 +408,7 @@ fn rule(kind: &BondKind) -> BondRule {
         compressive_strength_pa: strength_pa(failure.compressive_strength_pa),
         shear_strength_pa: strength_pa(failure.shear_strength_pa),
         von_mises_strength_pa: strength_pa(failure.von_mises_strength_pa),
+        equivalent_stress: equivalent_stress(failure.equivalent_stress),
     };
     let undamped = BondDamping {
         per_mode: kind.damping.per_mode,
@@ -419,6 +420,15 @@ fn rule(kind: &BondKind) -> BondRule {
         criteria: has_strength(&criteria).then_some(criteria),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,
+    }
+}
+
+fn equivalent_stress(asked: dem_scene::EquivalentStress) -> EquivalentStress {
+    match asked {
+        dem_scene::EquivalentStress::AxialInTension => EquivalentStress::AxialInTension,
+        dem_scene::EquivalentStress::TensileEdge => EquivalentStress::TensileEdge,
+        dem_scene::EquivalentStress::BondInTension => EquivalentStress::BondInTension,
+        dem_scene::EquivalentStress::ForcesOnly => EquivalentStress::ForcesOnly,
     }
 }
 

@@ -2,7 +2,8 @@
 
 use dem_run::physics::bond::BondLoad;
 use dem_run::physics::bond::failure::{
-    Cause, CauseCounts, Criteria, Factors, Screen, Stresses, cause, stresses, utilisation,
+    Cause, CauseCounts, Criteria, EquivalentStress, Factors, Screen, Stresses, cause, stresses,
+    utilisation,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -12,6 +13,7 @@ const NONE: Criteria = Criteria {
     compressive_strength_pa: f64::INFINITY,
     shear_strength_pa: f64::INFINITY,
     von_mises_strength_pa: f64::INFINITY,
+    equivalent_stress: EquivalentStress::AxialInTension,
 };
 const ONE: Factors = Factors {
     scatter: 1.0,
@@ -93,6 +95,7 @@ fn of_no_strength_any_load_is_too_much() {
             compressive_strength_pa: 0.0,
             shear_strength_pa: 0.0,
             von_mises_strength_pa: 0.0,
+            ..NONE
         },
     ] {
         let screen = Screen::new(&zero);
@@ -175,6 +178,7 @@ fn criteria_act_together_and_the_worst_one_is_the_cause() {
         compressive_strength_pa: 2.0,
         shear_strength_pa: 1.0,
         von_mises_strength_pa: 4.0,
+        ..NONE
     };
     let at = |axial_pa, shear_pa| {
         let stresses = Stresses {
@@ -288,18 +292,46 @@ fn each_edge_has_a_strength_of_its_own() {
             }
         }
     }
-    // The equivalent stress excludes only the axial part.
-    let platzer = Criteria {
-        von_mises_strength_pa: 2.0,
-        ..NONE
+}
+
+const READINGS: [EquivalentStress; 4] = [
+    EquivalentStress::ForcesOnly,
+    EquivalentStress::AxialInTension,
+    EquivalentStress::TensileEdge,
+    EquivalentStress::BondInTension,
+];
+
+/// Which stresses count in a bond that is pulled, pressed a little and pressed a lot, each with
+/// bending, shear and torsion.
+#[test]
+fn the_equivalent_stress_has_four_readings() {
+    let of = |equivalent_stress, axial_pa| {
+        let platzer = Criteria {
+            von_mises_strength_pa: 2.0,
+            equivalent_stress,
+            ..NONE
+        };
+        let stresses = Stresses {
+            axial_pa,
+            bending_pa: 1.0,
+            shear_pa: 0.25,
+            torsion_pa: 0.5,
+        };
+        utilisation(&platzer, &stresses, ONE)
     };
-    let bent = |axial_pa| Stresses {
-        axial_pa,
-        bending_pa: 1.0,
-        ..Stresses::default()
-    };
-    assert_eq!(utilisation(&platzer, &bent(-3.0), ONE), 0.5);
-    assert_eq!(utilisation(&platzer, &bent(3.0), ONE), 2.0);
+    // Normal stress that counts at 3 Pa, -0.25 Pa and -3 Pa, and shear stress.
+    let expected = [
+        ([3.0, 0.0, 0.0], 0.25),
+        ([4.0, 1.0, 1.0], 0.75),
+        ([4.0, 0.75, 0.0], 0.75),
+        ([4.0, 0.0, 0.0], 0.75),
+    ];
+    for (reading, (normal_pa, shear_pa)) in READINGS.into_iter().zip(expected) {
+        for (axial_pa, normal_pa) in [3.0, -0.25, -3.0].into_iter().zip(normal_pa) {
+            let equivalent_pa = f64::hypot(normal_pa, 3.0_f64.sqrt() * shear_pa);
+            assert_near(of(reading, axial_pa), equivalent_pa / 2.0);
+        }
+    }
 }
 
 #[test]
@@ -310,6 +342,7 @@ fn nothing_breaks_without_a_criterion_or_a_load() {
         compressive_strength_pa: 1.0,
         shear_strength_pa: 1.0,
         von_mises_strength_pa: 1.0,
+        ..NONE
     };
     assert_eq!(utilisation(&strong, &Stresses::default(), ONE), 0.0);
     // Factors increase all strengths.
@@ -386,7 +419,9 @@ fn loads() -> impl Strategy<Value = (BondLoad, f64)> {
 }
 
 fn some_criteria() -> impl Strategy<Value = Criteria> {
-    prop::array::uniform4(prop::option::of(1e-3..1e9)).prop_map(|strengths| {
+    let readings = prop::sample::select(&READINGS[..]);
+    let strengths = prop::array::uniform4(prop::option::of(1e-3..1e9));
+    (strengths, readings).prop_map(|(strengths, equivalent_stress)| {
         let [
             tensile_strength_pa,
             compressive_strength_pa,
@@ -398,6 +433,7 @@ fn some_criteria() -> impl Strategy<Value = Criteria> {
             compressive_strength_pa,
             shear_strength_pa,
             von_mises_strength_pa,
+            equivalent_stress,
         }
     })
 }
@@ -438,6 +474,7 @@ proptest! {
             compressive_strength_pa: criteria.compressive_strength_pa * scale,
             shear_strength_pa: criteria.shear_strength_pa * scale,
             von_mises_strength_pa: criteria.von_mises_strength_pa * scale,
+            ..criteria
         };
         if exact(&scaled) >= 1.0 {
             let [used, factor] = Screen::new(&scaled).utilisation_and_factor(&load, radius_m);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use dem_run::internals::bond_wrenches_one_by_one;
-use dem_run::physics::bond::failure::{Criteria, Factors, stresses, utilisation};
+use dem_run::physics::bond::failure::{Criteria, EquivalentStress, Factors, stresses, utilisation};
 use dem_run::physics::bond::stiffness::Stiffness;
 use dem_run::stages::bonds::bond_wrenches;
 use dem_run::state::bonds::BondRule;
@@ -77,6 +77,7 @@ const NEVER: Criteria = Criteria {
     compressive_strength_pa: f64::INFINITY,
     shear_strength_pa: f64::INFINITY,
     von_mises_strength_pa: f64::INFINITY,
+    equivalent_stress: EquivalentStress::AxialInTension,
 };
 
 #[test]
@@ -98,8 +99,21 @@ fn as_many_lanes_as_there_are_give_the_bits_of_one() {
         compressive_strength_pa: 2.0,
         shear_strength_pa: 2.0,
         von_mises_strength_pa: 3.0,
+        ..NEVER
     };
-    for criteria in [tension, compression, shear, all] {
+    let equivalent = |equivalent_stress| Criteria {
+        von_mises_strength_pa: 1.5,
+        equivalent_stress,
+        ..NEVER
+    };
+    let readings = [
+        EquivalentStress::ForcesOnly,
+        EquivalentStress::TensileEdge,
+        EquivalentStress::BondInTension,
+    ]
+    .map(equivalent);
+    let separate = [tension, compression, shear, all];
+    for criteria in separate.into_iter().chain(readings) {
         for is_scattered in [false, true] {
             let (particles, bonds) = chain(criteria, is_scattered);
             lanes_agree(&particles, &bonds);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::f64::consts::PI;
 
 use dem_run::check::limit::limit;
-use dem_run::physics::bond::failure::Criteria;
+use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
 use dem_run::physics::bond::total::direction;
 use dem_run::state::State;
@@ -34,6 +34,7 @@ pub(crate) const NONE: Criteria = Criteria {
     compressive_strength_pa: f64::INFINITY,
     shear_strength_pa: f64::INFINITY,
     von_mises_strength_pa: f64::INFINITY,
+    equivalent_stress: EquivalentStress::AxialInTension,
 };
 /// Strength at the tensile edge.
 pub(crate) const NORMAL: Criteria = Criteria {
@@ -61,6 +62,7 @@ pub(crate) const ALL: Criteria = Criteria {
     compressive_strength_pa: PRESSED.compressive_strength_pa,
     shear_strength_pa: SHEAR.shear_strength_pa,
     von_mises_strength_pa: VON_MISES.von_mises_strength_pa,
+    ..NONE
 };
 
 /// Cross-section of a bond, m2.

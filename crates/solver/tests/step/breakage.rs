@@ -4,7 +4,7 @@
 use crate::bars::{
     BondDamping, ELASTIC, bar, damp, random_body, reopen, step_and_balance, with_threads,
 };
-use dem_run::physics::bond::failure::Criteria;
+use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
 use dem_run::state::bonds::BondRule;
@@ -17,6 +17,7 @@ fn breaking(tensile_strength_pa: f64, incremental: bool) -> BondRule {
             compressive_strength_pa: f64::INFINITY,
             shear_strength_pa: f64::INFINITY,
             von_mises_strength_pa: f64::INFINITY,
+            equivalent_stress: EquivalentStress::AxialInTension,
         }),
         ..ELASTIC
     }

@@ -5,7 +5,7 @@ use crate::bars::{
     with_threads,
 };
 use dem_run::check::limit::{Limit, limit};
-use dem_run::physics::bond::failure::Criteria;
+use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::stages::ledger::Balance;
 use dem_run::state::State;
@@ -25,6 +25,7 @@ const BREAKING: BondRule = BondRule {
         compressive_strength_pa: 0.1e6,
         shear_strength_pa: 0.2e6,
         von_mises_strength_pa: 0.12e6,
+        equivalent_stress: EquivalentStress::AxialInTension,
     }),
     strengthening_from_1_s: Some(1.1),
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

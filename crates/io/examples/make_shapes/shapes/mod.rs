@@ -24,6 +24,10 @@ pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
         ("hollow-pair", hollow_pair()),
         ("infinity-knot", round::infinity_knot()),
         ("jaw", jaw::jaw()),
+        (
+            "long-bending-sample",
+            Mesh::cuboid([0.0, 0.0, 0.0], [200.0, 30.0, 35.0]),
+        ),
         ("rock", rock::rock()),
         ("tablet", round::tablet()),
         ("torus", round::torus()),

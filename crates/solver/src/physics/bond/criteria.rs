@@ -50,8 +50,8 @@ macro_rules! criteria {
 
         /// The squares of all criteria, in the order of [`Cause::ALL`].
         #[inline(always)]
-        pub(super) fn squared<T: Number>(stresses: &Stresses<T>) -> [T; COUNT] {
-            [$($criterion::squared(stresses)),+]
+        pub(super) fn squared<T: Number>(criteria: &Criteria, stresses: &Stresses<T>) -> [T; COUNT] {
+            [$($criterion::squared(criteria, stresses)),+]
         }
 
         /// The strengths of all criteria, Pa, and whether the strain rate raises them, in the order

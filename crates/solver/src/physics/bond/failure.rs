@@ -16,7 +16,7 @@ use crate::physics::number::Number;
 
 pub use super::causes::CauseCounts;
 pub use super::criteria::Cause;
-pub use super::stresses::{Criteria, Stresses, stresses};
+pub use super::stresses::{Criteria, EquivalentStress, Stresses, stresses};
 
 /// Factors on strengths. None is below 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +70,7 @@ pub fn cause(criteria: &Criteria, stresses: &Stresses, factors: Factors) -> Caus
 /// Ratios of stress to strength, and whether the strain rate increases the strength.
 #[inline(always)]
 fn fractions(criteria: &Criteria, stresses: &Stresses) -> [(f64, bool); COUNT] {
-    let (squared, strengths) = (squared(stresses), strengths(criteria));
+    let (squared, strengths) = (squared(criteria, stresses), strengths(criteria));
     std::array::from_fn(|k| {
         let (strength_pa, rises) = strengths[k];
         (fraction(squared[k].sqrt(), strength_pa), rises)
@@ -97,6 +97,7 @@ const CANCELLATION: f64 = 1.0 + 1e-14;
 /// Finds the few bonds that may have reached their strength, without a square root or a division.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screen {
+    criteria: Criteria,
     /// Inverse squares of the strengths, 1/Pa2; [`LARGEST`] for strengths of 0.
     per_strength_squared: [f64; COUNT],
 }
@@ -106,6 +107,7 @@ impl Screen {
     pub fn new(criteria: &Criteria) -> Self {
         let per_squared = |(strength, _): (f64, bool)| (1.0 / (strength * strength)).min(LARGEST);
         Self {
+            criteria: *criteria,
             per_strength_squared: strengths(criteria).map(per_squared),
         }
     }
@@ -114,12 +116,13 @@ impl Screen {
     /// r^3 are F r + 4 M and S r + 2 T.
     #[inline(always)]
     pub fn utilisation_and_factor<T: Number>(&self, load: &BondLoad<T>, radius_m: T) -> [T; 2] {
-        let squared = squared(&Stresses {
+        let stresses = Stresses {
             axial_pa: load.normal_n * radius_m,
             bending_pa: load.bending_n_m.scale(4.0 * CANCELLATION),
             shear_pa: load.shear_n * radius_m,
             torsion_pa: load.torsion_n_m.scale(2.0),
-        });
+        };
+        let squared = squared(&self.criteria, &stresses);
         let used: [T; COUNT] =
             std::array::from_fn(|k| squared[k].scale(self.per_strength_squared[k]));
         let used = used[1..]

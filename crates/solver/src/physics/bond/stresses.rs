@@ -19,8 +19,28 @@ pub struct Criteria {
     pub compressive_strength_pa: f64,
     /// MUSEN's shear strength: largest shear stress from shear force and torsion, Pa.
     pub shear_strength_pa: f64,
-    /// Equivalent stress of Platzer 2022, eq. 13, whose axial part counts only in tension, Pa.
+    /// Equivalent stress of Platzer 2022, eq. 13, whose normal part counts only in tension, Pa.
     pub von_mises_strength_pa: f64,
+    /// The stresses of which that equivalent stress consists.
+    pub equivalent_stress: EquivalentStress,
+}
+
+/// Readings of Platzer 2022, eq. 13, and of "the normal stress component is only considered under
+/// tension" (section 2.2 there).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub enum EquivalentStress {
+    /// The axial stress if it is tensile, and that of the shear force, but neither bending nor
+    /// torsion: the stresses of eq. 11 without those of eq. 12, as eq. 13 names them. A bond that is
+    /// only bent or twisted does not break.
+    ForcesOnly,
+    /// The axial stress if it is tensile, and the bending stress always; shear and torsion.
+    #[default]
+    AxialInTension,
+    /// The stress at the edge with the largest tension, axial and bending, if it is tensile; shear
+    /// and torsion.
+    TensileEdge,
+    /// Axial and bending stress while the axial force is tensile; shear and torsion.
+    BondInTension,
 }
 
 /// Largest stresses in the section of a bond, each from one mode.
@@ -80,5 +100,5 @@ pub(crate) trait FailureCriterion {
 
     /// Square of the stress that it compares, Pa2: squares avoid a root while many bonds are
     /// checked. Stresses and square may be multiplied by a number above 0 and its square.
-    fn squared<T: Number>(stresses: &Stresses<T>) -> T;
+    fn squared<T: Number>(criteria: &Criteria, stresses: &Stresses<T>) -> T;
 }

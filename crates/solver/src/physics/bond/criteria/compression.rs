@@ -17,7 +17,7 @@ impl FailureCriterion for Compression {
     }
 
     #[inline(always)]
-    fn squared<T: Number>(stresses: &Stresses<T>) -> T {
+    fn squared<T: Number>(_: &Criteria, stresses: &Stresses<T>) -> T {
         let edge = stresses.pressed_edge_pa();
         let pressed = edge.if_positive(edge);
         pressed * pressed

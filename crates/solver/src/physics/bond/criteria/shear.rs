@@ -16,7 +16,7 @@ impl FailureCriterion for Shear {
     }
 
     #[inline(always)]
-    fn squared<T: Number>(stresses: &Stresses<T>) -> T {
+    fn squared<T: Number>(_: &Criteria, stresses: &Stresses<T>) -> T {
         let shear = stresses.shear_pa + stresses.torsion_pa;
         shear * shear
     }

@@ -16,7 +16,7 @@ impl FailureCriterion for Tension {
     }
 
     #[inline(always)]
-    fn squared<T: Number>(stresses: &Stresses<T>) -> T {
+    fn squared<T: Number>(_: &Criteria, stresses: &Stresses<T>) -> T {
         let edge = stresses.tensile_edge_pa();
         let pulled = edge.if_positive(edge);
         pulled * pulled

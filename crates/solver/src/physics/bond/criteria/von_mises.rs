@@ -1,9 +1,9 @@
 //! Equivalent stress of von Mises (Platzer 2022, eqs. 11-13).
 
-use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
+use crate::physics::bond::stresses::{Criteria, EquivalentStress, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
-/// Equivalent stress, whose axial part counts only in tension.
+/// Equivalent stress, whose normal part counts only in tension.
 pub(super) struct VonMises;
 
 impl FailureCriterion for VonMises {
@@ -16,9 +16,17 @@ impl FailureCriterion for VonMises {
     }
 
     #[inline(always)]
-    fn squared<T: Number>(stresses: &Stresses<T>) -> T {
-        let pulled = stresses.axial_pa.if_positive(stresses.axial_pa) + stresses.bending_pa;
-        let shear = stresses.shear_pa + stresses.torsion_pa;
-        pulled * pulled + shear.scale(3.0) * shear
+    fn squared<T: Number>(criteria: &Criteria, stresses: &Stresses<T>) -> T {
+        let axial = stresses.axial_pa;
+        let edge = stresses.tensile_edge_pa();
+        let pulled = axial.if_positive(axial);
+        let sheared = stresses.shear_pa + stresses.torsion_pa;
+        let (normal, shear) = match criteria.equivalent_stress {
+            EquivalentStress::ForcesOnly => (pulled, stresses.shear_pa),
+            EquivalentStress::AxialInTension => (pulled + stresses.bending_pa, sheared),
+            EquivalentStress::TensileEdge => (edge.if_positive(edge), sheared),
+            EquivalentStress::BondInTension => (axial.if_positive(edge), sheared),
+        };
+        normal * normal + shear.scale(3.0) * shear
     }
 }

@@ -1,0 +1,88 @@
+//! Rebound from a level plate over the damping of the bonds (Platzer 2022, 4.5.1.7 and 4.5.2.2).
+
+use std::path::Path;
+
+use dem_run::{balance, plan, step};
+use dem_scene::read_bodies;
+use serde_json::{Value, json};
+
+use super::bench::{Bench, Failed, scene};
+use super::samples::{BARE, PACKINGS, Sample, Table};
+
+/// Damping ratios of the bonds.
+pub(crate) const DAMPING: [&str; 7] = ["0", "0.1", "0.2", "0.4", "0.6", "1", "2"];
+/// The sample is clear of the plate by then.
+const END_TIME: &str = "30 ms";
+const GRAVITY_M_S2: f64 = 9.81;
+
+const SAMPLE: Sample = Sample {
+    table: Table::Two,
+    ..BARE
+};
+
+pub(crate) fn name(damping: &str, seed: u32) -> String {
+    format!("rebound-2-{damping}-{seed}")
+}
+
+/// Settings of the scene of drops: level plate, bonds that do not break.
+pub(crate) fn sets(damping: &str) -> Vec<String> {
+    let mut sets = SAMPLE.table.sets();
+    sets.retain(|set| !set.contains("failure"));
+    sets.extend([
+        "bonds.cake.failure={von_mises_strength=\"1 GPa\"}".to_owned(),
+        format!("bonds.cake.damping={{damping_ratio={damping}}}"),
+        "walls.plate.rotation.angle=\"0 deg\"".to_owned(),
+        "bodies.sample.position=[\"-90 mm\",\"-15 mm\",\"1 mm\"]".to_owned(),
+        format!("run.end_time=\"{END_TIME}\""),
+    ]);
+    sets
+}
+
+pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
+    for damping in DAMPING {
+        for seed in 1..=PACKINGS {
+            let name = name(damping, seed);
+            let file = bench.results.join(format!("{name}.json"));
+            if !name.contains(part) || file.exists() {
+                continue;
+            }
+            let body = bench.pack(&Sample { seed, ..SAMPLE })?;
+            eprintln!("{name}");
+            let result = rebound(&body, &sets(damping))?;
+            std::fs::write(file, serde_json::to_vec(&result)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Height to which the centre of mass rises by its speed at the end, above its height there.
+fn rebound(body: &Path, sets: &[String]) -> Result<Value, Failed> {
+    let scene = scene("drop", Some(body), sets)?;
+    let mut state = plan(&scene, read_bodies(&scene)?, 1, false)?.state;
+    let centre = |state: &dem_run::State| {
+        let both = state.particles.motions.iter().zip(&state.particles.poses);
+        let sums = both.fold([0.0; 3], |[m, z, v], (motion, pose)| {
+            let mass_kg = 1.0 / motion.inverse_mass;
+            [
+                m + mass_kg,
+                z + mass_kg * pose.position_m[2],
+                v + mass_kg * motion.velocity_m_s[2],
+            ]
+        });
+        [sums[1] / sums[0], sums[2] / sums[0]]
+    };
+    let [start_m, impact_m_s] = centre(&state);
+    while state.time_s < scene.run.end_time_s {
+        step(&mut state);
+    }
+    let [end_m, speed_m_s] = centre(&state);
+    let rise_m = end_m - start_m + speed_m_s.max(0.0).powi(2) / (2.0 * GRAVITY_M_S2);
+    let fall_m = impact_m_s.powi(2) / (2.0 * GRAVITY_M_S2);
+    Ok(json!({
+        "time_step_s": state.time_step_s,
+        "steps": state.steps,
+        "energy_error": balance(&mut state).energy_error,
+        "rebound_m": rise_m,
+        "fraction": rise_m / fall_m,
+    }))
+}

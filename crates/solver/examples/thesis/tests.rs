@@ -1,0 +1,210 @@
+//! The page is the one that this program writes, and its cheap rows come out as they stand there.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use dem_io::Body;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
+use serde_json::Value;
+
+use super::bench::{root, scene};
+use super::samples::{self, BARE, PACKINGS, Sample, Table};
+use super::{bending, drops, oscillation, page, rebound, steps};
+
+fn page_text() -> String {
+    std::fs::read_to_string(root().join("tests/verification/thesis.md")).unwrap()
+}
+
+/// The rows of the table below the comment with this word: the `at`-th such table.
+fn rows(page: &str, word: &str, at: usize) -> Vec<Vec<String>> {
+    let comment = format!("--example thesis -- {word} -->");
+    let after = page.split(&comment).nth(at + 1).unwrap();
+    let lines = after
+        .lines()
+        .skip(3)
+        .take_while(|line| line.starts_with('|'));
+    lines
+        .map(|line| {
+            line.trim_matches('|')
+                .split('|')
+                .map(|cell| cell.trim().to_owned())
+                .collect()
+        })
+        .collect()
+}
+
+/// Text, commands and heads of the page are those of the program, and every row has all its cells.
+#[test]
+fn the_page_is_that_of_this_program() {
+    let page = page_text();
+    let nowhere = root().join("no such folder");
+    let mut rest = page.as_str();
+    let mut parts = page::TEXT;
+    for (name, table) in page::tables(&nowhere) {
+        let place = format!("{{{name}}}");
+        let (before, after) = parts.split_once(&place).unwrap();
+        rest = rest
+            .strip_prefix(before)
+            .unwrap_or_else(|| panic!("the text before {place}"));
+        let head: Vec<String> = table
+            .markdown()
+            .lines()
+            .take(3)
+            .map(str::to_owned)
+            .collect();
+        for line in head {
+            rest = rest
+                .strip_prefix(&format!("{line}\n"))
+                .unwrap_or_else(|| panic!("{line}"));
+        }
+        while let Some((row, below)) = rest.split_once('\n').filter(|_| rest.starts_with('|')) {
+            assert_eq!(row.matches(" |").count(), table.head.len(), "{row}");
+            rest = below;
+        }
+        // The line break behind the table belongs to the text.
+        parts = after.strip_prefix('\n').unwrap();
+    }
+    assert_eq!(rest, parts);
+}
+
+/// The settings of all cases exist in the scenes and change them.
+#[test]
+fn scenes_take_what_cases_set() {
+    let mut asked: Vec<(&str, Vec<String>)> = Vec::new();
+    asked.extend(
+        bending::rows()
+            .iter()
+            .map(|row| ("four-point-bending", row.sets())),
+    );
+    for row in drops::rows() {
+        asked.extend(drops::FALLS.iter().map(|fall| ("drop", row.sets(fall))));
+    }
+    asked.extend(rebound::DAMPING.map(|damping| ("drop", rebound::sets(damping))));
+    for (_, damping) in steps::DAMPING {
+        asked.push(("drop", steps::sets(Table::Two, damping)));
+    }
+    asked.extend(oscillation::DAMPING.map(|damping| ("oscillation", oscillation::sets(damping))));
+    assert!(asked.len() > 60);
+    for (name, sets) in asked {
+        scene(name, None, &sets).unwrap_or_else(|error| panic!("{name}, {sets:?}: {error}"));
+    }
+}
+
+fn packed(sample: &Sample) -> Body {
+    let options = sample.options();
+    let value = |name: &str| {
+        let at = options.iter().position(|option| option == name);
+        options[at.unwrap() + 1].as_str()
+    };
+    let stl = std::fs::read(root().join(&options[0])).unwrap();
+    let reading = ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    let surface = surface_from_stl(&stl, "sample.stl", reading).unwrap();
+    let packing = PackSettings {
+        overlap: value("--overlap").parse().unwrap(),
+        seed: sample.seed.into(),
+        densify: sample.bare.then_some(0.0),
+        ..PackSettings::new(Sizes::parse(value("--diameter"), Basis::Number).unwrap())
+    };
+    let settings = BodySettings {
+        bond_range: value("--bond-range").parse().unwrap(),
+        ..BodySettings::new(packing)
+    };
+    make_body(&surface, &settings, &|_, _| Ok(())).unwrap().0
+}
+
+fn counts(bodies: &[Body]) -> Value {
+    let least_to_most = |mut numbers: Vec<usize>| {
+        numbers.sort_unstable();
+        numbers
+    };
+    serde_json::json!([
+        least_to_most(bodies.iter().map(|body| body.radii.len()).collect()),
+        least_to_most(bodies.iter().map(|body| body.bonds.len()).collect()),
+    ])
+}
+
+/// Spheres and bonds of the first packing of table 1 and of all bare packings of table 2, and the
+/// stable steps of table 2.
+#[test]
+fn cheap_rows_come_out_as_on_the_page() {
+    let page = page_text();
+    let of_page = rows(&page, "sample", 0);
+    let coarse = Sample {
+        table: Table::Two,
+        ..BARE
+    };
+    let (name, _) = samples::counted().swap_remove(3);
+    let bodies: Vec<Body> = (1..=PACKINGS)
+        .map(|seed| packed(&Sample { seed, ..coarse }))
+        .collect();
+    let row = of_page.iter().find(|row| row[0] == name).unwrap();
+    let shown = |cell: &str| -> Vec<usize> {
+        let numbers = cell.split(" to ").map(|number| number.replace(',', ""));
+        numbers.map(|number| number.parse().unwrap()).collect()
+    };
+    let counts = counts(&bodies);
+    for (kind, cell) in [(0, &row[2]), (1, &row[3])] {
+        let all = counts[kind].as_array().unwrap();
+        let ends = [&all[0], &all[all.len() - 1]].map(|end| end.as_u64().unwrap() as usize);
+        assert_eq!(shown(cell), ends, "{row:?}");
+    }
+    let of_page = rows(&page, "steps", 0);
+    for (name, damping) in steps::DAMPING {
+        let scene = scene("drop", None, &steps::sets(Table::Two, damping)).unwrap();
+        let body = BTreeMap::from([("sample".to_owned(), bodies[0].clone())]);
+        let limit_us = 1e6 * steps::limit_s(&scene, body).unwrap();
+        let row = of_page.iter().find(|row| row[0] == name).unwrap();
+        assert_eq!(row[2], format!("{limit_us:.2}"), "{name}");
+    }
+}
+
+/// An undamped pair has the period of two masses on a spring; from critical damping on it does not
+/// swing back beyond its length at rest.
+#[test]
+fn the_pair_oscillates_as_two_masses_on_a_spring() {
+    let curves = oscillation::curves().unwrap();
+    let free = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        points
+            .iter()
+            .copied()
+            .filter(|point| point[0] > 0.3e-3)
+            .collect()
+    };
+    let undamped = free(&curves[0]);
+    let crossings: Vec<f64> = undamped
+        .windows(2)
+        .filter(|pair| pair[0][1] < 0.0 && pair[1][1] >= 0.0)
+        .map(|pair| pair[0][0] - pair[0][1] * (pair[1][0] - pair[0][0]) / (pair[1][1] - pair[0][1]))
+        .collect();
+    let [first, .., last] = crossings[..] else {
+        panic!("{crossings:?}")
+    };
+    let period_s = (last - first) / (crossings.len() - 1) as f64;
+    let (radius_m, length_m) = (2.5e-3_f64, 3.86e-3);
+    let mass_kg = 2050.0 * 4.0 / 3.0 * PI * radius_m.powi(3);
+    let stiffness_n_m = 15e6 * PI * radius_m.powi(2) / length_m;
+    let theory_s = 2.0 * PI * (0.5 * mass_kg / stiffness_n_m).sqrt();
+    // Leapfrog shortens the period by (omega dt)^2/24, 4e-5 here.
+    assert!(
+        (period_s / theory_s - 1.0).abs() < 2e-4,
+        "{period_s} {theory_s}"
+    );
+    let most_m = undamped.iter().map(|point| point[1]).fold(0.0, f64::max);
+    let back = |points: &[[f64; 2]]| {
+        free(points)
+            .iter()
+            .map(|point| -point[1] / most_m)
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    assert!(back(&curves[1]) > 0.3);
+    for overdamped in &curves[2..] {
+        assert!(back(overdamped) < 1e-3);
+    }
+}

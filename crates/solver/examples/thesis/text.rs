@@ -1,0 +1,81 @@
+//! Tables and cells of the page.
+
+use serde_json::Value;
+
+/// A table of the page: its head and its rows, each with as many cells.
+#[derive(Debug, Clone)]
+pub(crate) struct Table {
+    /// What computes it: a word of the program.
+    pub(crate) word: &'static str,
+    pub(crate) head: &'static [&'static str],
+    pub(crate) rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// The command that computes it, as a comment, and the table.
+    pub(crate) fn markdown(&self) -> String {
+        let command = "cargo run --release -p dem-run --example thesis --";
+        let mut lines = vec![
+            format!("<!-- {command} {} -->", self.word),
+            line(self.head),
+            format!("|{}", "---|".repeat(self.head.len())),
+        ];
+        lines.extend(self.rows.iter().map(|row| line(row)));
+        lines.join("\n")
+    }
+}
+
+fn line<T: AsRef<str>>(cells: &[T]) -> String {
+    let cells: Vec<&str> = cells.iter().map(AsRef::as_ref).collect();
+    format!("| {} |", cells.join(" | "))
+}
+
+/// Cells of one row of the thesis, or of ours.
+pub(crate) fn cells<const N: usize>(cells: [&str; N]) -> Vec<String> {
+    cells.map(str::to_owned).into()
+}
+
+pub(crate) fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+/// Mean, and standard deviation if there are several: `12.05 +- 0.16`. Empty if there are none.
+pub(crate) fn mean(values: &[f64], digits: usize) -> String {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    match values.len() {
+        0 => String::new(),
+        1 => format!("{mean:.digits$}"),
+        _ => format!(
+            "{mean:.digits$} +- {:.digits$}",
+            (squares / (count - 1.0)).sqrt()
+        ),
+    }
+}
+
+/// Smallest to largest: `0.50 to 0.68`. Empty if there are none.
+pub(crate) fn range(values: &[f64], digits: usize) -> String {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    match sorted[..] {
+        [] => String::new(),
+        [least, .., most] if format!("{least:.digits$}") != format!("{most:.digits$}") => {
+            format!("{least:.digits$} to {most:.digits$}")
+        }
+        [least, ..] => format!("{least:.digits$}"),
+    }
+}
+
+/// A whole number with commas between thousands.
+pub(crate) fn thousands(number: f64) -> String {
+    let digits = format!("{number:.0}");
+    let mut text = String::new();
+    for (place, digit) in digits.char_indices() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
