@@ -83,7 +83,7 @@ impl Bench {
     /// Runs the four-point test of `data/thesis` with these settings, if that has not been done.
     pub(crate) fn bend(&self, name: &str, body: &Path, sets: &[String]) -> Result<(), Failed> {
         let folder = self.results.join(name);
-        if folder.join("summary.json").exists() {
+        if finished(&folder).is_some() {
             return Ok(());
         }
         let mut command = Command::new(&self.dem_run);
@@ -95,6 +95,12 @@ impl Bench {
         }
         output(&mut command).map(|_| ())
     }
+}
+
+/// The summary of a run that came to its end.
+pub(crate) fn finished(folder: &Path) -> Option<Value> {
+    let summary = read(&folder.join("summary.json"))?;
+    summary.get("problem").is_none().then_some(summary)
 }
 
 /// A scene of `data/thesis` with these settings, and this sample if it has one.

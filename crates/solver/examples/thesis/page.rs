@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::bench::{Failed, read, root};
+use super::bench::{Failed, finished, read, root};
 use super::bending::{self, READINGS};
 use super::drops::{self, FALLS};
 use super::plots;
@@ -102,7 +102,7 @@ fn between(values: &[f64]) -> String {
 /// The bending tests of a row that have been run.
 fn bent(results: &Path, row: &bending::Row) -> Vec<Value> {
     (1..=row.packings)
-        .filter_map(|seed| read(&results.join(row.name(seed)).join("summary.json")))
+        .filter_map(|seed| finished(&results.join(row.name(seed))))
         .collect()
 }
 
