@@ -6,7 +6,7 @@ use dem_io::safe_write::write_file;
 use dem_io::{Diagnostic, Result, read_input};
 use serde::{Deserialize, Serialize};
 
-use crate::rounds::Case;
+use crate::rounds::{Case, Round};
 use crate::unknown::Unknown;
 
 /// Version of the format of [`Record`].
@@ -37,11 +37,6 @@ pub struct Record {
 }
 
 impl Record {
-    /// True if every calibration has ended.
-    pub fn is_finished(&self) -> bool {
-        self.cases.iter().all(|case| case.end.is_some())
-    }
-
     /// The same without curves.
     pub fn without_curves(&self) -> Self {
         let mut record = self.clone();
@@ -86,5 +81,32 @@ pub fn read_record(path: &Path) -> Result<Record> {
             record.version
         )));
     }
+    if !has_all_entries(&record) {
+        return Err(refuse("has rounds without all of their numbers".to_owned()));
+    }
     Ok(record)
+}
+
+/// Whether every round has a factor and a result for each unknown, and a test for each packing.
+fn has_all_entries(record: &Record) -> bool {
+    let count = record.unknowns.len();
+    let is_whole = |round: &Round| {
+        let mut trials = round.trials.iter().flatten();
+        round.factors.len() == count
+            && round.trials.len() == record.packings.len()
+            && trials.all(|trial| trial.results.len() == count && trial.at_least.len() == count)
+    };
+    let is_number = |unknown: &Unknown| !unknown.numbers.is_empty();
+    let of_case = |case: &Case| {
+        let starts = case
+            .start
+            .as_ref()
+            .is_none_or(|start| start.factors.len() == count);
+        let ends = case
+            .end
+            .as_ref()
+            .is_none_or(|(at, _)| *at < case.rounds.len().max(1));
+        starts && ends && case.rounds.iter().all(is_whole)
+    };
+    record.unknowns.iter().all(is_number) && record.cases.iter().all(of_case)
 }

@@ -49,15 +49,19 @@ pub fn curve_error(record: &Record, case: &Case) -> Option<f64> {
     let own = mean_curve(case.result()?);
     let finest = record.cases.last()?;
     let wanted = match record.wanted_curve.as_slice() {
-        [] if std::ptr::eq(finest, case) => return None,
+        [] if std::ptr::eq(finest, case) || !finest.is_met() => return None,
         [] => mean_curve(finest.result()?),
         wanted => wanted.to_vec(),
     };
     (!own.is_empty() && !wanted.is_empty()).then(|| area_between(&own, &wanted))
 }
 
-/// The coarsest case whose curve is at most `most` away from the wanted one.
+/// The coarsest case that has met its targets and whose curve is at most `most` away from the wanted one.
 pub fn coarsest(record: &Record, most: f64) -> Option<&Case> {
     let is_near = |case: &&Case| curve_error(record, case).is_some_and(|error| error <= most);
-    record.cases.iter().find(is_near)
+    record
+        .cases
+        .iter()
+        .filter(|case| case.is_met())
+        .find(is_near)
 }

@@ -37,13 +37,13 @@ pub struct Round {
     pub trials: Vec<Option<Trial>>,
 }
 
-/// The first factors, from equilibria without time steps.
+/// The first factors, from tests without time steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     /// Factor on the numbers of each unknown.
     pub factors: Vec<f64>,
-    /// Number of equilibria.
-    pub equilibria: usize,
+    /// Number of tests without steps.
+    pub tests: usize,
     /// Run time, s.
     pub wall_s: f64,
 }
@@ -68,6 +68,8 @@ pub struct Case {
     /// The test of the first packing with the numbers of the result at twice the rate. None: not
     /// done.
     pub at_twice_the_rate: Option<Trial>,
+    /// Why there is no such test although the scene asks for it.
+    pub rate_problem: Option<String>,
 }
 
 /// Does the test of a packing, given by its number from 0, with a factor on the numbers of each
@@ -124,6 +126,11 @@ impl Case {
             Some((_, End::NotMet(problem, remedy))) => Some((problem.clone(), remedy.clone())),
             _ => None,
         }
+    }
+
+    /// True if the test at twice the rate has been done, or has failed.
+    pub fn has_rate_check(&self) -> bool {
+        self.at_twice_the_rate.is_some() || self.rate_problem.is_some()
     }
 
     /// Run time of all tests, s, and their number.
@@ -198,7 +205,9 @@ fn do_round(
                 save(case)
             });
             if saved.is_err() {
-                *problem = saved;
+                if problem.is_ok() {
+                    *problem = saved;
+                }
                 taken.store(left.len(), Ordering::Relaxed);
             }
         }
@@ -209,6 +218,6 @@ fn do_round(
         }
         work();
     });
-    // A worker that panicked has ended the process.
+    // The scope has passed on the panic of a worker.
     shared.into_inner().map_or(Ok(()), |(_, problem)| problem)
 }

@@ -10,6 +10,13 @@ use crate::unknown::Unknown;
 const MOST_ROUNDS: usize = 4;
 /// The same for other results.
 const MOST_ROUNDS_OF_OTHERS: usize = 10;
+/// Rounds after which it ends, those without a result included.
+const MOST_ROUNDS_AT_ALL: usize = 12;
+/// Largest factor on the strength of bodies that do not break within the stroke.
+const MUCH_WEAKER: f64 = 0.25;
+/// Largest relative deviation of a mean that is accepted because its target is within the
+/// confidence interval.
+const FURTHEST_WITHIN_SCATTER: f64 = 0.05;
 /// Smallest change of the logarithm of a factor from which a slope is taken: below, the scatter of
 /// strengths is larger than their change.
 const FEWEST_CHANGE: f64 = 0.1;
@@ -57,25 +64,28 @@ pub fn next(unknowns: &[Unknown], rounds: &[Round]) -> Step {
         return Step::Stop(last, End::Met);
     }
     let mut factors = rounds[last].factors.clone();
-    let mut unbroken = None;
+    let mut missing = None;
     for (at, unknown) in unknowns.iter().enumerate() {
         match factor(unknown, rounds, at) {
             Ok(factor) => factors[at] = factor,
-            Err(Obstacle::StaysWhole(problem)) => unbroken = Some(problem),
+            Err(Obstacle::Missing(problem, remedy)) => {
+                missing.get_or_insert((problem, remedy));
+            }
             Err(Obstacle::Final(problem, remedy)) => {
                 return Step::Stop(best(unknowns, rounds), End::NotMet(problem, remedy));
             }
         }
     }
-    // A stiffer body may break within the same stroke.
-    if rounds.len() < most_rounds(unknowns) && factors != rounds[last].factors {
+    // Rounds without a result say where to look, but not how near the target is.
+    let has_all = |round: &&Round| !round.deviations(unknowns).contains(&None);
+    let counted = rounds.iter().filter(has_all).count();
+    let goes_on = counted < most_rounds(unknowns) && rounds.len() < MOST_ROUNDS_AT_ALL;
+    // Another number may give the missing result: a stiffer body may break within the same stroke.
+    if goes_on && factors != rounds[last].factors {
         return Step::Try(factors);
     }
-    match unbroken {
-        Some(problem) => {
-            let end = End::NotMet(problem, "lengthen test.stroke".to_owned());
-            Step::Stop(best(unknowns, rounds), end)
-        }
+    match missing {
+        Some((problem, remedy)) => Step::Stop(best(unknowns, rounds), End::NotMet(problem, remedy)),
         None => stop(unknowns, rounds),
     }
 }
@@ -88,18 +98,12 @@ fn most_rounds(unknowns: &[Unknown]) -> usize {
     }
 }
 
-/// Why there is no next factor.
+/// Why there is no next factor: problem and remedy.
 enum Obstacle {
-    /// Problem and remedy.
+    /// Whatever the other numbers are.
     Final(String, String),
-    /// The bodies do not break within the stroke.
-    StaysWhole(String),
-}
-
-impl Obstacle {
-    fn new(problem: String, remedy: &str) -> Self {
-        Self::Final(problem, remedy.to_owned())
-    }
+    /// There is no result, which another number may change.
+    Missing(String, String),
 }
 
 /// The next factor of the unknown `at`, or why there is none.
@@ -110,17 +114,21 @@ fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, Obstacl
     let Some(mean) = last.mean(at) else {
         let Some(least) = last.largest_bound(at) else {
             let problem = format!("no test gave the {name}");
-            let remedy = "see what dem-run says of the test itself";
-            return Err(Obstacle::new(problem, remedy));
+            let remedy = "see what dem-run says of the test itself".to_owned();
+            return Err(Obstacle::Missing(problem, remedy));
         };
         if least < unknown.target {
             let problem = format!(
                 "the bodies do not break: at the end of the stroke the {name} is {:.3} of its target",
                 least / unknown.target
             );
-            return Err(Obstacle::StaysWhole(problem));
+            return Err(Obstacle::Missing(
+                problem,
+                "lengthen test.stroke".to_owned(),
+            ));
         }
-        return Ok(old * unknown.target / least);
+        // How strong the bodies are is not known: the stroke ended first.
+        return Ok(old * (unknown.target / least).min(MUCH_WEAKER));
     };
     let wanted = (unknown.target / mean).ln();
     // As near as this, scatter is larger than what a change would improve.
@@ -131,7 +139,7 @@ fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, Obstacl
     if slope.is_some_and(|slope| slope.abs() < FLAT || (unknown.is_proportional && slope < 0.0)) {
         let problem = format!("the {name} hardly follows {}", unknown.numbers[0].path);
         let remedy = "something else determines it, such as soft contacts at pins or plates; make these stiffer, or correct the target";
-        return Err(Obstacle::new(problem, remedy));
+        return Err(Obstacle::Final(problem, remedy.to_owned()));
     }
     let change = match (slope, unknown.is_proportional) {
         (slope, true) => wanted / slope.unwrap_or(1.0).clamp(SLOPES[0], SLOPES[1]),
@@ -147,7 +155,8 @@ fn factor(unknown: &Unknown, rounds: &[Round], at: usize) -> Result<f64, Obstacl
             "the target of the {name} is out of reach: {} would be {new:.3e} times that of the scene",
             unknown.numbers[0].path
         );
-        return Err(Obstacle::new(problem, "check the target and its unit"));
+        let remedy = "check the target and its unit".to_owned();
+        return Err(Obstacle::Final(problem, remedy));
     }
     Ok(new)
 }
@@ -176,7 +185,8 @@ fn best(unknowns: &[Unknown], rounds: &[Round]) -> usize {
         };
         unknowns.iter().zip(deviations).map(of).fold(0.0, f64::max)
     };
-    let all = rounds.iter().enumerate();
+    // Of equal ones the last.
+    let all = rounds.iter().enumerate().rev();
     let nearest = all.min_by(|(_, a), (_, b)| apart(a).total_cmp(&apart(b)));
     nearest.map_or(0, |(at, _)| at)
 }
@@ -190,19 +200,25 @@ fn stop(unknowns: &[Unknown], rounds: &[Round]) -> Step {
         !statistic.is_some_and(|statistic| {
             let off = (statistic.mean - unknown.target).abs();
             let within = half_width(&statistic).unwrap_or(0.0);
+            let within = within.min(FURTHEST_WITHIN_SCATTER * unknown.target);
             off <= within.max(unknown.tolerance * unknown.target)
         })
     });
     let end = match outside {
         None => End::WithinScatter,
         Some((n, unknown)) => {
-            let mean = round.mean(n).unwrap_or(f64::NAN);
-            let problem = format!(
-                "the {} is {:.2} % from its target after {} rounds",
-                unknown.result,
-                100.0 * (mean / unknown.target - 1.0),
-                rounds.len()
-            );
+            let count = rounds.len();
+            let problem = match round.mean(n) {
+                Some(mean) => format!(
+                    "the {} is {:.2} % from its target after {count} rounds",
+                    unknown.result,
+                    100.0 * (mean / unknown.target - 1.0)
+                ),
+                None => format!(
+                    "after {count} rounds not all tests give the {}",
+                    unknown.result
+                ),
+            };
             let remedy =
                 "take more packings (--packings), or smaller spheres: their strengths scatter less";
             End::NotMet(problem, remedy.to_owned())

@@ -23,9 +23,12 @@ pub fn report(record: &Record, most_error: Option<f64>) -> String {
         }
         for row in results(record, case) {
             let [name, mean, interval, target, off, scatter] = row;
-            let value = format!(
-                "{mean} ({interval}), target {target}, {off}, scatter of packings {scatter}"
-            );
+            let value = match scatter.as_str() {
+                "" => format!("{mean}, target {target}, {off}"),
+                _ => format!(
+                    "{mean} ({interval}), target {target}, {off}, scatter of packings {scatter}"
+                ),
+            };
             line(&mut text, &name, &value);
         }
         for [path, new, old] in numbers(record, case) {
@@ -35,8 +38,8 @@ pub fn report(record: &Record, most_error: Option<f64>) -> String {
         let mut cost = format!("{tests} tests, {} s", significant(wall_s, 3));
         if let Some(start) = &case.start {
             let elastic = format!(
-                "; {} equilibria without steps before them, {} s",
-                start.equilibria,
+                "; {} tests without steps before them, {} s",
+                start.tests,
                 significant(start.wall_s, 3)
             );
             cost.push_str(&elastic);
@@ -75,7 +78,7 @@ pub(crate) fn results(record: &Record, case: &Case) -> Vec<[String; 6]> {
                 show(statistic.mean - half),
                 show(statistic.mean + half)
             ),
-            None => "one packing".to_owned(),
+            None => String::new(),
         };
         let percent = |part: f64| format!("{:.1} %", 100.0 * part);
         rows.push([
@@ -84,7 +87,10 @@ pub(crate) fn results(record: &Record, case: &Case) -> Vec<[String; 6]> {
             interval,
             show(unknown.target),
             format!("{:+.1} %", 100.0 * (statistic.mean / unknown.target - 1.0)),
-            percent(statistic.standard_deviation / statistic.mean),
+            match statistic.count {
+                1 => String::new(),
+                _ => percent(statistic.standard_deviation / statistic.mean),
+            },
         ]);
     }
     rows
@@ -142,6 +148,9 @@ pub(crate) fn warnings(record: &Record, case: &Case) -> Vec<String> {
                 .to_owned(),
         );
     }
+    if let Some(problem) = &case.rate_problem {
+        warnings.push(format!("the test at twice the rate failed: {problem}"));
+    }
     if let (Some(fast), Some(Some(slow))) = (&case.at_twice_the_rate, round.trials.first()) {
         let pairs = slow.results.iter().zip(&fast.results);
         for (unknown, (slow, fast)) in record.unknowns.iter().zip(pairs) {
@@ -191,9 +200,12 @@ pub fn origin(record: &Record, case: &Case) -> String {
         lines.push(format!("Spheres: {}.", case.name));
     }
     for [name, mean, interval, target, _, scatter] in results(record, case) {
-        lines.push(format!(
-            "{name}: mean {mean}, 95 % confidence interval {interval}, target {target}, scatter of packings {scatter}"
-        ));
+        lines.push(match scatter.as_str() {
+            "" => format!("{name}: {mean}, target {target}"),
+            _ => format!(
+                "{name}: mean {mean}, 95 % confidence interval {interval}, target {target}, scatter of packings {scatter}"
+            ),
+        });
     }
     for [path, new, old] in numbers(record, case) {
         lines.push(format!("{path}: {new}, in the scene {old}"));

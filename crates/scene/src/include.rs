@@ -14,6 +14,8 @@ use dem_io::diagnostic::{Diagnostic, Result};
 /// Tables that another file may add.
 const TABLES: [&str; 3] = ["materials", "contacts", "bonds"];
 const INCLUDE: &str = "include";
+/// The key of `--set` by which files are added to those of the scene.
+const INCLUDE_TOO: &str = "include+";
 
 /// A scene's text with its included files and its `--set` values, and the paths of these files.
 ///
@@ -25,13 +27,17 @@ pub(super) fn document_of(
     overrides: &[String],
 ) -> Result<(Document, Vec<PathBuf>)> {
     let mut document = Document::parse(source, text)?;
-    let sets_include = |text: &&String| {
-        let path = text.split_once('=').map(|(path, _)| path.trim());
-        path == Some(INCLUDE)
-    };
+    let path = |text: &str| text.split_once('=').map(|(path, _)| path.trim().to_owned());
+    let sets_include =
+        |text: &&String| path(text).is_some_and(|path| path == INCLUDE || path == INCLUDE_TOO);
     let (first, others): (Vec<&String>, Vec<&String>) = overrides.iter().partition(sets_include);
     for text in first {
-        document.set(text)?;
+        let before = entry(&document.root, INCLUDE).cloned();
+        let adds = path(text).is_some_and(|path| path == INCLUDE_TOO);
+        document.set(&text.replacen(INCLUDE_TOO, INCLUDE, 1))?;
+        if adds && let Some(Value::List(before)) = before {
+            put_first(&mut document, before);
+        }
     }
     let included = include(&mut document, folder_of(source))?;
     for text in others {
@@ -40,35 +46,48 @@ pub(super) fn document_of(
     Ok((document, included))
 }
 
+/// Puts these files before those that `include` names.
+fn put_first(document: &mut Document, mut before: Vec<Node>) {
+    if let Value::Table(root) = &mut document.root.value {
+        let own = root.iter_mut().find(|(name, _)| name == INCLUDE);
+        if let Some(Value::List(items)) = own.map(|(_, node)| &mut node.value) {
+            before.append(items);
+            *items = before;
+        }
+    }
+}
+
 /// The folder of a scene's file.
 pub(super) fn folder_of(source: &str) -> &Path {
     Path::new(source).parent().unwrap_or(Path::new(""))
 }
 
-/// Adds the tables of the included files. A table that the scene also has is replaced if `--set`
-/// names the files, and refused otherwise.
+/// Adds the tables of the included files. A table that is there already is replaced by one of a file
+/// that `--set` names, and refused otherwise.
 fn include(document: &mut Document, folder: &Path) -> Result<Vec<PathBuf>> {
     let Some(field) = Table::root(document, &SCENE)?.get(INCLUDE) else {
         return Ok(Vec::new());
     };
-    let replaces = matches!(field.node.origin, Origin::Option(_));
-    let path = |item: Field<'_>| named_path(&item, folder);
-    let paths: Vec<PathBuf> = field
+    let path = |item: Field<'_>| {
+        let replaces = matches!(item.node.origin, Origin::Option(_));
+        Ok((named_path(&item, folder)?, replaces))
+    };
+    let paths: Vec<(PathBuf, bool)> = field
         .items()?
         .into_iter()
         .map(path)
         .collect::<Result<_>>()?;
-    for path in &paths {
+    for (path, replaces) in &paths {
         let name = path.display().to_string();
         let text = text_of(path, "a file of materials")?;
         let file = document.included.len();
         document.included.push(name.clone());
         let tables = parse_tables(&name, &text, &|line| Origin::Included(file, line))?;
         for (table, node) in tables {
-            merge(document, &table, node, replaces)?;
+            merge(document, &table, node, *replaces)?;
         }
     }
-    Ok(paths)
+    Ok(paths.into_iter().map(|(path, _)| path).collect())
 }
 
 /// Adds the entries of a table of an included file to the table of the same name.
@@ -113,7 +132,7 @@ fn merge(document: &mut Document, table: &str, node: Node, replaces: bool) -> Re
         }
     }
     match taken.first() {
-        Some((name, old)) if !replaces || matches!(old.origin, Origin::Included(..)) => {
+        Some((name, old)) if !replaces => {
             let problem = format!("{place} has [{table}.{name}] as well");
             let remedy = "remove or rename one; dem-run --material replaces tables of a scene";
             Err(Diagnostic::input(
@@ -193,10 +212,10 @@ pub fn set_text(path: &str, value: f64, unit: &str) -> String {
     }
 }
 
-/// The `--set` value that includes these files.
+/// The `--set` value that includes these files as well, and replaces tables by theirs.
 pub fn include_text(files: &[String]) -> String {
     let names: Vec<String> = files.iter().map(|name| quoted(name)).collect();
-    format!("{INCLUDE}=[{}]", names.join(", "))
+    format!("{INCLUDE_TOO}=[{}]", names.join(", "))
 }
 
 fn entry<'a>(node: &'a Node, name: &str) -> Option<&'a Value> {

@@ -94,7 +94,7 @@ pub(super) static SCENE: Schema = Schema {
         Key::new(
             "include",
             Kind::List(&Kind::Text("a file of materials, contacts and bonds")),
-            "Files with further `[materials]`, `[contacts]` and `[bonds]`, relative to the folder of the scene. Given by `--material` or `--set`, their tables replace those of the scene.",
+            "Files with further `[materials]`, `[contacts]` and `[bonds]`, relative to the folder of the scene. `--material` adds a file, whose tables replace those of the same names.",
         ),
         Key::table("run", &run::RUN, run::RUN.doc).required("{ end_time = \"1 s\" }"),
         named(

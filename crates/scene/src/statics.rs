@@ -8,6 +8,8 @@ use dem_io::diagnostic::Result;
 const TABLES: [&str; 5] = ["initial", "replacement", "inlets", "outlets", "sleep"];
 /// Tables of contacts, which only a laboratory test needs.
 const OF_CONTACTS: [&str; 2] = ["contacts", "walls"];
+/// Motions of supports, of which a laboratory test has none but its own.
+const MOTIONS: [&str; 2] = ["displacement", "velocity"];
 
 /// Refuses everything except bonded bodies, loads, supports and laboratory tests in a scene solved for its static
 /// equilibrium.
@@ -21,6 +23,9 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
         );
         let remedy = "remove it, or write run.integrator = \"leapfrog\"";
         return Err(field.refuse(problem, remedy));
+    }
+    if has_test {
+        refuse_beside_a_test(root)?;
     }
     for table in ["supports", "loads"] {
         for (_, one) in root.named(table)? {
@@ -55,6 +60,29 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
         return Err(field.refuse(problem, remedy));
     }
     Ok(())
+}
+
+/// Refuses whatever else acts on the body of a laboratory test.
+fn refuse_beside_a_test(root: &Table<'_>) -> Result<()> {
+    let mut found: Vec<Field<'_>> = root.given(&["loads"]).map(|(_, field)| field).collect();
+    if let Some(run) = root.get("run") {
+        found.extend(Table::any(&run)?.get("gravity"));
+    }
+    for (_, one) in root.named("supports")? {
+        let table = Table::any(&one)?;
+        found.extend(MOTIONS.iter().filter_map(|key| table.get(key)));
+    }
+    match found.first() {
+        Some(field) => {
+            let problem = format!(
+                "{} has no effect on a [test] with run.integrator = \"static\"",
+                field.path
+            );
+            let remedy = "remove it, or write run.integrator = \"leapfrog\"";
+            Err(field.refuse(problem, remedy))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The word, if a `[table.NAME]` has it for this key.

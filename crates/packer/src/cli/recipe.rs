@@ -4,6 +4,7 @@ use super::arguments::{Arguments, PackArguments, RENAMED, on_one_line};
 use super::shape::{check_unit_of_diameter, read_surface};
 use crate::body::{BodyReport, BodySettings, make_body};
 use crate::pack::Progress;
+use crate::sizes::Sizes;
 use clap::Parser;
 use dem_io::program::refuse_renamed;
 use dem_io::{Body, Diagnostic, Result, Surface};
@@ -53,19 +54,9 @@ impl Recipe {
             surface,
             arguments,
         };
-        recipe.check()?;
+        let diameter = recipe.arguments.diameter.as_deref();
+        check_unit_of_diameter(diameter, &recipe.settings.packing.sizes, &recipe.surface)?;
         Ok(recipe)
-    }
-
-    /// The same with spheres of other diameters, written as for `--diameter`.
-    ///
-    /// # Errors
-    /// Diameters that dem-pack refuses.
-    pub fn with_diameter(mut self, diameter: &str) -> Result<Self> {
-        self.arguments.diameter = Some(diameter.to_owned());
-        self.settings = self.arguments.checked()?;
-        self.check()?;
-        Ok(self)
     }
 
     /// The diameters, as written.
@@ -83,9 +74,10 @@ impl Recipe {
         self.settings.packing.seed
     }
 
-    /// The STL file.
-    pub fn shape(&self) -> &std::path::Path {
-        &self.shape
+    /// The STL file, and that of a sieve curve.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let sieve = Sizes::file(self.diameter()).map(PathBuf::from);
+        std::iter::once(self.shape.clone()).chain(sieve).collect()
     }
 
     /// A packing with this seed.
@@ -96,10 +88,5 @@ impl Recipe {
         let mut settings = self.settings.clone();
         settings.packing.seed = seed;
         make_body(&self.surface, &settings, progress)
-    }
-
-    fn check(&self) -> Result<()> {
-        let diameter = self.arguments.diameter.as_deref();
-        check_unit_of_diameter(diameter, &self.settings.packing.sizes, &self.surface)
     }
 }

@@ -98,6 +98,29 @@ fn files_named_by_set_replace_tables_of_the_scene() {
     assert_eq!(scene.bonds["cake"].young_modulus_pa, 40e6);
 }
 
+/// Files of the scene stay when others are added.
+#[test]
+fn files_are_added_to_those_of_the_scene() {
+    let bonds = CAKE.find("[bonds").unwrap();
+    let scene = SCENE.replace("\"cake.toml\"", "\"steel.toml\", \"bonds.toml\"");
+    let folder = Folder::new(&[
+        ("scene.toml", &scene),
+        ("steel.toml", &CAKE[..bonds]),
+        ("bonds.toml", &CAKE[bonds..]),
+        ("other.toml", &CAKE[bonds..].replace("15 MPa", "30 MPa")),
+    ]);
+    let [own, other] = ["bonds.toml", "other.toml"]
+        .map(|name| include_text(&[folder.path(name).display().to_string()]));
+    let modulus =
+        |overrides: &[String]| folder.read(overrides).unwrap().bonds["cake"].young_modulus_pa;
+    assert_eq!(modulus(&[]), 15e6);
+    assert_eq!(modulus(std::slice::from_ref(&own)), 15e6);
+    assert_eq!(modulus(std::slice::from_ref(&other)), 30e6);
+    assert_eq!(modulus(&[own, other.clone()]), 30e6);
+    let steel = folder.path("steel.toml").display().to_string();
+    assert_eq!(modulus(&[format!("include=[\"{steel}\"]"), other]), 30e6);
+}
+
 #[test]
 fn what_cannot_be_included_is_refused_at_its_place() {
     let refused = |scene: &str, cake: &str, wanted: &str| {

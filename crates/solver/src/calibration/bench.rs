@@ -20,6 +20,9 @@ use crate::plan::{Plan, plan};
 use crate::run::statics::elastic_test::elastic_test;
 use crate::run::{RunSettings, run};
 
+/// First factors beyond this range are left to the tests with steps, which say why.
+const PLAUSIBLE: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
+
 /// The scene of a calibration and its packings.
 pub(crate) struct Bench<'a> {
     /// The scene.
@@ -120,15 +123,15 @@ impl Bench<'_> {
     }
 
     /// First factors: that on the modulus of the bonds from the stiffness of `packings` packings
-    /// without time steps, by two equilibria each; 1 on all others. None: nothing stands for the
+    /// without time steps, by two tests each; 1 on all others. None: nothing stands for the
     /// stiffness, or it cannot be found so.
     ///
     /// # Errors
     /// Those of the plan; interrupted.
     pub(crate) fn start(&self, packings: usize) -> Result<Option<Start>> {
-        let is_stiffness = |unknown: &Unknown| {
-            [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS].contains(&unknown.result.as_str())
-        };
+        let names = [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS];
+        let is_stiffness =
+            |unknown: &Unknown| unknown.is_proportional && names.contains(&unknown.result.as_str());
         let Some(which) = self.unknowns.iter().position(is_stiffness) else {
             return Ok(None);
         };
@@ -144,10 +147,13 @@ impl Bench<'_> {
                 }
             }
             factors[which] *= target / sum;
+            if !PLAUSIBLE.contains(&factors[which]) {
+                return Ok(None);
+            }
         }
         Ok(Some(Start {
             factors,
-            equilibria: 2 * packings,
+            tests: 2 * packings,
             wall_s: began.elapsed().as_secs_f64(),
         }))
     }

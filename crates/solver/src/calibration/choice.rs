@@ -5,7 +5,7 @@ use dem_io::{Diagnostic, Result};
 use dem_laboratory::TestType;
 use dem_scene::{Scene, Test, written_value};
 
-use crate::laboratory::evaluate::{BY_TRAVEL, EQ_18, MODULUS, STIFFNESS, STRENGTH};
+use crate::laboratory::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STIFFNESS, STRENGTH};
 
 /// Largest deviation of the mean modulus from its target.
 const MODULUS_TOLERANCE: f64 = 0.01;
@@ -55,7 +55,10 @@ pub(crate) fn unknowns(
         stiffness_n_m,
     };
     if !free.is_empty() {
-        return free.iter().map(|one| chooser.named(one)).collect();
+        let found = free.iter().map(|one| chooser.named(one));
+        let found: Vec<Unknown> = found.collect::<Result<_>>()?;
+        refuse_twice(&found)?;
+        return Ok(found);
     }
     let both = [chooser.modulus()?, chooser.strength(&STRENGTHS)?];
     let found: Vec<Unknown> = both.into_iter().flatten().collect();
@@ -67,6 +70,23 @@ pub(crate) fn unknowns(
         ));
     }
     Ok(found)
+}
+
+/// Refuses a number that two unknowns have.
+fn refuse_twice(unknowns: &[Unknown]) -> Result<()> {
+    let mut paths: Vec<&str> = Vec::new();
+    for number in unknowns.iter().flat_map(|unknown| &unknown.numbers) {
+        if paths.contains(&number.path.as_str()) {
+            let problem = format!("{} is named twice", number.path);
+            return Err(Diagnostic::input(
+                "--free",
+                problem,
+                "name each number once",
+            ));
+        }
+        paths.push(&number.path);
+    }
+    Ok(())
 }
 
 struct Chooser<'a> {
@@ -93,10 +113,19 @@ impl Chooser<'_> {
                 let remedy = "write PATH=MEASURE:VALUE with the value in SI units";
                 return Err(Diagnostic::input(place(), problem, remedy));
             };
-            let is_measure = self.scene.measures.contains_key(result);
-            if !is_measure && self.scene.test.is_none() {
-                let problem = format!("the scene has no measure '{result}'");
-                return Err(Diagnostic::input(place(), problem, "add it to [measures]"));
+            let measures = self.scene.measures.keys().map(String::as_str);
+            let of_test = RESULTS
+                .iter()
+                .copied()
+                .filter(|_| self.scene.test.is_some());
+            let known: Vec<&str> = measures.chain(of_test).collect();
+            if !known.contains(&result) {
+                let problem = format!("the scene has no measure or test result '{result}'");
+                let remedy = match known.is_empty() {
+                    true => "add it to [measures]".to_owned(),
+                    false => format!("use one of {}", known.join(", ")),
+                };
+                return Err(Diagnostic::input(place(), problem, remedy));
             }
             return Ok(Unknown {
                 numbers: vec![self.number(path)?.ok_or_else(|| {
@@ -178,7 +207,7 @@ impl Chooser<'_> {
         let mut numbers = Vec::new();
         for key in keys {
             let path = format!("bonds.{bonds}.failure.{key}");
-            numbers.extend(self.number(&path)?.filter(|number| number.value > 0.0));
+            numbers.extend(self.number(&path)?);
         }
         if numbers.is_empty() {
             return Err(Diagnostic::input(
@@ -214,6 +243,13 @@ impl Chooser<'_> {
             overrides,
         } = self.text;
         let found = written_value(text, source, overrides, path)?;
+        if let Some((value, _)) = &found
+            && !(*value > 0.0 && value.is_finite())
+        {
+            let problem = format!("{path} is {value}, and only numbers above 0 can be varied");
+            let remedy = format!("write a first guess: --set {path}=...");
+            return Err(Diagnostic::input(*source, problem, remedy));
+        }
         let number = |(value, unit)| Number {
             path: path.to_owned(),
             value,

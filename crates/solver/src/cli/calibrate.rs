@@ -9,14 +9,15 @@ use std::sync::atomic::AtomicBool;
 
 use clap::Args;
 use dem_calibration::{
-    Case, FORMAT_VERSION, Record, Unknown, calibrate as search, page, read_record, report,
+    Case, End, FORMAT_VERSION, Record, Unknown, calibrate as search, page, read_record, report,
     write_record,
 };
 use dem_io::diagnostic::Kind;
 use dem_io::hash::{file_hash, fnv1a_of_parts};
 use dem_io::program::today;
 use dem_io::safe_write::{
-    need_folder_of, refuse_to_replace, write_file, write_standard_json, write_standard_output,
+    explain, need_folder_of, refuse_to_replace, write_file, write_standard_json,
+    write_standard_output,
 };
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result};
@@ -28,6 +29,9 @@ use super::SceneArguments;
 use super::packings::{Packings, spheres_across};
 use crate::calibration::{Bench, ModulusBy, Prospect, SceneText, prospect, unknowns};
 use crate::interrupt::Interrupt;
+
+/// Packings of a shape, unless given.
+const PACKINGS: usize = 4;
 
 #[derive(Debug, Args)]
 pub(super) struct CalibrateArguments {
@@ -46,10 +50,11 @@ pub(super) struct CalibrateArguments {
     /// deformation
     #[arg(long, value_enum, default_value = "travel")]
     modulus: ModulusBy,
-    /// Number of packings of the shape after --; their seeds follow that of the arguments
-    #[arg(long, value_name = "N", default_value_t = 4)]
-    packings: usize,
-    /// Diameters of spheres instead of those after --; repeat it for a table over sizes
+    /// Number of packings of the shape after --, 4 unless given; their seeds follow that of the
+    /// arguments
+    #[arg(long, value_name = "N", requires = "pack")]
+    packings: Option<usize>,
+    /// Diameters of spheres, in place of --diameter after --; repeat it for a table over sizes
     #[arg(long, value_name = "DIAMETERS", requires = "pack")]
     size: Vec<String>,
     /// Largest error of the curve, such as 5%: names the coarsest size that keeps it
@@ -78,13 +83,19 @@ pub(super) struct CalibrateArguments {
 pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> Result<()> {
     let most_error = options.max_error.as_deref().map(fraction).transpose()?;
     let source = options.scene.place();
-    let file = options.scene.file.as_deref().unwrap_or(Path::new(""));
+    let Some(file) = options.scene.file.as_deref() else {
+        return Err(Diagnostic::input(
+            "",
+            "no scene was given",
+            "name a scene (.toml)",
+        ));
+    };
     let text = text_of(file, "a scene")?;
     let overrides = options.scene.all_overrides();
     let scene = scene_from_text(&text, &source, &overrides)?;
     let mut packings = Packings::of(options.recipes()?, &options.scene.body, &scene)?;
-    packings.count = options.packings;
-    let files = OutputFiles::of(&options.output)?;
+    packings.count = options.packings.unwrap_or(PACKINGS);
+    let files = OutputFiles::of(&options.output, packings.case_names().len())?;
     files.refuse(options, &scene, &packings)?;
     let scene_text = SceneText {
         text: &text,
@@ -108,6 +119,7 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
             true => resumed(&files.record, identity)?,
             false => new_record(&scene, &packings, unknowns, &prospect, identity),
         };
+        write_record(&files.record, &record)?;
         let job = Job {
             options,
             scene: &scene_text,
@@ -145,12 +157,9 @@ fn fraction(text: &str) -> Result<f64> {
 impl CalibrateArguments {
     /// The shape with each size of spheres, from coarse to fine; none without `--`.
     fn recipes(&self) -> Result<Vec<Recipe>> {
-        if self.packings == 0 {
-            return Err(Diagnostic::input(
-                "--packings",
-                "0 packings test nothing",
-                "4 is usual",
-            ));
+        if let Some(wanted @ (0 | 1001..)) = self.packings {
+            let problem = format!("{wanted} is not between 1 and 1000");
+            return Err(Diagnostic::input("--packings", problem, "4 is usual"));
         }
         if self.pack.is_empty() {
             return Ok(Vec::new());
@@ -159,10 +168,9 @@ impl CalibrateArguments {
             return Ok(vec![Recipe::parse(&self.pack)?]);
         }
         let sized = self.size.iter().map(|size| {
-            let arguments: Vec<String> = self.pack.clone();
-            Recipe::parse(&arguments)?
-                .with_diameter(size)
-                .map_err(|error| error.within("--size"))
+            let mut arguments = self.pack.clone();
+            arguments.extend(["--diameter".to_owned(), size.clone()]);
+            Recipe::parse(&arguments)
         });
         let mut recipes: Vec<Recipe> = sized.collect::<Result<_>>()?;
         recipes.sort_by(|a, b| b.smallest_diameter_m().total_cmp(&a.smallest_diameter_m()));
@@ -172,28 +180,45 @@ impl CalibrateArguments {
 
 /// The files that a calibration writes.
 struct OutputFiles {
-    material: PathBuf,
+    /// The material file of each size.
+    materials: Vec<PathBuf>,
     page: PathBuf,
     record: PathBuf,
 }
 
 impl OutputFiles {
-    fn of(output: &Path) -> Result<Self> {
+    /// For a number of sizes: the material files are numbered if there are several.
+    fn of(output: &Path, sizes: usize) -> Result<Self> {
         let [page, record] = ["html", "json"].map(|ending| output.with_extension(ending));
-        if page == output || record == output {
-            let problem = format!("{} is the name of the page or the record", output.display());
+        if page == output || record == output || output.is_dir() {
+            let problem = format!(
+                "{} is a folder, or the name of the page or the record",
+                output.display()
+            );
             let remedy = "write the material to a name that ends in .toml";
             return Err(Diagnostic::input("--output", problem, remedy));
         }
         need_folder_of(output)?;
+        let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+        let numbered = |number: usize| output.with_file_name(format!("{stem}-{number}.toml"));
+        let materials = match sizes {
+            1 => vec![output.to_owned()],
+            _ => (1..=sizes).map(numbered).collect(),
+        };
         Ok(Self {
-            material: output.to_owned(),
+            materials,
             page,
             record,
         })
     }
 
-    /// Refuses to overwrite inputs, or an earlier calibration.
+    fn all(&self) -> Vec<PathBuf> {
+        let others = [self.page.clone(), self.record.clone()];
+        self.materials.iter().cloned().chain(others).collect()
+    }
+
+    /// Refuses to overwrite inputs or other files; removes an earlier calibration if that is asked
+    /// for.
     fn refuse(
         &self,
         options: &CalibrateArguments,
@@ -202,28 +227,38 @@ impl OutputFiles {
     ) -> Result<()> {
         let mut inputs = scene.input_files();
         inputs.extend(packings.files());
-        let written = [&self.material, &self.page, &self.record].map(PathBuf::clone);
-        refuse_to_replace(&written, &inputs)?;
-        if self.record.exists() && !options.resume && !options.force {
-            let remedy =
-                "go on with it by --resume, replace it by --force, or write to another --output";
+        refuse_to_replace(&self.all(), &inputs)?;
+        let there: Vec<PathBuf> = self
+            .all()
+            .into_iter()
+            .filter(|file| file.exists())
+            .collect();
+        if options.resume && self.record.exists() {
+            return Ok(());
+        }
+        if let (Some(file), false) = (there.last(), options.force) {
+            let (problem, remedy) = if *file == self.record {
+                (
+                    "there is a calibration already",
+                    "go on with it by --resume, replace it by --force, or write to another --output",
+                )
+            } else {
+                (
+                    "there is a file of this name already",
+                    "replace it by --force, or write to another --output",
+                )
+            };
             return Err(Diagnostic::input(
-                self.record.display().to_string(),
-                "there is a calibration already",
+                file.display().to_string(),
+                problem,
                 remedy,
             ));
         }
-        Ok(())
-    }
-
-    /// The material file of a case: numbered if there are several.
-    fn material_of(&self, case: usize, cases: usize) -> PathBuf {
-        if cases == 1 {
-            return self.material.clone();
+        // What is left of them after a failure would be taken for the new result.
+        for file in there {
+            std::fs::remove_file(&file).map_err(|error| explain(&file, &error))?;
         }
-        let stem = self.material.file_stem().unwrap_or_default();
-        let name = format!("{}-{}.toml", stem.to_string_lossy(), case + 1);
-        self.material.with_file_name(name)
+        Ok(())
     }
 }
 
@@ -233,7 +268,7 @@ fn identity(text: &str, options: &CalibrateArguments, scene: &Scene, packings: &
         env!("CARGO_PKG_VERSION").to_owned(),
         text.to_owned(),
         format!("{:?}", options.modulus),
-        options.packings.to_string(),
+        format!("{:?}", options.packings),
     ];
     for list in [
         &options.scene.all_overrides(),
@@ -277,6 +312,7 @@ fn new_record(
         rounds: Vec::new(),
         end: None,
         at_twice_the_rate: None,
+        rate_problem: None,
     };
     Record {
         version: FORMAT_VERSION,
@@ -307,7 +343,9 @@ impl Job<'_> {
     /// Calibrates each size that has not ended.
     fn do_all(&self, record: &mut Record, stop: &AtomicBool) -> Result<()> {
         for at in 0..record.cases.len() {
-            if record.cases[at].end.is_none() {
+            let case = &record.cases[at];
+            let lacks_rate = self.checks_rate && case.is_met() && !case.has_rate_check();
+            if case.end.is_none() || lacks_rate {
                 self.do_case(record, at, stop)?;
             }
         }
@@ -337,6 +375,8 @@ impl Job<'_> {
         case.spheres_across = spheres_across(&bodies[0]);
         if case.start.is_none() && case.rounds.is_empty() {
             case.start = bench.start(count)?;
+            record.cases[at].clone_from(&case);
+            write_record(self.record_file, record)?;
         }
         let bar = self.options.progress_bar(&case.name);
         let parts = Mutex::new(vec![0.0; count]);
@@ -356,16 +396,26 @@ impl Job<'_> {
             record.cases[at].clone_from(case);
             write_record(self.record_file, &record)
         };
+        let names = self.packings.names();
         let test = |factors: &[f64], packing: usize| {
-            bench.test(factors, packing, 1.0, &|fraction| tell(packing, fraction))
+            let tested = bench.test(factors, packing, 1.0, &|fraction| tell(packing, fraction));
+            tested.map_err(|error| error.within(&names[packing]))
         };
         let mut done = search(&unknowns, count, &mut case, workers, &test, &save);
-        if done.is_ok()
-            && let Some(factors) = case.result().map(|round| round.factors.clone())
-            && self.checks_rate
+        if let Err(error) = &done
+            && error.kind == Kind::Unstable
         {
-            let fast = bench.test(&factors, 0, 2.0, &|_| ());
-            done = fast.map(|trial| case.at_twice_the_rate = Some(trial));
+            let problem = format!("{}: {}", error.place, error.problem);
+            case.end = Some((0, End::NotMet(problem, error.remedy.clone())));
+            done = Ok(());
+        }
+        if done.is_ok() && self.checks_rate && case.is_met() && !case.has_rate_check() {
+            let factors = case.result().map(|round| round.factors.clone());
+            match bench.test(&factors.unwrap_or_default(), 0, 2.0, &|_| ()) {
+                Ok(trial) => case.at_twice_the_rate = Some(trial),
+                Err(error) if error.kind == Kind::Interrupted => done = Err(error),
+                Err(error) => case.rate_problem = Some(error.problem),
+            }
         }
         bar.finish_and_clear();
         done.and_then(|()| save(&case))
@@ -401,20 +451,18 @@ fn finish(
     write_file(&files.page, |out| {
         out.write_all(page(record, most_error).as_bytes())
     })?;
-    let cases = record.cases.len();
     let mut written = Vec::new();
-    for (at, case) in record.cases.iter().enumerate() {
+    for (case, path) in record.cases.iter().zip(&files.materials) {
         if case.is_met() {
-            let path = files.material_of(at, cases);
             let text = material_of(record, case, scene)?;
-            write_file(&path, |out| out.write_all(text.as_bytes()))?;
+            write_file(path, |out| out.write_all(text.as_bytes()))?;
             written.push(path);
         }
     }
     if options.scene.json {
         write_standard_json(&record.without_curves())?;
     } else if !options.quiet {
-        let all = written.iter().chain([&files.page, &files.record]);
+        let all = written.into_iter().chain([&files.page, &files.record]);
         let all: Vec<String> = all.map(|path| path.display().to_string()).collect();
         write_standard_output(|out| {
             write!(out, "{}", report(record, most_error))?;

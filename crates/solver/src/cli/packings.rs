@@ -128,9 +128,7 @@ impl Packings {
                 entry.source = BodySource::File(file.clone());
             }
         }
-        let mut bodies = read_bodies(&scene)?;
-        bodies.remove(&self.body);
-        Ok(bodies)
+        read_bodies(&scene)
     }
 
     /// Packing `at` of the size `case`.
@@ -182,7 +180,7 @@ impl Packings {
         let mut files: Vec<PathBuf> = bodies
             .flat_map(|file| body_files(file).unwrap_or_default())
             .collect();
-        files.extend(self.recipes.iter().map(|recipe| recipe.shape().to_owned()));
+        files.extend(self.recipes.iter().flat_map(Recipe::files));
         files
     }
 }

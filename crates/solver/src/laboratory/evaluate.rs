@@ -296,8 +296,8 @@ struct Measured {
     figures: Vec<Figure>,
 }
 
-/// Dimensions, stiffness and moduli of a test: `by_travel` and `of_body` are the ratios of the load to the travel
-/// and to the deformation of the body, N/m.
+/// Dimensions, stiffness and moduli of a test: `by_travel` and `of_body` are the ratios of the load
+/// to the travel and to the deformation of the body, N/m.
 pub(crate) fn elastic_figures(
     test: &Test,
     setup: &Setup,
@@ -457,6 +457,21 @@ pub(crate) const LARGEST_FORCE: &str = "largest force";
 const APART: &str = "area between the curves";
 /// Stress at that force according to the formula of the test.
 pub const STRENGTH: &str = "strength";
+
+/// Names of all results of tests; each test has some of them.
+pub const RESULTS: [&str; 11] = [
+    STIFFNESS,
+    "specimen stiffness",
+    EQ_18,
+    "modulus with shear",
+    BY_TRAVEL,
+    MODULUS,
+    FAILURE_FORCE,
+    LARGEST_FORCE,
+    STRENGTH,
+    "crosshead travel at failure",
+    APART,
+];
 
 /// Required bond parameters. Stresses and strains are proportional to modulus and strength of the
 /// bonds: one run gives the factor.

@@ -139,6 +139,50 @@ fn a_row_that_is_pulled_has_the_modulus_of_its_bonds() {
     assert!(said.contains("verdict      sound"), "{said}");
 }
 
+/// A lid that begins 50 mm above the row, and a wall beside a row that is pulled.
+#[test]
+fn walls_may_be_far_away() {
+    let near = tested(&pressed_row(), 1);
+    let far = pressed_row()
+        .replace("0.0421]", "0.092]")
+        .replace("stroke = \"1 mm\"", "stroke = \"60 mm\"");
+    let far = tested(&far, 1);
+    let stiffness = |found: &ElasticTest| found.figure("stiffness").unwrap();
+    assert_near(stiffness(&far), stiffness(&near), 0.02, "stiffness");
+    let pulled = row_in(
+        r#"[contacts]
+clay-steel = { restitution = 0.5, friction = 0.3 }
+[walls.floor]
+plane = { point = [0, 0, -0.5], normal = [0, 0, 1] }
+material = "steel"
+[groups.foot]
+particles = [0]
+[groups.head]
+particles = [10]
+[supports.foot]
+group = "foot"
+fixed = true
+[test]
+type = "tension"
+crosshead = ["head"]
+direction = [0, 0, 1]
+stroke = "1 mm"
+length = "40 mm"
+area = "12.5663706 mm2"
+"#,
+    );
+    let bench = Bench::new();
+    let scene = bench.write("pulled.toml", pulled);
+    let printed = bench.good(&scene, &["--json", "--quiet"]);
+    let summary: Value = serde_json::from_str(&printed).unwrap();
+    let results = summary["test"]["results"].as_array().unwrap();
+    let found = results
+        .iter()
+        .find(|one| one["name"] == "modulus by travel")
+        .unwrap();
+    assert_near(found["value"].as_f64().unwrap(), 15e6, 1e-3, "modulus");
+}
+
 #[test]
 fn the_number_of_threads_does_not_change_a_test() {
     let [one, two] = [1, 2].map(|threads| tested(&pressed_row(), threads));

@@ -103,7 +103,7 @@ impl ConjugateGradients {
                 *direction = step + kept * *direction;
             }
         }
-        Err(NoFactor::Pivot)
+        Err(NoFactor::NoConvergence)
     }
 
     /// The two levels applied to a residual.

@@ -32,6 +32,8 @@ pub enum NoFactor {
     /// A pivot is zero, negative or not a number: the matrix is not positive definite or, if it is
     /// not symmetric, singular.
     Pivot,
+    /// Conjugate gradients do not converge.
+    NoConvergence,
     /// They do not fit into memory.
     Memory,
 }

@@ -333,6 +333,7 @@ impl Search<'_> {
 pub(super) fn cause(why: NoFactor) -> Cause {
     match why {
         NoFactor::Pivot => Cause::Pivot,
+        NoFactor::NoConvergence => Cause::NoConvergence,
         NoFactor::Memory => Cause::Memory,
     }
 }

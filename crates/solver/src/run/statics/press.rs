@@ -23,6 +23,8 @@ use crate::state::particles::Pose;
 const LOADS: [f64; 3] = [0.2, 0.4, 0.6];
 /// A load is near enough if it deviates by less than this fraction.
 const NEAR: f64 = 0.1;
+/// A load that deviates by more was not reached: the stroke ended first.
+const FAR: f64 = 0.25;
 /// Travels tried for a load.
 const MOST_TRAVELS: usize = 12;
 /// Largest ratio of the residual to the load of an equilibrium.
@@ -76,7 +78,7 @@ pub(crate) fn press(
     let direction = Vector3::from(setup.direction);
     let walls = MovingWalls::new(state, &loading.moving.walls, stroke_m * direction);
     let mut start = 0.0;
-    if !state.walls.is_empty() {
+    if !loading.moving.walls.is_empty() {
         let moving = &loading.moving.walls;
         let seated = seat(state, &walls, moving, stroke_m, setup.mean_radius_m);
         start = seated.ok_or(NotPressed::NoContact)?;
@@ -170,7 +172,7 @@ impl<'a> Press<'a> {
     ) -> Result<Vec<Row>, Cause> {
         let first = 0.02 * self.setup.mean_radius_m / self.stroke_m;
         let mut at = start;
-        let mut row = self.advance(&mut at, (start + first).min(1.0))?;
+        let mut row = self.advance(&mut at, (start + first).min(1.0), &|| goes_on(0.0))?;
         let largest_n = match largest_n {
             Some(largest_n) => largest_n,
             // The load at the end of the stroke, as far as it is proportional to the travel.
@@ -181,9 +183,6 @@ impl<'a> Press<'a> {
         for (number, fraction) in LOADS.iter().enumerate() {
             let wanted_n = fraction * largest_n;
             for _ in 0..MOST_TRAVELS {
-                if !goes_on(number as f64 / LOADS.len() as f64) {
-                    return Err(Cause::Interrupted);
-                }
                 let load_n = row.load_n();
                 if (load_n - wanted_n).abs() <= NEAR * wanted_n || at >= 1.0 {
                     break;
@@ -193,7 +192,11 @@ impl<'a> Press<'a> {
                 // Contacts stiffen as they grow: no more than what the travel was.
                 let step = step.clamp(-0.5 * (at - start), 2.0 * (at - start));
                 before = (at, load_n);
-                row = self.advance(&mut at, (before.0 + step).min(1.0))?;
+                let done = number as f64 / LOADS.len() as f64;
+                row = self.advance(&mut at, (before.0 + step).min(1.0), &|| goes_on(done))?;
+            }
+            if (row.load_n() - wanted_n).abs() > FAR * wanted_n {
+                return Err(Cause::NoConvergence);
             }
             rows.push(row);
         }
@@ -202,9 +205,12 @@ impl<'a> Press<'a> {
 
     /// The equilibrium at a travel, as a fraction of the stroke, from that at another, in as many
     /// parts as needed.
-    fn advance(&mut self, at: &mut f64, to: f64) -> Result<Row, Cause> {
+    fn advance(&mut self, at: &mut f64, to: f64, goes_on: &dyn Fn() -> bool) -> Result<Row, Cause> {
         let mut part = to - *at;
         while *at != to {
+            if !goes_on() {
+                return Err(Cause::Interrupted);
+            }
             let next = if (to - *at).abs() <= part.abs() {
                 to
             } else {
@@ -263,7 +269,7 @@ impl<'a> Press<'a> {
             if !pulls && residual_n > 1e3 * before_n {
                 return Err(Cause::NoConvergence);
             }
-            before_n = residual_n;
+            before_n = if pulls { f64::INFINITY } else { residual_n };
             self.take_tangent(&contacts)?;
             if pulls {
                 let poses = &self.state.particles.poses;
@@ -408,7 +414,7 @@ impl<'a> Press<'a> {
             })
             .sum();
         let force_n = pushed_n + gripped_n;
-        let has_walls = !self.state.walls.is_empty();
+        let has_walls = !self.loading.moving.walls.is_empty();
         Row {
             time_s: at,
             travel_m: at * self.stroke_m,

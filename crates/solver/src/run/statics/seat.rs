@@ -10,8 +10,8 @@ use crate::state::particles::Pose;
 
 /// Advance of the walls in a step of the approach, in mean radii.
 const ADVANCE: f64 = 0.01;
-/// Largest number of steps of the approach.
-const MOST_ADVANCES: usize = 2000;
+/// The same while no particle is near a moving wall, which is less than the distance that is near.
+const FAR_ADVANCE: f64 = 0.5;
 /// Largest number of steps towards a balance.
 const MOST_STEPS: usize = 200;
 /// Balance: largest rigid step, in mean radii.
@@ -26,9 +26,16 @@ pub(super) fn seat(
     way_m: f64,
     mean_radius_m: f64,
 ) -> Option<f64> {
-    let step = ADVANCE * mean_radius_m / way_m;
-    for advance in 1..=MOST_ADVANCES {
-        let fraction = step * advance as f64;
+    let mut fraction = 0.0;
+    loop {
+        walls.place(state, fraction, mean_radius_m);
+        let is_near = |at: &usize| !state.walls[*at].near.is_empty();
+        let advance = if moving.iter().any(is_near) {
+            ADVANCE
+        } else {
+            FAR_ADVANCE
+        };
+        fraction += advance * mean_radius_m / way_m;
         if fraction > 1.0 {
             return None;
         }
@@ -43,7 +50,6 @@ pub(super) fn seat(
             return Some(fraction);
         }
     }
-    None
 }
 
 /// Moves and turns the whole state by the least energy of its contacts with walls: Newton steps
