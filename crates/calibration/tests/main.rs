@@ -1,4 +1,5 @@
 //! Calibration of made-up tests whose results are known in closed form.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -86,7 +86,9 @@ fn files_named_by_set_replace_tables_of_the_scene() {
     let own = SCENE.replace("include = [\"cake.toml\"]\n", CAKE_FIRST);
     let folder = Folder::new(&[("scene.toml", &own), ("other.toml", &other)]);
     let name = folder.path("other.toml").display().to_string();
-    let scene = folder.read(&[include_text(&[name.clone()])]).unwrap();
+    let scene = folder
+        .read(&[include_text(std::slice::from_ref(&name))])
+        .unwrap();
     assert_eq!(scene.bonds["cake"].young_modulus_pa, 30e6);
     assert_eq!(scene.contacts.len(), 1);
     // A value that is set stands above the file, whatever the order.

@@ -198,24 +198,62 @@ fn rigid_motions(nodes: &[Node]) -> (usize, Vec<(usize, [f64; 6])>) {
     (cells.len(), nodes.iter().map(motion).collect())
 }
 
+/// Stiffness between the six rigid motions of two groups: rows, then columns.
+type Block = [[f64; 6]; 6];
+
 /// The stiffness between the rigid motions of groups, lower triangle.
 fn coarse(matrix: &Matrix, rigid: &[(usize, [f64; 6])], groups: usize) -> Matrix {
-    // By column and row of groups.
-    let mut blocks: BTreeMap<(usize, usize), [[f64; 6]; 6]> = BTreeMap::new();
+    let blocks = group_blocks(matrix, rigid, groups);
+    let diagonal = (0..groups).flat_map(|group| {
+        let block = &blocks[&(group, group)];
+        (0..6).map(|k| block[k][k])
+    });
+    let largest = diagonal.fold(0.0, f64::max);
+    let mut found = Matrix {
+        symmetric: true,
+        starts: vec![0],
+        rows: Vec::new(),
+        values: Vec::new(),
+    };
     for group in 0..groups {
-        blocks.insert((group, group), [[0.0; 6]; 6]);
+        for column in 0..6 {
+            for ((_, row_group), block) in blocks.range((group, 0)..(group + 1, 0)) {
+                let is_diagonal = *row_group == group;
+                let first = if is_diagonal { column } else { 0 };
+                for (row, entries) in block.iter().enumerate().skip(first) {
+                    let value = match entries[column] {
+                        // A group without this motion of its own.
+                        0.0 if is_diagonal && row == column => largest,
+                        value if is_diagonal && row == column => value + REGULAR * largest,
+                        value => value,
+                    };
+                    found.rows.push(6 * row_group + row);
+                    found.values.push(value);
+                }
+            }
+            found.starts.push(found.rows.len());
+        }
     }
-    let mut add = |(row_group, row): &(usize, [f64; 6]),
-                   (column_group, column): &(usize, [f64; 6]),
-                   value: f64| {
-        if row_group < column_group {
+    found
+}
+
+/// The blocks of that stiffness by the groups of their columns and rows, lower triangle.
+fn group_blocks(
+    matrix: &Matrix,
+    rigid: &[(usize, [f64; 6])],
+    groups: usize,
+) -> BTreeMap<(usize, usize), Block> {
+    let mut blocks: BTreeMap<(usize, usize), Block> = BTreeMap::new();
+    for group in 0..groups {
+        blocks.insert((group, group), Block::default());
+    }
+    let mut add = |row: &(usize, [f64; 6]), column: &(usize, [f64; 6]), value: f64| {
+        if row.0 < column.0 {
             return;
         }
-        let block = blocks
-            .entry((*column_group, *row_group))
-            .or_insert([[0.0; 6]; 6]);
-        for (entries, row) in block.iter_mut().zip(row).filter(|(_, row)| **row != 0.0) {
-            for (entry, column) in entries.iter_mut().zip(column) {
+        let block = blocks.entry((column.0, row.0)).or_default();
+        for (entries, row) in block.iter_mut().zip(row.1).filter(|(_, row)| *row != 0.0) {
+            for (entry, column) in entries.iter_mut().zip(column.1) {
                 *entry += row * value * column;
             }
         }
@@ -229,43 +267,5 @@ fn coarse(matrix: &Matrix, rigid: &[(usize, [f64; 6])], groups: usize) -> Matrix
             }
         }
     }
-    let mut found = Matrix {
-        symmetric: true,
-        starts: vec![0],
-        rows: Vec::new(),
-        values: Vec::new(),
-    };
-    let diagonal = |group: usize| (0..6).map(move |k| (group, k));
-    let all = (0..groups).flat_map(diagonal);
-    let largest = all
-        .map(|(group, k)| blocks[&(group, group)][k][k])
-        .fold(0.0, f64::max);
-    for column_group in 0..groups {
-        let of_column: Vec<(&(usize, usize), &[[f64; 6]; 6])> = blocks
-            .range((column_group, 0)..(column_group + 1, 0))
-            .collect();
-        for column in 0..6 {
-            for ((_, row_group), block) in &of_column {
-                let first = if *row_group == column_group {
-                    column
-                } else {
-                    0
-                };
-                for (row, entries) in block.iter().enumerate().skip(first) {
-                    let is_diagonal = *row_group == column_group && row == column;
-                    let mut value = entries[column];
-                    if is_diagonal {
-                        value += REGULAR * largest;
-                        if entries[column] == 0.0 {
-                            value = largest;
-                        }
-                    }
-                    found.rows.push(6 * row_group + row);
-                    found.values.push(value);
-                }
-            }
-            found.starts.push(found.rows.len());
-        }
-    }
-    found
+    blocks
 }

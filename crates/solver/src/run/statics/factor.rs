@@ -12,7 +12,7 @@ const ITERATIVE_FROM: usize = 40_000;
 #[derive(Debug)]
 pub(crate) enum Factor {
     /// Factors.
-    Direct(DirectFactor),
+    Direct(Box<DirectFactor>),
     /// Conjugate gradients, for symmetric matrices: the nodes of the unknowns, and the last matrix.
     Iterative(Vec<Node>, Option<Box<ConjugateGradients>>),
 }
@@ -26,7 +26,7 @@ impl Factor {
         if matrix.symmetric && nodes.len() >= ITERATIVE_FROM {
             return Ok(Self::Iterative(nodes, None));
         }
-        DirectFactor::new(matrix).map(Self::Direct)
+        DirectFactor::new(matrix).map(|factor| Self::Direct(Box::new(factor)))
     }
 
     /// Entries of the factor; None if unknown before the factorisation, or if there is none.
