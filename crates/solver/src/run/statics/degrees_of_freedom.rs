@@ -16,7 +16,7 @@ pub(crate) const HELD: usize = usize::MAX;
 #[derive(Debug, Clone, PartialEq)]
 pub struct DegreesOfFreedom {
     /// For each particle the numbers of its degrees of freedom among the unknowns, ascending; or
-    /// [`HELD`]. Length 6 each.
+    /// `usize::MAX` for one that is held. Length 6 each.
     pub unknown: Vec<[usize; 6]>,
     /// Number of unknowns.
     pub count: usize,
