@@ -25,7 +25,8 @@ fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
 }
 
 /// Every command runs, in order, in a folder with a copy of the shapes, scenes and bodies. To save
-/// time, spheres are larger, packings fewer, the chute ends sooner, and a shape with few facets replaces the rock.
+/// time, spheres are larger, packings fewer, the chute ends sooner, and a shape with few facets
+/// replaces the rock.
 #[test]
 fn commands_run_as_pasted() {
     let folder = tempfile::tempdir().unwrap();

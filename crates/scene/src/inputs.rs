@@ -9,7 +9,8 @@ use super::wall::WallShape;
 use dem_io::body::files::body_files;
 
 impl Scene {
-    /// The scene's own file, those that it includes, and those of its bodies, walls and regions, except standard input.
+    /// The scene's own file, those that it includes, and those of its bodies, walls and regions,
+    /// except standard input.
     pub fn input_files(&self) -> Vec<PathBuf> {
         let mut files = vec![PathBuf::from(&self.source)];
         files.extend(self.included.iter().cloned());

@@ -11,8 +11,8 @@ const OF_CONTACTS: [&str; 2] = ["contacts", "walls"];
 /// Motions of supports, of which a laboratory test has none but its own.
 const MOTIONS: [&str; 2] = ["displacement", "velocity"];
 
-/// Refuses everything except bonded bodies, loads, supports and laboratory tests in a scene solved for its static
-/// equilibrium.
+/// Refuses everything except bonded bodies, loads, supports and laboratory tests in a scene solved
+/// for its static equilibrium.
 pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
     let has_test = root.get("test").is_some();
     let of_contacts = root.given(&OF_CONTACTS).filter(|_| !has_test);

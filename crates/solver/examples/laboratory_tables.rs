@@ -19,14 +19,16 @@
     reason = "it prints a table, and how far it is"
 )]
 
-use std::error::Error;
-use std::ffi::OsStr;
+mod programs;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use dem_io::units::significant;
 use dem_scene::study::read_study;
 use serde_json::Value;
+
+use programs::{Failed, Programs, output, root};
 
 /// Number of packings for a mean and its scatter, unless given: `--seed 1` to `--seed 4`.
 const PACKINGS: u32 = 4;
@@ -39,8 +41,6 @@ const GRAVITY_M_S2: f64 = 9.81;
 const NO_RATE_CHECK: &str = "test.rate_check=false";
 /// Hardly any pictures, as they take time.
 const PICTURES: &str = "output.pictures=\"1 s\"";
-
-type Failed = Box<dyn Error>;
 
 /// A table of the page: its command word, its header, and the first cell of each row.
 struct Table {
@@ -311,7 +311,7 @@ fn larger_spheres(bench: &Bench, _: u32) -> Result<(), Failed> {
     let study_file = bench.results.join("larger-spheres.toml");
     std::fs::write(&study_file, text)?;
     let folder = bench.results.join("larger-spheres");
-    let mut command = Command::new(&bench.dem_run);
+    let mut command = Command::new(&bench.programs.dem_run);
     command.arg("sweep").arg(&study_file);
     command.args(["--json", "--quiet", "--output"]).arg(&folder);
     command.arg(if bench.resume && folder.exists() {
@@ -319,7 +319,7 @@ fn larger_spheres(bench: &Bench, _: u32) -> Result<(), Failed> {
     } else {
         "--force"
     });
-    let table: Value = serde_json::from_slice(&bench.output(&mut command)?)?;
+    let table: Value = serde_json::from_slice(&output(&mut command)?)?;
     let study = read_study(&study_file)?;
     let measure = |run: &Value, name: &str| {
         let place = study
@@ -490,39 +490,17 @@ impl Table {
 
 /// The two programs, and the folder of their results.
 struct Bench {
-    dem_pack: PathBuf,
-    dem_run: PathBuf,
+    programs: Programs,
     results: PathBuf,
     resume: bool,
-}
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 impl Bench {
     /// Builds the programs.
     fn new(resume: bool) -> Result<Self, Failed> {
-        let own = std::env::current_exe()?;
-        // target/release/examples/laboratory_tables
-        let target = own.ancestors().nth(3).ok_or("no target folder")?;
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let mut build = Command::new(cargo);
-        build.args(["build", "--release", "--quiet", "--bins"]);
-        build.args(["-p", "dem-pack", "-p", "dem-run", "--target-dir"]);
-        if !build.arg(target).current_dir(root()).status()?.success() {
-            return Err("the programs cannot be built".into());
-        }
-        let program = |name: &str| {
-            let file = target.join("release").join(name);
-            file.with_extension(std::env::consts::EXE_EXTENSION)
-        };
-        let results = target.join("laboratory-tables");
-        std::fs::create_dir_all(&results)?;
         Ok(Self {
-            dem_pack: program("dem-pack"),
-            dem_run: program("dem-run"),
-            results,
+            programs: Programs::build()?,
+            results: programs::results("laboratory-tables")?,
             resume,
         })
     }
@@ -530,13 +508,13 @@ impl Bench {
     /// A packing of a shape as in the scenes' comments: overlap 0.296, touching spheres bonded.
     fn pack(&self, name: &str, shape: &str, sizes: &str, seed: u32) -> Result<PathBuf, Failed> {
         let body = self.results.join(format!("{name}-{seed}.vtp"));
-        let mut command = Command::new(&self.dem_pack);
+        let mut command = Command::new(&self.programs.dem_pack);
         command.arg(format!("data/shapes/{shape}.stl"));
         command.args(["--diameter", sizes, "--overlap", "0.296"]);
         command.args(["--bond-range", "1.0", "--quiet", "--seed"]);
         command.arg(seed.to_string()).arg("-o").arg(&body);
         if !(self.resume && body.exists()) {
-            self.output(&mut command)?;
+            output(&mut command)?;
         }
         Ok(body)
     }
@@ -551,7 +529,7 @@ impl Bench {
     ) -> Result<Value, Failed> {
         let folder = self.results.join(name);
         let summary = folder.join("summary.json");
-        let mut command = Command::new(&self.dem_run);
+        let mut command = Command::new(&self.programs.dem_run);
         command.arg(format!("data/scenes/{scene}.toml"));
         command.args(["--threads", "1", "--quiet", "--force", "--output"]);
         command.arg(&folder);
@@ -562,23 +540,9 @@ impl Bench {
             command.args(["--set", set]);
         }
         if !(self.resume && summary.exists()) {
-            self.output(&mut command)?;
+            output(&mut command)?;
         }
         Ok(serde_json::from_slice(&std::fs::read(summary)?)?)
-    }
-
-    /// Prints a command and runs it in the folder of the clone. Returns its standard output.
-    fn output(&self, command: &mut Command) -> Result<Vec<u8>, Failed> {
-        let words: Vec<_> = command.get_args().map(OsStr::to_string_lossy).collect();
-        let program = Path::new(command.get_program())
-            .file_name()
-            .unwrap_or_default();
-        eprintln!("{} {}", program.to_string_lossy(), words.join(" "));
-        let done = command.current_dir(root()).output()?;
-        if !done.status.success() {
-            return Err(String::from_utf8_lossy(&done.stderr).into());
-        }
-        Ok(done.stdout)
     }
 }
 

@@ -299,41 +299,43 @@ impl SceneArguments {
 
 /// Sets a body's file from an option `[NAME=]FILE`. Returns the body's name.
 fn set_body(scene: &mut Scene, option: &str) -> Result<String> {
+    let only = (scene.bodies.len() == 1).then(|| scene.bodies.keys().next());
+    let (name, file) = named_body(scene, option, only.flatten().map(String::as_str))?;
+    if let Some(entry) = scene.bodies.get_mut(&name) {
+        entry.source = BodySource::File(file);
+    }
+    Ok(name)
+}
+
+/// Body and file of an option `[NAME=]FILE`; `usual`: the body that is meant without a name.
+fn named_body(scene: &Scene, option: &str, usual: Option<&str>) -> Result<(String, PathBuf)> {
     let (name, file) = match option.split_once('=') {
-        Some((name, file)) => (Some(name.to_owned()), file),
-        None => (None, option),
+        Some((name, file)) => (Some(name), file),
+        None => (usual, option),
     };
-    let names: Vec<String> = scene.bodies.keys().cloned().collect();
-    let name = match (name, names.as_slice()) {
-        _ if file.is_empty() => {
-            return Err(Diagnostic::input(
-                format!("--body {option}"),
-                "no file is named",
-                "write --body FILE, or --body NAME=FILE",
-            ));
+    let place = || format!("--body {option}");
+    let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
+    let (problem, remedy) = match name {
+        _ if file.is_empty() => (
+            "no file is named".to_owned(),
+            "write --body FILE, or --body NAME=FILE".to_owned(),
+        ),
+        Some(name) if names.contains(&name) => {
+            return Ok((name.to_owned(), PathBuf::from(file)));
         }
-        (Some(name), _) => name,
-        (None, [only]) => only.clone(),
-        (None, _) => {
-            return Err(Diagnostic::input(
-                format!("--body {option}"),
-                format!("the scene has {} bodies", names.len()),
-                format!(
-                    "say which: --body NAME={file} with one of {}",
-                    names.join(", ")
-                ),
-            ));
-        }
-    };
-    let Some(entry) = scene.bodies.get_mut(&name) else {
-        return Err(Diagnostic::input(
-            format!("--body {option}"),
+        Some(name) => (
             format!("the scene has no body '{name}'"),
             format!("use one of {}", names.join(", ")),
-        ));
+        ),
+        None => (
+            format!("the scene has {} bodies", names.len()),
+            format!(
+                "say which: --body NAME={file} with one of {}",
+                names.join(", ")
+            ),
+        ),
     };
-    entry.source = BodySource::File(PathBuf::from(file));
-    Ok(name)
+    Err(Diagnostic::input(place(), problem, remedy))
 }
 
 fn refuse_two_pipes(scene: &Scene) -> Result<()> {

@@ -27,6 +27,8 @@ mod map;
 mod oscillation;
 mod page;
 mod plots;
+#[path = "../programs/mod.rs"]
+mod programs;
 mod rebound;
 mod samples;
 mod steps;

@@ -95,8 +95,9 @@ impl Watch {
     }
 }
 
-/// Utilisation of a bond, all of which follow one rule, against its strength at its strain rate (Platzer 2022, eq. 21, with the
-/// full relative velocity), and the factor by which that rate raises the strength.
+/// Utilisation of a bond, all of which follow one rule, against its strength at its strain rate
+/// (Platzer 2022, eq. 21, with the full relative velocity), and the factor by which that rate raises
+/// the strength.
 fn of_bond(state: &State, at: usize) -> [f64; 2] {
     let bonds = &state.bonds;
     let rule = &bonds.rules[0];

@@ -117,7 +117,10 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
         let identity = identity(&text, options, &scene, &packings);
         let mut record = match options.resume {
             true => resumed(&files.record, identity)?,
-            false => new_record(&scene, &packings, unknowns, &prospect, identity),
+            false => {
+                files.remove()?;
+                new_record(&scene, &packings, unknowns, &prospect, identity)
+            }
         };
         write_record(&files.record, &record)?;
         let job = Job {
@@ -125,6 +128,7 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
             scene: &scene_text,
             others: &others,
             packings: &packings,
+            first: &first,
             threads,
             checks_rate: scene.test.as_ref().is_some_and(|test| test.rate_check),
             record_file: &files.record,
@@ -217,8 +221,7 @@ impl OutputFiles {
         self.materials.iter().cloned().chain(others).collect()
     }
 
-    /// Refuses to overwrite inputs or other files; removes an earlier calibration if that is asked
-    /// for.
+    /// Refuses to overwrite inputs, and other files unless that is asked for.
     fn refuse(
         &self,
         options: &CalibrateArguments,
@@ -254,8 +257,12 @@ impl OutputFiles {
                 remedy,
             ));
         }
-        // What is left of them after a failure would be taken for the new result.
-        for file in there {
+        Ok(())
+    }
+
+    /// Removes an earlier calibration: after a failure it would be taken for the new result.
+    fn remove(&self) -> Result<()> {
+        for file in self.all().into_iter().filter(|file| file.exists()) {
             std::fs::remove_file(&file).map_err(|error| explain(&file, &error))?;
         }
         Ok(())
@@ -333,6 +340,8 @@ struct Job<'a> {
     scene: &'a SceneText<'a>,
     others: &'a BTreeMap<String, Body>,
     packings: &'a Packings,
+    /// The first packing of the first size.
+    first: &'a Body,
     threads: usize,
     /// Whether the scene asks for a test at twice the rate.
     checks_rate: bool,
@@ -355,7 +364,10 @@ impl Job<'_> {
     fn do_case(&self, record: &mut Record, at: usize, stop: &AtomicBool) -> Result<()> {
         let count = record.packings.len();
         let bodies: Vec<Body> = (0..count)
-            .map(|packing| self.packings.make(at, packing))
+            .map(|packing| match (at, packing) {
+                (0, 0) => Ok(self.first.clone()),
+                _ => self.packings.make(at, packing),
+            })
             .collect::<Result<_>>()?;
         let unknowns = record.unknowns.clone();
         let workers = count.min(self.threads);

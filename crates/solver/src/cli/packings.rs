@@ -9,6 +9,8 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_pack::cli::Recipe;
 use dem_scene::{BodySource, Scene, read_bodies};
 
+use super::named_body;
+
 /// Packings of one body of a scene.
 pub(super) struct Packings {
     /// Name of the body.
@@ -90,28 +92,19 @@ impl Packings {
     }
 
     fn add(&mut self, text: &str, scene: &Scene) -> Result<()> {
-        let (name, file) = match text.split_once('=') {
-            Some((name, file)) => (name.to_owned(), file),
-            None => (self.body.clone(), text),
-        };
-        let place = || format!("--body {text}");
-        if !scene.bodies.contains_key(&name) {
-            let names: Vec<&str> = scene.bodies.keys().map(String::as_str).collect();
-            let problem = format!("the scene has no body '{name}'");
-            return Err(Diagnostic::input(
-                place(),
-                problem,
-                format!("use one of {}", names.join(", ")),
-            ));
-        }
+        let (name, file) = named_body(scene, text, Some(&self.body))?;
         if name == self.body {
-            self.files.push(PathBuf::from(file));
-        } else if self.other_files.insert(name.clone(), file.into()).is_some() {
+            self.files.push(file);
+        } else if self.other_files.insert(name.clone(), file).is_some() {
             let problem = format!(
                 "the body '{name}' has a file already, and only '{}' has packings",
                 self.body
             );
-            return Err(Diagnostic::input(place(), problem, "name one file for it"));
+            return Err(Diagnostic::input(
+                format!("--body {text}"),
+                problem,
+                "name one file for it",
+            ));
         }
         Ok(())
     }

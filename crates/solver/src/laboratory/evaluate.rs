@@ -229,7 +229,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     let play_m = play_m(rows);
     let travel = peak(rows).map(|row| row.travel_m - play_m);
     measured.add(
-        "crosshead travel at failure",
+        TRAVEL_AT_FAILURE,
         travel.filter(|_| evidence.broken),
         "m",
         None,
@@ -364,7 +364,7 @@ impl Measured {
             .modulus_pa
             .map(|modulus| beam.stiffness_n_m(modulus, nu, KAPPA));
         self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
-        self.add("specimen stiffness", self.of_body_n_m, "N/m", theory);
+        self.add(SPECIMEN_STIFFNESS, self.of_body_n_m, "N/m", theory);
         let bending = |k: f64| k / shape;
         let with_shear = |k: f64| k * (1.0 + shear) / shape;
         self.add(
@@ -374,7 +374,7 @@ impl Measured {
             self.modulus_pa,
         );
         self.add(
-            "modulus with shear",
+            WITH_SHEAR,
             self.stiffness_n_m.map(with_shear),
             "Pa",
             self.modulus_pa,
@@ -431,7 +431,7 @@ impl Measured {
         let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / gauge_m);
         // In compression, the measured points approach each other.
         let of_body = self.of_body_n_m.map(f64::abs);
-        self.add("specimen stiffness", of_body, "N/m", theory);
+        self.add(SPECIMEN_STIFFNESS, of_body, "N/m", theory);
         let of_gauge = |k: f64| k * gauge_m / area_m2;
         self.add(MODULUS, of_body.map(of_gauge), "Pa", self.modulus_pa);
         let stress = |force: f64| bar_stress_pa(force, area_m2);
@@ -445,6 +445,12 @@ impl Measured {
 pub const STIFFNESS: &str = "stiffness";
 /// Modulus of a beam from the travel, without shear: Platzer 2022, eq. 18.
 pub const EQ_18: &str = "modulus without shear";
+/// Ratio of load to the specimen's own deflection or elongation.
+const SPECIMEN_STIFFNESS: &str = "specimen stiffness";
+/// The same as eq. 18, with shear.
+const WITH_SHEAR: &str = "modulus with shear";
+/// Travel at the largest load of a body that broke.
+const TRAVEL_AT_FAILURE: &str = "crosshead travel at failure";
 /// Modulus of a bar from the travel.
 pub const BY_TRAVEL: &str = "modulus by travel";
 /// Modulus of the body from its own deflection or elongation, including shear.
@@ -461,15 +467,15 @@ pub const STRENGTH: &str = "strength";
 /// Names of all results of tests; each test has some of them.
 pub const RESULTS: [&str; 11] = [
     STIFFNESS,
-    "specimen stiffness",
+    SPECIMEN_STIFFNESS,
     EQ_18,
-    "modulus with shear",
+    WITH_SHEAR,
     BY_TRAVEL,
     MODULUS,
     FAILURE_FORCE,
     LARGEST_FORCE,
     STRENGTH,
-    "crosshead travel at failure",
+    TRAVEL_AT_FAILURE,
     APART,
 ];
 

@@ -53,8 +53,8 @@ impl TestResult {
         broken as f64 / all.max(1) as f64
     }
 
-    /// Results other than the table of numbers, of a test with steps: rate, breakage, first broken bond, position of the
-    /// crack, effect of the rate. Each with a name.
+    /// Results other than the table of numbers, of a test with steps: rate, breakage, first broken
+    /// bond, position of the crack, effect of the rate. Each with a name.
     pub fn sentences(&self) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let mut say = |name: &str, text: String| found.push((name.to_owned(), text));

@@ -202,8 +202,13 @@ fn files_of_others_stay() {
     );
     assert_eq!(code, 2);
     assert_eq!(std::fs::read_to_string(&numbered).unwrap(), text);
-    // What an earlier calibration found does not stand beside one that failed.
+    // Bad input leaves an earlier calibration as it is.
     assert!(calibrate(&bench, &["--quiet", "--force"]).status.success());
+    let found = std::fs::read(bench.path("clay.toml")).unwrap();
+    let (_, code) = refused(&calibrate(&bench, &["--force", "--free", "colour"]));
+    assert_eq!(code, 2);
+    assert_eq!(std::fs::read(bench.path("clay.toml")).unwrap(), found);
+    // What it found does not stand beside one that failed.
     let failed = calibrate(
         &bench,
         &[

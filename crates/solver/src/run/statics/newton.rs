@@ -20,7 +20,7 @@
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::loads::add_loads;
 use crate::state::State;
-use crate::state::particles::{Motion, Wrench};
+use crate::state::particles::{Motion, Pose, Wrench};
 
 use rayon::prelude::*;
 
@@ -210,7 +210,8 @@ impl Search<'_> {
         self.residuals.clear();
         for _ in 0..=STEPS {
             let net = self.net(to);
-            let residual_n = self.largest(&net);
+            let poses_now = &self.state.particles.poses;
+            let residual_n = largest_net_n(&self.degrees_of_freedom, poses_now, &net);
             let bond_force_n = largest_bond_force_n(self.state);
             if !residual_n.is_finite() {
                 return Err(Cause::NoConvergence);
@@ -248,27 +249,13 @@ impl Search<'_> {
                 is_near = residual <= NEAR && !pulls;
             }
             poses.clone_from(&self.state.particles.poses);
-            let mut by = net;
-            if pulls {
-                let pulled = pulled_by_supports(
-                    &self.state.bonds,
-                    &self.degrees_of_freedom,
-                    &poses,
-                    &displacements,
-                );
-                by.iter_mut().zip(pulled).for_each(|(by, pull)| *by += pull);
-            }
-            self.factor.solve(&mut by, ACCURACY).map_err(cause)?;
-            self.newton_steps += 1;
-            let moves = Displacements {
-                by: &by,
+            let step = Step {
+                factor: &self.factor,
+                accuracy: ACCURACY,
                 displacements: if pulls { &displacements } else { &[] },
             };
-            if largest_turn(&moves, &self.degrees_of_freedom) > TURN {
-                return Err(Cause::NoConvergence);
-            }
-            let new = &mut self.state.particles.poses;
-            displace(new, &poses, &self.degrees_of_freedom, &moves);
+            step.take(self.state, &self.degrees_of_freedom, &poses, net)?;
+            self.newton_steps += 1;
             before_n = if pulls { f64::INFINITY } else { residual_n };
             pulls = false;
         }
@@ -287,36 +274,12 @@ impl Search<'_> {
 
     /// Net forces on the unknowns at this fraction of the loads, N and N m.
     fn net(&mut self, fraction: f64) -> Vec<f64> {
-        let State {
-            bonds,
-            particles,
-            scratch,
-            ..
-        } = &mut *self.state;
-        let partitions = &mut scratch.partitions;
-        bond_wrenches(bonds, &particles.poses, partitions, &mut particles.wrenches);
+        set_bond_wrenches(self.state);
+        let wrenches = &self.state.particles.wrenches;
         let unknowns = self.degrees_of_freedom.unknowns();
         unknowns
-            .map(|(i, k)| six(&particles.wrenches[i])[k] + fraction * self.load[i][k])
+            .map(|(i, k)| six(&wrenches[i])[k] + fraction * self.load[i][k])
             .collect()
-    }
-
-    /// The largest of forces, N, and of torques over the radii of the particles.
-    fn largest(&self, net: &[f64]) -> f64 {
-        let poses = &self.state.particles.poses;
-        let unknowns = self.degrees_of_freedom.unknowns().zip(net);
-        let sizes = unknowns.map(|((i, k), net)| match k {
-            0..3 => net.abs(),
-            _ => net.abs() / poses[i].radius_m(),
-        });
-        // Not f64::max, which would drop NaN.
-        sizes.fold(0.0, |largest: f64, size| {
-            if size > largest || size.is_nan() {
-                size
-            } else {
-                largest
-            }
-        })
     }
 
     /// Whether the symmetric part of the tangent is positive definite.
@@ -327,6 +290,81 @@ impl Search<'_> {
         let factor = DirectFactor::new(&matrix);
         factor.is_ok_and(|mut factor| factor.compute(&matrix).is_ok())
     }
+}
+
+/// A Newton step with the matrix that was computed last.
+pub(super) struct Step<'a> {
+    pub(super) factor: &'a Factor,
+    /// Fraction to which a solution without factors reduces the residual.
+    pub(super) accuracy: f64,
+    /// Displacements of particles that supports move in this step, by their numbers, ascending: m,
+    /// and rotation vectors in rad. Length 6 each.
+    pub(super) displacements: &'a [(u32, [f64; 6])],
+}
+
+impl Step<'_> {
+    /// Moves a state from these poses by what the net forces on its unknowns, N and N m, ask for.
+    ///
+    /// # Errors
+    /// There is no solution, or it turns a particle far: the poses stay.
+    pub(super) fn take(
+        &self,
+        state: &mut State,
+        degrees_of_freedom: &DegreesOfFreedom,
+        from: &[Pose],
+        net: Vec<f64>,
+    ) -> Result<(), Cause> {
+        let mut by = net;
+        if !self.displacements.is_empty() {
+            let pulled =
+                pulled_by_supports(&state.bonds, degrees_of_freedom, from, self.displacements);
+            by.iter_mut().zip(pulled).for_each(|(by, pull)| *by += pull);
+        }
+        self.factor.solve(&mut by, self.accuracy).map_err(cause)?;
+        let moves = Displacements {
+            by: &by,
+            displacements: self.displacements,
+        };
+        if largest_turn(&moves, degrees_of_freedom) > TURN {
+            return Err(Cause::NoConvergence);
+        }
+        displace(&mut state.particles.poses, from, degrees_of_freedom, &moves);
+        Ok(())
+    }
+}
+
+/// Sets the wrenches of all particles to those of the bonds at the present poses.
+pub(super) fn set_bond_wrenches(state: &mut State) {
+    let State {
+        bonds,
+        particles,
+        scratch,
+        ..
+    } = state;
+    let partitions = &mut scratch.partitions;
+    bond_wrenches(bonds, &particles.poses, partitions, &mut particles.wrenches);
+}
+
+/// The largest of net forces on the unknowns, N, and of net torques over the radii of their
+/// particles.
+pub(super) fn largest_net_n(
+    degrees_of_freedom: &DegreesOfFreedom,
+    poses: &[Pose],
+    net: &[f64],
+) -> f64 {
+    let unknowns = degrees_of_freedom.unknowns().zip(net);
+    let sizes = unknowns.map(|((i, k), net)| match k {
+        0..3 => net.abs(),
+        _ => net.abs() / poses[i].radius_m(),
+    });
+    // Not f64::max, which would drop NaN.
+    sizes.fold(0.0, |largest: f64, size| {
+        if size > largest || size.is_nan() {
+            size
+        } else {
+            largest
+        }
+    })
 }
 
 /// The reason for which there is no solution of a linear system.

@@ -6,15 +6,15 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::contacts::{MovingWalls, WallForce, add_contacts, wall_forces};
 use super::degrees_of_freedom::DegreesOfFreedom;
-use super::displacements::{Displacements, displace, largest_turn};
 use super::factor::Factor;
-use super::matrix::{Matrix, pulled_by_supports};
-use super::newton::{Cause, Equilibrium, cause, largest_bond_force_n, six};
+use super::matrix::Matrix;
+use super::newton::{
+    Cause, Equilibrium, Step, cause, largest_bond_force_n, largest_net_n, set_bond_wrenches, six,
+};
 use super::seat::seat;
 use crate::laboratory::record::{Loading, Row};
 use crate::physics::rigid::turn;
 use crate::plan::test_setup::Setup;
-use crate::stages::bonds::bond_wrenches;
 use crate::state::State;
 use crate::state::particles::Pose;
 
@@ -37,8 +37,6 @@ const ACCURACY: f64 = 1e-3;
 const MOST_EXTRAPOLATED: f64 = 4.0;
 /// Steps of the travel below this fraction of the one before do not change the direction.
 const SHORT: f64 = 0.5;
-/// Largest rotation of a particle in a Newton step, rad.
-const TURN: f64 = 0.5;
 /// Stiffness of the springs that keep a body from drifting, all together, over the mean stiffness
 /// of its bonds: walls without friction leave it free to slide.
 const GROUND: f64 = 1e-5;
@@ -256,8 +254,9 @@ impl<'a> Press<'a> {
         let mut before_n = f64::INFINITY;
         for _ in 0..STEPS {
             let contacts = wall_forces(self.state);
-            let (mut by, load_n) = self.net(&contacts);
-            let residual_n = self.largest_n(&by);
+            let (net, load_n) = self.net(&contacts);
+            let poses = &self.state.particles.poses;
+            let residual_n = largest_net_n(&self.degrees_of_freedom, poses, &net);
             if !residual_n.is_finite() {
                 return Err(Cause::NoConvergence);
             }
@@ -271,28 +270,14 @@ impl<'a> Press<'a> {
             }
             before_n = if pulls { f64::INFINITY } else { residual_n };
             self.take_tangent(&contacts)?;
-            if pulls {
-                let poses = &self.state.particles.poses;
-                let pulled =
-                    pulled_by_supports(&self.state.bonds, &self.degrees_of_freedom, poses, &pull);
-                by.iter_mut().zip(pulled).for_each(|(by, pull)| *by += pull);
-            }
-            self.factor.solve(&mut by, ACCURACY).map_err(cause)?;
-            self.newton_steps += 1;
-            let moves = Displacements {
-                by: &by,
+            let step = Step {
+                factor: &self.factor,
+                accuracy: ACCURACY,
                 displacements: if pulls { &pull } else { &[] },
             };
-            if largest_turn(&moves, &self.degrees_of_freedom) > TURN {
-                return Err(Cause::NoConvergence);
-            }
             let poses = self.state.particles.poses.clone();
-            displace(
-                &mut self.state.particles.poses,
-                &poses,
-                &self.degrees_of_freedom,
-                &moves,
-            );
+            step.take(self.state, &self.degrees_of_freedom, &poses, net)?;
+            self.newton_steps += 1;
             pulls = false;
         }
         Err(Cause::NoConvergence)
@@ -334,14 +319,8 @@ impl<'a> Press<'a> {
     /// Net forces on the unknowns, N and N m, and the largest force of a wall or a grip on a
     /// particle, N.
     fn net(&mut self, contacts: &[WallForce]) -> (Vec<f64>, f64) {
-        let State {
-            bonds,
-            particles,
-            scratch,
-            ..
-        } = &mut *self.state;
-        let partitions = &mut scratch.partitions;
-        bond_wrenches(bonds, &particles.poses, partitions, &mut particles.wrenches);
+        set_bond_wrenches(self.state);
+        let particles = &self.state.particles;
         let mut forces: Vec<[f64; 6]> = particles.wrenches.iter().map(six).collect();
         let grips = self.gripped.iter();
         let gripped_n = grips.map(|(particle, _)| {
@@ -379,20 +358,6 @@ impl<'a> Press<'a> {
             bond_force_n: largest_bond_force_n(self.state),
             stable: true,
         }
-    }
-
-    /// The largest of net forces, N, and of net torques over the radii of the particles.
-    fn largest_n(&self, net: &[f64]) -> f64 {
-        let poses = &self.state.particles.poses;
-        let unknowns = self.degrees_of_freedom.unknowns().zip(net);
-        let sizes = unknowns.map(|((i, k), net)| match k {
-            0..3 => net.abs(),
-            _ => net.abs() / poses[i].radius_m(),
-        });
-        sizes.fold(
-            0.0,
-            |largest: f64, size| if size <= largest { largest } else { size },
-        )
     }
 
     /// Travel, forces and deflection at the present equilibrium.
