@@ -456,6 +456,11 @@ pub fn show_quantity(value: f64, unit: &str) -> String {
         "Pa" if size >= 1e3 => (1e-3, "kPa"),
         "N" if size >= 1e4 => (1e-3, "kN"),
         "N/m" if size >= 1e4 => (1e-3, "kN/m"),
+        _ if size == 0.0 => (1.0, unit),
+        "s" if size < 1e-3 => (1e6, "us"),
+        "s" if size < 1.0 => (1e3, "ms"),
+        "kg" if size < 1e-3 => (1e6, "mg"),
+        "kg" if size < 1.0 => (1e3, "g"),
         unit => (1.0, unit),
     };
     format!("{} {unit}", significant(factor * value, 4))

@@ -55,6 +55,54 @@ pub fn of_fragment(id: u32, fraction: f64) -> [u8; 3] {
     mixed(of_cluster(id), of_clump(id), 0.75 * calm * calm)
 }
 
+/// A fragment in the history of a run, whose number is its place in the list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Piece {
+    /// The fragment from which it broke off, which has a smaller number.
+    pub parent: Option<u32>,
+    /// Number of its particles.
+    pub particles: u32,
+}
+
+/// The colour of each fragment of a run. The largest part of a broken one keeps its colour, so that
+/// a body that loses a crumb does not flicker. Red, green, blue.
+pub fn of_pieces(pieces: &[Piece]) -> Vec<[u8; 3]> {
+    let mut heirs: Vec<Option<usize>> = vec![None; pieces.len()];
+    for (id, piece) in pieces.iter().enumerate() {
+        let Some(heir) = (piece.parent).and_then(|parent| heirs.get_mut(parent as usize)) else {
+            continue;
+        };
+        if heir.is_none_or(|heir| pieces[heir].particles < piece.particles) {
+            *heir = Some(id);
+        }
+    }
+    // Number of the colour, and number of particles of the original body. A parent precedes its
+    // fragments.
+    let mut known: Vec<(u32, u32)> = Vec::with_capacity(pieces.len());
+    for (id, piece) in pieces.iter().enumerate() {
+        let parent = piece.parent.map(|parent| parent as usize);
+        let of_parent = parent.and_then(|parent| known.get(parent)).copied();
+        let is_heir = parent.is_some_and(|parent| heirs.get(parent) == Some(&Some(id)));
+        known.push(match of_parent {
+            Some((number, whole)) if is_heir => (number, whole),
+            Some((_, whole)) => (id as u32, whole),
+            None => (id as u32, piece.particles),
+        });
+    }
+    let all = pieces.iter().zip(known);
+    all.map(|(piece, (number, whole))| of_piece(number, piece.particles, whole))
+        .collect()
+}
+
+/// The colour of a fragment with this number of the particles of its body. Red, green, blue.
+pub fn of_piece(number: u32, particles: u32, whole: u32) -> [u8; 3] {
+    if particles == 1 {
+        SINGLE
+    } else {
+        of_fragment(number, f64::from(particles) / f64::from(whole.max(1)))
+    }
+}
+
 fn pick(palette: &[[u8; 3]; 7], id: u32) -> [u8; 3] {
     // Digit sums, so that equal steps do not always give the same colour.
     let colour = palette[digit_sum(id, 7) as usize % 7];

@@ -6,13 +6,7 @@ use crate::svg::Svg;
 use crate::text::shown;
 
 /// The common style of all pages.
-const STYLE: &str = "body{font-family:Helvetica,Arial,sans-serif;color:#222;background:#fff;max-width:860px;\
-margin:2em auto;padding:0 1em;line-height:1.4}\
-table{border-collapse:collapse;margin:.6em 0 1.6em;font-size:14px}\
-td,th{padding:.2em 1em .2em 0;text-align:left;border-bottom:1px solid #e4e4e4;vertical-align:top}\
-td.n,th.n{text-align:right}tr.bad td{color:#a33}.wide{overflow-x:auto}\
-svg{display:block;max-width:100%;height:auto;margin:1em 0}h2{margin-top:1.6em}\
-p.small{color:#555;font-size:14px}";
+const STYLE: &str = include_str!("page.css");
 
 /// A page, from its title downwards.
 #[derive(Debug, Clone)]
@@ -111,6 +105,60 @@ impl Page {
         }
     }
 
+    /// Adds whether the result can be trusted, with the reasons for doubt.
+    pub fn verdict(&mut self, headline: &str, is_sound: bool, warnings: &[String]) {
+        let class = if is_sound {
+            "verdict sound"
+        } else {
+            "verdict doubtful"
+        };
+        self.content.push(html! {
+            div class=(class) {
+                p { strong { (shown(headline)) } }
+                @if !warnings.is_empty() {
+                    ul { @for warning in warnings { li { (shown(warning)) } } }
+                }
+            }
+        });
+    }
+
+    /// Adds a text of many lines that opens on demand.
+    pub fn details(&mut self, title: &str, text: &str) {
+        let lines: Vec<String> = text.lines().map(shown).collect();
+        self.content.push(html! {
+            details { summary { (shown(title)) } pre { (lines.join("\n")) } }
+        });
+    }
+
+    /// Adds named fractions as bars, each with its text.
+    pub fn bars(&mut self, bars: &[(String, f64, String)]) {
+        self.content.push(html! {
+            table class="bars" {
+                @for (name, fraction, text) in bars {
+                    tr {
+                        td { (shown(name)) }
+                        td class="n" { (shown(text)) }
+                        td class="bar" {
+                            span style={ "width:" (format!("{:.1}", 100.0 * fraction)) "%" } {}
+                        }
+                    }
+                }
+            }
+        });
+    }
+
+    /// Adds drawings, side by side where there is room: texts of SVG files that this program wrote.
+    pub fn gallery(&mut self, files: &[String]) {
+        self.content.push(html! {
+            div class="gallery" { @for file in files { (PreEscaped(file)) } }
+        });
+    }
+
+    /// Adds a part of a page as it stands.
+    pub fn part(&mut self, part: Markup) {
+        self.content.push(part);
+    }
+
     /// Adds a plot or a map.
     pub fn figure(&mut self, svg: &Svg) {
         self.content.push(PreEscaped(svg.element().to_owned()));
@@ -146,6 +194,7 @@ impl Page {
             html lang="en" {
                 head {
                     meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
                     title { (self.title) }
                     style { (PreEscaped(STYLE)) }
                 }

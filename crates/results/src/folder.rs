@@ -22,7 +22,7 @@ const EVENTS: &str = "events.csv";
 const FRAGMENTS: &str = "fragments.csv";
 const FRAGMENT_TREE: &str = "fragment-tree.csv";
 const SUMMARY: &str = "summary.json";
-const TEST_PAGE: &str = "test.html";
+const REPORT: &str = "report.html";
 const TEST_CURVE: &str = "force-displacement.csv";
 const CHECKPOINT: &str = "checkpoint.dem";
 const ENDED: &str = ".ended.json";
@@ -35,7 +35,7 @@ const SINGLE_FILES: [&str; 12] = [
     FRAGMENTS,
     FRAGMENT_TREE,
     SUMMARY,
-    TEST_PAGE,
+    REPORT,
     TEST_CURVE,
     FILM_STRIP,
     FILM,
@@ -182,14 +182,6 @@ impl ResultsFolder {
         self.path.join(PLOTS).join(format!("{name}.svg"))
     }
 
-    /// Writes the page of a laboratory test to `test.html`, replacing an earlier one.
-    ///
-    /// # Errors
-    /// Those of [`ResultsFolder::write_plot`].
-    pub fn write_test_page(&self, html: &str) -> Result<()> {
-        write_file(&self.test_page(), |out| out.write_all(html.as_bytes()))
-    }
-
     /// Writes the curve of a laboratory test to `force-displacement.csv`, replacing an earlier one.
     ///
     /// # Errors
@@ -198,9 +190,9 @@ impl ResultsFolder {
         write_file(&self.test_curve(), |out| out.write_all(csv.as_bytes()))
     }
 
-    /// The page of a laboratory test: `test.html`.
-    pub fn test_page(&self) -> PathBuf {
-        self.path.join(TEST_PAGE)
+    /// The page of the run: `report.html`.
+    pub fn report(&self) -> PathBuf {
+        self.path.join(REPORT)
     }
 
     /// The curve of a laboratory test: `force-displacement.csv`.

@@ -4,6 +4,7 @@
 //! tables grow by complete rows. A run that was interrupted and continued writes the same bytes as
 //! one that was not.
 
+pub mod arrays;
 pub mod checkpoint;
 pub(crate) mod events;
 pub mod folder;
@@ -15,6 +16,7 @@ pub(crate) mod plot_file;
 pub(crate) mod series;
 pub(crate) mod summary;
 
+pub use arrays::{Arrays, read_arrays};
 pub use events::{Event, EventFile};
 pub use folder::{Existing, ResultsFolder};
 pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};

@@ -17,9 +17,12 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 use dem_io::body::{body_summary, read_body};
 use dem_io::diagnostic::Kind;
 use dem_io::program::{Shell, print_completions, print_man_page};
-use dem_io::safe_write::{write_standard_json, write_standard_output, write_visible_json};
+use dem_io::safe_write::{
+    write_file, write_standard_json, write_standard_output, write_visible_json,
+};
 use dem_io::text::visible;
-use dem_io::{Body, Diagnostic, Result};
+use dem_io::{Body, Diagnostic, Result, read_input};
+use dem_report::report;
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::folder::refuse_inputs_among_results;
 use dem_results::{Existing, ResultsFolder, write_json};
@@ -91,6 +94,11 @@ enum Command {
                       dem-run calibrate drop.toml --free bonds.cake.damping.damping_ratio=rebound:0.4"
     )]
     Calibrate(Box<calibrate::CalibrateArguments>),
+    /// Write the page of a finished run again: verdict, view in three dimensions, results, curves
+    Report {
+        /// The folder of the run
+        folder: PathBuf,
+    },
     /// Parameter study: run a scene with many settings, and compare error and run time
     #[command(
         after_help = "A study names a scene, what varies, what is measured and what it is compared with. Every run is a separate process.\n\
@@ -184,6 +192,7 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Lab(arguments)) => lab::lab(arguments),
         Some(Command::Calibrate(arguments)) => calibrate::calibrate(arguments, interrupt),
+        Some(Command::Report { folder }) => write_report(folder),
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),
         Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
@@ -198,6 +207,16 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
             body_information(&arguments.run.scene)
         }
     }
+}
+
+/// Writes `report.html` of a finished run.
+fn write_report(folder: &Path) -> Result<()> {
+    let summary = folder.join("summary.json");
+    let summary = read_input(&summary, "the summary of a run")?;
+    let page = report(folder, &String::from_utf8_lossy(&summary))?;
+    let target = folder.join("report.html");
+    write_file(&target, |out| out.write_all(page.as_bytes()))?;
+    write_standard_output(|out| writeln!(out, "{}", visible(&target.display().to_string())))
 }
 
 fn in_pool(wanted: Option<usize>, work: impl FnOnce(usize) -> Result<()> + Send) -> Result<()> {

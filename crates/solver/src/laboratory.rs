@@ -6,7 +6,7 @@
 pub(crate) mod arrange;
 pub mod crack;
 pub mod evaluate;
-pub mod page;
+pub mod files;
 pub mod record;
 mod text;
 pub(crate) mod watch;

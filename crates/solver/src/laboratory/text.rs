@@ -5,7 +5,7 @@ use std::fmt;
 use dem_io::units::{show_quantity, significant};
 
 use super::evaluate::{Figure, STIFFNESS, TestResult};
-use super::page::percent;
+use super::files::percent;
 
 /// Smallest change at half the rate that is reported.
 const MUCH: f64 = 0.02;

@@ -6,7 +6,7 @@ use dem_scene::{Scene, Test};
 
 use super::crack::{CrackPicture, Sphere};
 use super::evaluate::{TestInput, TestResult, evaluate};
-use super::page::{TestFiles, write_test};
+use super::files::{TestFiles, write_test};
 use super::record::{Loading, Record};
 use crate::plan::Plan;
 use crate::plan::test_setup::Setup;

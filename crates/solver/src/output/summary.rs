@@ -118,7 +118,10 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resumed_with: Option<String>,
     /// Result of the scene's laboratory test.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        serialize_with = "with_sentences"
+    )]
     pub test: Option<TestResult>,
     /// Data on the equilibrium of a static run.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -534,6 +537,21 @@ impl fmt::Display for Summary {
         writeln!(f, "inactive     {}", self.inactive_stages.join(", "))?;
         self.write_verdict(f)
     }
+}
+
+/// A test with its sentences, each after its name.
+fn with_sentences<S: Serializer>(test: &Option<TestResult>, to: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Said<'a> {
+        #[serde(flatten)]
+        test: &'a TestResult,
+        sentences: Vec<(String, String)>,
+    }
+    let said = test.as_ref().map(|test| Said {
+        test,
+        sentences: test.sentences(),
+    });
+    said.serialize(to)
 }
 
 fn by_name<S: Serializer>(measures: &[Measured], serializer: S) -> Result<S::Ok, S::Error> {

@@ -44,7 +44,9 @@ impl Run<'_> {
             });
         };
         if ended.problem.is_some() {
-            write_json(&folder.summary(), &summary)?;
+            let end = End::of(&summary)?;
+            end.write_page(folder)?;
+            end.write_summary(folder)?;
         } else {
             self.write_end(&summary)?;
         }

@@ -3,6 +3,7 @@
 
 use dem_io::safe_write::write_file;
 use dem_io::{Diagnostic, Result};
+use dem_report::report;
 use dem_results::ResultsFolder;
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -20,8 +21,8 @@ use crate::plan::Plan;
 use crate::state::State;
 use crate::state::clusters::fragments as fragments_of;
 
-/// Data that a finished run leaves next to its last checkpoint, before it writes plots, film and
-/// summary.
+/// Data that a finished run leaves next to its last checkpoint, before it writes plots, film, page
+/// and summary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct End {
     /// `summary.json`.
@@ -39,7 +40,7 @@ impl End {
         })
     }
 
-    /// Writes plots, fragments and film of a run that ends in this state, and its summary last: if
+    /// Writes plots, fragments, film and page of a run that ends in this state, and its summary last: if
     /// the summary exists, all files do.
     ///
     /// # Errors
@@ -60,6 +61,24 @@ impl End {
         if let Some(pictures) = pictures {
             pictures.finish()?;
         }
+        self.write_page(folder)?;
+        self.write_summary(folder)
+    }
+
+    /// Writes `report.html` from the other files of the run.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn write_page(&self, folder: &ResultsFolder) -> Result<()> {
+        let page = report(folder.path(), &self.summary)?;
+        write_file(&folder.report(), |out| out.write_all(page.as_bytes()))
+    }
+
+    /// Writes `summary.json`.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub(super) fn write_summary(&self, folder: &ResultsFolder) -> Result<()> {
         write_file(&folder.summary(), |out| {
             out.write_all(self.summary.as_bytes())
         })
@@ -143,7 +162,7 @@ fn missing(
     has_test: bool,
 ) -> Vec<String> {
     let summary = std::fs::read(folder.summary()).unwrap_or_default();
-    let mut wanted = Vec::new();
+    let mut wanted = vec![folder.report()];
     if has_pictures {
         wanted.extend([folder.film(), folder.film_strip()]);
     }
@@ -151,7 +170,7 @@ fn missing(
         wanted.push(folder.fragment_tree());
     }
     if has_test {
-        wanted.extend([folder.test_page(), folder.test_curve()]);
+        wanted.push(folder.test_curve());
     }
     wanted.extend(
         plots_of_every_run(probes)

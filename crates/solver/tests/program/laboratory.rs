@@ -100,17 +100,17 @@ fn a_bar_that_is_pulled_has_the_modulus_and_the_strength_of_its_bonds() {
         "{changes:?}"
     );
     // The test is also on the page.
-    let page = fs::read_to_string(bench.path("out/test.html")).unwrap();
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
     for part in [
-        "<h1>tension</h1>",
+        ": tension</h1>",
         "<td>failure force</td>",
         "<svg ",
-        "half the rate",
+        "half the rate</h2>",
         "</html>",
     ] {
         assert!(page.contains(part), "{part}");
     }
-    assert_eq!(page.matches("<svg ").count(), 2);
+    assert!(page.matches("<svg ").count() >= 2);
     assert!(!page.contains("src="), "the page needs other files");
     for name in ["force-displacement.svg", "crack.svg"] {
         assert!(bench.path("out/plots").join(name).is_file(), "{name}");

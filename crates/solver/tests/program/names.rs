@@ -121,7 +121,7 @@ fn of_a_test_are_shown_on_its_page() {
     let said = plain("run", &output);
     assert!(output.status.success(), "{said}");
     assert!(assert_pages_plain(&bench.path("out")) > 2);
-    let page = fs::read_to_string(bench.path("out/test.html")).unwrap();
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
     assert!(
         page.contains("\\u{1b}[31mred\\u{a}\\u{9b}2J\\u{202e}\\u{2066}&lt;script&gt;"),
         "{page}"

@@ -28,6 +28,7 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
             "frames",
             "frames.pvd",
             "plots",
+            "report.html",
             "series.csv",
             "summary.json"
         ]

@@ -310,7 +310,7 @@ fn what_is_missing_at_the_end_is_written() {
         ("rest.toml", &["plots/energy.svg"]),
         (
             "tension.toml",
-            &["test.html", "force-displacement.csv", "summary.json"],
+            &["report.html", "force-displacement.csv", "summary.json"],
         ),
     ] {
         let bench = Bench::new();

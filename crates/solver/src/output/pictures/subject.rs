@@ -1,7 +1,7 @@
 //! The visible objects of a state: its particles, coloured by their fragment or on a scale, and its
 //! walls.
 
-use dem_pictures::colours::{SINGLE, of_fragment};
+use dem_pictures::colours::{Piece, SINGLE, of_piece, of_pieces};
 use dem_pictures::surface::HalfSpace;
 use dem_pictures::{Ball, Surface};
 
@@ -77,35 +77,13 @@ pub(super) fn finite(wall: &Wall) -> Option<Surface> {
     Some(in_its_frame.moved(&|point_m| wall.frame.to_space(point_m)))
 }
 
-/// The colour of each cluster. The largest fragment of a broken one keeps its colour, so that a
-/// body that loses a crumb does not flicker.
+/// The colour of each cluster.
 pub fn of_clusters(history: &[Cluster]) -> Vec<[u8; 3]> {
-    let mut heirs: Vec<Option<usize>> = vec![None; history.len()];
-    for (id, cluster) in history.iter().enumerate() {
-        let Some(heir) = (cluster.parent).and_then(|parent| heirs.get_mut(parent as usize)) else {
-            continue;
-        };
-        if heir.is_none_or(|heir| history[heir].particles < cluster.particles) {
-            *heir = Some(id);
-        }
-    }
-    // Number of the colour, and number of particles of the original body. A parent precedes its
-    // fragments.
-    let mut known: Vec<(u32, u32)> = Vec::with_capacity(history.len());
-    for (id, cluster) in history.iter().enumerate() {
-        let parent = cluster.parent.map(|parent| parent as usize);
-        let of_parent = parent.and_then(|parent| known.get(parent)).copied();
-        let is_heir = parent.is_some_and(|parent| heirs[parent] == Some(id));
-        known.push(match of_parent {
-            Some((number, whole)) if is_heir => (number, whole),
-            Some((_, whole)) => (id as u32, whole),
-            None => (id as u32, cluster.particles),
-        });
-    }
-    let pieces = history.iter().zip(known);
-    pieces
-        .map(|(cluster, (number, whole))| colour(number, cluster.particles, whole))
-        .collect()
+    let piece = |cluster: &Cluster| Piece {
+        parent: cluster.parent,
+        particles: cluster.particles,
+    };
+    of_pieces(&history.iter().map(piece).collect::<Vec<_>>())
 }
 
 /// The body of each particle, and the colour of each body.
@@ -121,15 +99,6 @@ pub fn by_body(particles: usize, bodies: &[PlacedBody]) -> (Vec<u32>, Vec<[u8; 3
     let count = |body: &PlacedBody| body.particles.len() as u32;
     let colours = (0..)
         .zip(bodies)
-        .map(|(number, body)| colour(number, count(body), count(body)));
+        .map(|(number, body)| of_piece(number, count(body), count(body)));
     (of_particle, colours.collect())
-}
-
-/// The colour of a fragment with this number of the particles of its body.
-fn colour(number: u32, particles: u32, whole: u32) -> [u8; 3] {
-    if particles == 1 {
-        SINGLE
-    } else {
-        of_fragment(number, f64::from(particles) / f64::from(whole.max(1)))
-    }
 }

@@ -1,10 +1,9 @@
-//! Output of a test: its curve, the picture of the crack, and a page with both and all its numbers.
+//! Output of a test: its curve, as a table and as a plot, and the picture of the crack.
 
 use std::fmt::Write;
 
 use dem_io::Result;
-use dem_io::units::show_quantity;
-use dem_plots::{Axis, Column, Line, Page, Plot, Svg, Table};
+use dem_plots::{Axis, Line, Plot};
 use dem_results::ResultsFolder;
 use dem_scene::Test;
 
@@ -29,8 +28,7 @@ pub struct TestFiles<'a> {
     pub picture: CrackPicture<'a>,
 }
 
-/// Writes `plots/force-displacement.svg`, `plots/crack.svg`, `force-displacement.csv` and
-/// `test.html`.
+/// Writes `plots/force-displacement.svg`, `plots/crack.svg` and `force-displacement.csv`.
 ///
 /// # Errors
 /// Those of the files.
@@ -41,8 +39,7 @@ pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Resul
     let crack = crack_map(&files.picture).svg();
     folder.write_plot("force-displacement", &curve.file())?;
     folder.write_plot("crack", &crack.file())?;
-    folder.write_test_curve(&curve_csv(files.record, play_m(&rows)))?;
-    folder.write_test_page(&page(files, &curve, &crack))
+    folder.write_test_curve(&curve_csv(files.record, play_m(&rows)))
 }
 
 /// The first line of `force-displacement.csv`.
@@ -133,66 +130,4 @@ fn named<'a>(result: &'a TestResult, name: &str) -> Option<&'a Figure> {
 /// A fraction as a percentage with its sign.
 pub fn percent(fraction: f64) -> String {
     format!("{:+.1} %", 100.0 * fraction)
-}
-
-/// Everything on one page that needs no other file.
-fn page(files: &TestFiles<'_>, curve: &Svg, crack: &Svg) -> String {
-    let result = files.result;
-    let mut page = Page::new(&result.kind.replace('-', " "));
-    page.paragraph(files.scene);
-    add_figures(&mut page, "Results", &result.figures);
-    let sentences = result.sentences().into_iter();
-    let sentences: Vec<String> = sentences
-        .map(|(name, text)| format!("{name}: {text}"))
-        .collect();
-    page.list(&sentences);
-    page.figure(curve);
-    page.figure(crack);
-    add_figures(&mut page, "Calibration", &result.calibration);
-    add_figures(&mut page, "Dimensions", &result.dimensions);
-    if !result.half_the_rate_changes.is_empty() {
-        page.heading("Rate");
-        page.paragraph("The same test at half the rate, against twice the rate, changes");
-        let changes = result.half_the_rate_changes.iter();
-        page.table(&Table {
-            columns: vec![Column::text(""), Column::number("")],
-            rows: changes
-                .map(|figure| vec![figure.name.clone(), percent(figure.value)].into())
-                .collect(),
-        });
-    }
-    page.html()
-}
-
-fn add_figures(page: &mut Page, title: &str, figures: &[Figure]) {
-    if figures.is_empty() {
-        return;
-    }
-    let with_theory = figures.iter().any(|figure| figure.theory.is_some());
-    let names = if with_theory {
-        &["measured", "theory", "error"][..]
-    } else {
-        &[""]
-    };
-    let mut columns = vec![Column::text("")];
-    columns.extend(names.iter().map(|name| Column::number(name)));
-    let cells = |figure: &Figure| {
-        let mut cells = vec![
-            figure.name.clone(),
-            show_quantity(figure.value, &figure.unit),
-        ];
-        if with_theory {
-            let theory = figure
-                .theory
-                .map(|value| show_quantity(value, &figure.unit));
-            let error = figure.error.map(percent);
-            cells.extend([theory, error].map(Option::unwrap_or_default));
-        }
-        cells.into()
-    };
-    page.heading(title);
-    page.table(&Table {
-        columns,
-        rows: figures.iter().map(cells).collect(),
-    });
 }

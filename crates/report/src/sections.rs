@@ -1,0 +1,93 @@
+//! The sections of the page.
+
+mod inputs;
+mod results;
+mod time;
+
+use dem_io::Result;
+use dem_io::units::{show_quantity, significant};
+use dem_plots::Page;
+use serde_json::Value;
+
+use crate::folder::Folder;
+
+pub(crate) use inputs::add_inputs;
+pub(crate) use results::{add_results, add_test};
+pub(crate) use time::add_time;
+
+/// Plots that come first, in this order.
+const FIRST_PLOTS: [&str; 6] = [
+    "force-displacement",
+    "crack",
+    "fragment_sizes",
+    "fragment_count",
+    "broken_bonds",
+    "energy",
+];
+
+/// Whether the result can be trusted, and how the run ended.
+pub(crate) fn add_verdict(page: &mut Page, summary: &Value) {
+    let mut warnings = texts(&summary["verdict"]["warnings"]);
+    if let (true, Some(problem)) = (warnings.is_empty(), summary["problem"].as_str()) {
+        // A run that failed at its start has no verdict.
+        warnings.push(problem.to_owned());
+    }
+    let is_sound = summary["verdict"]["sound"] == true;
+    let headline = if is_sound {
+        "Checks passed, no warnings.".to_owned()
+    } else {
+        format!("Doubtful: {}.", counted(warnings.len(), "warning"))
+    };
+    page.verdict(&headline, is_sound, &warnings);
+    if !summary["steps"].is_number() {
+        return;
+    }
+    let quantity = |name: &str, unit: &str| show_quantity(number(&summary[name]), unit);
+    let mut ended = format!(
+        "{} simulated in {} on {}, ended by {}; {}.",
+        quantity("simulated_s", "s"),
+        quantity("wall_s", "s"),
+        counted(number(&summary["threads"]) as usize, "thread"),
+        text(&summary["ended_by"]),
+        text(&summary["program"]),
+    );
+    if let Some(notes) = Some(texts(&summary["notes"])).filter(|notes| !notes.is_empty()) {
+        ended += &format!(" {}.", notes.join(". "));
+    }
+    page.paragraph(&ended);
+}
+
+/// The plots of the folder.
+///
+/// # Errors
+/// One of them cannot be read (exit code 2).
+pub(crate) fn add_curves(page: &mut Page, folder: &Folder) -> Result<()> {
+    let plots = folder.plots(&FIRST_PLOTS)?;
+    if !plots.is_empty() {
+        page.heading("Curves");
+        page.gallery(&plots);
+    }
+    Ok(())
+}
+
+fn text(value: &Value) -> &str {
+    value.as_str().unwrap_or_default()
+}
+
+fn texts(value: &Value) -> Vec<String> {
+    let all = value.as_array().into_iter().flatten();
+    all.map(|value| text(value).to_owned()).collect()
+}
+
+/// NaN of what is no number.
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+fn percent(fraction: f64) -> String {
+    format!("{} %", significant(100.0 * fraction, 3))
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}

@@ -1,0 +1,147 @@
+//! What the run answers: measures, the laboratory test, breakage, bodies that came and went.
+
+use dem_io::units::{show_quantity, significant};
+use dem_plots::{Column, Page, Table};
+use serde_json::Value;
+
+use super::{number, percent, text};
+use crate::folder::Folder;
+
+/// Results of a laboratory test.
+pub(crate) fn add_test(page: &mut Page, summary: &Value) {
+    let test = &summary["test"];
+    if !test.is_object() {
+        return;
+    }
+    add_figures(page, "Results of the test", &test["results"]);
+    let sentences = test["sentences"].as_array().into_iter().flatten();
+    let sentence = |said: &Value| format!("{}: {}", text(&said[0]), text(&said[1]));
+    page.list(&sentences.map(sentence).collect::<Vec<String>>());
+    add_figures(page, "Calibration", &test["calibration"]);
+    add_figures(page, "Dimensions", &test["dimensions"]);
+    add_figures(
+        page,
+        "Changes at half the rate",
+        &test["changes_at_half_the_rate"],
+    );
+}
+
+/// Named values with their theory, as `[{name, value, unit, theory, error}]`.
+fn add_figures(page: &mut Page, title: &str, figures: &Value) {
+    let Some(figures) = figures.as_array().filter(|figures| !figures.is_empty()) else {
+        return;
+    };
+    let with_theory = figures.iter().any(|figure| figure["theory"].is_number());
+    let mut columns = vec![Column::text(""), Column::number("")];
+    if with_theory {
+        columns = vec![
+            Column::text(""),
+            Column::number("measured"),
+            Column::number("theory"),
+            Column::number("error"),
+        ];
+    }
+    let cells = |figure: &Value| {
+        let unit = text(&figure["unit"]);
+        let shown = |value: &Value| {
+            let value = value.as_f64();
+            value.map_or(String::new(), |value| show_quantity(value, unit))
+        };
+        let mut cells = vec![text(&figure["name"]).to_owned(), shown(&figure["value"])];
+        if with_theory {
+            cells.push(shown(&figure["theory"]));
+            cells.push(figure["error"].as_f64().map_or(String::new(), percent));
+        }
+        cells.into()
+    };
+    page.heading(title);
+    page.table(&Table {
+        rows: figures.iter().map(cells).collect(),
+        columns,
+    });
+}
+
+/// Measures, breakage, and bodies that came and went.
+pub(crate) fn add_results(page: &mut Page, summary: &Value, folder: &Folder) {
+    page.heading("Results");
+    add_measures(page, summary);
+    page.table(&Table {
+        columns: vec![Column::text(""), Column::number("")],
+        rows: facts(summary)
+            .into_iter()
+            .map(|fact| fact.to_vec().into())
+            .collect(),
+    });
+    if let Some(distribution) = folder.text("distribution.csv") {
+        page.details("Fragment sizes (distribution.csv)", &distribution);
+    }
+}
+
+fn add_measures(page: &mut Page, summary: &Value) {
+    let Some(measures) = summary["measures"]
+        .as_object()
+        .filter(|all| !all.is_empty())
+    else {
+        return;
+    };
+    let is_compared = measures
+        .values()
+        .any(|measure| measure["reference"].is_number());
+    let mut columns = vec![Column::text("measure"), Column::number("value")];
+    if is_compared {
+        columns.extend(["reference", "error"].map(Column::number));
+    }
+    let row = |(name, measure): (&String, &Value)| {
+        let unit = text(&measure["unit"]);
+        let shown = |value: &Value| value.as_f64().map(|value| show_quantity(value, unit));
+        let value = shown(&measure["value"]);
+        let missing = || text(&measure["missing"]).to_owned();
+        let mut cells = vec![name.replace('_', " "), value.unwrap_or_else(missing)];
+        if is_compared {
+            cells.push(shown(&measure["reference"]).unwrap_or_default());
+            let error = measure["error"].as_f64();
+            cells.push(error.map_or(String::new(), |error| significant(error, 2)));
+        }
+        cells.into()
+    };
+    let rows = measures.iter().map(row).collect();
+    page.table(&Table { columns, rows });
+}
+
+/// Counts and masses with their names.
+fn facts(summary: &Value) -> Vec<[String; 2]> {
+    let mut facts = Vec::new();
+    let mut add = |name: &str, value: String| facts.push([name.to_owned(), value]);
+    let count = |value: &Value| value.as_u64().unwrap_or(0).to_string();
+    let kilograms = |value: &Value| show_quantity(number(value), "kg");
+    let broken = summary["broken_bonds"].as_u64().unwrap_or(0);
+    add("broken bonds", broken.to_string());
+    for (cause, number) in summary["broken_by_cause"].as_object().into_iter().flatten() {
+        if number.as_u64().is_some_and(|number| number > 0) {
+            add(&format!("by {}", cause.replace('_', " ")), count(number));
+        }
+    }
+    let fragments = &summary["fragments"];
+    if fragments.is_object() {
+        add("fragments", count(&fragments["count"]));
+        let largest = number(&fragments["mass_fraction_of_largest"]);
+        add("mass of the largest over that of all", percent(largest));
+    }
+    let population = &summary["population"];
+    if population.is_object() {
+        let bodies = |name: &str| {
+            let mass = kilograms(&population[format!("{name}_kg")]);
+            format!("{} ({mass})", count(&population[name]))
+        };
+        add("bodies fed", bodies("fed"));
+        add(
+            "clumps replaced by clusters",
+            count(&population["replaced"]),
+        );
+        add("restored to clumps", count(&population["restored"]));
+        add("discharged", bodies("discharged"));
+        let skipped = number(&population["bond_updates_skipped"]);
+        add("bond updates skipped", percent(skipped));
+    }
+    facts
+}

@@ -1,0 +1,7 @@
+//! Tests of the page of a run.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod made_run;
+mod page;
+mod reader;
+mod view;

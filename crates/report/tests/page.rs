@@ -1,0 +1,91 @@
+//! The page says what the summary says.
+
+use serde_json::json;
+
+use super::made_run::{Moment, folder_with, out, page_of, summary};
+
+const MOMENTS: [Moment; 1] = [Moment {
+    time_s: 0.0,
+    particles: 3,
+}];
+
+#[test]
+fn verdict_results_input_and_time_are_there() {
+    let folder = folder_with(&MOMENTS);
+    let page = page_of(&folder, &summary());
+    for text in [
+        "<title>drop</title>",
+        "Checks passed, no warnings.",
+        "20 ms simulated in 1.5 s on 2 threads, ended by end time; dem-run 0.1.0.",
+        "height",
+        "250 mm",
+        "by tension",
+        "seed 7",
+        "Set: run.end_time=0.02.",
+        "cake.vtp",
+        "run.gravity = [0, 0, -9.81] m/s2",
+        "bond forces",
+        "75 %",
+        "0.9 of the largest stable one",
+        "Inactive, at no cost: loads.",
+    ] {
+        assert!(page.contains(text), "{text}");
+    }
+    assert!(!page.contains("by shear"), "no bond broke in shear");
+    assert!(!page.contains("somebody"), "folders are not named");
+}
+
+#[test]
+fn warnings_come_first_and_without_folders() {
+    let folder = folder_with(&MOMENTS);
+    let mut summary = summary();
+    summary["verdict"] = json!({
+        "sound": false,
+        "warnings": ["body 'cake' (/home/somebody/mill/cake.vtp): few particles <across>"],
+    });
+    let page = page_of(&folder, &summary);
+    let warning = "body 'cake' (cake.vtp): few particles &lt;across&gt;";
+    let [warned, view] = [warning, "id=\"view\""].map(|text| page.find(text).expect(text));
+    assert!(warned < view);
+    assert!(page.contains("Doubtful: 1 warning."));
+}
+
+#[test]
+fn a_run_that_failed_has_a_page() {
+    let folder = folder_with(&[]);
+    let failed = json!({
+        "scene": "drop.toml", "program": "dem-run 0.1.0", "ended_by": "failure",
+        "problem": "disk full", "inputs": {"scene": {}, "set": [], "seed": 0},
+    });
+    let page = page_of(&folder, &failed);
+    assert!(page.contains("disk full"));
+    assert!(!page.contains("NaN"), "{page}");
+}
+
+#[test]
+fn names_cannot_break_out_of_the_page() {
+    let folder = folder_with(&MOMENTS);
+    let mut summary = summary();
+    let name = "</script><script>alert(1)</script>";
+    summary["measures"] = json!({name: {"value": 1.0, "unit": name}});
+    summary["scene"] = json!(format!("{name}.toml"));
+    summary["inputs"]["bodies"] = json!({name: {"file": name, "particles": 1, "bonds": 0}});
+    let page = page_of(&folder, &summary);
+    assert!(!page.contains("<script>alert"), "a name became an element");
+}
+
+#[test]
+fn what_is_no_summary_is_refused() {
+    let folder = folder_with(&MOMENTS);
+    for text in ["", "no JSON", "[1, 2"] {
+        let error = dem_report::report(&out(&folder), text).unwrap_err();
+        assert_eq!(error.exit_code(), 2, "{text}");
+        assert!(error.to_string().contains("summary.json"), "{error}");
+    }
+}
+
+#[test]
+fn the_same_folder_gives_the_same_bytes() {
+    let folder = folder_with(&MOMENTS);
+    assert_eq!(page_of(&folder, &summary()), page_of(&folder, &summary()));
+}
