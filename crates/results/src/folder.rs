@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::plot_file::{is_plot_file, write_plot_file};
+use dem_io::body::stored_walls::FIXED_WALLS_FILE;
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::{
     PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
@@ -110,6 +111,16 @@ impl ResultsFolder {
     /// Frame `number`, counted from 0: `frames/frame_000123.vtp`.
     pub fn frame(&self, number: usize) -> PathBuf {
         frame_in(&self.path, number)
+    }
+
+    /// The walls of frame `number`: `frames/walls_000123.vtp`.
+    pub fn walls(&self, number: usize) -> PathBuf {
+        walls_in(&self.path, number)
+    }
+
+    /// The large walls that never move: `frames/walls_fixed.vtp`.
+    pub fn fixed_walls(&self) -> PathBuf {
+        self.path.join(fixed_walls_name())
     }
 
     /// The list of all frames with their times, which ParaView opens: `frames.pvd`.
@@ -243,13 +254,17 @@ impl ResultsFolder {
         write_plot_file(&self.plot(name), svg)
     }
 
-    /// Removes frame `number` and all after it.
+    /// Removes frame `number` and all after it, with their walls; if it is the first, also the walls
+    /// that never move.
     ///
     /// # Errors
     /// No permission (exit code 1).
     pub(super) fn remove_frames_from(&self, number: usize) -> Result<()> {
         self.remove_files(FRAMES, |name| {
-            frame_number(name).is_some_and(|found| found >= number)
+            let is_later = |found: Option<usize>| found.is_some_and(|found| found >= number);
+            is_later(frame_number(name))
+                || is_later(walls_number(name))
+                || (number == 0 && name == FIXED_WALLS_FILE)
         })
     }
 
@@ -284,7 +299,7 @@ impl ResultsFolder {
         // First, so that a partly removed folder is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
         self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
-        self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
+        self.remove_frames_from(0)?;
         self.remove_pictures_from(0)?;
         let plots = self.path.join(PLOTS);
         self.remove_files(PLOTS, |name| {
@@ -334,7 +349,9 @@ pub fn is_locked(path: &Path) -> bool {
 /// folder.
 pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf> {
     let is_ours = |part: &str, name: &str| match part {
-        FRAMES => frame_number(name).is_some(),
+        FRAMES => {
+            frame_number(name).is_some() || walls_number(name).is_some() || name == FIXED_WALLS_FILE
+        }
         PICTURES => picture_number(name).is_some(),
         PLOTS => name.ends_with(".svg"),
         _ => SINGLE_FILES.contains(&name),
@@ -409,14 +426,35 @@ pub fn frame_in(path: &Path, number: usize) -> PathBuf {
     path.join(frame_name(number))
 }
 
+/// The walls of frame `number` of the results folder `path`; [`dem_io::body::read_walls`] reads
+/// them. There is no such file if the scene has no walls.
+pub fn walls_in(path: &Path, number: usize) -> PathBuf {
+    path.join(walls_name(number))
+}
+
 /// The name of a frame in the folder, with `/` on every system, as required by ParaView.
 pub(super) fn frame_name(number: usize) -> String {
     format!("{FRAMES}/frame_{number:06}.vtp")
 }
 
+/// The name of the walls of a frame in the folder.
+pub(super) fn walls_name(number: usize) -> String {
+    format!("{FRAMES}/walls_{number:06}.vtp")
+}
+
+/// The name of the walls that never move in the folder.
+pub(super) fn fixed_walls_name() -> String {
+    format!("{FRAMES}/{FIXED_WALLS_FILE}")
+}
+
 /// 123 of `frame_000123.vtp`.
 fn frame_number(name: &str) -> Option<usize> {
     number_of(name, "frame_", ".vtp", 6)
+}
+
+/// 123 of `walls_000123.vtp`.
+fn walls_number(name: &str) -> Option<usize> {
+    number_of(name, "walls_", ".vtp", 6)
 }
 
 /// 123 of `picture-00123.png`.

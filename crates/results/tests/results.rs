@@ -8,6 +8,7 @@ mod frames;
 mod pictures;
 mod stored_frame;
 mod tables;
+mod walls;
 
 use std::path::{Path, PathBuf};
 

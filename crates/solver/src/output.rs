@@ -8,3 +8,4 @@ pub mod pictures;
 pub(crate) mod plots;
 pub(crate) mod series;
 pub mod summary;
+pub(crate) mod walls;

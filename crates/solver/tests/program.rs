@@ -29,6 +29,7 @@ mod sweep;
 mod threads;
 mod unstable;
 mod verdict;
+mod wall_frames;
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;

@@ -54,6 +54,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
     let ours = [
         "frames/frame_000000.vtp",
         "frames/frame_1000000.vtp",
+        "frames/walls_000000.vtp",
+        "frames/walls_fixed.vtp",
         "frames/.unfinished-x1",
         "frames.pvd",
         "pictures/picture-00000.png",
@@ -70,6 +72,7 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
     ];
     let foreign = [
         "frames/frame_1.vtp",
+        "frames/walls_1.vtp",
         "frames/frame_000001.vtp.bak",
         "frames/view.pvsm",
         "pictures/picture-1.png",

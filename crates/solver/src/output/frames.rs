@@ -6,6 +6,7 @@ use dem_io::Result;
 use dem_io::body::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, RADIUS};
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
+use super::walls::WallOutput;
 use crate::measure::{DynamicUtilisation, dynamic_utilisations, load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
@@ -74,7 +75,12 @@ impl FrameOrder {
     ///
     /// # Errors
     /// Those of the files.
-    pub(crate) fn write(&self, state: &State, files: &mut FrameFiles) -> Result<()> {
+    pub(crate) fn write(
+        &self,
+        state: &State,
+        walls: &WallOutput,
+        files: &mut FrameFiles,
+    ) -> Result<()> {
         let p = &state.particles;
         let motions = synchronous_motions(state);
         let particle = |i: usize| self.particles[i] as usize;
@@ -110,7 +116,7 @@ impl FrameOrder {
             arrays.push(scalars(DENSITY, &density));
             arrays.push(scalars("fragment_mass_kg", &mass));
         }
-        self.append(state, &arrays, files)
+        self.append(state, &arrays, walls, files)
     }
 
     /// Appends the frame with these arrays of the particles and those of the bonds.
@@ -118,6 +124,7 @@ impl FrameOrder {
         &self,
         state: &State,
         particle_arrays: &[NamedArray<'_>],
+        walls: &WallOutput,
         files: &mut FrameFiles,
     ) -> Result<()> {
         let bonds = &state.bonds;
@@ -173,7 +180,7 @@ impl FrameOrder {
             bond_arrays.push(scalars(BOND_LENGTH, &initial_length));
         }
         let poses = &state.particles.poses;
-        files.append(&Frame {
+        let frame = Frame {
             time_s: state.time_s,
             particles: self.particles.len(),
             position_m: &|i| poses[self.particles[i] as usize].place().into(),
@@ -181,7 +188,8 @@ impl FrameOrder {
             bonds: self.bonds.len(),
             ends: &|i| bonds.ends[bond(i)].map(|end| self.place_of[end as usize]),
             bond_arrays: &bond_arrays,
-        })
+        };
+        files.append(&frame, &walls.frame(state), walls.fixed())
     }
 }
 

@@ -9,6 +9,7 @@ use super::pictures::Pictures;
 use super::progress::Progress;
 use crate::measure::Probe;
 use crate::output::frames::FrameOrder;
+use crate::output::walls::WallOutput;
 use crate::run::snapshot::Snapshot;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
@@ -26,6 +27,7 @@ pub(super) struct Files<'a> {
     /// None: nothing can break into fragments.
     pub(super) fragments: Option<FragmentFile>,
     pub(super) order: FrameOrder,
+    pub(super) walls: WallOutput,
 }
 
 impl<'a> Files<'a> {
@@ -33,7 +35,7 @@ impl<'a> Files<'a> {
     pub(super) fn open(
         folder: &'a ResultsFolder,
         fingerprint: u64,
-        order: FrameOrder,
+        (order, walls): (FrameOrder, WallOutput),
         columns: &[String],
         has_fragments: bool,
         continued: Option<&Progress>,
@@ -46,12 +48,12 @@ impl<'a> Files<'a> {
             Some(at) => (
                 SeriesFile::continue_at(&folder.series(), columns, at.series_bytes)?,
                 EventFile::continue_at(&folder.events(), at.events_bytes)?,
-                FrameFiles::continue_at(folder, at.frame_times_s.clone())?,
+                FrameFiles::continue_at(folder, walls.files(), at.frame_times_s.clone())?,
             ),
             None => (
                 SeriesFile::create(&folder.series(), columns)?,
                 EventFile::create(&folder.events())?,
-                FrameFiles::create(folder),
+                FrameFiles::create(folder, walls.files()),
             ),
         };
         Ok(Self {
@@ -63,6 +65,7 @@ impl<'a> Files<'a> {
             pictures: None,
             fragments: fragments.transpose()?,
             order,
+            walls,
         })
     }
 }

@@ -229,7 +229,7 @@ impl Run<'_> {
         };
         if due.frame || rests {
             progress.next_frame = self.schedule.frame_s.map_or(0, |s| next(state, s));
-            files.order.write(state, &mut files.frames)?;
+            files.order.write(state, &files.walls, &mut files.frames)?;
         }
         if let Some(pictures) = &mut files.pictures
             && (due.end || rests || due.picture)
