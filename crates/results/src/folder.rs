@@ -1,7 +1,7 @@
 //! The folder of a run: the names in it, and its permitted previous contents.
 
 use std::fs::{self, File, TryLockError};
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -23,6 +23,9 @@ const EVENTS: &str = "events.csv";
 const FRAGMENTS: &str = "fragments.csv";
 const FRAGMENT_TREE: &str = "fragment-tree.csv";
 const SUMMARY: &str = "summary.json";
+const SCENE: &str = "scene.toml";
+/// The beginning of a scene that a run has written, so that other files are not removed.
+const SCENE_BEGIN: &str = "# Written by dem-run";
 const TEST_PAGE: &str = "test.html";
 const TEST_CURVE: &str = "force-displacement.csv";
 const CHECKPOINT: &str = "checkpoint.dem";
@@ -90,7 +93,10 @@ impl ResultsFolder {
         };
         match existing {
             Existing::Refuse => refuse_unless_empty(path)?,
-            Existing::Replace => folder.remove_results()?,
+            Existing::Replace => {
+                folder.refuse_foreign_scene()?;
+                folder.remove_results()?;
+            }
             Existing::Continue => {
                 // The remains of a killed write.
                 for part in ["", FRAMES, PICTURES, PLOTS] {
@@ -168,6 +174,41 @@ impl ResultsFolder {
     /// Summary: `summary.json`.
     pub fn summary(&self) -> PathBuf {
         self.path.join(SUMMARY)
+    }
+
+    /// The scene as it was run: `scene.toml`.
+    pub fn scene(&self) -> PathBuf {
+        self.path.join(SCENE)
+    }
+
+    /// Writes the scene as it is run to `scene.toml`, after a line that says so. Replaces that of an
+    /// earlier run.
+    ///
+    /// # Errors
+    /// A scene that no run has written is there (exit code 2); no permission, full disk (exit code
+    /// 1).
+    pub fn write_scene(&self, program: &str, text: &str) -> Result<()> {
+        self.refuse_foreign_scene()?;
+        write_file(&self.scene(), |out| {
+            writeln!(
+                out,
+                "{SCENE_BEGIN} ({program}): the scene of this run, with all files and settings that it was given."
+            )?;
+            out.write_all(text.as_bytes())
+        })
+    }
+
+    /// Refuses a folder with a `scene.toml` that no run has written: it would be lost.
+    fn refuse_foreign_scene(&self) -> Result<()> {
+        let path = self.scene();
+        if !path.exists() || is_scene_as_run(&path) {
+            return Ok(());
+        }
+        Err(Diagnostic::input(
+            path.display().to_string(),
+            "the scene of the run would take the place of this file",
+            "rename it, or name another folder with --output",
+        ))
     }
 
     /// The data written at the end of a run, kept until all files are complete: `.ended.json`.
@@ -299,6 +340,8 @@ impl ResultsFolder {
         // First, so that a partly removed folder is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
         self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
+        let is_ours = is_scene_as_run(&self.scene());
+        self.remove_files("", |name| name == SCENE && is_ours)?;
         self.remove_frames_from(0)?;
         self.remove_pictures_from(0)?;
         let plots = self.path.join(PLOTS);
@@ -333,6 +376,13 @@ impl ResultsFolder {
     }
 }
 
+/// True if a run has written the scene in this file.
+fn is_scene_as_run(path: &Path) -> bool {
+    let mut begin = [0; SCENE_BEGIN.len()];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut begin));
+    read.is_ok() && begin == SCENE_BEGIN.as_bytes()
+}
+
 /// True if a run is writing into the folder `path` at this moment. A folder to which no run has
 /// written is not created.
 pub fn is_written_to(path: &Path) -> bool {
@@ -354,7 +404,7 @@ pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf
         }
         PICTURES => picture_number(name).is_some(),
         PLOTS => name.ends_with(".svg"),
-        _ => SINGLE_FILES.contains(&name),
+        _ => SINGLE_FILES.contains(&name) || name == SCENE,
     };
     for part in ["", FRAMES, PICTURES, PLOTS] {
         let Ok(entries) = fs::read_dir(path.join(part)) else {

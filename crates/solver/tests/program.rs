@@ -2,6 +2,7 @@
 //! output.
 
 mod adaptive;
+mod as_run;
 mod bad_bodies;
 mod bad_input;
 mod body_information;

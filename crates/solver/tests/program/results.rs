@@ -28,6 +28,7 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
             "frames",
             "frames.pvd",
             "plots",
+            "scene.toml",
             "series.csv",
             "summary.json"
         ]
@@ -230,6 +231,8 @@ fn frames_have_every_array_at_full_length() {
         assert_eq!(&data[end..], b"\n  </AppendedData>\n</VTKFile>\n");
         for array in [
             "displacement_m",
+            "particle_id",
+            "body_names",
             "velocity_m_s",
             "normal_force_n",
             "utilisation",
