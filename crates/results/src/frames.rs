@@ -1,16 +1,17 @@
 //! Frames of a run for ParaView: one .vtp file each, another with the walls, and one index with
 //! their times, `frames.pvd`.
 //!
-//! Points = particles (Float64, m), lines = bonds, any point and cell data, the time as field data
-//! `TimeValue` (s). For the encoding see [`dem_io::vtk`].
+//! Points = particles (Float64, m), lines = bonds, any point and cell data; the time, `TimeValue`
+//! (s), and the names of the bodies, `body_names`, as field data. For the encoding see [`dem_io::vtk`].
 
 use std::io::{self, Write};
 
 use super::folder::{ResultsFolder, fixed_walls_name, frame_name, walls_name};
 use super::walls::{WallFrame, WallTriangles, write_fixed_walls, write_walls};
+use dem_io::body::stored_frame::{BODY_NAMES, TIME};
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::write_file;
-use dem_io::vtk::{Cells, PolyData, exact, write_number};
+use dem_io::vtk::{Cells, PolyData, exact, write_number, write_texts};
 pub use dem_io::vtk::{NamedArray, Values};
 
 /// The data of a frame. Particles and bonds are given by their indices, from 0.
@@ -18,6 +19,8 @@ pub use dem_io::vtk::{NamedArray, Values};
 pub struct Frame<'a> {
     /// Simulated time, s.
     pub time_s: f64,
+    /// Names of the bodies, by their number in the array `body`.
+    pub body_names: &'a [&'a str],
     /// Number of particles.
     pub particles: usize,
     /// Centre of each particle, m.
@@ -67,7 +70,8 @@ pub fn write_frame(frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
         cell_data: frame.bond_arrays,
     };
     data.write(out, |out| {
-        write_number(out, "Float64", "TimeValue", Some(exact(frame.time_s)))
+        write_number(out, "Float64", TIME, Some(exact(frame.time_s)))?;
+        write_texts(out, BODY_NAMES, frame.body_names)
     })
 }
 

@@ -32,6 +32,7 @@ use crate::state::State;
 use crate::state::clusters::{Clusters, Triggers};
 use crate::state::events::TopologyChange;
 use crate::state::loads::GroupLoad;
+use crate::state::model::BodyName;
 use crate::state::population::{InletProgress, OutletTotals};
 use crate::state::sleep::{Sleep, SleepRule};
 use crate::state::supports::GroupSupport;
@@ -124,6 +125,12 @@ pub fn plan(
     let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
     let enough = 1 + (particles.len() + bonds.len() + to_come.sum::<usize>()) / WORTH_A_THREAD;
     let mut state = State::new(particles, bonds, 1.0, threads.min(enough));
+    state.model.bodies = (scene.bodies.iter())
+        .map(|(name, body)| BodyName {
+            name: name.clone(),
+            material: body.material.clone(),
+        })
+        .collect();
     state.model.gravity_m_s2 = scene.run.gravity_m_s2;
     state.model.particle_damping = scene.run.local_damping;
     if state.model.particle_damping > 0.0 {
@@ -218,7 +225,11 @@ fn place_meetings(
     if !(breaks || counts_pieces || has_clumps || are_needed(scene)) {
         return Ok(());
     }
-    state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
+    let mut clusters = Clusters::new(state.particles.len(), &state.bonds);
+    for body in bodies {
+        clusters.set_body(&body.particles, state.model.body_number(&body.name));
+    }
+    state.clusters = Some(clusters);
     let coming = standing(scene, &state.clumps.templates);
     if !coming.is_empty() {
         let changes = TopologyChange {

@@ -55,6 +55,7 @@ const BOND_ARRAYS: [NamedArray<'static>; 3] = [
 pub(super) fn frame(time_s: f64) -> Frame<'static> {
     Frame {
         time_s,
+        body_names: &["a\"b", "K\u{f6}rper"],
         particles: POSITIONS.len(),
         position_m: &|i| POSITIONS[i],
         particle_arrays: &PARTICLE_ARRAYS,
@@ -202,6 +203,7 @@ fn a_wrong_frame_is_a_fault_with_a_name() {
 fn bytes_of_row(count: usize) -> Vec<u8> {
     let row = Frame {
         time_s: 0.0,
+        body_names: &["a\"b", "K\u{f6}rper"],
         particles: count,
         position_m: &|i| [i as f64, 0.5, -(i as f64)],
         particle_arrays: &[NamedArray {

@@ -19,6 +19,8 @@ pub struct Population {
     /// For each cluster that was a clump, the template of the scene that it comes from, and its
     /// [instance](super::clumps::Clump::instance).
     pub base_of_cluster: BTreeMap<u32, (u32, u32)>,
+    /// The next [id](super::particles::Particles::id) of a particle.
+    pub next_particle_id: u32,
     /// Bodies that came through inlets.
     pub instances: u32,
     /// Clumps that became clusters.

@@ -10,6 +10,7 @@ use super::burst;
 fn clusters(lives: &[(f64, Option<f64>)]) -> Vec<Cluster> {
     let cluster = |&(created_s, ended_s): &(f64, Option<f64>)| Cluster {
         parent: None,
+        body: 0,
         created_s,
         ended_s,
         particles: 1,

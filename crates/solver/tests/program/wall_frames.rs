@@ -154,7 +154,12 @@ fn walls_are_where_the_scene_moves_them() {
 fn forces_are_those_of_the_time_series() {
     for name in ["meeting.toml", "following.toml"] {
         let bench = Bench::new();
-        let often = ["--set", "output.frames=0.1 ms", "--set", "output.series=0.1 ms"];
+        let often = [
+            "--set",
+            "output.frames=0.1 ms",
+            "--set",
+            "output.series=0.1 ms",
+        ];
         bench.good(&good(name), &[&["--output", "out"], &often[..]].concat());
         let series = bench.path("out/series.csv");
         let times = numbers(&series, "time_s");
