@@ -22,6 +22,8 @@ const SERIES: &str = "series.csv";
 const EVENTS: &str = "events.csv";
 const FRAGMENTS: &str = "fragments.csv";
 const FRAGMENT_TREE: &str = "fragment-tree.csv";
+const DISCHARGE: &str = "discharge.csv";
+const DISTRIBUTION: &str = "distribution.csv";
 const SUMMARY: &str = "summary.json";
 const SCENE: &str = "scene.toml";
 /// The beginning of a scene that a run has written, so that other files are not removed.
@@ -32,12 +34,14 @@ const CHECKPOINT: &str = "checkpoint.dem";
 const ENDED: &str = ".ended.json";
 const LOCK: &str = ".lock";
 /// Files of which a run writes one each.
-const SINGLE_FILES: [&str; 12] = [
+const SINGLE_FILES: [&str; 14] = [
     INDEX,
     SERIES,
     EVENTS,
     FRAGMENTS,
     FRAGMENT_TREE,
+    DISCHARGE,
+    DISTRIBUTION,
     SUMMARY,
     TEST_PAGE,
     TEST_CURVE,
@@ -169,6 +173,16 @@ impl ResultsFolder {
     /// The origin of each fragment: `fragment-tree.csv`.
     pub fn fragment_tree(&self) -> PathBuf {
         self.path.join(FRAGMENT_TREE)
+    }
+
+    /// What leaves through outlets: `discharge.csv`.
+    pub fn discharge(&self) -> PathBuf {
+        self.path.join(DISCHARGE)
+    }
+
+    /// The size distribution of all fragments: `distribution.csv`.
+    pub fn distribution(&self) -> PathBuf {
+        self.path.join(DISTRIBUTION)
     }
 
     /// Summary: `summary.json`.

@@ -5,6 +5,7 @@
 //! one that was not.
 
 pub mod checkpoint;
+pub mod discharge;
 pub(crate) mod events;
 pub mod folder;
 pub mod fragments;
@@ -16,6 +17,7 @@ pub(crate) mod series;
 pub(crate) mod summary;
 pub(crate) mod walls;
 
+pub use discharge::{DischargeFile, DischargeRow, DistributionRow, write_distribution};
 pub use events::{Event, EventFile};
 pub use folder::{Existing, ResultsFolder};
 pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};

@@ -2,6 +2,7 @@
 //! same after an interruption.
 
 mod checkpoints;
+mod discharge;
 mod folder;
 mod fragments;
 mod frames;

@@ -9,7 +9,7 @@ pub mod contacts;
 pub mod events;
 pub(crate) mod ledger;
 pub mod loads;
-pub(crate) mod model;
+pub mod model;
 pub mod order;
 pub mod particles;
 pub mod partitions;

@@ -11,6 +11,7 @@ mod calibrate;
 mod check;
 mod command_line;
 mod corpus;
+mod discharge;
 mod disk;
 mod dynamic;
 mod inputs;

@@ -67,6 +67,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
         "events.csv",
         "fragments.csv",
         "fragment-tree.csv",
+        "discharge.csv",
+        "distribution.csv",
         "summary.json",
         "checkpoint.dem",
     ];

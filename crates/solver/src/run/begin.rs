@@ -8,7 +8,7 @@ use dem_io::body::mass::BodyMass;
 use dem_scene::Scene;
 
 use super::events::{change_step, new_step};
-use super::files::Files;
+use super::files::{Files, open_discharge};
 use super::limits::Limits;
 use super::pictures::{Order, Pictures};
 use super::progress::Progress;
@@ -130,6 +130,7 @@ impl<'a> Run<'a> {
                 has_fragments,
                 continued,
             )?;
+            open.discharge = open_discharge(folder, &state, continued)?;
             if let Some(order) = of_pictures {
                 let continued = is_continued.then_some((&state, progress.pictures));
                 open.pictures = Some(Pictures::open(folder, order, continued)?);

@@ -2,7 +2,7 @@
 
 use dem_io::{Diagnostic, Result};
 use dem_results::checkpoint::write_checkpoint;
-use dem_results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
+use dem_results::{DischargeFile, EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
 use dem_scene::Scene;
 
 use super::pictures::Pictures;
@@ -26,6 +26,8 @@ pub(super) struct Files<'a> {
     pub(super) pictures: Option<Pictures>,
     /// None: nothing can break into fragments.
     pub(super) fragments: Option<FragmentFile>,
+    /// The table of what leaves, and the number of its rows. None: there are no outlets.
+    pub(super) discharge: Option<(DischargeFile, usize)>,
     pub(super) order: FrameOrder,
     pub(super) walls: WallOutput,
 }
@@ -64,10 +66,29 @@ impl<'a> Files<'a> {
             frames,
             pictures: None,
             fragments: fragments.transpose()?,
+            discharge: None,
             order,
             walls,
         })
     }
+}
+
+/// The table of what leaves through outlets, new or at the point where the run is `continued` in
+/// this state. None: there are no outlets.
+pub(super) fn open_discharge(
+    folder: &ResultsFolder,
+    state: &State,
+    continued: Option<&Progress>,
+) -> Result<Option<(DischargeFile, usize)>> {
+    if state.model.rules.outlets.is_empty() {
+        return Ok(None);
+    }
+    let path = folder.discharge();
+    let file = match continued {
+        Some(at) => DischargeFile::continue_at(&path, at.discharge_bytes)?,
+        None => DischargeFile::create(&path)?,
+    };
+    Ok(Some((file, state.population.discharged.len())))
 }
 
 /// Writes a checkpoint, and flushes all files that it depends on to the disk.
@@ -88,6 +109,10 @@ pub(super) fn save(
         progress.fragments_bytes = fragments.length_bytes();
     }
     progress.frame_times_s = files.frames.times_s().to_vec();
+    if let Some((discharge, _)) = &files.discharge {
+        discharge.sync()?;
+        progress.discharge_bytes = discharge.length_bytes();
+    }
     if let Some(pictures) = &files.pictures {
         progress.pictures = pictures.taken();
     }

@@ -9,6 +9,7 @@
 //! depends only on the number of their particles and bonds.
 
 pub mod fragments;
+pub mod sizes;
 pub(crate) mod triggers;
 
 use serde::{Deserialize, Serialize};

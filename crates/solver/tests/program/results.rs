@@ -22,6 +22,7 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
             ".ended.json",
             ".lock",
             "checkpoint.dem",
+            "distribution.csv",
             "events.csv",
             "fragment-tree.csv",
             "fragments.csv",

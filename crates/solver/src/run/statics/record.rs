@@ -86,6 +86,7 @@ impl AtRest<'_> {
             largest_overlap: 0.0,
             broken_by_cause: CauseCounts::default(),
             fragments,
+            sizes: None,
             population: None,
             sleep: None,
             steps: state.steps,
