@@ -2,9 +2,10 @@
 //!
 //! The header is text. The arrays follow it as binary numbers (appended raw, little endian), so
 //! that nothing is lost. Each value is computed when it is written, so that no array is held in
-//! memory, and there is one value for every point or line. Points are particles, lines are bonds of
-//! two points each. There are no vertex cells: cell data would have to include them. Connectivity
-//! and offsets are signed: ParaView refuses unsigned ones.
+//! memory, and there is one value for every point or cell. Points are particles and cells lines of
+//! two points, their bonds; or cells are the triangles of walls. There are no vertex cells: cell
+//! data would have to include them. Connectivity and offsets are signed: ParaView refuses unsigned
+//! ones.
 //!
 //! [VTK XML formats](https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html)
 
@@ -18,17 +19,19 @@ use crate::xml::escaped;
 pub struct NamedArray<'a> {
     /// Its name, with the unit if it has one: `velocity_m_s`.
     pub name: &'a str,
-    /// One value for each particle or bond.
+    /// One value for each point or cell.
     pub values: Values<'a>,
 }
 
-/// The values of an array: one number or one vector for each particle or bond, found by its index.
+/// The values of an array: one number or one vector for each point or cell, found by its index.
 #[derive(Clone, Copy)]
 pub enum Values<'a> {
     /// Numbers.
     Scalars(&'a dyn Fn(usize) -> f64),
     /// Vectors of 3 components.
     Vectors(&'a dyn Fn(usize) -> [f64; 3]),
+    /// Vectors of 3 components in single precision.
+    SingleVectors(&'a dyn Fn(usize) -> [f32; 3]),
     /// Counts and indices.
     Counts(&'a dyn Fn(usize) -> u32),
     /// Whole numbers with a sign.
@@ -39,6 +42,7 @@ impl Values<'_> {
     fn kind(&self) -> &'static str {
         match self {
             Self::Scalars(_) | Self::Vectors(_) => "Float64",
+            Self::SingleVectors(_) => "Float32",
             Self::Counts(_) => "UInt32",
             Self::Integers(_) => "Int32",
         }
@@ -49,6 +53,7 @@ impl Values<'_> {
         match self {
             Self::Scalars(_) => 8,
             Self::Vectors(_) => 24,
+            Self::SingleVectors(_) => 12,
             Self::Counts(_) | Self::Integers(_) => 4,
         }
     }
@@ -58,25 +63,80 @@ impl Values<'_> {
         match self {
             Self::Scalars(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
             Self::Vectors(value) => write_array(out, count, |i| value(i).map(f64::to_le_bytes)),
+            Self::SingleVectors(value) => {
+                write_array(out, count, |i| value(i).map(f32::to_le_bytes))
+            }
             Self::Counts(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
             Self::Integers(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
         }
     }
 }
 
-/// Points, lines of two points each, and the data of both.
+/// Cells of a file, all of one kind, found by their index.
+#[derive(Clone, Copy)]
+pub enum Cells<'a> {
+    /// Lines: their number, and the two points of each.
+    Lines(usize, &'a dyn Fn(usize) -> [u32; 2]),
+    /// Triangles: their number, and the three points of each.
+    Triangles(usize, &'a dyn Fn(usize) -> [u32; 3]),
+}
+
+impl Cells<'_> {
+    fn count(&self) -> usize {
+        match self {
+            Self::Lines(count, _) | Self::Triangles(count, _) => *count,
+        }
+    }
+
+    /// Name of their section, type of their numbers, and its bytes. Triangles of a wall are written
+    /// again in each frame: their points are few enough for small numbers.
+    fn section(&self) -> (&'static str, &'static str, u64) {
+        match self {
+            Self::Lines(..) => ("Lines", "Int64", 8),
+            Self::Triangles(..) => ("Polys", "Int32", 4),
+        }
+    }
+
+    /// Number of points of each.
+    fn corners(&self) -> u64 {
+        match self {
+            Self::Lines(..) => 2,
+            Self::Triangles(..) => 3,
+        }
+    }
+
+    /// Writes the points of the cells, and where each cell ends among them: 2, 4, 6, ...
+    fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        match self {
+            Self::Lines(count, points) => {
+                write_array(out, *count, |line| {
+                    points(line).map(|point| i64::from(point).to_le_bytes())
+                })?;
+                write_array(out, *count, |line| [(2 * (line as i64 + 1)).to_le_bytes()])
+            }
+            Self::Triangles(count, points) => {
+                write_array(out, *count, |triangle| {
+                    points(triangle).map(|point| point.cast_signed().to_le_bytes())
+                })?;
+                write_array(out, *count, |triangle| {
+                    [(3 * (triangle as i32 + 1)).to_le_bytes()]
+                })
+            }
+        }
+    }
+}
+
+/// Points, cells, and the data of both.
 pub struct PolyData<'a> {
     /// Number of points.
     pub points: usize,
-    /// Position of each point.
-    pub place: &'a dyn Fn(usize) -> [f64; 3],
-    /// Number of lines.
-    pub lines: usize,
-    /// The two points of each line.
-    pub ends: &'a dyn Fn(usize) -> [u32; 2],
+    /// Position of each point, m: vectors.
+    pub place: Values<'a>,
+    /// Lines or triangles between the points.
+    pub cells: Cells<'a>,
     /// Arrays of the points.
     pub point_data: &'a [NamedArray<'a>],
-    /// Arrays of the lines.
+    /// Arrays of the cells.
     pub cell_data: &'a [NamedArray<'a>],
 }
 
@@ -91,7 +151,8 @@ impl PolyData<'_> {
         out: &mut dyn Write,
         write_fields: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<()> {
-        let (points, lines) = (self.points, self.lines);
+        let (points, cells) = (self.points, self.cells.count());
+        let (section, ..) = self.cells.section();
         writeln!(out, "<?xml version=\"1.0\"?>")?;
         let header = "byte_order=\"LittleEndian\" header_type=\"UInt64\"";
         writeln!(
@@ -99,24 +160,24 @@ impl PolyData<'_> {
             "<VTKFile type=\"PolyData\" version=\"1.0\" {header}>\n  <PolyData>\n    <FieldData>"
         )?;
         write_fields(out)?;
-        let other_cells = "NumberOfVerts=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\"";
         writeln!(out, "    </FieldData>")?;
+        let other = match self.cells {
+            Cells::Lines(..) => "Polys",
+            Cells::Triangles(..) => "Lines",
+        };
+        let none = format!("NumberOfVerts=\"0\" NumberOfStrips=\"0\" NumberOf{other}=\"0\"");
         writeln!(
             out,
-            "    <Piece NumberOfPoints=\"{points}\" NumberOfLines=\"{lines}\" {other_cells}>"
+            "    <Piece NumberOfPoints=\"{points}\" NumberOf{section}=\"{cells}\" {none}>"
         )?;
         self.declare(out)?;
         write!(
             out,
             "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_"
         )?;
-        Values::Vectors(self.place).write(out, points)?;
-        write_array(out, lines, |line| {
-            (self.ends)(line).map(|end| i64::from(end).to_le_bytes())
-        })?;
-        // The end of each line in the connectivity: 2, 4, 6, ...
-        write_array(out, lines, |line| [(2 * (line as i64 + 1)).to_le_bytes()])?;
-        for (arrays, count) in [(self.point_data, points), (self.cell_data, lines)] {
+        self.place.write(out, points)?;
+        self.cells.write(out)?;
+        for (arrays, count) in [(self.point_data, points), (self.cell_data, cells)] {
             for array in arrays {
                 array.values.write(out, count)?;
             }
@@ -126,7 +187,8 @@ impl PolyData<'_> {
 
     /// Declares the arrays in the header, and their offsets in the appended data.
     fn declare(&self, out: &mut dyn Write) -> io::Result<()> {
-        let lines = self.lines as u64;
+        let cells = self.cells.count() as u64;
+        let (cell_section, kind, bytes) = self.cells.section();
         let mut end = 0;
         let mut section = |name: &str, arrays: &[Declaration]| {
             writeln!(out, "      <{name}>")?;
@@ -143,25 +205,28 @@ impl PolyData<'_> {
         };
         // Connectivity is a list of points, not of pairs.
         let whole = |name, bytes| Declaration {
-            kind: "Int64",
+            kind,
             name,
             shape: "",
             bytes,
         };
         let points = NamedArray {
             name: "Points",
-            values: Values::Vectors(self.place),
+            values: self.place,
         };
         section("Points", &[Declaration::of(&points, self.points)])?;
         section(
-            "Lines",
+            cell_section,
             &[
-                whole("connectivity", 16 * lines),
-                whole("offsets", 8 * lines),
+                whole("connectivity", self.cells.corners() * bytes * cells),
+                whole("offsets", bytes * cells),
             ],
         )?;
         section("PointData", &Declaration::all(self.point_data, self.points))?;
-        section("CellData", &Declaration::all(self.cell_data, self.lines))
+        section(
+            "CellData",
+            &Declaration::all(self.cell_data, self.cells.count()),
+        )
     }
 }
 
@@ -184,7 +249,7 @@ impl<'a> Declaration<'a> {
             kind: array.values.kind(),
             name: array.name,
             shape: match array.values {
-                Values::Vectors(_) => " NumberOfComponents=\"3\"",
+                Values::Vectors(_) | Values::SingleVectors(_) => " NumberOfComponents=\"3\"",
                 _ => "",
             },
             bytes: array.values.bytes() * count as u64,
@@ -212,17 +277,36 @@ pub fn write_number(
     )
 }
 
+/// A field of vectors of 3 components, unless there are none.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_vectors(out: &mut dyn Write, name: &str, vectors: &[[f64; 3]]) -> io::Result<()> {
+    let count = vectors.len();
+    if count == 0 {
+        return Ok(());
+    }
+    let values: Vec<String> = vectors.as_flattened().iter().map(|x| exact(*x)).collect();
+    let values = values.join(" ");
+    writeln!(
+        out,
+        "      <DataArray type=\"Float64\" Name=\"{name}\" NumberOfComponents=\"3\" NumberOfTuples=\"{count}\" format=\"ascii\">{values}</DataArray>"
+    )
+}
+
 /// A field of text, unless it is unknown: an array of signed bytes with a zero at its end.
-pub(crate) fn write_text(out: &mut dyn Write, name: &str, text: Option<&str>) -> io::Result<()> {
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_text(out: &mut dyn Write, name: &str, text: Option<&str>) -> io::Result<()> {
     text.map_or(Ok(()), |text| write_texts(out, name, &[text]))
 }
 
 /// A field of texts, unless there are none: each as signed bytes with a zero at its end.
-pub(crate) fn write_texts(
-    out: &mut dyn Write,
-    name: &str,
-    texts: &[impl AsRef<str>],
-) -> io::Result<()> {
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_texts(out: &mut dyn Write, name: &str, texts: &[impl AsRef<str>]) -> io::Result<()> {
     let count = texts.len();
     if count == 0 {
         return Ok(());

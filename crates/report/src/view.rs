@@ -50,7 +50,7 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
     for frame in &chosen.frames {
         ranges.include(&Spheres::read(frame, &chosen)?);
         if let Some(walls) = walls::read(frame)? {
-            ranges.include_walls(&walls.corners_m);
+            ranges.include_walls(&walls.points_m);
         }
     }
     let Some(scales) = ranges.scales() else {
@@ -155,6 +155,7 @@ fn markup(head: &str, data: &str, chosen: &Chosen) -> Markup {
                     span class="legend" hidden[true] {
                         span class="low" {} span class="ramp" {} span class="high" {}
                     }
+                    span class="bodies" hidden[true] {}
                     @for name in ["spheres", "bonds", "walls"] {
                         label { input class=(name) type="checkbox"; " " (name) }
                     }

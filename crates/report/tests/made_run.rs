@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use dem_results::{Existing, Frame, FrameFiles, NamedArray, ResultsFolder, Values};
+use dem_results::{
+    Existing, Frame, FrameFiles, NamedArray, ResultsFolder, Values, WallFiles, WallFrame,
+    WallTriangles,
+};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -32,7 +35,7 @@ impl Moment {
 pub(crate) fn folder_with(moments: &[Moment]) -> TempDir {
     let place = tempfile::tempdir().unwrap();
     let folder = ResultsFolder::create(&place.path().join("out"), Existing::Refuse).unwrap();
-    let mut files = FrameFiles::create(&folder);
+    let mut files = FrameFiles::create(&folder, WallFiles::EachFrame);
     for moment in moments {
         append(&mut files, *moment);
     }
@@ -51,27 +54,39 @@ fn append(files: &mut FrameFiles, moment: Moment) {
     let utilisation = |bond: usize| bond as f64 / bonds as f64;
     let stress = |bond: usize| if bond.is_multiple_of(2) { 2e5 } else { -1e5 };
     let broken = |bond: usize| u32::from(moment.is_broken(bond));
+    let names = ["cake", "rock"];
+    let mut floor = WallTriangles::default();
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, y]| [x, y, moment.time_s / 8.0]);
+    floor.add(0, corners.into_iter(), &[[0, 1, 2]]);
+    let walls = WallFrame {
+        names: vec!["floor".to_owned()],
+        forces_n: vec![[0.0; 3]],
+        triangles: floor,
+        velocities_m_s: vec![[0.0; 3]],
+    };
+    let frame = Frame {
+        time_s: moment.time_s,
+        body_names: &names,
+        particles: moment.particles,
+        position_m: &|i| moment.place_m(i),
+        particle_arrays: &[
+            array("radius_m", Values::Scalars(&radius)),
+            array("body", Values::Counts(&body)),
+            array("velocity_m_s", Values::Vectors(&speed)),
+            array("fragment_id", Values::Counts(&fragment)),
+            array("fragment_mass_kg", Values::Scalars(&mass)),
+        ],
+        bonds,
+        ends: &|bond| [bond as u32, bond as u32 + 1],
+        bond_arrays: &[
+            array("bond_radius_m", Values::Scalars(&bond_radius)),
+            array("utilisation", Values::Scalars(&utilisation)),
+            array("normal_stress_pa", Values::Scalars(&stress)),
+            array("broken", Values::Counts(&broken)),
+        ],
+    };
     files
-        .append(&Frame {
-            time_s: moment.time_s,
-            particles: moment.particles,
-            position_m: &|i| moment.place_m(i),
-            particle_arrays: &[
-                array("radius_m", Values::Scalars(&radius)),
-                array("body", Values::Counts(&body)),
-                array("velocity_m_s", Values::Vectors(&speed)),
-                array("fragment_id", Values::Counts(&fragment)),
-                array("fragment_mass_kg", Values::Scalars(&mass)),
-            ],
-            bonds,
-            ends: &|bond| [bond as u32, bond as u32 + 1],
-            bond_arrays: &[
-                array("bond_radius_m", Values::Scalars(&bond_radius)),
-                array("utilisation", Values::Scalars(&utilisation)),
-                array("normal_stress_pa", Values::Scalars(&stress)),
-                array("broken", Values::Counts(&broken)),
-            ],
-        })
+        .append(&frame, &walls, &WallTriangles::default())
         .unwrap();
 }
 

@@ -28,7 +28,8 @@ fn places_radii_and_bonds_are_those_of_the_frames() {
     let view = Read3d::of(&page_of(&folder, &summary()));
     let unit_m = view.head["resolution_m"].as_f64().unwrap();
     let radius_unit_m = view.head["radius_unit_m"].as_f64().unwrap();
-    assert!(unit_m < 1e-7, "{unit_m}");
+    // The longest edge, 2 m, in 24 bits.
+    assert!(unit_m < 1.001 * 2.0 / f64::from(1 << 24), "{unit_m}");
     for (frame, moment) in MOMENTS.iter().enumerate() {
         let places = view.places_m(frame);
         assert_eq!(places.len(), moment.particles);
@@ -89,6 +90,25 @@ fn spheres_know_their_intact_bonds_only() {
     assert_eq!(view.tracks["stress"][2][4], 255);
     // Sphere 5: the mean of -1e5 and 2e5 Pa, over 2e5 Pa.
     assert_eq!(view.tracks["stress"][2][5], 128 + 32);
+}
+
+#[test]
+fn walls_are_where_they_were_and_bodies_have_names() {
+    let folder = folder_with(&MOMENTS);
+    let view = Read3d::of(&page_of(&folder, &summary()));
+    let unit_m = view.head["resolution_m"].as_f64().unwrap();
+    for (frame, moment) in MOMENTS.iter().enumerate() {
+        assert_eq!(view.tracks["corner"][frame], [0, 1, 2]);
+        let height_m = view.head["origin_m"][2].as_f64().unwrap()
+            + unit_m * view.tracks["wall_z"][frame][2] as f64;
+        assert!(
+            (height_m - moment.time_s / 8.0).abs() <= 0.51 * unit_m,
+            "{height_m}"
+        );
+    }
+    assert_eq!(view.head["body_names"], serde_json::json!(["cake", "rock"]));
+    let modes = view.head["modes"].as_array().unwrap();
+    assert!(modes.iter().any(|mode| mode == "body"), "{modes:?}");
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! The folder of a run: the names in it, and its permitted previous contents.
 
 use std::fs::{self, File, TryLockError};
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::plot_file::{is_plot_file, write_plot_file};
+use dem_io::body::stored_walls::FIXED_WALLS_FILE;
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::{
     PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
@@ -21,19 +22,26 @@ const SERIES: &str = "series.csv";
 const EVENTS: &str = "events.csv";
 const FRAGMENTS: &str = "fragments.csv";
 const FRAGMENT_TREE: &str = "fragment-tree.csv";
+const DISCHARGE: &str = "discharge.csv";
+const DISTRIBUTION: &str = "distribution.csv";
 const SUMMARY: &str = "summary.json";
 const REPORT: &str = "report.html";
+const SCENE: &str = "scene.toml";
+/// The beginning of a scene that a run has written, so that other files are not removed.
+const SCENE_BEGIN: &str = "# Written by dem-run";
 const TEST_CURVE: &str = "force-displacement.csv";
 const CHECKPOINT: &str = "checkpoint.dem";
 const ENDED: &str = ".ended.json";
 const LOCK: &str = ".lock";
 /// Files of which a run writes one each.
-const SINGLE_FILES: [&str; 12] = [
+const SINGLE_FILES: [&str; 14] = [
     INDEX,
     SERIES,
     EVENTS,
     FRAGMENTS,
     FRAGMENT_TREE,
+    DISCHARGE,
+    DISTRIBUTION,
     SUMMARY,
     REPORT,
     TEST_CURVE,
@@ -89,7 +97,10 @@ impl ResultsFolder {
         };
         match existing {
             Existing::Refuse => refuse_unless_empty(path)?,
-            Existing::Replace => folder.remove_results()?,
+            Existing::Replace => {
+                folder.refuse_foreign_scene()?;
+                folder.remove_results()?;
+            }
             Existing::Continue => {
                 // The remains of a killed write.
                 for part in ["", FRAMES, PICTURES, PLOTS] {
@@ -110,6 +121,16 @@ impl ResultsFolder {
     /// Frame `number`, counted from 0: `frames/frame_000123.vtp`.
     pub fn frame(&self, number: usize) -> PathBuf {
         frame_in(&self.path, number)
+    }
+
+    /// The walls of frame `number`: `frames/walls_000123.vtp`.
+    pub fn walls(&self, number: usize) -> PathBuf {
+        walls_in(&self.path, number)
+    }
+
+    /// The large walls that never move: `frames/walls_fixed.vtp`.
+    pub fn fixed_walls(&self) -> PathBuf {
+        self.path.join(fixed_walls_name())
     }
 
     /// The list of all frames with their times, which ParaView opens: `frames.pvd`.
@@ -154,9 +175,54 @@ impl ResultsFolder {
         self.path.join(FRAGMENT_TREE)
     }
 
+    /// What leaves through outlets: `discharge.csv`.
+    pub fn discharge(&self) -> PathBuf {
+        self.path.join(DISCHARGE)
+    }
+
+    /// The size distribution of all fragments: `distribution.csv`.
+    pub fn distribution(&self) -> PathBuf {
+        self.path.join(DISTRIBUTION)
+    }
+
     /// Summary: `summary.json`.
     pub fn summary(&self) -> PathBuf {
         self.path.join(SUMMARY)
+    }
+
+    /// The scene as it was run: `scene.toml`.
+    pub fn scene(&self) -> PathBuf {
+        self.path.join(SCENE)
+    }
+
+    /// Writes the scene as it is run to `scene.toml`, after a line that says so. Replaces that of an
+    /// earlier run.
+    ///
+    /// # Errors
+    /// A scene that no run has written is there (exit code 2); no permission, full disk (exit code
+    /// 1).
+    pub fn write_scene(&self, program: &str, text: &str) -> Result<()> {
+        self.refuse_foreign_scene()?;
+        write_file(&self.scene(), |out| {
+            writeln!(
+                out,
+                "{SCENE_BEGIN} ({program}): the scene of this run, with all files and settings that it was given."
+            )?;
+            out.write_all(text.as_bytes())
+        })
+    }
+
+    /// Refuses a folder with a `scene.toml` that no run has written: it would be lost.
+    fn refuse_foreign_scene(&self) -> Result<()> {
+        let path = self.scene();
+        if !path.exists() || is_scene_as_run(&path) {
+            return Ok(());
+        }
+        Err(Diagnostic::input(
+            path.display().to_string(),
+            "the scene of the run would take the place of this file",
+            "rename it, or name another folder with --output",
+        ))
     }
 
     /// The data written at the end of a run, kept until all files are complete: `.ended.json`.
@@ -235,13 +301,17 @@ impl ResultsFolder {
         write_plot_file(&self.plot(name), svg)
     }
 
-    /// Removes frame `number` and all after it.
+    /// Removes frame `number` and all after it, with their walls; if it is the first, also the walls
+    /// that never move.
     ///
     /// # Errors
     /// No permission (exit code 1).
     pub(super) fn remove_frames_from(&self, number: usize) -> Result<()> {
         self.remove_files(FRAMES, |name| {
-            frame_number(name).is_some_and(|found| found >= number)
+            let is_later = |found: Option<usize>| found.is_some_and(|found| found >= number);
+            is_later(frame_number(name))
+                || is_later(walls_number(name))
+                || (number == 0 && name == FIXED_WALLS_FILE)
         })
     }
 
@@ -276,7 +346,9 @@ impl ResultsFolder {
         // First, so that a partly removed folder is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
         self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
-        self.remove_files(FRAMES, |name| frame_number(name).is_some())?;
+        let is_ours = is_scene_as_run(&self.scene());
+        self.remove_files("", |name| name == SCENE && is_ours)?;
+        self.remove_frames_from(0)?;
         self.remove_pictures_from(0)?;
         let plots = self.path.join(PLOTS);
         self.remove_files(PLOTS, |name| {
@@ -310,6 +382,13 @@ impl ResultsFolder {
     }
 }
 
+/// True if a run has written the scene in this file.
+fn is_scene_as_run(path: &Path) -> bool {
+    let mut begin = [0; SCENE_BEGIN.len()];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut begin));
+    read.is_ok() && begin == SCENE_BEGIN.as_bytes()
+}
+
 /// True if a run is writing into the folder `path` at this moment. A folder to which no run has
 /// written is not created.
 pub fn is_written_to(path: &Path) -> bool {
@@ -326,10 +405,12 @@ pub fn is_locked(path: &Path) -> bool {
 /// folder.
 pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf> {
     let is_ours = |part: &str, name: &str| match part {
-        FRAMES => frame_number(name).is_some(),
+        FRAMES => {
+            frame_number(name).is_some() || walls_number(name).is_some() || name == FIXED_WALLS_FILE
+        }
         PICTURES => picture_number(name).is_some(),
         PLOTS => name.ends_with(".svg"),
-        _ => SINGLE_FILES.contains(&name),
+        _ => SINGLE_FILES.contains(&name) || name == SCENE,
     };
     for part in ["", FRAMES, PICTURES, PLOTS] {
         let Ok(entries) = fs::read_dir(path.join(part)) else {
@@ -401,14 +482,35 @@ pub fn frame_in(path: &Path, number: usize) -> PathBuf {
     path.join(frame_name(number))
 }
 
+/// The walls of frame `number` of the results folder `path`; [`dem_io::body::read_walls`] reads
+/// them. There is no such file if the scene has no walls.
+pub fn walls_in(path: &Path, number: usize) -> PathBuf {
+    path.join(walls_name(number))
+}
+
 /// The name of a frame in the folder, with `/` on every system, as required by ParaView.
 pub(super) fn frame_name(number: usize) -> String {
     format!("{FRAMES}/frame_{number:06}.vtp")
 }
 
+/// The name of the walls of a frame in the folder.
+pub(super) fn walls_name(number: usize) -> String {
+    format!("{FRAMES}/walls_{number:06}.vtp")
+}
+
+/// The name of the walls that never move in the folder.
+pub(super) fn fixed_walls_name() -> String {
+    format!("{FRAMES}/{FIXED_WALLS_FILE}")
+}
+
 /// 123 of `frame_000123.vtp`.
 fn frame_number(name: &str) -> Option<usize> {
     number_of(name, "frame_", ".vtp", 6)
+}
+
+/// 123 of `walls_000123.vtp`.
+fn walls_number(name: &str) -> Option<usize> {
+    number_of(name, "walls_", ".vtp", 6)
 }
 
 /// 123 of `picture-00123.png`.

@@ -7,14 +7,14 @@
 use std::fmt::{Display, Write};
 use std::path::Path;
 
-use super::growing::GrowingTable;
+use super::growing::{GrowingTable, field};
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
 use dem_io::vtk::exact;
 
 /// The first line of the table of moments.
 pub const COLUMNS: &str = "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,\
-                           wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m";
+                           wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m,body,material";
 
 /// The first line of the fragment tree.
 pub const TREE_COLUMNS: &str = "fragment_id,parent_id,created_s,ended_s,particles";
@@ -24,7 +24,7 @@ const AT_ONCE: usize = 1000;
 
 /// A fragment at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FragmentRow {
+pub struct FragmentRow<'a> {
     /// Its number, which is never reused.
     pub fragment_id: u32,
     /// The fragment from which it broke off.
@@ -45,6 +45,10 @@ pub struct FragmentRow {
     pub equivalent_diameter_m: f64,
     /// Diagonal of the box around it, m.
     pub box_diagonal_m: f64,
+    /// Name of its body.
+    pub body: &'a str,
+    /// Name of its material.
+    pub material: &'a str,
 }
 
 /// The file of the fragments at chosen moments.
@@ -80,7 +84,7 @@ impl FragmentFile {
     /// # Errors
     /// Full disk (exit code 1): earlier moments are kept, and possibly some complete rows of this
     /// one.
-    pub fn append(&mut self, time_s: f64, fragments: &[FragmentRow]) -> Result<()> {
+    pub fn append(&mut self, time_s: f64, fragments: &[FragmentRow<'_>]) -> Result<()> {
         for some in fragments.chunks(AT_ONCE) {
             let rows: String = some.iter().map(|fragment| row(time_s, fragment)).collect();
             self.table.append(&rows)?;
@@ -103,7 +107,7 @@ impl FragmentFile {
     }
 }
 
-fn row(time_s: f64, fragment: &FragmentRow) -> String {
+fn row(time_s: f64, fragment: &FragmentRow<'_>) -> String {
     let mut row = format!(
         "{},{},{},{}",
         exact(time_s),
@@ -127,7 +131,12 @@ fn row(time_s: f64, fragment: &FragmentRow) -> String {
         // Writing to a string cannot fail. Adding 0 removes the sign of a zero.
         let _ = write!(row, ",{}", exact(number + 0.0));
     }
-    row.push('\n');
+    let _ = writeln!(
+        row,
+        ",{},{}",
+        field(fragment.body),
+        field(fragment.material)
+    );
     row
 }
 

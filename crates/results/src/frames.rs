@@ -1,21 +1,26 @@
-//! Frames of a run for ParaView: one .vtp file each, and one index with their times, `frames.pvd`.
+//! Frames of a run for ParaView: one .vtp file each, another with the walls, and one index with
+//! their times, `frames.pvd`.
 //!
-//! Points = particles (Float64, m), lines = bonds, any point and cell data, the time as field data
-//! `TimeValue` (s). For the encoding see [`dem_io::vtk`].
+//! Points = particles (Float64, m), lines = bonds, any point and cell data; the time, `TimeValue`
+//! (s), and the names of the bodies, `body_names`, as field data. For the encoding see [`dem_io::vtk`].
 
 use std::io::{self, Write};
 
-use super::folder::{ResultsFolder, frame_name};
+use super::folder::{ResultsFolder, fixed_walls_name, frame_name, walls_name};
+use super::walls::{WallFrame, WallTriangles, write_fixed_walls, write_walls};
+use dem_io::body::stored_frame::{BODY_NAMES, TIME};
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::write_file;
+use dem_io::vtk::{Cells, PolyData, exact, write_number, write_texts};
 pub use dem_io::vtk::{NamedArray, Values};
-use dem_io::vtk::{PolyData, exact, write_number};
 
 /// The data of a frame. Particles and bonds are given by their indices, from 0.
 #[derive(Clone, Copy)]
 pub struct Frame<'a> {
     /// Simulated time, s.
     pub time_s: f64,
+    /// Names of the bodies, by their number in the array `body`.
+    pub body_names: &'a [&'a str],
     /// Number of particles.
     pub particles: usize,
     /// Centre of each particle, m.
@@ -59,29 +64,43 @@ impl Frame<'_> {
 pub fn write_frame(frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
     let data = PolyData {
         points: frame.particles,
-        place: frame.position_m,
-        lines: frame.bonds,
-        ends: frame.ends,
+        place: Values::Vectors(frame.position_m),
+        cells: Cells::Lines(frame.bonds, frame.ends),
         point_data: frame.particle_arrays,
         cell_data: frame.bond_arrays,
     };
     data.write(out, |out| {
-        write_number(out, "Float64", "TimeValue", Some(exact(frame.time_s)))
+        write_number(out, "Float64", TIME, Some(exact(frame.time_s)))?;
+        write_texts(out, BODY_NAMES, frame.body_names)
     })
+}
+
+/// The files of walls next to each frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum WallFiles {
+    /// None: the scene has no walls.
+    #[default]
+    None,
+    /// One with each frame.
+    EachFrame,
+    /// The same, and one for all with large walls that never move.
+    EachFrameAndFixed,
 }
 
 /// The frames of a run so far.
 #[derive(Debug)]
 pub struct FrameFiles {
     folder: ResultsFolder,
+    walls: WallFiles,
     times_s: Vec<f64>,
 }
 
 impl FrameFiles {
     /// No frames yet. Nothing is written before the first.
-    pub fn create(folder: &ResultsFolder) -> Self {
+    pub fn create(folder: &ResultsFolder, walls: WallFiles) -> Self {
         Self {
             folder: folder.clone(),
+            walls,
             times_s: Vec::new(),
         }
     }
@@ -90,23 +109,26 @@ impl FrameFiles {
     /// removed.
     ///
     /// # Errors
-    /// A frame is missing (exit code 2); the index cannot be written or a later frame not removed
-    /// (exit code 1).
-    pub fn continue_at(folder: &ResultsFolder, times_s: Vec<f64>) -> Result<Self> {
-        for number in 0..times_s.len() {
-            let path = folder.frame(number);
-            if !path.is_file() {
-                return Err(Diagnostic::input(
-                    path.display().to_string(),
-                    "this frame is missing, which was there when the checkpoint was written",
-                    "put it back, or start the run again without --resume",
-                ));
-            }
-        }
+    /// A frame or the file of its walls is missing (exit code 2); the index cannot be written or a
+    /// later frame not removed (exit code 1).
+    pub fn continue_at(
+        folder: &ResultsFolder,
+        walls: WallFiles,
+        times_s: Vec<f64>,
+    ) -> Result<Self> {
         let frames = Self {
             folder: folder.clone(),
+            walls,
             times_s,
         };
+        let mut files = (0..frames.times_s.len()).flat_map(|number| frames.files_of(number));
+        if let Some(name) = files.find(|name| !folder.path().join(name).is_file()) {
+            return Err(Diagnostic::input(
+                folder.path().join(name).display().to_string(),
+                "this frame is missing, which was there when the checkpoint was written",
+                "put it back, or start the run again without --resume",
+            ));
+        }
         if frames.times_s.is_empty() {
             // A run without frames has no index.
             folder.remove_frames_index()?;
@@ -117,16 +139,33 @@ impl FrameFiles {
         Ok(frames)
     }
 
-    /// Writes the next frame, then the updated index.
+    /// Writes the next frame and its walls, then the updated index. `fixed`: the large walls that
+    /// never move, written with the first frame.
     ///
     /// # Errors
     /// No permission, full disk (exit code 1): earlier frames and the index are kept. The frame
     /// fails [`Frame::check`].
-    pub fn append(&mut self, frame: &Frame<'_>) -> Result<()> {
+    pub fn append(
+        &mut self,
+        frame: &Frame<'_>,
+        walls: &WallFrame,
+        fixed: &WallTriangles,
+    ) -> Result<()> {
         frame.check()?;
         self.folder.make_frames_folder()?;
-        let path = self.folder.frame(self.times_s.len());
-        write_file(&path, |out| write_frame(frame, out))?;
+        let number = self.times_s.len();
+        let has_fixed = self.walls == WallFiles::EachFrameAndFixed;
+        if has_fixed && number == 0 {
+            write_file(&self.folder.fixed_walls(), |out| {
+                write_fixed_walls(fixed, out)
+            })?;
+        }
+        if self.walls != WallFiles::None {
+            write_file(&self.folder.walls(number), |out| {
+                write_walls(walls, frame.time_s, has_fixed, out)
+            })?;
+        }
+        write_file(&self.folder.frame(number), |out| write_frame(frame, out))?;
         self.times_s.push(frame.time_s);
         self.write_index()
     }
@@ -136,6 +175,18 @@ impl FrameFiles {
         &self.times_s
     }
 
+    /// Names in the folder of the files of frame `number`, in the order of their parts.
+    fn files_of(&self, number: usize) -> Vec<String> {
+        let mut files = vec![frame_name(number)];
+        if self.walls != WallFiles::None {
+            files.push(walls_name(number));
+        }
+        if self.walls == WallFiles::EachFrameAndFixed {
+            files.push(fixed_walls_name());
+        }
+        files
+    }
+
     fn write_index(&self) -> Result<()> {
         write_file(&self.folder.frames_index(), |out| {
             writeln!(
@@ -143,8 +194,13 @@ impl FrameFiles {
                 "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>"
             )?;
             for (number, time_s) in self.times_s.iter().enumerate() {
-                let (time, file) = (exact(*time_s), frame_name(number));
-                writeln!(out, "    <DataSet timestep=\"{time}\" file=\"{file}\"/>")?;
+                let time = exact(*time_s);
+                for (part, file) in self.files_of(number).iter().enumerate() {
+                    writeln!(
+                        out,
+                        "    <DataSet timestep=\"{time}\" part=\"{part}\" file=\"{file}\"/>"
+                    )?;
+                }
             }
             writeln!(out, "  </Collection>\n</VTKFile>")
         })

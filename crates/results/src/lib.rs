@@ -6,6 +6,7 @@
 
 pub mod arrays;
 pub mod checkpoint;
+pub mod discharge;
 pub(crate) mod events;
 pub mod folder;
 pub mod fragments;
@@ -15,13 +16,16 @@ pub(crate) mod pictures;
 pub(crate) mod plot_file;
 pub(crate) mod series;
 pub(crate) mod summary;
+pub(crate) mod walls;
 
 pub use arrays::{Arrays, read_arrays};
+pub use discharge::{DischargeFile, DischargeRow, DistributionRow, write_distribution};
 pub use events::{Event, EventFile};
 pub use folder::{Existing, ResultsFolder};
 pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
-pub use frames::{Frame, FrameFiles, NamedArray, Values, write_frame};
+pub use frames::{Frame, FrameFiles, NamedArray, Values, WallFiles, write_frame};
 pub use pictures::PictureFiles;
 pub use plot_file::{is_plot_file, write_plot_file};
 pub use series::{Series, SeriesFile, read_series};
 pub use summary::write_json;
+pub use walls::{WallFrame, WallTriangles};

@@ -2,12 +2,14 @@
 //! same after an interruption.
 
 mod checkpoints;
+mod discharge;
 mod folder;
 mod fragments;
 mod frames;
 mod pictures;
 mod stored_frame;
 mod tables;
+mod walls;
 
 use std::path::{Path, PathBuf};
 

@@ -13,7 +13,7 @@ use dem_io::diagnostic::{Diagnostic, Result};
 
 /// Tables that another file may add.
 const TABLES: [&str; 3] = ["materials", "contacts", "bonds"];
-const INCLUDE: &str = "include";
+pub(super) const INCLUDE: &str = "include";
 /// The key of `--set` by which files are added to those of the scene.
 const INCLUDE_TOO: &str = "include+";
 

@@ -4,6 +4,7 @@
 //! Every table of the file has one struct, next to its keys and its reader; names are unique within
 //! their table. The reader of the file refuses scenes that cannot be simulated.
 
+mod as_run;
 mod bodies;
 mod body;
 mod bond;
@@ -53,6 +54,7 @@ mod tree;
 mod values;
 mod wall;
 
+pub use as_run::{piped_bodies, scene_as_run};
 pub use bodies::read_bodies;
 pub use body::{BodyEntry, BodySource, WholeMass};
 pub use bond::{

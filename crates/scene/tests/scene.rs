@@ -1,5 +1,6 @@
 //! The reader of scenes: valid scenes, refused scenes and the messages.
 
+mod as_run;
 mod corpus;
 mod feed;
 mod good;

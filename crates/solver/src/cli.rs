@@ -1,5 +1,6 @@
 //! The command line of dem-run: its arguments and their execution.
 
+mod as_run;
 mod calibrate;
 mod check;
 mod fragment;
@@ -386,6 +387,9 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         say_beforehand(&prepared);
     }
     let folder = open_folder(path, &scene)?;
+    if let Some(folder) = folder.as_ref().filter(|_| !arguments.resume) {
+        as_run::write_scene(folder, &arguments.scene, &scene)?;
+    }
     let resume = match &folder {
         Some(folder) if arguments.resume => Some(checkpoint_of(folder)?),
         _ => None,
@@ -428,12 +432,18 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         // The user must see the problem itself, whatever happens here. Bad input has not run
         // anything.
         if problem.kind != Kind::Input {
-            let _ = folder.map(|folder| write_json(&folder.summary(), &unfinished));
+            let _ = folder
+                .as_ref()
+                .map(|folder| write_json(&folder.summary(), &unfinished));
             if arguments.scene.json {
                 let _ = write_standard_json(&unfinished);
             }
         }
     })?;
+    // A scene that cannot be resumed must not replace that of the run.
+    if let Some(folder) = folder.as_ref().filter(|_| arguments.resume) {
+        as_run::write_scene(folder, &arguments.scene, &scene)?;
+    }
     match outcome {
         Ok(outcome) => say_outcome(arguments, outcome),
         Err(finished) => say_finished(arguments, &finished),

@@ -29,9 +29,11 @@ use dem_scene::{Integrator, Quantity, Scene};
 use crate::stages::ledger::opened;
 use crate::stages::population::apply_topology_change;
 use crate::state::State;
+use crate::state::clusters::sizes::{Sphere, box_lengths_m};
 use crate::state::clusters::{Clusters, Triggers};
 use crate::state::events::TopologyChange;
 use crate::state::loads::GroupLoad;
+use crate::state::model::NamedBody;
 use crate::state::population::{InletProgress, OutletTotals};
 use crate::state::sleep::{Sleep, SleepRule};
 use crate::state::supports::GroupSupport;
@@ -112,6 +114,7 @@ pub fn plan(
         .map(|(name, body)| (name.clone(), body.about.clone()))
         .collect();
     let ball_m = ball_m(scene, &read);
+    let named = named_bodies(scene, &read);
     let unused_bonds = unused_bonds(scene, &read);
     let templates = templates(scene, &templates_of(scene), &mut read, ball_m)?;
     refuse_unbreakable(scene, &templates)?;
@@ -124,6 +127,7 @@ pub fn plan(
     let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
     let enough = 1 + (particles.len() + bonds.len() + to_come.sum::<usize>()) / WORTH_A_THREAD;
     let mut state = State::new(particles, bonds, 1.0, threads.min(enough));
+    state.model.bodies = named;
     state.model.gravity_m_s2 = scene.run.gravity_m_s2;
     state.model.particle_damping = scene.run.local_damping;
     if state.model.particle_damping > 0.0 {
@@ -200,6 +204,26 @@ pub fn plan(
     })
 }
 
+/// Names, materials and sizes of all bodies.
+fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> {
+    let sieve_m = |name: &String| {
+        let body = read.get(name);
+        let spheres: Vec<Sphere> = body.map_or(Vec::new(), |body| {
+            let both = body.positions.iter().zip(&body.radii);
+            both.map(|(place, radius)| Sphere::of_unit_density(*place, *radius))
+                .collect()
+        });
+        box_lengths_m(&spheres)[1]
+    };
+    (scene.bodies.iter())
+        .map(|(name, body)| NamedBody {
+            name: name.clone(),
+            material: body.material.clone(),
+            sieve_m: sieve_m(name),
+        })
+        .collect()
+}
+
 /// Clusters, contacts and walls, if the scene needs them.
 fn place_meetings(
     scene: &Scene,
@@ -218,7 +242,11 @@ fn place_meetings(
     if !(breaks || counts_pieces || has_clumps || are_needed(scene)) {
         return Ok(());
     }
-    state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
+    let mut clusters = Clusters::new(state.particles.len(), &state.bonds);
+    for body in bodies {
+        clusters.set_body(&body.particles, state.model.body_number(&body.name));
+    }
+    state.clusters = Some(clusters);
     let coming = standing(scene, &state.clumps.templates);
     if !coming.is_empty() {
         let changes = TopologyChange {

@@ -9,7 +9,7 @@ pub mod contacts;
 pub mod events;
 pub(crate) mod ledger;
 pub mod loads;
-pub(crate) mod model;
+pub mod model;
 pub mod order;
 pub mod particles;
 pub mod partitions;
@@ -113,12 +113,15 @@ impl State {
                 ..Model::default()
             },
             ledger: EnergyLedger::default(),
+            population: Population {
+                next_particle_id: particles.len() as u32,
+                ..Population::default()
+            },
             particles,
             clumps: Clumps::default(),
             bonds,
             clusters: None,
             unsearched: Vec::new(),
-            population: Population::default(),
             contacts: None,
             sleep: None,
             walls: Vec::new(),

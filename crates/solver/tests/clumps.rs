@@ -4,6 +4,7 @@
 mod again;
 mod books;
 mod carried;
+mod ids;
 mod inlets;
 mod masses;
 mod outer;

@@ -4,6 +4,7 @@ mod bodies;
 mod files;
 mod pictures;
 mod resume;
+mod sizes;
 
 use std::fmt::Write;
 use std::fs;

@@ -8,6 +8,7 @@ use dem_run::state::clusters::Cluster;
 fn cluster(parent: Option<u32>, particles: u32) -> Cluster {
     Cluster {
         parent,
+        body: 0,
         created_s: 0.0,
         ended_s: None,
         particles,

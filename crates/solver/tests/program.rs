@@ -2,6 +2,7 @@
 //! output.
 
 mod adaptive;
+mod as_run;
 mod bad_bodies;
 mod bad_input;
 mod body_information;
@@ -10,6 +11,7 @@ mod calibrate;
 mod check;
 mod command_line;
 mod corpus;
+mod discharge;
 mod disk;
 mod dynamic;
 mod inputs;
@@ -29,6 +31,7 @@ mod sweep;
 mod threads;
 mod unstable;
 mod verdict;
+mod wall_frames;
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;

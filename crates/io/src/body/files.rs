@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::parts::Body;
 use super::stored_frame::StoredFrame;
+use super::stored_walls::{FIXED_WALLS_FILE, StoredWalls};
 use super::{csv, lammps, txt, vtp};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
@@ -170,6 +171,25 @@ pub fn read_body(path: &Path) -> Result<Body> {
 pub fn read_frame(path: &Path) -> Result<StoredFrame> {
     let mut file = open(path)?;
     vtp::read_frame(&mut file).map_err(|error| error.within(&path.display().to_string()))
+}
+
+/// Reads the walls of a frame of a run, `frames/walls_000123.vtp`, together with the walls that
+/// never move and are written once, next to it.
+///
+/// # Errors
+/// No such file, or damaged (exit code 2).
+pub fn read_walls(path: &Path) -> Result<StoredWalls> {
+    let read = |path: &Path| {
+        let mut file = open(path)?;
+        vtp::read_walls(&mut file).map_err(|error| error.within(&path.display().to_string()))
+    };
+    let mut walls = read(path)?;
+    if walls.has_fixed {
+        walls.add(&read(&path.with_file_name(FIXED_WALLS_FILE))?);
+    }
+    let within = |error: Diagnostic| error.within(&path.display().to_string());
+    walls.check().map_err(within)?;
+    Ok(walls)
 }
 
 /// Writes a body to `path`; `-` is a .vtp on standard output, whose reader may close it early.

@@ -11,12 +11,20 @@ pub const RADIUS: &str = "radius_m";
 pub const DENSITY: &str = "density_kg_m3";
 /// Particle array: id of the fragment.
 pub const FRAGMENT_ID: &str = "fragment_id";
+/// Particle array: number of the body in [`BODY_NAMES`].
+pub const BODY: &str = "body";
+/// Particle array: a number that follows a particle through a run.
+pub const PARTICLE_ID: &str = "particle_id";
+/// Particle array: velocity, m/s.
+pub const VELOCITY: &str = "velocity_m_s";
 /// Bond array: radius, m.
 pub const BOND_RADIUS: &str = "bond_radius_m";
 /// Bond array: stress-free (rest) length, m.
 pub const BOND_LENGTH: &str = "initial_length_m";
 /// Bond array: 1 for a broken bond, else 0.
 pub const BROKEN: &str = "broken";
+/// Field: names of the bodies of the scene.
+pub const BODY_NAMES: &str = "body_names";
 /// Field: simulated time, s.
 pub const TIME: &str = "TimeValue";
 

@@ -11,10 +11,11 @@ mod guard;
 mod header;
 mod names;
 mod read;
+mod walls;
 
 pub use names::FORMAT_VERSION;
 pub use read::read;
-pub(crate) use read::read_frame;
+pub(crate) use read::{read_frame, read_walls};
 
 use std::io::{self, Write};
 
@@ -24,7 +25,9 @@ use names::{
 };
 
 use super::parts::{About, Body};
-use crate::vtk::{NamedArray, PolyData, Values, exact, write_number, write_text, write_texts};
+use crate::vtk::{
+    Cells, NamedArray, PolyData, Values, exact, write_number, write_text, write_texts,
+};
 
 /// Writes a body as .vtp. It must follow the rules of [`Body::check`].
 ///
@@ -37,9 +40,8 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     };
     PolyData {
         points: body.positions.len(),
-        place: &|i| body.positions[i],
-        lines: body.bonds.len(),
-        ends: &|bond| body.bonds[bond],
+        place: Values::Vectors(&|i| body.positions[i]),
+        cells: Cells::Lines(body.bonds.len(), &|bond| body.bonds[bond]),
         point_data: &[array(RADIUS, &|i| body.radii[i])],
         cell_data: &[
             array(BOND_RADIUS, &|bond| body.bond_radii[bond]),

@@ -1,7 +1,7 @@
 //! The spheres and bonds of a frame.
 
 use dem_io::Result;
-use dem_io::body::stored_frame::{BOND_RADIUS, BROKEN, FRAGMENT_ID, RADIUS};
+use dem_io::body::stored_frame::{BOND_RADIUS, BROKEN, FRAGMENT_ID, PARTICLE_ID, RADIUS};
 use dem_results::{Arrays, read_arrays};
 
 use super::choose::{Chosen, ChosenFrame};
@@ -51,6 +51,7 @@ impl Spheres {
             of_points("body"),
             of_points("velocity_m_s"),
             of_points("fragment_mass_kg"),
+            of_points(PARTICLE_ID),
             "Lines/connectivity".to_owned(),
             of_bonds(BOND_RADIUS),
             of_bonds("utilisation"),
@@ -59,7 +60,11 @@ impl Spheres {
         ];
         let arrays = read_arrays(&frame.path, &wanted.each_ref().map(String::as_str))?;
         let all = |name: &String| arrays.get(name).unwrap_or_default();
-        let kept: Vec<usize> = (0..arrays.points).step_by(chosen.every).collect();
+        let ids = all(&wanted[6]);
+        // A particle that is shown once is shown always.
+        let id = |i: usize| ids.get(i).map_or(i, |id| *id as usize);
+        let is_kept = |i: &usize| id(*i).is_multiple_of(chosen.every);
+        let kept: Vec<usize> = (0..arrays.points).filter(is_kept).collect();
         let of = |name: &String| -> Vec<f64> {
             let values = all(name);
             let value = |i: &usize| values.get(*i).copied().unwrap_or(0.0);
@@ -82,12 +87,23 @@ impl Spheres {
             can_break: arrays.get(&wanted[2]).is_some(),
             ..Self::default()
         };
-        spheres.add_bonds(&arrays, chosen, &wanted[6..]);
+        let mut numbers = vec![None; arrays.points];
+        for (number, i) in (0..).zip(kept) {
+            numbers[i] = Some(number);
+        }
+        spheres.add_bonds(&arrays, &numbers, chosen.with_bonds, &wanted[7..]);
         Ok(spheres)
     }
 
-    /// Adds the bonds, and what they say of their spheres.
-    fn add_bonds(&mut self, arrays: &Arrays, chosen: &Chosen, names: &[String]) {
+    /// Adds the bonds, and what they say of their spheres. `numbers`: that of each particle of the
+    /// frame among the shown ones.
+    fn add_bonds(
+        &mut self,
+        arrays: &Arrays,
+        numbers: &[Option<u32>],
+        with_bonds: bool,
+        names: &[String],
+    ) {
         let values = |at: usize| arrays.get(&names[at]).unwrap_or_default();
         let (ends, _) = values(0).as_chunks::<2>();
         let of = |at: usize, bond: usize| values(at).get(bond).copied().unwrap_or(0.0);
@@ -95,25 +111,24 @@ impl Spheres {
         let mut sums = vec![(0.0, 0_u32); count];
         self.utilisations = vec![0.0; count];
         for (bond, ends) in ends.iter().enumerate() {
+            let [Some(a), Some(b)] = ends.map(|end| numbers.get(end as usize).copied()) else {
+                continue;
+            };
             let found = Bond {
-                ends: ends.map(|end| end as u32),
+                ends: [a, b].map(Option::unwrap_or_default),
                 radius_m: of(1, bond),
                 utilisation: of(2, bond),
                 stress_pa: of(3, bond),
                 is_broken: of(4, bond) != 0.0,
             };
-            let places = found.ends.map(|end| end as usize);
-            let places = places.map(|end| (end % chosen.every == 0).then(|| end / chosen.every));
-            for end in places.into_iter().flatten().filter(|end| *end < count) {
-                if !found.is_broken {
-                    self.utilisations[end] = self.utilisations[end].max(found.utilisation);
-                    sums[end].0 += found.stress_pa;
-                    sums[end].1 += 1;
-                }
+            for end in [a, b].into_iter().flatten().filter(|_| !found.is_broken) {
+                let end = end as usize;
+                self.utilisations[end] = self.utilisations[end].max(found.utilisation);
+                sums[end].0 += found.stress_pa;
+                sums[end].1 += 1;
             }
-            if let ([Some(a), Some(b)], true) = (places, chosen.with_bonds) {
-                let ends = [a as u32, b as u32];
-                self.bonds.push(Bond { ends, ..found });
+            if with_bonds && a.is_some() && b.is_some() {
+                self.bonds.push(found);
             }
         }
         let mean = |(sum, number): (f64, u32)| sum / f64::from(number.max(1));

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use dem_io::body::stored_walls::StoredWalls;
 use dem_io::units::show_quantity;
 use serde_json::{Value, json};
 
 use super::encode::{Track, level};
 use super::spheres::{Bond, Spheres};
-use super::walls::Walls;
 
 /// Steps along the longest edge of the scene: floating point numbers of 32 bits hold them exactly.
 const STEPS: f64 = 16_777_215.0;
@@ -237,10 +237,10 @@ impl Tracks {
     }
 
     /// Appends the walls of a frame.
-    pub(crate) fn push_walls(&mut self, walls: Option<&Walls>, scales: &Scales) {
-        let none = Walls::default();
+    pub(crate) fn push_walls(&mut self, walls: Option<&StoredWalls>, scales: &Scales) {
+        let none = StoredWalls::default();
         let walls = walls.unwrap_or(&none);
-        let places: Vec<[i32; 3]> = walls.corners_m.iter().map(|at| scales.steps(*at)).collect();
+        let places: Vec<[i32; 3]> = walls.points_m.iter().map(|at| scales.steps(*at)).collect();
         for (k, name) in OF_WALLS.into_iter().enumerate() {
             self.put(name, places.iter().map(|place| place[k]));
         }

@@ -424,6 +424,7 @@ function play(is_on) {
 }
 function legend() {
   const ramp = ramps[choice.mode];
+  find("bodies").hidden = choice.mode !== "body";
   find("legend").hidden = !ramp;
   if (!ramp) return;
   const stops = [0, 32, 64, 96, 128, 160, 192, 224, 255].map(level => `rgb(${ramp.colours[level].map(Math.round)})`);
@@ -431,6 +432,12 @@ function legend() {
   find("low").textContent = ramp.from;
   find("high").textContent = ramp.to;
 }
+head.body_names.forEach((name, at) => {
+  const chip = document.createElement("i"), label = document.createElement("span");
+  chip.style.background = head.body_colours[at];
+  label.append(chip, name);
+  find("bodies").append(label);
+});
 const names = { piece: "fragment", body: "body", speed: "speed", utilisation: "utilisation of bonds", stress: "stress of bonds", mass: "fragment mass" };
 for (const mode of head.modes) find("mode").add(new Option(names[mode], mode));
 find("slider").max = frames - 1;

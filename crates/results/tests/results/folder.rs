@@ -54,6 +54,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
     let ours = [
         "frames/frame_000000.vtp",
         "frames/frame_1000000.vtp",
+        "frames/walls_000000.vtp",
+        "frames/walls_fixed.vtp",
         "frames/.unfinished-x1",
         "frames.pvd",
         "pictures/picture-00000.png",
@@ -65,18 +67,21 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
         "events.csv",
         "fragments.csv",
         "fragment-tree.csv",
+        "discharge.csv",
+        "distribution.csv",
         "summary.json",
         "checkpoint.dem",
     ];
     let foreign = [
         "frames/frame_1.vtp",
+        "frames/walls_1.vtp",
         "frames/frame_000001.vtp.bak",
         "frames/view.pvsm",
         "pictures/picture-1.png",
         "pictures/poster.png",
         "plots/mine.svg",
         "plots/notes.md",
-        "scene.toml",
+        "drop.toml",
         "series.csv.old",
     ];
     for name in ours.iter().chain(&foreign) {
@@ -182,4 +187,34 @@ fn one_run_at_a_time() {
     ResultsFolder::create(&path, Existing::Replace).unwrap();
     // It now contains only the lock.
     ResultsFolder::create(&path, Existing::Refuse).unwrap();
+}
+
+#[test]
+fn a_scene_that_is_not_that_of_a_run_is_kept() {
+    let parent = tempdir().unwrap();
+    let folder = results_in(&parent);
+    let path = folder.path().to_owned();
+    folder.write_scene("dem-run 1", "version = 1\n").unwrap();
+    let written = fs::read_to_string(folder.scene()).unwrap();
+    assert!(
+        written.starts_with("# Written by dem-run (dem-run 1)"),
+        "{written}"
+    );
+    assert!(written.ends_with("\nversion = 1\n"), "{written}");
+    folder.write_scene("dem-run 2", "version = 1\n").unwrap();
+    drop(folder);
+    let folder = ResultsFolder::create(&path, Existing::Replace).unwrap();
+    assert!(!folder.scene().exists());
+    fs::write(folder.scene(), "version = 1\n").unwrap();
+    fs::write(folder.summary(), "{}").unwrap();
+    let refused = [folder.write_scene("dem-run 1", "").unwrap_err(), {
+        drop(folder);
+        ResultsFolder::create(&path, Existing::Replace).unwrap_err()
+    }];
+    for error in refused {
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.place.ends_with("scene.toml"), "{error}");
+    }
+    // Nothing has been removed.
+    assert!(path.join("summary.json").exists());
 }

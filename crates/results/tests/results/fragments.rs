@@ -8,7 +8,7 @@ use dem_results::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
 use proptest::prelude::*;
 use tempfile::tempdir;
 
-fn fragment(id: u32, numbers: [f64; 15]) -> FragmentRow {
+fn fragment(id: u32, numbers: [f64; 15]) -> FragmentRow<'static> {
     let three = |first: usize| [numbers[first], numbers[first + 1], numbers[first + 2]];
     FragmentRow {
         fragment_id: id,
@@ -21,6 +21,8 @@ fn fragment(id: u32, numbers: [f64; 15]) -> FragmentRow {
         force_n: three(10),
         equivalent_diameter_m: numbers[13],
         box_diagonal_m: numbers[14],
+        body: "cake, \"old\"",
+        material: "stone",
     }
 }
 
@@ -38,9 +40,9 @@ fn fragments_look_as_documented() {
         .unwrap();
     let third = ",3.333333333333333e-1".repeat(15);
     let text = format!(
-        "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m\n\
-         0e0,0,,0,2.5e-1,1e0,-2e0,3e0,5e-1,0e0,1e-9,7e0,8e0,9e0,-1e0,0e0,1e3,1.25e-1,7.5e-1\n\
-         2.5e-3,2,1,20{third}\n"
+        "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m,body,material\n\
+         0e0,0,,0,2.5e-1,1e0,-2e0,3e0,5e-1,0e0,1e-9,7e0,8e0,9e0,-1e0,0e0,1e3,1.25e-1,7.5e-1,\"cake, \"\"old\"\"\",stone\n\
+         2.5e-3,2,1,20{third},\"cake, \"\"old\"\"\",stone\n"
     );
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
     assert_eq!(file.length_bytes(), text.len() as u64);
@@ -142,7 +144,7 @@ proptest! {
             let words: Vec<&str> = line.split(',').collect();
             prop_assert_eq!(words[0].parse::<f64>().unwrap(), number as f64);
             prop_assert_eq!(words[1].parse::<u32>().unwrap(), id);
-            let back: Vec<f64> = words[4..].iter().map(|word| word.parse().unwrap()).collect();
+            let back: Vec<f64> = words[4..19].iter().map(|word| word.parse().unwrap()).collect();
             prop_assert_eq!(&back[..], &numbers[..]);
             read += 1;
         }

@@ -3,7 +3,10 @@
 use std::fs;
 
 use dem_io::body::vtp;
-use dem_results::{Frame, FrameFiles, NamedArray, ResultsFolder, Values, write_frame};
+use dem_results::{
+    Frame, FrameFiles, NamedArray, ResultsFolder, Values, WallFiles, WallFrame, WallTriangles,
+    write_frame,
+};
 use proptest::prelude::*;
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -49,9 +52,10 @@ const BOND_ARRAYS: [NamedArray<'static>; 3] = [
     },
 ];
 
-fn frame(time_s: f64) -> Frame<'static> {
+pub(super) fn frame(time_s: f64) -> Frame<'static> {
     Frame {
         time_s,
+        body_names: &["a\"b", "K\u{f6}rper"],
         particles: POSITIONS.len(),
         position_m: &|i| POSITIONS[i],
         particle_arrays: &PARTICLE_ARRAYS,
@@ -59,6 +63,12 @@ fn frame(time_s: f64) -> Frame<'static> {
         ends: &|bond| BONDS[bond],
         bond_arrays: &BOND_ARRAYS,
     }
+}
+
+/// Appends the frame of this time, of a scene without walls.
+fn append(frames: &mut FrameFiles, time_s: f64) {
+    let walls = (&WallFrame::default(), &WallTriangles::default());
+    frames.append(&frame(time_s), walls.0, walls.1).unwrap();
 }
 
 fn bytes_of(frame: &Frame<'_>) -> Vec<u8> {
@@ -193,6 +203,7 @@ fn a_wrong_frame_is_a_fault_with_a_name() {
 fn bytes_of_row(count: usize) -> Vec<u8> {
     let row = Frame {
         time_s: 0.0,
+        body_names: &["a\"b", "K\u{f6}rper"],
         particles: count,
         position_m: &|i| [i as f64, 0.5, -(i as f64)],
         particle_arrays: &[NamedArray {
@@ -242,25 +253,25 @@ fn arrays_of_any_length_hold_every_value_in_order() {
 fn the_index_lists_every_frame_with_its_time() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    let mut frames = FrameFiles::create(&folder);
+    let mut frames = FrameFiles::create(&folder, WallFiles::None);
     assert!(contents(folder.path()).is_empty());
     for time_s in [0.0, 5e-3, 0.01] {
-        frames.append(&frame(time_s)).unwrap();
+        append(&mut frames, time_s);
     }
     assert_eq!(frames.times_s(), [0.0, 5e-3, 0.01]);
     assert_eq!(
         fs::read_to_string(folder.frames_index()).unwrap(),
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n    \
-         <DataSet timestep=\"0e0\" file=\"frames/frame_000000.vtp\"/>\n    \
-         <DataSet timestep=\"5e-3\" file=\"frames/frame_000001.vtp\"/>\n    \
-         <DataSet timestep=\"1e-2\" file=\"frames/frame_000002.vtp\"/>\n  </Collection>\n</VTKFile>\n"
+         <DataSet timestep=\"0e0\" part=\"0\" file=\"frames/frame_000000.vtp\"/>\n    \
+         <DataSet timestep=\"5e-3\" part=\"0\" file=\"frames/frame_000001.vtp\"/>\n    \
+         <DataSet timestep=\"1e-2\" part=\"0\" file=\"frames/frame_000002.vtp\"/>\n  </Collection>\n</VTKFile>\n"
     );
     assert_eq!(fs::read(folder.frame(2)).unwrap(), bytes_of(&frame(0.01)));
     assert_eq!(contents(folder.path()).len(), 4);
 }
 
-fn written(folder: &ResultsFolder) -> Vec<(String, Vec<u8>)> {
+pub(super) fn written(folder: &ResultsFolder) -> Vec<(String, Vec<u8>)> {
     contents(folder.path())
         .into_iter()
         .map(|(path, bytes)| {
@@ -279,8 +290,8 @@ fn written(folder: &ResultsFolder) -> Vec<(String, Vec<u8>)> {
 fn a_missing_frame_is_told_when_a_run_continues() {
     let parent = tempdir().unwrap();
     let folder = results_in(&parent);
-    FrameFiles::create(&folder).append(&frame(0.0)).unwrap();
-    let error = FrameFiles::continue_at(&folder, vec![0.0, 1.0]).unwrap_err();
+    append(&mut FrameFiles::create(&folder, WallFiles::None), 0.0);
+    let error = FrameFiles::continue_at(&folder, WallFiles::None, vec![0.0, 1.0]).unwrap_err();
     assert_eq!(error.exit_code(), 2);
     assert!(error.place.ends_with("frame_000001.vtp"), "{error}");
 }
@@ -294,13 +305,13 @@ proptest! {
         let checkpoint = checkpoint.index(crash + 1);
         let [a, b] = [tempdir().unwrap(), tempdir().unwrap()];
         let [whole, resumed] = [results_in(&a), results_in(&b)];
-        let mut frames = FrameFiles::create(&whole);
-        times.iter().for_each(|time| frames.append(&frame(*time)).unwrap());
-        let mut frames = FrameFiles::create(&resumed);
-        times[..crash].iter().for_each(|time| frames.append(&frame(*time)).unwrap());
-        let mut frames = FrameFiles::continue_at(&resumed, times[..checkpoint].to_vec()).unwrap();
+        let mut frames = FrameFiles::create(&whole, WallFiles::None);
+        times.iter().for_each(|time| append(&mut frames, *time));
+        let mut frames = FrameFiles::create(&resumed, WallFiles::None);
+        times[..crash].iter().for_each(|time| append(&mut frames, *time));
+        let mut frames = FrameFiles::continue_at(&resumed, WallFiles::None, times[..checkpoint].to_vec()).unwrap();
         prop_assert_eq!(written(&resumed).len(), if checkpoint == 0 { 0 } else { checkpoint + 1 });
-        times[checkpoint..].iter().for_each(|time| frames.append(&frame(*time)).unwrap());
+        times[checkpoint..].iter().for_each(|time| append(&mut frames, *time));
         prop_assert_eq!(written(&resumed), written(&whole));
     }
 }

@@ -62,6 +62,7 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     write_frame(
         &Frame {
             time_s: frame.time_s,
+            body_names: &["a\"b", "K\u{f6}rper"],
             particles: frame.positions.len(),
             position_m: &|i| frame.positions[i],
             particle_arrays: &of_particles,

@@ -1,12 +1,16 @@
 //! Output on the fragments of bodies: tables, plots, and a line of the summary.
 
 use dem_io::Result;
-use dem_plots::{Axis, Line, Plot};
+use dem_io::units::significant;
+use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
 use serde::Serialize;
 
-use crate::state::clusters::fragments::{mass_fraction_of_largest, size_distribution};
+use super::sizes::Fragments;
+use crate::state::State;
+use crate::state::clusters::fragments::mass_fraction_of_largest;
 use crate::state::clusters::{Cluster, Clusters, Fragment, Split};
+use crate::state::model::Model;
 
 /// Names of the plots of fragments.
 pub(super) const COUNT: &str = "fragments";
@@ -39,7 +43,7 @@ impl FragmentSummary {
 }
 
 /// Fragments as rows of the table of fragments.
-pub fn rows(fragments: &[Fragment]) -> Vec<FragmentRow> {
+pub fn rows<'a>(fragments: &[Fragment], model: &'a Model) -> Vec<FragmentRow<'a>> {
     let row = |fragment: &Fragment| FragmentRow {
         fragment_id: fragment.fragment_id,
         parent_id: fragment.parent_id,
@@ -51,6 +55,8 @@ pub fn rows(fragments: &[Fragment]) -> Vec<FragmentRow> {
         force_n: fragment.force_n,
         equivalent_diameter_m: fragment.equivalent_diameter_m,
         box_diagonal_m: fragment.box_diagonal_m,
+        body: model.body_name(fragment.body),
+        material: model.material_name(fragment.body),
     };
     fragments.iter().map(row).collect()
 }
@@ -96,34 +102,67 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
     text
 }
 
-/// Plots the number of fragments over time, if it changes, and their sizes at the end, if there is
-/// more than one.
+/// Plots the number of fragments over time, if it changes, and the sizes of those at the end and
+/// those discharged, if there is more than one.
 ///
 /// # Errors
 /// Those of the files.
 pub(crate) fn write_fragment_plots(
     folder: &ResultsFolder,
-    clusters: &Clusters,
-    fragments: &[Fragment],
+    state: &State,
+    fragments: &Fragments,
     end_s: f64,
 ) -> Result<()> {
+    let Some(clusters) = &state.clusters else {
+        return Ok(());
+    };
     let counts = counts_over_time(&clusters.history, end_s);
     if counts.iter().any(|[_, count]| *count != counts[0][1]) {
         let mut plot = plot("Fragments", "time (s)", "fragments", counts);
         plot.y.whole = true;
         folder.write_plot(COUNT, &plot.svg().file())?;
     }
-    if fragments.len() > 1 {
-        let mut plot = plot(
-            "Fragment sizes",
-            "size: diameter of a sphere of equal volume (m)",
-            "cumulative mass fraction",
-            sizes(fragments),
-        );
-        plot.x.log = true;
-        folder.write_plot(SIZES, &plot.svg().file())?;
+    if fragments.count() > 1 {
+        folder.write_plot(SIZES, &size_plot(fragments, &state.model).svg().file())?;
     }
     Ok(())
+}
+
+/// Cumulative mass over sieve size: a line for each body, and for all if there are several; d50 is
+/// marked.
+fn size_plot(fragments: &Fragments, model: &Model) -> Plot {
+    let mut curves = fragments.curves(model);
+    if curves.len() == 2 {
+        // The first is all together.
+        curves.remove(0);
+    }
+    curves.truncate(MOST_LINES);
+    let millimetres = |[size_m, fraction]: [f64; 2]| [1e3 * size_m, fraction];
+    let d50 = |(name, _, d50_m): &(&str, Vec<[f64; 2]>, f64)| Point {
+        at: [1e3 * d50_m, 0.5],
+        filled: true,
+        title: format!("{name}: d50 = {} mm", significant(1e3 * d50_m, 3)),
+        ..Point::default()
+    };
+    let lines = curves.iter().map(|(name, points, _)| Line {
+        name: (*name).to_owned(),
+        points: points.iter().copied().map(millimetres).collect(),
+        dashed: false,
+    });
+    let mut x = Axis::of("sieve size: second of three box lengths (mm)");
+    x.log = true;
+    Plot {
+        title: "Fragment sizes".to_owned(),
+        x,
+        y: Axis::of("cumulative mass fraction"),
+        lines: lines.collect(),
+        marks: vec![Marks {
+            name: "d50".to_owned(),
+            points: curves.iter().map(d50).collect(),
+            chains: Vec::new(),
+        }],
+        ..Plot::default()
+    }
 }
 
 /// Time, s, and number of fragments, with a step at every change, of all present and former
@@ -144,19 +183,6 @@ pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
         points.push([time_s, count]);
     }
     points.push([end_s, count]);
-    points
-}
-
-/// Size, m, and mass fraction of all fragments of that size and smaller ones, with a step at every
-/// size.
-pub fn sizes(fragments: &[Fragment]) -> Vec<[f64; 2]> {
-    let mut fraction = 0.0;
-    let mut points = Vec::new();
-    for passing in size_distribution(fragments) {
-        points.push([passing.equivalent_diameter_m, fraction]);
-        fraction = passing.mass_fraction;
-        points.push([passing.equivalent_diameter_m, fraction]);
-    }
     points
 }
 

@@ -1,11 +1,12 @@
 //! Frames: all particles and bonds at one time, in the order of the bodies' files.
 
-use std::collections::BTreeSet;
-
 use dem_io::Result;
-use dem_io::body::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, RADIUS};
+use dem_io::body::stored_frame::{
+    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, PARTICLE_ID, RADIUS, VELOCITY,
+};
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
+use super::walls::WallOutput;
 use crate::measure::{DynamicUtilisation, dynamic_utilisations, load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
@@ -40,11 +41,8 @@ impl FrameOrder {
             place_of: vec![0_u32; state.particles.len()],
             changes: state.bodies_change(),
         };
-        let templates = state.clumps.templates.iter().map(|t| &t.body);
-        let names: BTreeSet<&String> = bodies.iter().map(|b| &b.name).chain(templates).collect();
-        let number_of = |name: &String| names.iter().take_while(|known| **known < name).count();
         for body in bodies {
-            let number = number_of(&body.name) as u32;
+            let number = state.model.body_number(&body.name);
             for &i in body.particles.iter().filter(|i| **i != REMOVED) {
                 order.place_of[i as usize] = order.particles.len() as u32;
                 order.particles.push(i);
@@ -60,7 +58,7 @@ impl FrameOrder {
             order.bonds.extend(of_file.iter().map(|(_, at)| at));
         }
         for clump in &state.clumps.all {
-            let number = number_of(&state.clumps.template(clump).body) as u32;
+            let number = state.model.body_number(&state.clumps.template(clump).body);
             for i in state.clumps.spheres_of(clump) {
                 order.place_of[i] = order.particles.len() as u32;
                 order.particles.push(i as u32);
@@ -74,7 +72,12 @@ impl FrameOrder {
     ///
     /// # Errors
     /// Those of the files.
-    pub(crate) fn write(&self, state: &State, files: &mut FrameFiles) -> Result<()> {
+    pub(crate) fn write(
+        &self,
+        state: &State,
+        walls: &WallOutput,
+        files: &mut FrameFiles,
+    ) -> Result<()> {
         let p = &state.particles;
         let motions = synchronous_motions(state);
         let particle = |i: usize| self.particles[i] as usize;
@@ -85,6 +88,7 @@ impl FrameOrder {
         };
         let radius = |i: usize| p.poses[particle(i)].radius_m();
         let body = |i: usize| self.bodies[i];
+        let id = |i: usize| p.id(particle(i));
         let velocity = |i: usize| motions[particle(i)].velocity_m_s;
         let spin = |i: usize| motions[particle(i)].spin_rad_s;
         let clusters = state.clusters.as_ref();
@@ -95,14 +99,15 @@ impl FrameOrder {
         let rigid = |i: usize| u32::from(particle(i) >= p.free);
         let mut arrays = vec![
             scalars(RADIUS, &radius),
-            counts("body", &body),
-            vectors("velocity_m_s", &velocity),
+            counts(BODY, &body),
+            counts(PARTICLE_ID, &id),
+            vectors(VELOCITY, &velocity),
             vectors("angular_velocity_rad_s", &spin),
         ];
         if self.changes {
             arrays.push(counts("rigid", &rigid));
         } else {
-            arrays.insert(2, vectors("displacement_m", &displacement));
+            arrays.insert(3, vectors("displacement_m", &displacement));
         }
         if clusters.is_some() {
             // With these arrays a fragment can be extracted as a body.
@@ -110,7 +115,7 @@ impl FrameOrder {
             arrays.push(scalars(DENSITY, &density));
             arrays.push(scalars("fragment_mass_kg", &mass));
         }
-        self.append(state, &arrays, files)
+        self.append(state, &arrays, walls, files)
     }
 
     /// Appends the frame with these arrays of the particles and those of the bonds.
@@ -118,6 +123,7 @@ impl FrameOrder {
         &self,
         state: &State,
         particle_arrays: &[NamedArray<'_>],
+        walls: &WallOutput,
         files: &mut FrameFiles,
     ) -> Result<()> {
         let bonds = &state.bonds;
@@ -173,15 +179,18 @@ impl FrameOrder {
             bond_arrays.push(scalars(BOND_LENGTH, &initial_length));
         }
         let poses = &state.particles.poses;
-        files.append(&Frame {
+        let body_names: Vec<&str> = state.model.bodies.iter().map(|b| b.name.as_str()).collect();
+        let frame = Frame {
             time_s: state.time_s,
+            body_names: &body_names,
             particles: self.particles.len(),
             position_m: &|i| poses[self.particles[i] as usize].place().into(),
             particle_arrays,
             bonds: self.bonds.len(),
             ends: &|i| bonds.ends[bond(i)].map(|end| self.place_of[end as usize]),
             bond_arrays: &bond_arrays,
-        })
+        };
+        files.append(&frame, &walls.frame(state), walls.fixed())
     }
 }
 

@@ -11,6 +11,7 @@ use serde::{Serialize, Serializer};
 
 use super::equilibrium::EquilibriumSummary;
 use super::fragments::FragmentSummary;
+use super::sizes::Sizes;
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 use crate::physics::bond::failure::CauseCounts;
@@ -71,6 +72,9 @@ pub struct Summary {
     /// Fragmentation of the bodies, if they can break.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fragments: Option<FragmentSummary>,
+    /// Sizes of the fragments, if bodies can break.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizes: Option<Sizes>,
     /// Bodies added, removed and replaced, if any can be.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<PopulationSummary>,
@@ -531,6 +535,19 @@ impl fmt::Display for Summary {
                 "fragments    {}, the largest {} of the mass",
                 fragments.count,
                 significant(fragments.mass_fraction_of_largest, 3)
+            )?;
+        }
+        if let Some(sizes) = self.sizes.as_ref().and_then(|sizes| sizes.all.get("both"))
+            && self.fragments.is_some_and(|fragments| fragments.splits > 0)
+        {
+            let mm = |size_m: f64| significant(size_m * 1e3, 3);
+            writeln!(
+                f,
+                "sizes        d10 {} mm   d50 {} mm   d80 {} mm   t10 {}",
+                mm(sizes.d10_m),
+                mm(sizes.d50_m),
+                mm(sizes.d80_m),
+                significant(sizes.t10, 3)
             )?;
         }
         self.write_masses(f)?;

@@ -152,6 +152,7 @@ fn place_particles(
         let original = original as usize;
         particles.push_sphere(places[original], body.radii[original], density);
         let i = first_particle + at;
+        particles.ids[i] = (first_particle + original) as u32;
         check_particle(original, particles, i)
             .map_err(|error| within(error, scene, name, entry, |files| files.first()))?;
     }

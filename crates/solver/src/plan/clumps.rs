@@ -159,6 +159,7 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
             .unwrap_or(0) as u8,
         bonds,
         file_number,
+        ids: Vec::new(),
         scatter: modulus.map(|modulus| Scatter {
             seed: scene.run.seed,
             modulus,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use dem_io::Body;
 use dem_io::hash::file_hash;
-use dem_scene::{BodySource, Scene, WallShape};
+use dem_scene::{BodySource, Region, Scene, WallShape};
 use serde::{Serialize, Serializer};
 
 /// Inputs of a run.
@@ -22,6 +22,15 @@ pub struct Inputs {
     pub bodies: BTreeMap<String, InputBody>,
     /// STL files of walls by name of the wall.
     pub walls: BTreeMap<String, InputFile>,
+    /// STL files of regions by name of the region.
+    pub regions: BTreeMap<String, InputFile>,
+    /// Files of materials that the scene includes, in order.
+    pub included: Vec<InputFile>,
+    /// The measured material of a laboratory test.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<InputFile>,
+    /// Program and version.
+    pub program: String,
 }
 
 /// A body used in a run.
@@ -68,12 +77,27 @@ impl Inputs {
             };
             Some((name.clone(), InputFile::of(path)))
         });
+        let regions = scene.regions.iter().filter_map(|(name, region)| {
+            let Region::Stl { file, .. } = region else {
+                return None;
+            };
+            Some((name.clone(), InputFile::of(file)))
+        });
+        let measured = scene.test.as_ref().and_then(|test| test.measured.as_ref());
         Self {
             scene: scene.values(),
             set: Vec::new(),
             seed: scene.run.seed,
             bodies: read.iter().filter_map(body).collect(),
             walls: walls.collect(),
+            regions: regions.collect(),
+            included: scene
+                .included
+                .iter()
+                .map(|path| InputFile::of(path))
+                .collect(),
+            measured: measured.map(|measured| InputFile::of(&measured.file)),
+            program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
         }
     }
 }

@@ -8,7 +8,7 @@ use dem_io::body::mass::BodyMass;
 use dem_scene::Scene;
 
 use super::events::{change_step, new_step};
-use super::files::Files;
+use super::files::{Files, open_discharge};
 use super::limits::Limits;
 use super::pictures::{Order, Pictures};
 use super::progress::Progress;
@@ -20,6 +20,7 @@ use crate::machine::processor_time_s;
 use crate::measure::{Probe, place_watches, probes, renumber as renumber_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::series;
+use crate::output::walls::WallOutput;
 use crate::plan::inputs::Inputs;
 use crate::plan::{Plan, PlannedStage};
 use crate::run::snapshot::fingerprint;
@@ -87,6 +88,7 @@ impl<'a> Run<'a> {
         place_watches(&probes, &mut state);
         // Of the bonds at the start, broken since or not.
         let mut order = FrameOrder::new(&bodies, &state);
+        let walls = settings.folder.map(|_| WallOutput::of(&state));
         let of_pictures = settings.folder.and(Order::of(scene, &state, &bodies));
         let size = state.particles.len() + state.bonds.len();
         let schedule = OutputSchedule::of(scene, choice.step_s, size);
@@ -116,18 +118,19 @@ impl<'a> Run<'a> {
             changed_step = change_step(&mut state, &choice, scene.run.adaptive);
         }
         let mut files = None;
-        if let Some((folder, fingerprint)) = settings.folder.zip(fingerprint) {
+        if let Some(((folder, fingerprint), walls)) = settings.folder.zip(fingerprint).zip(walls) {
             let columns = series::columns(scene.walls.keys(), &probes);
             let continued = is_continued.then_some(&progress);
             let has_fragments = state.clusters.is_some();
             let mut open = Files::open(
                 folder,
                 fingerprint,
-                order,
+                (order, walls),
                 &columns,
                 has_fragments,
                 continued,
             )?;
+            open.discharge = open_discharge(folder, &state, continued)?;
             if let Some(order) = of_pictures {
                 let continued = is_continued.then_some((&state, progress.pictures));
                 open.pictures = Some(Pictures::open(folder, order, continued)?);

@@ -12,6 +12,7 @@ use crate::laboratory::evaluate::TestResult;
 use crate::machine::{machine, processor_time_s};
 use crate::measure::Probe;
 use crate::output::fragments::FragmentSummary;
+use crate::output::sizes::Fragments;
 use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
 use crate::state::clusters::fragments as fragments_of;
 use crate::state::clusters::fragments::Fragment;
@@ -60,6 +61,7 @@ impl Run<'_> {
     /// and summary.
     fn write_end(&mut self, summary: &Summary) -> Result<()> {
         advance(&mut self.state);
+        self.follow_population()?;
         if let Some(files) = &mut self.files {
             write_sleep(&self.state, files)?;
         }
@@ -118,6 +120,7 @@ impl Run<'_> {
             largest_bond_strain: progress.seen.bond_strain.largest,
             largest_overlap: progress.seen.overlap.largest,
             broken_by_cause: state.broken_by_cause,
+            sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
             fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
             population: PopulationSummary::of(state),
             sleep: state.sleep.as_ref().map(SleepSummary::of),

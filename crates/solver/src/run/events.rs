@@ -1,7 +1,7 @@
 //! Entries of the table of events.
 
 use dem_io::Result;
-use dem_results::Event;
+use dem_results::{DischargeRow, Event};
 
 use super::files::Files;
 use crate::output::fragments::split_text;
@@ -9,6 +9,7 @@ use crate::plan::time_step::StepChoice;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::bond_of_file;
+use crate::state::clusters::sizes::Discharged;
 use crate::state::events::PopulationEvent;
 use crate::state::events::STARTS_BONDED;
 
@@ -116,6 +117,7 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
             ),
             PopulationEvent::Left {
                 cluster,
+                body,
                 outlet,
                 mass_kg,
                 place_m,
@@ -124,7 +126,7 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 outlet.as_str(),
                 place_m,
                 None,
-                format!("fragment {cluster}: {mass_kg:e} kg"),
+                format!("fragment {cluster} ({body}): {mass_kg:e} kg"),
             ),
         };
         files.events.append(&[Event {
@@ -135,6 +137,28 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
             ..of_all(state, kind, cause, &detail)
         }])?;
     }
+    Ok(())
+}
+
+/// What has left through outlets since the last call.
+pub(super) fn write_discharge(state: &State, files: &mut Files<'_>) -> Result<()> {
+    let Some((file, written)) = &mut files.discharge else {
+        return Ok(());
+    };
+    let all = &state.population.discharged;
+    let (model, outlets) = (&state.model, &state.model.rules.outlets);
+    let row = |one: &Discharged| DischargeRow {
+        time_s: one.time_s,
+        fragment_id: one.fragment_id,
+        body: model.body_name(one.size.body),
+        material: model.material_name(one.size.body),
+        outlet: &outlets[one.outlet as usize].name,
+        mass_kg: one.size.mass_kg,
+        equivalent_diameter_m: one.size.equivalent_diameter_m,
+        box_lengths_m: one.size.box_lengths_m,
+    };
+    file.append(all[*written..].iter().map(row))?;
+    *written = all.len();
     Ok(())
 }
 

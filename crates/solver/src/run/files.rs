@@ -2,13 +2,14 @@
 
 use dem_io::{Diagnostic, Result};
 use dem_results::checkpoint::write_checkpoint;
-use dem_results::{EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
+use dem_results::{DischargeFile, EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
 use dem_scene::Scene;
 
 use super::pictures::Pictures;
 use super::progress::Progress;
 use crate::measure::Probe;
 use crate::output::frames::FrameOrder;
+use crate::output::walls::WallOutput;
 use crate::run::snapshot::Snapshot;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
@@ -25,7 +26,10 @@ pub(super) struct Files<'a> {
     pub(super) pictures: Option<Pictures>,
     /// None: nothing can break into fragments.
     pub(super) fragments: Option<FragmentFile>,
+    /// The table of what leaves, and the number of its rows. None: there are no outlets.
+    pub(super) discharge: Option<(DischargeFile, usize)>,
     pub(super) order: FrameOrder,
+    pub(super) walls: WallOutput,
 }
 
 impl<'a> Files<'a> {
@@ -33,7 +37,7 @@ impl<'a> Files<'a> {
     pub(super) fn open(
         folder: &'a ResultsFolder,
         fingerprint: u64,
-        order: FrameOrder,
+        (order, walls): (FrameOrder, WallOutput),
         columns: &[String],
         has_fragments: bool,
         continued: Option<&Progress>,
@@ -46,12 +50,12 @@ impl<'a> Files<'a> {
             Some(at) => (
                 SeriesFile::continue_at(&folder.series(), columns, at.series_bytes)?,
                 EventFile::continue_at(&folder.events(), at.events_bytes)?,
-                FrameFiles::continue_at(folder, at.frame_times_s.clone())?,
+                FrameFiles::continue_at(folder, walls.files(), at.frame_times_s.clone())?,
             ),
             None => (
                 SeriesFile::create(&folder.series(), columns)?,
                 EventFile::create(&folder.events())?,
-                FrameFiles::create(folder),
+                FrameFiles::create(folder, walls.files()),
             ),
         };
         Ok(Self {
@@ -62,9 +66,29 @@ impl<'a> Files<'a> {
             frames,
             pictures: None,
             fragments: fragments.transpose()?,
+            discharge: None,
             order,
+            walls,
         })
     }
+}
+
+/// The table of what leaves through outlets, new or at the point where the run is `continued` in
+/// this state. None: there are no outlets.
+pub(super) fn open_discharge(
+    folder: &ResultsFolder,
+    state: &State,
+    continued: Option<&Progress>,
+) -> Result<Option<(DischargeFile, usize)>> {
+    if state.model.rules.outlets.is_empty() {
+        return Ok(None);
+    }
+    let path = folder.discharge();
+    let file = match continued {
+        Some(at) => DischargeFile::continue_at(&path, at.discharge_bytes)?,
+        None => DischargeFile::create(&path)?,
+    };
+    Ok(Some((file, state.population.discharged.len())))
 }
 
 /// Writes a checkpoint, and flushes all files that it depends on to the disk.
@@ -85,6 +109,10 @@ pub(super) fn save(
         progress.fragments_bytes = fragments.length_bytes();
     }
     progress.frame_times_s = files.frames.times_s().to_vec();
+    if let Some((discharge, _)) = &files.discharge {
+        discharge.sync()?;
+        progress.discharge_bytes = discharge.length_bytes();
+    }
     if let Some(pictures) = &files.pictures {
         progress.pictures = pictures.taken();
     }

@@ -4,7 +4,7 @@
 use dem_io::safe_write::write_file;
 use dem_io::{Diagnostic, Result};
 use dem_report::report;
-use dem_results::ResultsFolder;
+use dem_results::{ResultsFolder, write_distribution};
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -16,10 +16,10 @@ use crate::laboratory::watch::Watch;
 use crate::measure::{Probe, probes};
 use crate::output::fragments::{write_fragment_plots, write_tree};
 use crate::output::plots::{plots_of_every_run, write_plots};
+use crate::output::sizes::Fragments;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
 use crate::state::State;
-use crate::state::clusters::fragments as fragments_of;
 
 /// Data that a finished run leaves next to its last checkpoint, before it writes plots, film, page
 /// and summary.
@@ -54,9 +54,10 @@ impl End {
     ) -> Result<()> {
         write_plots(folder, probes)?;
         if let Some(clusters) = &state.clusters {
-            let fragments = fragments_of(clusters, &state.particles, &state.clumps, None);
+            let fragments = Fragments::of(state).unwrap_or_default();
             write_tree(folder, clusters)?;
-            write_fragment_plots(folder, clusters, &fragments, self.simulated_s)?;
+            write_fragment_plots(folder, state, &fragments, self.simulated_s)?;
+            write_distribution(&folder.distribution(), &fragments.rows(&state.model))?;
         }
         if let Some(pictures) = pictures {
             pictures.finish()?;
@@ -167,7 +168,7 @@ fn missing(
         wanted.extend([folder.film(), folder.film_strip()]);
     }
     if state.clusters.is_some() {
-        wanted.push(folder.fragment_tree());
+        wanted.extend([folder.fragment_tree(), folder.distribution()]);
     }
     if has_test {
         wanted.push(folder.test_curve());

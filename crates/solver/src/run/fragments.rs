@@ -41,5 +41,5 @@ pub(super) fn write_fragments(
     let now = Some((&motions[..], &moving[..]));
     let fragments = fragments(clusters, &state.particles, &state.clumps, now);
     progress.fragments_written = fragments.len() as u64;
-    file.append(state.time_s, &rows(&fragments))
+    file.append(state.time_s, &rows(&fragments, &state.model))
 }

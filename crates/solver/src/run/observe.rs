@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use dem_io::{Diagnostic, Result};
 
 use super::begin::Run;
-use super::events::{write_breaks, write_population, write_sleep, write_splits};
+use super::events::{write_breaks, write_discharge, write_population, write_sleep, write_splits};
 use super::files::{interruption, save, with_checkpoint};
 use super::fragments::write_fragments;
 use super::limits::{CHECK_EVERY_STEPS, tunnelling};
@@ -229,7 +229,7 @@ impl Run<'_> {
         };
         if due.frame || rests {
             progress.next_frame = self.schedule.frame_s.map_or(0, |s| next(state, s));
-            files.order.write(state, &mut files.frames)?;
+            files.order.write(state, &files.walls, &mut files.frames)?;
         }
         if let Some(pictures) = &mut files.pictures
             && (due.end || rests || due.picture)
@@ -256,7 +256,7 @@ impl Run<'_> {
 
     /// Applies new numbers of particles after bodies have been added, removed or replaced. Returns
     /// whether clumps have become clusters.
-    fn follow_population(&mut self) -> Result<bool> {
+    pub(super) fn follow_population(&mut self) -> Result<bool> {
         let events = &self.state.scratch.events;
         if events.population.is_empty() {
             return Ok(false);
@@ -276,6 +276,7 @@ impl Run<'_> {
         );
         if let Some(files) = &mut self.files {
             write_population(&self.state, files)?;
+            write_discharge(&self.state, files)?;
             files.order = FrameOrder::new(&self.bodies, &self.state);
         }
         Ok(replaced)

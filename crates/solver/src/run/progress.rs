@@ -23,6 +23,7 @@ pub struct Progress {
     pub(super) series_bytes: u64,
     pub(super) events_bytes: u64,
     pub(super) fragments_bytes: u64,
+    pub(super) discharge_bytes: u64,
     /// Number of fragments when they were written last.
     pub(super) fragments_written: u64,
     pub(super) frame_times_s: Vec<f64>,

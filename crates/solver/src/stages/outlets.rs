@@ -4,6 +4,7 @@ use crate::stages::clumps::synchronous;
 use crate::stages::totals::synchronous_motions;
 use crate::state::State;
 use crate::state::clusters::fragments::mass_and_centre;
+use crate::state::clusters::sizes::{Discharged, FragmentSize, size_of};
 use crate::state::events::PopulationEvent;
 
 /// Interval between checks of the outlets, in steps.
@@ -45,8 +46,16 @@ pub(super) fn leaving(state: &mut State) -> Vec<u32> {
         removed.bodies += 1;
         removed.mass_kg += mass_kg;
         leaving.push(id);
+        let size = size_of(id, clusters, &state.particles, &state.clumps);
+        state.population.discharged.push(Discharged {
+            time_s: state.scratch.events.time_s,
+            fragment_id: id,
+            outlet: n as u32,
+            size: FragmentSize { mass_kg, ..size },
+        });
         state.scratch.events.population.push(PopulationEvent::Left {
             cluster: id,
+            body: state.model.body_name(size.body).to_owned(),
             outlet: outlets[n].name.clone(),
             mass_kg,
             place_m,

@@ -41,7 +41,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     rebuilt.keep_clumps(&mut state.clumps, &to_clusters, &leaving);
     rebuilt.stiffen(&mut state.clumps, to_clumps, clusters.as_ref());
     let mut history = clusters.as_ref().map_or(Vec::new(), |c| c.history.clone());
-    rebuilt.receive(&mut state.clumps, coming, &mut history, state.time_s);
+    rebuilt.receive(state, coming, &mut history);
     state.clusters = clusters;
     for created in &created {
         history[created.clump.cluster as usize].particles = created.template.spheres.len() as u32;
@@ -205,25 +205,22 @@ impl<'a> Rebuilt<'a> {
     }
 
     /// New clumps, each with its own number among the clusters.
-    fn receive(
-        &mut self,
-        clumps: &mut Clumps,
-        coming: Vec<Clump>,
-        history: &mut Vec<Cluster>,
-        time_s: f64,
-    ) {
+    fn receive(&mut self, state: &mut State, coming: Vec<Clump>, history: &mut Vec<Cluster>) {
         for mut clump in coming {
-            let template = Arc::clone(clumps.template(&clump));
+            let template = Arc::clone(state.clumps.template(&clump));
             clump.cluster = history.len() as u32;
+            clump.first_id = state.population.next_particle_id;
+            state.population.next_particle_id += template.spheres.len() as u32;
             history.push(Cluster {
                 parent: None,
-                created_s: time_s,
+                body: state.model.body_number(&template.body),
+                created_s: state.time_s,
                 ended_s: None,
                 particles: template.outer.len() as u32,
             });
             Clumps::push_spheres(&template, &mut clump, &mut self.new);
             self.label(clump.cluster, Some(template.material));
-            clumps.all.push(clump);
+            state.clumps.all.push(clump);
         }
     }
 }
@@ -255,6 +252,7 @@ fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
     new.poses.push(old.poses[i]);
     new.motions.push(old.motions[i]);
     new.wrenches.push(old.wrenches[i]);
+    new.ids.push(old.id(i));
     new.len() as u32 - 1
 }
 
@@ -271,6 +269,7 @@ fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
             ..motion
         });
         new.wrenches.push(Wrench::default());
+        new.ids.push(template.id(sphere, clump));
     }
     new.free += template.spheres.len();
 }

@@ -184,6 +184,10 @@ fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
     let whole = Arc::clone(&state.clumps.templates[base]);
     let bonds: Vec<usize> = own_bonds(members, state);
     let is_whole = members.len() == whole.spheres.len() && bonds.len() == whole.bonds.len();
+    let first_id = match members.first() {
+        Some(&first) if is_whole => p.id(of(&first)) - whole.file_number[0],
+        _ => 0,
+    };
     let (template, turned) = if is_whole {
         let arms: Vec<[f64; 3]> = centres
             .iter()
@@ -205,6 +209,7 @@ fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
     Clump {
         template,
         cluster: id,
+        first_id,
         place_m: properties.centre_m,
         turned,
         velocity_m_s: velocity.into(),
@@ -260,6 +265,7 @@ fn fragment_template(
         scale: 1.0,
         material: whole.material,
         file_number: (0..spheres.len() as u32).collect(),
+        ids: members.iter().map(|&i| p.id(i as usize)).collect(),
         scatter: None,
         bonds_of_file: (0..own.len() as u32).collect(),
         bonds: own,

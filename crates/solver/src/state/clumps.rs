@@ -87,6 +87,9 @@ pub struct Template {
     pub bonds: Bonds,
     /// For each of `spheres`, its number in the body's file.
     pub file_number: Vec<u32>,
+    /// For each of the `spheres` of a fragment, its id: see [`Particles::id`]. Empty: not a
+    /// fragment.
+    pub ids: Vec<u32>,
     /// Scatter of bond strengths. None: no scatter.
     pub scatter: Option<Scatter>,
     /// For each of `bonds`, its number in the body's file.
@@ -103,6 +106,8 @@ pub struct Clump {
     pub cluster: u32,
     /// Number of bodies of the scene added before it.
     pub instance: u32,
+    /// Id of the first sphere of its body's file: see [`Particles::id`].
+    pub first_id: u32,
     /// Centre of mass, m. Length 3.
     pub place_m: [f64; 3],
     /// Rotation from its principal axes to space: unit quaternion x, y, z, w.
@@ -151,6 +156,12 @@ impl Template {
             position_m: [x, y, z, sphere.radius_m],
             turned: numbers(&(turned * rotation(sphere.turned))),
         }
+    }
+
+    /// Id of the sphere with this number: see [`Particles::id`].
+    pub(crate) fn id(&self, sphere: usize, clump: &Clump) -> u32 {
+        let of_fragment = self.ids.get(sphere).copied();
+        of_fragment.unwrap_or_else(|| clump.first_id + self.file_number[sphere])
     }
 
     /// The particles that a clump of this template carries, given the first.
@@ -258,6 +269,7 @@ impl Clumps {
                 .push(clump.motion_at(template, &pose.place()));
             particles.poses.push(pose);
             particles.wrenches.push(Wrench::default());
+            particles.ids.push(template.id(sphere as usize, clump));
         }
     }
 }
@@ -268,6 +280,7 @@ impl Template {
         size_of_val(&self.spheres[..])
             + size_of_val(&self.outer[..])
             + size_of_val(&self.file_number[..])
+            + size_of_val(&self.ids[..])
             + size_of_val(&self.bonds_of_file[..])
             + size_of_val(&self.bonds.ends[..])
             + size_of_val(&self.bonds.blocks[..])

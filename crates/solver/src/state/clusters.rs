@@ -9,6 +9,7 @@
 //! depends only on the number of their particles and bonds.
 
 pub mod fragments;
+pub mod sizes;
 pub(crate) mod triggers;
 
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,8 @@ pub use triggers::Triggers;
 pub struct Cluster {
     /// The cluster that it broke off from; none: it was there from the start or was added later.
     pub parent: Option<u32>,
+    /// Its body: number in [`super::model::Model::bodies`].
+    pub body: u32,
     /// Time at which it was found, s.
     pub created_s: f64,
     /// Time at which it was found in pieces, s; none: it is intact.
@@ -100,6 +103,14 @@ impl Clusters {
         self.names.extend(new);
         self.join_bonded(known..particles, bonds);
         self.number(None, time_s, known..particles);
+    }
+
+    /// Sets the body of the clusters of these particles.
+    pub(crate) fn set_body(&mut self, particles: &[u32], body: u32) {
+        for &particle in particles {
+            let id = self.of_particle[particle as usize];
+            self.history[id as usize].body = body;
+        }
     }
 
     /// Rebuilds the remaining data from the cluster of each particle, all clusters and these bonds.
@@ -212,6 +223,7 @@ impl Clusters {
         if parent.is_some() && roots.iter().all(|root| *root == roots[0]) {
             return Vec::new();
         }
+        let body = parent.map_or(0, |parent| self.history[parent as usize].body);
         let first = self.history.len();
         for (p, root) in members.iter().zip(&roots) {
             // The name of a set is its smallest particle, which comes first.
@@ -219,6 +231,7 @@ impl Clusters {
                 self.of_particle[*p as usize] = self.history.len() as u32;
                 self.history.push(Cluster {
                     parent,
+                    body,
                     created_s: time_s,
                     ended_s: None,
                     particles: 0,

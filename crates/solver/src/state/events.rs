@@ -114,6 +114,8 @@ pub enum PopulationEvent {
     Left {
         /// Its number among the clusters.
         cluster: u32,
+        /// Name of its body.
+        body: String,
         /// Name of the outlet.
         outlet: String,
         /// Its mass, kg.

@@ -12,9 +12,23 @@ use super::rules::Rules;
 use super::sleep::SleepRule;
 use super::walls::WallModel;
 
+/// A body of the scene.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct NamedBody {
+    /// Its name.
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// Size of the smallest sieve opening that it passes, m: see
+    /// [`super::clusters::sizes::FragmentSize::sieve_m`].
+    pub sieve_m: f64,
+}
+
 /// Data fixed by the plan: no step changes them.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Model {
+    /// All bodies of the scene, also those that inlets feed, in the order of their names.
+    pub bodies: Vec<NamedBody>,
     /// m/s2. Length 3.
     pub gravity_m_s2: [f64; 3],
     /// gamma of Chen et al. 2022, eqs. 11 and 12. 0: none.
@@ -36,4 +50,24 @@ pub struct Model {
     pub search: Triggers,
     /// Rule by which bodies fall asleep. None: they never do.
     pub sleep: Option<SleepRule>,
+}
+
+impl Model {
+    /// Number of the body with this name in [`Model::bodies`]; 0 if there is none.
+    pub(crate) fn body_number(&self, name: &str) -> u32 {
+        let found = (self.bodies).binary_search_by(|body| body.name.as_str().cmp(name));
+        found.unwrap_or(0) as u32
+    }
+
+    /// Name of the body with this number in [`Model::bodies`].
+    pub(crate) fn body_name(&self, number: u32) -> &str {
+        let body = self.bodies.get(number as usize);
+        body.map_or("", |body| body.name.as_str())
+    }
+
+    /// Name of the material of the body with this number.
+    pub(crate) fn material_name(&self, number: u32) -> &str {
+        let body = self.bodies.get(number as usize);
+        body.map_or("", |body| body.material.as_str())
+    }
 }

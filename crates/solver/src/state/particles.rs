@@ -115,6 +115,9 @@ pub struct Particles {
     /// Forces and torques in this step.
     #[serde(skip)]
     pub wrenches: Vec<Wrench>,
+    /// A number that stands for the same particle throughout a run, and is never reused: see
+    /// [`Particles::id`].
+    pub ids: Vec<u32>,
     /// Number of free particles, which are not carried by clumps.
     pub free: usize,
     /// For each particle whether its body sleeps. Empty: none does.
@@ -130,6 +133,13 @@ impl Particles {
     /// Whether there are no particles.
     pub fn is_empty(&self) -> bool {
         self.poses.is_empty()
+    }
+
+    /// The number that stands for particle `i` throughout a run, while bodies are added, removed and
+    /// replaced: bodies are numbered one after the other as they come, each in the order of its
+    /// file.
+    pub fn id(&self, i: usize) -> u32 {
+        self.ids.get(i).copied().unwrap_or(i as u32)
     }
 
     /// Whether the body of particle `i` sleeps.
@@ -178,6 +188,7 @@ impl Particles {
         self.poses.reserve_exact(count);
         self.motions.reserve_exact(count);
         self.wrenches.reserve_exact(count);
+        self.ids.reserve_exact(count);
     }
 
     /// Adds a sphere at rest.
@@ -193,6 +204,7 @@ impl Particles {
             ..Motion::default()
         });
         self.wrenches.push(Wrench::default());
+        self.ids.push(self.ids.len() as u32);
         self.free += 1;
     }
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::clumps::Template;
+use super::clusters::sizes::Discharged;
 
 /// Progress of replacement, inlets and outlets.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -19,6 +20,10 @@ pub struct Population {
     /// For each cluster that was a clump, the template of the scene that it comes from, and its
     /// [instance](super::clumps::Clump::instance).
     pub base_of_cluster: BTreeMap<u32, (u32, u32)>,
+    /// The next [id](super::particles::Particles::id) of a particle.
+    pub next_particle_id: u32,
+    /// What has left through outlets, in order.
+    pub discharged: Vec<Discharged>,
     /// Bodies that came through inlets.
     pub instances: u32,
     /// Clumps that became clusters.

@@ -13,7 +13,7 @@ use super::books::feed;
 use super::{go, planned};
 
 /// Lumps that are fed rapidly, wait for each other, break, and are removed.
-fn busy(threads: usize) -> Plan {
+pub(crate) fn busy(threads: usize) -> Plan {
     let text = feed(0.5, "box = { min = [-1, -1, -1], max = [1, 1, -0.01] }")
         .replace("rate = 60", "rate = 400")
         .replace("min = [-1, -1, -1], max = [1, 1, 0.014]", "min = [-1, -1, 2e-3], max = [1, 1, 0.014]")

@@ -1,7 +1,8 @@
 //! Masses and motion of fragments: sums over the total, and rigid bodies.
 
 use dem_run::state::clumps::Clumps;
-use dem_run::state::clusters::fragments::{Fragment, mass_fraction_of_largest, size_distribution};
+use dem_run::state::clusters::fragments::{Fragment, mass_fraction_of_largest};
+use dem_run::state::clusters::sizes::{FragmentSize, size_of};
 use dem_run::state::clusters::{Clusters, fragments};
 use dem_run::state::particles::{Particles, Wrench};
 use nalgebra::Vector3;
@@ -90,10 +91,15 @@ proptest! {
         }
         let largest = fragments.iter().map(|f| f.mass_kg).fold(0.0, f64::max);
         prop_assert!((mass_fraction_of_largest(&fragments) - largest / mass).abs() < 1e-13);
-        let distribution = size_distribution(&fragments);
-        prop_assert!(distribution.is_sorted_by(|a, b| a.equivalent_diameter_m < b.equivalent_diameter_m && a.mass_fraction < b.mass_fraction));
-        prop_assert_eq!(distribution.last().unwrap().mass_fraction, 1.0);
         for fragment in &fragments {
+            let size = size_of(fragment.fragment_id, &clusters, &particles, &Clumps::default());
+            prop_assert!((size.mass_kg / fragment.mass_kg - 1.0).abs() < 1e-13);
+            prop_assert_eq!(size.equivalent_diameter_m, fragment.equivalent_diameter_m);
+            prop_assert!(size.box_lengths_m.is_sorted_by(|a, b| a >= b));
+            // No sphere is longer than the box around all.
+            let members = clusters.members(fragment.fragment_id).iter();
+            let largest = members.map(|i| spheres[*i as usize].4).fold(0.0, f64::max);
+            prop_assert!(size.box_lengths_m[2] >= 2.0 * largest - 1e-12);
             if fragment.particles == 1 {
                 let at = clusters.members(fragment.fragment_id)[0] as usize;
                 let (place, velocity, spin, force, radius) = spheres[at];
@@ -146,19 +152,26 @@ fn sizes_of_equal_fragments_are_one_point() {
     let clusters = Clusters::new(5, &bonds([[2, 3]]));
     let particles = particles(&spheres);
     let fragments = fragments(&clusters, &particles, &Clumps::default(), None);
-    // Masses 1, 1, 2, 8 of 12.
-    let found: Vec<[f64; 2]> = size_distribution(&fragments)
-        .iter()
-        .map(|p| [p.equivalent_diameter_m, 12.0 * p.mass_fraction])
+    // Masses 1, 1, 2, 8 of 12; the pair is 4 long and 2 across.
+    let sizes: Vec<FragmentSize> = clusters
+        .living()
+        .map(|id| size_of(id, &clusters, &particles, &Clumps::default()))
         .collect();
-    let wanted = [[2.0, 2.0], [2.0 * 2.0_f64.cbrt(), 4.0], [4.0, 12.0]];
-    for (found, wanted) in found.iter().flatten().zip(wanted.as_flattened()) {
-        assert!((found - wanted).abs() < 1e-13, "{found} {wanted}");
+    let wanted = [
+        (2.0, [2.0; 3]),
+        (2.0, [2.0; 3]),
+        (2.0 * 2.0_f64.cbrt(), [4.0, 2.0, 2.0]),
+        (4.0, [4.0; 3]),
+    ];
+    assert_eq!(sizes.len(), 4);
+    for (found, (diameter_m, box_m)) in sizes.iter().zip(wanted) {
+        assert!((found.equivalent_diameter_m - diameter_m).abs() < 1e-13);
+        for (found, wanted) in found.box_lengths_m.iter().zip(box_m) {
+            assert!((found - wanted).abs() < 1e-13, "{found} {wanted}");
+        }
     }
-    assert_eq!(found.len(), 3);
     assert!((mass_fraction_of_largest(&fragments) - 8.0 / 12.0).abs() < 1e-13);
     // From 9 to 13 in length, 2 across.
     assert!((fragments[2].box_diagonal_m - 24.0_f64.sqrt()).abs() < 1e-13);
     assert_eq!(mass_fraction_of_largest(&[]), 0.0);
-    assert!(size_distribution(&[]).is_empty());
 }

@@ -226,6 +226,7 @@ fn every_split_is_an_event() {
 fn the_text_of_a_split_is_short_however_many_pieces_there_are() {
     let cluster = |particles: u32| Cluster {
         parent: None,
+        body: 0,
         created_s: 0.0,
         ended_s: None,
         particles,

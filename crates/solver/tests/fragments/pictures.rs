@@ -2,14 +2,17 @@
 
 use std::fs;
 
-use dem_run::output::fragments::{counts_over_time, sizes};
-use dem_run::state::clusters::{Cluster, Fragment};
+use dem_run::output::fragments::counts_over_time;
+use dem_run::output::sizes::steps;
+use dem_run::state::clusters::Cluster;
+use dem_run::state::clusters::sizes::FragmentSize;
 
 use super::burst;
 
 fn clusters(lives: &[(f64, Option<f64>)]) -> Vec<Cluster> {
     let cluster = |&(created_s, ended_s): &(f64, Option<f64>)| Cluster {
         parent: None,
+        body: 0,
         created_s,
         ended_s,
         particles: 1,
@@ -47,26 +50,14 @@ fn numbers_step_when_clusters_split() {
 
 #[test]
 fn shares_step_at_every_size_up_to_all_of_the_mass() {
-    let fragment = |id: u32, mass_kg: f64, equivalent_diameter_m: f64| Fragment {
-        fragment_id: id,
-        parent_id: None,
-        particles: 1,
+    let fragment = |mass_kg: f64, size_m: f64| FragmentSize {
         mass_kg,
-        centre_m: [0.0; 3],
-        velocity_m_s: [0.0; 3],
-        angular_velocity_rad_s: [0.0; 3],
-        angular_momentum_kg_m2_s: [0.0; 3],
-        force_n: [0.0; 3],
-        equivalent_diameter_m,
-        box_diagonal_m: equivalent_diameter_m,
+        box_lengths_m: [1.0, size_m, 0.01],
+        ..FragmentSize::default()
     };
-    let all = [
-        fragment(0, 5.0, 0.5),
-        fragment(1, 1.0, 0.1),
-        fragment(2, 2.0, 0.1),
-    ];
+    let all = [fragment(1.0, 0.1), fragment(2.0, 0.1), fragment(5.0, 0.5)];
     assert_eq!(
-        sizes(&all),
+        steps(&all),
         [[0.1, 0.0], [0.1, 0.375], [0.5, 0.375], [0.5, 1.0]]
     );
 }
@@ -107,7 +98,7 @@ fn plots_of_a_rod_that_burst() {
             "fragment_sizes",
             [
                 ">Fragment sizes</text>",
-                ">size: diameter of a sphere of equal volume (m)</text>",
+                ">sieve size: second of three box lengths (mm)</text>",
                 ">cumulative mass fraction</text>",
             ],
         ),

@@ -9,7 +9,7 @@ use super::{Bench, dem_run, good, names_in, refused, row, vtp_bytes};
 /// A scene in the folder of its own results, with a body and a wall in it under names of results.
 fn scene(bench: &Bench, file: &str, wall: &str) {
     bench.write(
-        "scene.toml",
+        "case.toml",
         format!(
             "version = 1\nrun.end_time = \"1 us\"\nmaterials.m = {{ density = 1000, young_modulus = \"1 MPa\" }}\n\
              bonds.m = {{ young_modulus = \"1 MPa\", poisson_ratio = 0.3 }}\n\
@@ -38,7 +38,7 @@ fn results_do_not_take_the_place_of_inputs() {
     ] {
         scene(&bench, file, PLANE);
         for option in ["--force", "--resume"] {
-            let said = bench.bad(Path::new("scene.toml"), &["--output", ".", option], 2);
+            let said = bench.bad(Path::new("case.toml"), &["--output", ".", option], 2);
             assert!(
                 said.starts_with(&format!("error: {file}: this is an input of the run, and results in '.' would take its place; name another folder")),
                 "{said}"
@@ -50,30 +50,30 @@ fn results_do_not_take_the_place_of_inputs() {
     scene(&bench, "elsewhere/body.vtp", PLANE);
     for name in ["series.csv", "summary.json"] {
         std::os::unix::fs::symlink(&kept, bench.path(name)).unwrap();
-        let said = bench.bad(Path::new("scene.toml"), &["--output", ".", "--force"], 2);
+        let said = bench.bad(Path::new("case.toml"), &["--output", ".", "--force"], 2);
         assert!(
             said.contains("elsewhere/body.vtp: this is an input of the run"),
             "{said}"
         );
         fs::remove_file(bench.path(name)).unwrap();
     }
-    std::os::unix::fs::symlink(bench.path("scene.toml"), bench.path("events.csv")).unwrap();
-    let said = bench.bad(Path::new("scene.toml"), &["--output", ".", "--force"], 2);
+    std::os::unix::fs::symlink(bench.path("case.toml"), bench.path("events.csv")).unwrap();
+    let said = bench.bad(Path::new("case.toml"), &["--output", ".", "--force"], 2);
     assert!(
-        said.contains("scene.toml: this is an input of the run"),
+        said.contains("case.toml: this is an input of the run"),
         "{said}"
     );
     fs::remove_file(bench.path("events.csv")).unwrap();
     // Inputs under other names are kept, also in the folder of results.
     fs::copy(&kept, bench.path("own.vtp")).unwrap();
     scene(&bench, "own.vtp", PLANE);
-    let text = fs::read(bench.path("scene.toml")).unwrap();
+    let text = fs::read(bench.path("case.toml")).unwrap();
     bench.good(
-        Path::new("scene.toml"),
+        Path::new("case.toml"),
         &["--output", ".", "--force", "--quiet"],
     );
     assert_eq!(fs::read(bench.path("own.vtp")).unwrap(), body);
-    assert_eq!(fs::read(bench.path("scene.toml")).unwrap(), text);
+    assert_eq!(fs::read(bench.path("case.toml")).unwrap(), text);
     assert_eq!(fs::read(&kept).unwrap(), body);
 }
 
@@ -83,7 +83,7 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
     bench.write("row.vtp", vtp_bytes(&row(5)));
     bench.write("other.vtp", vtp_bytes(&row(4)));
     scene(&bench, "row.vtp", PLANE);
-    bench.good(Path::new("scene.toml"), &["--output", "out", "--quiet"]);
+    bench.good(Path::new("case.toml"), &["--output", "out", "--quiet"]);
     let frame = names_in(&bench.path("out/frames")).remove(0);
     let frame = format!("out/frames/{frame}");
     std::os::unix::fs::symlink(bench.path(&frame), bench.path("link.vtp")).unwrap();
@@ -119,7 +119,7 @@ fn a_fragment_is_not_written_over_results_and_inputs() {
     );
     // The body named on the command line is known from the checkpoint.
     bench.good(
-        Path::new("scene.toml"),
+        Path::new("case.toml"),
         &["--output", "other", "--body", "other.vtp", "--quiet"],
     );
     assert!(fragment("other", "other.vtp").contains("'other.vtp' is read here"));

@@ -22,6 +22,7 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
             ".ended.json",
             ".lock",
             "checkpoint.dem",
+            "distribution.csv",
             "events.csv",
             "fragment-tree.csv",
             "fragments.csv",
@@ -29,6 +30,7 @@ fn holds_frames_series_events_plots_summary_and_checkpoint() {
             "frames.pvd",
             "plots",
             "report.html",
+            "scene.toml",
             "series.csv",
             "summary.json"
         ]
@@ -231,6 +233,8 @@ fn frames_have_every_array_at_full_length() {
         assert_eq!(&data[end..], b"\n  </AppendedData>\n</VTKFile>\n");
         for array in [
             "displacement_m",
+            "particle_id",
+            "body_names",
             "velocity_m_s",
             "normal_force_n",
             "utilisation",

@@ -6,8 +6,10 @@ use super::names::{
     BOND_RANGE, FORMAT_VERSION, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
     SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
+use super::walls;
 use crate::body::parts::{Body, Parts};
 use crate::body::stored_frame::{self as frame, StoredFrame};
+use crate::body::stored_walls::{StoredWalls, WALL_FORCES, WALL_NAMES};
 use crate::diagnostic::{Diagnostic, Result};
 
 /// The data of a body read so far.
@@ -21,6 +23,7 @@ pub(super) struct Contents {
     /// All data except the radii.
     parts: Parts,
     of_frame: OfFrame,
+    walls: StoredWalls,
 }
 
 /// Data of frames that bodies do not have.
@@ -49,6 +52,8 @@ impl Contents {
     pub(super) fn most_values(&self, role: Role) -> u64 {
         // A field holds at most a text; fields of other programs may be larger.
         const OF_FIELD: u64 = 1 << 14;
+        /// Scenes may have many walls.
+        const OF_WALLS: u64 = 1 << 20;
         const OF_OTHER: u64 = 1 << 16;
         const OF_OTHER_PER_CELL: u64 = 1 << 10;
         let counts = self.counts.unwrap_or_default();
@@ -60,6 +65,9 @@ impl Contents {
             Role::Connectivity => counts.lines.saturating_mul(2),
             Role::Offsets => counts.lines,
             Role::BondRadii | Role::BondLengths | Role::Broken => cells,
+            Role::Corners => counts.cells_after.saturating_mul(3),
+            Role::CornerOffsets | Role::WallNumbers => counts.cells_after,
+            Role::Field(WALL_NAMES | WALL_FORCES) => OF_WALLS,
             Role::Field(_) => OF_FIELD,
             Role::Other => {
                 let all = counts.points.saturating_add(cells);
@@ -117,6 +125,9 @@ impl Contents {
                 .map(|all| self.of_frame.densities = Some(all)),
             Role::Broken => {
                 line_values(array, values, counts).map(|all| self.of_frame.broken = Some(all))
+            }
+            Role::Corners | Role::CornerOffsets | Role::WallNumbers => {
+                walls::fill(&mut self.walls, counts, array, values)
             }
             Role::Field(_) | Role::Other => Ok(()),
         }
@@ -198,7 +209,7 @@ impl Contents {
             BOND_RANGE => about.bond_range = first.map(float),
             WARNINGS => about.warnings = texts(&numbers)?,
             frame::TIME => self.of_frame.time_s = first.map(float),
-            _ => {}
+            _ => walls::fill_field(&mut self.walls, name, &numbers)?,
         }
         Ok(())
     }
@@ -271,6 +282,25 @@ impl Contents {
         })
     }
 
+    /// The walls, if all their data were present.
+    pub(super) fn into_walls(self) -> Result<StoredWalls> {
+        let (counts, walls) = (self.counts.unwrap_or_default(), self.walls);
+        let found = [
+            (self.parts.positions.len(), counts.points, "points"),
+            (walls.triangles.len(), counts.cells_after, "triangles"),
+            (walls.wall_of_triangle.len(), counts.cells_after, "values"),
+            (walls.forces_n.len(), walls.names.len() as u64, "forces"),
+        ];
+        for (count, wanted, what) in found {
+            check_count(count as u64, wanted.into(), what)?;
+        }
+        Ok(StoredWalls {
+            time_s: self.of_frame.time_s.unwrap_or(0.0),
+            points_m: self.parts.positions,
+            ..walls
+        })
+    }
+
     /// The names of the point data, human-readable.
     fn known_point_data(&self) -> String {
         match self.point_data.as_slice() {
@@ -316,7 +346,7 @@ fn floats(array: &Array, values: Values<'_>, counts: [u64; 3]) -> Result<Vec<f64
     Ok(kept)
 }
 
-fn check_count(found: u64, wanted: u128, what: &str) -> Result<()> {
+pub(super) fn check_count(found: u64, wanted: u128, what: &str) -> Result<()> {
     if u128::from(found) == wanted {
         return Ok(());
     }
@@ -359,7 +389,7 @@ fn check_unit(unit: &str) -> Result<()> {
 }
 
 #[inline]
-fn float(number: Number) -> f64 {
+pub(super) fn float(number: Number) -> f64 {
     match number {
         Number::Float(value) => value,
         Number::Integer(value) => value as f64,
@@ -367,7 +397,7 @@ fn float(number: Number) -> f64 {
 }
 
 #[inline]
-fn particle(number: Number) -> Result<u32> {
+pub(super) fn particle(number: Number) -> Result<u32> {
     if let Number::Integer(value) = number
         && let Ok(particle) = u32::try_from(value)
     {
@@ -394,7 +424,7 @@ fn whole(number: Number) -> Result<u64> {
 }
 
 /// Texts of one line, each terminated by a zero.
-fn texts(numbers: &[Number]) -> Result<Vec<String>> {
+pub(super) fn texts(numbers: &[Number]) -> Result<Vec<String>> {
     let each = numbers.split(|number| *number == Number::Integer(0));
     let each = each.filter(|text| !text.is_empty()).map(text);
     let on_one_line = |text: String| text.replace(char::is_control, " ");

@@ -8,7 +8,7 @@ use super::names::{
     BOND_LENGTH, BOND_RADIUS, BOND_RANGE, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
     SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
-use crate::body::stored_frame as frame;
+use crate::body::{stored_frame as frame, stored_walls as walls};
 use crate::diagnostic::{Diagnostic, Result};
 
 /// The type of content as which a file is read, which determines the names of the arrays.
@@ -17,6 +17,7 @@ pub(super) enum Layout {
     #[default]
     Body,
     Frame,
+    Walls,
 }
 
 /// The role of an array.
@@ -32,6 +33,11 @@ pub(super) enum Role {
     Clusters,
     Densities,
     Broken,
+    /// For the walls of a run: the corners of each triangle, where it ends among them, and its
+    /// wall.
+    Corners,
+    CornerOffsets,
+    WallNumbers,
     /// Field data of this name.
     Field(&'static str),
     /// Not used.
@@ -83,6 +89,7 @@ impl Array {
             role: match layout {
                 Layout::Body => role_of(section, &name),
                 Layout::Frame => role_in_frame(section, &name),
+                Layout::Walls => role_in_walls(section, &name),
             },
             name,
             scalar,
@@ -143,6 +150,26 @@ fn role_in_frame(section: &str, name: &str) -> Role {
         ("CellData", frame::BOND_LENGTH) => Role::BondLengths,
         ("CellData", frame::BROKEN) => Role::Broken,
         ("FieldData", frame::TIME) => Role::Field(frame::TIME),
+        _ => Role::Other,
+    }
+}
+
+fn role_in_walls(section: &str, name: &str) -> Role {
+    const FIELDS: [&str; 4] = [
+        frame::TIME,
+        walls::WALL_NAMES,
+        walls::WALL_FORCES,
+        walls::FIXED_WALLS,
+    ];
+    match (section, name) {
+        ("Points", _) => Role::Positions,
+        ("Polys", "connectivity") => Role::Corners,
+        ("Polys", "offsets") => Role::CornerOffsets,
+        ("CellData", walls::WALL) => Role::WallNumbers,
+        ("FieldData", _) => FIELDS
+            .into_iter()
+            .find(|field| *field == name)
+            .map_or(Role::Other, Role::Field),
         _ => Role::Other,
     }
 }

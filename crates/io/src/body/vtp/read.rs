@@ -13,6 +13,7 @@ use super::guard::Guarded;
 use super::header::{Array, Counts, Encoding, Format, Layout, Role, attribute, damaged, not_vtp};
 use crate::body::parts::Body;
 use crate::body::stored_frame::StoredFrame;
+use crate::body::stored_walls::StoredWalls;
 use crate::diagnostic::{Diagnostic, Result};
 
 /// Reads a body from a .vtp file, which ends with the input.
@@ -34,6 +35,14 @@ pub fn read(input: &mut dyn BufRead) -> Result<Body> {
 /// Damaged or cut off, compressed, wrong counts, or an array of fragments is missing.
 pub(crate) fn read_frame(input: &mut dyn BufRead) -> Result<StoredFrame> {
     contents(input, Layout::Frame)?.into_frame()
+}
+
+/// Reads the walls of a frame of a run.
+///
+/// # Errors
+/// Damaged or cut off, compressed, wrong counts.
+pub(crate) fn read_walls(input: &mut dyn BufRead) -> Result<StoredWalls> {
+    contents(input, Layout::Walls)?.into_walls()
 }
 
 fn contents(input: &mut dyn BufRead, layout: Layout) -> Result<Contents> {

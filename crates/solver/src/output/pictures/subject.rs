@@ -12,6 +12,9 @@ use crate::state::bodies::PlacedBody;
 use crate::state::clusters::Cluster;
 use crate::state::walls::Wall;
 
+/// Distance to which planes are drawn beyond the particles, as a fraction of the width of these.
+const ROOM: f64 = 0.55;
+
 /// All particles: on a scale, if there is one; otherwise by cluster, or by body if there are no
 /// clusters.
 pub(crate) fn balls(state: &State, bodies: &[PlacedBody], scale: Option<&Scale>) -> Vec<Ball> {
@@ -39,15 +42,80 @@ fn by_fragment(state: &State, bodies: &[PlacedBody]) -> Vec<[u8; 3]> {
     (0..count).map(|i| colour_of(i).unwrap_or(SINGLE)).collect()
 }
 
+/// The outermost points of all particles, and the corners of all inlets, m. Shape n x 3.
+pub(crate) fn points_of(state: &State) -> Vec<[f64; 3]> {
+    let poses = &state.particles.poses;
+    let mut points_m: Vec<[f64; 3]> = (poses.iter())
+        .flat_map(|pose| outermost(pose.place().into(), pose.radius_m()))
+        .collect();
+    for inlet in &state.model.rules.inlets {
+        points_m.extend(state.model.rules.regions[inlet.region].bounds().corners());
+    }
+    points_m
+}
+
+/// The box of a scene around which planes are drawn: these points, m, with room at their sides, and
+/// the walls that are no planes.
+pub(crate) fn around(state: &State, points_m: &[[f64; 3]]) -> Bounds {
+    let room = with_room(Bounds::of(points_m.iter().copied()));
+    state.walls.iter().fold(room, |around, wall| {
+        let corners = corners_m(&wall.model.shape).unwrap_or_default();
+        let in_space = corners.into_iter().flatten();
+        let in_space = in_space.map(|corner| wall.frame.to_space(corner));
+        around.with(&Bounds::of(in_space))
+    })
+}
+
+/// A box with room at its sides, for parts that will fall over or break.
+fn with_room(bounds: Bounds) -> Bounds {
+    let [x, y] = [0, 1].map(|k| bounds.high[k] - bounds.low[k]);
+    // No room if there is nothing.
+    let room = if x > 0.0 && y > 0.0 {
+        ROOM * (x * y).sqrt()
+    } else {
+        0.0
+    };
+    let [a, b, low] = bounds.low;
+    let [c, d, high] = bounds.high;
+    Bounds {
+        low: [a - room, b - room, low],
+        high: [c + room, d + room, high],
+    }
+}
+
+/// The extreme points of a ball along the axes, m. Shape 6 x 3.
+fn outermost(centre_m: [f64; 3], radius_m: f64) -> [[f64; 3]; 6] {
+    [0, 1, 2, 3, 4, 5].map(|end| {
+        let mut point_m = centre_m;
+        point_m[end / 2] += if end % 2 == 0 { -radius_m } else { radius_m };
+        point_m
+    })
+}
+
 /// All walls in their present position. Planes are infinite: only the part around a scene is drawn,
 /// up to other walls.
 pub(crate) fn surfaces(walls: &[Wall], around: &Bounds) -> Vec<Surface> {
-    let planes: Vec<HalfSpace> = walls.iter().filter_map(half_space).collect();
+    let planes = half_spaces(walls);
     let surface = |wall: &Wall| match half_space(wall) {
         Some(plane) => Some(Surface::plane(&plane, around, &planes)),
         None => finite(wall),
     };
     walls.iter().filter_map(surface).collect()
+}
+
+/// The part of a plane around a scene, up to the other planes among the walls: the corners of its
+/// triangles, m. None: the wall is no plane.
+pub(crate) fn plane_patch(
+    wall: &Wall,
+    walls: &[Wall],
+    around: &Bounds,
+) -> Option<Vec<[[f64; 3]; 3]>> {
+    let surface = Surface::plane(&half_space(wall)?, around, &half_spaces(walls));
+    Some(surface.triangles.iter().map(|t| t.corners_m).collect())
+}
+
+fn half_spaces(walls: &[Wall]) -> Vec<HalfSpace> {
+    walls.iter().filter_map(half_space).collect()
 }
 
 fn half_space(wall: &Wall) -> Option<HalfSpace> {
@@ -60,8 +128,19 @@ fn half_space(wall: &Wall) -> Option<HalfSpace> {
     }
 }
 
+/// The corners of the triangles of a shape in its own frame, m. None: a plane is infinite.
+pub(crate) fn corners_m(shape: &Shape) -> Option<Vec<[[f64; 3]; 3]>> {
+    let surface = match shape {
+        Shape::Plane(_) => return None,
+        Shape::Mesh(mesh) => return Some(mesh.corners_m().collect()),
+        Shape::Box(solid) => Surface::solid_box(&solid.bounds()),
+        Shape::Cylinder(cylinder) => Surface::cylinder(cylinder.ends_m(), cylinder.radius_m()),
+    };
+    Some(surface.triangles.iter().map(|t| t.corners_m).collect())
+}
+
 /// A wall in its present position. None: a plane is infinite.
-pub(super) fn finite(wall: &Wall) -> Option<Surface> {
+fn finite(wall: &Wall) -> Option<Surface> {
     let in_its_frame = match &wall.model.shape {
         Shape::Plane(_) => return None,
         Shape::Box(solid) => Surface::solid_box(&solid.bounds()),

@@ -15,6 +15,7 @@ use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
 use crate::output::series;
 use crate::output::summary::{Summary, Verdict};
+use crate::output::walls::WallOutput;
 use crate::physics::bond::failure::CauseCounts;
 use crate::plan::inputs::Inputs;
 use crate::run::settings::RunSettings;
@@ -85,6 +86,7 @@ impl AtRest<'_> {
             largest_overlap: 0.0,
             broken_by_cause: CauseCounts::default(),
             fragments,
+            sizes: None,
             population: None,
             sleep: None,
             steps: state.steps,
@@ -131,7 +133,9 @@ impl AtRest<'_> {
             &series::row(self.state, self.balance, measured),
         )?;
         EventFile::create(&folder.events())?;
-        order.write(self.state, &mut FrameFiles::create(folder))?;
+        let walls = WallOutput::of(self.state);
+        let mut frames = FrameFiles::create(folder, walls.files());
+        order.write(self.state, &walls, &mut frames)?;
         write_json(&folder.summary(), summary)
     }
 }

@@ -14,6 +14,8 @@ pub struct Fragment {
     pub fragment_id: u32,
     /// The cluster that it broke off.
     pub parent_id: Option<u32>,
+    /// Its body: number in [`crate::state::model::Model::bodies`].
+    pub body: u32,
     /// Number of its particles.
     pub particles: u32,
     /// Sum over its particles, kg.
@@ -151,6 +153,7 @@ pub fn fragment(
     Fragment {
         fragment_id: id,
         parent_id: clusters.history[id as usize].parent,
+        body: clusters.history[id as usize].body,
         particles: members.len() as u32,
         mass_kg,
         centre_m: centre.into(),
@@ -168,39 +171,4 @@ pub fn mass_fraction_of_largest(fragments: &[Fragment]) -> f64 {
     let total: f64 = fragments.iter().map(|f| f.mass_kg).sum();
     let largest = fragments.iter().map(|f| f.mass_kg).fold(0.0, f64::max);
     if total > 0.0 { largest / total } else { 0.0 }
-}
-
-/// A point of a size distribution.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct SizePoint {
-    /// Size of a fragment, m.
-    pub equivalent_diameter_m: f64,
-    /// Fraction of all mass in fragments of this size and smaller ones.
-    pub mass_fraction: f64,
-}
-
-/// The cumulative size distribution by mass: one point for each size, from the smallest, up to a
-/// mass fraction of 1.
-pub fn size_distribution(fragments: &[Fragment]) -> Vec<SizePoint> {
-    let mut sorted: Vec<&Fragment> = fragments.iter().collect();
-    sorted.sort_by(|a, b| a.equivalent_diameter_m.total_cmp(&b.equivalent_diameter_m));
-    let mut distribution: Vec<SizePoint> = Vec::new();
-    let mut sum = 0.0;
-    for fragment in sorted {
-        sum += fragment.mass_kg;
-        let point = SizePoint {
-            equivalent_diameter_m: fragment.equivalent_diameter_m,
-            mass_fraction: sum,
-        };
-        match distribution.last_mut() {
-            Some(last) if last.equivalent_diameter_m == point.equivalent_diameter_m => {
-                *last = point
-            }
-            _ => distribution.push(point),
-        }
-    }
-    for point in &mut distribution {
-        point.mass_fraction /= sum;
-    }
-    distribution
 }

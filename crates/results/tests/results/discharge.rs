@@ -1,0 +1,59 @@
+//! Tables of what leaves and of sizes: as documented, and the same after an interruption.
+
+use std::fs;
+
+use dem_results::discharge::{COLUMNS, DISTRIBUTION_COLUMNS};
+use dem_results::{DischargeFile, DischargeRow, DistributionRow, write_distribution};
+use tempfile::tempdir;
+
+fn row(fragment_id: u32, time_s: f64) -> DischargeRow<'static> {
+    DischargeRow {
+        time_s,
+        fragment_id,
+        body: "cake, old",
+        material: "stone",
+        outlet: "floor",
+        mass_kg: 0.1 * time_s,
+        equivalent_diameter_m: 1.0 / 3.0,
+        box_lengths_m: [0.5, 0.25, 0.125],
+    }
+}
+
+#[test]
+fn discharge_looks_as_documented_and_goes_on_after_an_interruption() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("discharge.csv");
+    let mut file = DischargeFile::create(&path).unwrap();
+    file.append([row(7, 0.5)].into_iter()).unwrap();
+    let checkpoint = file.length_bytes();
+    file.append([row(8, 1.0), row(2, 1.0)].into_iter()).unwrap();
+    file.append(std::iter::empty()).unwrap();
+    let whole = fs::read_to_string(&path).unwrap();
+    assert!(whole.starts_with(&format!(
+        "{COLUMNS}\n5e-1,7,\"cake, old\",stone,floor,5e-2,3.333333333333333e-1,5e-1,2.5e-1,1.25e-1\n"
+    )));
+    assert_eq!(whole.lines().count(), 4);
+    let mut file = DischargeFile::continue_at(&path, checkpoint).unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 2);
+    file.append([row(8, 1.0), row(2, 1.0)].into_iter()).unwrap();
+    file.sync().unwrap();
+    assert_eq!(fs::read_to_string(&path).unwrap(), whole);
+}
+
+#[test]
+fn a_distribution_looks_as_documented() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("distribution.csv");
+    let row = DistributionRow {
+        body: "cake",
+        location: "both",
+        sieve_m: 1.4e-3,
+        passing_kg: 0.5,
+        passing_fraction: 0.25,
+    };
+    write_distribution(&path, &[row]).unwrap();
+    assert_eq!(
+        fs::read_to_string(&path).unwrap(),
+        format!("{DISTRIBUTION_COLUMNS}\ncake,both,1.4e-3,5e-1,2.5e-1\n")
+    );
+}

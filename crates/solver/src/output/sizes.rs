@@ -1,0 +1,238 @@
+//! Size distribution of fragments: those inside at the end, those discharged, and both, by body.
+//!
+//! Size is the opening of the smallest sieve that a fragment passes, the second of its three box
+//! lengths.
+
+use std::collections::BTreeMap;
+
+use dem_results::DistributionRow;
+use serde::Serialize;
+
+use crate::state::State;
+use crate::state::clusters::sizes::{FragmentSize, size_of};
+use crate::state::model::Model;
+
+/// Sizes of the series R 20 of ISO 3 between 1 and 10.
+const R20: [&str; 20] = [
+    "1", "1.12", "1.25", "1.4", "1.6", "1.8", "2", "2.24", "2.5", "2.8", "3.15", "3.55", "4",
+    "4.5", "5", "5.6", "6.3", "7.1", "8", "9",
+];
+
+/// The places of fragments in the table: names, and whether discharged and present ones are there.
+const LOCATIONS: [(&str, bool, bool); 3] = [
+    ("inside", false, true),
+    ("discharged", true, false),
+    ("both", true, true),
+];
+
+/// Name of all bodies together in the table.
+const ALL: &str = "all";
+
+/// A size that some fraction of the mass is smaller than, and the fines.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct SizeSummary {
+    /// Mass of the fragments, kg.
+    pub mass_kg: f64,
+    /// Size up to which a tenth of the mass is, m: that of the first fragment, from the smallest,
+    /// with which the sum reaches a tenth.
+    pub d10_m: f64,
+    /// The same for half of the mass, m.
+    pub d50_m: f64,
+    /// The same for 80 % of the mass, m.
+    pub d80_m: f64,
+    /// Mass fraction smaller than a tenth of the mean size of the bodies before they broke.
+    pub t10: f64,
+}
+
+/// Size distributions at the end of a run.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Sizes {
+    /// Of all bodies together: fragments `inside`, `discharged` ones, and `both`.
+    pub all: BTreeMap<String, SizeSummary>,
+    /// The same for each body.
+    pub bodies: BTreeMap<String, BTreeMap<String, SizeSummary>>,
+}
+
+/// The fragments of a run, inside and discharged.
+#[derive(Debug, Clone, Default)]
+pub struct Fragments {
+    inside: Vec<FragmentSize>,
+    discharged: Vec<FragmentSize>,
+}
+
+impl Fragments {
+    /// Those of a state. None: nothing can break or touch.
+    pub fn of(state: &State) -> Option<Self> {
+        let clusters = state.clusters.as_ref()?;
+        let size = |id: u32| size_of(id, clusters, &state.particles, &state.clumps);
+        let discharged = state.population.discharged.iter();
+        Some(Self {
+            inside: clusters.living().map(size).collect(),
+            discharged: discharged.map(|one| one.size).collect(),
+        })
+    }
+
+    /// From these, for tests.
+    pub fn from_parts(inside: Vec<FragmentSize>, discharged: Vec<FragmentSize>) -> Self {
+        Self { inside, discharged }
+    }
+
+    /// Those of a body, or all, in these places, by ascending size.
+    fn chosen(&self, body: Option<u32>, discharged: bool, inside: bool) -> Vec<FragmentSize> {
+        let discharged = self.discharged.iter().filter(|_| discharged);
+        let inside = self.inside.iter().filter(|_| inside);
+        let all = discharged.chain(inside);
+        let own = all.filter(|one| body.is_none_or(|body| body == one.body));
+        let mut chosen: Vec<FragmentSize> = own.copied().collect();
+        chosen.sort_by(|a, b| a.sieve_m().total_cmp(&b.sieve_m()));
+        chosen
+    }
+
+    /// Bodies that have fragments, with their names, and all together.
+    fn groups<'a>(&self, model: &'a Model) -> Vec<(Option<u32>, &'a str)> {
+        let has = |number: u32| !self.chosen(Some(number), true, true).is_empty();
+        let bodies = (0..).zip(&model.bodies);
+        let bodies = bodies.map(|(number, body)| (number, body.name.as_str()));
+        let bodies = bodies.filter(|(number, _)| has(*number));
+        let bodies = bodies.map(|(number, name)| (Some(number), name));
+        std::iter::once((None, ALL)).chain(bodies).collect()
+    }
+
+    /// Mean size, by mass, of the bodies that the fragments come from, m.
+    fn mean_size_m(&self, body: Option<u32>, model: &Model) -> f64 {
+        let all = self.chosen(body, true, true);
+        let size = |one: &FragmentSize| {
+            let body = model.bodies.get(one.body as usize);
+            body.map_or(0.0, |body| body.sieve_m)
+        };
+        let mass_kg: f64 = all.iter().map(|one| one.mass_kg).sum();
+        all.iter().map(|one| one.mass_kg * size(one)).sum::<f64>() / mass_kg
+    }
+
+    /// The numbers of the summary.
+    pub fn sizes(&self, model: &Model) -> Sizes {
+        let mut sizes = Sizes::default();
+        for (body, name) in self.groups(model) {
+            let tenth_m = 0.1 * self.mean_size_m(body, model);
+            let of_group = LOCATIONS
+                .iter()
+                .filter_map(|(location, discharged, inside)| {
+                    let summary = summary(&self.chosen(body, *discharged, *inside), tenth_m)?;
+                    Some(((*location).to_owned(), summary))
+                });
+            let of_group = of_group.collect();
+            match body {
+                None => sizes.all = of_group,
+                Some(_) => drop(sizes.bodies.insert(name.to_owned(), of_group)),
+            }
+        }
+        sizes
+    }
+
+    /// The rows of the table: for each body and all, for each place, for each sieve.
+    pub fn rows<'a>(&self, model: &'a Model) -> Vec<DistributionRow<'a>> {
+        let all = self.chosen(None, true, true);
+        let (Some(first), Some(last)) = (all.first(), all.last()) else {
+            return Vec::new();
+        };
+        let sieves_m = sieves_m(first.sieve_m(), last.sieve_m());
+        let mut rows = Vec::new();
+        for (body, name) in self.groups(model) {
+            for (location, discharged, inside) in LOCATIONS {
+                let chosen = self.chosen(body, discharged, inside);
+                let total_kg: f64 = chosen.iter().map(|one| one.mass_kg).sum();
+                if total_kg == 0.0 {
+                    continue;
+                }
+                for &sieve_m in &sieves_m {
+                    let end = chosen.partition_point(|one| one.sieve_m() <= sieve_m);
+                    let passing_kg: f64 = chosen[..end].iter().map(|one| one.mass_kg).sum();
+                    rows.push(DistributionRow {
+                        body: name,
+                        location,
+                        sieve_m,
+                        passing_kg,
+                        passing_fraction: passing_kg / total_kg,
+                    });
+                }
+            }
+        }
+        rows
+    }
+
+    /// Cumulative curves of all fragments, inside and discharged: name of the body, points of size,
+    /// m, and mass fraction with a step at each size, and d50, m.
+    pub(super) fn curves<'a>(&self, model: &'a Model) -> Vec<(&'a str, Vec<[f64; 2]>, f64)> {
+        let curve = |(body, name): (Option<u32>, &'a str)| {
+            let chosen = self.chosen(body, true, true);
+            let d50_m = summary(&chosen, 0.0).map_or(0.0, |summary| summary.d50_m);
+            (name, steps(&chosen), d50_m)
+        };
+        self.groups(model).into_iter().map(curve).collect()
+    }
+
+    /// Number of all fragments, inside and discharged.
+    pub(super) fn count(&self) -> usize {
+        self.inside.len() + self.discharged.len()
+    }
+}
+
+/// Size, m, and mass fraction of all fragments of that size and smaller ones, with a step at every
+/// size. `sorted`: by ascending size.
+pub fn steps(sorted: &[FragmentSize]) -> Vec<[f64; 2]> {
+    let total_kg: f64 = sorted.iter().map(|one| one.mass_kg).sum();
+    let (mut sum_kg, mut points) = (0.0, Vec::new());
+    for same in sorted.chunk_by(|a, b| a.sieve_m() == b.sieve_m()) {
+        points.push([same[0].sieve_m(), sum_kg / total_kg]);
+        sum_kg += same.iter().map(|one| one.mass_kg).sum::<f64>();
+        points.push([same[0].sieve_m(), sum_kg / total_kg]);
+    }
+    points
+}
+
+/// Of fragments by ascending size; `tenth_m`: the size for t10. None: there are none.
+fn summary(sorted: &[FragmentSize], tenth_m: f64) -> Option<SizeSummary> {
+    let last = sorted.last()?;
+    let mass_kg: f64 = sorted.iter().map(|one| one.mass_kg).sum();
+    let at = |fraction: f64| {
+        let mut sum_kg = 0.0;
+        let reached = sorted.iter().find(|one| {
+            sum_kg += one.mass_kg;
+            sum_kg >= fraction * mass_kg
+        });
+        reached.unwrap_or(last).sieve_m()
+    };
+    let fines = sorted.partition_point(|one| one.sieve_m() < tenth_m);
+    let fines_kg: f64 = sorted[..fines].iter().map(|one| one.mass_kg).sum();
+    Some(SizeSummary {
+        mass_kg,
+        d10_m: at(0.1),
+        d50_m: at(0.5),
+        d80_m: at(0.8),
+        t10: fines_kg / mass_kg,
+    })
+}
+
+/// Openings of test sieves, m: the principal sizes R 20/3 of ISO 565 (1 mm, 1.4 mm, 2 mm, 2.8 mm,
+/// ...), from the last below the smallest fragment to the first that all pass.
+pub fn sieves_m(smallest_m: f64, largest_m: f64) -> Vec<f64> {
+    if !(smallest_m > 0.0 && largest_m.is_finite()) {
+        return Vec::new();
+    }
+    // Every third size of the series, counted from 1 mm; 20 sizes make a decade.
+    let opening_m = |number: i64| -> f64 {
+        let digits = R20[(3 * number).rem_euclid(20) as usize];
+        let decade = (3 * number).div_euclid(20) - 3;
+        format!("{digits}e{decade}").parse().unwrap_or(f64::NAN)
+    };
+    let mut number = (20.0 / 3.0 * (smallest_m * 1e3).log10()).floor() as i64 + 2;
+    while opening_m(number) >= smallest_m {
+        number -= 1;
+    }
+    let mut sieves_m = vec![opening_m(number)];
+    while opening_m(number) < largest_m {
+        number += 1;
+        sieves_m.push(opening_m(number));
+    }
+    sieves_m
+}

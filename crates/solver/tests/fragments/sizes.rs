@@ -1,0 +1,163 @@
+//! Sizes of fragments: boxes, sieves, distributions and their numbers.
+
+use dem_run::output::sizes::{Fragments, sieves_m};
+use dem_run::state::clusters::sizes::{FragmentSize, Sphere, box_lengths_m};
+use dem_run::state::model::{Model, NamedBody};
+use nalgebra::{UnitQuaternion, Vector3};
+use proptest::prelude::*;
+
+/// A block of touching spheres of radius 1, rotated and moved.
+fn block(counts: [i32; 3], turned: [f64; 3], moved: [f64; 3]) -> Vec<Sphere> {
+    let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(turned));
+    let mut spheres = Vec::new();
+    for n in 0..counts.iter().product() {
+        let at = [
+            n % counts[0],
+            n / counts[0] % counts[1],
+            n / counts[0] / counts[1],
+        ];
+        let place = rotation * Vector3::from(at.map(|k| 2.0 * f64::from(k)));
+        spheres.push(Sphere {
+            centre_m: (place + Vector3::from(moved)).into(),
+            radius_m: 1.0,
+            mass_kg: 0.1,
+            inertia_kg_m2: 0.04,
+        });
+    }
+    spheres
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_box_is_that_of_the_block_however_it_lies(
+        turned in prop::array::uniform3(-3.0..3.0_f64),
+        moved in prop::array::uniform3(-50.0..50.0_f64),
+    ) {
+        for counts in [[7, 4, 2], [5, 3, 1], [9, 1, 1]] {
+            let lengths_m = box_lengths_m(&block(counts, turned, moved));
+            let wanted = counts.map(|count| 2.0 * f64::from(count));
+            // A rod has no particular direction across: any box around its circle is as good.
+            let round = if counts == [9, 1, 1] { 1e-9 } else { 1e-6 };
+            for (found, wanted) in lengths_m.iter().zip(wanted) {
+                prop_assert!((found - wanted).abs() < round * 20.0, "{lengths_m:?} of {counts:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sphere_has_its_diameter() {
+    assert_eq!(box_lengths_m(&block([1; 3], [0.0; 3], [3.0; 3])), [2.0; 3]);
+    assert_eq!(box_lengths_m(&[]), [0.0; 3]);
+}
+
+#[test]
+fn sieves_are_the_principal_sizes_of_iso_565() {
+    // ISO 565:1990, table 1, principal sizes R 20/3, mm.
+    let table = [
+        0.045, 0.063, 0.09, 0.125, 0.18, 0.25, 0.355, 0.5, 0.71, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0,
+        11.2, 16.0, 22.4, 31.5, 45.0, 63.0, 90.0, 125.0,
+    ];
+    let found = sieves_m(0.05e-3, 100e-3);
+    assert_eq!(found.len(), table.len());
+    for (found, wanted) in found.iter().zip(table) {
+        assert!(
+            (found * 1e3 / wanted - 1.0).abs() < 1e-14,
+            "{found} is not {wanted} mm"
+        );
+    }
+    // The first opening is below the smallest size, the last not below the largest.
+    assert_eq!(sieves_m(1e-3, 1e-3), [0.71e-3, 1e-3]);
+    assert_eq!(sieves_m(0.99e-3, 1.01e-3), [0.71e-3, 1e-3, 1.4e-3]);
+    for bad in [[0.0, 1.0], [f64::NAN, 1.0], [1.0, f64::INFINITY]] {
+        assert!(sieves_m(bad[0], bad[1]).is_empty());
+    }
+}
+
+fn fragment(body: u32, mass_kg: f64, size_m: f64) -> FragmentSize {
+    FragmentSize {
+        body,
+        mass_kg,
+        equivalent_diameter_m: size_m,
+        box_lengths_m: [2.0 * size_m, size_m, 0.5 * size_m],
+    }
+}
+
+/// A stone of 40 mm that broke, partly gone, and a whole lump of 20 mm.
+fn pieces() -> (Fragments, Model) {
+    let body = |name: &str, sieve_m: f64| NamedBody {
+        name: name.to_owned(),
+        material: "m".to_owned(),
+        sieve_m,
+    };
+    let model = Model {
+        bodies: vec![
+            body("lump", 20e-3),
+            body("never", 1.0),
+            body("stone", 40e-3),
+        ],
+        ..Model::default()
+    };
+    let inside = vec![
+        fragment(2, 5.0, 30e-3),
+        fragment(0, 2.0, 20e-3),
+        fragment(2, 0.5, 3e-3),
+    ];
+    let discharged = vec![fragment(2, 2.0, 10e-3), fragment(2, 0.5, 4e-3)];
+    (Fragments::from_parts(inside, discharged), model)
+}
+
+#[test]
+fn numbers_of_a_distribution_are_those_counted_by_hand() {
+    let (fragments, model) = pieces();
+    let sizes = fragments.sizes(&model);
+    let stone = &sizes.bodies["stone"]["both"];
+    assert_eq!(stone.mass_kg, 8.0);
+    // By size: 3 mm 0.5 kg, 4 mm 0.5 kg, 10 mm 2 kg, 30 mm 5 kg.
+    assert_eq!(
+        [stone.d10_m, stone.d50_m, stone.d80_m],
+        [4e-3, 30e-3, 30e-3]
+    );
+    // Smaller than 4 mm, a tenth of the stone: the piece of 3 mm, but not that of 4 mm.
+    assert_eq!(stone.t10, 0.5 / 8.0);
+    let gone = &sizes.bodies["stone"]["discharged"];
+    assert_eq!([gone.mass_kg, gone.d10_m, gone.d50_m], [2.5, 4e-3, 10e-3]);
+    assert!(!sizes.bodies["lump"].contains_key("discharged"));
+    assert!(!sizes.bodies.contains_key("never"));
+    // All: the mean size of the bodies by mass is (8 * 40 + 2 * 20) / 10 = 36 mm.
+    let all = &sizes.all["both"];
+    assert_eq!([all.mass_kg, all.t10], [10.0, 0.05]);
+    assert_eq!([all.d10_m, all.d50_m, all.d80_m], [4e-3, 20e-3, 30e-3]);
+}
+
+#[test]
+fn rows_of_a_distribution_add_up() {
+    let (fragments, model) = pieces();
+    let rows = fragments.rows(&model);
+    let of = |body: &str, location: &str| -> Vec<[f64; 3]> {
+        let own = rows
+            .iter()
+            .filter(|row| row.body == body && row.location == location);
+        own.map(|row| [row.sieve_m, row.passing_kg, row.passing_fraction])
+            .collect()
+    };
+    let all = of("all", "both");
+    assert_eq!(all[0], [2.8e-3, 0.0, 0.0]);
+    assert_eq!(all[all.len() - 1][1..], [10.0, 1.0]);
+    for (n, row) in all.iter().enumerate() {
+        let [inside, gone] = ["inside", "discharged"].map(|location| of("all", location)[n][1]);
+        assert_eq!(row[1], inside + gone);
+        let of_bodies = of("stone", "both")[n][1] + of("lump", "both")[n][1];
+        assert_eq!(row[1], of_bodies);
+    }
+    // A piece as large as an opening passes it.
+    let at_4_mm = of("stone", "both")
+        .into_iter()
+        .find(|row| row[0] == 4e-3)
+        .unwrap();
+    assert_eq!(at_4_mm[1], 1.0);
+    assert!(of("lump", "discharged").is_empty());
+    assert!(Fragments::default().rows(&model).is_empty());
+}

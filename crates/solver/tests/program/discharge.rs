@@ -1,0 +1,136 @@
+//! What leaves, and the sizes of all fragments, as tables that add up.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use serde_json::Value;
+
+use super::{Bench, good, table};
+
+/// Columns by name: the texts of each row.
+fn rows(bench: &Bench, name: &str) -> Vec<BTreeMap<String, String>> {
+    let (columns, rows) = table(&bench.path("out").join(name));
+    let row = |row: Vec<String>| columns.iter().cloned().zip(row).collect();
+    rows.into_iter().map(row).collect()
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap()
+}
+
+#[test]
+fn what_leaves_is_in_the_table_with_its_body_and_size() {
+    let bench = Bench::new();
+    bench.good(&good("following.toml"), &["--output", "out"]);
+    let summary: Value =
+        serde_json::from_slice(&fs::read(bench.path("out/summary.json")).unwrap()).unwrap();
+    let gone = rows(&bench, "discharge.csv");
+    let population = &summary["population"];
+    assert!(gone.len() > 3);
+    assert_eq!(population["discharged"], gone.len());
+    let sum_kg: f64 = gone.iter().map(|row| number(row, "mass_kg")).sum();
+    let discharged_kg = population["discharged_kg"].as_f64().unwrap();
+    assert!(
+        (sum_kg / discharged_kg - 1.0).abs() < 1e-12,
+        "{sum_kg} {discharged_kg}"
+    );
+    // The same moments and fragments as in the table of events.
+    let events = rows(&bench, "events.csv");
+    let events = events.iter().filter(|row| row["event"] == "discharged");
+    let of_events: Vec<[&String; 2]> = events.map(|row| [&row["time_s"], &row["cause"]]).collect();
+    let of_rows: Vec<[&String; 2]> = gone
+        .iter()
+        .map(|row| [&row["time_s"], &row["outlet"]])
+        .collect();
+    assert_eq!(of_events, of_rows);
+    let tree = rows(&bench, "fragment-tree.csv");
+    for row in &gone {
+        assert!(
+            row["body"].starts_with("lump") && row["material"] == "stuff",
+            "{row:?}"
+        );
+        let of_tree = tree
+            .iter()
+            .find(|one| one["fragment_id"] == row["fragment_id"])
+            .unwrap();
+        assert_eq!(of_tree["ended_s"], row["time_s"]);
+        let [length, width, thickness, diameter] = [
+            "length_m",
+            "width_m",
+            "thickness_m",
+            "equivalent_diameter_m",
+        ]
+        .map(|column| number(row, column));
+        assert!(length >= width && width >= thickness && thickness > 0.0);
+        // The box holds spheres of that volume, unless they overlap.
+        assert!(
+            length * width * thickness > 0.5 * diameter.powi(3),
+            "{row:?}"
+        );
+    }
+    let bodies = rows(&bench, "fragments.csv");
+    assert!(
+        bodies
+            .iter()
+            .all(|row| row["body"].starts_with("lump") && row["material"] == "stuff")
+    );
+}
+
+#[test]
+fn the_distribution_holds_all_of_the_mass() {
+    let bench = Bench::new();
+    bench.good(&good("following.toml"), &["--output", "out"]);
+    let summary: Value =
+        serde_json::from_slice(&fs::read(bench.path("out/summary.json")).unwrap()).unwrap();
+    let rows = rows(&bench, "distribution.csv");
+    let mut last: BTreeMap<[String; 2], [f64; 3]> = BTreeMap::new();
+    for row in &rows {
+        let key = [row["body"].clone(), row["location"].clone()];
+        let now = ["sieve_m", "passing_kg", "passing_fraction"].map(|column| number(row, column));
+        if let Some(before) = last.insert(key, now) {
+            assert!(before[0] < now[0] && before[1] <= now[1] && before[2] <= now[2]);
+        } else {
+            assert_eq!(now[1], 0.0, "the first sieve lets nothing pass");
+        }
+    }
+    assert!(last.values().all(|end| end[2] == 1.0));
+    let of = |body: &str, location: &str| last[&[body.to_owned(), location.to_owned()]][1];
+    let all_kg = of("all", "both");
+    let parts_kg = of("all", "inside") + of("all", "discharged");
+    assert!((all_kg / parts_kg - 1.0).abs() < 1e-12);
+    let bodies_kg: f64 = (summary["bodies"].as_object().unwrap().values())
+        .map(|body| body["mass_kg"].as_f64().unwrap())
+        .sum();
+    assert!(
+        (all_kg / bodies_kg - 1.0).abs() < 1e-9,
+        "{all_kg} kg of {bodies_kg} kg"
+    );
+    let discharged_kg = summary["population"]["discharged_kg"].as_f64().unwrap();
+    assert!((of("all", "discharged") / discharged_kg - 1.0).abs() < 1e-12);
+    for (body, location) in [("all", "both"), ("lump0", "both"), ("all", "discharged")] {
+        let sizes = &summary["sizes"];
+        let found = match body {
+            "all" => &sizes["all"][location],
+            body => &sizes["bodies"][body][location],
+        };
+        assert!((found["mass_kg"].as_f64().unwrap() / of(body, location) - 1.0).abs() < 1e-12);
+        // Half of the mass passes the first sieve that is not smaller than d50, and less than half
+        // every one that is smaller.
+        let d50_m = found["d50_m"].as_f64().unwrap();
+        let own = rows
+            .iter()
+            .filter(|row| row["body"] == body && row["location"] == location);
+        for row in own {
+            let passes_half = number(row, "passing_fraction") >= 0.5 - 1e-12;
+            assert_eq!(
+                passes_half,
+                number(row, "sieve_m") >= d50_m,
+                "{row:?}, d50 {d50_m}"
+            );
+        }
+    }
+    // Written again if it is lost.
+    fs::remove_file(bench.path("out/distribution.csv")).unwrap();
+    let said = bench.good(&good("following.toml"), &["--output", "out", "--resume"]);
+    assert!(said.contains("distribution.csv"), "{said}");
+}
