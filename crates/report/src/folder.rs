@@ -41,6 +41,11 @@ impl Folder {
         })
     }
 
+    /// Its frames and their times, s.
+    pub(crate) fn frames(&self) -> &[(PathBuf, f64)] {
+        &self.frames
+    }
+
     /// What the view shows.
     pub(crate) fn subject(&self, summary: &Value) -> Subject<'_> {
         const FROM: [f64; 3] = [0.5, -0.8, 0.4];

@@ -1,9 +1,12 @@
 //! The page of a run, `report.html`: verdict, results, a view in three dimensions, curves, what was
 //! run, and where the time went. One file that needs no other and no network.
 //!
-//! It is made from the folder of the results alone, so that it can be written again at any time.
+//! [`picture`] draws its frames again from any side.
+//!
+//! The page is made from the folder of the results alone, so that it can be written again at any time.
 
 mod folder;
+pub mod picture;
 mod sections;
 mod view;
 

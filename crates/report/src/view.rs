@@ -18,8 +18,13 @@ use serde_json::json;
 
 use choose::{Chosen, choose};
 use encode::encoded;
-use spheres::Spheres;
+
 use tracks::{Ranges, Tracks};
+
+pub(crate) use choose::ChosenFrame;
+pub(crate) use pieces::colours as piece_colours;
+pub(crate) use spheres::Spheres;
+pub(crate) use walls::read as read_walls;
 
 /// The program of the view.
 const PROGRAM: &str = include_str!("view/viewer.js");
@@ -48,7 +53,7 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
     };
     let mut ranges = Ranges::default();
     for frame in &chosen.frames {
-        ranges.include(&Spheres::read(frame, &chosen)?);
+        ranges.include(&Spheres::read(frame, chosen.every, chosen.with_bonds)?);
         if let Some(walls) = walls::read(frame)? {
             ranges.include_walls(&walls.points_m);
         }
@@ -59,7 +64,7 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
     let mut tracks = Tracks::new();
     let mut names = Names::default();
     for frame in &chosen.frames {
-        let spheres = Spheres::read(frame, &chosen)?;
+        let spheres = Spheres::read(frame, chosen.every, chosen.with_bonds)?;
         tracks.push(&spheres, &scales);
         tracks.push_walls(walls::read(frame)?.as_ref(), &scales);
         if names.bodies.is_empty() {
@@ -103,6 +108,7 @@ fn head(
     }
     let scale = (0..COLOURS).map(|k| hex(viridis(k as f64 / (COLOURS - 1) as f64)));
     let times_s: Vec<f64> = chosen.frames.iter().map(|frame| frame.time_s).collect();
+    let pieces = piece_colours(subject.folder, tracks.last_fragment());
     let bodies = (0..=tracks.last_body()).map(|body| hex(of_fragment(body, 1.0)));
     json!({
         "time_texts": times_s.iter().map(|time_s| time_text(*time_s)).collect::<Vec<_>>(),
@@ -118,7 +124,7 @@ fn head(
         "reach_m": scales.reach_m,
         "modes": modes,
         "scale": scale.collect::<Vec<_>>(),
-        "piece_colours": pieces::colours(subject.folder, tracks.last_fragment()),
+        "piece_colours": pieces.into_iter().map(hex).collect::<Vec<_>>(),
         "body_colours": bodies.collect::<Vec<_>>(),
         "body_names": names.bodies,
         "highest": scales.highest_texts(),

@@ -3,5 +3,6 @@
 
 mod made_run;
 mod page;
+mod picture;
 mod reader;
 mod view;

@@ -6,6 +6,7 @@ mod check;
 mod fragment;
 mod lab;
 mod packings;
+mod picture;
 mod statics;
 mod stress;
 mod sweep;
@@ -68,6 +69,9 @@ enum Command {
     Check {
         #[command(flatten)]
         scene: SceneArguments,
+        /// Write a picture of the start to this file (.png)
+        #[arg(long, value_name = "FILE")]
+        picture: Option<PathBuf>,
     },
     /// Write a fragment of a run as a body: its particles as they stand in a frame, and its
     /// unbroken bonds
@@ -95,6 +99,11 @@ enum Command {
                       dem-run calibrate drop.toml --free bonds.cake.damping.damping_ratio=rebound:0.4"
     )]
     Calibrate(Box<calibrate::CalibrateArguments>),
+    /// Write a picture or a film of a finished run, from any side
+    #[command(after_help = "Examples:\n  \
+                      dem-run picture chute-out -o impact.png --frame 40 --from 1,-2,0.5 --zoom 3 --colour speed\n  \
+                      dem-run picture chute-out -o chute.gif --size 640x360")]
+    Picture(picture::PictureArguments),
     /// Write the page of a finished run again: verdict, view in three dimensions, results, curves
     Report {
         /// The folder of the run
@@ -175,12 +184,12 @@ struct RunArguments {
 /// is not an error if a reader closes standard output early.
 pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
     match &arguments.command {
-        Some(Command::Check { scene }) if !scene.names_a_scene() => Err(Diagnostic::input(
+        Some(Command::Check { scene, .. }) if !scene.names_a_scene() => Err(Diagnostic::input(
             scene.place(),
             "this is not a scene (.toml)",
             "name a scene; dem-run describes a body without check",
         )),
-        Some(Command::Check { scene }) => in_pool(scene.threads, |threads| {
+        Some(Command::Check { scene, picture }) => in_pool(scene.threads, |threads| {
             let (scene_data, bodies) = scene.read()?;
             let scene_data = match lowest_in_test_hz(&scene_data, &bodies, threads)? {
                 Some(lowest_hz) => arrange(&scene_data, lowest_hz, 1.0)?,
@@ -188,11 +197,15 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
             };
             let mut plan = plan(&scene_data, bodies, threads, scene.force_step)?;
             plan.inputs.set = scene.all_overrides();
+            if let Some(file) = picture {
+                check::write_picture(&scene_data, &plan, file)?;
+            }
             check::check(&scene_data, &plan, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Lab(arguments)) => lab::lab(arguments),
         Some(Command::Calibrate(arguments)) => calibrate::calibrate(arguments, interrupt),
+        Some(Command::Picture(arguments)) => in_pool(None, |_| picture::write_picture(arguments)),
         Some(Command::Report { folder }) => write_report(folder),
         Some(Command::Sweep(arguments)) => sweep::sweep(arguments, interrupt),
         Some(Command::Stress(arguments)) => stress::stress(arguments, interrupt),

@@ -127,19 +127,32 @@ fn facts(summary: &Value) -> Vec<[String; 2]> {
         let largest = number(&fragments["mass_fraction_of_largest"]);
         add("mass of the largest over that of all", percent(largest));
     }
+    for (place, sizes) in summary["sizes"]["all"].as_object().into_iter().flatten() {
+        let size = |name: &str| show_quantity(number(&sizes[name]), "m");
+        let three = ["d10_m", "d50_m", "d80_m"].map(size).join(", ");
+        add(&format!("d10, d50, d80, {place}"), three);
+        add(&format!("t10, {place}"), percent(number(&sizes["t10"])));
+    }
     let population = &summary["population"];
     if population.is_object() {
         let bodies = |name: &str| {
             let mass = kilograms(&population[format!("{name}_kg")]);
             format!("{} ({mass})", count(&population[name]))
         };
-        add("bodies fed", bodies("fed"));
+        let some = |name: &str| population[name].as_u64().is_some_and(|count| count > 0);
+        if some("fed") {
+            add("bodies fed", bodies("fed"));
+        }
         add(
             "clumps replaced by clusters",
             count(&population["replaced"]),
         );
-        add("restored to clumps", count(&population["restored"]));
-        add("discharged", bodies("discharged"));
+        if some("restored") {
+            add("restored to clumps", count(&population["restored"]));
+        }
+        if some("discharged") {
+            add("discharged", bodies("discharged"));
+        }
         let skipped = number(&population["bond_updates_skipped"]);
         add("bond updates skipped", percent(skipped));
     }

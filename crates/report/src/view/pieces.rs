@@ -4,11 +4,9 @@ use std::path::Path;
 
 use dem_pictures::colours::{Piece, of_pieces};
 
-use super::hex;
-
 /// The colour of each fragment up to the number `last`, from `fragment-tree.csv`. Without that file
 /// each number has its own colour.
-pub(crate) fn colours(folder: &Path, last: u32) -> Vec<String> {
+pub(crate) fn colours(folder: &Path, last: u32) -> Vec<[u8; 3]> {
     let text = std::fs::read_to_string(folder.join("fragment-tree.csv")).unwrap_or_default();
     let mut pieces: Vec<Piece> = text.lines().skip(1).filter_map(piece).collect();
     let unknown = |_| Piece {
@@ -16,7 +14,7 @@ pub(crate) fn colours(folder: &Path, last: u32) -> Vec<String> {
         particles: 2,
     };
     pieces.extend((pieces.len()..=last as usize).map(unknown));
-    of_pieces(&pieces).into_iter().map(hex).collect()
+    of_pieces(&pieces)
 }
 
 /// A row `fragment_id,parent_id,created_s,ended_s,particles`. Rows stand in the order of the ids.

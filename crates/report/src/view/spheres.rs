@@ -4,7 +4,7 @@ use dem_io::Result;
 use dem_io::body::stored_frame::{BOND_RADIUS, BROKEN, FRAGMENT_ID, PARTICLE_ID, RADIUS};
 use dem_results::{Arrays, read_arrays};
 
-use super::choose::{Chosen, ChosenFrame};
+use super::choose::ChosenFrame;
 
 /// The shown spheres of a frame. SI units; a list has a value for each sphere.
 #[derive(Debug, Clone, Default)]
@@ -37,11 +37,11 @@ pub(crate) struct Bond {
 }
 
 impl Spheres {
-    /// Reads a frame.
+    /// Reads a frame: of so many spheres one, and the bonds between them if wanted.
     ///
     /// # Errors
     /// It is missing or damaged (exit code 2).
-    pub(crate) fn read(frame: &ChosenFrame, chosen: &Chosen) -> Result<Self> {
+    pub(crate) fn read(frame: &ChosenFrame, every: usize, with_bonds: bool) -> Result<Self> {
         let of_points = |name: &str| format!("PointData/{name}");
         let of_bonds = |name: &str| format!("CellData/{name}");
         let wanted = [
@@ -63,7 +63,7 @@ impl Spheres {
         let ids = all(&wanted[6]);
         // A particle that is shown once is shown always.
         let id = |i: usize| ids.get(i).map_or(i, |id| *id as usize);
-        let is_kept = |i: &usize| id(*i).is_multiple_of(chosen.every);
+        let is_kept = |i: &usize| id(*i).is_multiple_of(every);
         let kept: Vec<usize> = (0..arrays.points).filter(is_kept).collect();
         let of = |name: &String| -> Vec<f64> {
             let values = all(name);
@@ -91,7 +91,7 @@ impl Spheres {
         for (number, i) in (0..).zip(kept) {
             numbers[i] = Some(number);
         }
-        spheres.add_bonds(&arrays, &numbers, chosen.with_bonds, &wanted[7..]);
+        spheres.add_bonds(&arrays, &numbers, with_bonds, &wanted[7..]);
         Ok(spheres)
     }
 

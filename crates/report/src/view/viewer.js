@@ -278,7 +278,7 @@ const camera = {};
 function reset() {
   const [fx, fy, fz] = head.from;
   camera.target = [...head.focus_m];
-  camera.distance = head.reach_m * Math.max(3.4, 3.4 * canvas.clientHeight / canvas.clientWidth);
+  camera.distance = head.reach_m * Math.max(2.8, 2.8 * canvas.clientHeight / canvas.clientWidth);
   camera.turn = Math.atan2(fy, fx);
   camera.rise = Math.atan2(fz, Math.hypot(fx, fy));
 }
@@ -350,8 +350,8 @@ function drawn() {
 }
 function draw_walls(set) {
   use(surfaces, set);
-  gl.uniform3f(surfaces.uniforms.paint, 0.52, 0.57, 0.63);
-  gl.uniform1f(surfaces.uniforms.opacity, 0.3);
+  gl.uniform3f(surfaces.uniforms.paint, 0.40, 0.45, 0.52);
+  gl.uniform1f(surfaces.uniforms.opacity, 0.38);
   gl.enable(gl.BLEND);
   gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
   gl.depthMask(false);

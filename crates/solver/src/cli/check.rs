@@ -1,14 +1,17 @@
 //! `dem-run check`: dry run of a scene.
 
+use std::path::Path;
 use std::time::Instant;
 
-use dem_io::Result;
-use dem_io::safe_write::{write_json_text, write_standard_output};
+use dem_io::safe_write::{need_folder_of, write_file, write_json_text, write_standard_output};
 use dem_io::units::significant;
+use dem_io::{Diagnostic, Result};
+use dem_pictures::png_file::{Compression, to_png};
 use dem_scene::{Integrator, Scene};
 use serde_json::{Value, json};
 
 use crate::clock::StageClock;
+use crate::output::pictures::View;
 use crate::plan::masses;
 use crate::plan::{Plan, PlannedStage};
 use crate::stages::ledger::CHECKS;
@@ -17,6 +20,25 @@ use crate::step::{all_bytes, number_of, step};
 
 /// Number of steps tried on a copy, to predict the run time, and their time limit, s.
 const TRIAL: (u32, f64) = (2000, 0.5);
+
+/// Writes a picture of the start of a scene.
+///
+/// # Errors
+/// The file is not a .png, or cannot be written.
+pub(super) fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<()> {
+    if file.extension().is_none_or(|ending| ending != "png") {
+        let name = file.display().to_string();
+        let problem = "this is not the name of a picture";
+        return Err(Diagnostic::input(name, problem, "end it with .png"));
+    }
+    need_folder_of(file)?;
+    let output = scene.output.as_ref();
+    let from = output.and_then(|output| output.view_from);
+    let view = View::of(&plan.state, from, None);
+    let image = view.picture(&plan.state, &plan.bodies, scene.run.end_time_s);
+    let bytes = to_png(&image, Compression::High)?;
+    write_file(file, |out| out.write_all(&bytes))
+}
 
 /// Prints the plan of a scene, as text or as JSON.
 pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {

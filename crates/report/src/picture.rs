@@ -1,0 +1,184 @@
+//! Pictures and films of the frames of a finished run, from any side and in any colours.
+
+mod gif_film;
+mod subject;
+
+use std::path::{Path, PathBuf};
+
+use dem_io::{Diagnostic, Result, read_input};
+use dem_pictures::label::{colour_bar, label, scale_bar, time_text};
+use dem_pictures::png_file::{Compression, to_png};
+use dem_pictures::{Camera, Image, render};
+use dem_plots::viridis;
+
+use crate::folder::Folder;
+use gif_film::film;
+use subject::{Colours, Seen};
+
+/// Most frames of a film.
+const MOST_FRAMES: usize = 240;
+/// Upward direction in a picture.
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// What colours tell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColourBy {
+    /// The fragment.
+    Fragment,
+    /// The body.
+    Body,
+    /// Speed of the spheres.
+    Speed,
+    /// Mass of the fragment.
+    Mass,
+    /// Largest utilisation of the intact bonds of each sphere.
+    Utilisation,
+    /// Mean normal stress of the intact bonds of each sphere; its size.
+    Stress,
+}
+
+/// What a picture shows, and from where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PictureOrder {
+    /// Number of the frame; None: the last. Films show all frames.
+    pub frame: Option<usize>,
+    /// Direction of the viewer, of any length; None: that of the scene.
+    pub from: Option<[f64; 3]>,
+    /// The place in the middle, m; None: the middle of everything.
+    pub target_m: Option<[f64; 3]>,
+    /// Magnification over that which shows everything.
+    pub zoom: f64,
+    /// Width and height, px.
+    pub size_px: [u32; 2],
+    /// What colours tell.
+    pub colour_by: ColourBy,
+}
+
+/// A picture as a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PictureKind {
+    /// One frame.
+    Png,
+    /// All frames, as a film.
+    Gif,
+}
+
+/// The bytes of a picture or film of the run in this folder.
+///
+/// # Errors
+/// The folder is not that of a finished run or has no such frame; a file of it is damaged (all exit
+/// code 2).
+pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<Vec<u8>> {
+    let folder = Folder::read(path)?;
+    let from = match order.from {
+        Some(from) => from,
+        None => from_of_scene(path, &folder)?,
+    };
+    let frames = folder.frames();
+    if frames.is_empty() {
+        return Err(Diagnostic::input(
+            path.display().to_string(),
+            "this folder has no frames",
+            "name the folder of a run whose scene has output.frames",
+        ));
+    }
+    let chosen = chosen(frames, order, kind)?;
+    let colours = Colours::of(order.colour_by, path, &chosen)?;
+    let camera = camera(order, from, &chosen)?;
+    let every_s = match frames {
+        [(_, first), .., (_, last)] => (last - first) / (frames.len() - 1) as f64,
+        _ => 0.0,
+    };
+    let one = |frame: &(PathBuf, f64)| drawn(frame, &camera, &colours, every_s);
+    match kind {
+        PictureKind::Png => to_png(&one(&chosen[0])?, Compression::High),
+        PictureKind::Gif => film(order.size_px, chosen.len(), &|number| one(&chosen[number])),
+    }
+}
+
+/// The frames that are shown, with their times, s.
+fn chosen(
+    frames: &[(PathBuf, f64)],
+    order: &PictureOrder,
+    kind: PictureKind,
+) -> Result<Vec<(PathBuf, f64)>> {
+    let last = frames.len() - 1;
+    match kind {
+        PictureKind::Gif => {
+            let every = frames.len().div_ceil(MOST_FRAMES);
+            let mut chosen: Vec<_> = frames.iter().step_by(every).cloned().collect();
+            if !last.is_multiple_of(every) {
+                chosen.push(frames[last].clone());
+            }
+            Ok(chosen)
+        }
+        PictureKind::Png => {
+            let number = order.frame.unwrap_or(last);
+            let frame = frames.get(number).ok_or_else(|| {
+                let problem = format!("there is no frame {number}");
+                Diagnostic::input("--frame", problem, format!("the frames are 0 to {last}"))
+            })?;
+            Ok(vec![frame.clone()])
+        }
+    }
+}
+
+fn from_of_scene(path: &Path, folder: &Folder) -> Result<[f64; 3]> {
+    let summary = path.join("summary.json");
+    let text = read_input(&summary, "the summary of a run")?;
+    let summary = serde_json::from_slice(&text).map_err(|error| {
+        let problem = format!("this is not the summary of a run: {error}");
+        Diagnostic::input(
+            summary.display().to_string(),
+            problem,
+            "write the folder again",
+        )
+    })?;
+    Ok(folder.subject(&summary).from)
+}
+
+/// The camera of all pictures: everything in the chosen frames, or a part of it.
+fn camera(order: &PictureOrder, from: [f64; 3], frames: &[(PathBuf, f64)]) -> Result<Camera> {
+    let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for frame in frames {
+        for point in Seen::read(frame)?.points_m() {
+            for k in 0..3 {
+                ends[0][k] = ends[0][k].min(point[k]);
+                ends[1][k] = ends[1][k].max(point[k]);
+            }
+        }
+    }
+    let [low, high] = ends;
+    let middle_m = order
+        .target_m
+        .unwrap_or([0, 1, 2].map(|k| 0.5 * (low[k] + high[k])));
+    let half = [0, 1, 2].map(|k| 0.5 * (high[k] - low[k]) / order.zoom);
+    let corners: Vec<[f64; 3]> = (0..8)
+        .map(|corner| {
+            let sign = |k: usize| if corner >> k & 1 == 0 { -1.0 } else { 1.0 };
+            [0, 1, 2].map(|k| middle_m[k] + sign(k) * half[k])
+        })
+        .collect();
+    Ok(Camera::around(
+        from.map(|part| -part),
+        UP,
+        &corners,
+        order.size_px,
+    ))
+}
+
+fn drawn(
+    frame: &(PathBuf, f64),
+    camera: &Camera,
+    colours: &Colours,
+    every_s: f64,
+) -> Result<Image> {
+    let seen = Seen::read(frame)?;
+    let mut image = render(camera, &seen.balls(colours), &seen.walls());
+    if let Some((name, highest)) = colours.scale() {
+        colour_bar(&mut image, name, ["0", &highest], &viridis);
+    }
+    label(&mut image, &time_text(frame.1, every_s));
+    scale_bar(&mut image, camera.px_per_m());
+    Ok(image)
+}

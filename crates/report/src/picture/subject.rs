@@ -1,0 +1,131 @@
+//! The spheres and walls of a frame as a picture shows them.
+
+use std::path::{Path, PathBuf};
+
+use dem_io::Result;
+use dem_io::body::stored_walls::StoredWalls;
+use dem_io::units::show_quantity;
+use dem_pictures::colours::of_fragment;
+use dem_pictures::{Ball, Surface};
+use dem_plots::viridis;
+
+use super::ColourBy;
+use crate::view::{ChosenFrame, Spheres, piece_colours, read_walls};
+
+/// A frame in memory.
+pub(super) struct Seen {
+    spheres: Spheres,
+    walls: Option<StoredWalls>,
+}
+
+impl Seen {
+    /// Reads a frame of this time, s.
+    pub(super) fn read((path, time_s): &(PathBuf, f64)) -> Result<Self> {
+        let frame = ChosenFrame {
+            path: path.clone(),
+            time_s: *time_s,
+        };
+        Ok(Self {
+            spheres: Spheres::read(&frame, 1, false)?,
+            walls: read_walls(&frame)?,
+        })
+    }
+
+    /// Points between which everything lies, m.
+    pub(super) fn points_m(&self) -> impl Iterator<Item = [f64; 3]> {
+        let spheres = self.spheres.centres_m.iter().zip(&self.spheres.radii_m);
+        let ends = |(centre, radius_m): (&[f64; 3], &f64)| {
+            [-radius_m, *radius_m].map(|more| centre.map(|x| x + more))
+        };
+        let walls = self.walls.iter().flat_map(|walls| walls.points_m.clone());
+        spheres.flat_map(ends).chain(walls)
+    }
+
+    pub(super) fn balls(&self, colours: &Colours) -> Vec<Ball> {
+        let spheres = &self.spheres;
+        let ball = |i: usize| Ball {
+            centre_m: spheres.centres_m[i],
+            radius_m: spheres.radii_m[i],
+            colour: colours.of_sphere(spheres, i),
+        };
+        (0..spheres.centres_m.len()).map(ball).collect()
+    }
+
+    /// Each wall as a surface.
+    pub(super) fn walls(&self) -> Vec<Surface> {
+        let Some(walls) = &self.walls else {
+            return Vec::new();
+        };
+        let of = |wall: usize| {
+            let numbers = walls.triangles.iter().zip(&walls.wall_of_triangle);
+            let own = numbers.filter(|(_, of)| **of as usize == wall);
+            let triangles: Vec<[u32; 3]> = own.map(|(triangle, _)| *triangle).collect();
+            Surface::mesh(&walls.points_m, &triangles)
+        };
+        (0..walls.names.len()).map(of).collect()
+    }
+}
+
+/// The colours of spheres, the same in all pictures of a film.
+pub(super) struct Colours {
+    by: ColourBy,
+    /// By number of the fragment.
+    pieces: Vec<[u8; 3]>,
+    /// Value of the lightest colour.
+    highest: f64,
+}
+
+impl Colours {
+    /// For these frames of the run in `folder`.
+    pub(super) fn of(by: ColourBy, folder: &Path, frames: &[(PathBuf, f64)]) -> Result<Self> {
+        let mut colours = Self {
+            by,
+            pieces: Vec::new(),
+            highest: 0.0,
+        };
+        let mut last = 0;
+        for frame in frames {
+            let spheres = Seen::read(frame)?.spheres;
+            last = spheres.fragments.iter().copied().fold(last, u32::max);
+            for i in 0..spheres.centres_m.len() {
+                colours.highest = colours.highest.max(colours.value(&spheres, i));
+            }
+        }
+        colours.pieces = piece_colours(folder, last);
+        Ok(colours)
+    }
+
+    /// The value of a sphere on the scale, in SI units; 0 without a scale.
+    fn value(&self, spheres: &Spheres, i: usize) -> f64 {
+        match self.by {
+            ColourBy::Fragment | ColourBy::Body => 0.0,
+            ColourBy::Speed => spheres.speeds_m_s[i],
+            ColourBy::Mass => spheres.masses_kg[i],
+            ColourBy::Utilisation => spheres.utilisations[i],
+            ColourBy::Stress => spheres.stresses_pa[i].abs(),
+        }
+    }
+
+    fn of_sphere(&self, spheres: &Spheres, i: usize) -> [u8; 3] {
+        match self.by {
+            ColourBy::Fragment if spheres.can_break => {
+                let known = self.pieces.get(spheres.fragments[i] as usize);
+                known.copied().unwrap_or_default()
+            }
+            ColourBy::Fragment | ColourBy::Body => of_fragment(spheres.bodies[i], 1.0),
+            _ => viridis(self.value(spheres, i) / self.highest.max(f64::MIN_POSITIVE)),
+        }
+    }
+
+    /// Name and largest value of the scale, if colours are on one.
+    pub(super) fn scale(&self) -> Option<(&'static str, String)> {
+        let (name, unit) = match self.by {
+            ColourBy::Fragment | ColourBy::Body => return None,
+            ColourBy::Speed => ("speed", "m/s"),
+            ColourBy::Mass => ("fragment mass", "kg"),
+            ColourBy::Utilisation => ("utilisation of bonds", ""),
+            ColourBy::Stress => ("normal stress of bonds", "Pa"),
+        };
+        Some((name, show_quantity(self.highest, unit)))
+    }
+}

@@ -1,0 +1,132 @@
+//! `dem-run picture`: pictures and films of a finished run.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use dem_io::safe_write::{need_folder_of, write_file, write_standard_output};
+use dem_io::text::visible;
+use dem_io::units::length_m;
+use dem_io::{Diagnostic, Result};
+use dem_report::picture::{ColourBy, PictureKind, PictureOrder, picture};
+
+/// Largest width and height, px, and largest magnification.
+const MOST_PX: u32 = 8192;
+const MOST_ZOOM: f64 = 1e4;
+
+#[derive(Debug, Args)]
+pub(super) struct PictureArguments {
+    /// The folder of the run
+    folder: PathBuf,
+    /// File to write: .png for one frame, .gif for a film of all
+    #[arg(long, short, value_name = "FILE")]
+    output: PathBuf,
+    /// Number of the frame, from 0; the last unless given
+    #[arg(long, value_name = "N")]
+    frame: Option<usize>,
+    /// Direction of the viewer, such as 1,-2,0.5; that of the scene unless given
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    from: Option<String>,
+    /// Place in the middle of the picture, such as 0,0,20mm
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    target: Option<String>,
+    /// Magnification; with 1 everything is in the picture
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR")]
+    zoom: f64,
+    /// Width and height in pixels
+    #[arg(long, default_value = "960x540", value_name = "WIDTHxHEIGHT")]
+    size: String,
+    /// What colours tell
+    #[arg(long, default_value = "fragment", value_parser = ["fragment", "body", "speed", "mass", "utilisation", "stress"])]
+    colour: String,
+}
+
+/// Writes the picture.
+///
+/// # Errors
+/// Bad input; the folder is not that of a finished run; files that cannot be written.
+pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
+    let target = &arguments.output;
+    let name = target.display().to_string();
+    let ending = target.extension().unwrap_or_default().to_ascii_lowercase();
+    let kind = match ending.to_str() {
+        Some("png") => PictureKind::Png,
+        Some("gif") if arguments.frame.is_some() => {
+            let problem = "a film shows all frames";
+            return Err(Diagnostic::input(
+                "--frame",
+                problem,
+                "write a .png, or leave it out",
+            ));
+        }
+        Some("gif") => PictureKind::Gif,
+        _ => {
+            let remedy = "end it with .png for one frame, or .gif for a film";
+            return Err(Diagnostic::input(
+                name,
+                "this is not the name of a picture",
+                remedy,
+            ));
+        }
+    };
+    let order = order(arguments)?;
+    need_folder_of(target)?;
+    let bytes = picture(&arguments.folder, &order, kind)?;
+    write_file(target, |out| out.write_all(&bytes))?;
+    write_standard_output(|out| writeln!(out, "{}", visible(&name)))
+}
+
+fn order(arguments: &PictureArguments) -> Result<PictureOrder> {
+    if !(arguments.zoom > 0.0 && arguments.zoom <= MOST_ZOOM) {
+        let problem = format!("{} is not above 0 and at most {MOST_ZOOM}", arguments.zoom);
+        return Err(Diagnostic::input(
+            "--zoom",
+            problem,
+            "2 shows half of the width",
+        ));
+    }
+    let from = arguments.from.as_deref().map(|text| three("--from", text));
+    let from = from.transpose()?;
+    if from == Some([0.0; 3]) {
+        let remedy = "1,-2,0.5 looks from the right, the front and above";
+        return Err(Diagnostic::input("--from", "this is no direction", remedy));
+    }
+    let target = arguments.target.as_deref();
+    Ok(PictureOrder {
+        frame: arguments.frame,
+        from,
+        target_m: target.map(|text| three("--target", text)).transpose()?,
+        zoom: arguments.zoom,
+        size_px: size_px(&arguments.size)?,
+        colour_by: match arguments.colour.as_str() {
+            "body" => ColourBy::Body,
+            "speed" => ColourBy::Speed,
+            "mass" => ColourBy::Mass,
+            "utilisation" => ColourBy::Utilisation,
+            "stress" => ColourBy::Stress,
+            _ => ColourBy::Fragment,
+        },
+    })
+}
+
+/// Three lengths, m, or three plain numbers.
+fn three(option: &str, text: &str) -> Result<[f64; 3]> {
+    let parts = text.split(',').map(|part| length_m(part.trim()));
+    let parts: Vec<f64> = parts
+        .collect::<Result<_>>()
+        .map_err(|error| error.within(option))?;
+    parts.try_into().map_err(|_| {
+        let problem = format!("'{text}' is not three numbers");
+        Diagnostic::input(option, problem, "write them as X,Y,Z")
+    })
+}
+
+fn size_px(text: &str) -> Result<[u32; 2]> {
+    let sides = text.split_once('x');
+    let sides = sides.and_then(|(wide, high)| Some([wide.parse().ok()?, high.parse().ok()?]));
+    sides
+        .filter(|sides| sides.iter().all(|side| (16..=MOST_PX).contains(side)))
+        .ok_or_else(|| {
+            let problem = format!("'{text}' is not a width and a height from 16 to {MOST_PX}");
+            Diagnostic::input("--size", problem, "write 1920x1080")
+        })
+}
