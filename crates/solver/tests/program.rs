@@ -2,6 +2,7 @@
 //! output.
 
 mod adaptive;
+mod after_run;
 mod as_run;
 mod bad_bodies;
 mod bad_input;

@@ -1,0 +1,133 @@
+//! What can be made of a run that has ended: its page, pictures, films; and of one before it begins.
+
+use std::fs;
+use std::process::Output;
+
+use super::{Bench, dem_run, good, refused};
+
+fn ended() -> Bench {
+    let bench = Bench::new();
+    bench.good(&good("breaking.toml"), &["--output", "out"]);
+    bench
+}
+
+fn go(bench: &Bench, words: &[&str]) -> Output {
+    let mut command = dem_run();
+    command.current_dir(bench.path("")).args(words);
+    command.output().unwrap()
+}
+
+#[test]
+fn the_page_can_be_written_again() {
+    let bench = ended();
+    let path = bench.path("out/report.html");
+    let page = fs::read_to_string(&path).unwrap();
+    for part in ["id=\"view-data\"", "Errors and run time", "breaking.toml"] {
+        assert!(page.contains(part), "{part}");
+    }
+    fs::remove_file(&path).unwrap();
+    let output = go(&bench, &["report", "out"]);
+    assert!(output.status.success(), "{output:?}");
+    assert_eq!(output.stdout, b"out/report.html\n");
+    assert_eq!(fs::read_to_string(&path).unwrap(), page);
+}
+
+#[test]
+fn a_run_that_was_stopped_has_a_page_too() {
+    let bench = Bench::new();
+    let options = [
+        "--output",
+        "out",
+        "--set",
+        "run.time_step=1e-4",
+        "--force-step",
+    ];
+    let output = bench.run(&good("breaking.toml"), &options);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+    assert!(page.contains("class=\"verdict doubtful\""));
+    assert!(page.contains("instability"));
+}
+
+#[test]
+fn pictures_and_films_have_the_size_and_number_asked_for() {
+    let bench = ended();
+    let words = [
+        "picture", "out", "-o", "one.png", "--size", "320x200", "--frame", "4",
+    ];
+    let output = go(
+        &bench,
+        &[&words[..], &["--from=-1,-2,0.5", "--colour", "stress"]].concat(),
+    );
+    assert!(output.status.success(), "{output:?}");
+    let image = dem_pictures::png_file::read_png(&bench.path("one.png")).unwrap();
+    assert_eq!([image.width(), image.height()], [320, 200]);
+    let film = [
+        "picture", "out", "-o", "film.gif", "--size", "160x90", "--zoom", "2",
+    ];
+    assert!(go(&bench, &film).status.success());
+    let bytes = fs::read(bench.path("film.gif")).unwrap();
+    assert_eq!(&bytes[..6], b"GIF89a");
+    assert_eq!(bytes[6..10], [160, 0, 90, 0]);
+    // Of each of the nine frames: it stays until the next, and has no colour that is clear.
+    let blocks = bytes.windows(4).filter(|four| four[..3] == [0x21, 0xf9, 4]);
+    assert_eq!(blocks.count(), 9);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let bench = ended();
+    for (words, said) in [
+        (
+            &["-o", "x.jpg"][..],
+            "x.jpg: this is not the name of a picture",
+        ),
+        (
+            &["-o", "x.gif", "--frame", "1"],
+            "--frame: a film shows all frames",
+        ),
+        (
+            &["-o", "x.png", "--frame", "99"],
+            "--frame: there is no frame 99",
+        ),
+        (
+            &["-o", "x.png", "--size", "9x9"],
+            "--size: '9x9' is not a width and a height",
+        ),
+        (&["-o", "x.png", "--zoom", "0"], "--zoom: 0 is not above 0"),
+        (
+            &["-o", "x.png", "--from", "0,0,0"],
+            "--from: this is no direction",
+        ),
+        (
+            &["-o", "x.png", "--target", "1,2"],
+            "--target: '1,2' is not three numbers",
+        ),
+        (&["-o", "nowhere/x.png"], "nowhere"),
+    ] {
+        let output = go(&bench, &[&["picture", "out"], words].concat());
+        let (error, code) = refused(&output);
+        assert!(error.contains(said), "{words:?}: {error}");
+        assert!(code == 2 || said == "nowhere", "{words:?}: {code}");
+        assert!(!bench.path("x.png").exists() && !bench.path("x.gif").exists());
+    }
+    let output = go(&bench, &["picture", ".", "-o", "x.png"]);
+    assert!(refused(&output).0.contains("summary.json"), "{output:?}");
+    assert!(
+        refused(&go(&bench, &["report", "."]))
+            .0
+            .contains("summary.json")
+    );
+}
+
+#[test]
+fn check_draws_the_start() {
+    let bench = Bench::new();
+    let scene = good("breaking.toml");
+    let scene = scene.to_str().unwrap();
+    let output = go(&bench, &["check", scene, "--picture", "start.png"]);
+    assert!(output.status.success(), "{output:?}");
+    assert!(dem_pictures::png_file::read_png(&bench.path("start.png")).is_ok());
+    let output = go(&bench, &["check", scene, "--picture", "start.svg"]);
+    assert!(refused(&output).0.contains("end it with .png"));
+}
