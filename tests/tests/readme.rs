@@ -151,8 +151,11 @@ fn help(of: impl Fn() -> Command, commands: &[&[&str]]) -> String {
 #[test]
 fn options_exist() {
     let mut known = help(dem_pack, &[&[], &["info"], &["convert"]]);
-    known += &help(dem_run, &[&[], &["check"], &["fragment"], &["sweep"]]);
-    let of_pages = help(dem_run, &[&["lab"], &["calibrate"]]);
+    known += &help(dem_run, &[&[], &["check"], &["sweep"]]);
+    let of_pages = help(
+        dem_run,
+        &[&["lab"], &["calibrate"], &["fragment"], &["export"]],
+    );
     let readme = readme().replace("cargo run --release --bin dem-pack -- ", "dem-pack ");
     let lines = readme.lines().filter(|line| !line.contains("cargo "));
     let named: Vec<String> = lines.flat_map(options).collect();
@@ -164,7 +167,12 @@ fn options_exist() {
             "README.md names {option}, which no program knows"
         );
     }
-    let pages = ["doc/measured-curves.md", "doc/calibration.md"]
+    let pages = [
+        "doc/measured-curves.md",
+        "doc/calibration.md",
+        "doc/results.md",
+    ];
+    let pages = pages
         .map(|page| fs::read_to_string(root().join(page)).unwrap())
         .concat();
     for (command, text) in [(known, readme.clone()), (of_pages, readme + &pages)] {

@@ -11,14 +11,16 @@ pub mod lammps;
 pub mod mass;
 mod parts;
 pub mod stored_frame;
+pub mod stored_particles;
 pub mod stored_walls;
 pub(crate) mod summary;
 mod table;
 pub mod txt;
 pub mod vtp;
 
-pub use files::{read_body, read_frame, read_walls, write_body};
+pub use files::{read_body, read_frame, read_particles, read_walls, write_body};
 pub use parts::{About, Body};
 pub use stored_frame::{StoredFragment, StoredFrame};
+pub use stored_particles::StoredParticles;
 pub use stored_walls::StoredWalls;
 pub use summary::{BodySummary, body_summary};

@@ -16,7 +16,7 @@ pub mod lines;
 pub mod program;
 pub mod random;
 pub mod safe_write;
-pub(crate) mod stl;
+pub mod stl;
 pub mod surface;
 pub mod text;
 pub mod units;

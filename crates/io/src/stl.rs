@@ -1,4 +1,4 @@
-//! STL bytes -> facets, behind our own checks.
+//! STL bytes -> facets, behind our own checks; and facets as binary STL.
 //!
 //! Binary or ASCII is decided by the length (a binary file of n facets has 84 + 50 n bytes),
 //! because binary headers may begin with "solid" too. The facets of a binary file are read by
@@ -7,11 +7,13 @@
 
 mod ascii;
 mod facets;
+mod write;
 
 use crate::diagnostic::{Diagnostic, Result};
 pub(crate) use facets::Facets;
 use facets::{REMEDY_AGAIN, is_blank};
 use std::io::{Cursor, Read, Seek, SeekFrom};
+pub use write::write_stl;
 
 /// Bytes of the header and the count of a binary file.
 const BINARY_START: usize = 84;

@@ -1,8 +1,10 @@
 //! The command line of dem-run: its arguments and their execution.
 
+mod all_fragments;
 mod as_run;
 mod calibrate;
 mod check;
+mod export;
 mod fragment;
 mod lab;
 mod packings;
@@ -78,9 +80,17 @@ enum Command {
     #[command(
         after_help = "Bonds keep their stress-free lengths: a stretched bond stays stretched. Velocities, and bending, torsion and shear of bonds, \
                       are not kept.\n\
-                      Example:\n  dem-run fragment results --largest -o piece.vtp"
+                      Examples:\n  dem-run fragment results --largest -o piece.vtp\n  \
+                      dem-run fragment results --all --stl -o hulls"
     )]
     Fragment(fragment::FragmentArguments),
+    /// Write all frames of a run as one file for another program
+    #[command(
+        after_help = "A LAMMPS dump opens in OVITO: particles with id, type (the body), radius, position, velocity and fragment; with --bonds, the unbroken bonds \
+                      as a dump of local data.\n\
+                      Example:\n  dem-run export results --to lammps-dump -o frames.dump --bonds bonds.dump"
+    )]
+    Export(export::ExportArguments),
     /// Evaluate measured force-displacement curves: modulus, strength, mean curve
     #[command(
         after_help = "Finds in each curve the offset of the load cell, the seating and the linear part; leaves out specimens in doubt, and says why.\n\
@@ -203,6 +213,7 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
             check::check(&scene_data, &plan, scene.json)
         }),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
+        Some(Command::Export(arguments)) => export::export(arguments),
         Some(Command::Lab(arguments)) => lab::lab(arguments),
         Some(Command::Calibrate(arguments)) => calibrate::calibrate(arguments, interrupt),
         Some(Command::Picture(arguments)) => in_pool(None, |_| picture::write_picture(arguments)),

@@ -3,6 +3,7 @@
 mod caps;
 mod cells;
 pub mod fit;
+pub mod hull;
 pub mod inertia;
 pub mod outer_layer;
 pub(crate) mod union;

@@ -1,5 +1,6 @@
 //! Output of a run about fragments, and fragments extracted from it as bodies.
 
+mod all;
 mod bodies;
 mod files;
 mod pictures;

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::parts::Body;
 use super::stored_frame::StoredFrame;
+use super::stored_particles::StoredParticles;
 use super::stored_walls::{FIXED_WALLS_FILE, StoredWalls};
 use super::{csv, lammps, txt, vtp};
 use crate::diagnostic::{Diagnostic, Result};
@@ -171,6 +172,15 @@ pub fn read_body(path: &Path) -> Result<Body> {
 pub fn read_frame(path: &Path) -> Result<StoredFrame> {
     let mut file = open(path)?;
     vtp::read_frame(&mut file).map_err(|error| error.within(&path.display().to_string()))
+}
+
+/// Reads the particles and bonds of a frame of any run.
+///
+/// # Errors
+/// No such file, damaged, or not a frame of this program (all exit code 2).
+pub fn read_particles(path: &Path) -> Result<StoredParticles> {
+    let mut file = open(path)?;
+    vtp::read_particles(&mut file).map_err(|error| error.within(&path.display().to_string()))
 }
 
 /// Reads the walls of a frame of a run, `frames/walls_000123.vtp`, together with the walls that

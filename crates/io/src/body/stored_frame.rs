@@ -88,6 +88,15 @@ impl StoredFrame {
         fragments
     }
 
+    /// The particles of each fragment, ascending.
+    pub fn members(&self) -> BTreeMap<u32, Vec<usize>> {
+        let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (i, &id) in self.clusters.iter().enumerate() {
+            members.entry(id).or_default().push(i);
+        }
+        members
+    }
+
     /// A fragment as a body: its particles at their positions, in the order of the frame, and the
     /// unbroken bonds between them.
     ///

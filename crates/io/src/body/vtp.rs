@@ -15,7 +15,7 @@ mod walls;
 
 pub use names::FORMAT_VERSION;
 pub use read::read;
-pub(crate) use read::{read_frame, read_walls};
+pub(crate) use read::{read_frame, read_particles, read_walls};
 
 use std::io::{self, Write};
 

@@ -1,4 +1,4 @@
-//! Triangles in a tree of boxes. The only module that uses parry3d.
+//! Triangles in a tree of boxes. The only module of this crate that uses parry3d.
 
 use crate::spheres::Vector3;
 use parry3d_f64::bounding_volume::Aabb;

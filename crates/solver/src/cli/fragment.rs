@@ -9,12 +9,13 @@ use dem_io::body::{StoredFragment, read_frame};
 use dem_io::safe_write::{need_folder_of, refuse_input, write_standard_output};
 use dem_io::text::visible;
 use dem_io::units::significant;
-use dem_io::{Diagnostic, Result};
+use dem_io::{Body, Diagnostic, Result};
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::folder::{frame_in, frames_in, result_among};
 use dem_scene::read_scene;
 use serde_json::Value;
 
+use super::all_fragments::write_all;
 use crate::run::snapshot::Snapshot;
 
 #[derive(Debug, Args)]
@@ -22,15 +23,22 @@ pub(super) struct FragmentArguments {
     /// The folder of results of a run
     results: PathBuf,
     /// Fragment id, as in the frames and in fragments.csv
-    #[arg(long, required_unless_present = "largest", conflicts_with = "largest")]
+    #[arg(long, required_unless_present_any = ["largest", "all"], conflicts_with_all = ["largest", "all"])]
     id: Option<u32>,
     /// Take the heaviest fragment
-    #[arg(long)]
+    #[arg(long, conflicts_with = "all")]
     largest: bool,
+    /// Take every fragment, each as a file of its own: fragment_000007.vtp and so on, in the folder
+    /// that --output names
+    #[arg(long)]
+    all: bool,
+    /// With --all: write convex hulls of the spheres as STL, in mm, instead of bodies
+    #[arg(long, requires = "all")]
+    stl: bool,
     /// Number of the frame, from 0; the last one unless given
     #[arg(long, value_name = "K")]
     frame: Option<usize>,
-    /// The body to write: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
+    /// The body to write, or with --all a new folder: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
     /// Only print warnings and errors
@@ -44,6 +52,11 @@ pub(super) struct FragmentArguments {
 /// The folder, frame or fragment does not exist; the body cannot be written.
 pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     let output = &arguments.output;
+    if arguments.all {
+        let path = frame_path(&arguments.results, arguments.frame)?;
+        let frame = read_frame(&path)?;
+        return write_all(&frame, &path, output, arguments.stl, arguments.quiet);
+    }
     for file in body_files(output)? {
         need_folder_of(&file)?;
     }
@@ -57,8 +70,7 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
         .or(fragments.first().map(|heaviest| heaviest.id));
     let id = id.ok_or_else(|| within(Diagnostic::input("", "the frame has no particles", "")))?;
     let mut body = frame.body(id).map_err(within)?;
-    body.about.program = Some(concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned());
-    body.about.source = Some(format!("{}: fragment {id}", path.display()));
+    about(&mut body, &path, id);
     write_body(&body, output)?;
     if arguments.quiet || output == Path::new("-") {
         return Ok(());
@@ -78,11 +90,22 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     })
 }
 
+/// Notes in a body which fragment of which frame it is.
+pub(super) fn about(body: &mut Body, frame: &Path, id: u32) {
+    body.about.program = Some(concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned());
+    body.about.source = Some(format!("{}: fragment {id}", frame.display()));
+}
+
 /// Refuses to overwrite the results or the inputs of their run with the body, as far as the folder
 /// lists them.
 fn refuse_overwriting(results: &Path, output: &Path) -> Result<()> {
-    let targets = body_files(output)?;
-    if let Some(target) = result_among(results, &targets) {
+    refuse_overwriting_files(results, &body_files(output)?)
+}
+
+/// Refuses to overwrite the results or the inputs of their run with these files, as far as the
+/// folder lists them.
+pub(super) fn refuse_overwriting_files(results: &Path, targets: &[PathBuf]) -> Result<()> {
+    if let Some(target) = result_among(results, targets) {
         return Err(Diagnostic::input(
             target.display().to_string(),
             format!("this is one of the results in '{}'", results.display()),

@@ -28,7 +28,7 @@ const LOCATIONS: [(&str, bool, bool); 3] = [
 /// Name of all bodies together in the table.
 const ALL: &str = "all";
 
-/// A size that some fraction of the mass is smaller than, and the fines.
+/// Mass, sizes and fines of some fragments.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct SizeSummary {
     /// Mass of the fragments, kg.
@@ -105,8 +105,7 @@ impl Fragments {
             let body = model.bodies.get(one.body as usize);
             body.map_or(0.0, |body| body.sieve_m)
         };
-        let mass_kg: f64 = all.iter().map(|one| one.mass_kg).sum();
-        all.iter().map(|one| one.mass_kg * size(one)).sum::<f64>() / mass_kg
+        all.iter().map(|one| one.mass_kg * size(one)).sum::<f64>() / mass_kg(&all)
     }
 
     /// The numbers of the summary.
@@ -140,13 +139,13 @@ impl Fragments {
         for (body, name) in self.groups(model) {
             for (location, discharged, inside) in LOCATIONS {
                 let chosen = self.chosen(body, discharged, inside);
-                let total_kg: f64 = chosen.iter().map(|one| one.mass_kg).sum();
+                let total_kg = mass_kg(&chosen);
                 if total_kg == 0.0 {
                     continue;
                 }
                 for &sieve_m in &sieves_m {
                     let end = chosen.partition_point(|one| one.sieve_m() <= sieve_m);
-                    let passing_kg: f64 = chosen[..end].iter().map(|one| one.mass_kg).sum();
+                    let passing_kg = mass_kg(&chosen[..end]);
                     rows.push(DistributionRow {
                         body: name,
                         location,
@@ -180,20 +179,25 @@ impl Fragments {
 /// Size, m, and mass fraction of all fragments of that size and smaller ones, with a step at every
 /// size. `sorted`: by ascending size.
 pub fn steps(sorted: &[FragmentSize]) -> Vec<[f64; 2]> {
-    let total_kg: f64 = sorted.iter().map(|one| one.mass_kg).sum();
+    let total_kg = mass_kg(sorted);
     let (mut sum_kg, mut points) = (0.0, Vec::new());
     for same in sorted.chunk_by(|a, b| a.sieve_m() == b.sieve_m()) {
         points.push([same[0].sieve_m(), sum_kg / total_kg]);
-        sum_kg += same.iter().map(|one| one.mass_kg).sum::<f64>();
+        sum_kg += mass_kg(same);
         points.push([same[0].sieve_m(), sum_kg / total_kg]);
     }
     points
 }
 
+/// Mass of some fragments, kg. Not the sum of an iterator: that of none is minus zero.
+fn mass_kg(fragments: &[FragmentSize]) -> f64 {
+    fragments.iter().fold(0.0, |sum, one| sum + one.mass_kg)
+}
+
 /// Of fragments by ascending size; `tenth_m`: the size for t10. None: there are none.
 fn summary(sorted: &[FragmentSize], tenth_m: f64) -> Option<SizeSummary> {
     let last = sorted.last()?;
-    let mass_kg: f64 = sorted.iter().map(|one| one.mass_kg).sum();
+    let mass_kg = mass_kg(sorted);
     let at = |fraction: f64| {
         let mut sum_kg = 0.0;
         let reached = sorted.iter().find(|one| {
@@ -203,7 +207,7 @@ fn summary(sorted: &[FragmentSize], tenth_m: f64) -> Option<SizeSummary> {
         reached.unwrap_or(last).sieve_m()
     };
     let fines = sorted.partition_point(|one| one.sieve_m() < tenth_m);
-    let fines_kg: f64 = sorted[..fines].iter().map(|one| one.mass_kg).sum();
+    let fines_kg = self::mass_kg(&sorted[..fines]);
     Some(SizeSummary {
         mass_kg,
         d10_m: at(0.1),

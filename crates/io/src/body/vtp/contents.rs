@@ -9,6 +9,7 @@ use super::names::{
 use super::walls;
 use crate::body::parts::{Body, Parts};
 use crate::body::stored_frame::{self as frame, StoredFrame};
+use crate::body::stored_particles::StoredParticles;
 use crate::body::stored_walls::{StoredWalls, WALL_FORCES, WALL_NAMES};
 use crate::diagnostic::{Diagnostic, Result};
 
@@ -33,6 +34,10 @@ struct OfFrame {
     clusters: Option<Vec<u32>>,
     densities: Option<Vec<f64>>,
     broken: Option<Vec<f64>>,
+    ids: Option<Vec<u32>>,
+    bodies: Option<Vec<u32>>,
+    velocities: Option<Vec<f64>>,
+    body_names: Vec<String>,
 }
 
 impl Contents {
@@ -52,7 +57,7 @@ impl Contents {
     pub(super) fn most_values(&self, role: Role) -> u64 {
         // A field holds at most a text; fields of other programs may be larger.
         const OF_FIELD: u64 = 1 << 14;
-        /// Scenes may have many walls.
+        /// Scenes may have many walls and bodies.
         const OF_WALLS: u64 = 1 << 20;
         const OF_OTHER: u64 = 1 << 16;
         const OF_OTHER_PER_CELL: u64 = 1 << 10;
@@ -60,14 +65,16 @@ impl Contents {
         let others = counts.cells_before.saturating_add(counts.cells_after);
         let cells = counts.lines.saturating_add(others);
         match role {
-            Role::Positions => counts.points.saturating_mul(3),
-            Role::Radii | Role::Clusters | Role::Densities => counts.points,
+            Role::Positions | Role::Velocities => counts.points.saturating_mul(3),
+            Role::Radii | Role::Clusters | Role::Densities | Role::Ids | Role::Bodies => {
+                counts.points
+            }
             Role::Connectivity => counts.lines.saturating_mul(2),
             Role::Offsets => counts.lines,
             Role::BondRadii | Role::BondLengths | Role::Broken => cells,
             Role::Corners => counts.cells_after.saturating_mul(3),
             Role::CornerOffsets | Role::WallNumbers => counts.cells_after,
-            Role::Field(WALL_NAMES | WALL_FORCES) => OF_WALLS,
+            Role::Field(WALL_NAMES | WALL_FORCES | frame::BODY_NAMES) => OF_WALLS,
             Role::Field(_) => OF_FIELD,
             Role::Other => {
                 let all = counts.points.saturating_add(cells);
@@ -113,14 +120,16 @@ impl Contents {
             Role::BondLengths => {
                 line_values(array, values, counts).map(|all| self.parts.bond_lengths = Some(all))
             }
-            Role::Clusters => {
-                let clusters = self.of_frame.clusters.insert(Vec::new());
-                values.for_each(array.scalar()?, |number| {
-                    clusters.push(particle(number)?);
-                    Ok(())
-                })?;
-                check_count(clusters.len() as u64, counts.points.into(), "values")
+            Role::Clusters => particle_numbers(array, values, counts)
+                .map(|all| self.of_frame.clusters = Some(all)),
+            Role::Ids => {
+                particle_numbers(array, values, counts).map(|all| self.of_frame.ids = Some(all))
             }
+            Role::Bodies => {
+                particle_numbers(array, values, counts).map(|all| self.of_frame.bodies = Some(all))
+            }
+            Role::Velocities => floats(array, values, [0, counts.points.saturating_mul(3), 0])
+                .map(|all| self.of_frame.velocities = Some(all)),
             Role::Densities => floats(array, values, [0, counts.points, 0])
                 .map(|all| self.of_frame.densities = Some(all)),
             Role::Broken => {
@@ -209,6 +218,7 @@ impl Contents {
             BOND_RANGE => about.bond_range = first.map(float),
             WARNINGS => about.warnings = texts(&numbers)?,
             frame::TIME => self.of_frame.time_s = first.map(float),
+            frame::BODY_NAMES => self.of_frame.body_names = texts(&numbers)?,
             _ => walls::fill_field(&mut self.walls, name, &numbers)?,
         }
         Ok(())
@@ -241,6 +251,7 @@ impl Contents {
     /// The frame, if all data of its fragments were present.
     pub(super) fn into_frame(self) -> Result<StoredFrame> {
         self.check_counts()?;
+        self.check_bond_ends()?;
         let missing = |name: &str| {
             Diagnostic::input(
                 "",
@@ -253,14 +264,9 @@ impl Contents {
             clusters,
             densities,
             broken,
+            ..
         } = self.of_frame;
         let parts = self.parts;
-        let particles = parts.positions.len();
-        let beyond = |end: &u32| *end as usize >= particles;
-        if let Some(end) = parts.bonds.as_flattened().iter().find(|end| beyond(end)) {
-            let problem = format!("a bond joins particle {end}, but there are {particles}");
-            return Err(Diagnostic::input("", problem, DAMAGED));
-        }
         Ok(StoredFrame {
             time_s: time_s.ok_or_else(|| missing(frame::TIME))?,
             clusters: clusters.ok_or_else(|| missing(frame::FRAGMENT_ID))?,
@@ -280,6 +286,46 @@ impl Contents {
                 .map(|broken| broken != 0.0)
                 .collect(),
         })
+    }
+
+    /// The particles and bonds of a frame of any run, if all their data were present.
+    pub(super) fn into_particles(self) -> Result<StoredParticles> {
+        self.check_counts()?;
+        self.check_bond_ends()?;
+        let missing = |name: &str| {
+            let problem = format!("this is no frame of a run: there is no array '{name}'");
+            Diagnostic::input("", problem, "run the scene again with this program")
+        };
+        let of_frame = self.of_frame;
+        let velocities = of_frame
+            .velocities
+            .ok_or_else(|| missing(frame::VELOCITY))?;
+        let broken = of_frame.broken.ok_or_else(|| missing(frame::BROKEN))?;
+        Ok(StoredParticles {
+            time_s: of_frame.time_s.ok_or_else(|| missing(frame::TIME))?,
+            body_names: of_frame.body_names,
+            bodies: of_frame.bodies.ok_or_else(|| missing(frame::BODY))?,
+            ids: of_frame.ids.ok_or_else(|| missing(frame::PARTICLE_ID))?,
+            positions: self.parts.positions,
+            radii: self.radii.ok_or_else(|| missing(frame::RADIUS))?,
+            velocities_m_s: velocities.as_chunks().0.to_vec(),
+            fragments: of_frame.clusters,
+            bonds: self.parts.bonds,
+            broken: broken.into_iter().map(|broken| broken != 0.0).collect(),
+        })
+    }
+
+    /// Checks that the particles of all bonds exist.
+    fn check_bond_ends(&self) -> Result<()> {
+        let particles = self.parts.positions.len();
+        let mut ends = self.parts.bonds.as_flattened().iter();
+        match ends.find(|end| **end as usize >= particles) {
+            None => Ok(()),
+            Some(end) => {
+                let problem = format!("a bond joins particle {end}, but there are {particles}");
+                Err(Diagnostic::input("", problem, DAMAGED))
+            }
+        }
     }
 
     /// The walls, if all their data were present.
@@ -319,6 +365,17 @@ impl Contents {
         check_count(self.parts.bonds.len() as u64, counts.lines.into(), "lines")?;
         check_count(self.lines_ended, counts.lines.into(), "offsets of lines")
     }
+}
+
+/// A whole number for each point.
+fn particle_numbers(array: &Array, values: Values<'_>, counts: Counts) -> Result<Vec<u32>> {
+    let mut numbers = Vec::new();
+    values.for_each(array.scalar()?, |number| {
+        numbers.push(particle(number)?);
+        Ok(())
+    })?;
+    check_count(numbers.len() as u64, counts.points.into(), "values")?;
+    Ok(numbers)
 }
 
 /// The values that belong to lines, of data for all cells.

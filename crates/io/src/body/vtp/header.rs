@@ -33,6 +33,10 @@ pub(super) enum Role {
     Clusters,
     Densities,
     Broken,
+    /// The id and the body of each particle, and its velocity.
+    Ids,
+    Bodies,
+    Velocities,
     /// For the walls of a run: the corners of each triangle, where it ends among them, and its
     /// wall.
     Corners,
@@ -146,10 +150,14 @@ fn role_in_frame(section: &str, name: &str) -> Role {
         ("PointData", frame::RADIUS) => Role::Radii,
         ("PointData", frame::FRAGMENT_ID) => Role::Clusters,
         ("PointData", frame::DENSITY) => Role::Densities,
+        ("PointData", frame::PARTICLE_ID) => Role::Ids,
+        ("PointData", frame::BODY) => Role::Bodies,
+        ("PointData", frame::VELOCITY) => Role::Velocities,
         ("CellData", frame::BOND_RADIUS) => Role::BondRadii,
         ("CellData", frame::BOND_LENGTH) => Role::BondLengths,
         ("CellData", frame::BROKEN) => Role::Broken,
         ("FieldData", frame::TIME) => Role::Field(frame::TIME),
+        ("FieldData", frame::BODY_NAMES) => Role::Field(frame::BODY_NAMES),
         _ => Role::Other,
     }
 }

@@ -13,6 +13,7 @@ use super::guard::Guarded;
 use super::header::{Array, Counts, Encoding, Format, Layout, Role, attribute, damaged, not_vtp};
 use crate::body::parts::Body;
 use crate::body::stored_frame::StoredFrame;
+use crate::body::stored_particles::StoredParticles;
 use crate::body::stored_walls::StoredWalls;
 use crate::diagnostic::{Diagnostic, Result};
 
@@ -35,6 +36,14 @@ pub fn read(input: &mut dyn BufRead) -> Result<Body> {
 /// Damaged or cut off, compressed, wrong counts, or an array of fragments is missing.
 pub(crate) fn read_frame(input: &mut dyn BufRead) -> Result<StoredFrame> {
     contents(input, Layout::Frame)?.into_frame()
+}
+
+/// Reads the particles and bonds of a frame of any run.
+///
+/// # Errors
+/// Damaged or cut off, compressed, wrong counts, or an array is missing.
+pub(crate) fn read_particles(input: &mut dyn BufRead) -> Result<StoredParticles> {
+    contents(input, Layout::Frame)?.into_particles()
 }
 
 /// Reads the walls of a frame of a run.
