@@ -104,7 +104,7 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
     };
     super::in_pool(options.scene.threads, |threads| {
         let others = packings.other_bodies(&scene)?;
-        let first = packings.make(0, 0)?;
+        let first = packings.make(0, 0, &AtomicBool::new(false))?;
         let prospect = prospect(&scene, &packings.body, &first, &others, threads)?;
         let unknowns = unknowns(
             &scene,
@@ -366,7 +366,7 @@ impl Job<'_> {
         let bodies: Vec<Body> = (0..count)
             .map(|packing| match (at, packing) {
                 (0, 0) => Ok(self.first.clone()),
-                _ => self.packings.make(at, packing),
+                _ => self.packings.make(at, packing, stop),
             })
             .collect::<Result<_>>()?;
         let unknowns = record.unknowns.clone();

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::body::files::body_files;
 use dem_io::body::read_body;
@@ -127,12 +128,17 @@ impl Packings {
     /// Packing `at` of the size `case`.
     ///
     /// # Errors
-    /// The shape cannot be packed, or the file is missing or wrong.
-    pub(super) fn make(&self, case: usize, at: usize) -> Result<Body> {
+    /// The shape cannot be packed, or the file is missing or wrong; `interrupted` is set (exit code
+    /// 130).
+    pub(super) fn make(&self, case: usize, at: usize, interrupted: &AtomicBool) -> Result<Body> {
+        let go_on = |_: &str, _: f64| match interrupted.load(Ordering::Relaxed) {
+            true => Err(Diagnostic::interrupted("interrupted", "start it again")),
+            false => Ok(()),
+        };
         match (self.recipes.get(case), self.files.get(at)) {
             (Some(recipe), _) => {
                 let seed = recipe.seed().wrapping_add(at as u64);
-                recipe.make(seed, &|_, _| Ok(())).map(|(body, _)| body)
+                recipe.make(seed, &go_on).map(|(body, _)| body)
             }
             (None, Some(file)) => read_body(file),
             // Neither a shape nor files: the scene has the particles.

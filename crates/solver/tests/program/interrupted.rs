@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use super::{Bench, dem_run, good, scene_of_data};
+use super::{Bench, dem_run, good, root, scene_of_data};
 
 fn send(signal: &str, child: &Child) {
     let sent = Command::new("kill")
@@ -214,4 +214,31 @@ fn a_stress_suite_ends_with_the_same_code() {
     let (said, code) = super::refused(&output);
     assert_eq!(code, 130, "{said}");
     assert!(said.starts_with("error: interrupted"), "{said}");
+}
+
+/// A calibration that packs one body after another ends during the next packing at the latest.
+#[test]
+fn a_calibration_ends_while_it_packs() {
+    let bench = Bench::new();
+    let mut command = dem_run();
+    command
+        .arg("calibrate")
+        .arg(scene_of_data("tension.toml"))
+        .arg("--output")
+        .arg(bench.path("cake.toml"));
+    let shape = root().join("data/shapes/bar.stl").display().to_string();
+    command.args(["--packings", "1000", "--", &shape, "--diameter", "3mm"]);
+    let mut child = start(command);
+    let record = bench.path("cake.json");
+    wait_until(&mut child, || record.exists());
+    let since = Instant::now();
+    send("-INT", &child);
+    let output = child.wait_with_output().unwrap();
+    assert!(since.elapsed() < Duration::from_secs(5));
+    let (said, code) = super::refused(&output);
+    assert_eq!(code, 130, "{said}");
+    assert!(said.starts_with("error: interrupted"), "{said}");
+    let kept: serde_json::Value = serde_json::from_slice(&fs::read(&record).unwrap()).unwrap();
+    assert_eq!(kept["packings"].as_array().unwrap().len(), 1000);
+    assert_eq!(bench.files(), ["cake.json"]);
 }
