@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use dem_io::body::files::body_files;
 use dem_io::body::write_body;
 use dem_io::body::{StoredFragment, read_frame};
@@ -18,11 +18,12 @@ use serde_json::Value;
 use crate::run::snapshot::Snapshot;
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("fragment").required(true).args(["id", "largest"])))]
 pub(super) struct FragmentArguments {
     /// The folder of results of a run
     results: PathBuf,
     /// Fragment id, as in the frames and in fragments.csv
-    #[arg(long, required_unless_present = "largest", conflicts_with = "largest")]
+    #[arg(long)]
     id: Option<u32>,
     /// Take the heaviest fragment
     #[arg(long)]
