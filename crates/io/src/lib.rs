@@ -7,6 +7,7 @@
 pub mod body;
 mod bounds;
 pub mod boxes;
+pub mod colour;
 pub mod diagnostic;
 pub mod disjoint;
 pub mod hash;

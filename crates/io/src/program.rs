@@ -2,7 +2,8 @@
 
 use std::ffi::OsString;
 
-use clap::Command;
+use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+use clap::{Command, Parser};
 pub use clap_complete::Shell;
 
 use crate::diagnostic::{Diagnostic, Result};
@@ -37,6 +38,33 @@ pub fn refuse_renamed(
         }
     }
     Ok(())
+}
+
+/// The arguments of a program called `name`. Its help and version are printed, and end the program.
+///
+/// # Errors
+/// An argument has been renamed, or is wrong: the message of clap on one line.
+pub fn parsed<P: Parser>(name: &str, given: &[OsString], renamed: &[(&str, &str)]) -> Result<P> {
+    refuse_renamed(given.iter().cloned(), renamed)?;
+    P::try_parse_from(given).map_err(|error| {
+        if !error.use_stderr() || error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
+            error.exit();
+        }
+        Diagnostic::input(
+            "",
+            on_one_line(&error.to_string()),
+            format!("see {name} --help"),
+        )
+    })
+}
+
+/// The message of clap, without its `error:`, the usage and the hint to the help, which are
+/// paragraphs of their own.
+pub fn on_one_line(said: &str) -> String {
+    let paragraphs = said.trim_start_matches("error:").split("\n\n");
+    let kept = paragraphs.filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more"));
+    let lines = kept.map(|p| p.split_whitespace().collect::<Vec<_>>().join(" "));
+    lines.collect::<Vec<_>>().join("; ")
 }
 
 /// Prints a script for completing the options of a program in a shell.

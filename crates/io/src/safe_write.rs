@@ -14,6 +14,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use serde::Serialize;
 use tempfile::NamedTempFile;
 
+use crate::colour::{Colour, on_standard_error, on_standard_output};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::text::{visible_json, visible_lines};
 
@@ -160,6 +161,24 @@ pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()
     })
 }
 
+/// Writes lines of text to standard output as [`write_standard_output`] does. The first word of a
+/// line has the colour that `colour` gives for the line, where colours are shown.
+///
+/// # Errors
+/// As [`write_standard_output`].
+pub fn write_standard_lines(text: &str, colour: impl Fn(&str) -> Option<Colour>) -> Result<()> {
+    write_standard_bytes(|out| {
+        for line in visible_lines(text).lines() {
+            let (word, rest) = line.split_at(line.find(' ').unwrap_or(line.len()));
+            match colour(line) {
+                Some(colour) => writeln!(out, "{}{rest}", on_standard_output(word, colour))?,
+                None => writeln!(out, "{line}")?,
+            }
+        }
+        Ok(())
+    })
+}
+
 /// Passes complete lines on, without characters that control a terminal.
 struct VisibleLines<'a> {
     out: &'a mut dyn Write,
@@ -227,7 +246,8 @@ pub(crate) fn write_standard_bytes(
 
 /// Prints an error on standard error. If that is full or closed, there is nowhere to report it.
 pub fn write_standard_error(error: &Diagnostic) {
-    let _ = io::stderr().write_all(format!("error: {error}\n").as_bytes());
+    let word = on_standard_error("error:", Colour::Red);
+    let _ = io::stderr().write_all(format!("{word} {error}\n").as_bytes());
 }
 
 /// Removes the temporary files of unfinished writes: for a program that is interrupted and about to

@@ -17,7 +17,8 @@ pub const LENGTH_UNITS: [(&str, f64); 7] = [
 ];
 
 /// Units of density and their size in kg/m3.
-pub(crate) const DENSITY_UNITS: [(&str, f64); 3] = [("kg/m3", 1.0), ("g/cm3", 1e3), ("t/m3", 1e3)];
+pub(crate) const DENSITY_UNITS: [(&str, f64); 4] =
+    [("kg/m3", 1.0), ("g/cm3", 1e3), ("g/cc", 1e3), ("t/m3", 1e3)];
 
 /// A physical dimension and its usual units.
 #[derive(Debug, Clone, Copy)]
@@ -341,6 +342,15 @@ pub fn quantity(text: &str, dimension: &Dimension) -> Result<f64> {
     let unit = unit.trim();
     let size = if unit.is_empty() {
         1.0
+    } else if is_decimal_comma(unit) {
+        return Err(Diagnostic::input(
+            "",
+            format!("'{}' has a comma", text.escape_debug()),
+            format!(
+                "write a decimal point, and nothing between thousands: {}",
+                text.replacen(',', ".", 1)
+            ),
+        ));
     } else {
         unit_size(unit, dimension).map_err(|error| Diagnostic {
             problem: format!(
@@ -361,6 +371,12 @@ pub fn quantity(text: &str, dimension: &Dimension) -> Result<f64> {
         ));
     }
     Ok(value)
+}
+
+/// True for `,5 MPa`, what follows the number of `1,5 MPa`.
+fn is_decimal_comma(rest: &str) -> bool {
+    let digits = rest.strip_prefix(',');
+    digits.is_some_and(|digits| digits.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// Length in bytes of the number at the beginning of `text`.
@@ -391,11 +407,19 @@ fn unit_size(name: &str, dimension: &Dimension) -> Result<f64> {
         .find(|(known, _)| unit_letters(known) == wanted)
         .map(|(_, size)| *size)
         .ok_or_else(|| {
-            let known: Vec<&str> = dimension.units.iter().map(|(n, _)| *n).collect();
+            let known = dimension.units.iter().map(|(unit, _)| *unit);
+            // Capitals matter: m is milli, M mega.
+            let is_same = |unit: &&str| unit_letters(unit).eq_ignore_ascii_case(&wanted);
+            let similar: Vec<&str> = known.clone().filter(is_same).collect();
+            let remedy = if similar.is_empty() {
+                format!("use one of {}", known.collect::<Vec<&str>>().join(", "))
+            } else {
+                format!("did you mean {}?", similar.join(" or "))
+            };
             Diagnostic::input(
                 "",
                 format!("unknown unit '{}'", name.escape_debug()),
-                format!("use one of {}", known.join(", ")),
+                remedy,
             )
         })
 }
@@ -534,6 +558,21 @@ mod tests {
         let message = quantity("5 mm", &TIME).map_err(|e| e.to_string());
         let wanted = "'5 mm' is not a time: unknown unit 'mm'; use one of ns, us, ms, s, min, h";
         assert_eq!(message, Err(wanted.to_owned()));
+    }
+
+    #[test]
+    fn slips_of_the_pen_are_named() {
+        let said = |text: &str, dimension: &Dimension| {
+            quantity(text, dimension).map_err(|error| error.to_string())
+        };
+        let comma =
+            "'1,5 MPa' has a comma; write a decimal point, and nothing between thousands: 1.5 MPa";
+        assert_eq!(said("1,5 MPa", &STRESS), Err(comma.to_owned()));
+        assert!(said("1,5", &NUMBER).is_err_and(|said| said.ends_with(": 1.5")));
+        let capitals = "'1.5 Mpa' is not a stress: unknown unit 'Mpa'; did you mean MPa?";
+        assert_eq!(said("1.5 Mpa", &STRESS), Err(capitals.to_owned()));
+        assert!(said("2 KN", &FORCE).is_err_and(|said| said.ends_with("did you mean kN?")));
+        assert_eq!(said("1.3 g/cc", &DENSITY), Ok(1300.0));
     }
 
     #[test]

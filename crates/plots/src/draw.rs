@@ -83,7 +83,12 @@ fn area(plot: &Plot, reference: Option<f64>) -> Area {
     };
     let of_marks = || plot.marks.iter().flat_map(seen);
     let values = |k: usize| {
-        let marks = of_marks().map(move |point| point.at[k]);
+        // Bars along y lie within the axis, those along x end at its edge.
+        let ends = move |point: &Point| {
+            let half = [0.0, 0.5 * point.y_spread][k];
+            [point.at[k] - half, point.at[k] + half]
+        };
+        let marks = of_marks().flat_map(ends);
         of_lines().map(move |point| point[k]).chain(marks)
     };
     let x = Scale::new(&plot.x, values(0), false);
@@ -128,10 +133,16 @@ impl Area {
         is_drawn.then(|| self.place([x, y]))
     }
 
-    /// The ends of a mark's error bar, limited to the axis.
+    /// The ends of a mark's error bar along x, limited to the axis.
     fn bar(&self, point: &Point) -> [[f64; 2]; 2] {
         let [x, y] = point.at;
         [-0.5, 0.5].map(|side| self.place([x + side * point.x_spread, y]))
+    }
+
+    /// The ends of its error bar along y.
+    fn upright_bar(&self, point: &Point) -> [[f64; 2]; 2] {
+        let [x, y] = point.at;
+        [-0.5, 0.5].map(|side| self.place([x, y + side * point.y_spread]))
     }
 
     /// Corners of the stairs through a front, from the upper to the right edge.
@@ -163,6 +174,7 @@ impl Area {
                 let [x, y] = self.place(point.at);
                 all.push(vec![[x - 5.0, y - 5.0], [x + 5.0, y + 5.0]]);
                 all.push(self.bar(point).into());
+                all.push(self.upright_bar(point).into());
             }
             let chains = marks.chains.iter();
             all.extend(chains.map(|chain| chain.iter().map(|p| self.place(*p)).collect()));
@@ -295,6 +307,7 @@ fn marks(plot: &Plot, area: &Area) -> Markup {
 
 fn mark(area: &Area, kind: usize, point: &Point) -> Markup {
     let [[from, y], [to, _]] = area.bar(point);
+    let [[x, low], [_, high]] = area.upright_bar(point);
     let fill = if point.filled {
         colour(kind)
     } else {
@@ -304,6 +317,7 @@ fn mark(area: &Area, kind: usize, point: &Point) -> Markup {
         g class="mark" stroke=(colour(kind)) {
             title { (shown(&point.title)) }
             @if point.x_spread > 0.0 { path d={ "M" (px(from)) " " (px(y)) "H" (px(to)) } {} }
+            @if point.y_spread > 0.0 { path d={ "M" (px(x)) " " (px(low)) "V" (px(high)) } {} }
             (shape(kind, area.place(point.at), fill))
         }
     }

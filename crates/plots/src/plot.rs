@@ -40,6 +40,9 @@ pub struct Axis {
     pub log: bool,
     /// True for counts: there are no ticks between whole numbers. Not for a logarithmic axis.
     pub whole: bool,
+    /// For values without an order: their names. The first lies at 0, the second at 1. Empty for
+    /// numbers.
+    pub names: Vec<String>,
 }
 
 impl Axis {
@@ -48,6 +51,14 @@ impl Axis {
         Self {
             label: label.to_owned(),
             ..Self::default()
+        }
+    }
+
+    /// An axis of values with these names, at 0, 1, ...
+    pub fn named(label: &str, names: Vec<String>) -> Self {
+        Self {
+            names,
+            ..Self::of(label)
         }
     }
 
@@ -90,6 +101,8 @@ pub struct Point {
     pub at: [f64; 2],
     /// Width of its error bar, which lies along x, in the unit of x.
     pub x_spread: f64,
+    /// Height of its error bar along y, in the unit of y.
+    pub y_spread: f64,
     /// True if filled, false if hollow.
     pub filled: bool,
     /// Tooltip.

@@ -1,13 +1,16 @@
 //! From values to positions along an axis, and its ticks.
 
 use crate::plot::Axis;
-use crate::text::width;
+use crate::text::{shortened, width};
 
 /// Values beyond this are gaps: their sums are not finite.
 const LARGEST: f64 = 1e300;
 
 /// Space for the numbers below a plot, px.
 const LABELS: f64 = 400.0;
+
+/// Space for the names below a plot, px.
+const NAMES: f64 = 500.0;
 
 /// Largest number of labels at a logarithmic axis.
 const MOST_LOG_NUMBERS: usize = 7;
@@ -44,6 +47,9 @@ impl Scale {
     /// An axis that contains all of these values that [can be drawn](is_drawn); `rounded`: a linear
     /// one begins and ends at ticks.
     pub(crate) fn new(axis: &Axis, values: impl Iterator<Item = f64>, rounded: bool) -> Self {
+        if !axis.names.is_empty() {
+            return Self::named(axis);
+        }
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in values.filter(|value| is_drawn(*value, axis.log)) {
             low = low.min(value);
@@ -62,6 +68,23 @@ impl Scale {
             (low, high) = (low - room, high + room);
         }
         Self::linear(axis, low, high, rounded)
+    }
+
+    /// Names at 0, 1, ..., each with equal room.
+    fn named(axis: &Axis) -> Self {
+        let count = axis.names.len() as f64;
+        let tick = |(number, name): (usize, &String)| Tick {
+            fraction: (number as f64 + 0.5) / count,
+            label: shortened(name, 12.0, NAMES / count),
+        };
+        Self {
+            low: -0.5,
+            high: count - 0.5,
+            log: false,
+            label: axis.label.clone(),
+            ticks: axis.names.iter().enumerate().map(tick).collect(),
+            fine: Vec::new(),
+        }
     }
 
     fn linear(axis: &Axis, low: f64, high: f64, rounded: bool) -> Self {

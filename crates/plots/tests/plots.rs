@@ -188,7 +188,7 @@ fn axis(label: &str, log: bool) -> Axis {
     Axis {
         label: label.to_owned(),
         log,
-        whole: false,
+        ..Axis::default()
     }
 }
 
@@ -409,6 +409,7 @@ fn marks(name: &str, points: &[[f64; 2]]) -> Marks {
         x_spread: 0.1 * at[0],
         filled: at[1] < 0.02,
         title: format!("<run> {}", at[0]),
+        ..Point::default()
     };
     Marks {
         name: name.to_owned(),
@@ -526,4 +527,64 @@ proptest! {
             prop_assert!((x - place).abs() < 0.02 + 1e-9 * wide * largest / span, "{x} {place}");
         }
     }
+}
+
+#[test]
+fn marks_have_upright_bars_within_the_axis() {
+    let mut plot = plot("speed (m/s)", "share", [false; 2], vec![]);
+    let point = |x: f64, y: f64, spread: f64| Point {
+        at: [x, y],
+        y_spread: spread,
+        filled: true,
+        ..Point::default()
+    };
+    plot.marks = vec![Marks {
+        points: vec![point(1.0, 0.5, 0.9), point(2.0, 0.6, 0.0)],
+        ..Marks::default()
+    }];
+    let svg = plot.svg().file();
+    let picture = read(&svg);
+    assert_eq!(picture.marks, 2);
+    // One bar, from 0.05 to 0.95 on an axis that holds it.
+    let mark = svg.split("class=\"mark\"").nth(1).unwrap();
+    let (_, bar) = mark.split_once("d=\"M").unwrap();
+    let (bar, _) = bar.split_once('"').unwrap();
+    let numbers: Vec<f64> = bar
+        .split(|c: char| !(c.is_ascii_digit() || c == '.'))
+        .filter_map(|text| text.parse().ok())
+        .collect();
+    let [_, top, _, high] = picture.area;
+    let [_, low, up] = numbers[..] else {
+        panic!("{bar}")
+    };
+    assert!(up < low && up > top && low < top + high, "{bar}");
+}
+
+#[test]
+fn values_without_numbers_have_names() {
+    let mut plot = plot("", "", [false; 2], vec![]);
+    let names = [
+        "parallel",
+        "timoshenko",
+        "a name that is far too long for the room that it has at the axis",
+    ];
+    plot.x = Axis::named("model", names.map(str::to_owned).to_vec());
+    plot.marks = vec![marks("", &[[0.0, 1.0], [1.0, 2.0], [2.0, 3.0]])];
+    let svg = plot.svg().file();
+    let picture = read(&svg);
+    let texts: Vec<&str> = picture
+        .texts
+        .iter()
+        .map(|(_, text)| text.as_str())
+        .collect();
+    assert!(
+        texts.contains(&"parallel") && texts.contains(&"timoshenko"),
+        "{texts:?}"
+    );
+    assert!(
+        texts
+            .iter()
+            .any(|text| text.starts_with("a name") && text.ends_with('…')),
+        "{texts:?}"
+    );
 }

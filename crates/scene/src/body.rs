@@ -7,12 +7,13 @@ use super::bond::BondKind;
 use super::clump;
 use super::clump::StartAs;
 use super::direction::ROTATION;
+use super::fall::{self, Fall};
 use super::field::Field;
 use super::listing::Listing;
 use super::material::Material;
 use super::names::meaning;
 use super::paths::named_path;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
@@ -42,19 +43,38 @@ pub struct BodyEntry {
     pub material: String,
     /// `bonds`: a name of `[bonds]`. None only for bodies without bonds.
     pub bond_kind: Option<String>,
-    /// `position`: translation, m, after `rotation`. Length 3.
+    /// `position`: translation, m, after `rotation`; or the position of the centre of mass. Length
+    /// 3.
     pub position_m: [f64; 3],
+    /// `position_of`, "origin" unless given.
+    pub position_of: PositionOf,
     /// `rotation = { axis, angle }`: rotation about the origin of the body's file, as a rotation
     /// vector, rad. Length 3.
     pub rotation_rad: [f64; 3],
     /// `velocity` of the centre of mass, m/s. Length 3.
     pub velocity_m_s: [f64; 3],
+    /// `drop`: it stands for `velocity` and the part of `position` along gravity.
+    pub fall: Option<Fall>,
     /// `angular_velocity` about the centre of mass, as a rigid body, rad/s. Length 3.
     pub angular_velocity_rad_s: [f64; 3],
     /// `start_as`, "bonded" unless given, and `clump`.
     pub start_as: StartAs,
     /// `body_density` or `mass`. None: its spheres have the density of the material.
     pub whole_mass: Option<WholeMass>,
+}
+
+/// The point of a body that its `position` is that of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PositionOf {
+    /// "origin" of its file.
+    Origin,
+    /// "centre" of mass.
+    Centre,
+}
+
+impl Word for PositionOf {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("origin", Self::Origin), ("centre", Self::Centre)];
 }
 
 /// The total mass of a body, which determines the density of its spheres.
@@ -114,9 +134,20 @@ pub(super) static BODY: Schema = Schema {
         .otherwise("that of its particles"),
         Key::text("bonds", "a name in [bonds]", "Properties of its bonds; not required for a body without bonds.")
             .sometimes_required("\"NAME\", a name in [bonds]"),
-        Key::vector("position", &LENGTH, "Translation of the body, after `rotation`."),
+        Key::vector("position", &LENGTH, "Position of the body, after `rotation`."),
+        Key::word::<PositionOf>(
+            "position_of",
+            "origin",
+            "The point of the body that is put at `position`: the origin of its file, or its centre of mass.",
+        ),
         Key::table("rotation", &ROTATION, "Initial rotation about the origin of its file.").or(0.0),
         Key::vector("velocity", &VELOCITY, "Velocity of the centre of mass."),
+        Key::table(
+            "drop",
+            &fall::DROP,
+            "A fall onto a plane: the body starts just above it, with the speed that the fall has given it. Stands for `velocity` and \
+             the part of `position` along gravity.",
+        ),
         Key::vector(
             "angular_velocity",
             &ANGULAR_VELOCITY,
@@ -204,8 +235,10 @@ fn read(
         material,
         bond_kind,
         position_m: table.read("position")?,
+        position_of: table.read("position_of")?,
         rotation_rad: table.read("rotation")?,
         velocity_m_s: table.read("velocity")?,
+        fall: fall::read(&table)?,
         angular_velocity_rad_s: table.read("angular_velocity")?,
         start_as,
         whole_mass,
@@ -320,8 +353,12 @@ pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
     }
     listing.text("bonds", body.bond_kind.as_deref().unwrap_or("none"));
     listing.value("position", &body.position_m);
+    listing.value("position_of", &body.position_of);
     listing.value("rotation", &body.rotation_rad);
-    listing.value("velocity", &body.velocity_m_s);
+    match &body.fall {
+        Some(fall) => fall::list(fall, listing),
+        None => listing.value("velocity", &body.velocity_m_s),
+    }
     listing.value("angular_velocity", &body.angular_velocity_rad_s);
     clump::list_start(body.start_as, listing);
 }

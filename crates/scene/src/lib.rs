@@ -14,6 +14,7 @@ mod contact;
 mod describe;
 mod direction;
 mod factor;
+mod fall;
 mod field;
 mod group;
 mod include;
@@ -56,7 +57,7 @@ mod wall;
 
 pub use as_run::{piped_bodies, scene_as_run};
 pub use bodies::read_bodies;
-pub use body::{BodyEntry, BodySource, WholeMass};
+pub use body::{BodyEntry, BodySource, PositionOf, WholeMass};
 pub use bond::{
     BondDamping, BondFailure, BondKind, BondModel, EquivalentStress, Formulation, StrainRateMeasure,
 };
@@ -64,6 +65,7 @@ pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;
 pub use contact::{Contact, ContactLaw, Rolling};
 pub use factor::Factor;
+pub use fall::Fall;
 pub use group::{ParticleGroup, Pick};
 pub use include::{include_text, material_text, set_text, written_value};
 pub use initial::Initial;

@@ -3,16 +3,17 @@
 
 mod check;
 mod contents;
+mod find;
 pub(super) mod keys;
 mod measures;
 mod read;
 mod rewrite;
 mod values;
 
-pub use check::{override_text, reference_values, scene_with};
+pub use check::{override_text, reference_values, scene_with, settle_references, value_to_find};
 pub use contents::{
-    Axis, AxisValue, BODY, Combine, MeasureOf, Pieces, Reference, RunTime, STUDY_VERSION, Setting,
-    Study, StudyMeasure,
+    Axis, AxisValue, BODY, Combine, Find, MeasureOf, Pieces, Reference, RunTime, STUDY_VERSION,
+    Setting, Study, StudyMeasure,
 };
 pub(crate) use keys::STUDY;
 pub use read::{read_study, study_from_text};

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use dem_scene::study::{
-    Combine, MeasureOf, Reference, Study, reference_values, rewritten, scene_with, study_from_text,
+    Combine, MeasureOf, Reference, Study, reference_values, rewritten, scene_with,
+    settle_references, study_from_text, value_to_find,
 };
 
 const HEAD: &str = "version = 1\nscene = \"bar.toml\"\n";
@@ -60,7 +61,7 @@ fn labels(study: &Study, axis: usize) -> Vec<&str> {
 fn every_key_is_read() {
     let text = include_str!("studies/every-key.toml");
     let study = study_from_text(text, "every-key.toml").unwrap();
-    assert_eq!((study.repeats, study.threads), (2, 2));
+    assert_eq!((study.repeats(), study.threads), (2, 2));
     assert!(study.force_step);
     assert_eq!(study.combine, Combine::Paired);
     assert_eq!(study.axes[1].sizes(), Some(vec![1e-7, 1e-6, 1e-5]));
@@ -102,7 +103,7 @@ reference = { finest = "run.time_step" }
 series = "load"
 "#,
     );
-    assert_eq!((study.repeats, study.threads), (5, 1));
+    assert_eq!((study.repeats(), study.threads), (5, 1));
     assert_eq!(study.combine, Combine::Paired);
     assert_eq!(study.fixed[0].value, "\"0.1 s\"");
     assert_eq!(study.fixed[0].place, "study.toml:7");
@@ -138,6 +139,174 @@ fn ranges_begin_and_end_where_they_say() {
     assert_eq!(labels(&study, 0), ["0.1", "0.3", "0.5", "0.7", "0.9"]);
     assert_eq!(labels(&study, 1), ["-1", "1"]);
     assert_eq!(study.axes[1].sizes(), None, "a size is above 0");
+}
+
+/// Values are shown as written, vectors along one axis by their component there.
+#[test]
+fn values_have_labels_and_numbers() {
+    let study = study(&format!(
+        r#"[vary]
+"bodies.bar.velocity" = [[0, 0, "-0.5 m/s"], [0, 0, 0], [0.0, "0 m/s", "-2 m/s"]]
+"loads.tip.force" = [[0, "1 N", 0], ["1 N", 0, 0]]
+"run.time_step" = ["1 us", "2e-3 ms"]
+"run.gravity" = {{ from = "-1 m/s2", to = "1 m/s2", count = 3 }}
+"run.seed" = [3, 4]
+"bonds.steel.model" = ["timoshenko", "parallel"]
+{TIP}"#
+    ));
+    assert_eq!(labels(&study, 0), ["-0.5 m/s", "0", "-2 m/s"]);
+    let numbers = |axis: usize| study.axes[axis].numbers();
+    assert_eq!(numbers(0), Some((vec![-0.5, 0.0, -2.0], "m/s".to_owned())));
+    assert_eq!(study.axes[0].sizes(), None);
+    assert_eq!(labels(&study, 1), ["[0, 1 N, 0]", "[1 N, 0, 0]"]);
+    assert_eq!(numbers(1), None);
+    assert_eq!(numbers(2), None, "two units");
+    assert_eq!(numbers(3), Some((vec![-1.0, 0.0, 1.0], "m/s2".to_owned())));
+    assert_eq!(numbers(4), Some((vec![3.0, 4.0], String::new())));
+    assert_eq!(numbers(5), None);
+    assert_eq!(study.average_over, Some(4));
+}
+
+/// Repeats are for run times, which are compared only where errors are.
+#[test]
+fn measures_without_a_reference_have_responses() {
+    let of = |rest: &str, in_scene: &str| {
+        let mut study = study(&format!("[vary]\n\"run.seed\" = [1]\n{rest}"));
+        let scene = format!("{SCENE}{in_scene}");
+        let scene = scene_with(&study, &scene, study.first_settings()).unwrap();
+        settle_references(&mut study, &scene);
+        (study.measures[0].reference.clone(), study.repeats())
+    };
+    let expected = "reference = \"1 mm\"\n";
+    assert_eq!(of(TIP, ""), (Reference::None, 1));
+    assert_eq!(of(TIP, expected), (Reference::ClosedForm, 3));
+    let none = format!("{TIP}reference = \"none\"\n");
+    assert_eq!(of(&none, expected), (Reference::None, 1));
+    let both = format!("{TIP}[measures.energy]\nbalance = \"energy\"\n");
+    assert_eq!(of(&both, ""), (Reference::None, 3));
+    for of_test in [
+        "test_result = \"stiffness\"",
+        "curve = \"force-displacement\"",
+        "fragment_masses = \"remaining\"",
+    ] {
+        let rest = format!("[measures.a]\n{of_test}\n");
+        assert_eq!(of(&rest, ""), (Reference::None, 1));
+    }
+}
+
+const FIND: &str = r#"[find]
+parameter = "run.end_time"
+from = "3 s"
+to = "1 s"
+measure = "tip"
+value = "2 mm"
+tolerance = "10 ms"
+[vary]
+"run.seed" = [1, 2]
+[measures.tip]
+"#;
+
+#[test]
+fn a_search_is_read() {
+    let search = FIND.replace("10 ms", "0.01 s");
+    let mut study = study(&search);
+    let find = study.find.clone().unwrap();
+    assert_eq!(
+        (find.measure, find.ends, find.tolerance),
+        (0, [1.0, 3.0], 0.01)
+    );
+    assert_eq!((find.value.as_str(), find.unit.as_str()), ("2 mm", "s"));
+    assert_eq!(study.average_over, Some(1));
+    assert_eq!(labels(&study, 0), ["1 s", "3 s"]);
+    study.add_point(2.0);
+    assert_eq!(study.points(), [1.0, 3.0, 2.0]);
+    let added = &study.axes[0].values[2].settings[0];
+    assert_eq!(
+        (added.path.as_str(), added.value.as_str()),
+        ("run.end_time", "\"2 s\"")
+    );
+    let scene = scene_with(&study, SCENE, study.first_settings()).unwrap();
+    assert_eq!(value_to_find(&study, &scene).unwrap(), Some(2e-3));
+}
+
+#[test]
+fn what_is_no_search() {
+    let good = FIND.replace("10 ms", "0.01 s");
+    for (old, new, parts) in [
+        (
+            "\"0.01 s\"",
+            "\"10 ms\"",
+            "study.toml:9: find.tolerance is \"10 ms\", in another unit than find.from; write",
+        ),
+        (
+            "\"0.01 s\"",
+            "\"1e-9 s\"",
+            "find.tolerance is \"1e-9 s\", but must be at least 0.0003 s; points are rounded",
+        ),
+        ("\"3 s\"", "\"1 s\"", "find.from and find.to are equal"),
+        (
+            "\"3 s\"",
+            "[1]",
+            "find.from is a list of 1, but must be a number",
+        ),
+        (
+            "parameter = \"run.end_time\"",
+            "",
+            "find.parameter is missing",
+        ),
+        (
+            "\"run.end_time\"",
+            "\"end_time\"",
+            "\"end_time\" is no path of a scene",
+        ),
+        (
+            "measure = \"tip\"",
+            "measure = \"top\"",
+            "find.measure is \"top\", but the study has no such measure; did you mean 'tip'?",
+        ),
+        (
+            "\"2 mm\"",
+            "true",
+            "find.value is true, but must be a number",
+        ),
+        (
+            "\"run.seed\" = [1, 2]",
+            "\"bonds.steel.model\" = [\"parallel\"]",
+            "[find] searches one value, but bonds.steel.model varies as well; move it into [set]",
+        ),
+        (
+            "\"run.seed\" = [1, 2]",
+            "\"run.end_time\" = [\"1 s\"]",
+            "run.end_time is set by run.end_time already",
+        ),
+        (
+            "[find]",
+            "combine = \"paired\"\n[find]",
+            "[find] has no effect on pairs of values",
+        ),
+        (
+            "[find]",
+            "average_over = \"run.end_time\"\n[find]",
+            "average_over names the parameter of [find]",
+        ),
+        (
+            "[find]",
+            "average_over = \"run.sed\"\n[find]",
+            "average_over is \"run.sed\", which does not vary; did you mean 'run.seed'?",
+        ),
+    ] {
+        let said = refused(&format!("{HEAD}{}", good.replace(old, new)));
+        assert!(said.contains(parts), "{new}\n{said}\n{parts}");
+    }
+    let pairs = "combine = \"paired\"\naverage_over = \"run.seed\"\n[vary]\n\"run.seed\" = [1]\n[measures.tip]\n";
+    assert!(refused(&format!("{HEAD}{pairs}")).contains("average_over has no effect on pairs"));
+    let kilograms = study(&good.replace("2 mm", "2 kg"));
+    let scene = scene_with(&kilograms, SCENE, kilograms.first_settings()).unwrap();
+    let said = value_to_find(&kilograms, &scene).unwrap_err().to_string();
+    assert!(
+        said.contains("find.value: '2 kg' is not a length"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -272,7 +441,7 @@ fn what_is_no_study() {
         ),
         (
             "repeats = 18446744073709551615\n[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n",
-            "repeats is 18446744073709551615, but must be at most 1024",
+            "repeats is 18446744073709551615, but must be a whole number from 1 to 1024",
         ),
         (
             "repeat = 3\n[vary]\n\"run.safety_factor\" = [0.5]\n[measures.tip]\n",

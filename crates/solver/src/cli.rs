@@ -6,23 +6,29 @@ mod calibrate;
 mod check;
 mod export;
 mod fragment;
+mod keys;
 mod lab;
+mod new;
 mod packings;
 mod picture;
+mod progress;
 mod statics;
 mod stress;
 mod sweep;
 
 use std::collections::BTreeMap;
-use std::io::{IsTerminal, Write};
+use std::ffi::OsString;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use dem_io::body::{body_summary, read_body};
+use dem_io::colour::{Colour, on_standard_error};
 use dem_io::diagnostic::Kind;
-use dem_io::program::{Shell, print_completions, print_man_page};
+use dem_io::program::{Shell, parsed, print_completions, print_man_page};
 use dem_io::safe_write::{
-    write_file, write_standard_json, write_standard_output, write_visible_json,
+    write_file, write_standard_json, write_standard_lines, write_standard_output,
+    write_visible_json,
 };
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_input};
@@ -32,15 +38,17 @@ use dem_results::folder::refuse_inputs_among_results;
 use dem_results::{Existing, ResultsFolder, write_json};
 use dem_scene::read_scene;
 use dem_scene::{BodySource, Integrator, Scene, include_text, read_bodies};
-use indicatif::{ProgressBar, ProgressStyle};
 
+use self::progress::ShownProgress;
 use crate::interrupt::Interrupt;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::laboratory::watch::TestSettings;
 use crate::output::summary::Unfinished;
 use crate::plan::{Plan, plan};
 use crate::run::snapshot::Snapshot;
-use crate::run::{Finished, Outcome, RunSettings, finish, run as run_plan, run_as_far_as_it_goes};
+use crate::run::{
+    Finished, Outcome, RunSettings, SoFar, finish, run as run_plan, run_as_far_as_it_goes,
+};
 
 /// Options that had another name before version 0.1, and their new names.
 pub const RENAMED: [(&str, &str); 2] = [("--out", "--output"), ("--want", "--max-error")];
@@ -54,6 +62,7 @@ pub const RENAMED: [(&str, &str); 2] = [("--out", "--output"), ("--want", "--max
     arg_required_else_help = true,
     after_help = "Exit codes: 0 done, 1 failed while running, 2 bad input, 3 unstable, 130 interrupted.\n\
                   Examples:\n  \
+                  dem-run new drop my-drop\n  \
                   dem-run data/scenes/cantilever.toml\n  \
                   dem-run spinning-bar.toml --set run.end_time=0.5 --output spin\n  \
                   dem-pack cake.stl --diameter 2mm..3mm | dem-run clamped.toml --body -"
@@ -63,6 +72,47 @@ pub struct Arguments {
     command: Option<Command>,
     #[command(flatten)]
     run: RunArguments,
+}
+
+impl Arguments {
+    /// The arguments of a command line, the first of which is the name of the program. `dem-run run
+    /// SCENE` is `dem-run SCENE`.
+    ///
+    /// # Errors
+    /// An unknown command or option, or one that has been renamed (exit code 2).
+    pub fn parsed(given: impl Iterator<Item = OsString>) -> Result<Self> {
+        let mut given: Vec<OsString> = given.collect();
+        if given.len() > 2 && given[1] == "run" {
+            given.remove(1);
+        }
+        refuse_no_command(&given)?;
+        parsed("dem-run", &given, &RENAMED)
+    }
+}
+
+/// Refuses a first argument that is a word, but neither a command nor a file.
+fn refuse_no_command(given: &[OsString]) -> Result<()> {
+    let Some(first) = given.get(1).and_then(|first| first.to_str()) else {
+        return Ok(());
+    };
+    let command = Arguments::command();
+    let known: Vec<&str> = command
+        .get_subcommands()
+        .map(clap::Command::get_name)
+        .collect();
+    let is_word = first.starts_with(char::is_alphanumeric)
+        && first.chars().all(|c| c.is_alphanumeric() || c == '-');
+    if !is_word || first == "help" || known.contains(&first) || Path::new(first).exists() {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("dem-run {first}"),
+        "there is no such command, and no such file",
+        format!(
+            "name a scene (.toml), or one of the commands {}",
+            known.join(", ")
+        ),
+    ))
 }
 
 #[derive(Debug, Subcommand)]
@@ -75,6 +125,16 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         picture: Option<PathBuf>,
     },
+    /// Make a folder with a scene to start from: drop, chute, crusher, bending or compression
+    #[command(
+        after_help = "Makes FOLDER with scene.toml, shape.stl, body.vtp (few large spheres, to run in seconds) and scene.schema.json for editors.\n\
+                      Nothing is overwritten.\n\
+                      Example:\n  dem-run new drop my-drop"
+    )]
+    New(new::NewArguments),
+    /// Print the keys of scenes and studies: type, unit, default, limits and meaning
+    #[command(after_help = "Examples:\n  dem-run keys bodies\n  dem-run keys study")]
+    Keys(keys::KeysArguments),
     /// Write a fragment of a run as a body: its particles as they stand in a frame, and its
     /// unbroken bonds
     #[command(
@@ -212,6 +272,8 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
             }
             check::check(&scene_data, &plan, scene.json)
         }),
+        Some(Command::New(arguments)) => new::new(arguments),
+        Some(Command::Keys(arguments)) => keys::keys(arguments),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Export(arguments)) => export::export(arguments),
         Some(Command::Lab(arguments)) => lab::lab(arguments),
@@ -418,12 +480,8 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         Some(folder) if arguments.resume => Some(checkpoint_of(folder)?),
         _ => None,
     };
-    let bar = if arguments.quiet || !std::io::stderr().is_terminal() {
-        ProgressBar::hidden()
-    } else {
-        progress_bar()
-    };
-    let progress = |fraction: f64| bar.set_position((1000.0 * fraction) as u64);
+    let shown = ShownProgress::new(arguments.quiet);
+    let progress = |so_far: &SoFar| shown.tell(so_far);
     let outcome = interrupt.run_interruptible(|interrupted| {
         let mut settings = RunSettings {
             folder: folder.as_ref(),
@@ -433,7 +491,7 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
             test,
         };
         if let (Some((scene, bodies, test)), Some(own)) = (twice, &mut settings.test) {
-            bar.set_prefix("at twice the rate ");
+            shown.begin("at twice the rate ");
             let plan = plan(&scene, bodies, threads, force_step)?;
             let settings = RunSettings {
                 folder: None,
@@ -443,14 +501,14 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
                 test: Some(test),
             };
             own.at_twice_the_rate = run_plan(plan, &scene, settings, &progress)?.test;
-            bar.set_prefix("");
+            shown.begin("");
         }
         if let Some(finished) = finish(&prepared, &scene, &settings)? {
             return Ok(Err(finished));
         }
         run_as_far_as_it_goes(prepared, &scene, settings, &progress).map(Ok)
     });
-    bar.finish_and_clear();
+    shown.end();
     let outcome = outcome.inspect_err(|problem| {
         let unfinished = Unfinished::new(&scene.source, inputs, problem);
         // The user must see the problem itself, whatever happens here. Bad input has not run
@@ -533,7 +591,12 @@ fn say_beforehand(plan: &Plan) {
     let warnings = plan.warnings.iter().chain(&plan.forecast.warnings);
     let warnings = warnings.map(|warning| ("warning", warning));
     for (kind, text) in notes.chain(warnings) {
-        let _ = writeln!(std::io::stderr(), "{kind}: {}", visible(text));
+        let word = format!("{kind}:");
+        let word = match kind {
+            "warning" => on_standard_error(&word, Colour::Yellow),
+            _ => word,
+        };
+        let _ = writeln!(std::io::stderr(), "{word} {}", visible(text));
     }
 }
 
@@ -557,18 +620,23 @@ fn say_outcome(arguments: &RunArguments, outcome: Outcome) -> Result<()> {
     if arguments.scene.json {
         write_standard_json(summary)?;
     } else if !arguments.quiet && outcome.problem.is_none() {
-        write_standard_output(|out| {
-            write!(out, "{summary}")?;
-            match &summary.results {
-                None => writeln!(
-                    out,
-                    "no files written: add --output FOLDER to keep the results"
-                ),
-                Some(_) => Ok(()),
-            }
-        })?;
+        let mut text = summary.to_string();
+        if summary.results.is_none() {
+            text += "no files written: add --output FOLDER to keep the results\n";
+        }
+        let is_sound = summary.verdict.sound;
+        write_standard_lines(&text, |line| colour_of(line, is_sound))?;
     }
     outcome.problem.map_or(Ok(()), Err)
+}
+
+/// The colour of the first word of a line of the summary.
+fn colour_of(line: &str, is_sound: bool) -> Option<Colour> {
+    match line.split(' ').next() {
+        Some("verdict") if is_sound => Some(Colour::Green),
+        Some("verdict" | "warning") => Some(Colour::Yellow),
+        _ => None,
+    }
 }
 
 /// Prints the missing files of a run that had reached its end.
@@ -597,16 +665,6 @@ fn results_path(arguments: &RunArguments, scene: &Scene) -> Option<PathBuf> {
     let stem = Path::new(&scene.source).file_stem().unwrap_or_default();
     let by_name = || PathBuf::from(format!("{}-out", stem.to_string_lossy()));
     Some(output.folder.clone().unwrap_or_else(by_name))
-}
-
-fn progress_bar() -> ProgressBar {
-    let bar = ProgressBar::new(1000);
-    if let Ok(style) =
-        ProgressStyle::with_template("run {prefix}[{bar:40}] {percent:>3} %  {eta} left")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar
 }
 
 fn body_information(arguments: &SceneArguments) -> Result<()> {

@@ -3,19 +3,20 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use clap::Parser;
 use dem_io::Diagnostic;
-use dem_io::program::{refuse_renamed, take_size_limits_as_errors};
+use dem_io::program::take_size_limits_as_errors;
 use dem_io::safe_write::{remove_unfinished, write_standard_error};
-use dem_run::cli::{Arguments, RENAMED, run};
+use dem_run::cli::{Arguments, run};
 use dem_run::interrupt::Interrupt;
 
 fn main() -> ExitCode {
-    if let Err(error) = refuse_renamed(std::env::args_os(), &RENAMED) {
-        write_standard_error(&error);
-        return ExitCode::from(error.exit_code());
-    }
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::parsed(std::env::args_os()) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            write_standard_error(&error);
+            return ExitCode::from(error.exit_code());
+        }
+    };
     let interrupt = Arc::new(Interrupt::default());
     let asked = Arc::clone(&interrupt);
     let at_interrupt = move || {

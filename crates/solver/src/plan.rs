@@ -12,6 +12,7 @@ pub(crate) mod inputs;
 pub(crate) mod masses;
 pub(crate) mod measures;
 mod outputs;
+mod placement;
 mod rules;
 mod stages;
 pub mod test_setup;
@@ -52,6 +53,7 @@ use self::initial::start;
 use self::inputs::Inputs;
 use self::measures::refuse_valueless;
 use self::outputs::refuse_endless_output;
+use self::placement::placed;
 use self::rules::{doubts, rules};
 pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
@@ -109,6 +111,7 @@ pub fn plan(
     allow_any_step: bool,
 ) -> Result<Plan> {
     let inputs = Inputs::of(scene, &read);
+    let scene = &placed(scene, &read)?;
     let mut read = read;
     let about: BTreeMap<String, About> = (read.iter())
         .map(|(name, body)| (name.clone(), body.about.clone()))

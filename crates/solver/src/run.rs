@@ -28,10 +28,10 @@ use self::begin::Run;
 pub use self::finish::{Finished, finish};
 pub use self::outcome::Outcome;
 pub use self::progress::Progress;
-pub use self::settings::RunSettings;
+pub use self::settings::{RunSettings, SoFar};
 
 /// Steps a plan to its end, or solves for its static equilibrium, as the scene says. `tell` is
-/// called from time to time with the fraction of the end time reached, in 0..1.
+/// called from time to time with how far it has come.
 ///
 /// # Errors
 /// The run goes unstable (exit code 3), is interrupted (130), or its files cannot be written (1).
@@ -39,7 +39,7 @@ pub fn run(
     plan: Plan,
     scene: &Scene,
     settings: RunSettings<'_>,
-    tell: &dyn Fn(f64),
+    tell: &dyn Fn(&SoFar),
 ) -> Result<Summary> {
     let outcome = run_as_far_as_it_goes(plan, scene, settings, tell)?;
     outcome.problem.map_or(Ok(outcome.summary), Err)
@@ -53,7 +53,7 @@ pub(crate) fn run_as_far_as_it_goes(
     plan: Plan,
     scene: &Scene,
     settings: RunSettings<'_>,
-    tell: &dyn Fn(f64),
+    tell: &dyn Fn(&SoFar),
 ) -> Result<Outcome> {
     if scene.run.integrator == Integrator::Static {
         let summary = crate::run::statics::run(plan, scene, &settings, tell)?;

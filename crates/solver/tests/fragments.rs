@@ -97,8 +97,8 @@ pub(crate) fn run_into(
         threads: 1,
         interrupted: &interrupted,
     };
-    run(plan, scene, settings, &|fraction| {
-        if fraction >= stop_at {
+    run(plan, scene, settings, &|so_far| {
+        if so_far.fraction >= stop_at {
             interrupted.store(true, Ordering::Relaxed);
         }
     })

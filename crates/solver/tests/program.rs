@@ -21,6 +21,7 @@ mod lab;
 pub(crate) mod laboratory;
 mod masses;
 mod names;
+mod new;
 mod pictures;
 mod random;
 mod results;

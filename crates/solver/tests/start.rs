@@ -2,6 +2,7 @@
 //! overlaps that are kept, a bounce; rigid walls and clumps that are never replaced.
 
 mod bounce;
+mod drops;
 mod ends;
 mod initial;
 mod keep;
@@ -59,8 +60,8 @@ fn run_of(
         threads: 1,
         interrupted: &interrupted,
     };
-    run(planned(text), &scene(text), settings, &|fraction| {
-        if fraction >= stop_at {
+    run(planned(text), &scene(text), settings, &|so_far| {
+        if so_far.fraction >= stop_at {
             interrupted.store(true, Ordering::Relaxed);
         }
     })

@@ -48,7 +48,7 @@ pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
         }),
         Combine::Paired => paired(&study.axes)? as u64,
     };
-    let processes = count.saturating_mul(u64::from(study.repeats));
+    let processes = count.saturating_mul(u64::from(study.repeats()));
     if processes > MOST || (processes > MOST_UNASKED && !yes) {
         let (limit, remedy) = if processes > MOST {
             (MOST, "vary less")
@@ -62,7 +62,7 @@ pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
             &study.source,
             format!(
                 "{count} runs, {} times each, are more than {limit}",
-                study.repeats
+                study.repeats()
             ),
             remedy,
         ));

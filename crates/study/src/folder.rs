@@ -20,7 +20,7 @@ const SCENE_TEXT: &str = "text of the scene";
 const VARY: &str = "[vary]";
 
 /// Files of which a sweep makes one each, besides [`IDENTITY`].
-const TABLES: [&str; 3] = ["sweep.csv", "sweep.json", "sweep.html"];
+const TABLES: [&str; 4] = ["sweep.csv", "responses.csv", "sweep.json", "sweep.html"];
 
 /// The folder of a sweep. No other sweep can use it as long as this exists.
 #[derive(Debug)]
@@ -233,14 +233,21 @@ fn identity(study: &Study, scene_text: &str) -> Value {
         .iter()
         .map(|axis| axis.values.iter().map(|v| settings(&v.settings)).collect())
         .collect();
-    json!({
+    let mut identity = json!({
         "scene": study.scene.display().to_string(),
         SCENE_TEXT: scene_text,
         "number of threads": study.threads,
         "combine": format!("{:?}", study.combine),
         "[set]": settings(&study.fixed),
         VARY: axes,
-    })
+    });
+    // The points of a search follow from its ends and from what is looked for.
+    if let Some(find) = &study.find {
+        let measure = &study.measures[find.measure];
+        let looked_for = format!("{:?} {} {:?}", measure.of, find.value, study.average_over);
+        identity["[find]"] = looked_for.into();
+    }
+    identity
 }
 
 /// Locks a folder. The system releases the lock when the program ends. Some network disks do not

@@ -25,7 +25,8 @@ pub(crate) fn judge(
     let of = &study.measures[measure];
     let along = match of.reference {
         Reference::Finest(along) | Reference::Richardson(along) => along,
-        Reference::ClosedForm | Reference::Value(_) => {
+        Reference::None => return,
+        Reference::IfAny | Reference::ClosedForm | Reference::Value(_) => {
             for (row, done) in rows.iter_mut().zip(done) {
                 let own = done.and_then(|done| done.readings[measure].closed_form);
                 let reference = match of.reference {
@@ -183,13 +184,14 @@ fn set_error(judged: &mut Judged, reference: f64, uncertainty: Option<f64>) {
     judged.uncertainty = uncertainty.map(|uncertainty| uncertainty / scale);
 }
 
-/// The reference of a measure, as text.
-pub(crate) fn in_words(study: &Study, measure: usize) -> String {
+/// The reference of a measure, as text. None if it has none.
+pub(crate) fn in_words(study: &Study, measure: usize) -> Option<String> {
     let measure = &study.measures[measure];
-    match (&measure.of, &measure.reference) {
+    Some(match (&measure.of, &measure.reference) {
+        (_, Reference::None) => return None,
         (MeasureOf::Balance(_), _) => "an error by itself".to_owned(),
         (MeasureOf::Figure(_), Reference::ClosedForm) => "the theory of the test".to_owned(),
-        (_, Reference::ClosedForm) => "the reference of the scene".to_owned(),
+        (_, Reference::IfAny | Reference::ClosedForm) => "the reference of the scene".to_owned(),
         (_, Reference::Value(text)) => text.clone(),
         (MeasureOf::Masses(_), Reference::Finest(at)) => format!(
             "the masses of the finest run along {} (distance of Kolmogorov and Smirnov, by number; below its uncertainty it is chance)",
@@ -203,5 +205,5 @@ pub(crate) fn in_words(study: &Study, measure: usize) -> String {
         (_, Reference::Richardson(at)) => {
             format!("Richardson extrapolation along {}", study.axes[*at].name)
         }
-    }
+    })
 }

@@ -1,10 +1,11 @@
-//! A sweep: a scene is run with many settings, each in a process of its own, to compare error with
-//! run time.
+//! A sweep: a scene is run with many settings, each in a process of its own, to see the response of
+//! a measure, or to compare error with run time.
 //!
 //! Study -> [`expand`] runs -> [`jobs`] processes with a folder each -> [`collect`] their
-//! outcomes -> `judge` errors (of distributions: [`masses`], of tests: [`curves`]) -> `table`
-//! medians, `front`s, `order`s -> CSV, JSON, [`page`] with [`plot`]s, [`want`] the fastest run
-//! that is accurate enough.
+//! outcomes -> [`response`]s; `judge` errors (of distributions: [`masses`], of tests: [`curves`])
+//! -> `table` medians, `front`s, `order`s -> CSV, JSON, [`page`] with [`plot`]s and
+//! [`response_plot`]s, [`want`] the fastest run that is accurate enough. [`search`] adds points to
+//! the study until the value that is looked for is found.
 
 pub mod collect;
 pub mod curves;
@@ -19,7 +20,11 @@ pub mod outcome;
 pub mod page;
 pub mod plot;
 pub(crate) mod reference;
+pub mod response;
+pub(crate) mod response_page;
+pub mod response_plot;
 pub mod rows;
+pub mod search;
 pub(crate) mod table;
 pub mod text;
 pub mod want;

@@ -5,6 +5,8 @@ use dem_plots::{Column, Page, Table};
 
 use super::curves;
 use super::plot::plot;
+use super::response_page;
+use super::response_plot::with_unit;
 use super::rows::{Judged, Row, SweepTable};
 use super::text::front_of;
 
@@ -13,7 +15,7 @@ const MOST_ROWS: usize = 2000;
 
 /// The complete page as HTML.
 pub fn page(table: &SweepTable) -> String {
-    let mut page = Page::new(&format!("Error against run time: {}", table.scene));
+    let mut page = Page::new(&format!("{}: {}", subject(table), table.scene));
     page.paragraph(&format!(
         "{}: {} runs, {} each, on {} thread{}. {}; {}.",
         table.study,
@@ -24,16 +26,24 @@ pub fn page(table: &SweepTable) -> String {
         table.machines.join("; "),
         table.program
     ));
-    page.small(
-        "Times are medians of the repeats, without start-up; lines across the marks show by how much times scatter. \
-         Short runs are repeated more often. From the most exact run on, one is on the Pareto front if it is faster by more than that than all more exact \
-         ones, errors counted with two digits. \
-         Times hold for this sweep on this machine.",
-    );
+    if table.has_errors() {
+        page.small(
+            "Times are medians of the repeats, without start-up; lines across the marks show by how much times scatter. \
+             Short runs are repeated more often. From the most exact run on, one is on the Pareto front if it is faster by more than that than all more exact \
+             ones, errors counted with two digits. \
+             Times hold for this sweep on this machine.",
+        );
+    }
+    response_page::add_search(&mut page, table);
     for (at, measure) in table.measures.iter().enumerate() {
         page.heading(&measure.name.replace('_', " "));
-        page.paragraph(&format!("Against {}.", measure.reference));
-        page.figure(&plot(table, at).svg());
+        if let Some(response) = table.responses.iter().find(|r| r.measure == at) {
+            response_page::add_response(&mut page, table, response);
+        }
+        if let Some(reference) = &measure.reference {
+            page.paragraph(&format!("Against {reference}."));
+            page.figure(&plot(table, at).svg());
+        }
         if let Some(plot) = curves::plot(table, at) {
             page.figure(&plot.svg());
         }
@@ -49,8 +59,17 @@ pub fn page(table: &SweepTable) -> String {
     page.html()
 }
 
+/// What the page shows.
+fn subject(table: &SweepTable) -> &'static str {
+    match (table.has_errors(), table.responses.is_empty()) {
+        (true, true) => "Error against run time",
+        (true, false) => "Response, and error against run time",
+        (false, _) => "Response",
+    }
+}
+
 /// A number with these digits, or nothing.
-fn number(value: Option<f64>, digits: usize) -> String {
+pub(crate) fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or(String::new(), |value| significant(value, digits))
 }
 
@@ -136,13 +155,11 @@ fn add_all(page: &mut Page, table: &SweepTable) {
     columns.extend(of_axes(table));
     columns.extend(["time (s)", "scatter (s)", "steps"].map(Column::number));
     for measure in &table.measures {
-        let name = match measure.unit.as_str() {
-            "" => measure.name.clone(),
-            unit => format!("{} ({unit})", measure.name),
-        };
-        columns.extend([&name, "error"].map(Column::number));
+        columns.push(Column::number(&with_unit(&measure.name, &measure.unit)));
+        columns.extend(measure.reference.as_ref().map(|_| Column::number("error")));
     }
-    let rows = table.runs.iter().take(MOST_ROWS).map(of_run).collect();
+    let rows = table.runs.iter().take(MOST_ROWS);
+    let rows = rows.map(|row| of_run(table, row)).collect();
     page.table(&Table { columns, rows });
     if table.runs.len() > MOST_ROWS {
         let more = table.runs.len() - MOST_ROWS;
@@ -150,7 +167,7 @@ fn add_all(page: &mut Page, table: &SweepTable) {
     }
 }
 
-fn of_run(row: &Row) -> dem_plots::Row {
+fn of_run(table: &SweepTable, row: &Row) -> dem_plots::Row {
     let mut cells = vec![row.number.to_string()];
     cells.extend(row.settings.iter().cloned());
     if row.failed.is_some() {
@@ -163,8 +180,9 @@ fn of_run(row: &Row) -> dem_plots::Row {
     cells.push(number(row.time_s, 3));
     cells.push(number(row.spread_s, 2));
     cells.push(number(row.steps.map(|steps| steps as f64), 12));
-    for judged in &row.results {
-        cells.extend([number(Some(judged.value), 8), error_text(judged)]);
+    for (judged, measure) in row.results.iter().zip(&table.measures) {
+        cells.push(number(Some(judged.value), 4));
+        cells.extend(measure.reference.as_ref().map(|_| error_text(judged)));
     }
     cells.into()
 }

@@ -76,6 +76,7 @@ fn point(table: &SweepTable, mark: &Mark<'_>) -> Point {
     Point {
         at: [mark.time_s, mark.error],
         x_spread: mark.spread_s,
+        y_spread: 0.0,
         filled: mark.is_on_front,
         title: format!("run {number}: {settings}; {time} s, error {error}"),
     }

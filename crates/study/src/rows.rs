@@ -3,6 +3,9 @@
 use dem_scene::study::Study;
 use serde::Serialize;
 
+use super::response::Response;
+use super::search::Search;
+
 /// All results of a sweep. SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepTable {
@@ -24,12 +27,18 @@ pub struct SweepTable {
     pub axes: Vec<AxisColumn>,
     /// The axis distinguished by colours.
     pub series: Option<usize>,
+    /// The axis over which responses are averaged.
+    pub average_over: Option<usize>,
     /// Measures.
     pub measures: Vec<MeasureColumn>,
     /// All runs, in the order of their numbers.
     pub runs: Vec<Row>,
     /// Orders with which errors decrease with the size.
     pub orders: Vec<Order>,
+    /// Responses of the measures without a reference, and of that of `find`.
+    pub responses: Vec<Response>,
+    /// The search for a value.
+    pub find: Option<Search>,
     /// Notes on the results.
     pub notes: Vec<String>,
 }
@@ -43,6 +52,10 @@ pub struct AxisColumn {
     pub values: Vec<String>,
     /// Their sizes.
     pub sizes: Option<Vec<f64>>,
+    /// The values as numbers in `unit`, if they are numbers in one unit.
+    pub numbers: Option<Vec<f64>>,
+    /// Their unit as written; empty for plain numbers.
+    pub unit: String,
 }
 
 /// A measure.
@@ -52,8 +65,8 @@ pub struct MeasureColumn {
     pub name: String,
     /// SI unit of its values; empty for plain numbers.
     pub unit: String,
-    /// Its reference, as text.
-    pub reference: String,
+    /// Its reference, as text. None: it has a response and no errors.
+    pub reference: Option<String>,
 }
 
 /// One run.

@@ -2,26 +2,29 @@
 
 use std::collections::BTreeSet;
 
-use dem_scene::study::{RunTime, Study};
+use dem_scene::study::{Axis, RunTime, Study};
 
 use super::expand::Run;
 use super::front::{Point, front};
 use super::judge::{in_words, judge};
 use super::order::orders;
 use super::outcome::{Done, Outcome};
+use super::response::responses;
 use super::rows::{AxisColumn, Judged, MeasureColumn, Row, SweepTable};
+use super::search::search;
 
 /// Smallest significant relative difference of run times, however close the repeats are.
 const LEAST_SPREAD: f64 = 0.1;
 
 impl SweepTable {
     /// `outcomes`: for each run, those of its repeats. `values`: the reference of each measure, if
-    /// the study gives it as a number.
+    /// the study gives it as a number. `looked_for`: the value of `[find]`.
     pub fn new(
         study: &Study,
         runs: &[Run],
         outcomes: &[Vec<Outcome>],
         values: &[Option<f64>],
+        looked_for: Option<f64>,
     ) -> Self {
         let mut notes = Vec::new();
         let mut machines = BTreeSet::new();
@@ -53,7 +56,7 @@ impl SweepTable {
                 study, runs, &of_runs, measure, *value, &mut rows, &mut notes,
             );
         }
-        if machines.len() > 1 {
+        if machines.len() > 1 && study.has_errors() {
             let text = "the runs are of several machines, so that their times are not compared";
             notes.push(text.to_owned());
             for judged in rows.iter_mut().flat_map(|row| &mut row.results) {
@@ -64,9 +67,17 @@ impl SweepTable {
                 mark_front(&mut rows, measure);
             }
         }
-        if study.repeats == 1 {
+        if study.repeats() == 1 && study.has_errors() {
             notes.push("each run was done once: how far run times scatter is not known".to_owned());
         }
+        let responses = responses(study, runs, &rows);
+        let find = looked_for.and_then(|value| {
+            let of = study.find.as_ref()?.measure;
+            let response = responses.iter().find(|response| response.measure == of)?;
+            let (search, of_search) = search(study, response, value)?;
+            notes.extend(of_search);
+            Some(search)
+        });
         let unit = |at: usize| {
             let done = of_runs.iter().flatten().next();
             done.map_or(String::new(), |done| done.readings[at].unit.clone())
@@ -76,23 +87,16 @@ impl SweepTable {
             scene: study.scene.display().to_string(),
             program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
             machines: machines.into_iter().collect(),
-            repeats: study.repeats,
+            repeats: study.repeats(),
             threads: study.threads,
             time: match study.time {
                 RunTime::Wall => "run time",
                 RunTime::Processor => "processor time",
             }
             .to_owned(),
-            axes: study
-                .axes
-                .iter()
-                .map(|axis| AxisColumn {
-                    name: axis.name.clone(),
-                    values: axis.values.iter().map(|v| v.label.clone()).collect(),
-                    sizes: axis.sizes(),
-                })
-                .collect(),
+            axes: study.axes.iter().map(column).collect(),
             series: study.series,
+            average_over: study.average_over,
             measures: (0..study.measures.len())
                 .map(|at| MeasureColumn {
                     name: study.measures[at].name.clone(),
@@ -102,8 +106,16 @@ impl SweepTable {
                 .collect(),
             orders: orders(study, runs, &rows),
             runs: rows,
+            responses,
+            find,
             notes,
         }
+    }
+
+    /// True if measures have references, so that errors and run times are compared.
+    pub fn has_errors(&self) -> bool {
+        let mut measures = self.measures.iter();
+        measures.any(|measure| measure.reference.is_some())
     }
 
     /// Runs without values.
@@ -128,6 +140,17 @@ impl SweepTable {
             .map(|(axis, value)| format!("{} {value}", axis.name))
             .collect();
         named.join(", ")
+    }
+}
+
+fn column(axis: &Axis) -> AxisColumn {
+    let (numbers, unit) = axis.numbers().unzip();
+    AxisColumn {
+        name: axis.name.clone(),
+        values: axis.values.iter().map(|v| v.label.clone()).collect(),
+        sizes: axis.sizes(),
+        numbers,
+        unit: unit.unwrap_or_default(),
     }
 }
 

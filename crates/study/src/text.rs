@@ -5,7 +5,9 @@ use std::fmt;
 use dem_io::text::visible;
 use dem_io::units::significant;
 
-use super::rows::{Row, SweepTable};
+use super::response::Response;
+use super::response_plot::{named, shown_axes, with_unit};
+use super::rows::{Judged, Row, SweepTable};
 
 /// Largest number of lines of a part of the text.
 const MOST_LINES: usize = 20;
@@ -18,15 +20,10 @@ pub fn csv(table: &SweepTable) -> String {
         columns.push(name.to_owned());
     }
     for measure in &table.measures {
-        for part in [
-            "value",
-            "reference",
-            "error",
-            "uncertainty",
-            "front",
-            "times_as_fast",
-        ] {
-            columns.push(format!("{}_{part}", measure.name));
+        columns.push(format!("{}_value", measure.name));
+        if measure.reference.is_some() {
+            let parts = OF_ERROR.map(|part| format!("{}_{part}", measure.name));
+            columns.extend(parts);
         }
     }
     columns.push("failed".to_owned());
@@ -39,21 +36,66 @@ pub fn csv(table: &SweepTable) -> String {
         cells.push(row.times_s.len().to_string());
         cells.push(row.steps.map_or(String::new(), |steps| steps.to_string()));
         cells.push(number(row.time_step_s));
-        for at in 0..table.measures.len() {
-            match row.results.get(at) {
-                Some(judged) => {
-                    cells.push(number(Some(judged.value)));
-                    cells.push(number(judged.reference));
-                    cells.push(number(judged.error));
-                    cells.push(number(judged.uncertainty));
-                    cells.push(u8::from(judged.is_on_front).to_string());
-                    cells.push(number(judged.times_as_fast));
-                }
-                None => cells.extend(std::iter::repeat_n(String::new(), 6)),
+        for (at, measure) in table.measures.iter().enumerate() {
+            let judged = row.results.get(at);
+            cells.push(number(judged.map(|judged| judged.value)));
+            if measure.reference.is_some() {
+                cells.extend(judged.map_or_else(Default::default, of_error));
             }
         }
         cells.push(row.failed.clone().unwrap_or_default());
         out += &line(&cells);
+    }
+    out
+}
+
+/// Columns of a measure with a reference, besides its value.
+const OF_ERROR: [&str; 5] = [
+    "reference",
+    "error",
+    "uncertainty",
+    "front",
+    "times_as_fast",
+];
+
+fn of_error(judged: &Judged) -> [String; 5] {
+    [
+        number(judged.reference),
+        number(judged.error),
+        number(judged.uncertainty),
+        u8::from(judged.is_on_front).to_string(),
+        number(judged.times_as_fast),
+    ]
+}
+
+/// The responses with one line for each measure and setting. A parameter whose values are numbers in
+/// one unit is a number, with the unit in the name of its column.
+pub fn response_csv(table: &SweepTable) -> String {
+    let axes: Vec<usize> = shown_axes(table).collect();
+    let mut columns = vec!["measure".to_owned(), "unit".to_owned()];
+    columns.extend((axes.iter()).map(|at| with_unit(&table.axes[*at].name, &table.axes[*at].unit)));
+    for name in ["runs", "mean", "standard_deviation", "smallest", "largest"] {
+        columns.push(name.to_owned());
+    }
+    let mut out = line(&columns);
+    for response in &table.responses {
+        let measure = &table.measures[response.measure];
+        for point in &response.points {
+            let mut cells = vec![measure.name.clone(), measure.unit.clone()];
+            for &at in &axes {
+                let value = match &table.axes[at].numbers {
+                    Some(numbers) => number(numbers.get(point.choice[at]).copied()),
+                    None => point.settings[at].clone(),
+                };
+                cells.push(value);
+            }
+            let [smallest, largest] = point.range();
+            cells.push(point.values.len().to_string());
+            cells.push(number(Some(point.mean)));
+            cells.push(number(point.standard_deviation));
+            cells.extend([smallest, largest].map(|value| number(Some(value))));
+            out += &line(&cells);
+        }
     }
     out
 }
@@ -98,6 +140,27 @@ fn cut(f: &mut fmt::Formatter<'_>, lines: &[String]) -> fmt::Result {
     Ok(())
 }
 
+fn write_response(
+    f: &mut fmt::Formatter<'_>,
+    table: &SweepTable,
+    response: &Response,
+) -> fmt::Result {
+    let measure = &table.measures[response.measure];
+    let averaged = table.average_over.map_or(String::new(), |at| {
+        format!(", mean and standard deviation over {}", table.axes[at].name)
+    });
+    let name = with_unit(&measure.name, &measure.unit);
+    writeln!(f, "response     {name}{}", visible(&averaged))?;
+    let lines = response.points.iter().map(|point| {
+        let scatter = (point.standard_deviation).map_or(String::new(), |deviation| {
+            format!(" ± {}", significant(deviation, 2))
+        });
+        let value = format!("{}{scatter}", significant(point.mean, 4));
+        format!("  {value:<20} {}", visible(&named(table, point)))
+    });
+    cut(f, &lines.collect::<Vec<String>>())
+}
+
 impl fmt::Display for SweepTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
@@ -111,13 +174,22 @@ impl fmt::Display for SweepTable {
             if self.threads == 1 { "" } else { "s" },
         )?;
         writeln!(f, "machine      {}", visible(&self.machines.join("; ")))?;
+        for response in &self.responses {
+            write_response(f, self, response)?;
+        }
+        if let Some(search) = &self.find {
+            let measure = &self.measures[search.measure].name;
+            writeln!(f, "find         {}", visible(&search.in_words(measure)))?;
+        }
         for (at, measure) in self.measures.iter().enumerate() {
+            let Some(reference) = &measure.reference else {
+                continue;
+            };
             let front = front_of(self, at);
             writeln!(
                 f,
-                "front        {}: against {}, {} of {} runs",
+                "front        {}: against {reference}, {} of {} runs",
                 measure.name,
-                measure.reference,
                 front.len(),
                 self.runs.len()
             )?;

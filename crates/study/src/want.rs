@@ -17,7 +17,7 @@ pub struct Want {
 }
 
 impl Want {
-    /// From `all=1%` or `NAME=1%`.
+    /// From `all=1%` or `NAME=1%`. `table_measures`: the measures with a reference.
     ///
     /// # Errors
     /// No such measure, or not a number above 0.
@@ -27,6 +27,11 @@ impl Want {
         let Some((name, error)) = text.split_once('=') else {
             return Err(Diagnostic::input(place, "there is no =", form));
         };
+        if table_measures.is_empty() {
+            let problem = "no measure of the study has a reference, so there are no errors";
+            let remedy = "give measures a reference, or leave --max-error out";
+            return Err(Diagnostic::input(place, problem, remedy));
+        }
         let name = name.trim();
         if name != "all" && !table_measures.contains(&name) {
             return Err(Diagnostic::input(
@@ -53,10 +58,9 @@ impl Want {
     fn error_of(&self, table: &SweepTable, row: &Row) -> Option<f64> {
         let meant = table.measures.iter().zip(&row.results);
         let mut meant = meant
-            .filter(|(column, _)| {
-                self.measure
-                    .as_ref()
-                    .is_none_or(|name| *name == column.name)
+            .filter(|(column, _)| match &self.measure {
+                Some(name) => *name == column.name,
+                None => column.reference.is_some(),
             })
             .map(|(_, judged)| judged.sure_error());
         let first = meant.next()??;

@@ -143,6 +143,7 @@ pub fn body_files(path: &Path) -> Result<Vec<PathBuf>> {
 /// No such file, an unknown ending, damaged, or not a body by [`Body::check`]. The place begins
 /// with the file's name.
 pub fn read_body(path: &Path) -> Result<Body> {
+    refuse_shape(path)?;
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     match Storage::named(path)? {
         Storage::Pipe => {
@@ -262,4 +263,23 @@ fn is_folder(path: &Path) -> Diagnostic {
         "this is a folder",
         "name a file in it",
     )
+}
+
+/// Refuses an STL file where a body is read.
+fn refuse_shape(path: &Path) -> Result<()> {
+    let ending = path.extension().unwrap_or_default();
+    if !ending.eq_ignore_ascii_case("stl") {
+        return Ok(());
+    }
+    let name = path.display().to_string();
+    let body = path.with_extension("vtp");
+    let remedy = format!(
+        "fill it first: dem-pack {name} --diameter 2mm..3mm -o {}",
+        body.display()
+    );
+    Err(Diagnostic::input(
+        name,
+        "this is a shape, not a body",
+        remedy,
+    ))
 }

@@ -8,7 +8,7 @@ use super::bodies::triangle;
 
 #[test]
 fn an_unknown_ending_lists_the_known_ones() {
-    for name in ["cake.stl", "cake", "cake.", ".vtp", "folder.vtp/cake"] {
+    for name in ["cake.ply", "cake", "cake.", ".vtp", "folder.vtp/cake"] {
         for error in [
             read_body(Path::new(name)).unwrap_err(),
             write_body(&triangle(), Path::new(name)).unwrap_err(),
@@ -19,6 +19,23 @@ fn an_unknown_ending_lists_the_known_ones() {
             }
         }
     }
+}
+
+#[test]
+fn a_shape_is_no_body_yet() {
+    let said = read_body(Path::new("a b/cake.STL"))
+        .unwrap_err()
+        .to_string();
+    let fill = "fill it first: dem-pack a b/cake.STL --diameter 2mm..3mm -o a b/cake.vtp";
+    assert_eq!(
+        said,
+        format!("a b/cake.STL: this is a shape, not a body; {fill}")
+    );
+    let said = write_body(&triangle(), Path::new("cake.stl")).unwrap_err();
+    assert!(
+        said.problem.contains("'.stl' is not the ending of a body"),
+        "{said}"
+    );
 }
 
 #[test]

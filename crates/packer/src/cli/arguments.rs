@@ -6,11 +6,11 @@ use crate::density::LARGEST_OVERLAP;
 use crate::pack::PackSettings;
 use crate::pack::shrink::SHRINK_RANGE;
 use crate::sizes::{Basis, Sizes};
-use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use dem_io::program::{Shell, refuse_renamed};
+use dem_io::program::{Shell, parsed};
 use dem_io::units::{density_kg_m3, length_m, significant};
 use dem_io::{Diagnostic, Result};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Options that had another name before version 0.1, and their new names.
@@ -212,23 +212,9 @@ impl Arguments {
     /// # Errors
     /// Arguments that cannot be parsed, on one line.
     pub fn parsed() -> Result<Self> {
-        refuse_renamed(std::env::args_os(), &RENAMED)?;
-        Self::try_parse().map_err(|error| {
-            if !error.use_stderr() || error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
-                error.exit();
-            }
-            Diagnostic::input("", on_one_line(&error.to_string()), "see dem-pack --help")
-        })
+        let given: Vec<OsString> = std::env::args_os().collect();
+        parsed("dem-pack", &given, &RENAMED)
     }
-}
-
-/// The message of clap, without its `error:`, the usage and the hint to the help, which are
-/// paragraphs of their own.
-pub(super) fn on_one_line(said: &str) -> String {
-    let paragraphs = said.trim_start_matches("error:").split("\n\n");
-    let kept = paragraphs.filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more"));
-    let lines = kept.map(|p| p.split_whitespace().collect::<Vec<_>>().join(" "));
-    lines.collect::<Vec<_>>().join("; ")
 }
 
 fn parse_seed(text: &str) -> std::result::Result<u64, String> {

@@ -1,12 +1,12 @@
 //! Bodies by the arguments of dem-pack, for programs that need several packings of a shape.
 
-use super::arguments::{Arguments, PackArguments, RENAMED, on_one_line};
+use super::arguments::{Arguments, PackArguments, RENAMED};
 use super::shape::{check_unit_of_diameter, read_surface};
 use crate::body::{BodyReport, BodySettings, make_body};
 use crate::pack::Progress;
 use crate::sizes::Sizes;
 use clap::Parser;
-use dem_io::program::refuse_renamed;
+use dem_io::program::{on_one_line, refuse_renamed};
 use dem_io::{Body, Diagnostic, Result, Surface};
 use std::path::PathBuf;
 

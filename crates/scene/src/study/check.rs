@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::contents::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
 use super::values::in_si;
 use crate::body::BodySource;
+use crate::measure::Measure;
 use crate::names::suggestion;
 use crate::read::scene_from_text;
 use crate::root::SCENE;
@@ -109,6 +110,22 @@ fn refuse_new_name(root: &Table<'_>, setting: &Setting) -> Result<()> {
     ))
 }
 
+/// Gives the measures without a word on their reference that of the scene's measure if it has one,
+/// and none otherwise. `scene` is that of the first run.
+pub fn settle_references(study: &mut Study, scene: &Scene) {
+    for measure in &mut study.measures {
+        let MeasureOf::Measure(of) = &measure.of else {
+            continue;
+        };
+        let has_one = (scene.measures.get(of)).is_some_and(|found| found.reference.is_some());
+        measure.reference = match (measure.reference.clone(), has_one) {
+            (Reference::IfAny, true) => Reference::ClosedForm,
+            (Reference::IfAny, false) => Reference::None,
+            (given, _) => given,
+        };
+    }
+}
+
 /// The reference of each measure of a study in one of its scenes, in SI, if it is known without a
 /// run.
 ///
@@ -155,17 +172,12 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
         };
         values.push(match (&measure.reference, of_scene) {
             (Reference::Value(text), _) => {
-                let value = match of_scene {
-                    Some(of) => quantity(text, of.quantity.dimension()),
-                    None => in_si(text).ok_or_else(|| {
-                        let problem = format!("'{text}' is no number with a unit");
-                        Diagnostic::input("", problem, "write it in SI, without one")
-                    }),
-                };
-                Some(value.map_err(|error| {
+                let value = in_unit_of(text, of_scene).map_err(|error| {
                     error.within(&format!("{}: measures.{name}.reference", measure.place))
-                })?)
+                });
+                Some(value?)
             }
+            (Reference::IfAny, Some(of)) => of.reference,
             (Reference::ClosedForm, Some(of)) => {
                 if of.reference.is_none() {
                     let problem = format!("measures.{name} has no reference: that of the scene says none");
@@ -178,4 +190,33 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
         });
     }
     Ok(values)
+}
+
+/// The value of `[find]` in the unit of its measure, if the study has that table.
+///
+/// # Errors
+/// It is not of that quantity.
+pub fn value_to_find(study: &Study, scene: &Scene) -> Result<Option<f64>> {
+    let Some(find) = &study.find else {
+        return Ok(None);
+    };
+    let of_scene = match &study.measures[find.measure].of {
+        MeasureOf::Measure(of) => scene.measures.get(of),
+        _ => None,
+    };
+    let value = in_unit_of(&find.value, of_scene);
+    value
+        .map(Some)
+        .map_err(|error| error.within(&format!("{}: find.value", find.place)))
+}
+
+/// A value as written, in the unit of the scene's measure, or in SI for other results.
+fn in_unit_of(text: &str, measure: Option<&Measure>) -> Result<f64> {
+    match measure {
+        Some(measure) => quantity(text, measure.quantity.dimension()),
+        None => in_si(text).ok_or_else(|| {
+            let problem = format!("'{text}' is no number with a unit");
+            Diagnostic::input("", problem, "write it in SI, without one")
+        }),
+    }
 }

@@ -17,8 +17,8 @@ pub struct Study {
     pub source: String,
     /// `scene`, resolved against the folder of the study.
     pub scene: PathBuf,
-    /// `repeats`: number of repetitions of each run; 3 unless given.
-    pub repeats: u32,
+    /// `repeats`: number of repetitions of each run; see [`Study::repeats`].
+    pub repeats: Option<u32>,
     /// `threads` of each run; 1 unless given.
     pub threads: u32,
     /// `force_step`: allows steps above the largest stable one; false unless given.
@@ -29,13 +29,64 @@ pub struct Study {
     pub combine: Combine,
     /// `[set]`: values common to all runs.
     pub fixed: Vec<Setting>,
-    /// `[vary]`, then `[together.NAME]`, in the order of the file. At least one.
+    /// The parameter of `[find]` if there is one, `[vary]`, then `[together.NAME]`, in the order of
+    /// the file. At least one.
     pub axes: Vec<Axis>,
     /// `[measures.NAME]`, in the order of the file. At least one.
     pub measures: Vec<StudyMeasure>,
+    /// `average_over`: the axis over whose values responses are averaged; `run.seed` unless given,
+    /// if that varies in a grid.
+    pub average_over: Option<usize>,
+    /// `[find]`
+    pub find: Option<Find>,
     /// `series` of `[page]`: the axis whose values are distinguished by colour; the first without
     /// sizes unless given.
     pub series: Option<usize>,
+}
+
+impl Study {
+    /// Number of repetitions of each run: as given, else 3 if a measure is compared with a
+    /// reference, for which times are compared, else 1.
+    pub fn repeats(&self) -> u32 {
+        let is_compared = |measure: &StudyMeasure| measure.reference != Reference::None;
+        let usual = if self.measures.iter().any(is_compared) {
+            3
+        } else {
+            1
+        };
+        self.repeats.unwrap_or(usual)
+    }
+
+    /// True if a measure is compared with a reference, so that errors and run times are compared.
+    pub fn has_errors(&self) -> bool {
+        let mut measures = self.measures.iter();
+        measures.any(|measure| measure.reference != Reference::None)
+    }
+
+    /// The settings of its first run.
+    pub fn first_settings(&self) -> impl Iterator<Item = &Setting> {
+        let firsts = self.axes.iter().filter_map(|axis| axis.values.first());
+        self.fixed
+            .iter()
+            .chain(firsts.flat_map(|value| &value.settings))
+    }
+}
+
+/// A search for the value of one parameter at which the mean of a measure has a given value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Find {
+    /// `measure`: its index among the measures of the study.
+    pub measure: usize,
+    /// `value`, as written, with or without a unit.
+    pub value: String,
+    /// `from` and `to`: the ends between which the parameter is searched, in `unit`, ascending.
+    pub ends: [f64; 2],
+    /// `tolerance`: largest width of the interval found, in `unit`, above 0.
+    pub tolerance: f64,
+    /// Unit of the parameter, as written; empty for plain numbers.
+    pub unit: String,
+    /// Its place in the study.
+    pub place: String,
 }
 
 /// The time of a run that is compared. Both exclude start-up.
@@ -83,6 +134,22 @@ impl Axis {
     pub fn sizes(&self) -> Option<Vec<f64>> {
         self.values.iter().map(|value| value.size).collect()
     }
+
+    /// The values as numbers in a common unit, the one in which they are written. None if they are
+    /// no numbers or written in several units.
+    pub fn numbers(&self) -> Option<(Vec<f64>, String)> {
+        let numbers = self.values.iter().map(|value| value.number.as_ref());
+        let numbers: Vec<&(f64, String)> = numbers.collect::<Option<_>>()?;
+        let with_unit = numbers.iter().find(|(_, unit)| !unit.is_empty());
+        let unit = with_unit.map_or("", |(_, unit)| unit);
+        // 0 needs no unit.
+        let fits =
+            |(number, own): &&(f64, String)| own == unit || (*number == 0.0 && own.is_empty());
+        numbers
+            .iter()
+            .all(|number| fits(number))
+            .then(|| (numbers.iter().map(|n| n.0).collect(), unit.to_owned()))
+    }
 }
 
 /// One of the values of an axis.
@@ -94,6 +161,8 @@ pub struct AxisValue {
     pub settings: Vec<Setting>,
     /// Its coarseness, above 0: the value itself if it is a number, unless `size` is given.
     pub size: Option<f64>,
+    /// The value as written, if it is a number or a vector along one axis: number and unit.
+    pub number: Option<(f64, String)>,
 }
 
 /// A quantity evaluated in each run.
@@ -139,8 +208,13 @@ pub enum Pieces {
 /// The reference of a measure.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reference {
-    /// "closed-form", unless given: the reference of the scene's measure, or the theory of the
-    /// test's result.
+    /// Unless given, for a measure of the scene: its reference if it has one, else none. See
+    /// [`settle_references`](super::settle_references).
+    IfAny,
+    /// "none", and unless given for all other measures except balances: the response of the measure
+    /// is shown, and no error.
+    None,
+    /// "closed-form": the reference of the scene's measure, or the theory of the test's result.
     ClosedForm,
     /// `{ value = ... }`: as written, with or without a unit.
     Value(String),

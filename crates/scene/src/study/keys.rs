@@ -3,8 +3,10 @@
 use super::contents::{BALANCES, CURVES, Combine, Pieces, RunTime};
 use crate::schema::{Key, Kind, Schema, Word, words_of};
 
-/// Largest number of repeats and of threads.
+/// Largest number of threads.
 const MOST: f64 = 1024.0;
+/// Largest number of repeats.
+pub(super) const MOST_REPEATS: u64 = 1024;
 
 /// Any value of a scene.
 const ANYTHING: Kind = Kind::Anything("a value");
@@ -27,9 +29,9 @@ pub(crate) static STUDY: Schema = Schema {
             1,
             "Number of repetitions of each run; its time is the median.",
         )
-        .up_to(MOST)
+        .up_to(MOST_REPEATS as f64)
         .remedy("write repeats = 3")
-        .or(3.0),
+        .otherwise("3 if a measure has a reference, else 1"),
         Key::whole("threads", 1, "Threads of each run.")
             .up_to(MOST)
             .remedy("write threads = 1")
@@ -77,7 +79,43 @@ pub(crate) static STUDY: Schema = Schema {
             MEASURE.doc,
         )
         .required("{ NAME = {} }"),
+        Key::text(
+            "average_over",
+            "an axis",
+            "Axis over which the responses of measures without a reference are averaged; their scatter is shown.",
+        )
+        .otherwise("`run.seed` if that varies"),
+        Key::table("find", &FIND, FIND.doc),
         Key::table("page", &PAGE, PAGE.doc),
+    ],
+};
+
+pub(super) static FIND: Schema = Schema {
+    title: "[find]",
+    doc: "Search for the value of a parameter at which the mean of a measure has a given value, by bisection. Only the axis \
+          of `average_over` may vary besides.",
+    keys: &[
+        Key::text(
+            "parameter",
+            "a path of the scene",
+            "The path, as in `[vary]`; its value is a number, with or without its unit.",
+        )
+        .required("\"bodies.tablet.drop.height\""),
+        Key::new("from", ANYTHING, "One end of the range that is searched.").required("\"0.1 m\""),
+        Key::new("to", ANYTHING, "Its other end, in the same unit.").required("\"2 m\""),
+        Key::text(
+            "measure",
+            "a measure of the study",
+            "The measure, a name in `[measures]`.",
+        )
+        .required("\"largest\""),
+        Key::new("value", ANYTHING, "Its value that is looked for.").required("0.5"),
+        Key::new(
+            "tolerance",
+            ANYTHING,
+            "Largest width of the interval in which the parameter is found, in the same unit.",
+        )
+        .required("\"2 cm\""),
     ],
 };
 
@@ -163,13 +201,13 @@ pub(crate) static MEASURE: Schema = Schema {
         Key::new(
             "reference",
             Kind::Either(&[
-                Kind::Word(|| vec!["closed-form", "finest", "richardson"]),
+                Kind::Word(|| vec!["none", "closed-form", "finest", "richardson"]),
                 Kind::Table(&REFERENCE),
             ]),
-            "Reference of the error: that of the scene's measure or the theory of the test's result, a value, the run of \
-             the smallest size along an axis, or the extrapolation of the runs to size 0.",
+            "Reference of the error: none, so that the response is shown; that of the scene's measure or the theory of the \
+             test's result; a value; the run of the smallest size along an axis; or the extrapolation of the runs to size 0.",
         )
-        .or_word("closed-form"),
+        .otherwise("that of the scene's measure if it has one, else `none`"),
     ],
 };
 

@@ -56,13 +56,19 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
             return Err(field.refuse(problem, "it is an error by itself: remove reference"));
         }
         Some(field) => reference(&field, axes)?,
-        None => Reference::ClosedForm,
+        None => match of {
+            MeasureOf::Balance(_) => Reference::ClosedForm,
+            MeasureOf::Measure(_) => Reference::IfAny,
+            MeasureOf::Figure(_) | MeasureOf::Masses(_) | MeasureOf::Curve => Reference::None,
+        },
     };
-    if let (MeasureOf::Masses(_) | MeasureOf::Curve, false) =
-        (&of, matches!(reference, Reference::Finest(_)))
-    {
+    if let (MeasureOf::Masses(_) | MeasureOf::Curve, false) = (
+        &of,
+        matches!(reference, Reference::Finest(_) | Reference::None),
+    ) {
         let problem = format!("{} has no run to be compared with", field.path);
-        return Err(field.refuse(problem, "add reference = { finest = \"AXIS\" }"));
+        let remedy = "write reference = { finest = \"AXIS\" }, or \"none\"";
+        return Err(field.refuse(problem, remedy));
     }
     Ok(StudyMeasure {
         name: name.to_owned(),
@@ -78,6 +84,7 @@ fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {
             .filter(|at| axes[*at].sizes().is_some())
             .collect();
         return match (word.as_str(), with_size.as_slice()) {
+            ("none", _) => Ok(Reference::None),
             ("closed-form", _) => Ok(Reference::ClosedForm),
             ("finest", [only]) => Ok(Reference::Finest(*only)),
             ("richardson", [only]) => richardson(field, *only, axes),
@@ -91,7 +98,7 @@ fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {
                 Err(field.refuse(problem, remedy))
             }
             _ => Err(field.wrong(
-                "\"closed-form\", \"finest\", \"richardson\" or a table",
+                "\"none\", \"closed-form\", \"finest\", \"richardson\" or a table",
                 "write a number as { value = \"2 mm\" }",
             )),
         };

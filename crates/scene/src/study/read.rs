@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
-use super::contents::{Axis, STUDY_VERSION, Study};
-use super::keys::{PAGE, STUDY};
+use super::contents::{Axis, Combine, STUDY_VERSION, Study};
+use super::find;
+use super::keys::{FIND, MOST_REPEATS, PAGE, STUDY};
 use super::measures::{axis_named, measure};
 use super::values::{self, MOST_VALUES, tidy};
+use crate::field::Field;
 use crate::paths::{named_path, text_of};
 use crate::table::Table;
 use crate::tree::Document;
@@ -13,6 +15,8 @@ use dem_io::diagnostic::{Diagnostic, Result};
 
 /// Largest number of axes of a study.
 const MOST_AXES: usize = 100;
+/// Axis over which responses are averaged unless another one is given.
+const SEED: &str = "run.seed";
 
 /// Reads a study from a TOML file.
 ///
@@ -36,6 +40,10 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     root.refuse_unknown()?;
     let folder = Path::new(source).parent().unwrap_or(Path::new(""));
     let mut axes = Vec::new();
+    let find = root.read_by("find", |field| Table::of(&field, &FIND))?;
+    if let Some(find) = &find {
+        axes.push(find::axis(find, folder)?);
+    }
     if let Some(vary) = root.get("vary") {
         let table = Table::any(&vary)?;
         for (path, node) in table.entries {
@@ -74,21 +82,51 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         let remedy = "add [measures.NAME] with the name of a measure of the scene";
         return Err(root.refuse("nothing is measured", remedy));
     }
+    let combine = root.read("combine")?;
+    let average_over = average_over(&root, combine, &axes)?;
+    let find = match find {
+        Some(table) => {
+            find::refuse_other_axes(&table, combine, average_over, &axes)?;
+            Some(find::search(&table, &measures)?)
+        }
+        None => None,
+    };
     let page = root.table("page", &PAGE)?;
     let series = page.read_by("series", |field| axis_named(&field, &axes))?;
     Ok(Study {
         source: source.to_owned(),
         scene: tidy(named_path(&root.need("scene")?, folder)?),
-        repeats: root.read("repeats")?,
+        repeats: root.read_by("repeats", repeats)?,
         threads: root.read("threads")?,
         force_step: root.read("force_step")?,
         time: root.read("time")?,
-        combine: root.read("combine")?,
+        combine,
+        average_over,
+        find,
         series: series.or_else(|| axes.iter().position(|axis| axis.sizes().is_none())),
         fixed,
         axes,
         measures,
     })
+}
+
+fn repeats(field: Field<'_>) -> Result<u32> {
+    let number = field.whole(1, Some(MOST_REPEATS), "write repeats = 3")?;
+    // Not above the limit.
+    Ok(number as u32)
+}
+
+/// The axis over which responses are averaged.
+fn average_over(root: &Table<'_>, combine: Combine, axes: &[Axis]) -> Result<Option<usize>> {
+    let Some(field) = root.get("average_over") else {
+        let seeds = axes.iter().position(|axis| axis.name == SEED);
+        return Ok(seeds.filter(|_| combine == Combine::Grid));
+    };
+    if combine == Combine::Paired {
+        let problem = format!("{} has no effect on pairs of values", field.path);
+        return Err(field.refuse(problem, "write combine = \"grid\", or remove it"));
+    }
+    axis_named(&field, axes).map(Some)
 }
 
 /// Refuses the last axis if the number of values of all exceeds the limit of a study.

@@ -27,15 +27,7 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
                 name: path.to_owned(),
                 values: values
                     .into_iter()
-                    .map(|(text, label)| AxisValue {
-                        size: size_of_text(&label),
-                        label,
-                        settings: vec![Setting {
-                            path: path.to_owned(),
-                            value: text,
-                            place: place.clone(),
-                        }],
-                    })
+                    .map(|(number, unit)| point(path, number, &unit, &place))
                     .collect(),
                 place,
             });
@@ -56,11 +48,11 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
         }
     };
     let mut values = Vec::new();
+    let only = only_component(&nodes);
     for item in &nodes {
         values.push(AxisValue {
-            label: label(item.node),
             settings: vec![setting(path, item, folder)?],
-            size: size_of(item.node),
+            ..of_node(item.node, only)
         });
     }
     with_sizes(&mut values, size.as_ref(), names.as_ref())?;
@@ -83,14 +75,9 @@ pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<A
         let list = table.field(path, node);
         let items = list.items()?;
         if values.is_empty() {
-            values = items
-                .iter()
-                .map(|item| AxisValue {
-                    label: label(item.node),
-                    settings: Vec::new(),
-                    size: size_of(item.node),
-                })
-                .collect();
+            let only = only_component(&items);
+            let nodes = items.iter().map(|item| of_node(item.node, only));
+            values = nodes.collect();
         } else if items.len() != values.len() {
             let limit = format!("a list of {}, as the one before it", values.len());
             return Err(list.wrong(&limit, "give each path as many values"));
@@ -132,7 +119,63 @@ pub(super) fn settings(field: &Field<'_>, folder: &Path) -> Result<Vec<Setting>>
         .collect()
 }
 
-fn setting(path: &str, field: &Field<'_>, folder: &Path) -> Result<Setting> {
+/// The value of `path` that is this number in this unit, rounded to six digits.
+pub(super) fn point(path: &str, number: f64, unit: &str, place: &str) -> AxisValue {
+    let written = shown(number);
+    let (value, label) = if unit.is_empty() {
+        (written.clone(), written)
+    } else {
+        let label = format!("{written} {unit}");
+        (quoted(&label), label)
+    };
+    AxisValue {
+        size: size_of_text(&label),
+        label,
+        settings: vec![Setting {
+            path: path.to_owned(),
+            value,
+            place: place.to_owned(),
+        }],
+        number: Some((number, unit.to_owned())),
+    }
+}
+
+/// A value without its settings. A vector is shown by its component `only`.
+fn of_node(node: &Node, only: Option<usize>) -> AxisValue {
+    let shown = component(node, only);
+    AxisValue {
+        label: label(shown),
+        settings: Vec::new(),
+        size: size_of(node),
+        number: split(shown),
+    }
+}
+
+/// The component in which vectors differ, if all others are 0 in all of them: 2 for `[0, 0, "1
+/// m/s"]`.
+fn only_component(values: &[Field<'_>]) -> Option<usize> {
+    let is_zero = |node: &Node| split(node).is_some_and(|(number, _)| number == 0.0);
+    let fits = |at: usize| {
+        values.iter().all(|value| match &value.node.value {
+            Value::List(items) if items.len() == 3 => {
+                let mut others = items.iter().enumerate().filter(|(other, _)| *other != at);
+                others.all(|(_, node)| is_zero(node)) && split(&items[at]).is_some()
+            }
+            _ => false,
+        })
+    };
+    (0..3).find(|at| fits(*at))
+}
+
+/// The component `only` of a vector; another value itself.
+fn component(node: &Node, only: Option<usize>) -> &Node {
+    match (&node.value, only) {
+        (Value::List(items), Some(at)) => items.get(at).unwrap_or(node),
+        _ => node,
+    }
+}
+
+pub(super) fn setting(path: &str, field: &Field<'_>, folder: &Path) -> Result<Setting> {
     let is_path = path.split('.').all(|key| !key.is_empty());
     if !is_path || !path.contains('.') || path.contains('=') {
         let problem = format!("\"{}\" is no path of a scene", shortened(path, 40));
@@ -198,8 +241,8 @@ fn with_sizes(
     Ok(())
 }
 
-/// The values of `{ from, to, count, spacing }`, as TOML and as labels.
-fn range(path: &str, field: &Field<'_>) -> Result<Vec<(String, String)>> {
+/// The values of `{ from, to, count, spacing }` and their unit.
+fn range(path: &str, field: &Field<'_>) -> Result<Vec<(f64, String)>> {
     let table = Table::of(field, &RANGE)?;
     let [from, to] = [table.need("from")?, table.need("to")?];
     let ends = [&from, &to].map(|end| {
@@ -248,21 +291,11 @@ fn range(path: &str, field: &Field<'_>) -> Result<Vec<(String, String)>> {
             rounded(first + (last - first) * fraction)
         }
     };
-    Ok((0..count)
-        .map(|at| {
-            let number = shown(value(at));
-            if unit.is_empty() {
-                (number.clone(), number)
-            } else {
-                let text = format!("{number} {unit}");
-                (quoted(&text), text)
-            }
-        })
-        .collect())
+    Ok((0..count).map(|at| (value(at), unit.clone())).collect())
 }
 
 /// Rounded to six digits: values between the ends need not be exact, but short.
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
 
@@ -312,7 +345,7 @@ fn label(node: &Node) -> String {
                 _ => text.clone(),
             }
         }
-        _ => shortened(&toml(node), LONGEST_LABEL),
+        _ => shortened(&toml(node).replace('"', ""), LONGEST_LABEL),
     }
 }
 

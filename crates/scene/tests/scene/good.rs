@@ -542,6 +542,7 @@ bodies.block.material           clay
 bodies.block.mass               that of its particles
 bodies.block.bonds              none
 bodies.block.position           [0, 0, 0] m
+bodies.block.position_of        origin
 bodies.block.rotation           [0, 0, 0] rad
 bodies.block.velocity           [0, 0, 0] m/s
 bodies.block.angular_velocity   [0, 0, 0] rad/s

@@ -18,7 +18,7 @@ use crate::laboratory::watch::TestSettings;
 use crate::output::summary::Summary;
 use crate::plan::{Plan, plan};
 use crate::run::statics::elastic_test::elastic_test;
-use crate::run::{RunSettings, run};
+use crate::run::{RunSettings, SoFar, run};
 
 /// First factors beyond this range are left to the tests with steps, which say why.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
@@ -86,7 +86,8 @@ impl Bench<'_> {
                 at_twice_the_rate: None,
             }),
         };
-        let summary = run(plan, &scene, settings, tell)?;
+        let tell = |so_far: &SoFar| tell(so_far.fraction);
+        let summary = run(plan, &scene, settings, &tell)?;
         let mut trial = self.trial(&scene, &summary);
         if let (Some(specimen), Some(test)) = (specimen, &summary.test) {
             let largest_n = test.figure(LARGEST_FORCE);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use dem_io::body::files::body_files;
 use dem_io::body::write_body;
 use dem_io::body::{StoredFragment, read_frame};
@@ -19,14 +19,15 @@ use super::all_fragments::write_all;
 use crate::run::snapshot::Snapshot;
 
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("fragment").required(true).args(["id", "largest", "all"])))]
 pub(super) struct FragmentArguments {
     /// The folder of results of a run
     results: PathBuf,
     /// Fragment id, as in the frames and in fragments.csv
-    #[arg(long, required_unless_present_any = ["largest", "all"], conflicts_with_all = ["largest", "all"])]
+    #[arg(long)]
     id: Option<u32>,
     /// Take the heaviest fragment
-    #[arg(long, conflicts_with = "all")]
+    #[arg(long)]
     largest: bool,
     /// Take every fragment, each as a file of its own: fragment_000007.vtp and so on, in the folder
     /// that --output names

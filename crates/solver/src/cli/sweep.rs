@@ -1,40 +1,36 @@
-//! `dem-run sweep`: a scene with many settings, comparing error and run time.
+//! `dem-run sweep`: a scene with many settings: the response of measures, a value that is searched,
+//! or error and run time.
+
+mod results;
 
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dem_io::safe_write::{
-    need_folder_of, refuse_input, write_file, write_standard_json, write_standard_output,
-};
-use dem_io::text::visible;
-use dem_io::units::significant;
+use dem_io::safe_write::{need_folder_of, refuse_input, write_file};
 use dem_io::{Diagnostic, Result};
-use dem_results::{write_json, write_plot_file};
-use dem_scene::study::{Combine, Study, read_study, reference_values, rewritten, scene_with};
+use dem_scene::study::{
+    Combine, Reference, Study, read_study, reference_values, rewritten, scene_with,
+    settle_references, value_to_find,
+};
 use dem_scene::text_of;
 use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::json;
 
+use self::results::{list, say, write_files};
 use crate::interrupt::Interrupt;
 use dem_study::collect::outcome;
-use dem_study::curves;
 use dem_study::expand::{MOST_UNASKED, Run, runs};
 use dem_study::folder::{Earlier, SweepFolder};
-use dem_study::jobs::{
-    Job, arguments, further_jobs, jobs, refuse_unlistable, scene_arguments, shell_line, work,
-};
+use dem_study::jobs::{Job, further_jobs, jobs, refuse_unlistable, work};
 use dem_study::outcome::Outcome;
-use dem_study::page::page;
-use dem_study::plot::plot;
-use dem_study::rows::{Row, SweepTable};
-use dem_study::text::csv;
+use dem_study::rows::SweepTable;
+use dem_study::search::{SearchResult, Step, next_of};
 use dem_study::want::{Want, fastest};
 
 #[derive(Debug, Args)]
 pub(super) struct SweepArguments {
-    /// The study (.toml): a scene, what varies, what is measured
+    /// The study (.toml): a scene, what varies or is searched, what is measured
     study: PathBuf,
     /// Folder for the runs and results; the study's name with -sweep unless given
     #[arg(long, short, value_name = "FOLDER")]
@@ -89,57 +85,52 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
     if let Some(target) = &options.write {
         need_folder_of(target).map_err(|error| error.within("--write"))?;
     }
-    let study = read_study(&options.study)?;
+    let mut study = read_study(&options.study)?;
     let scene_text = text_of(&study.scene, "a scene")
         .map_err(|error| error.within(&format!("{}: scene", study.source)))?;
-    let names: Vec<&str> = study.measures.iter().map(|m| m.name.as_str()).collect();
-    let wants = options
-        .max_error
-        .iter()
-        .map(|text| Want::parse(text, &names));
-    let wants = wants.collect::<Result<Vec<_>>>()?;
-    let all = runs(&study, options.yes)?;
+    // What is wrong with it is said when the scenes of all runs are checked.
+    let first = scene_with(&study, &scene_text, study.first_settings()).ok();
+    if let Some(first) = &first {
+        settle_references(&mut study, first);
+    }
+    let wants = wants(options, &study)?;
+    let mut all = runs(&study, options.yes)?;
     let path = options.output.clone().unwrap_or_else(|| {
         let stem = options.study.file_stem().unwrap_or_default();
         PathBuf::from(format!("{}-sweep", stem.to_string_lossy()))
     });
     refuse_unlistable_names(options, &study, &path)?;
     let (values, mut inputs) = checked(&study, &scene_text, &all)?;
+    let looked_for = match &first {
+        Some(first) => value_to_find(&study, first)?,
+        None => None,
+    };
     inputs.push(options.study.clone());
     SweepFolder::refuse_inputs(&path, &inputs)?;
     if let Some(target) = &options.write {
         refuse_input(&format!("--write {}", target.display()), target, &inputs)?;
     }
-    let earlier = match options {
-        SweepArguments { collect: true, .. } => Earlier::Collect,
-        SweepArguments { force: true, .. } => Earlier::Replace,
-        SweepArguments { resume: true, .. } => Earlier::Continue,
-        _ => Earlier::Refuse,
-    };
-    let folder = SweepFolder::create(&path, earlier, &study, &scene_text)?;
-    let mut all_jobs = jobs(all.len(), study.repeats);
-    let is_left = |job: &Job| !job.is_done(&folder.runs());
-    if !options.collect && !options.list {
-        do_what_is_left(options, &study, &all, &all_jobs, &folder, interrupt)?;
+    let folder = SweepFolder::create(&path, earlier(options), &study, &scene_text)?;
+    let mut table;
+    loop {
+        let Some(outcomes) = outcomes_of(options, &study, &all, &folder, interrupt)? else {
+            return Ok(());
+        };
+        table = SweepTable::new(&study, &all, &outcomes, &values, looked_for);
+        let Some(next) = next_point(&study, &table) else {
+            break;
+        };
+        study.add_point(next);
+        all = runs(&study, options.yes)?;
+        checked(&study, &scene_text, &all)?;
+        if options.collect && !is_done(&study, &all, &folder) {
+            break;
+        }
     }
-    let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); all.len()];
-    read(&study, &all_jobs, &folder, &mut outcomes);
-    let further = further_jobs(study.repeats, &outcomes);
     if options.list {
-        all_jobs.extend(further);
-        return list(
-            &study,
-            &all,
-            all_jobs.iter().filter(|job| is_left(job)),
-            &folder,
-        );
+        return Ok(());
     }
-    if !options.collect {
-        do_what_is_left(options, &study, &all, &further, &folder, interrupt)?;
-    }
-    read(&study, &further, &folder, &mut outcomes);
-    let mut table = SweepTable::new(&study, &all, &outcomes, &values);
-    if options.jobs > 1 {
+    if options.jobs > 1 && table.has_errors() {
         table.notes.push(format!(
             "{} runs at a time: they disturb each other's times",
             options.jobs
@@ -162,8 +153,92 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
         let text = rewritten(&study, &scene_text, &settings, target)?;
         write_file(target, |out| out.write_all(text.as_bytes()))?;
     }
-    say(options, &study, &all, &table, best, &folder)?;
-    failure.map_or(Ok(()), Err)
+    if options.json || !options.quiet {
+        let written = options.write.as_deref();
+        say(&study, &all, &table, best, written, &folder, options.json)?;
+    }
+    failure
+        .or_else(|| not_found(&study, &table))
+        .map_or(Ok(()), Err)
+}
+
+/// The errors that are asked for, of measures with a reference.
+fn wants(options: &SweepArguments, study: &Study) -> Result<Vec<Want>> {
+    let compared = study
+        .measures
+        .iter()
+        .filter(|m| m.reference != Reference::None);
+    let names: Vec<&str> = compared.map(|m| m.name.as_str()).collect();
+    let texts = options.max_error.iter();
+    texts.map(|text| Want::parse(text, &names)).collect()
+}
+
+fn earlier(options: &SweepArguments) -> Earlier {
+    match options {
+        SweepArguments { collect: true, .. } => Earlier::Collect,
+        SweepArguments { force: true, .. } => Earlier::Replace,
+        SweepArguments { resume: true, .. } => Earlier::Continue,
+        _ => Earlier::Refuse,
+    }
+}
+
+/// The outcomes of all runs, after those that are left have been done. With `--list` the commands of
+/// those that are left are printed instead; if there are any, the result is None.
+fn outcomes_of(
+    options: &SweepArguments,
+    study: &Study,
+    all: &[Run],
+    folder: &SweepFolder,
+    interrupt: &Interrupt,
+) -> Result<Option<Vec<Vec<Outcome>>>> {
+    let mut all_jobs = jobs(all.len(), study.repeats());
+    let is_run_here = !options.collect && !options.list;
+    if is_run_here {
+        do_what_is_left(options, study, all, &all_jobs, folder, interrupt)?;
+    }
+    let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); all.len()];
+    read(study, &all_jobs, folder, &mut outcomes);
+    let further = further_jobs(study.repeats(), &outcomes);
+    if options.list {
+        all_jobs.extend(&further);
+        all_jobs.retain(|job| !job.is_done(&folder.runs()));
+        list(study, all, &all_jobs, folder)?;
+        if !all_jobs.is_empty() {
+            return Ok(None);
+        }
+    }
+    if is_run_here {
+        do_what_is_left(options, study, all, &further, folder, interrupt)?;
+    }
+    read(study, &further, folder, &mut outcomes);
+    Ok(Some(outcomes))
+}
+
+/// The point that `[find]` tries next. None if there is no search, or if it has come to its end.
+fn next_point(study: &Study, table: &SweepTable) -> Option<f64> {
+    let (find, search) = (study.find.as_ref()?, table.find.as_ref()?);
+    let mut responses = table.responses.iter();
+    let response = responses.find(|response| response.measure == find.measure)?;
+    match next_of(study, find, response, search.value) {
+        Step::Try(point) => Some(point),
+        Step::Found(_) | Step::NotBracketed | Step::Wait => None,
+    }
+}
+
+/// True if all runs have come to their end.
+fn is_done(study: &Study, all: &[Run], folder: &SweepFolder) -> bool {
+    let jobs = jobs(all.len(), study.repeats());
+    jobs.iter().all(|job| job.is_done(&folder.runs()))
+}
+
+/// The problem of a search whose value does not lie between those at the ends. None for others.
+fn not_found(study: &Study, table: &SweepTable) -> Option<Diagnostic> {
+    let (find, search) = (study.find.as_ref()?, table.find.as_ref()?);
+    let name = &table.measures[search.measure].name;
+    (search.result == SearchResult::NotBracketed).then(|| {
+        let remedy = "widen from and to, or look for a value between these";
+        Diagnostic::failed(&find.place, search.in_words(name), remedy)
+    })
 }
 
 /// Refuses names that shell commands cannot represent.
@@ -255,26 +330,6 @@ fn checked(
     Ok((values, files.into_iter().collect()))
 }
 
-fn list<'a>(
-    study: &Study,
-    all: &[Run],
-    jobs: impl Iterator<Item = &'a Job>,
-    folder: &SweepFolder,
-) -> Result<()> {
-    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("dem-run"));
-    refuse_unlistable("this program", &program)?;
-    let program = program.display().to_string();
-    let runs = folder.runs();
-    write_standard_output(|out| {
-        for job in jobs {
-            let arguments = arguments(study, &all[job.run], *job, &runs);
-            let line = shell_line(&program, &arguments, Some(&job.complaint(&runs)));
-            writeln!(out, "{line}")?;
-        }
-        Ok(())
-    })
-}
-
 fn progress_bar(options: &SweepArguments, count: usize) -> ProgressBar {
     if options.quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -285,83 +340,4 @@ fn progress_bar(options: &SweepArguments, count: usize) -> ProgressBar {
         bar.set_style(style.progress_chars("=> "));
     }
     bar
-}
-
-/// `sweep.csv`, `sweep.json`, `sweep.html` and a plot of each measure.
-fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
-    let file = |name: &str| folder.path().join(name);
-    write_file(&file("sweep.csv"), |out| {
-        out.write_all(csv(table).as_bytes())
-    })?;
-    write_json(&file("sweep.json"), table)?;
-    write_file(&file("sweep.html"), |out| {
-        out.write_all(page(table).as_bytes())
-    })?;
-    for (at, measure) in table.measures.iter().enumerate() {
-        let path = file(&format!("{}.svg", measure.name));
-        write_plot_file(&path, &plot(table, at).svg().file())?;
-        if let Some(plot) = curves::plot(table, at) {
-            let path = file(&format!("{}-curves.svg", measure.name));
-            write_plot_file(&path, &plot.svg().file())?;
-        }
-    }
-    Ok(())
-}
-
-fn say(
-    options: &SweepArguments,
-    study: &Study,
-    all: &[Run],
-    table: &SweepTable,
-    best: Option<&Row>,
-    folder: &SweepFolder,
-) -> Result<()> {
-    let command = |row: &Row| {
-        let arguments = scene_arguments(study, &all[row.number - 1]);
-        shell_line("dem-run", &arguments, None)
-    };
-    if options.json {
-        let mut value = serde_json::to_value(table)
-            .map_err(|error| Diagnostic::failed("--json", error.to_string(), ""))?;
-        value["fastest"] = match best {
-            Some(row) => json!({ "run": row.number, "command": command(row) }),
-            None => serde_json::Value::Null,
-        };
-        return write_standard_json(&value);
-    }
-    if options.quiet {
-        return Ok(());
-    }
-    write_standard_output(|out| {
-        write!(out, "{table}")?;
-        writeln!(
-            out,
-            "results      {}",
-            visible(&folder.path().join("sweep.html").display().to_string())
-        )?;
-        if let Some(row) = best {
-            let errors = table.measures.iter().zip(&row.results);
-            let errors: Vec<String> = errors
-                .filter_map(|(m, judged)| Some((m, judged.sure_error()?)))
-                .map(|(m, error)| format!("{} {}", m.name, significant(error, 2)))
-                .collect();
-            writeln!(
-                out,
-                "fastest      run {}, {} s, error {}: {}",
-                row.number,
-                significant(row.time_s.unwrap_or(f64::NAN), 3),
-                errors.join(", "),
-                visible(&table.named(row))
-            )?;
-            writeln!(out, "             {}", command(row))?;
-            if let Some(target) = &options.write {
-                writeln!(
-                    out,
-                    "written      {}",
-                    visible(&target.display().to_string())
-                )?;
-            }
-        }
-        Ok(())
-    })
 }

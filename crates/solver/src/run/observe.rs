@@ -12,6 +12,7 @@ use super::files::{interruption, save, with_checkpoint};
 use super::fragments::write_fragments;
 use super::limits::{CHECK_EVERY_STEPS, tunnelling};
 use super::schedule::{due, next};
+use super::settings::SoFar;
 use crate::measure::{read_probes, renumber as renumber_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::series;
@@ -68,7 +69,7 @@ impl Run<'_> {
     ///
     /// # Errors
     /// Those of the files.
-    pub(super) fn observe(&mut self, tell: &dyn Fn(f64)) -> Result<Option<Ended>> {
+    pub(super) fn observe(&mut self, tell: &dyn Fn(&SoFar)) -> Result<Option<Ended>> {
         if let Some(problem) = tunnelling(&self.state, self.scene, &self.bodies) {
             return Ok(Some(self.ended_early("instability", problem)));
         }
@@ -209,7 +210,7 @@ impl Run<'_> {
         }
     }
 
-    fn write_row(&mut self, balance: &Balance, tell: &dyn Fn(f64)) -> Result<()> {
+    fn write_row(&mut self, balance: &Balance, tell: &dyn Fn(&SoFar)) -> Result<()> {
         let state = &self.state;
         self.progress.next_row = next(state, self.schedule.row_s);
         let values = read_probes(&mut self.probes, state, balance);
@@ -217,7 +218,11 @@ impl Run<'_> {
             let row = series::row(state, balance, &values);
             files.series.append(state.time_s, &row)?;
         }
-        tell((state.time_s / self.scene.run.end_time_s).min(1.0));
+        tell(&SoFar {
+            fraction: (state.time_s / self.scene.run.end_time_s).min(1.0),
+            time_s: state.time_s,
+            broken_bonds: state.broken_count,
+        });
         Ok(())
     }
 

@@ -22,3 +22,14 @@ pub struct RunSettings<'a> {
     /// evaluated.
     pub test: Option<TestSettings>,
 }
+
+/// How far a run has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SoFar {
+    /// Fraction of the end time, or of the load of a static equilibrium, in 0..1.
+    pub fraction: f64,
+    /// Simulated time, s.
+    pub time_s: f64,
+    /// Bonds broken since the start.
+    pub broken_bonds: u64,
+}

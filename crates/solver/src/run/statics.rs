@@ -39,7 +39,7 @@ use crate::measure::{bond_utilisation, probes, read_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
-use crate::run::settings::RunSettings;
+use crate::run::settings::{RunSettings, SoFar};
 use crate::stages::ledger::Balance;
 use crate::stages::totals::elastic_energy;
 use crate::state::State;
@@ -61,7 +61,7 @@ pub fn run(
     plan: Plan,
     scene: &Scene,
     settings: &RunSettings<'_>,
-    tell: &dyn Fn(f64),
+    tell: &dyn Fn(&SoFar),
 ) -> Result<Summary> {
     let mut probes = probes(scene, &plan);
     let Plan {
@@ -80,7 +80,11 @@ pub fn run(
     let clock = Instant::now();
     let processor_before_s = processor_time_s();
     let goes_on = |fraction: f64| {
-        tell(fraction);
+        tell(&SoFar {
+            fraction,
+            time_s: fraction * end_s,
+            broken_bonds: 0,
+        });
         !settings.interrupted.load(Ordering::Relaxed)
     };
     let mut test = None;

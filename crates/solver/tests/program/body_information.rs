@@ -101,14 +101,13 @@ fn bad_input_is_one_line_and_exit_code_2() {
 
 #[test]
 fn without_a_body_the_usage_is_shown() {
-    for arguments in [&[][..], &["--wrong"]] {
+    for (arguments, shown) in [
+        (&[][..], "Usage: dem-run"),
+        (&["--wrong"][..], "see dem-run --help"),
+    ] {
         let output = piped(arguments, b"");
         assert_eq!(output.status.code(), Some(2));
-        assert!(
-            String::from_utf8(output.stderr)
-                .unwrap()
-                .contains("Usage: dem-run")
-        );
+        assert!(String::from_utf8(output.stderr).unwrap().contains(shown));
     }
     let help = piped(&["--help"], b"");
     assert!(

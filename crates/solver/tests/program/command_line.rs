@@ -1,6 +1,6 @@
 //! Help, man page, completions.
 
-use super::dem_run;
+use super::{Bench, dem_run, refused, scene_of_data};
 
 fn said(arguments: &[&str]) -> String {
     let output = dem_run().args(arguments).output().unwrap();
@@ -69,4 +69,86 @@ fn options_of_another_name_are_refused_with_the_new_one() {
             assert_eq!(said, expected);
         }
     }
+}
+
+/// What `dem-run` says of bad arguments, and that the exit code is 2.
+fn refusal(arguments: &[&str]) -> String {
+    let (said, code) = refused(&dem_run().args(arguments).output().unwrap());
+    assert_eq!(code, 2, "{said}");
+    said
+}
+
+#[test]
+fn arguments_are_refused_on_one_line() {
+    for (arguments, parts) in [
+        (
+            &["picture", "d4"][..],
+            "dem-run picture: there is no such command, and no such file; name a scene (.toml), or one of the commands check, new, keys, ",
+        ),
+        (
+            &["tablet.stl"],
+            "tablet.stl: this is a shape, not a body; fill it first: dem-pack tablet.stl --diameter 2mm..3mm -o tablet.vtp",
+        ),
+        (
+            &["scene.toml", "--sett", "a=1"],
+            "unexpected argument '--sett' found",
+        ),
+        (
+            &["scene.toml", "--threads", "x"],
+            "invalid value 'x' for '--threads <N>'",
+        ),
+        (&["new", "mill", "x"], "invalid value 'mill' for '<TYPE>'"),
+        (&["run", "gone.toml"], "gone.toml: there is no such file"),
+        (&["fragment", "results"], "--largest"),
+    ] {
+        let said = refusal(arguments);
+        assert!(said.contains(parts), "{arguments:?}: {said}");
+    }
+    let said = refusal(&["scene.toml", "--sett", "a=1"]);
+    assert!(said.ends_with("; see dem-run --help\n"), "{said}");
+}
+
+#[test]
+fn the_word_run_may_stand_before_the_scene() {
+    let scene = scene_of_data("spinning-bar.toml").display().to_string();
+    let plain = said(&["check", &scene]);
+    assert!(!plain.is_empty());
+    let out = |first: &[&str]| {
+        let short = ["--set", "run.end_time=1 ms", "--quiet", "--json"];
+        let arguments = [first, &[scene.as_str()], &short[..]].concat();
+        let json: serde_json::Value = serde_json::from_str(&said(&arguments)).unwrap();
+        json["steps"].clone()
+    };
+    assert_eq!(out(&["run"]), out(&[]));
+}
+
+/// Colours are for terminals, unless they are forced.
+#[test]
+fn colours_stay_out_of_pipes() {
+    let bench = Bench::new();
+    let scene = scene_of_data("spinning-bar.toml").display().to_string();
+    let output = |forced: bool, arguments: &[&str]| {
+        let mut command = dem_run();
+        command.args(arguments).current_dir(bench.folder.path());
+        command.env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE");
+        if forced {
+            command.env("CLICOLOR_FORCE", "1");
+        }
+        let output = command.output().unwrap();
+        [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap())
+    };
+    let [plain, _] = output(false, &[&scene, "--set", "run.end_time=1 ms"]);
+    let [coloured, _] = output(true, &[&scene, "--set", "run.end_time=1 ms"]);
+    assert!(!plain.contains('\u{1b}') && plain.contains("\nverdict "));
+    assert!(
+        coloured.contains("\u{1b}[1m\u{1b}[32mverdict\u{1b}[0m "),
+        "{coloured:?}"
+    );
+    let [_, plain] = output(false, &["gone.toml"]);
+    let [_, coloured] = output(true, &["gone.toml"]);
+    assert!(plain.starts_with("error: "));
+    assert_eq!(
+        coloured,
+        plain.replace("error:", "\u{1b}[1m\u{1b}[31merror:\u{1b}[0m")
+    );
 }

@@ -142,7 +142,7 @@ fn every_good_scene_of_the_corpus_runs() {
 /// End time of each scene for a test without false alarms, and the shape and diameters of its body
 /// if it needs one. Laboratory tests, which have no end time of their own, load within one period
 /// of the body.
-const SHORT: [[&str; 4]; 17] = [
+const SHORT: [[&str; 4]; 18] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -152,6 +152,7 @@ const SHORT: [[&str; 4]; 17] = [
     ["clamped", "2 ms", "bending-sample", "5mm..7mm"],
     ["compression", "", "bar", "4mm..6mm"],
     ["drop-flat", "10 ms", "", ""],
+    ["drop-height", "3 ms", "", ""],
     ["drop-inclined", "5 ms", "", ""],
     ["four-point-bending", "", "bending-sample", "5mm..7mm"],
     ["jaw-crusher", "0.1 s", "", ""],

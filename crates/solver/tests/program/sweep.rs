@@ -3,6 +3,7 @@
 mod curves;
 mod failed;
 mod pieces;
+mod responses;
 mod safety;
 
 use std::collections::BTreeMap;
@@ -445,8 +446,8 @@ fn what_is_refused() {
             "study.toml:6: --set run.safty_factor=0.2: unknown key run.safty_factor; did you mean 'safety_factor'?",
         ),
         (
-            "reference = { richardson = \"run.safety_factor\" }",
-            "",
+            "{ richardson = \"run.safety_factor\" }",
+            "\"closed-form\"",
             "study.toml:7: measures.tip has no reference: that of the scene says none; add reference",
         ),
         (

@@ -1,0 +1,156 @@
+//! `[find]`: the parameter that is searched, and the points at which it is tried.
+
+use std::path::Path;
+
+use super::contents::{Axis, Combine, Find, Study, StudyMeasure};
+use super::values::{point, rounded, setting};
+use crate::field::Field;
+use crate::names::suggestion;
+use crate::table::Table;
+use crate::toml_text::split;
+use crate::tree::Value;
+use dem_io::diagnostic::Result;
+use dem_io::units::significant;
+
+/// Smallest tolerance over the larger end: points are rounded to six digits.
+const FINEST: f64 = 1e-4;
+
+/// The axis of the parameter, with the two ends as its values.
+pub(super) fn axis(table: &Table<'_>, folder: &Path) -> Result<Axis> {
+    let parameter = table.need("parameter")?;
+    let path = parameter.text()?;
+    let [from, to] = [table.need("from")?, table.need("to")?];
+    // Refuses what is no path.
+    setting(path, &from, folder)?;
+    let (ends, unit) = ends(&from, &to)?;
+    let place = parameter.document.place(parameter.node.origin);
+    let values = ends.map(|end| point(path, end, &unit, &place)).into();
+    Ok(Axis {
+        name: path.to_owned(),
+        place,
+        values,
+    })
+}
+
+/// Both ends, ascending, and their unit.
+fn ends(from: &Field<'_>, to: &Field<'_>) -> Result<([f64; 2], String)> {
+    let [(first, unit), (last, _)] = [number(from, None)?, number(to, None)?];
+    number(to, Some(&unit))?;
+    if first == last {
+        let problem = format!("{} and {} are equal", from.path, to.path);
+        return Err(to.refuse(problem, "give two ends between which the value is searched"));
+    }
+    Ok(([first.min(last), first.max(last)], unit))
+}
+
+/// A number and its unit, which must be `unit` if that is given.
+fn number(field: &Field<'_>, unit: Option<&str>) -> Result<(f64, String)> {
+    let (value, own) = split(field.node)
+        .ok_or_else(|| field.wrong("a number", "write it with its unit, such as \"0.1 m\""))?;
+    match unit {
+        Some(unit) if unit != own => {
+            let problem = format!(
+                "{} is {}, in another unit than find.from",
+                field.path,
+                field.shown()
+            );
+            Err(field.refuse(problem, "write from, to and tolerance in the same unit"))
+        }
+        _ => Ok((value, own)),
+    }
+}
+
+/// Refuses what varies beside the parameter and the axis that is averaged over.
+pub(super) fn refuse_other_axes(
+    table: &Table<'_>,
+    combine: Combine,
+    average_over: Option<usize>,
+    axes: &[Axis],
+) -> Result<()> {
+    if combine == Combine::Paired {
+        let problem = "[find] has no effect on pairs of values";
+        return Err(table.refuse(problem, "remove combine"));
+    }
+    if average_over == Some(0) {
+        let problem = "average_over names the parameter of [find]";
+        return Err(table.refuse(
+            problem,
+            "name what the scatter comes from, such as run.seed",
+        ));
+    }
+    let other = (1..axes.len()).find(|at| Some(*at) != average_over);
+    match other {
+        None => Ok(()),
+        Some(at) => Err(table.refuse(
+            format!(
+                "[find] searches one value, but {} varies as well",
+                axes[at].name
+            ),
+            "move it into [set] and make a study of each, or name it as average_over",
+        )),
+    }
+}
+
+/// The search of a study with these measures.
+pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure]) -> Result<Find> {
+    let (ends, unit) = ends(&table.need("from")?, &table.need("to")?)?;
+    let tolerated = table.need("tolerance")?;
+    let (tolerance, _) = number(&tolerated, Some(&unit))?;
+    let least = FINEST * ends[0].abs().max(ends[1].abs());
+    if tolerance < least {
+        let limit = format!("at least {} {unit}", significant(least, 3));
+        let remedy = "points are rounded to six digits: write a larger one";
+        return Err(tolerated.wrong(limit.trim_end(), remedy));
+    }
+    let named = table.need("measure")?;
+    let name = named.text()?;
+    let measure = measures.iter().position(|measure| measure.name == name);
+    let measure = measure.ok_or_else(|| {
+        let problem = format!(
+            "{} is {}, but the study has no such measure",
+            named.path,
+            named.shown()
+        );
+        named.refuse(
+            problem,
+            suggestion(name, measures.iter().map(|m| m.name.as_str())),
+        )
+    })?;
+    let value = table.need("value")?;
+    Ok(Find {
+        measure,
+        value: match &value.node.value {
+            Value::Number(written, number) if number.is_finite() => written.clone(),
+            Value::Text(text) => text.clone(),
+            _ => return Err(value.wrong("a number", "write it with its unit, such as \"2 mm\"")),
+        },
+        ends,
+        tolerance,
+        unit,
+        place: table.document.place(table.origin),
+    })
+}
+
+impl Study {
+    /// The points at which the parameter of `[find]` is tried, in its unit: its ends, then those
+    /// that were added.
+    pub fn points(&self) -> Vec<f64> {
+        let numbers = self.axes.first().and_then(Axis::numbers);
+        numbers.map_or(Vec::new(), |(numbers, _)| numbers)
+    }
+
+    /// Adds a point at which the parameter of `[find]` is tried.
+    pub fn add_point(&mut self, number: f64) {
+        if let (Some(find), Some(axis)) = (&self.find, self.axes.first_mut()) {
+            let added = point(&axis.name, number, &find.unit, &axis.place);
+            axis.values.push(added);
+        }
+    }
+}
+
+impl Find {
+    /// The middle between two points, rounded to six digits.
+    pub fn middle(low: f64, high: f64) -> f64 {
+        rounded(f64::midpoint(low, high))
+    }
+}

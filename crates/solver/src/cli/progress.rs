@@ -1,0 +1,177 @@
+//! Progress of a run on standard error: a bar on a terminal, a line for each tenth in a log.
+
+use std::cell::RefCell;
+use std::io::{IsTerminal, Write};
+use std::time::Instant;
+
+use dem_io::units::significant;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::run::SoFar;
+
+/// Runs that take less have no lines, s.
+const SHORT_S: f64 = 30.0;
+
+/// Shows how far a run has come.
+pub(super) struct ShownProgress {
+    bar: ProgressBar,
+    /// None on a terminal, and if nothing is to be shown.
+    log: Option<RefCell<Log>>,
+}
+
+/// The lines in a log.
+struct Log {
+    begun: Instant,
+    /// The run, "at twice the rate " for a second one.
+    prefix: String,
+    tenths: Tenths,
+}
+
+/// The tenths of a run for which there have been lines.
+#[derive(Debug, Default)]
+struct Tenths {
+    /// Fraction at the first call, which is not 0 for a resumed run.
+    first: Option<f64>,
+    /// Number of tenths that need no line any more.
+    told: u32,
+}
+
+impl Tenths {
+    /// The time left, s, if a line is due at this fraction of the run, `elapsed_s` after its begin.
+    fn due(&mut self, fraction: f64, elapsed_s: f64) -> Option<f64> {
+        let first = *self.first.get_or_insert(fraction);
+        let tenths = (10.0 * fraction + 1e-9) as u32;
+        if tenths <= self.told.max((10.0 * first) as u32) {
+            return None;
+        }
+        self.told = tenths;
+        let is_told = elapsed_s >= SHORT_S && fraction > first && tenths < 10;
+        is_told.then(|| elapsed_s * (1.0 - fraction) / (fraction - first))
+    }
+}
+
+impl ShownProgress {
+    /// Shows nothing if `quiet`.
+    pub(super) fn new(quiet: bool) -> Self {
+        let is_terminal = std::io::stderr().is_terminal();
+        let log = (!quiet && !is_terminal).then(|| RefCell::new(Log::new("")));
+        let bar = if quiet || !is_terminal {
+            ProgressBar::hidden()
+        } else {
+            bar()
+        };
+        Self { bar, log }
+    }
+
+    /// Begins another run; `prefix` stands before its progress.
+    pub(super) fn begin(&self, prefix: &'static str) {
+        self.bar.set_prefix(prefix);
+        if let Some(log) = &self.log {
+            *log.borrow_mut() = Log::new(prefix);
+        }
+    }
+
+    /// Shows how far the run has come.
+    pub(super) fn tell(&self, so_far: &SoFar) {
+        self.bar.set_position((1000.0 * so_far.fraction) as u64);
+        self.bar.set_message(format!("{}  ", text(so_far)));
+        let Some(log) = &self.log else {
+            return;
+        };
+        let mut log = log.borrow_mut();
+        let elapsed_s = log.begun.elapsed().as_secs_f64();
+        if let Some(left_s) = log.tenths.due(so_far.fraction, elapsed_s) {
+            // A closed output is not a reason to stop.
+            let _ = writeln!(
+                std::io::stderr(),
+                "run {}{:.0} %: {}, about {} s left",
+                log.prefix,
+                100.0 * so_far.fraction,
+                text(so_far),
+                significant(left_s, 2)
+            );
+        }
+    }
+
+    /// Removes the bar.
+    pub(super) fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Log {
+    fn new(prefix: &str) -> Self {
+        Self {
+            begun: Instant::now(),
+            prefix: prefix.to_owned(),
+            tenths: Tenths::default(),
+        }
+    }
+}
+
+/// `12.5 ms simulated, 34 bonds broken`.
+fn text(so_far: &SoFar) -> String {
+    let (factor, unit) = match so_far.time_s {
+        short if short < 1e-3 => (1e6, "us"),
+        short if short < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    let time = significant(factor * so_far.time_s, 3);
+    format!(
+        "{time} {unit} simulated, {} bonds broken",
+        so_far.broken_bonds
+    )
+}
+
+fn bar() -> ProgressBar {
+    let bar = ProgressBar::new(1000);
+    let template = "run {prefix}[{bar:30}] {percent:>3} %  {msg}{eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_has_a_line_for_each_tenth_of_a_long_run() {
+        let mut tenths = Tenths::default();
+        // 200 s, told every percent.
+        let told: Vec<(u32, f64)> = (0..=100)
+            .filter_map(|percent| {
+                let fraction = f64::from(percent) / 100.0;
+                Some((percent, tenths.due(fraction, 200.0 * fraction)?))
+            })
+            .collect();
+        let percents: Vec<u32> = told.iter().map(|(percent, _)| *percent).collect();
+        assert_eq!(
+            percents,
+            [20, 30, 40, 50, 60, 70, 80, 90],
+            "none in the first 30 s"
+        );
+        for (percent, left_s) in told {
+            assert!((left_s - 2.0 * f64::from(100 - percent)).abs() < 1e-9);
+        }
+        let mut short = Tenths::default();
+        assert!((0..=100).all(|percent| short.due(f64::from(percent) / 100.0, 1.0).is_none()));
+        // Resumed at 55 %: 45 % in 90 s.
+        let mut resumed = Tenths::default();
+        assert_eq!(resumed.due(0.55, 0.0), None);
+        assert_eq!(resumed.due(0.6, 31.0).map(f64::round), Some(248.0));
+        assert_eq!(resumed.due(0.65, 40.0), None);
+    }
+
+    #[test]
+    fn progress_in_words() {
+        let so_far = |time_s| SoFar {
+            fraction: 0.5,
+            time_s,
+            broken_bonds: 3,
+        };
+        assert_eq!(text(&so_far(12.5e-3)), "12.5 ms simulated, 3 bonds broken");
+        assert_eq!(text(&so_far(2.0)), "2 s simulated, 3 bonds broken");
+    }
+}

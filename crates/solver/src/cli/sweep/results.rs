@@ -1,0 +1,136 @@
+//! What a sweep leaves and prints: commands, tables, the page and the plots.
+
+use std::path::{Path, PathBuf};
+
+use dem_io::safe_write::{write_file, write_standard_json, write_standard_output};
+use dem_io::text::visible;
+use dem_io::units::significant;
+use dem_io::{Diagnostic, Result};
+use dem_results::{write_json, write_plot_file};
+use dem_scene::study::Study;
+use serde_json::json;
+
+use dem_study::curves;
+use dem_study::expand::Run;
+use dem_study::folder::SweepFolder;
+use dem_study::jobs::{Job, arguments, refuse_unlistable, scene_arguments, shell_line};
+use dem_study::page::page;
+use dem_study::plot::plot;
+use dem_study::response_plot::plots;
+use dem_study::rows::{Row, SweepTable};
+use dem_study::text::{csv, response_csv};
+
+/// Prints one sh command for each job.
+pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolder) -> Result<()> {
+    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("dem-run"));
+    refuse_unlistable("this program", &program)?;
+    let program = program.display().to_string();
+    let runs = folder.runs();
+    write_standard_output(|out| {
+        for job in jobs {
+            let arguments = arguments(study, &all[job.run], *job, &runs);
+            let line = shell_line(&program, &arguments, Some(&job.complaint(&runs)));
+            writeln!(out, "{line}")?;
+        }
+        Ok(())
+    })
+}
+
+/// `sweep.csv`, `responses.csv`, `sweep.json`, `sweep.html` and the plots of each measure.
+pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
+    let file = |name: &str| folder.path().join(name);
+    write_file(&file("sweep.csv"), |out| {
+        out.write_all(csv(table).as_bytes())
+    })?;
+    if !table.responses.is_empty() {
+        write_file(&file("responses.csv"), |out| {
+            out.write_all(response_csv(table).as_bytes())
+        })?;
+    }
+    write_json(&file("sweep.json"), table)?;
+    write_file(&file("sweep.html"), |out| {
+        out.write_all(page(table).as_bytes())
+    })?;
+    for (at, measure) in table.measures.iter().enumerate() {
+        if measure.reference.is_some() {
+            let path = file(&format!("{}.svg", measure.name));
+            write_plot_file(&path, &plot(table, at).svg().file())?;
+        }
+        if let Some(plot) = curves::plot(table, at) {
+            let path = file(&format!("{}-curves.svg", measure.name));
+            write_plot_file(&path, &plot.svg().file())?;
+        }
+    }
+    for response in &table.responses {
+        let measure = &table.measures[response.measure];
+        let is_compared = measure.reference.is_some();
+        for (number, plot) in (1..).zip(plots(table, response)) {
+            // Names of measures have no dots.
+            let name = match number {
+                1 if !is_compared => format!("{}.svg", measure.name),
+                1 => format!("{}.response.svg", measure.name),
+                number => format!("{}.response.{number}.svg", measure.name),
+            };
+            write_plot_file(&file(&name), &plot.svg().file())?;
+        }
+    }
+    Ok(())
+}
+
+/// Prints the table, as text or as JSON, with the fastest setting if that is asked for, and the name
+/// of the scene that was `written` with it.
+pub(super) fn say(
+    study: &Study,
+    all: &[Run],
+    table: &SweepTable,
+    best: Option<&Row>,
+    written: Option<&Path>,
+    folder: &SweepFolder,
+    as_json: bool,
+) -> Result<()> {
+    let command = |row: &Row| {
+        let arguments = scene_arguments(study, &all[row.number - 1]);
+        shell_line("dem-run", &arguments, None)
+    };
+    if as_json {
+        let mut value = serde_json::to_value(table)
+            .map_err(|error| Diagnostic::failed("--json", error.to_string(), ""))?;
+        value["fastest"] = match best {
+            Some(row) => json!({ "run": row.number, "command": command(row) }),
+            None => serde_json::Value::Null,
+        };
+        return write_standard_json(&value);
+    }
+    write_standard_output(|out| {
+        write!(out, "{table}")?;
+        writeln!(
+            out,
+            "results      {}",
+            visible(&folder.path().join("sweep.html").display().to_string())
+        )?;
+        if let Some(row) = best {
+            let errors = table.measures.iter().zip(&row.results);
+            let errors: Vec<String> = errors
+                .filter_map(|(m, judged)| Some((m, judged.sure_error()?)))
+                .map(|(m, error)| format!("{} {}", m.name, significant(error, 2)))
+                .collect();
+            writeln!(
+                out,
+                "fastest      run {}, {} s, error {}: {}",
+                row.number,
+                significant(row.time_s.unwrap_or(f64::NAN), 3),
+                errors.join(", "),
+                visible(&table.named(row))
+            )?;
+            writeln!(out, "             {}", command(row))?;
+            if let Some(target) = written {
+                writeln!(
+                    out,
+                    "written      {}",
+                    visible(&target.display().to_string())
+                )?;
+            }
+        }
+        Ok(())
+    })
+}

@@ -1,0 +1,134 @@
+//! Scenes to start from, and the reference of keys.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::{Bench, dem_run, refused};
+
+fn new(bench: &Bench, options: &[&str]) -> std::process::Output {
+    let mut command = dem_run();
+    command
+        .arg("new")
+        .args(options)
+        .current_dir(bench.folder.path());
+    command.output().unwrap()
+}
+
+/// Each is made and runs as it stands, by the commands that are printed; the bodies break, or the
+/// tests give a modulus.
+#[test]
+fn every_scene_to_start_from_runs() {
+    let bench = Bench::new();
+    for name in ["drop", "chute", "crusher", "bending", "compression"] {
+        let output = new(&bench, &[name, name]);
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        assert!(
+            said.starts_with(&format!(
+                "made {name}: scene.toml, shape.stl, body.vtp with "
+            )),
+            "{said}"
+        );
+        assert!(bench.path(name).join("scene.schema.json").exists());
+        let text = fs::read_to_string(bench.path(name).join("scene.toml")).unwrap();
+        assert!(text.starts_with("#:schema scene.schema.json\n# "), "{name}");
+        let commands: Vec<&str> = said
+            .lines()
+            .filter_map(|line| line.strip_prefix("  dem-run "))
+            .collect();
+        assert_eq!(commands.len(), 2, "{said}");
+        for command in commands {
+            let mut run = dem_run();
+            run.args(command.split(' '))
+                .current_dir(bench.folder.path());
+            let output = run.output().unwrap();
+            assert!(
+                output.status.success(),
+                "{command}: {}",
+                String::from_utf8_lossy(&output.stderr)
+            );
+        }
+        let summary = bench.path(name).join("results/summary.json");
+        let summary: Value = serde_json::from_slice(&fs::read(summary).unwrap()).unwrap();
+        let broken = summary["broken_bonds"].as_u64().unwrap();
+        assert!(broken > 10, "{name}: {broken}");
+        assert!(
+            summary["energy_error"].as_f64().unwrap() < 0.02,
+            "{name}: {}",
+            summary["energy_error"]
+        );
+        match &summary["test"]["results"] {
+            Value::Null => assert!(bench.path(name).join("results/film.png").exists(), "{name}"),
+            results => assert!(results.to_string().contains("specimen modulus"), "{name}"),
+        }
+    }
+}
+
+#[test]
+fn nothing_is_overwritten() {
+    let bench = Bench::new();
+    bench.write("taken", "mine");
+    let said = refused(&new(&bench, &["drop", "taken"]));
+    assert_eq!(said.1, 2);
+    assert!(
+        said.0
+            .contains("taken: there is such a file or folder already, and nothing is overwritten"),
+        "{}",
+        said.0
+    );
+    assert_eq!(fs::read_to_string(bench.path("taken")).unwrap(), "mine");
+    fs::create_dir(bench.path("full")).unwrap();
+    assert_eq!(refused(&new(&bench, &["chute", "full"])).1, 2);
+    assert!(fs::read_dir(bench.path("full")).unwrap().next().is_none());
+    let (said, code) = refused(&new(&bench, &["chute", "missing/here"]));
+    assert!(code == 2 && said.contains("does not exist"), "{said}");
+    let output = new(&bench, &["mill", "mine"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!bench.path("mine").exists());
+    // A name that looks like an option of dem-pack.
+    let output = new(&bench, &["drop", "--", "-d"]);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+#[test]
+fn keys_are_those_of_the_page() {
+    let keys = |options: &[&str]| {
+        let mut command = dem_run();
+        let output = command.arg("keys").args(options).output().unwrap();
+        (
+            String::from_utf8(output.stdout).unwrap(),
+            String::from_utf8(output.stderr).unwrap(),
+            output.status.code(),
+        )
+    };
+    let page =
+        |name: &str| fs::read_to_string(super::root().join(Path::new("doc")).join(name)).unwrap();
+    assert_eq!(keys(&[]).0, page("scene-keys.md"));
+    assert_eq!(keys(&["study"]).0, page("study-keys.md"));
+    let (bodies, ..) = keys(&["bodies"]);
+    assert!(
+        bodies.starts_with("## `[bodies.NAME]`\n") && bodies.contains("| `position_of` |"),
+        "{bodies}"
+    );
+    assert!(
+        bodies.contains("## Drop\n") && !bodies.contains("[walls.NAME]`\n"),
+        "{bodies}"
+    );
+    assert_eq!(keys(&["[bodies.NAME]"]).0, bodies);
+    let (out, said, code) = keys(&["wals"]);
+    assert_eq!((out.as_str(), code), ("", Some(2)));
+    assert!(
+        said.contains("dem-run keys wals: a scene has no table 'wals'; use one of run, materials"),
+        "{said}"
+    );
+}

@@ -1,0 +1,237 @@
+//! Studies without references: responses, and the search for a value.
+
+use std::f64::consts::PI;
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+
+use super::{assert_well_formed, bad, bench, csv, good, json, sweep};
+use crate::program::Bench;
+
+/// The bar of the scene at rest under its load.
+const REST: &str = r#"version = 1
+scene = "spring.toml"
+average_over = "loads.tip.force"
+[set]
+"run.integrator" = "static"
+[vary]
+"loads.tip.force" = [["0.9 kN", 0, 0], ["1.1 kN", 0, 0]]
+"#;
+
+/// Elongation of the bar, m: force x length over modulus x area.
+fn elongation_m(force_n: f64, modulus_pa: f64) -> f64 {
+    force_n * 0.4 / (modulus_pa * PI * 0.04)
+}
+
+fn study_bench(rest: &str) -> Bench {
+    bench(&format!("{REST}{rest}"))
+}
+
+fn assert_near(found: &str, wanted: f64) {
+    let found: f64 = found.parse().unwrap();
+    assert!((found / wanted - 1.0).abs() < 1e-6, "{found} {wanted}");
+}
+
+#[test]
+fn a_response_is_the_mean_with_its_scatter() {
+    let bench =
+        study_bench("\"bonds.steel.young_modulus\" = [\"100 GPa\", \"200 GPa\"]\n[measures.tip]\n");
+    let said = good(&bench, &[]);
+    assert!(said.contains("4 runs of spring.toml, once each"), "{said}");
+    assert!(
+        said.contains("response     tip (m), mean and standard deviation over loads.tip.force"),
+        "{said}"
+    );
+    for absent in ["front", "error", "scatter"] {
+        assert!(!said.contains(absent), "{said}");
+    }
+    let rows = csv(&bench.path("study-sweep/responses.csv"));
+    assert_eq!(rows.len(), 2);
+    for (row, modulus_gpa) in rows.iter().zip([100.0, 200.0]) {
+        let ends = [900.0, 1100.0].map(|force| elongation_m(force, 1e9 * modulus_gpa));
+        assert_eq!(
+            (row["measure"].as_str(), row["unit"].as_str()),
+            ("tip", "m")
+        );
+        assert_near(&row["bonds.steel.young_modulus (GPa)"], modulus_gpa);
+        assert_eq!(row["runs"], "2");
+        assert_near(&row["mean"], 0.5 * (ends[0] + ends[1]));
+        assert_near(&row["smallest"], ends[0]);
+        assert_near(&row["largest"], ends[1]);
+        // Of two values: their difference over the root of two.
+        assert_near(
+            &row["standard_deviation"],
+            (ends[1] - ends[0]) / 2.0_f64.sqrt(),
+        );
+    }
+    let runs = csv(&bench.path("study-sweep/sweep.csv"));
+    assert_eq!(runs[0]["loads.tip.force"], "0.9 kN");
+    assert!(runs[0].contains_key("tip_value") && !runs[0].contains_key("tip_error"));
+    let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
+    assert_well_formed(&html);
+    assert!(html.contains("<h1>Response: spring.toml</h1>"), "{html}");
+    for absent in ["Pareto", "error", "Times"] {
+        assert!(!html.contains(absent), "{absent}");
+    }
+    let svg = fs::read_to_string(bench.path("study-sweep/tip.svg")).unwrap();
+    assert_eq!(svg.matches("class=\"mark\"").count(), 2);
+    assert!(svg.contains("bonds.steel.young_modulus (GPa)"));
+    assert!(
+        svg.contains("bonds.steel.young_modulus 100 GPa: 3.183e-8 ±"),
+        "{svg}"
+    );
+    let said = bad(&bench, &["--collect", "--max-error", "all=1%"], 2);
+    assert!(
+        said.contains("no measure of the study has a reference"),
+        "{said}"
+    );
+}
+
+/// Values without numbers have names at the axis; a second parameter has a plot of its own.
+#[test]
+fn each_varied_parameter_has_a_plot() {
+    let bench = study_bench(
+        "\"bonds.steel.young_modulus\" = [\"100 GPa\", \"200 GPa\"]\n\"bonds.steel.model\" = [\"timoshenko\", \"parallel\"]\n[measures.tip]\n",
+    );
+    good(&bench, &[]);
+    let read = |name: &str| fs::read_to_string(bench.path("study-sweep").join(name)).unwrap();
+    let [over_modulus, over_model] = [read("tip.svg"), read("tip.response.2.svg")];
+    for svg in [&over_modulus, &over_model] {
+        assert_well_formed(svg);
+        assert_eq!(svg.matches("class=\"mark\"").count(), 4);
+    }
+    assert_eq!(over_modulus.matches("class=\"chain\"").count(), 2);
+    assert!(over_model.contains(">timoshenko</text>") && over_model.contains(">parallel</text>"));
+    good(&bench, &["--force"]);
+    let sweep = fs::read_dir(bench.path("study-sweep")).unwrap();
+    let plots = sweep.filter(|entry| {
+        let name = entry.as_ref().unwrap().file_name();
+        name.to_string_lossy().ends_with(".svg")
+    });
+    assert_eq!(plots.count(), 2);
+}
+
+const FIND: &str = r#"[find]
+parameter = "bonds.steel.young_modulus"
+from = "100 GPa"
+to = "300 GPa"
+measure = "tip"
+value = "2e-8 m"
+tolerance = "1 GPa"
+[measures.tip]
+"#;
+
+/// Checks the result of [`FIND`], in GPa.
+fn assert_found(table: &Value) {
+    // The mean elongation is that under the mean force.
+    let wanted = 1e-9 * elongation_m(1000.0, 1.0) / 2e-8;
+    let found = &table["find"]["result"]["found"];
+    let [low, high] = [0, 1].map(|end| found["between"][end].as_f64().unwrap());
+    assert!(
+        low <= wanted && wanted <= high && high - low <= 1.0,
+        "{found}"
+    );
+    assert_eq!(found["at"].as_f64().unwrap(), 0.5 * (low + high));
+}
+
+#[test]
+fn a_value_is_found() {
+    let bench = study_bench(FIND);
+    let said = good(&bench, &["--jobs", "2"]);
+    // 200 GPa in eight halves are less than 1 GPa; each point has two runs.
+    assert!(said.contains("20 runs of spring.toml, once each"), "{said}");
+    assert!(
+        said.contains("find         tip is 2e-8 m at bonds.steel.young_modulus = 159"),
+        "{said}"
+    );
+    let table = json(&bench);
+    assert_found(&table);
+    let tried = table["find"]["tried"].as_array().unwrap();
+    assert_eq!(tried.len(), 10);
+    let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
+    assert_well_formed(&html);
+    assert!(
+        html.contains("<h2>Search</h2>") && html.contains("between 15"),
+        "{html}"
+    );
+    let svg = fs::read_to_string(bench.path("study-sweep/tip.svg")).unwrap();
+    assert!(svg.contains("looked for: 2e-8 m"));
+    assert!(
+        table["notes"]
+            .to_string()
+            .contains("within twice its standard error")
+    );
+
+    // Only what is missing is done again, and a smaller tolerance goes on from there.
+    let summary = |run: &str| {
+        bench
+            .path("study-sweep/runs")
+            .join(run)
+            .join("summary.json")
+    };
+    let written = |run: &str| fs::metadata(summary(run)).unwrap().modified().unwrap();
+    let before = written("0009-1");
+    fs::remove_file(summary("0005-1")).unwrap();
+    bench.write(
+        "study.toml",
+        format!("{REST}{FIND}").replace("1 GPa", "0.5 GPa"),
+    );
+    let said = good(&bench, &["--resume"]);
+    assert!(said.contains("22 runs"), "{said}");
+    assert_eq!(written("0009-1"), before);
+    assert_found(&json(&bench));
+    bench.write(
+        "study.toml",
+        format!("{REST}{FIND}").replace("2e-8", "3e-8"),
+    );
+    let said = bad(&bench, &["--resume"], 2);
+    assert!(said.contains("its runs are of another [find]"), "{said}");
+}
+
+#[test]
+fn listed_points_are_found_in_turns() {
+    let bench = study_bench(FIND);
+    let mut turns = 0;
+    loop {
+        let commands = good(&bench, &["--list", "--resume"]);
+        if commands.is_empty() {
+            break;
+        }
+        turns += 1;
+        assert_eq!(commands.lines().count(), if turns == 1 { 4 } else { 2 });
+        let list = bench.write("list.sh", &commands);
+        let mut sh = Command::new("sh");
+        assert!(
+            sh.arg(list)
+                .current_dir(bench.folder.path())
+                .status()
+                .unwrap()
+                .success()
+        );
+        if turns == 2 {
+            let said = good(&bench, &["--collect"]);
+            assert!(
+                said.contains("the search for tip = 2e-8 m is not finished: 3 points"),
+                "{said}"
+            );
+        }
+    }
+    assert_eq!(turns, 9);
+    good(&bench, &["--collect"]);
+    assert_found(&json(&bench));
+}
+
+#[test]
+fn ends_that_do_not_bracket_the_value() {
+    let bench = study_bench(&FIND.replace("2e-8 m", "1 mm"));
+    let output = sweep(&bench, &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("1 mm does not lie between the values of tip at the ends: 3.183e-8 at 100 GPa, 1.061e-8 at 300 GPa; widen from and to"),
+        "{said}"
+    );
+    // What was found is written all the same.
+    assert_eq!(csv(&bench.path("study-sweep/responses.csv")).len(), 2);
+}

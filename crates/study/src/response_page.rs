@@ -1,0 +1,80 @@
+//! Responses and the search on the page of a sweep.
+
+use dem_plots::{Column, Page, Row, Table};
+
+use super::page::number;
+use super::response::Response;
+use super::response_plot::{plots, shown_axes, with_unit};
+use super::rows::SweepTable;
+
+/// Largest number of points in a table; the CSV has all of them.
+const MOST_POINTS: usize = 500;
+
+/// The result of `[find]`, and the points tried.
+pub(crate) fn add_search(page: &mut Page, table: &SweepTable) {
+    let Some(search) = &table.find else {
+        return;
+    };
+    let measure = &table.measures[search.measure];
+    page.heading("Search");
+    page.paragraph(&format!("{}.", search.in_words(&measure.name)));
+    page.small(&format!(
+        "Bisection until the interval is no wider than {}: the points tried, ascending.",
+        search.shown(search.tolerance)
+    ));
+    let parameter = with_unit(&search.parameter, &search.unit);
+    let value = with_unit(&measure.name, &measure.unit);
+    let rows = search.tried.iter().map(|[x, mean]| {
+        let cells = [number(Some(*x), 6), number(Some(*mean), 4)];
+        Row::from(cells.to_vec())
+    });
+    page.table(&Table {
+        columns: [&parameter, &value].map(|name| Column::number(name)).into(),
+        rows: rows.collect(),
+    });
+}
+
+/// The plots and the table of a response.
+pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Response) {
+    let averaged = table.average_over.map(|at| &table.axes[at]);
+    if let Some(averaged) = averaged {
+        page.paragraph(&format!(
+            "Means over {} values of {}; bars show one standard deviation to either side.",
+            averaged.values.len(),
+            averaged.name
+        ));
+    }
+    for plot in plots(table, response) {
+        page.figure(&plot.svg());
+    }
+    let measure = &table.measures[response.measure];
+    let name = with_unit(&measure.name, &measure.unit);
+    let axes: Vec<usize> = shown_axes(table).collect();
+    let mut columns: Vec<Column> = (axes.iter())
+        .map(|at| Column::text(&table.axes[*at].name))
+        .collect();
+    columns.push(Column::number(&name));
+    if averaged.is_some() {
+        let scatter = ["standard deviation", "smallest", "largest", "runs"];
+        columns.extend(scatter.map(Column::number));
+    }
+    let rows = response.points.iter().take(MOST_POINTS).map(|point| {
+        let mut cells: Vec<String> = axes.iter().map(|at| point.settings[*at].clone()).collect();
+        cells.push(number(Some(point.mean), 4));
+        if averaged.is_some() {
+            let [smallest, largest] = point.range();
+            cells.push(number(point.standard_deviation, 2));
+            cells.extend([smallest, largest].map(|value| number(Some(value), 4)));
+            cells.push(point.values.len().to_string());
+        }
+        Row::from(cells)
+    });
+    page.table(&Table {
+        columns,
+        rows: rows.collect(),
+    });
+    if response.points.len() > MOST_POINTS {
+        let more = response.points.len() - MOST_POINTS;
+        page.paragraph(&format!("And {more} more, in responses.csv."));
+    }
+}

@@ -1,0 +1,160 @@
+//! Plots of a response over each varied parameter.
+
+use std::collections::BTreeMap;
+
+use dem_io::units::significant;
+use dem_plots::{Axis, Marks, Plot, Point};
+
+use super::response::{Response, ResponsePoint};
+use super::rows::{AxisColumn, SweepTable};
+
+/// A logarithmic axis is used from this ratio of the largest to the smallest value on.
+const LOG_FROM: f64 = 30.0;
+
+/// The plots of a response: one over each axis with several values, except the averaged one.
+pub fn plots(table: &SweepTable, response: &Response) -> Vec<Plot> {
+    let over = shown_axes(table).filter(|at| table.axes[*at].values.len() > 1);
+    over.map(|at| plot(table, response, at)).collect()
+}
+
+/// All axes except the averaged one.
+pub(crate) fn shown_axes(table: &SweepTable) -> impl Iterator<Item = usize> {
+    (0..table.axes.len()).filter(|at| Some(*at) != table.average_over)
+}
+
+fn plot(table: &SweepTable, response: &Response, over: usize) -> Plot {
+    let measure = &table.measures[response.measure];
+    let name = measure.name.replace('_', " ");
+    let axis = &table.axes[over];
+    let series = series(table, over);
+    let wanted = wanted(table, response);
+    let is_of =
+        |point: &&ResponsePoint, kind: usize| series.is_none_or(|at| point.choice[at] == kind);
+    let marks = |kind: usize| {
+        let points = response.points.iter().filter(|point| is_of(point, kind));
+        let points: Vec<&ResponsePoint> = points.collect();
+        Marks {
+            name: match series {
+                Some(at) => table.axes[at].values[kind].clone(),
+                // For the legend, next to the value that is looked for.
+                None if wanted.is_some() => "found".to_owned(),
+                None => String::new(),
+            },
+            points: points.iter().map(|p| mark(table, axis, over, p)).collect(),
+            chains: chains(axis, over, &points),
+        }
+    };
+    let kinds = series.map_or(1, |at| table.axes[at].values.len());
+    Plot {
+        title: title(table, response, &name),
+        x: horizontal(axis),
+        y: Axis::of(&with_unit(&name, &measure.unit)),
+        marks: (0..kinds).map(marks).collect(),
+        kinds: series.map_or(String::new(), |at| table.axes[at].name.clone()),
+        reference: wanted.clone(),
+        if_empty: "no run has a value".to_owned(),
+        ..Plot::default()
+    }
+}
+
+fn title(table: &SweepTable, response: &Response, name: &str) -> String {
+    match &table.average_over {
+        Some(averaged) if response.points.iter().any(|point| point.values.len() > 1) => {
+            format!(
+                "{name}: mean and standard deviation over {}",
+                table.axes[*averaged].name
+            )
+        }
+        _ => name.to_owned(),
+    }
+}
+
+/// The value that `[find]` looks for, if it does so in this response.
+fn wanted(table: &SweepTable, response: &Response) -> Option<(f64, String)> {
+    let search = table.find.as_ref()?;
+    let text = format!("looked for: {}", search.value_as_written);
+    (search.measure == response.measure).then_some((search.value, text))
+}
+
+/// The axis shown by colours: that of the page, or the first other one.
+fn series(table: &SweepTable, over: usize) -> Option<usize> {
+    let varies = |at: &usize| *at != over && table.axes[*at].values.len() > 1;
+    let others: Vec<usize> = shown_axes(table).filter(varies).collect();
+    let of_page = table.series.filter(|at| others.contains(at));
+    of_page.or(others.first().copied())
+}
+
+fn horizontal(axis: &AxisColumn) -> Axis {
+    let Some(numbers) = &axis.numbers else {
+        return Axis::named(&axis.name, axis.values.clone());
+    };
+    let label = with_unit(&axis.name, &axis.unit);
+    let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if low > 0.0 && high >= LOG_FROM * low {
+        Axis::log(&label)
+    } else {
+        Axis::of(&label)
+    }
+}
+
+/// `name (unit)`.
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{name} ({unit})")
+    }
+}
+
+fn place(axis: &AxisColumn, over: usize, point: &ResponsePoint) -> [f64; 2] {
+    let at = point.choice[over];
+    let x = (axis.numbers.as_ref()).map_or(at as f64, |numbers| numbers[at]);
+    [x, point.mean]
+}
+
+fn mark(table: &SweepTable, axis: &AxisColumn, over: usize, point: &ResponsePoint) -> Point {
+    let deviation = point.standard_deviation.unwrap_or(0.0);
+    let scatter = point.standard_deviation.map_or(String::new(), |deviation| {
+        format!(
+            " ± {} ({} runs)",
+            significant(deviation, 2),
+            point.values.len()
+        )
+    });
+    Point {
+        at: place(axis, over, point),
+        y_spread: 2.0 * deviation,
+        filled: true,
+        title: format!(
+            "{}: {}{scatter}",
+            named(table, point),
+            significant(point.mean, 4)
+        ),
+        ..Point::default()
+    }
+}
+
+/// The settings of a point on one line.
+pub(crate) fn named(table: &SweepTable, point: &ResponsePoint) -> String {
+    let shown =
+        shown_axes(table).map(|at| format!("{} {}", table.axes[at].name, point.settings[at]));
+    shown.collect::<Vec<String>>().join(", ")
+}
+
+/// Lines through points that differ along this axis only, ascending along it.
+fn chains(axis: &AxisColumn, over: usize, points: &[&ResponsePoint]) -> Vec<Vec<[f64; 2]>> {
+    let mut groups: BTreeMap<Vec<usize>, Vec<[f64; 2]>> = BTreeMap::new();
+    for point in points {
+        let mut others = point.choice.clone();
+        others[over] = 0;
+        let chain = groups.entry(others).or_default();
+        chain.push(place(axis, over, point));
+    }
+    let mut chains: Vec<Vec<[f64; 2]>> = groups.into_values().collect();
+    for chain in &mut chains {
+        chain.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    }
+    chains.retain(|chain| chain.len() > 1 && axis.numbers.is_some());
+    chains
+}

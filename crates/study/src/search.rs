@@ -1,0 +1,309 @@
+//! `[find]`: the value of a parameter at which the mean of a measure has a given value, by
+//! bisection.
+
+use dem_io::units::significant;
+use dem_scene::study::{Find, Study};
+use serde::Serialize;
+
+use super::response::{Response, ResponsePoint};
+
+/// A mean that is nearer to the value than this many standard deviations of the mean may lie on its
+/// other side.
+const SURE: f64 = 2.0;
+
+/// A search and its result.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Search {
+    /// Path of the parameter.
+    pub parameter: String,
+    /// Unit of the parameter; empty for plain numbers.
+    pub unit: String,
+    /// Index of the measure.
+    pub measure: usize,
+    /// The value that is looked for, in the unit of the measure.
+    pub value: f64,
+    /// The same as written.
+    pub value_as_written: String,
+    /// Largest width of the interval, in `unit`.
+    pub tolerance: f64,
+    /// Points tried, ascending, in `unit`, with the mean of the measure there.
+    pub tried: Vec<[f64; 2]>,
+    /// The result.
+    pub result: SearchResult,
+}
+
+/// The result of a search.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SearchResult {
+    /// Found to the tolerance.
+    Found {
+        /// The middle of the interval, in the unit of the parameter.
+        at: f64,
+        /// The ends of the interval: the mean is below the value at one and above it at the other.
+        between: [f64; 2],
+        /// True if the mean at an end is within two of its standard deviations of the value.
+        is_uncertain: bool,
+    },
+    /// The means at both ends of the range are on the same side of the value.
+    NotBracketed,
+    /// Points are missing or have failed.
+    Unfinished,
+}
+
+/// The next step of a search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// This point is to be tried, in the unit of the parameter.
+    Try(f64),
+    /// The interval is narrow enough: its ends.
+    Found([f64; 2]),
+    /// The ends of the range do not bracket the value.
+    NotBracketed,
+    /// A point has no value yet.
+    Wait,
+}
+
+/// The step after the points tried so far, `[place, mean - value]`, the two ends first and then in
+/// the order of trial; None for a point without a mean.
+pub fn next_step(find: &Find, points: &[Option<[f64; 2]>]) -> Step {
+    let Some(points) = points.iter().copied().collect::<Option<Vec<[f64; 2]>>>() else {
+        return Step::Wait;
+    };
+    let [low, high, tried @ ..] = points.as_slice() else {
+        return Step::Wait;
+    };
+    let (mut low, mut high) = (*low, *high);
+    // No point is tried after an exact one.
+    if let Some(exact) = points.iter().find(|point| point[1] == 0.0) {
+        return Step::Found([exact[0]; 2]);
+    }
+    let is_above = |point: [f64; 2]| point[1] > 0.0;
+    if is_above(low) == is_above(high) {
+        return Step::NotBracketed;
+    }
+    for middle in tried {
+        if is_above(*middle) == is_above(low) {
+            low = *middle;
+        } else {
+            high = *middle;
+        }
+    }
+    if high[0] - low[0] <= find.tolerance {
+        Step::Found([low[0], high[0]])
+    } else {
+        Step::Try(Find::middle(low[0], high[0]))
+    }
+}
+
+/// The step after the points of the response so far. `value` is the one that is looked for.
+pub fn next_of(study: &Study, find: &Find, response: &Response, value: f64) -> Step {
+    let points = study.points();
+    let mean = |at: usize| {
+        let point = complete_point(study, response, at)?;
+        Some([points[at], point.mean - value])
+    };
+    let means: Vec<_> = (0..points.len()).map(mean).collect();
+    next_step(find, &means)
+}
+
+/// The point of the response with this index on the first axis, if all its runs have values.
+fn complete_point<'a>(
+    study: &Study,
+    response: &'a Response,
+    at: usize,
+) -> Option<&'a ResponsePoint> {
+    let averaged = study.average_over.map(|axis| study.axes[axis].values.len());
+    let found = response.points.iter().find(|point| point.choice[0] == at);
+    found.filter(|point| point.values.len() == averaged.unwrap_or(1))
+}
+
+/// The search of a study as its page shows it, and notes on its result.
+pub(crate) fn search(
+    study: &Study,
+    response: &Response,
+    value: f64,
+) -> Option<(Search, Vec<String>)> {
+    let find = study.find.as_ref()?;
+    let axis = study.axes.first()?;
+    let points = study.points();
+    let mut tried: Vec<[f64; 2]> = response
+        .points
+        .iter()
+        .map(|point| [points[point.choice[0]], point.mean])
+        .collect();
+    tried.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut notes = Vec::new();
+    let result = match next_of(study, find, response, value) {
+        Step::Found(between) => {
+            let is_end = |point: &&ResponsePoint| between.contains(&points[point.choice[0]]);
+            let is_uncertain = |point: &ResponsePoint| {
+                let error = point.standard_error();
+                error.is_some_and(|error| (point.mean - value).abs() < SURE * error)
+            };
+            SearchResult::Found {
+                at: f64::midpoint(between[0], between[1]),
+                between,
+                is_uncertain: response.points.iter().filter(is_end).any(is_uncertain),
+            }
+        }
+        Step::NotBracketed => SearchResult::NotBracketed,
+        Step::Try(_) | Step::Wait => SearchResult::Unfinished,
+    };
+    let search = Search {
+        parameter: axis.name.clone(),
+        unit: find.unit.clone(),
+        measure: find.measure,
+        value,
+        value_as_written: find.value.clone(),
+        tolerance: find.tolerance,
+        tried,
+        result,
+    };
+    let name = &study.measures[find.measure].name;
+    let crossings = search.crossings();
+    if crossings > 1 {
+        notes.push(format!(
+            "{name} passes {} {crossings} times between the points tried: the value found is one of them",
+            find.value
+        ));
+    }
+    if let SearchResult::Found {
+        is_uncertain: true, ..
+    } = search.result
+    {
+        notes.push(format!(
+            "the mean of {name} at an end of the interval found is within twice its standard error of {}: more values of the averaged axis make the result surer",
+            find.value
+        ));
+    }
+    Some((search, notes))
+}
+
+impl Search {
+    /// How often the means of neighbouring points lie on different sides of the value.
+    fn crossings(&self) -> usize {
+        let above = self.tried.iter().map(|[_, mean]| *mean > self.value);
+        let above: Vec<bool> = above.collect();
+        above.windows(2).filter(|two| two[0] != two[1]).count()
+    }
+
+    /// A value of the parameter with its unit.
+    pub fn shown(&self, number: f64) -> String {
+        format!("{} {}", significant(number, 4), self.unit)
+            .trim_end()
+            .to_owned()
+    }
+
+    /// The result in one sentence; `measure` is the name of the measure.
+    pub fn in_words(&self, measure: &str) -> String {
+        let Self { parameter, .. } = self;
+        let value = &self.value_as_written;
+        match &self.result {
+            SearchResult::Found {
+                at,
+                between: [low, high],
+                ..
+            } if low == high => {
+                format!("{measure} is {value} at {parameter} = {}", self.shown(*at))
+            }
+            SearchResult::Found {
+                at,
+                between: [low, high],
+                ..
+            } => format!(
+                "{measure} is {value} at {parameter} = {}, between {} and {}",
+                self.shown(*at),
+                self.shown(*low),
+                self.shown(*high)
+            ),
+            SearchResult::NotBracketed => format!(
+                "{value} does not lie between the values of {measure} at the ends: {}",
+                self.ends()
+            ),
+            SearchResult::Unfinished => format!(
+                "the search for {measure} = {value} is not finished: {} points have values",
+                self.tried.len()
+            ),
+        }
+    }
+
+    /// The values at the ends of the range.
+    fn ends(&self) -> String {
+        let ends = [self.tried.first(), self.tried.last()]
+            .into_iter()
+            .flatten();
+        let texts =
+            ends.map(|[x, mean]| format!("{} at {}", significant(*mean, 4), self.shown(*x)));
+        texts.collect::<Vec<String>>().join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn find(ends: [f64; 2], tolerance: f64) -> Find {
+        Find {
+            measure: 0,
+            value: "0".to_owned(),
+            ends,
+            tolerance,
+            unit: "m".to_owned(),
+            place: "here".to_owned(),
+        }
+    }
+
+    /// The points that are tried for a function, and the last step.
+    fn tried(find: &Find, function: impl Fn(f64) -> f64) -> (Vec<f64>, Step) {
+        let mut points = find.ends.to_vec();
+        loop {
+            let values: Vec<_> = points.iter().map(|x| Some([*x, function(*x)])).collect();
+            match next_step(find, &values) {
+                Step::Try(point) => points.push(point),
+                last => return (points, last),
+            }
+        }
+    }
+
+    #[test]
+    fn a_step_function_is_found_by_halves() {
+        let find = find([0.0, 16.0], 1.0);
+        let (points, last) = tried(&find, |x| if x < 5.5 { 1.0 } else { -1.0 });
+        assert_eq!(points, [0.0, 16.0, 8.0, 4.0, 6.0, 5.0]);
+        assert_eq!(last, Step::Found([5.0, 6.0]));
+        let (points, last) = tried(&find, |x| x - 4.0);
+        assert_eq!(points, [0.0, 16.0, 8.0, 4.0]);
+        assert_eq!(last, Step::Found([4.0; 2]), "exact");
+        assert_eq!(tried(&find, |x| x).1, Step::Found([0.0; 2]), "an end");
+        assert_eq!(tried(&find, |x| x + 1.0).1, Step::NotBracketed);
+        let missing = [Some([0.0, 1.0]), None];
+        assert_eq!(next_step(&find, &missing), Step::Wait);
+    }
+
+    proptest! {
+        /// Whatever the function, the interval is narrow enough, lies within the ends, and the
+        /// function has different signs at its ends.
+        #[test]
+        fn the_interval_brackets_the_value(
+            low in -10.0..10.0_f64, width in 0.1..10.0_f64, fraction in 0.001..0.5_f64,
+            root in 0.0..1.0_f64, waves in 0.0..40.0_f64, scale in -1e-200..1e-200_f64,
+        ) {
+            let find = find([low, low + width], fraction * width);
+            let function = |x: f64| scale * ((x - low) / width - root + 0.3 * (waves * x).sin());
+            let (points, last) = tried(&find, function);
+            match last {
+                Step::Found([a, b]) => {
+                    prop_assert!(b - a <= find.tolerance && a >= low && b <= low + width);
+                    prop_assert!(function(a) == 0.0 || (function(a) > 0.0) != (function(b) > 0.0));
+                    prop_assert!(points.contains(&a) && points.contains(&b));
+                }
+                Step::NotBracketed => {
+                    prop_assert_eq!(function(low) > 0.0, function(low + width) > 0.0);
+                }
+                other => prop_assert!(false, "{:?}", other),
+            }
+        }
+    }
+}
