@@ -175,8 +175,10 @@ fn nothing_is_written_where_something_is() {
     assert_eq!(fs::read_dir(here.join("full")).unwrap().count(), 1);
 }
 
-/// The sections of a dump: time, timestep, columns and rows.
-fn sections(path: &Path) -> Vec<(f64, usize, Vec<String>, Vec<Vec<f64>>)> {
+/// A section of a dump: time, timestep, columns and rows.
+type Section = (f64, usize, Vec<String>, Vec<Vec<f64>>);
+
+fn sections(path: &Path) -> Vec<Section> {
     let text = fs::read_to_string(path).unwrap();
     let text = text.strip_prefix("ITEM: UNITS\nsi\n").unwrap();
     let mut lines = text.lines();
