@@ -5,6 +5,8 @@ use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+mod names;
+
 use super::plot_file::{is_plot_file, write_plot_file};
 use dem_io::body::stored_walls::FIXED_WALLS_FILE;
 use dem_io::diagnostic::{Diagnostic, Result};
@@ -12,7 +14,10 @@ use dem_io::safe_write::{
     PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
 };
 
-const FRAMES: &str = "frames";
+use names::{FRAMES, frame_number, picture_number, walls_number};
+pub(super) use names::{fixed_walls_name, frame_name, walls_name};
+pub use names::{frame_in, walls_in};
+
 const PLOTS: &str = "plots";
 const PICTURES: &str = "pictures";
 const FILM_STRIP: &str = "film-strip.png";
@@ -475,54 +480,6 @@ pub fn frames_in(path: &Path) -> Result<Vec<usize>> {
     }
     numbers.sort_unstable();
     Ok(numbers)
-}
-
-/// Frame `number` of the results folder `path`.
-pub fn frame_in(path: &Path, number: usize) -> PathBuf {
-    path.join(frame_name(number))
-}
-
-/// The walls of frame `number` of the results folder `path`; [`dem_io::body::read_walls`] reads
-/// them. There is no such file if the scene has no walls.
-pub fn walls_in(path: &Path, number: usize) -> PathBuf {
-    path.join(walls_name(number))
-}
-
-/// The name of a frame in the folder, with `/` on every system, as required by ParaView.
-pub(super) fn frame_name(number: usize) -> String {
-    format!("{FRAMES}/frame_{number:06}.vtp")
-}
-
-/// The name of the walls of a frame in the folder.
-pub(super) fn walls_name(number: usize) -> String {
-    format!("{FRAMES}/walls_{number:06}.vtp")
-}
-
-/// The name of the walls that never move in the folder.
-pub(super) fn fixed_walls_name() -> String {
-    format!("{FRAMES}/{FIXED_WALLS_FILE}")
-}
-
-/// 123 of `frame_000123.vtp`.
-fn frame_number(name: &str) -> Option<usize> {
-    number_of(name, "frame_", ".vtp", 6)
-}
-
-/// 123 of `walls_000123.vtp`.
-fn walls_number(name: &str) -> Option<usize> {
-    number_of(name, "walls_", ".vtp", 6)
-}
-
-/// 123 of `picture-00123.png`.
-fn picture_number(name: &str) -> Option<usize> {
-    number_of(name, "picture-", ".png", 5)
-}
-
-/// The number, of at least `least` digits, between `before` and `after`.
-fn number_of(name: &str, before: &str, after: &str, least: usize) -> Option<usize> {
-    let digits = name.strip_prefix(before)?.strip_suffix(after)?;
-    let is_number = digits.len() >= least && digits.bytes().all(|byte| byte.is_ascii_digit());
-    is_number.then(|| digits.parse().ok()).flatten()
 }
 
 /// Makes a folder unless it exists. Its parent must exist.

@@ -30,6 +30,7 @@ use dem_scene::{Integrator, Quantity, Scene};
 use crate::stages::ledger::opened;
 use crate::stages::population::apply_topology_change;
 use crate::state::State;
+use crate::state::clumps::Template;
 use crate::state::clusters::sizes::{Sphere, box_lengths_m};
 use crate::state::clusters::{Clusters, Triggers};
 use crate::state::events::TopologyChange;
@@ -106,13 +107,12 @@ pub struct Plan {
 /// equilibrium, a piece that supports do not hold.
 pub fn plan(
     scene: &Scene,
-    read: BTreeMap<String, Body>,
+    mut read: BTreeMap<String, Body>,
     threads: usize,
     allow_any_step: bool,
 ) -> Result<Plan> {
     let inputs = Inputs::of(scene, &read);
     let scene = &placed(scene, &read)?;
-    let mut read = read;
     let about: BTreeMap<String, About> = (read.iter())
         .map(|(name, body)| (name.clone(), body.about.clone()))
         .collect();
@@ -126,9 +126,10 @@ pub fn plan(
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let masses = masses::masses(scene, &about, &templates, &bodies, &particles);
     let groups = resolve_groups(scene, &bodies, &particles)?;
-    let to_come = templates.iter();
-    let to_come = to_come.map(|template| template.spheres.len() + template.bonds.len());
-    let enough = 1 + (particles.len() + bonds.len() + to_come.sum::<usize>()) / WORTH_A_THREAD;
+    let size = |template: &Arc<Template>| template.spheres.len() + template.bonds.len();
+    let enough = 1
+        + (particles.len() + bonds.len() + templates.iter().map(size).sum::<usize>())
+            / WORTH_A_THREAD;
     let mut state = State::new(particles, bonds, 1.0, threads.min(enough));
     state.model.bodies = named;
     state.model.gravity_m_s2 = scene.run.gravity_m_s2;

@@ -442,6 +442,24 @@ impl Summary {
         doubts
     }
 
+    /// Sizes of all fragments, if any body has broken.
+    fn write_sizes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
+        let sizes = self.sizes.as_ref().and_then(|sizes| sizes.all.get("both"));
+        let Some(sizes) = sizes.filter(|_| has_split) else {
+            return Ok(());
+        };
+        let mm = |size_m: f64| significant(size_m * 1e3, 3);
+        writeln!(
+            f,
+            "sizes        d10 {} mm   d50 {} mm   d80 {} mm   t10 {}",
+            mm(sizes.d10_m),
+            mm(sizes.d50_m),
+            mm(sizes.d80_m),
+            significant(sizes.t10, 3)
+        )
+    }
+
     /// Two lines for each body: its masses.
     ///
     /// # Errors
@@ -537,19 +555,7 @@ impl fmt::Display for Summary {
                 significant(fragments.mass_fraction_of_largest, 3)
             )?;
         }
-        if let Some(sizes) = self.sizes.as_ref().and_then(|sizes| sizes.all.get("both"))
-            && self.fragments.is_some_and(|fragments| fragments.splits > 0)
-        {
-            let mm = |size_m: f64| significant(size_m * 1e3, 3);
-            writeln!(
-                f,
-                "sizes        d10 {} mm   d50 {} mm   d80 {} mm   t10 {}",
-                mm(sizes.d10_m),
-                mm(sizes.d50_m),
-                mm(sizes.d80_m),
-                significant(sizes.t10, 3)
-            )?;
-        }
+        self.write_sizes(f)?;
         self.write_masses(f)?;
         writeln!(f, "inactive     {}", self.inactive_stages.join(", "))?;
         self.write_verdict(f)

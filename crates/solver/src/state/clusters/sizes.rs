@@ -37,7 +37,7 @@ pub struct Discharged {
     pub time_s: f64,
     /// Its number in [`Clusters::history`].
     pub fragment_id: u32,
-    /// The outlet: number in [`crate::state::rules::Rules::outlets`].
+    /// The outlet: number among the outlets of the scene, in the order of their names.
     pub outlet: u32,
     /// Its mass and size.
     pub size: FragmentSize,

@@ -1,0 +1,109 @@
+//! The data of a .vtp file as a frame of a run, its particles or its walls.
+
+use super::{Contents, OfFrame, check_count};
+use crate::body::stored_frame::{self as frame, StoredFrame};
+use crate::body::stored_particles::StoredParticles;
+use crate::body::stored_walls::StoredWalls;
+use crate::body::vtp::decode::DAMAGED;
+use crate::diagnostic::{Diagnostic, Result};
+
+impl Contents {
+    /// The frame, if all data of its fragments were present.
+    pub(in super::super) fn into_frame(self) -> Result<StoredFrame> {
+        self.check_counts()?;
+        self.check_bond_ends()?;
+        let missing = |name: &str| {
+            Diagnostic::input(
+                "",
+                format!("this frame has no fragments: there is no array '{name}'"),
+                "only frames of runs in which bodies break into fragments have it",
+            )
+        };
+        let OfFrame {
+            time_s,
+            clusters,
+            densities,
+            broken,
+            ..
+        } = self.of_frame;
+        let parts = self.parts;
+        Ok(StoredFrame {
+            time_s: time_s.ok_or_else(|| missing(frame::TIME))?,
+            clusters: clusters.ok_or_else(|| missing(frame::FRAGMENT_ID))?,
+            positions: parts.positions,
+            radii: self.radii.ok_or_else(|| missing(frame::RADIUS))?,
+            densities_kg_m3: densities.ok_or_else(|| missing(frame::DENSITY))?,
+            bonds: parts.bonds,
+            bond_radii: parts
+                .bond_radii
+                .ok_or_else(|| missing(frame::BOND_RADIUS))?,
+            bond_lengths: parts
+                .bond_lengths
+                .ok_or_else(|| missing(frame::BOND_LENGTH))?,
+            broken: broken
+                .ok_or_else(|| missing(frame::BROKEN))?
+                .into_iter()
+                .map(|broken| broken != 0.0)
+                .collect(),
+        })
+    }
+
+    /// The particles and bonds of a frame of any run, if all their data were present.
+    pub(in super::super) fn into_particles(self) -> Result<StoredParticles> {
+        self.check_counts()?;
+        self.check_bond_ends()?;
+        let missing = |name: &str| {
+            let problem = format!("this is no frame of a run: there is no array '{name}'");
+            Diagnostic::input("", problem, "run the scene again with this program")
+        };
+        let of_frame = self.of_frame;
+        let velocities = of_frame
+            .velocities
+            .ok_or_else(|| missing(frame::VELOCITY))?;
+        let broken = of_frame.broken.ok_or_else(|| missing(frame::BROKEN))?;
+        Ok(StoredParticles {
+            time_s: of_frame.time_s.ok_or_else(|| missing(frame::TIME))?,
+            body_names: of_frame.body_names,
+            bodies: of_frame.bodies.ok_or_else(|| missing(frame::BODY))?,
+            ids: of_frame.ids.ok_or_else(|| missing(frame::PARTICLE_ID))?,
+            positions: self.parts.positions,
+            radii: self.radii.ok_or_else(|| missing(frame::RADIUS))?,
+            velocities_m_s: velocities.as_chunks().0.to_vec(),
+            fragments: of_frame.clusters,
+            bonds: self.parts.bonds,
+            broken: broken.into_iter().map(|broken| broken != 0.0).collect(),
+        })
+    }
+
+    /// Checks that the particles of all bonds exist.
+    fn check_bond_ends(&self) -> Result<()> {
+        let particles = self.parts.positions.len();
+        let mut ends = self.parts.bonds.as_flattened().iter();
+        match ends.find(|end| **end as usize >= particles) {
+            None => Ok(()),
+            Some(end) => {
+                let problem = format!("a bond joins particle {end}, but there are {particles}");
+                Err(Diagnostic::input("", problem, DAMAGED))
+            }
+        }
+    }
+
+    /// The walls, if all their data were present.
+    pub(in super::super) fn into_walls(self) -> Result<StoredWalls> {
+        let (counts, walls) = (self.counts.unwrap_or_default(), self.walls);
+        let found = [
+            (self.parts.positions.len(), counts.points, "points"),
+            (walls.triangles.len(), counts.cells_after, "triangles"),
+            (walls.wall_of_triangle.len(), counts.cells_after, "values"),
+            (walls.forces_n.len(), walls.names.len() as u64, "forces"),
+        ];
+        for (count, wanted, what) in found {
+            check_count(count as u64, wanted.into(), what)?;
+        }
+        Ok(StoredWalls {
+            time_s: self.of_frame.time_s.unwrap_or(0.0),
+            points_m: self.parts.positions,
+            ..walls
+        })
+    }
+}
