@@ -15,7 +15,7 @@ mod text;
 mod unknown;
 
 pub use confidence::{half_width, student_95};
-pub use page::page;
+pub use page::{page, sizes};
 pub use record::{FORMAT_VERSION, Record, read_record, write_record};
 pub use resolution::{coarsest, curve_error};
 pub use rounds::{Case, Round, Start, TestFunction, Trial, calibrate};

@@ -146,8 +146,8 @@ fn history(record: &Record, case: &Case) -> Table {
     }
 }
 
-/// One row for each size: numbers, scatter, run time and error of the curve.
-fn sizes(record: &Record) -> Table {
+/// A table with one row for each size: numbers, scatter, run time and error of the curve.
+pub fn sizes(record: &Record) -> Table {
     let mut heads = vec!["spheres", "particles", "bonds", "across the body"];
     for unknown in &record.unknowns {
         heads.push(&unknown.numbers[0].path);

@@ -1,12 +1,7 @@
-//! The tables of doc/calibration.md, from tests without steps. From the folder of the clone:
-//!
-//! ```sh
-//! cargo run --release -p dem-run --example calibration_tables      # 2 minutes
-//! ```
-#![allow(clippy::print_stdout, reason = "it prints a table")]
+//! Modulus of a beam over that of its bonds, for spheres from coarse to fine, from tests without
+//! steps.
 
 use std::collections::BTreeMap;
-use std::error::Error;
 
 use dem_io::Body;
 use dem_io::units::significant;
@@ -17,10 +12,13 @@ use dem_run::plan;
 use dem_run::run::statics::elastic_test::elastic_test;
 use dem_scene::read_scene;
 
+use super::programs::Failed;
+use super::{Table, head};
+
 const SCENE: &str = "data/scenes/four-point-bending.toml";
 const SHAPE: &str = "data/shapes/bending-sample.stl";
 /// Diameters from coarse to fine, and the number of packings of each.
-const SIZES: [(&str, u64); 6] = [
+pub(crate) const SIZES: [(&str, u64); 6] = [
     ("10mm..12mm", 4),
     ("7mm..9mm", 4),
     ("5mm..7mm", 4),
@@ -39,11 +37,17 @@ struct Found {
     section: f64,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    println!(
-        "| diameters | spheres | across the height | E of the body over E of the bonds | section of the bonds | quotient |"
-    );
-    println!("|---|---|---|---|---|---|");
+pub(crate) const HEAD: [&str; 6] = [
+    "diameters",
+    "spheres",
+    "across the height",
+    "E of the body over E of the bonds",
+    "section of the bonds",
+    "quotient",
+];
+
+pub(crate) fn table() -> Result<Table, Failed> {
+    let mut rows = Vec::new();
     for (diameters, packings) in SIZES {
         let found: Vec<Found> = (1..=packings)
             .map(|seed| tested(diameters, seed))
@@ -59,19 +63,24 @@ fn main() -> Result<(), Box<dyn Error>> {
                 value.mean, value.standard_deviation
             ),
         };
-        println!(
-            "| {diameters} | {:.0} | {} | {} | {} | {} |",
-            of(|one| one.spheres as f64).mean,
+        rows.push(vec![
+            diameters.to_owned(),
+            format!("{:.0}", of(|one| one.spheres as f64).mean),
             significant(of(|one| one.across).mean, 3),
             cell(of(|one| one.modulus), 2),
             cell(of(|one| one.section), 3),
             cell(of(|one| one.modulus / one.section), 2),
-        );
+        ]);
     }
-    Ok(())
+    let head = head(&HEAD);
+    Ok(Table {
+        word: "stiffness",
+        head,
+        rows,
+    })
 }
 
-fn tested(diameters: &str, seed: u64) -> Result<Found, Box<dyn Error>> {
+fn tested(diameters: &str, seed: u64) -> Result<Found, Failed> {
     let words = [
         SHAPE,
         "--diameter",
