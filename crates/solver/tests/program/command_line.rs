@@ -117,7 +117,14 @@ fn the_word_run_may_stand_before_the_scene() {
     let out = |first: &[&str]| {
         let folder = bench.path(&format!("out-{}", first.len()));
         let folder = folder.display().to_string();
-        let short = ["--set", "run.end_time=1 ms", "--quiet", "--json", "--output", &folder];
+        let short = [
+            "--set",
+            "run.end_time=1 ms",
+            "--quiet",
+            "--json",
+            "--output",
+            &folder,
+        ];
         let arguments = [first, &[scene.as_str()], &short[..]].concat();
         let json: serde_json::Value = serde_json::from_str(&said(&arguments)).unwrap();
         json["steps"].clone()
