@@ -1,20 +1,47 @@
-//! README.md is correct: its commands run, and the files, options and shapes that it names exist.
+//! README.md and the pages in doc/ are correct: their commands run, and the files, options and
+//! shapes that they name exist.
 
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 use super::{DEM_PACK, DEM_RUN, dem_pack, dem_run, root};
 
-fn readme() -> String {
-    fs::read_to_string(root().join("README.md")).unwrap()
+/// The pages whose commands are run and whose options must exist.
+const PAGES: [&str; 9] = [
+    "README.md",
+    "doc/README.md",
+    "doc/packing.md",
+    "doc/packing-method.md",
+    "doc/running.md",
+    "doc/calibration.md",
+    "doc/measured-curves.md",
+    "doc/gallery.md",
+    "doc/development.md",
+];
+
+fn read(page: &str) -> String {
+    fs::read_to_string(root().join(page)).unwrap()
+}
+
+/// The files of this ending in a folder of the repository, such as `doc/studies.md`.
+fn files_in(folder: &str, ending: &str) -> Vec<String> {
+    let entries = fs::read_dir(root().join(folder)).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut found: Vec<String> = names
+        .filter(|name| name.ends_with(ending))
+        .map(|name| format!("{folder}/{name}"))
+        .collect();
+    found.sort();
+    found
 }
 
 /// The lines of all code blocks in this language.
-fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
+fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     let fence = format!("```{language}");
     let mut inside = false;
     let mut found = Vec::new();
-    for line in readme.lines() {
+    for line in page.lines() {
         if line.starts_with("```") {
             inside = line == fence;
         } else if inside {
@@ -24,24 +51,17 @@ fn blocks<'a>(readme: &'a str, language: &str) -> Vec<&'a str> {
     found
 }
 
-/// Every command runs, in order, in a folder with a copy of the shapes, scenes and bodies. To save
-/// time, spheres are larger, packings fewer, the chute ends sooner, and a shape with few facets
-/// replaces the rock.
-#[test]
-fn commands_run_as_pasted() {
-    let folder = tempfile::tempdir().unwrap();
-    let shapes = folder.path().join("data/shapes");
+/// Copies the shapes, scenes and bodies. A shape with few facets replaces the rock, to save time.
+fn copy_data(to: &Path) {
+    let shapes = to.join("data/shapes");
     fs::create_dir_all(&shapes).unwrap();
     for (name, stands_in) in [
         ("filter-cake.stl", "filter-cake.stl"),
         ("rock.stl", "c-shape.stl"),
         ("bending-sample.stl", "bending-sample.stl"),
     ] {
-        fs::copy(
-            root().join("data/shapes").join(stands_in),
-            shapes.join(name),
-        )
-        .unwrap();
+        let original = root().join("data/shapes").join(stands_in);
+        fs::copy(original, shapes.join(name)).unwrap();
     }
     for name in [
         "data/scenes",
@@ -49,13 +69,41 @@ fn commands_run_as_pasted() {
         "data/studies",
         "data/measured",
     ] {
-        let copies = folder.path().join(name);
+        let copies = to.join(name);
         fs::create_dir_all(&copies).unwrap();
         for file in fs::read_dir(root().join(name)).unwrap() {
             let file = file.unwrap();
             fs::copy(file.path(), copies.join(file.file_name())).unwrap();
         }
     }
+}
+
+/// The command, with larger spheres, fewer packings and a chute that ends sooner; none if it builds
+/// or tests the programs.
+fn shortened(line: &str) -> Option<String> {
+    let line = line
+        .replace("cargo run --release --bin dem-pack -- ", "dem-pack ")
+        .replace("cargo run --release --bin dem-run -- ", "dem-run ");
+    if line.starts_with("cargo ") || line.starts_with("export ") {
+        return None;
+    }
+    let small = line
+        .replace(" 2mm..3mm", " 4mm..5mm")
+        .replace(" 5mm..7mm", " 7mm..9mm")
+        .replace(" -o cake.toml --", " -o cake.toml --packings 2 --")
+        .replace("/chute.toml", "/chute.toml --set run.end_time=0.2")
+        .replace(
+            " data/studies/spinning-bar.toml",
+            " data/studies/spinning-bar.toml --jobs 2",
+        );
+    Some(small)
+}
+
+/// Runs the commands of a page in order, in a folder with a copy of the data: there are at least so
+/// many, and they leave these files.
+fn run_commands(page: &str, at_least: usize, made: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    copy_data(folder.path());
     let programs = tempfile::tempdir().unwrap();
     for (name, program) in [("dem-pack", DEM_PACK), ("dem-run", DEM_RUN)] {
         std::os::unix::fs::symlink(program, programs.path().join(name)).unwrap();
@@ -67,23 +115,9 @@ fn commands_run_as_pasted() {
             .chain(std::env::split_paths(&inherited)),
     )
     .unwrap();
-    let readme = readme();
+    let text = read(page);
     let mut commands = 0;
-    for line in blocks(&readme, "sh") {
-        let line = line.replace("cargo run --release --bin dem-pack -- ", "dem-pack ");
-        let line = line.replace("cargo run --release --bin dem-run -- ", "dem-run ");
-        if line.starts_with("cargo ") || line.starts_with("export ") {
-            continue;
-        }
-        let small = line
-            .replace(" 2mm..3mm", " 4mm..5mm")
-            .replace(" 5mm..7mm", " 7mm..9mm")
-            .replace(" -o cake.toml --", " -o cake.toml --packings 2 --")
-            .replace("/chute.toml", "/chute.toml --set run.end_time=0.2")
-            .replace(
-                " data/studies/spinning-bar.toml",
-                " data/studies/spinning-bar.toml --jobs 2",
-            );
+    for small in blocks(&text, "sh").into_iter().filter_map(shortened) {
         let output = Command::new("bash")
             .args(["-o", "pipefail", "-c", &small])
             .env("PATH", &path)
@@ -91,12 +125,33 @@ fn commands_run_as_pasted() {
             .output()
             .unwrap();
         let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{small}\n{said}");
-        assert!(!said.contains("error:"), "{small}\n{said}");
+        assert!(output.status.success(), "{page}: {small}\n{said}");
+        assert!(!said.contains("error:"), "{page}: {small}\n{said}");
         commands += 1;
     }
-    assert!(commands >= 10, "{commands} commands");
-    for made in [
+    assert!(commands >= at_least, "{page}: {commands} commands");
+    for name in made {
+        let length = fs::metadata(folder.path().join(name)).unwrap().len();
+        assert!(length > 1000, "{page}: {name}");
+    }
+}
+
+#[test]
+fn commands_of_the_readme_run() {
+    run_commands(
+        "README.md",
+        1,
+        &[
+            "cake.vtp",
+            "chute-out/film-strip.png",
+            "chute-out/report.html",
+        ],
+    );
+}
+
+#[test]
+fn commands_for_packing_run() {
+    let made = [
         "cake.vtp",
         "cake.data",
         "cake.particles.csv",
@@ -104,78 +159,138 @@ fn commands_run_as_pasted() {
         "again.vtp",
         "rock.vtp",
         "dem-pack.1",
-        "dem-run.1",
-    ] {
-        assert!(
-            fs::metadata(folder.path().join(made)).unwrap().len() > 1000,
-            "{made}"
-        );
-    }
+    ];
+    run_commands("doc/packing.md", 12, &made);
 }
 
-/// Words that begin with one of the repository's folders, and the targets of links.
+#[test]
+fn commands_for_running_run() {
+    let made = [
+        "spin/report.html",
+        "cake-falls/film.png",
+        "at-rest/summary.json",
+        "dem-run.1",
+    ];
+    run_commands("doc/running.md", 12, &made);
+}
+
+#[test]
+fn commands_for_calibration_run() {
+    let made = [
+        "measured.json",
+        "cake.html",
+        "four-point-bending-out/report.html",
+    ];
+    run_commands("doc/calibration.md", 4, &made);
+}
+
+#[test]
+fn commands_for_studies_run() {
+    run_commands("doc/studies.md", 1, &["spinning-bar-sweep/sweep.html"]);
+}
+
+/// The targets of links, without their anchors.
+fn links(text: &str) -> impl Iterator<Item = &str> {
+    let targets = text.split("](").skip(1);
+    targets
+        .map(|rest| rest.split(['#', ')']).next().unwrap())
+        .filter(|link| !link.is_empty() && !link.starts_with("http"))
+}
+
+#[test]
+fn links_lead_to_files() {
+    let mut pages = files_in("doc", ".md");
+    pages.push("README.md".to_owned());
+    let mut files = 0;
+    for page in &pages {
+        let path = root().join(page);
+        for link in links(&read(page)) {
+            assert!(
+                path.parent().unwrap().join(link).exists(),
+                "{page} links to {link}"
+            );
+            files += 1;
+        }
+    }
+    assert!(files >= 100, "{files} files");
+}
+
+/// Words that begin with one of the repository's folders.
 #[test]
 fn files_exist() {
-    let readme = readme();
-    let links = readme
-        .split("](")
-        .skip(1)
-        .map(|rest| rest.split(')').next().unwrap());
-    let words = readme
-        .split(|c: char| c.is_whitespace() || "`\"'(),;:".contains(c))
-        .filter(|word| {
-            ["data/", "crates/", "doc/", "fuzz/", ".ci/"]
-                .iter()
-                .any(|folder| word.starts_with(folder))
-        });
     let mut files = 0;
-    for name in links.filter(|link| !link.starts_with("http")).chain(words) {
-        let path = root().join(name.trim_end_matches('.'));
-        assert!(path.exists(), "README.md names {name}");
-        files += 1;
+    for page in PAGES {
+        let text = read(page);
+        let words = text
+            .split(|c: char| c.is_whitespace() || "`\"'(),;:[]".contains(c))
+            .filter(|word| {
+                ["data/", "crates/", "doc/", "fuzz/", ".ci/"]
+                    .iter()
+                    .any(|folder| word.starts_with(folder))
+            });
+        for name in words {
+            let path = root().join(name.trim_end_matches('.'));
+            assert!(path.exists(), "{page} names {name}");
+            files += 1;
+        }
     }
-    assert!(files >= 10, "{files} files");
+    assert!(files >= 30, "{files} files");
 }
 
-/// The help of these commands.
-fn help(of: impl Fn() -> Command, commands: &[&[&str]]) -> String {
-    let said = commands.iter().map(|arguments| {
-        let output = of().args(*arguments).arg("--help").output().unwrap();
+/// The help of a program and of all its commands.
+fn help(of: impl Fn() -> Command) -> String {
+    let said = |arguments: &[&str]| {
+        let output = of().args(arguments).arg("--help").output().unwrap();
         String::from_utf8(output.stdout).unwrap()
-    });
-    said.collect()
+    };
+    let all = said(&[]);
+    let commands = all.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let names = commands
+        .take_while(|line| !line.is_empty())
+        .filter(|line| line.starts_with("  ") && !line.starts_with("   "))
+        .map(|line| line.split_whitespace().next().unwrap());
+    let of_commands: Vec<String> = names
+        .filter(|name| *name != "help")
+        .map(|name| said(&[name]))
+        .collect();
+    assert!(of_commands.len() >= 4, "{all}");
+    all + &of_commands.concat()
 }
 
 /// Every option outside cargo commands is an option of one of the programs, and every option of the
-/// programs is named: in the README, or on the page of its command.
+/// programs is named on a page.
 #[test]
 fn options_exist() {
-    let mut known = help(dem_pack, &[&[], &["info"], &["convert"]]);
-    known += &help(dem_run, &[&[], &["check"], &["fragment"], &["sweep"]]);
-    let of_pages = help(dem_run, &[&["lab"], &["calibrate"]]);
-    let readme = readme().replace("cargo run --release --bin dem-pack -- ", "dem-pack ");
-    let lines = readme.lines().filter(|line| !line.contains("cargo "));
-    let named: Vec<String> = lines.flat_map(options).collect();
-    assert!(named.len() >= 20, "{named:?}");
-    let all = options(&(known.clone() + &of_pages));
-    for option in &named {
-        assert!(
-            all.contains(option),
-            "README.md names {option}, which no program knows"
-        );
-    }
-    let pages = ["doc/measured-curves.md", "doc/calibration.md"]
-        .map(|page| fs::read_to_string(root().join(page)).unwrap())
-        .concat();
-    for (command, text) in [(known, readme.clone()), (of_pages, readme + &pages)] {
-        let named = options(&text);
-        for option in options(&command) {
-            let told_by_help = ["--help", "--version"].contains(&option.as_str());
+    let known = options(&(help(dem_pack) + &help(dem_run)));
+    let mut named = Vec::new();
+    for page in PAGES {
+        let text = read(page)
+            .replace("cargo run --release --bin dem-pack -- ", "dem-pack ")
+            .replace("cargo run --release --bin dem-run -- ", "dem-run ");
+        for option in text
+            .lines()
+            .filter(|line| !line.contains("cargo "))
+            .flat_map(options)
+        {
             assert!(
-                told_by_help || named.contains(&option),
-                "README.md and the page of its command do not name {option}"
+                known.contains(&option),
+                "{page} names {option}, which no program knows"
             );
+            named.push(option);
         }
+    }
+    assert!(named.len() >= 20, "{named:?}");
+    let pages: String = files_in("doc", ".md")
+        .iter()
+        .map(|page| read(page))
+        .collect();
+    named.extend(options(&pages));
+    for option in known {
+        let told_by_help = ["--help", "--version"].contains(&option.as_str());
+        assert!(
+            told_by_help || named.contains(&option),
+            "no page names {option}"
+        );
     }
 }
 
@@ -189,7 +304,38 @@ fn options(text: &str) -> Vec<String> {
         .collect()
 }
 
-/// Every line of the report begins with a name that the README's table explains.
+/// README.md is short, code and tables included.
+#[test]
+fn the_readme_is_short() {
+    let words = read("README.md").split_whitespace().count();
+    assert!(words <= 1200, "README.md has {words} words");
+}
+
+#[test]
+fn the_table_of_contents_names_every_page() {
+    let contents = read("doc/README.md");
+    for page in files_in("doc", ".md") {
+        let name = page.trim_start_matches("doc/");
+        let link = format!("]({name})");
+        assert!(
+            name == "README.md" || contents.contains(&link),
+            "doc/README.md does not link to {name}"
+        );
+    }
+}
+
+#[test]
+fn the_gallery_names_every_scene() {
+    let gallery = read("doc/gallery.md");
+    for scene in files_in("data/scenes", ".toml") {
+        assert!(
+            gallery.contains(&scene),
+            "doc/gallery.md does not name {scene}"
+        );
+    }
+}
+
+/// Every line of the report begins with a name that the table of doc/packing.md explains.
 #[test]
 fn report_is_explained() {
     let folder = tempfile::tempdir().unwrap();
@@ -213,12 +359,12 @@ fn report_is_explained() {
         String::from_utf8_lossy(&output.stderr)
     );
     let report = String::from_utf8(output.stdout).unwrap();
-    let readme = readme();
+    let page = read("doc/packing.md");
     for line in report.lines().skip(1) {
         let name = line.split("  ").next().unwrap().split(':').next().unwrap();
         assert!(
-            readme.contains(&format!("`{name}`")),
-            "the README's table does not explain '{name}':\n{report}"
+            page.contains(&format!("`{name}`")),
+            "the table of doc/packing.md does not explain '{name}':\n{report}"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! Prints the tables of README.md as Markdown, in the bending sample of `data/shapes`:
+//! Prints the tables of doc/packing-method.md as Markdown, in the bending sample of `data/shapes`:
 //!
 //! ```text
 //! cargo run --release -p dem-pack --example quality_table           # quality, each --densify
