@@ -82,8 +82,8 @@ fn refusal(arguments: &[&str]) -> String {
 fn arguments_are_refused_on_one_line() {
     for (arguments, parts) in [
         (
-            &["picture", "d4"][..],
-            "dem-run picture: there is no such command, and no such file; name a scene (.toml), or one of the commands check, new, keys, ",
+            &["pictures", "d4"][..],
+            "dem-run pictures: there is no such command, and no such file; name a scene (.toml), or one of the commands check, new, keys, ",
         ),
         (
             &["tablet.stl"],
@@ -148,7 +148,7 @@ fn colours_stay_out_of_pipes() {
         [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap())
     };
     let [plain, _] = output(false, &[&scene, "--set", "run.end_time=1 ms"]);
-    let [coloured, _] = output(true, &[&scene, "--set", "run.end_time=1 ms"]);
+    let [coloured, _] = output(true, &[&scene, "--set", "run.end_time=1 ms", "--force"]);
     assert!(!plain.contains('\u{1b}') && plain.contains("\nverdict "));
     assert!(
         coloured.contains("\u{1b}[1m\u{1b}[32mverdict\u{1b}[0m "),

@@ -111,6 +111,7 @@ fn writes_one_frame_and_one_row() {
         "events.csv",
         "frames",
         "frames.pvd",
+        "report.html",
         "scene.toml",
         "series.csv",
         "summary.json",

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
-use dem_results::{EventFile, FrameFiles, ResultsFolder, SeriesFile, write_json};
+use dem_results::{EventFile, FrameFiles, ResultsFolder, SeriesFile};
 use dem_scene::Scene;
 
 use super::newton::Equilibrium;
@@ -18,6 +18,7 @@ use crate::output::summary::{Summary, Verdict};
 use crate::output::walls::WallOutput;
 use crate::physics::bond::failure::CauseCounts;
 use crate::plan::inputs::Inputs;
+use crate::run::finish::End;
 use crate::run::settings::RunSettings;
 use crate::stages::bonds::most_strained_edge;
 use crate::stages::ledger::Balance;
@@ -114,8 +115,8 @@ impl AtRest<'_> {
         }
     }
 
-    /// Writes one frame, one row of the time series with the `measured` values, no events, and the
-    /// summary.
+    /// Writes one frame, one row of the time series with the `measured` values, no events, the page
+    /// and the summary.
     ///
     /// # Errors
     /// Those of the files.
@@ -136,6 +137,8 @@ impl AtRest<'_> {
         let walls = WallOutput::of(self.state);
         let mut frames = FrameFiles::create(folder, walls.files());
         order.write(self.state, &walls, &mut frames)?;
-        write_json(&folder.summary(), summary)
+        let end = End::of(summary)?;
+        end.write_page(folder)?;
+        end.write_summary(folder)
     }
 }
