@@ -93,7 +93,7 @@ const LARGER_SPHERES_HEAD: [&str; 9] = [
 const FLAT_HEAD: [&str; 3] = [
     "`bonds.cake.damping.damping_ratio`",
     "rebound",
-    "share of the height of the fall",
+    "fraction of the height of the fall",
 ];
 
 const DAMPING: [&str; 4] = ["0.02", "0.1", "0.2", "0.5"];
