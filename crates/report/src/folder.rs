@@ -24,6 +24,14 @@ impl Folder {
         let text = match fs::read_to_string(&index) {
             Ok(text) => text,
             // A run without frames has no list.
+            Err(_) if path.is_file() => {
+                let problem = "this is a file, not a folder of results";
+                return Err(Diagnostic::input(
+                    path.display().to_string(),
+                    problem,
+                    "name the folder",
+                ));
+            }
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
             Err(error) => {
                 let problem = format!("cannot be read: {error}");

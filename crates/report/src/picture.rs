@@ -70,18 +70,18 @@ pub enum PictureKind {
 /// code 2).
 pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<Vec<u8>> {
     let folder = Folder::read(path)?;
+    if folder.frames().is_empty() {
+        return Err(Diagnostic::input(
+            path.display().to_string(),
+            "there are no frames of a run",
+            "name the folder of results of a run whose scene has output.frames",
+        ));
+    }
     let from = match order.from {
         Some(from) => from,
         None => from_of_scene(path, &folder)?,
     };
     let frames = folder.frames();
-    if frames.is_empty() {
-        return Err(Diagnostic::input(
-            path.display().to_string(),
-            "this folder has no frames",
-            "name the folder of a run whose scene has output.frames",
-        ));
-    }
     let chosen = chosen(frames, order, kind)?;
     let colours = Colours::of(order.colour_by, path, &chosen)?;
     let camera = camera(order, from, &chosen)?;

@@ -155,5 +155,8 @@ fn what_is_not_there_is_named() {
     assert!(error.to_string().contains("0 to 2"), "{error}");
     let empty = tempfile::tempdir().unwrap();
     let error = picture(empty.path(), &order, PictureKind::Png).unwrap_err();
-    assert!(error.to_string().contains("no frames"), "{error}");
+    assert!(
+        error.to_string().contains("there are no frames of a run"),
+        "{error}"
+    );
 }

@@ -59,8 +59,16 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
         steps: number("steps")? as u64,
         time_step_s: number("time_step_s")?,
         machine: summary["machine"].as_str().unwrap_or_default().to_owned(),
+        doubt: doubt(summary),
         readings,
     })
+}
+
+/// The first warning of a doubtful run.
+fn doubt(summary: &Value) -> Option<String> {
+    let verdict = &summary["verdict"];
+    let first = verdict["warnings"][0].as_str().unwrap_or_default();
+    (verdict["sound"] == false).then(|| first.to_owned())
 }
 
 /// A value that is not a number is null in JSON.

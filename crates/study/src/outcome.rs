@@ -11,6 +11,8 @@ pub struct Done {
     pub time_step_s: f64,
     /// Processor and cores.
     pub machine: String,
+    /// The first warning of its verdict; None: it is sound.
+    pub doubt: Option<String>,
     /// One for each measure of the study.
     pub readings: Vec<Reading>,
 }

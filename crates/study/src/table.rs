@@ -56,6 +56,7 @@ impl SweepTable {
                 study, runs, &of_runs, measure, *value, &mut rows, &mut notes,
             );
         }
+        notes.extend(doubtful(runs, &of_runs));
         if machines.len() > 1 && study.has_errors() {
             let text = "the runs are of several machines, so that their times are not compared";
             notes.push(text.to_owned());
@@ -235,4 +236,17 @@ fn mark_front(rows: &mut [Row], measure: usize) {
             judged.is_on_front = is_on;
         }
     }
+}
+
+/// A sentence on the runs whose verdict is doubtful, if there are any.
+fn doubtful(runs: &[Run], of_runs: &[Option<&Done>]) -> Option<String> {
+    let doubts = runs.iter().zip(of_runs);
+    let mut doubts =
+        doubts.filter_map(|(run, done)| Some((run.number, done.as_ref()?.doubt.as_ref()?)));
+    let (number, first) = doubts.next()?;
+    let count = 1 + doubts.count();
+    let all = of_runs.iter().flatten().count();
+    Some(format!(
+        "{count} of {all} runs are doubtful (verdict in their summary.json); the first, run {number}: {first}"
+    ))
 }

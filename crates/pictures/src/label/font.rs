@@ -18,7 +18,7 @@ const CUTS: usize = 3;
 
 /// Width in units, and strokes: points of two digits each, from the left and from the top. Corners
 /// are rounded, unless a point is repeated.
-const GLYPHS: [(char, usize, &str); 37] = [
+const GLYPHS: [(char, usize, &str); 50] = [
     ('0', 4, "20 40 42 46 48 28 08 06 02 00 20"),
     ('1', 2, "02 20 20 28"),
     ('2', 4, "02 00 20 40 42 44 08 08 48"),
@@ -55,6 +55,19 @@ const GLYPHS: [(char, usize, &str); 37] = [
     ('u', 4, "03 08 28 48 43,43 48"),
     ('x', 4, "03 48,43 08"),
     ('y', 4, "03 28,43 28 19 09"),
+    ('b', 4, "00 08,06 18 38 47 44 33 13 05"),
+    ('j', 1, "13 18 09,11 11"),
+    ('p', 4, "03 09,06 18 38 47 44 33 13 05"),
+    ('q', 4, "43 49,46 38 18 07 04 13 33 45"),
+    ('v', 4, "03 28 28 43"),
+    ('w', 6, "03 28 28 33 33 48 48 63"),
+    ('z', 4, "03 43 43 08 08 48"),
+    ('G', 4, "41 30 10 02 06 18 38 46 44 44 24"),
+    ('J', 3, "30 36 18 06"),
+    ('M', 5, "08 00 00 25 25 50 50 58"),
+    ('N', 4, "08 00 00 48 48 40"),
+    ('P', 4, "08 00 00 30 41 43 34 04"),
+    ('W', 6, "00 18 18 32 32 58 58 60"),
     ('µ', 4, "03 09 09,06 08 18 38 36,43 48"),
 ];
 
@@ -188,7 +201,7 @@ mod tests {
 
     #[test]
     fn all_signs_of_labels_have_a_glyph() {
-        for sign in "t = -0123456789.e s km mm µm inf fragment mass kg strain rate dynamic increase factor utilisation /s".chars() {
+        for sign in "t = -0123456789.e s km mm µm inf fragment mass kg strain rate dynamic increase factor utilisation /s MPa GN kJ W abcdefghijklmnopqrstuvwxyz".chars() {
             assert!(
                 sign == ' ' || GLYPHS.iter().any(|glyph| glyph.0 == sign),
                 "{sign}"

@@ -34,7 +34,7 @@ pub(super) struct FragmentArguments {
     #[arg(long)]
     all: bool,
     /// With --all: write convex hulls of the spheres as STL, in mm, instead of bodies
-    #[arg(long, requires = "all")]
+    #[arg(long)]
     stl: bool,
     /// Number of the frame, from 0; the last one unless given
     #[arg(long, value_name = "K")]
@@ -53,6 +53,14 @@ pub(super) struct FragmentArguments {
 /// The folder, frame or fragment does not exist; the body cannot be written.
 pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     let output = &arguments.output;
+    if arguments.stl && !arguments.all {
+        let problem = "hulls are written of all fragments together";
+        return Err(Diagnostic::input(
+            "--stl",
+            problem,
+            "write --all --stl -o FOLDER",
+        ));
+    }
     if arguments.all {
         let path = frame_path(&arguments.results, arguments.frame)?;
         let frame = read_frame(&path)?;
