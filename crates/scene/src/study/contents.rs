@@ -147,7 +147,7 @@ impl Axis {
             |(number, own): &&(f64, String)| own == unit || (*number == 0.0 && own.is_empty());
         numbers
             .iter()
-            .all(|number| fits(number))
+            .all(fits)
             .then(|| (numbers.iter().map(|n| n.0).collect(), unit.to_owned()))
     }
 }
