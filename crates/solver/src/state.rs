@@ -14,6 +14,7 @@ pub mod order;
 pub mod particles;
 pub mod partitions;
 pub(crate) mod population;
+pub mod references;
 pub mod regions;
 pub(crate) mod rules;
 pub(crate) mod scratch;

@@ -6,6 +6,7 @@ mod books;
 mod carried;
 mod ids;
 mod inlets;
+mod lists;
 mod masses;
 mod outer;
 mod refused;

@@ -22,6 +22,9 @@ use crate::state::contacts::{ContactHistory, ContactModel, Contacts};
 /// Verlet skin as a fraction of the largest radius, unless the scene sets it or objects are fast;
 /// and the largest such fraction.
 const SKIN: [f64; 2] = [0.1, 0.5];
+/// Smallest and largest distance that a particle may move between two searches for its neighbours,
+/// as fractions of its radius, unless the scene sets the skin.
+const ALLOWANCES: [f64; 2] = [0.05, 0.25];
 /// Number of steps for which a list of near pairs should last at the speed of the first impacts.
 const STEPS_PER_LIST: f64 = 30.0;
 /// Ends that overlap at the start by less than this fraction of the smaller radius are only
@@ -169,6 +172,7 @@ pub(super) fn place_contacts(
         alone: is_alone(state, clusters),
         relaxes: scene.relaxation.enabled,
         least_overlap: scene.relaxation.min_overlap,
+        allowances: scene.search.skin.is_none().then_some(ALLOWANCES),
     };
     let mut contacts = Contacts {
         // Present overlaps are not the result of a break: whether they relax depends only on
@@ -196,7 +200,7 @@ pub(super) fn place_contacts(
     }
     contacts.model = Arc::new(model);
     state.model.contacts = Some(Arc::clone(&contacts.model));
-    contacts.skin_left_m = -1.0;
+    contacts.search_all();
     state.contacts = Some(contacts);
     Ok(())
 }

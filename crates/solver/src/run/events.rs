@@ -204,7 +204,7 @@ pub(super) fn change_step(
 /// the present size.
 pub(super) fn look_anew_for_near(state: &mut State) {
     if let Some(contacts) = &mut state.contacts {
-        contacts.skin_left_m = -1.0;
+        contacts.search_all();
     }
 }
 

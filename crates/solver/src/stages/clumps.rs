@@ -1,7 +1,7 @@
 //! Rigid clumps in the time step: forces on their spheres act on the clumps, and the spheres move
 //! with them.
 
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 
 use super::pieces::clusters_bytes;
 use super::stage::{NO_SAVING, Need, Stage};
@@ -79,44 +79,73 @@ pub(super) fn awake(clumps: &Clumps) -> usize {
     clumps.all.iter().filter(|clump| !clump.asleep).count()
 }
 
-/// Records which spheres of clumps are near something, after the search for pairs and walls.
-/// `near`: particles that are, in any order, with duplicates.
+/// Records which spheres of clumps are near something, after the search for pairs and walls, and
+/// puts those in place that were not near before. `near`: particles that are, in any order, with
+/// duplicates.
 pub(crate) fn list_near(
     clumps: &mut Clumps,
     particles: &mut Particles,
     near: impl Iterator<Item = u32>,
 ) {
-    let free = particles.free as u32;
-    let mut now: Vec<u32> = near.filter(|&i| i >= free).collect();
-    now.sort_unstable();
-    now.dedup();
-    let before = std::mem::take(&mut clumps.near);
+    let free = particles.free;
+    let mut is_near = vec![false; particles.len() - free];
+    for i in near.map(|i| i as usize).filter(|&i| i >= free) {
+        is_near[i - free] = true;
+    }
+    let numbers = free as u32..particles.len() as u32;
+    let now = numbers.filter(|&i| is_near[i as usize - free]).collect();
+    for &i in &clumps.near {
+        is_near[i as usize - free] = false;
+    }
     clumps.set_near(now);
-    for clump in &clumps.all {
+    for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
+        let template = clumps.template(clump);
+        let to_space = rotation_of(clump.turned).to_rotation_matrix();
         let [from, to] = clump.near.map(|n| n as usize);
         for &i in &clumps.near[from..to] {
-            // Spheres that were updated before already have a velocity.
-            if before.binary_search(&i).is_err() {
-                let i = i as usize;
-                let place = particles.poses[i].place();
-                particles.motions[i] = clump.motion_at(clumps.template(clump), &place);
+            let i = i as usize;
+            // Those that were near before are in place and have a velocity.
+            if is_near[i - free] {
+                let sphere = template.outer[i - clump.first as usize] as usize;
+                let place = place_of(template, sphere, clump, &to_space);
+                particles.poses[i].put_at(place.into());
+                particles.motions[i] = clump.motion_at(template, &place);
             }
         }
     }
 }
 
+/// Centre of a sphere of a clump that has this rotation, m.
+fn place_of(
+    template: &Template,
+    sphere: usize,
+    clump: &Clump,
+    to_space: &Rotation3<f64>,
+) -> Vector3<f64> {
+    Vector3::from(clump.place_m) + to_space * Vector3::from(template.spheres[sphere].place_m)
+}
+
 /// Puts all spheres of all clumps in place. Those of sleeping clumps already are.
 pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
     for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
+        place_centres(clumps, clump, particles);
         let template = clumps.template(clump);
         let turned = rotation_of(clump.turned);
-        let (centre, to_space) = (Vector3::from(clump.place_m), turned.to_rotation_matrix());
         let spheres = &mut particles.poses[clumps.spheres_of(clump)];
         for (pose, &sphere) in spheres.iter_mut().zip(&template.outer) {
-            let sphere = &template.spheres[sphere as usize];
-            pose.put_at((centre + to_space * Vector3::from(sphere.place_m)).into());
-            pose.turned = numbers(&(turned * rotation_of(sphere.turned)));
+            let of_sphere = rotation_of(template.spheres[sphere as usize].turned);
+            pose.turned = numbers(&(turned * of_sphere));
         }
+    }
+}
+
+/// Puts the centres of all spheres of a clump in place.
+pub(crate) fn place_centres(clumps: &Clumps, clump: &Clump, particles: &mut Particles) {
+    let template = clumps.template(clump);
+    let to_space = rotation_of(clump.turned).to_rotation_matrix();
+    let spheres = &mut particles.poses[clumps.spheres_of(clump)];
+    for (pose, &sphere) in spheres.iter_mut().zip(&template.outer) {
+        pose.put_at(place_of(template, sphere as usize, clump, &to_space).into());
     }
 }
 
@@ -190,7 +219,9 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
         let turn = rotation_vector(numbers(&(now * before.inverse())));
         let spin_rad_s = turn.map(|angle| angle / time_step_s);
         let speed = Vector3::from(clump.velocity_m_s).norm();
-        fastest = fastest.max(speed + Vector3::from(spin_rad_s).norm() * template.reach_m);
+        let speed = speed + Vector3::from(spin_rad_s).norm() * template.reach_m;
+        clump.moved_m = speed * time_step_s;
+        fastest = fastest.max(speed);
         let (centre, to_space) = (Vector3::from(clump.place_m), now.to_rotation_matrix());
         let per_s = 1.0 / time_step_s;
         let [from, to] = clump.near.map(|n| n as usize);

@@ -201,8 +201,14 @@ pub fn list_contacts(
     particles: &Particles,
     skin_m: f64,
 ) {
+    let pairs = near_pairs(&particles.poses, clusters, skin_m);
+    relist(contacts, pairs, particles);
+    contacts.skin_left_m = 0.5 * skin_m;
+}
+
+/// Replaces the list of pairs, and divides the work anew.
+pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, particles: &Particles) {
     let poses = &particles.poses;
-    let pairs = near_pairs(poses, clusters, skin_m);
     let relaxes = contacts.model.relaxes;
     contacts.relist(
         pairs,
@@ -211,7 +217,6 @@ pub fn list_contacts(
         },
     );
     contacts.divide(particles.len(), contacts.scratch.wanted_partitions.max(1));
-    contacts.skin_left_m = 0.5 * skin_m;
 }
 
 /// Output of a partition: the histories of its own contacts, and data of its own particles.

@@ -1,16 +1,24 @@
 //! Neighbour lists: particles near walls, pairs of particles, and the spheres of clumps that are in
 //! either.
-//!
-//! Sleeping bodies are in none of them; a sleeping body wakes first when something moving is near
-//! it.
 
+mod moved;
+
+use dem_scene::WallMotion;
+use nalgebra::Vector3;
+
+use self::moved::{Due, due, find_left, may_be_due, refer_clump, refer_particle, use_up};
 use super::clumps;
-use super::contacts::list_contacts;
+use super::contacts::{list_contacts, relist};
+use super::neighbours::overlapping_pairs;
 use super::pieces::clusters_bytes;
 use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
-use super::walls::list_near;
+use super::walls::{list_near, reached, reaches};
 use crate::state::State;
+use crate::state::clumps::Clumps;
+use crate::state::contacts::Contacts;
+use crate::state::references::ClumpReference;
+use crate::state::walls::Wall;
 
 /// The neighbour search.
 pub(crate) const SEARCH: Stage = Stage {
@@ -39,17 +47,23 @@ pub(crate) fn use_up_skin(state: &mut State) -> usize {
         let moved_m = state.fastest_m_s * state.time_step_s;
         contacts.moved_m = moved_m;
         contacts.scratch.close_skin_left_m -= moved_m;
-        contacts.skin_left_m -= moved_m;
-        if contacts.skin_left_m < moved_m {
-            // After one more step like this, unlisted particles could overlap.
-            contacts.skin_left_m = -1.0;
+        if state.sleep.is_some() {
+            contacts.skin_left_m -= moved_m;
+            if contacts.skin_left_m < moved_m {
+                // After one more step like this, unlisted particles could overlap.
+                contacts.skin_left_m = -1.0;
+            }
         }
+    }
+    if let (Some(contacts), None) = (&mut state.contacts, &state.sleep) {
+        let references = &mut contacts.scratch.references;
+        use_up(&state.scratch.chunks_moved_m, &state.clumps, references);
     }
     0
 }
 
-/// Rebuilds the lists if something may have come near since the last time. Returns the number of
-/// particles processed.
+/// Rebuilds the lists of what may have come near something since the last time. Returns the number
+/// of particles searched for.
 pub(crate) fn renew_lists(state: &mut State) -> usize {
     let Some(contacts) = &mut state.contacts else {
         return 0;
@@ -59,11 +73,181 @@ pub(crate) fn renew_lists(state: &mut State) -> usize {
         &state.walls,
         [state.time_s, state.time_step_s],
     ) {
-        contacts.skin_left_m = -1.0;
+        contacts.search_all();
     }
-    if contacts.skin_left_m >= 0.0 {
+    if state.sleep.is_some() {
+        if contacts.skin_left_m < 0.0 {
+            return list_among_sleepers(state);
+        }
         return 0;
     }
+    let searched = search_for_moved(state);
+    list_near_moving_walls(state);
+    searched
+}
+
+/// Searches for the neighbours of the particles that have moved too far. Returns their number.
+fn search_for_moved(state: &mut State) -> usize {
+    let Some(mut contacts) = state.contacts.take() else {
+        return 0;
+    };
+    let mut searched = 0;
+    if may_be_due(state, &contacts) {
+        contacts.skin_left_m = 0.0;
+        searched = match due(state, &mut contacts.scratch.references) {
+            Some(due) if due.is_empty() => 0,
+            Some(due) => search_for(state, &mut contacts, &due),
+            None => search_for_all(state, &mut contacts),
+        };
+        contacts.scratch.references.due.clear();
+    }
+    state.contacts = Some(contacts);
+    searched
+}
+
+/// Searches for the neighbours of all particles.
+fn search_for_all(state: &mut State, contacts: &mut Contacts) -> usize {
+    let references = &mut contacts.scratch.references;
+    references.balls = vec![[0.0; 4]; state.particles.len()];
+    references.clumps = vec![ClumpReference::default(); state.clumps.all.len()];
+    for wall in &mut state.walls {
+        wall.skin_left_m = skin_m(wall, contacts);
+    }
+    search_for(state, contacts, &everything(state))
+}
+
+fn everything(state: &State) -> Due {
+    Due {
+        particles: (0..state.particles.free as u32).collect(),
+        clumps: (0..state.clumps.all.len()).collect(),
+    }
+}
+
+/// Searches for the neighbours of what is due: moves its balls, and lists the pairs and walls that
+/// they overlap.
+fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
+    for &i in &due.particles {
+        let i = i as usize;
+        let speed_m_s = Vector3::from(state.particles.motions[i].velocity_m_s).norm();
+        let moved_m = speed_m_s * state.time_step_s;
+        refer_particle(contacts, i, &state.particles.poses[i], moved_m);
+    }
+    for &at in &due.clumps {
+        let clump = &state.clumps.all[at];
+        clumps::place_centres(&state.clumps, clump, &mut state.particles);
+        refer_clump(contacts, state, at);
+    }
+    find_left(&state.particles, &mut contacts.scratch.references);
+    let seeks = seeks(state, due);
+    for wall in &mut state.walls {
+        let near = reached_of(wall, contacts, &state.clumps, due);
+        wall.near.retain(|&i| !seeks[i as usize]);
+        wall.near.extend(near);
+        wall.near.sort_unstable();
+    }
+    let pairs = match &state.clusters {
+        Some(clusters) if !contacts.model.alone => {
+            let balls = &contacts.scratch.references.balls;
+            if seeks.contains(&false) {
+                let found = overlapping_pairs(balls, &clusters.of_particle, Some(&seeks));
+                with_others(&contacts.pairs, found, &seeks)
+            } else {
+                overlapping_pairs(balls, &clusters.of_particle, None)
+            }
+        }
+        _ => Vec::new(),
+    };
+    list_near_spheres(state, &pairs);
+    relist(contacts, pairs, &state.particles);
+    if contacts.model.relaxes {
+        state.scratch.events.work.relaxing += contacts.relaxing();
+    }
+    seeks.iter().filter(|&&seeks| seeks).count()
+}
+
+/// For each particle whether it is due.
+fn seeks(state: &State, due: &Due) -> Vec<bool> {
+    let mut seeks = vec![false; state.particles.len()];
+    for &i in &due.particles {
+        seeks[i as usize] = true;
+    }
+    for &at in &due.clumps {
+        seeks[state.clumps.spheres_of(&state.clumps.all[at])].fill(true);
+    }
+    seeks
+}
+
+/// The particles among those due whose balls a wall reaches, ascending.
+fn reached_of(wall: &Wall, contacts: &Contacts, clumps: &Clumps, due: &Due) -> Vec<u32> {
+    let references = &contacts.scratch.references;
+    let is_reached = reaches(wall);
+    let mut some = due.particles.clone();
+    for &at in &due.clumps {
+        let (clump, reference) = (&clumps.all[at], &references.clumps[at]);
+        let template = clumps.template(clump);
+        let reach_m = template.reach_m * template.scale.max(1.0);
+        let around_m = reach_m + reference.allowance_m + wall.skin_left_m;
+        if is_reached(reference.place_m, around_m) {
+            some.extend(clumps.spheres_of(clump).map(|i| i as u32));
+        }
+    }
+    reached(wall, &references.balls, &some)
+}
+
+/// The pairs found for the particles that seek, and the known pairs of the others: sorted.
+fn with_others(known: &[[u32; 2]], found: Vec<[u32; 2]>, seeks: &[bool]) -> Vec<[u32; 2]> {
+    let stays = |pair: &&[u32; 2]| !pair.iter().any(|&i| seeks[i as usize]);
+    let mut known = known.iter().filter(stays).copied().peekable();
+    let mut pairs = Vec::with_capacity(found.len() + known.size_hint().1.unwrap_or(0));
+    for pair in found {
+        while let Some(other) = known.next_if(|other| *other < pair) {
+            pairs.push(other);
+        }
+        pairs.push(pair);
+    }
+    pairs.extend(known);
+    pairs
+}
+
+/// Lists the spheres of clumps that are in pairs or near walls, and puts them in place.
+fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]]) {
+    if state.clumps.all.is_empty() {
+        return;
+    }
+    let at_walls = state.walls.iter().flat_map(|wall| &wall.near);
+    let near = pairs.iter().flatten().chain(at_walls).copied();
+    clumps::list_near(&mut state.clumps, &mut state.particles, near);
+}
+
+/// Lists what is near the walls that have moved too far since they were last listed.
+fn list_near_moving_walls(state: &mut State) {
+    let Some(contacts) = state.contacts.take() else {
+        return;
+    };
+    let is_due = |wall: &Wall| wall.skin_left_m < 2.0 * wall.moved_m;
+    if state.walls.iter().any(is_due) {
+        let everything = everything(state);
+        for wall in state.walls.iter_mut().filter(|wall| is_due(wall)) {
+            wall.skin_left_m = skin_m(wall, &contacts);
+            wall.near = reached_of(wall, &contacts, &state.clumps, &everything);
+        }
+        list_near_spheres(state, &contacts.pairs);
+    }
+    state.contacts = Some(contacts);
+}
+
+/// Distance that a wall may move before what is near it is listed again, m.
+fn skin_m(wall: &Wall, contacts: &Contacts) -> f64 {
+    match wall.model.motion {
+        WallMotion::Fixed => 0.0,
+        _ => contacts.skin_m.max(4.0 * wall.moved_m),
+    }
+}
+
+/// Rebuilds all lists, without pairs of sleeping particles. Sleeping bodies are in none of them; a
+/// sleeping body wakes first when something moving is near it. Returns the number of particles
+/// searched for.
+fn list_among_sleepers(state: &mut State) -> usize {
     let mut listed = 0;
     clumps::place_all(&state.clumps, &mut state.particles);
     freeze_contacts(state);
@@ -76,11 +260,9 @@ pub(crate) fn renew_lists(state: &mut State) -> usize {
         }
         wake(state, &near, "near");
     }
-    let p = &mut state.particles;
-    if let Some(contacts) = &state.contacts {
-        let at_walls = state.walls.iter().flat_map(|wall| &wall.near);
-        let near = contacts.pairs.iter().flatten().chain(at_walls).copied();
-        clumps::list_near(&mut state.clumps, p, near);
+    if let Some(contacts) = state.contacts.take() {
+        list_near_spheres(state, &contacts.pairs);
+        state.contacts = Some(contacts);
     }
     listed
 }
@@ -91,8 +273,7 @@ fn list_awake(state: &mut State) {
     let (Some(contacts), p) = (&mut state.contacts, &state.particles) else {
         return;
     };
-    // The skin covers at least two steps: a pair that is first listed when it already overlaps
-    // would be treated as fragments of one body, and its overlap would relax.
+    // The skin covers at least two steps: see `refer_particle`.
     let skin_m = contacts.skin_m.max(4.0 * moved_m);
     list_near(&mut state.walls, p, skin_m);
     if contacts.model.alone {

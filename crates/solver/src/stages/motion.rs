@@ -102,7 +102,8 @@ pub(crate) fn count_falling(state: &mut State) -> usize {
 
 /// Moves particles.
 pub(crate) fn drift_particles(state: &mut State) -> usize {
-    state.fastest_m_s = drift(&mut state.particles, state.time_step_s);
+    let moved_m = &mut state.scratch.chunks_moved_m;
+    state.fastest_m_s = drift(&mut state.particles, state.time_step_s, moved_m);
     0
 }
 
@@ -151,8 +152,9 @@ pub fn kick(
 }
 
 /// Updates positions and orientations of the free particles over `time_step_s`. Returns the largest
-/// speed of a particle, m/s.
-pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
+/// speed of a particle, m/s. `chunks_moved_m`: see [`Scratch::chunks_moved_m`].
+pub fn drift(particles: &mut Particles, time_step_s: f64, chunks_moved_m: &mut Vec<f64>) -> f64 {
+    chunks_moved_m.resize(particles.free.div_ceil(CHUNK), 0.0);
     let Particles {
         poses,
         motions,
@@ -161,8 +163,9 @@ pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
     } = particles;
     poses[..particles.free]
         .par_chunks_mut(CHUNK)
+        .zip(chunks_moved_m)
         .enumerate()
-        .map(|(chunk, poses)| {
+        .map(|(chunk, (poses, moved_m))| {
             let own = chunk * CHUNK..chunk * CHUNK + poses.len();
             let mut fastest = 0.0;
             with_lanes(DriftWork {
@@ -172,10 +175,11 @@ pub fn drift(particles: &mut Particles, time_step_s: f64) -> f64 {
                 time_step_s,
                 fastest: &mut fastest,
             });
+            let fastest = fastest.sqrt();
+            *moved_m = fastest * time_step_s;
             fastest
         })
         .reduce(|| 0.0, f64::max)
-        .sqrt()
 }
 
 /// The drift of some particles.

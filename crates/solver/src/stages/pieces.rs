@@ -2,6 +2,8 @@
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
+use crate::state::clusters::Clusters;
+use crate::state::contacts::Contacts;
 
 /// The search for fragments.
 pub(crate) const CLUSTERS: Stage = Stage {
@@ -47,10 +49,24 @@ pub(crate) fn find_pieces_now(state: &mut State) -> usize {
     let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
     state.scratch.events.splits = clusters.update(state.time_s, &damaged, &state.bonds);
     state.unsearched.clear();
-    if let (Some(contacts), false) = (&mut state.contacts, state.scratch.events.splits.is_empty()) {
-        contacts.skin_left_m = -1.0;
+    if let Some(contacts) = &mut state.contacts {
+        for split in &state.scratch.events.splits {
+            search_for_fragments(contacts, clusters, &split.children);
+        }
     }
     damaged.len()
+}
+
+/// Requests a search for the neighbours of fragments before the next step. That of the largest is
+/// not needed: it stays where it was, and the others find it.
+fn search_for_fragments(contacts: &mut Contacts, clusters: &Clusters, fragments: &[u32]) {
+    contacts.skin_left_m = -1.0;
+    let size = |id: &&u32| (clusters.members(**id).len(), std::cmp::Reverse(**id));
+    let largest = fragments.iter().max_by_key(size);
+    for id in fragments.iter().filter(|id| Some(*id) != largest) {
+        let members = clusters.members(*id);
+        contacts.scratch.references.due.extend(members);
+    }
 }
 
 /// Bytes of the cluster data, if the stage of this name needs them. They belong to the search for

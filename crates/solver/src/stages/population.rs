@@ -402,5 +402,5 @@ fn count_anew(
     (contacts.pairs, contacts.histories) = remembered.into_iter().unzip();
     contacts.divide(count, state.scratch.threads);
     // The next step searches for near pairs again.
-    contacts.skin_left_m = -1.0;
+    contacts.search_all();
 }

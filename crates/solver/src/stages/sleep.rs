@@ -257,7 +257,7 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
         bodies: falling.len(),
     });
     if let Some(contacts) = &mut state.contacts {
-        contacts.skin_left_m = -1.0;
+        contacts.search_all();
     }
     count_sleepers(state);
 }

@@ -19,6 +19,7 @@ use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::loads::factor_at;
 use crate::state::particles::{Particles, Pose};
+use crate::state::references::Ball;
 use crate::state::walls::{Wall, WallContact, WallLoad};
 
 /// Contacts with walls, and their motion.
@@ -82,20 +83,36 @@ pub(crate) fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) 
     }
 }
 
+/// Of some balls, ascending, those that a wall reaches before its skin is used up.
+pub(crate) fn reached(wall: &Wall, balls: &[Ball], some: &[u32]) -> Vec<u32> {
+    let is_reached = reaches(wall);
+    let is_near = |i: &u32| {
+        let [x, y, z, radius_m] = balls[*i as usize];
+        is_reached([x, y, z], radius_m + wall.skin_left_m)
+    };
+    let some = some.par_iter().with_min_len(CHUNK).copied();
+    some.filter(is_near).collect()
+}
+
 /// Test whether the surface of a sphere is less than `skin_m` from a wall.
 pub(crate) fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
+    let is_reached = reaches(wall);
+    move |pose| is_reached(pose.place().into(), pose.radius_m() + skin_m)
+}
+
+/// Test whether a wall is nearer to a point than a distance, m.
+pub(crate) fn reaches(wall: &Wall) -> impl Fn([f64; 3], f64) -> bool + Sync {
     let bounds = wall.model.shape.bounds();
     let in_space = wall.bounds_in_space();
     let to_wall = wall.frame.all_to_wall();
-    move |pose| {
-        let reach = pose.radius_m() + skin_m;
-        if !in_space.is_near(&pose.place().into(), reach) {
+    move |point, reach_m| {
+        if !in_space.is_near(&point, reach_m) {
             return false;
         }
-        let centre = to_wall(pose.place().into());
+        let centre = to_wall(point);
         let mut found = Vec::new();
-        if bounds.is_near(&centre, reach) {
-            wall.model.shape.touches(centre, reach, &mut found);
+        if bounds.is_near(&centre, reach_m) {
+            wall.model.shape.touches(centre, reach_m, &mut found);
         }
         !found.is_empty()
     }
@@ -527,15 +544,18 @@ pub(crate) fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> 
     for wall in walls {
         let ([_, velocity], [_, spin]) = (wall.velocities_m_s, wall.spins_rad_s);
         let spin_norm = Vector3::from(spin).norm();
+        let mut speed_m_s = Vector3::from(velocity).norm();
         if spin_norm > 0.0 {
             let pivot = Vector3::from(wall.frame.position_m);
             let far = particles
                 .poses
                 .iter()
                 .map(|pose| (pose.place() - pivot).norm());
-            fastest = fastest.max(spin_norm * far.fold(0.0, f64::max));
+            speed_m_s += spin_norm * far.fold(0.0, f64::max);
         }
-        fastest = fastest.max(Vector3::from(velocity).norm());
+        fastest = fastest.max(speed_m_s);
+        wall.moved_m = dt * speed_m_s;
+        wall.skin_left_m -= wall.moved_m;
         for (place, velocity) in wall.frame.position_m.iter_mut().zip(velocity) {
             *place += dt * velocity;
         }

@@ -127,6 +127,9 @@ pub struct Clump {
     /// Energy that contacts have taken from its motion so far, J: the sum over all times at which
     /// they slowed it down.
     pub impact_energy_j: f64,
+    /// Distance that the fastest of its points moved in the last drift, m, at most.
+    #[serde(skip)]
+    pub moved_m: f64,
     /// Whether it sleeps: then it is skipped, and nothing is near it.
     pub asleep: bool,
 }

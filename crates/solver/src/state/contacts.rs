@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::references::References;
 use crate::physics::contact::law::ContactKind;
 
 /// History of a contact. Two cache lines; contacts without rolling friction use only the first.
@@ -80,6 +81,10 @@ pub struct ContactModel {
     /// A pair that separated while overlapping becomes ordinary below this fraction of its
     /// effective radius.
     pub least_overlap: f64,
+    /// Smallest and largest distance that a particle may move between two searches for its
+    /// neighbours, as fractions of its radius; between the two it depends on its speed. None: half
+    /// of [`Contacts::skin_m`] for all.
+    pub allowances: Option<[f64; 2]>,
 }
 
 /// Contacts of all particles. None if the scene has one body and no other can be added.
@@ -97,7 +102,8 @@ pub struct Contacts {
     /// Skin of the Verlet list: pairs with surfaces closer than this were listed at the last
     /// search, m.
     pub skin_m: f64,
-    /// Distance that every particle may move before the next search for pairs, m.
+    /// Distance that every particle may move before it must be known which have moved too far since
+    /// their last search, m; below 0: now.
     pub skin_left_m: f64,
     /// Distance that the fastest particle moved in the last step, m.
     pub moved_m: f64,
@@ -114,6 +120,8 @@ pub struct Contacts {
 /// Contact data that can be rebuilt, or are valid for one step only.
 #[derive(Debug, Clone, Default)]
 pub struct ContactScratch {
+    /// The last search for the neighbours of each particle.
+    pub references: References,
     /// Division of the work.
     pub partitions: Vec<ContactPartition>,
     /// Requested number of partitions: few contacts need fewer.
@@ -182,6 +190,12 @@ impl Contacts {
             .collect();
         self.histories = histories;
         self.pairs = pairs;
+    }
+
+    /// Requests a search for the neighbours of all particles before the next step.
+    pub(crate) fn search_all(&mut self) {
+        self.scratch.references.balls.clear();
+        self.skin_left_m = -1.0;
     }
 
     /// Number of pairs whose law begins at an overlap that they separated with.

@@ -17,6 +17,9 @@ pub struct Scratch {
     pub bond_resistance: Vec<Wrench>,
     /// Damping forces on particles. Empty: none.
     pub particle_resistance: Vec<Wrench>,
+    /// For each chunk of free particles the distance that the fastest of them moved in the last
+    /// drift, m.
+    pub chunks_moved_m: Vec<f64>,
     /// Events of the last step.
     pub events: Events,
     /// Time spent in each stage.

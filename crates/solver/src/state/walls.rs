@@ -56,6 +56,12 @@ pub struct Wall {
     pub work_j: f64,
     /// See `work_j`.
     pub pending_j: f64,
+    /// Distance that the wall may move before its near particles are listed again, m.
+    #[serde(skip)]
+    pub skin_left_m: f64,
+    /// Distance that it moved in the previous step, m.
+    #[serde(skip)]
+    pub moved_m: f64,
     /// Data valid for one step only.
     #[serde(skip)]
     pub scratch: WallScratch,
@@ -89,6 +95,8 @@ impl Wall {
             damping_j: 0.0,
             work_j: 0.0,
             pending_j: 0.0,
+            skin_left_m: 0.0,
+            moved_m: 0.0,
             scratch: WallScratch::default(),
         }
     }

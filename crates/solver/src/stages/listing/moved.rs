@@ -1,0 +1,233 @@
+//! Which particles have moved too far from where they were when their neighbours were last
+//! searched for, and the balls around the others.
+
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use crate::stages::motion::CHUNK;
+use crate::state::State;
+use crate::state::clumps::{Clump, Clumps};
+use crate::state::contacts::Contacts;
+use crate::state::particles::{Particles, Pose};
+use crate::state::references::{Ball, ClumpReference, References};
+
+/// Number of steps that a particle may go on at its present speed until its next search.
+const STEPS: f64 = 30.0;
+/// The same for a clump: its spheres are many, but few of them are near something.
+const STEPS_OF_CLUMP: f64 = 100.0;
+/// Largest distance that a clump may move between two searches, as a multiple of the radius of its
+/// largest sphere.
+const FARTHEST_OF_CLUMP: f64 = 4.0;
+/// A search is due when something has less than this fraction of its distance left.
+const NOW: f64 = 0.1;
+/// Then everything is searched for that has less than this fraction left.
+const SOON: f64 = 0.7;
+/// After two more steps like the last, unlisted particles could overlap.
+const STEPS_LEFT: f64 = 2.0;
+
+/// What is to be searched for.
+#[derive(Default)]
+pub(super) struct Due {
+    /// Free particles, ascending.
+    pub(super) particles: Vec<u32>,
+    /// Numbers of clumps, ascending.
+    pub(super) clumps: Vec<usize>,
+}
+
+impl Due {
+    pub(super) fn is_empty(&self) -> bool {
+        self.particles.is_empty() && self.clumps.is_empty()
+    }
+}
+
+/// Whether it is to be found out what is due. Otherwise nothing has used up its distance, and
+/// nothing is requested.
+pub(super) fn may_be_due(state: &State, contacts: &Contacts) -> bool {
+    let references = &contacts.scratch.references;
+    let chunks = references.chunks_left_m.iter();
+    let mut chunks = chunks.zip(&state.scratch.chunks_moved_m);
+    let mut clumps = references.clumps.iter().zip(&state.clumps.all);
+    contacts.skin_left_m < 0.0
+        || references.balls.len() != state.particles.len()
+        || chunks.any(|(left_m, moved_m)| *left_m < STEPS_LEFT * moved_m)
+        || clumps.any(|(reference, clump)| reference.left_m < STEPS_LEFT * clump.moved_m)
+}
+
+/// Subtracts the displacements in a drift from the distances left.
+pub(super) fn use_up(chunks_moved_m: &[f64], clumps: &Clumps, references: &mut References) {
+    for (left_m, moved_m) in references.chunks_left_m.iter_mut().zip(chunks_moved_m) {
+        *left_m -= moved_m;
+    }
+    for (reference, clump) in references.clumps.iter_mut().zip(&clumps.all) {
+        reference.left_m -= clump.moved_m;
+    }
+}
+
+/// Finds what is due. None: everything, as at the start.
+pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
+    let p = &state.particles;
+    if references.balls.len() != p.len() || references.clumps.len() != state.clumps.all.len() {
+        return None;
+    }
+    if !is_urgent(state, references) {
+        return Some(Due::default());
+    }
+    let step_s = state.time_step_s;
+    let (loose, carried): (Vec<u32>, Vec<u32>) =
+        references.due.iter().partition(|i| (**i as usize) < p.free);
+    let is_due = |i: &u32| free_is_due(p, references, *i, SOON, step_s);
+    let free = (0..p.free as u32).into_par_iter().with_min_len(CHUNK);
+    let mut particles: Vec<u32> = free.filter(is_due).collect();
+    particles.extend(loose);
+    particles.sort_unstable();
+    particles.dedup();
+    let carriers = carried.iter();
+    let carriers = carriers.filter_map(|&i| state.clumps.carrier_of(i as usize));
+    let mut clumps: Vec<usize> = carriers.collect();
+    for (n, (clump, reference)) in (state.clumps.all.iter())
+        .zip(&mut references.clumps)
+        .enumerate()
+    {
+        reference.left_m = clump_left_m(&state.clumps, clump, reference);
+        if clump_is_due(clump, reference, SOON) {
+            clumps.push(n);
+        }
+    }
+    clumps.sort_unstable();
+    clumps.dedup();
+    Some(Due { particles, clumps })
+}
+
+/// Whether anything is due, among the chunks and clumps that have used up what was surely left.
+/// Of those that are not, it finds what is left.
+fn is_urgent(state: &State, references: &mut References) -> bool {
+    let p = &state.particles;
+    let mut urgent = !references.due.is_empty();
+    for chunk in 0..references.chunks_left_m.len() {
+        let moved_m = state.scratch.chunks_moved_m.get(chunk).copied();
+        if references.chunks_left_m[chunk] < STEPS_LEFT * moved_m.unwrap_or(0.0) {
+            let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(p.free);
+            let is_due = |i: usize| free_is_due(p, references, i as u32, NOW, state.time_step_s);
+            urgent |= own.clone().any(is_due);
+            references.chunks_left_m[chunk] = chunk_left_m(p, references, own);
+        }
+    }
+    for (clump, reference) in state.clumps.all.iter().zip(&mut references.clumps) {
+        if reference.left_m < STEPS_LEFT * clump.moved_m {
+            reference.left_m = clump_left_m(&state.clumps, clump, reference);
+            urgent |= clump_is_due(clump, reference, NOW);
+        }
+    }
+    urgent
+}
+
+/// Whether a free particle has less than this fraction of its distance left, or little for its
+/// speed.
+fn free_is_due(
+    particles: &Particles,
+    references: &References,
+    i: u32,
+    fraction: f64,
+    step_s: f64,
+) -> bool {
+    let i = i as usize;
+    let (pose, ball) = (&particles.poses[i], &references.balls[i]);
+    let moved_m = Vector3::from(particles.motions[i].velocity_m_s).norm() * step_s;
+    let allowance_m = ball[3] - pose.radius_m();
+    left_m(pose, ball) < (fraction * allowance_m).max(STEPS_LEFT * moved_m)
+}
+
+fn clump_is_due(clump: &Clump, reference: &ClumpReference, fraction: f64) -> bool {
+    reference.left_m < (fraction * reference.allowance_m).max(STEPS_LEFT * clump.moved_m)
+}
+
+/// Finds the distances left to the chunks, after a search.
+pub(super) fn find_left(particles: &Particles, references: &mut References) {
+    let chunks = 0..particles.free.div_ceil(CHUNK);
+    let left = chunks.into_par_iter().map(|chunk| {
+        let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(particles.free);
+        chunk_left_m(particles, references, own)
+    });
+    references.chunks_left_m = left.collect();
+}
+
+/// The least distance that is left to the free particles of a range, m.
+fn chunk_left_m(
+    particles: &Particles,
+    references: &References,
+    own: std::ops::Range<usize>,
+) -> f64 {
+    let poses = particles.poses[own.clone()].iter();
+    let left = poses.zip(&references.balls[own]);
+    let left = left.map(|(pose, ball)| left_m(pose, ball));
+    left.fold(f64::INFINITY, f64::min)
+}
+
+/// Distance that a free particle may still move, m.
+fn left_m(pose: &Pose, &[x, y, z, radius_m]: &Ball) -> f64 {
+    let moved_m = (pose.place() - Vector3::new(x, y, z)).norm();
+    radius_m - pose.radius_m() - moved_m
+}
+
+/// Distance that each sphere of a clump may still move, m, at least.
+fn clump_left_m(clumps: &Clumps, clump: &Clump, reference: &ClumpReference) -> f64 {
+    let moved_m = (Vector3::from(clump.place_m) - Vector3::from(reference.place_m)).norm();
+    // The chord of an angle is at most twice the difference of the quaternions, of which each
+    // rotation has two.
+    let apart = |sign: f64| {
+        let of_axis = |k: usize| (clump.turned[k] - sign * reference.turned[k]).powi(2);
+        (0..4).map(of_axis).sum::<f64>().sqrt()
+    };
+    let turned = 2.0 * apart(1.0).min(apart(-1.0));
+    reference.allowance_m - moved_m - turned * clumps.template(clump).reach_m
+}
+
+/// Upper bound of the speed of the spheres of a clump, m/s.
+fn clump_speed_m_s(clumps: &Clumps, clump: &Clump) -> f64 {
+    let template = clumps.template(clump);
+    let turning_m_s = clump.spin_rad_s(template).norm() * template.reach_m;
+    Vector3::from(clump.velocity_m_s).norm() + turning_m_s
+}
+
+/// Gives a free particle, which moves this far in a step, m, a new ball.
+pub(super) fn refer_particle(contacts: &mut Contacts, i: usize, pose: &Pose, moved_m: f64) {
+    let allowance_m = match contacts.model.allowances {
+        None => 0.5 * contacts.skin_m,
+        Some(fractions) => {
+            let [least_m, most_m] = fractions.map(|fraction| fraction * pose.radius_m());
+            (STEPS * moved_m).clamp(least_m, most_m)
+        }
+    };
+    // At least two steps: a pair that is first listed when it already overlaps would be treated
+    // as fragments of one body, and its overlap would relax.
+    let allowance_m = allowance_m.max(2.0 * moved_m);
+    let [x, y, z, radius_m] = pose.position_m;
+    contacts.scratch.references.balls[i] = [x, y, z, radius_m + allowance_m];
+}
+
+/// Gives the spheres of a clump, which are in place, new balls.
+pub(super) fn refer_clump(contacts: &mut Contacts, state: &State, at: usize) {
+    let clump = &state.clumps.all[at];
+    let spheres = state.clumps.spheres_of(clump);
+    let poses = &state.particles.poses[spheres.clone()];
+    let moved_m = clump_speed_m_s(&state.clumps, clump) * state.time_step_s;
+    let allowance_m = match contacts.model.allowances {
+        None => 0.5 * contacts.skin_m,
+        Some([least, _]) => {
+            let largest_m = poses.iter().map(Pose::radius_m).fold(0.0, f64::max);
+            (STEPS_OF_CLUMP * moved_m).clamp(least * largest_m, FARTHEST_OF_CLUMP * largest_m)
+        }
+    };
+    let allowance_m = allowance_m.max(2.0 * moved_m);
+    let references = &mut contacts.scratch.references;
+    for (ball, pose) in references.balls[spheres].iter_mut().zip(poses) {
+        let [x, y, z, radius_m] = pose.position_m;
+        *ball = [x, y, z, radius_m + allowance_m];
+    }
+    references.clumps[at] = ClumpReference {
+        place_m: clump.place_m,
+        turned: clump.turned,
+        allowance_m,
+        left_m: allowance_m,
+    };
+}

@@ -1,0 +1,119 @@
+//! The neighbour lists hold all that touches, however unevenly bodies move: only what has moved
+//! too far is searched for again.
+
+use std::fmt::Write as _;
+
+use dem_run::geometry::Touch;
+use dem_run::plan::Plan;
+use dem_run::stages::clumps::place_all;
+use dem_run::state::State;
+use dem_run::state::particles::Pose;
+use dem_run::step::{advance, interact, stages, step};
+
+use super::{HEAD, MEETS, block, lump, planned};
+
+/// Clumps and a breakable block fall at different speeds into a box with a moving plate, after a
+/// sphere ten times as large as theirs.
+fn fall(search: &str) -> Plan {
+    let mut text = format!(
+        "{HEAD}run.gravity = [0, 0, -9.81]\n{MEETS}{search}\n\
+         bonds.weak = {{ young_modulus = 1e7, poisson_ratio = 0.25, failure = {{ tensile_strength = 1e3, shear_strength = 1e3 }} }}\n\
+         [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n\
+         [walls.side]\nplane = {{ point = [-0.004, 0, 0], normal = [1, 0, 0] }}\nmaterial = \"stuff\"\n\
+         [walls.plate]\nbox = {{ min = [0.03, -0.02, -0.01], max = [0.04, 0.03, 0.05] }}\nmaterial = \"stuff\"\nvelocity = [-0.5, 0, 0]\n\
+         [bodies.ball]\nmaterial = \"stuff\"\nparticles = [[0.01, 0.005, 0.0101, 0.01]]\n"
+    );
+    for n in 0..8_i32 {
+        let (x, y, z) = (n % 3, n / 3 % 2, n / 2);
+        let more = format!(
+            "start_as = \"clump\"\nposition = [{}, {}, {}]\nvelocity = [{}, 0, {}]\nangular_velocity = [0, {}, 0]",
+            8e-3 * f64::from(x),
+            9e-3 * f64::from(y),
+            0.024 + 6e-3 * f64::from(z),
+            0.2 * f64::from(x - 1),
+            -0.3 * f64::from(n),
+            10.0 * f64::from(n),
+        );
+        write!(text, "{}", lump(&format!("lump{n}"), &more)).unwrap();
+    }
+    let more = "position = [0.002, 0.002, 0.055]\nvelocity = [0, 0, -1]";
+    let brittle = block("brittle", [4, 4, 3], 2e-3, |_| Some(1e-3), more);
+    text += &brittle.replace("bonds = \"stiff\"", "bonds = \"weak\"");
+    planned(&text)
+}
+
+/// Everything that touches is in the lists. `clusters`: that of each particle before the step.
+fn assert_all_listed(state: &State, clusters: &[u32]) {
+    let mut particles = state.particles.clone();
+    place_all(&state.clumps, &mut particles);
+    let (poses, contacts) = (&particles.poses, state.contacts.as_ref().unwrap());
+    for (i, a) in poses.iter().enumerate() {
+        for (j, b) in poses.iter().enumerate().skip(i + 1) {
+            let gap_m = (b.place() - a.place()).norm() - a.radius_m() - b.radius_m();
+            if gap_m < 0.0 && clusters[i] != clusters[j] {
+                let pair = [i as u32, j as u32];
+                let listed = contacts.pairs.binary_search(&pair).is_ok();
+                assert!(listed, "{pair:?} at {} s", state.time_s);
+                let current = [i, j].map(|i| state.particles.poses[i].place() == poses[i].place());
+                assert_eq!(current, [true; 2], "{pair:?} at {} s", state.time_s);
+            }
+        }
+    }
+    for wall in &state.walls {
+        let touches = |pose: &Pose| {
+            let mut found: Vec<Touch> = Vec::new();
+            let centre = wall.frame.to_wall(pose.place().into());
+            wall.model
+                .shape
+                .touches(centre, pose.radius_m(), &mut found);
+            !found.is_empty()
+        };
+        for (i, pose) in poses.iter().enumerate().filter(|(_, pose)| touches(pose)) {
+            let listed = wall.near.binary_search(&(i as u32)).is_ok();
+            assert!(listed, "{i} at {} at {} s", wall.model.name, state.time_s);
+            assert_eq!(state.particles.poses[i].place(), pose.place());
+        }
+    }
+}
+
+fn places(state: &State) -> Vec<[f64; 4]> {
+    let mut particles = state.particles.clone();
+    place_all(&state.clumps, &mut particles);
+    particles.poses.iter().map(|pose| pose.position_m).collect()
+}
+
+#[test]
+fn what_touches_is_listed_however_unevenly_bodies_move() {
+    let Plan { mut state, .. } = fall("");
+    while state.time_s < 0.05 {
+        let clusters = state.clusters.as_ref().unwrap().of_particle.clone();
+        interact(&mut state);
+        assert_all_listed(&state, &clusters);
+        advance(&mut state);
+    }
+    let pieces = state.clusters.as_ref().unwrap().living().count();
+    assert!(pieces > 12, "the block breaks: {pieces}");
+    let mut all = stages().iter();
+    let search = all.position(|stage| stage.name == "neighbour search");
+    let searched = state.scratch.clock.done(search.unwrap()) as f64 / state.steps as f64;
+    let particles = state.particles.len();
+    eprintln!("{searched} of {particles} particles searched for in a step");
+    assert!(searched > 0.0 && searched < 0.03 * particles as f64);
+}
+
+#[test]
+fn the_size_of_the_skin_changes_no_bit() {
+    let end = |search: &str| {
+        let Plan { mut state, .. } = fall(search);
+        while state.time_s < 0.04 {
+            step(&mut state);
+        }
+        let pieces = state.clusters.as_ref().unwrap().living().count();
+        (places(&state), pieces)
+    };
+    let one = end("");
+    assert!(one.1 > 10, "the block breaks: {}", one.1);
+    for skin in [0.01, 0.1, 1.0] {
+        assert!(one == end(&format!("search.skin = {skin}")), "{skin}");
+    }
+}
