@@ -25,8 +25,14 @@ def mypy(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(line, capture_output=True, text=True)
 
 
-def test_the_package_is_typed(tmp_path: Path) -> None:
+def test_the_package_is_typed() -> None:
     done = mypy("-p", "crumble")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_stub_describes_the_extension() -> None:
+    line = [sys.executable, "-m", "mypy.stubtest", "crumble._crumble"]
+    done = subprocess.run(line, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

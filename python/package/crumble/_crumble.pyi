@@ -2,6 +2,17 @@ import os
 from collections.abc import Callable
 from typing import final
 
+__all__ = [
+    "StoredBody",
+    "pack",
+    "program",
+    "read_body",
+    "read_frame",
+    "read_walls",
+    "results_folder",
+    "run",
+]
+
 _Column = tuple[bytearray, str, int]
 _Tell = Callable[[float, str], object]
 
