@@ -14,14 +14,35 @@ use crate::body::{BodySettings, make_body};
 use crate::sizes::Sizes;
 use clap::CommandFactory;
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
-use dem_io::program::{print_completions, print_man_page};
+use dem_io::program::{print_completions, print_man_page, take_size_limits_as_errors};
 use dem_io::safe_write::{
-    need_folder_of, refuse_to_replace, write_standard_json, write_standard_output,
+    need_folder_of, refuse_to_replace, remove_unfinished, write_standard_error,
+    write_standard_json, write_standard_output,
 };
 use dem_io::{Diagnostic, Result};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+
+/// The program: does what its command line says, reports an error on standard error, and returns
+/// the exit code. The first of `given` is the name of the program. Ctrl-C ends the process.
+pub fn program(given: impl Iterator<Item = OsString>) -> u8 {
+    let at_interrupt = || {
+        remove_unfinished();
+        std::process::exit(130);
+    };
+    take_size_limits_as_errors();
+    // Without the handler an interrupted run could leave a temporary file behind, nothing worse.
+    let _ = ctrlc::set_handler(at_interrupt);
+    match Arguments::parsed(given).and_then(|arguments| run(&arguments)) {
+        Ok(()) => 0,
+        Err(error) => {
+            write_standard_error(&error);
+            error.exit_code()
+        }
+    }
+}
 
 /// Runs the command given by the arguments.
 ///
@@ -116,7 +137,10 @@ fn pack_and_write(
 }
 
 /// The requested number of threads, or one per core.
-fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
+///
+/// # Errors
+/// The number is 0 or more than 1024 (exit code 2); the threads cannot be started (1).
+pub fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if let Some(threads @ (0 | 1025..)) = threads {
         return Err(Diagnostic::input(
             "--threads",

@@ -20,8 +20,19 @@ pub struct Arrays {
     pub lines: usize,
     /// Simulated time, s. None: the file gives none.
     pub time_s: Option<f64>,
-    named: BTreeMap<String, Vec<f64>>,
+    named: BTreeMap<String, Array>,
     texts: BTreeMap<String, Vec<String>>,
+}
+
+/// An array of a frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Array {
+    /// Its numbers, those of each point or line after the other.
+    pub values: Vec<f64>,
+    /// Numbers of each point or line: 1, or 3 for vectors.
+    pub components: usize,
+    /// True if the file holds them as whole numbers: counts, indices, flags.
+    pub is_whole: bool,
 }
 
 impl Arrays {
@@ -29,7 +40,12 @@ impl Arrays {
     /// `CellData/broken`, `Points/positions_m`, `Lines/connectivity`. None: it was not asked for,
     /// or the file does not have it.
     pub fn get(&self, name: &str) -> Option<&[f64]> {
-        self.named.get(name).map(Vec::as_slice)
+        self.named.get(name).map(|array| array.values.as_slice())
+    }
+
+    /// All arrays that were read, by their names.
+    pub fn named(&self) -> &BTreeMap<String, Array> {
+        &self.named
     }
 
     /// The texts of a field, such as the names of bodies. Empty: the file does not have it.
@@ -42,6 +58,7 @@ impl Arrays {
 struct Declared {
     name: String,
     kind: String,
+    components: usize,
     offset: u64,
 }
 
@@ -50,6 +67,18 @@ struct Declared {
 /// # Errors
 /// No such file, or not one that this program wrote (both exit code 2).
 pub fn read_arrays(path: &Path, wanted: &[&str]) -> Result<Arrays> {
+    open_and_read(path, &|name| wanted.contains(&name))
+}
+
+/// Reads all arrays of a frame or of its walls.
+///
+/// # Errors
+/// As [`read_arrays`].
+pub fn read_all_arrays(path: &Path) -> Result<Arrays> {
+    open_and_read(path, &|_| true)
+}
+
+fn open_and_read(path: &Path, is_wanted: &dyn Fn(&str) -> bool) -> Result<Arrays> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let file = File::open(path).map_err(|error| {
         within(Diagnostic::input(
@@ -59,10 +88,13 @@ pub fn read_arrays(path: &Path, wanted: &[&str]) -> Result<Arrays> {
         ))
     })?;
     let mut input = BufReader::with_capacity(1 << 16, file);
-    read(&mut input, wanted).map_err(within)
+    read(&mut input, is_wanted).map_err(within)
 }
 
-fn read<R: Read + Seek>(input: &mut BufReader<R>, wanted: &[&str]) -> Result<Arrays> {
+fn read<R: Read + Seek>(
+    input: &mut BufReader<R>,
+    is_wanted: &dyn Fn(&str) -> bool,
+) -> Result<Arrays> {
     let mut arrays = Arrays::default();
     let mut declared = Vec::new();
     let mut section = String::new();
@@ -95,9 +127,14 @@ fn read<R: Read + Seek>(input: &mut BufReader<R>, wanted: &[&str]) -> Result<Arr
     }
     let start = data_start(input)?;
     for array in declared {
-        if wanted.contains(&array.name.as_str()) {
+        if is_wanted(&array.name) {
             let values = values(input, start, &array).map_err(|error| error.within(&array.name))?;
-            arrays.named.insert(array.name, values);
+            let read = Array {
+                values,
+                components: array.components,
+                is_whole: !array.kind.starts_with("Float"),
+            };
+            arrays.named.insert(array.name, read);
         }
     }
     Ok(arrays)
@@ -122,6 +159,9 @@ fn declaration(element: &str, section: &str) -> Option<Declared> {
             _ => format!("{section}/{name}"),
         },
         kind: attribute(element, "type")?.to_owned(),
+        components: attribute(element, "NumberOfComponents")
+            .and_then(|text| text.parse().ok())
+            .unwrap_or(1),
         offset,
     })
 }

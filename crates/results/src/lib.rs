@@ -18,7 +18,7 @@ pub(crate) mod series;
 pub(crate) mod summary;
 pub(crate) mod walls;
 
-pub use arrays::{Arrays, read_arrays};
+pub use arrays::{Array, Arrays, read_all_arrays, read_arrays};
 pub use discharge::{DischargeFile, DischargeRow, DistributionRow, write_distribution};
 pub use events::{Event, EventFile};
 pub use folder::{Existing, ResultsFolder};

@@ -20,15 +20,18 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use dem_io::body::{body_summary, read_body};
 use dem_io::colour::{Colour, on_standard_error};
 use dem_io::diagnostic::Kind;
-use dem_io::program::{Shell, parsed, print_completions, print_man_page};
+use dem_io::program::{
+    Shell, parsed, print_completions, print_man_page, take_size_limits_as_errors,
+};
 use dem_io::safe_write::{
-    write_file, write_standard_json, write_standard_lines, write_standard_output,
-    write_visible_json,
+    remove_unfinished, write_file, write_standard_error, write_standard_json, write_standard_lines,
+    write_standard_output, write_visible_json,
 };
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_input};
@@ -247,12 +250,46 @@ struct RunArguments {
     quiet: bool,
 }
 
-/// Does what was requested. `interrupt` tells a run to stop.
+/// The program: does what its command line says, reports an error on standard error, and returns
+/// the exit code. The first of `given` is the name of the program. At Ctrl-C a run stops and keeps
+/// its state; anything else, or a second Ctrl-C, ends the process.
+pub fn program(given: impl Iterator<Item = OsString>) -> u8 {
+    let interrupt = Arc::new(Interrupt::default());
+    let asked = Arc::clone(&interrupt);
+    let at_interrupt = move || {
+        if !asked.ask() {
+            remove_unfinished();
+            let problem = Diagnostic::interrupted("interrupted", "");
+            write_standard_error(&problem);
+            std::process::exit(i32::from(problem.exit_code()));
+        }
+    };
+    let done = Arguments::parsed(given).and_then(|arguments| {
+        take_size_limits_as_errors();
+        // Without the handler, the only loss is the checkpoint of an interrupted run.
+        let _ = ctrlc::set_handler(at_interrupt);
+        run(&arguments, &interrupt, &|_| {})
+    });
+    match done {
+        Ok(()) => 0,
+        Err(error) => {
+            write_standard_error(&error);
+            error.exit_code()
+        }
+    }
+}
+
+/// Does what was requested. `interrupt` tells a run to stop; `tell` is called from time to time with
+/// how far the run of a scene has come.
 ///
 /// # Errors
 /// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. It
 /// is not an error if a reader closes standard output early.
-pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
+pub fn run(
+    arguments: &Arguments,
+    interrupt: &Interrupt,
+    tell: &(dyn Fn(&SoFar) + Sync),
+) -> Result<()> {
     match &arguments.command {
         Some(Command::Check { scene, .. }) if !scene.names_a_scene() => Err(Diagnostic::input(
             scene.place(),
@@ -286,7 +323,7 @@ pub fn run(arguments: &Arguments, interrupt: &Interrupt) -> Result<()> {
         Some(Command::Man) => print_man_page(Arguments::command()),
         None if arguments.run.scene.names_a_scene() => {
             in_pool(arguments.run.scene.threads, |threads| {
-                run_scene(&arguments.run, threads, interrupt)
+                run_scene(&arguments.run, threads, interrupt, tell)
             })
         }
         None => {
@@ -461,7 +498,12 @@ fn refuse_two_pipes(scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) -> Result<()> {
+fn run_scene(
+    arguments: &RunArguments,
+    threads: usize,
+    interrupt: &Interrupt,
+    tell: &dyn Fn(&SoFar),
+) -> Result<()> {
     let (scene, bodies) = arguments.scene.read()?;
     let path = folder_to_open(arguments, &scene)?;
     let (scene, test, twice) = arranged(scene, &bodies, threads)?;
@@ -481,7 +523,10 @@ fn run_scene(arguments: &RunArguments, threads: usize, interrupt: &Interrupt) ->
         _ => None,
     };
     let shown = ShownProgress::new(arguments.quiet);
-    let progress = |so_far: &SoFar| shown.tell(so_far);
+    let progress = |so_far: &SoFar| {
+        shown.tell(so_far);
+        tell(so_far);
+    };
     let outcome = interrupt.run_interruptible(|interrupted| {
         let mut settings = RunSettings {
             folder: folder.as_ref(),

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
+use dem_io::program::own_command;
 use dem_io::{Diagnostic, Result};
 use dem_results::folder::{is_locked, is_written_to};
 use dem_scene::study::{BODY, Study, override_text};
@@ -216,7 +217,7 @@ pub fn work(
     interrupted: &AtomicBool,
     tell: &dyn Fn(usize),
 ) -> Result<()> {
-    let program = std::env::current_exe().map_err(|error| not_started(&error))?;
+    let (program, first) = own_command().map_err(|error| not_started(&error))?;
     let mut waiting: VecDeque<Job> = todo.iter().copied().collect();
     let mut started: Vec<Started> = Vec::new();
     let mut done = 0;
@@ -236,9 +237,12 @@ pub fn work(
                 Diagnostic::failed(complaint.display().to_string(), problem, "")
             })?;
             // The process inherits the lock with its standard error, and holds it as long as it
-            // lives. If the disk does not support locks, the lock of its folder remains.
+            // lives. If the disk does not support locks, the lock of its folder remains. On Windows
+            // locks are not inherited, and would keep the process from writing.
+            #[cfg(unix)]
             let _ = say.try_lock();
             let child = Command::new(&program)
+                .args(&first)
                 .args(arguments(study, &all[job.run], job, runs))
                 .stdin(Stdio::null())
                 .stdout(Stdio::null())

@@ -207,12 +207,13 @@ pub(super) struct PackArguments {
 }
 
 impl Arguments {
-    /// The arguments of this process. Help and version are printed, and the process ends.
+    /// The arguments of a command line, the first of which is the name of the program. Help and
+    /// version are printed, and the process ends.
     ///
     /// # Errors
     /// Arguments that cannot be parsed, on one line.
-    pub fn parsed() -> Result<Self> {
-        let given: Vec<OsString> = std::env::args_os().collect();
+    pub fn parsed(given: impl Iterator<Item = OsString>) -> Result<Self> {
+        let given: Vec<OsString> = given.collect();
         parsed("dem-pack", &given, &RENAMED)
     }
 }

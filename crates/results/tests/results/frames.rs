@@ -5,7 +5,7 @@ use std::fs;
 use dem_io::body::vtp;
 use dem_results::{
     Frame, FrameFiles, NamedArray, ResultsFolder, Values, WallFiles, WallFrame, WallTriangles,
-    write_frame,
+    read_all_arrays, write_frame,
 };
 use proptest::prelude::*;
 use quick_xml::Reader;
@@ -176,6 +176,41 @@ fn every_array_stands_where_the_header_says() {
         .flat_map(|v| v.to_le_bytes())
         .collect();
     assert_eq!(found[3].4, velocities);
+}
+
+#[test]
+fn all_arrays_are_read_with_their_kinds() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("frame.vtp");
+    fs::write(&path, bytes_of(&frame(0.25))).unwrap();
+    let arrays = read_all_arrays(&path).unwrap();
+    assert_eq!((arrays.points, arrays.lines), (3, 2));
+    assert_eq!(arrays.time_s, Some(0.25));
+    let kinds: Vec<(&str, usize, bool)> = arrays
+        .named()
+        .iter()
+        .map(|(name, array)| (name.as_str(), array.components, array.is_whole))
+        .collect();
+    let wanted = [
+        ("CellData/bond_radius_m", 1, false),
+        ("CellData/force_n", 3, false),
+        ("CellData/state", 1, true),
+        ("Lines/connectivity", 1, true),
+        ("Lines/offsets", 1, true),
+        ("PointData/body &quot;a&quot; &amp; &lt;b&gt;", 1, true),
+        ("PointData/cluster", 1, true),
+        ("PointData/radius_m", 1, false),
+        ("PointData/velocity_m_s", 3, false),
+        ("Points/positions_m", 3, false),
+    ];
+    assert_eq!(kinds, wanted);
+    let values = |name: &str| arrays.get(name).unwrap();
+    assert_eq!(values("PointData/velocity_m_s"), VELOCITIES.as_flattened());
+    assert_eq!(values("Lines/connectivity"), [0.0, 1.0, 0.0, 2.0]);
+    assert_eq!(
+        values("PointData/cluster"),
+        [-1.0, 0.0, f64::from(i32::MIN)]
+    );
 }
 
 #[test]

@@ -74,7 +74,7 @@ impl ShownProgress {
     /// Shows how far the run has come.
     pub(super) fn tell(&self, so_far: &SoFar) {
         self.bar.set_position((1000.0 * so_far.fraction) as u64);
-        self.bar.set_message(format!("{}  ", text(so_far)));
+        self.bar.set_message(format!("{so_far}  "));
         let Some(log) = &self.log else {
             return;
         };
@@ -84,10 +84,9 @@ impl ShownProgress {
             // A closed output is not a reason to stop.
             let _ = writeln!(
                 std::io::stderr(),
-                "run {}{:.0} %: {}, about {} s left",
+                "run {}{:.0} %: {so_far}, about {} s left",
                 log.prefix,
                 100.0 * so_far.fraction,
-                text(so_far),
                 significant(left_s, 2)
             );
         }
@@ -107,20 +106,6 @@ impl Log {
             tenths: Tenths::default(),
         }
     }
-}
-
-/// `12.5 ms simulated, 34 bonds broken`.
-fn text(so_far: &SoFar) -> String {
-    let (factor, unit) = match so_far.time_s {
-        short if short < 1e-3 => (1e6, "us"),
-        short if short < 1.0 => (1e3, "ms"),
-        _ => (1.0, "s"),
-    };
-    let time = significant(factor * so_far.time_s, 3);
-    format!(
-        "{time} {unit} simulated, {} bonds broken",
-        so_far.broken_bonds
-    )
 }
 
 fn bar() -> ProgressBar {
@@ -171,7 +156,10 @@ mod tests {
             time_s,
             broken_bonds: 3,
         };
-        assert_eq!(text(&so_far(12.5e-3)), "12.5 ms simulated, 3 bonds broken");
-        assert_eq!(text(&so_far(2.0)), "2 s simulated, 3 bonds broken");
+        assert_eq!(
+            so_far(12.5e-3).to_string(),
+            "12.5 ms simulated, 3 bonds broken"
+        );
+        assert_eq!(so_far(2.0).to_string(), "2 s simulated, 3 bonds broken");
     }
 }

@@ -1,7 +1,9 @@
 //! Settings of a run.
 
+use std::fmt;
 use std::sync::atomic::AtomicBool;
 
+use dem_io::units::significant;
 use dem_results::ResultsFolder;
 
 use super::snapshot::Snapshot;
@@ -32,4 +34,18 @@ pub struct SoFar {
     pub time_s: f64,
     /// Bonds broken since the start.
     pub broken_bonds: u64,
+}
+
+/// As in `12.5 ms simulated, 34 bonds broken`.
+impl fmt::Display for SoFar {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (factor, unit) = match self.time_s {
+            short if short < 1e-3 => (1e6, "us"),
+            short if short < 1.0 => (1e3, "ms"),
+            _ => (1.0, "s"),
+        };
+        let time = significant(factor * self.time_s, 3);
+        let broken = self.broken_bonds;
+        write!(f, "{time} {unit} simulated, {broken} bonds broken")
+    }
 }

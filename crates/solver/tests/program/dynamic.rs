@@ -6,8 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::interrupted::interrupt;
-use super::{Bench, assert_same, good, names_in, numbers, table};
+use super::{Bench, good, names_in, numbers, table};
 
 /// Young's modulus over tensile strength of the bonds.
 const PER_STRENGTH: f64 = 1e3;
@@ -417,7 +416,10 @@ fn intact_bonds_are_below_their_dynamic_strength() {
 }
 
 #[test]
+#[cfg(unix)]
 fn a_continued_run_has_the_same_frames_series_and_pictures() {
+    use super::assert_same;
+    use super::interrupted::interrupt;
     let settings = [
         "run.safety_factor=0.02",
         "output.pictures=0.5 ms",

@@ -1,5 +1,5 @@
 //! Signals: Ctrl-C, a request to end, a kill.
-#![cfg(target_os = "linux")]
+#![cfg(unix)]
 
 use std::fs;
 use std::path::Path;

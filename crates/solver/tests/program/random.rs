@@ -1,5 +1,6 @@
 //! Small scenes of random values, sensible or not: never a panic, always one of the exit codes, one
 //! message if it is not 0.
+#![cfg(unix)]
 
 use std::cell::RefCell;
 

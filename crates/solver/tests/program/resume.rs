@@ -1,4 +1,5 @@
 //! A run that was interrupted and continued leaves the same bits as one that was not.
+#![cfg(unix)]
 
 use std::fs;
 use std::path::Path;

@@ -259,6 +259,7 @@ fn tables_and_pages_of_a_sweep() {
 }
 
 #[test]
+#[cfg(unix)]
 fn an_interrupted_sweep_goes_on() {
     let bench = bench(STEPS);
     let slow = STEPS.replace(

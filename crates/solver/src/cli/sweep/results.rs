@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use dem_io::program::own_command;
 use dem_io::safe_write::{write_file, write_standard_json, write_standard_output};
 use dem_io::text::visible;
 use dem_io::units::significant;
@@ -22,13 +23,15 @@ use dem_study::text::{csv, response_csv};
 
 /// Prints one sh command for each job.
 pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolder) -> Result<()> {
-    let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("dem-run"));
+    let own = own_command();
+    let (program, first) = own.unwrap_or_else(|_| (PathBuf::from("dem-run"), Vec::new()));
     refuse_unlistable("this program", &program)?;
     let program = program.display().to_string();
     let runs = folder.runs();
     write_standard_output(|out| {
         for job in jobs {
-            let arguments = arguments(study, &all[job.run], *job, &runs);
+            let own = arguments(study, &all[job.run], *job, &runs);
+            let arguments = [first.clone(), own].concat();
             let line = shell_line(&program, &arguments, Some(&job.complaint(&runs)));
             writeln!(out, "{line}")?;
         }

@@ -1,0 +1,148 @@
+"""The results of a run."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from crumble._errors import Error
+from crumble._frames import Frames
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether a result can be trusted."""
+
+    sound: bool
+    """False: doubtful."""
+    warnings: tuple[str, ...]
+    """Why it is doubtful, a sentence each."""
+
+
+class Results:
+    """The folder of a run. Each file is read when it is asked for, then kept; frames are read one
+    by one. Names of columns, keys and arrays are those of the files; SI units.
+    """
+
+    folder: Path
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """`summary.json`: results, inputs with hashes, errors, verdict."""
+        try:
+            text = (self.folder / "summary.json").read_text(encoding="utf-8")
+        except OSError as problem:
+            raise self._missing("summary.json", "this is not the folder of a run") from problem
+        summary: dict[str, Any] = json.loads(text)
+        return summary
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the result can be trusted, and why not. A run that did not reach its end is
+        doubtful.
+        """
+        problem = self.summary.get("problem")
+        said = self.summary.get("verdict") or {"sound": False, "warnings": []}
+        why = [problem] if problem else []
+        return Verdict(said["sound"] and not why, tuple([*why, *said["warnings"]]))
+
+    @property
+    def measures(self) -> dict[str, float | None]:
+        """The value of each measure of the scene. None: it has no value."""
+        measures = self.summary.get("measures") or {}
+        return {name: measure["value"] for name, measure in measures.items()}
+
+    @property
+    def tables(self) -> list[str]:
+        """The tables that the run wrote, such as `series` for `series.csv`."""
+        return sorted(file.stem for file in self.folder.glob("*.csv"))
+
+    def table(self, name: str) -> pd.DataFrame:
+        """`NAME.csv`."""
+        # Imported here, so that the programs start without it.
+        import pandas as pd
+
+        file = self.folder / f"{name}.csv"
+        if not file.is_file():
+            have = ", ".join(self.tables) or "none"
+            raise self._missing(file.name, f"there is no such table; the run wrote {have}")
+        # Every number to the bit that was written: what newer versions do in any case.
+        is_older = tuple(int(part) for part in pd.__version__.split(".")[:2]) < (3, 1)
+        options: dict[str, Any] = {"float_precision": "round_trip"} if is_older else {}
+        table: pd.DataFrame = pd.read_csv(file, **options)
+        return table
+
+    @cached_property
+    def series(self) -> pd.DataFrame:
+        """`series.csv`: energies, errors, counts, forces of walls and measures over time."""
+        return self.table("series")
+
+    @property
+    def energy(self) -> pd.DataFrame:
+        """The columns of `series` that are energies and works, J, over `time_s`."""
+        names = [str(name) for name in self.series.columns]
+        wanted = [name for name in names if name == "time_s" or name.endswith("_j")]
+        energy: pd.DataFrame = self.series[wanted]
+        return energy
+
+    @cached_property
+    def events(self) -> pd.DataFrame:
+        """`events.csv`: broken bonds, fragments that split, bodies fed and discharged, ..."""
+        return self.table("events")
+
+    @cached_property
+    def fragments(self) -> pd.DataFrame:
+        """`fragments.csv`: mass, size and motion of each fragment at chosen times."""
+        return self.table("fragments")
+
+    @cached_property
+    def fragment_tree(self) -> pd.DataFrame:
+        """`fragment-tree.csv`: where each fragment came from."""
+        return self.table("fragment-tree")
+
+    @cached_property
+    def discharge(self) -> pd.DataFrame:
+        """`discharge.csv`: each body or fragment that left through an outlet."""
+        return self.table("discharge")
+
+    @cached_property
+    def distribution(self) -> pd.DataFrame:
+        """`distribution.csv`: cumulative mass over sieve size."""
+        return self.table("distribution")
+
+    @cached_property
+    def force_displacement(self) -> pd.DataFrame:
+        """`force-displacement.csv`: the curve of a laboratory test."""
+        return self.table("force-displacement")
+
+    @property
+    def frames(self) -> Frames:
+        """Particles, bonds and walls at the times of `frames.pvd`, read one by one."""
+        return Frames.of(self.folder)
+
+    def _missing(self, file: str, problem: str) -> Error:
+        place = str(self.folder / file)
+        return Error(f"{place}: {problem}", 2, place, problem)
+
+    def __repr__(self) -> str:
+        return f"<Results in {self.folder}>"
+
+
+def read(folder: str | os.PathLike[str]) -> Results:
+    """Opens the folder of a run.
+
+    Raises `Error` if it is none.
+    """
+    results = Results(Path(folder))
+    results.summary  # noqa: B018 - refuses another folder
+    return results

@@ -1,0 +1,44 @@
+"""The Python code of `doc/python.md` and the notebook run."""
+
+import re
+import shutil
+import warnings
+from pathlib import Path
+
+import matplotlib
+import nbformat
+import pytest
+from conftest import ROOT
+from nbclient import NotebookClient
+
+import crumble
+
+NOTEBOOK = ROOT / "python" / "examples" / "first_break.ipynb"
+
+
+def test_the_code_of_the_page_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder in ("bodies", "scenes", "shapes"):
+        shutil.copytree(ROOT / "data" / folder, tmp_path / "data" / folder)
+    monkeypatch.chdir(tmp_path)
+    matplotlib.use("Agg")
+    page = (ROOT / "doc" / "python.md").read_text()
+    blocks = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    assert len(blocks) >= 5
+    names: dict[str, object] = {}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.simplefilter("ignore", crumble.DoubtfulResult)
+        for block in blocks:
+            exec(compile(block, "doc/python.md", "exec"), names)
+    assert (tmp_path / "cake.vtp").is_file() and (tmp_path / "cake-falls" / "report.html").is_file()
+
+
+def test_the_notebook_runs(tmp_path: Path) -> None:
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    stored = [len(cell.get("outputs", [])) for cell in notebook.cells]
+    assert sum(stored) >= 4, "the notebook is stored with its outputs"
+    shutil.copytree(ROOT / "data", tmp_path / "data")
+    (tmp_path / "python" / "examples").mkdir(parents=True)
+    folder = {"metadata": {"path": str(tmp_path / "python" / "examples")}}
+    NotebookClient(notebook, timeout=300, kernel_name="python3", resources=folder).execute()
+    assert [len(cell.get("outputs", [])) for cell in notebook.cells] == stored
