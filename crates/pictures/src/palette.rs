@@ -208,6 +208,7 @@ fn nearest(colours: &[[f64; 3]], colour: [f64; 3]) -> (usize, f64) {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     fn picture(colour: impl Fn(u32, u32) -> [u8; 3]) -> Image {
