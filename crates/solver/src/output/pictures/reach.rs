@@ -156,6 +156,7 @@ fn sides(
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::geometry::{Frame, Plane};
     use crate::state::bonds::Bonds;
