@@ -186,7 +186,18 @@ fn commands_for_calibration_run() {
 
 #[test]
 fn commands_for_studies_run() {
-    run_commands("doc/studies.md", 1, &["spinning-bar-sweep/sweep.html"]);
+    let made = [
+        "spinning-bar-sweep/sweep.html",
+        "bar-thickness-sweep/find.1.svg",
+    ];
+    run_commands("doc/studies.md", 2, &made);
+}
+
+#[test]
+fn the_page_of_studies_holds_the_whole_search() {
+    let page = read("doc/studies.md");
+    let study = read("data/studies/bar-thickness.toml");
+    assert!(page.contains(&format!("```toml\n{study}```")));
 }
 
 /// The targets of links, without their anchors.

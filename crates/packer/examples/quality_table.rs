@@ -91,7 +91,7 @@ fn growth_table(counts: &[usize]) -> std::result::Result<(), Error> {
     let mut out = std::io::stdout();
     writeln!(
         out,
-        "| spheres | threads | front, s | settling, s | all, s | us/sphere | memory, bytes/sphere | interior | overall |\n\
+        "| spheres | threads | front, s | densifying, s | all, s | us/sphere | memory, bytes/sphere | interior | overall |\n\
          |---|---|---|---|---|---|---|---|---|"
     )?;
     for count in counts {

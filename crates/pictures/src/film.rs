@@ -1,9 +1,6 @@
-//! Pictures side by side, and one after the other.
-
-use png::{BlendOp, Compression, DisposeOp, EncodingError, Writer};
+//! The pictures of a film, and some of them side by side.
 
 use super::image::{Image, MAX_SIDE_PX};
-use super::png_file::{encoder, fault};
 
 /// Largest number of pictures of a film strip.
 pub(crate) const OF_STRIP: usize = 8;
@@ -81,86 +78,6 @@ pub fn film_strip(frames: &[Image], columns: usize) -> Image {
     strip
 }
 
-/// Pictures as the bytes of an animated PNG file, which browsers play repeatedly. `delay_ms`: time
-/// for which each is shown.
-///
-/// `frame` gives each of the `count` pictures in turn. All have the size of the first one: the
-/// others are cut off or padded in white. For each, only the difference from the previous one is
-/// stored.
-///
-/// # Errors
-/// Those of `frame`; no frames, or frames without pixels.
-pub fn animation(
-    count: u32,
-    delay_ms: u16,
-    mut frame: impl FnMut(u32) -> dem_io::Result<Image>,
-) -> dem_io::Result<Vec<u8>> {
-    let mut shown = if count == 0 {
-        Image::new(0, 0, [255; 3])
-    } else {
-        frame(0)?
-    };
-    let mut bytes = Vec::new();
-    let mut writer = begun(&mut bytes, &shown, count, delay_ms).map_err(|error| fault(&error))?;
-    for number in 1..count {
-        let mut next = Image::new(shown.width(), shown.height(), [255; 3]);
-        next.paste(&frame(number)?, 0, 0);
-        let place = difference(&shown, &next);
-        add(&mut writer, &next, place).map_err(|error| fault(&error))?;
-        shown = next;
-    }
-    writer.finish().map_err(|error| fault(&error))?;
-    Ok(bytes)
-}
-
-/// A film with its first picture.
-fn begun<'a>(
-    bytes: &'a mut Vec<u8>,
-    first: &Image,
-    count: u32,
-    delay_ms: u16,
-) -> Result<Writer<&'a mut Vec<u8>>, EncodingError> {
-    let mut encoder = encoder(bytes, first, Compression::Balanced);
-    // Without frames as well, so that the header is refused.
-    encoder.set_animated(count.max(1), 0)?;
-    encoder.set_frame_delay(delay_ms, 1000)?;
-    encoder.set_blend_op(BlendOp::Source)?;
-    encoder.set_dispose_op(DisposeOp::None)?;
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(first.rgb())?;
-    Ok(writer)
-}
-
-/// Adds a rectangle of the next picture: left, top, width, height.
-fn add(
-    writer: &mut Writer<&mut Vec<u8>>,
-    next: &Image,
-    [x, y, width, height]: [u32; 4],
-) -> Result<(), EncodingError> {
-    writer.reset_frame_position()?;
-    writer.set_frame_dimension(width, height)?;
-    writer.set_frame_position(x, y)?;
-    writer.write_image_data(next.part([x, y], [width, height]).rgb())
-}
-
-/// The smallest rectangle that contains all pixels that differ, or one pixel: left, top, width,
-/// height. The pictures have the same size.
-fn difference(a: &Image, b: &Image) -> [u32; 4] {
-    let wide = a.width().max(1);
-    let mut low = [u32::MAX; 2];
-    let mut high = [0; 2];
-    let pixels = a.rgb().chunks_exact(3).zip(b.rgb().chunks_exact(3));
-    for (at, _) in (0u32..).zip(pixels).filter(|(_, (a, b))| a != b) {
-        let place = [at % wide, at / wide];
-        low = [0, 1].map(|k| low[k].min(place[k]));
-        high = [0, 1].map(|k| high[k].max(place[k]));
-    }
-    if low[0] > high[0] {
-        return [0, 0, 1, 1];
-    }
-    [low[0], low[1], high[0] - low[0] + 1, high[1] - low[1] + 1]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -179,15 +96,5 @@ mod tests {
         assert_eq!(chosen_for_film(201).len(), 101);
         assert_eq!(chosen_for_film(402)[132..], [396, 399, 401]);
         assert_eq!([0, 10, 100, 1000].map(delay_ms), [400, 400, 80, 40]);
-    }
-
-    #[test]
-    fn difference_is_the_smallest_rectangle() {
-        let a = Image::new(9, 9, [0; 3]);
-        let mut b = a.clone();
-        assert_eq!(difference(&a, &b), [0, 0, 1, 1]);
-        b.blend(2, 3, [9; 3], 1.0);
-        b.blend(5, 4, [9; 3], 1.0);
-        assert_eq!(difference(&a, &b), [2, 3, 4, 2]);
     }
 }

@@ -55,7 +55,7 @@ pub fn read_png(path: &Path) -> Result<Image> {
 }
 
 /// Encoder for pictures of this size, RGB.
-pub(super) fn encoder<'a>(
+fn encoder<'a>(
     bytes: &'a mut Vec<u8>,
     image: &Image,
     compression: Compression,

@@ -7,7 +7,8 @@
 )]
 
 use dem_io::{Bounds, Diagnostic};
-use dem_pictures::film::{animation, film_strip};
+use dem_pictures::animation::animation;
+use dem_pictures::film::film_strip;
 use dem_pictures::label::{label, scale_bar};
 use dem_pictures::png_file::{Compression, read_png, to_png};
 use dem_pictures::surface::HalfSpace;
@@ -235,6 +236,39 @@ fn png_holds_the_same_pixels() {
     assert!(error.place.ends_with("picture.png") && error.exit_code() == 1);
 }
 
+/// The pictures that a browser shows of a film, and whether it has a palette.
+fn shown(film: &[u8]) -> (Vec<Image>, bool) {
+    let mut decoder = png::Decoder::new(std::io::Cursor::new(film));
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
+    let control = *reader.info().animation_control().unwrap();
+    assert_eq!(control.num_plays, 0);
+    let has_palette = reader.info().palette.is_some();
+    let mut canvas = Image::new(reader.info().width, reader.info().height, [0; 3]);
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let mut frames = Vec::new();
+    for _ in 0..control.num_frames {
+        let info = reader.next_frame(&mut pixels).unwrap();
+        let part = *reader.info().frame_control().unwrap();
+        assert_eq!((part.delay_num, part.delay_den), (40, 1000));
+        let is_over = part.blend_op == png::BlendOp::Over;
+        assert_eq!(is_over, has_palette && !frames.is_empty());
+        let bytes = info.color_type.samples();
+        for (k, colour) in (0..).zip(pixels[..info.buffer_size()].chunks_exact(bytes)) {
+            let place = [
+                k % part.width + part.x_offset,
+                k / part.width + part.y_offset,
+            ];
+            if colour.get(3) != Some(&0) {
+                let [x, y] = place.map(i64::from);
+                canvas.blend(x, y, [colour[0], colour[1], colour[2]], 1.0);
+            }
+        }
+        frames.push(canvas.clone());
+    }
+    (frames, has_palette)
+}
+
 #[test]
 fn animation_holds_all_frames_and_plays_for_ever() {
     let camera = front();
@@ -242,28 +276,37 @@ fn animation_holds_all_frames_and_plays_for_ever() {
     let frames: Vec<Image> = (0..6)
         .map(|k| render(&camera, &[ball(at(k), 0.2, RED)], &[]))
         .collect();
-    let bytes = animation(6, 40, |k| Ok(frames[k as usize].clone())).unwrap();
-    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
-        .read_info()
-        .unwrap();
-    let control = *reader.info().animation_control().unwrap();
-    assert_eq!((control.num_frames, control.num_plays), (6, 0));
-    let mut canvas = Image::new(320, 200, [0; 3]);
-    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-    for frame in &frames {
-        let info = reader.next_frame(&mut pixels).unwrap();
-        let part = *reader.info().frame_control().unwrap();
-        assert_eq!((part.delay_num, part.delay_den), (40, 1000));
-        for (k, colour) in pixels[..info.buffer_size()].chunks_exact(3).enumerate() {
-            let [x, y] = [
-                k as u32 % part.width + part.x_offset,
-                k as u32 / part.width + part.y_offset,
-            ];
-            let colour = [colour[0], colour[1], colour[2]];
-            canvas.blend(i64::from(x), i64::from(y), colour, 1.0);
-        }
-        assert!(canvas == *frame);
+    let film = animation(6, 40, |k| Ok(frames[k as usize].clone())).unwrap();
+    let (shown, has_palette) = shown(&film);
+    assert!(has_palette && shown.len() == 6);
+    for (shown, frame) in shown.iter().zip(&frames) {
+        let pixels = shown.rgb().iter().zip(frame.rgb());
+        let largest = pixels.map(|(a, b)| a.abs_diff(*b)).max();
+        assert!(largest <= Some(4), "{largest:?}");
     }
+    // What does not change takes no room.
+    let once = animation(1, 40, |k| Ok(frames[k as usize].clone())).unwrap();
+    let twice = animation(2, 40, |k| Ok(frames[k as usize].clone())).unwrap();
+    assert!(frames[0] == frames[1] && twice.len() < once.len() + 100);
+}
+
+#[test]
+fn animation_of_too_many_colours_keeps_them() {
+    let frame = |k: u32| {
+        let mut image = Image::new(160, 160, [0; 3]);
+        for at in 0..160 * 160 {
+            let [x, y] = [at % 160, at / 160];
+            let colour = [x, y, (x * y + 40 * k) % 251].map(|part| part as u8);
+            image.blend(i64::from(x), i64::from(y), colour, 1.0);
+        }
+        image
+    };
+    let film = animation(3, 40, |k| Ok(frame(k))).unwrap();
+    assert!(shown(&film) == ([0, 1, 2].map(frame).into(), false));
+}
+
+#[test]
+fn animation_refuses_what_has_no_pixels() {
     assert!(animation(0, 40, |_| Ok(Image::new(5, 5, RED))).is_err());
     assert!(animation(1, 40, |_| Ok(Image::new(0, 5, RED))).is_err());
     assert!(animation(2, 0, |k| Ok(Image::new(5 * (1 - k), 9, RED))).is_ok());

@@ -3,6 +3,7 @@
 mod gif_film;
 mod subject;
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use dem_io::{Diagnostic, Result, read_input};
@@ -20,7 +21,7 @@ const MOST_FRAMES: usize = 240;
 /// Upward direction in a picture.
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// What colours tell.
+/// What colours tell: those of `output.colour_by` in a scene, and others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ColourBy {
     /// The fragment.
@@ -30,18 +31,59 @@ pub enum ColourBy {
     /// Speed of the spheres.
     Speed,
     /// Mass of the fragment.
-    Mass,
+    FragmentMass,
+    /// Largest strain rate of the intact bonds of each sphere.
+    StrainRate,
+    /// Largest dynamic increase factor of them.
+    DynamicIncreaseFactor,
+    /// Largest dynamic utilisation of them.
+    DynamicUtilisation,
     /// Largest utilisation of the intact bonds of each sphere.
     Utilisation,
     /// Mean normal stress of the intact bonds of each sphere; its size.
     Stress,
 }
 
+impl ColourBy {
+    /// Their names.
+    pub const WORDS: [(&'static str, Self); 9] = [
+        ("fragment", Self::Fragment),
+        ("fragment_mass", Self::FragmentMass),
+        ("body", Self::Body),
+        ("speed", Self::Speed),
+        ("utilisation", Self::Utilisation),
+        ("stress", Self::Stress),
+        ("strain_rate", Self::StrainRate),
+        ("dynamic_increase_factor", Self::DynamicIncreaseFactor),
+        ("dynamic_utilisation", Self::DynamicUtilisation),
+    ];
+}
+
+/// A frame of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Which {
+    /// The last one.
+    Last,
+    /// The one with this number, from 0.
+    Number(usize),
+    /// The one whose time is nearest to this one, s; of two, the earlier.
+    Nearest(f64),
+}
+
+/// A picture or a film.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Drawn {
+    /// The bytes of the file.
+    pub bytes: Vec<u8>,
+    /// True if no sphere of any frame shown is within the picture.
+    pub is_empty: bool,
+}
+
 /// What a picture shows, and from where.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOrder {
-    /// Number of the frame; None: the last. Films show all frames.
-    pub frame: Option<usize>,
+    /// The frame. Films show all.
+    pub frame: Which,
     /// Direction of the viewer, of any length; None: that of the scene.
     pub from: Option<[f64; 3]>,
     /// The place in the middle, m; None: the middle of everything.
@@ -68,7 +110,7 @@ pub enum PictureKind {
 /// # Errors
 /// The folder is not that of a finished run or has no such frame; a file of it is damaged (all exit
 /// code 2).
-pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<Vec<u8>> {
+pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<Drawn> {
     let folder = Folder::read(path)?;
     if folder.frames().is_empty() {
         return Err(Diagnostic::input(
@@ -89,11 +131,22 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<V
         [(_, first), .., (_, last)] => (last - first) / (frames.len() - 1) as f64,
         _ => 0.0,
     };
-    let one = |frame: &(PathBuf, f64)| drawn(frame, &camera, &colours, every_s);
-    match kind {
+    let is_empty = Cell::new(true);
+    let one = |frame: &(PathBuf, f64)| {
+        let seen = Seen::read(frame)?;
+        if seen.is_within(&camera, order.size_px) {
+            is_empty.set(false);
+        }
+        Ok(drawn(&seen, frame.1, &camera, &colours, every_s))
+    };
+    let bytes = match kind {
         PictureKind::Png => to_png(&one(&chosen[0])?, Compression::High),
         PictureKind::Gif => film(order.size_px, chosen.len(), &|number| one(&chosen[number])),
-    }
+    }?;
+    Ok(Drawn {
+        bytes,
+        is_empty: is_empty.get(),
+    })
 }
 
 /// The frames that are shown, with their times, s.
@@ -113,7 +166,14 @@ fn chosen(
             Ok(chosen)
         }
         PictureKind::Png => {
-            let number = order.frame.unwrap_or(last);
+            let off_s = |number: &usize, time_s: f64| (frames[*number].1 - time_s).abs();
+            let number = match order.frame {
+                Which::Last => last,
+                Which::Number(number) => number,
+                Which::Nearest(time_s) => (0..frames.len())
+                    .min_by(|a, b| off_s(a, time_s).total_cmp(&off_s(b, time_s)))
+                    .unwrap_or(last),
+            };
             let frame = frames.get(number).ok_or_else(|| {
                 let problem = format!("there is no frame {number}");
                 Diagnostic::input("--frame", problem, format!("the frames are 0 to {last}"))
@@ -167,18 +227,12 @@ fn camera(order: &PictureOrder, from: [f64; 3], frames: &[(PathBuf, f64)]) -> Re
     ))
 }
 
-fn drawn(
-    frame: &(PathBuf, f64),
-    camera: &Camera,
-    colours: &Colours,
-    every_s: f64,
-) -> Result<Image> {
-    let seen = Seen::read(frame)?;
+fn drawn(seen: &Seen, time_s: f64, camera: &Camera, colours: &Colours, every_s: f64) -> Image {
     let mut image = render(camera, &seen.balls(colours), &seen.walls());
     if let Some((name, highest)) = colours.scale() {
         colour_bar(&mut image, name, ["0", &highest], &viridis);
     }
-    label(&mut image, &time_text(frame.1, every_s));
+    label(&mut image, &time_text(time_s, every_s));
     scale_bar(&mut image, camera.px_per_m());
-    Ok(image)
+    image
 }

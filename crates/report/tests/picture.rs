@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use dem_report::picture::{ColourBy, PictureKind, PictureOrder, picture};
+use dem_report::picture::{ColourBy, PictureKind, PictureOrder, Which, picture};
 use tempfile::TempDir;
 
 use super::made_run::{Moment, folder_with, out, summary};
@@ -24,7 +24,7 @@ const MOMENTS: [Moment; 3] = [
 
 fn order() -> PictureOrder {
     PictureOrder {
-        frame: None,
+        frame: Which::Last,
         from: Some([0.2, -1.0, 0.4]),
         target_m: None,
         zoom: 1.0,
@@ -49,7 +49,11 @@ fn pixels(bytes: &[u8]) -> Vec<u8> {
 }
 
 fn drawn(folder: &TempDir, order: &PictureOrder) -> Vec<u8> {
-    pixels(&picture(&out(folder), order, PictureKind::Png).unwrap())
+    pixels(
+        &picture(&out(folder), order, PictureKind::Png)
+            .unwrap()
+            .bytes,
+    )
 }
 
 #[test]
@@ -58,7 +62,7 @@ fn every_part_of_the_order_changes_the_picture() {
     let whole = drawn(&folder, &order());
     let others = [
         PictureOrder {
-            frame: Some(0),
+            frame: Which::Number(0),
             ..order()
         },
         PictureOrder {
@@ -82,7 +86,7 @@ fn every_part_of_the_order_changes_the_picture() {
         assert_ne!(drawn(&folder, other), whole, "{other:?}");
     }
     let last = PictureOrder {
-        frame: Some(2),
+        frame: Which::Number(2),
         ..order()
     };
     assert_eq!(
@@ -99,7 +103,7 @@ fn colours_differ_by_what_they_tell() {
         ColourBy::Fragment,
         ColourBy::Body,
         ColourBy::Speed,
-        ColourBy::Mass,
+        ColourBy::FragmentMass,
         ColourBy::Utilisation,
         ColourBy::Stress,
     ];
@@ -129,7 +133,9 @@ fn colours_differ_by_what_they_tell() {
 #[test]
 fn a_film_has_all_frames() {
     let folder = made();
-    let bytes = picture(&out(&folder), &order(), PictureKind::Gif).unwrap();
+    let bytes = picture(&out(&folder), &order(), PictureKind::Gif)
+        .unwrap()
+        .bytes;
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::RGBA);
     let mut film = options.read_info(bytes.as_slice()).unwrap();
@@ -146,7 +152,7 @@ fn a_film_has_all_frames() {
 fn what_is_not_there_is_named() {
     let folder = made();
     let order = PictureOrder {
-        frame: Some(3),
+        frame: Which::Number(3),
         ..order()
     };
     let error = picture(&out(&folder), &order, PictureKind::Png).unwrap_err();

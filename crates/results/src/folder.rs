@@ -347,12 +347,33 @@ impl ResultsFolder {
         Ok(())
     }
 
+    /// Removes what is neither a table nor the summary, the page or the scene of a run that has ended:
+    /// frames, pictures, plots and checkpoint.
+    ///
+    /// # Errors
+    /// A file cannot be removed (exit code 1).
+    pub fn keep_tables(&self) -> Result<()> {
+        // First, so that a partly removed folder is not taken for a run to continue.
+        self.remove_files("", |name| name == CHECKPOINT)?;
+        self.remove_files("", |name| [ENDED, INDEX, FILM, FILM_STRIP].contains(&name))?;
+        self.remove_numbered_and_plots()?;
+        for part in [FRAMES, PICTURES, PLOTS] {
+            // One that holds other files stays.
+            let _ = fs::remove_dir(self.path.join(part));
+        }
+        Ok(())
+    }
+
     fn remove_results(&self) -> Result<()> {
         // First, so that a partly removed folder is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
         self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
         let is_ours = is_scene_as_run(&self.scene());
         self.remove_files("", |name| name == SCENE && is_ours)?;
+        self.remove_numbered_and_plots()
+    }
+
+    fn remove_numbered_and_plots(&self) -> Result<()> {
         self.remove_frames_from(0)?;
         self.remove_pictures_from(0)?;
         let plots = self.path.join(PLOTS);

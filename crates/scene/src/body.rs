@@ -145,7 +145,7 @@ pub(super) static BODY: Schema = Schema {
         Key::table(
             "drop",
             &fall::DROP,
-            "A fall onto a plane: the body starts just above it, with the speed that the fall has given it. Stands for `velocity` and \
+            "A fall onto a wall: the body starts just above it, with the speed that the fall has given it. Stands for `velocity` and \
              the part of `position` along gravity.",
         ),
         Key::vector(

@@ -1,4 +1,4 @@
-//! `drop` of `[bodies.NAME]`: a body just above a plane, with the speed of a fall.
+//! `drop` of `[bodies.NAME]`: a body just above a wall, with the speed of a fall.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::listing::Listing;
 use super::run::Run;
 use super::schema::{Key, Schema};
 use super::table::Table;
-use super::wall::{Wall, WallShape};
+use super::wall::Wall;
 use dem_io::diagnostic::Result;
 use dem_io::units::LENGTH;
 
@@ -18,25 +18,25 @@ const ROUNDING: f64 = 1e-12;
 /// Where a body falls from, and onto what.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fall {
-    /// `height`: distance, along gravity, that the first point of the body to touch the plane has
+    /// `height`: distance, along gravity, that the first point of the body to touch the wall has
     /// fallen from rest when it does so, m; above 0.
     pub height_m: f64,
-    /// `onto`: a name of `[walls]`, of a plane.
+    /// `onto`: a name of `[walls]`.
     pub onto: String,
 }
 
 pub(super) static DROP: Schema = Schema {
     title: "Drop",
-    doc: "A fall from rest onto a plane.",
+    doc: "A fall from rest onto a wall, from above it.",
     keys: &[
         Key::quantity(
             "height",
             &LENGTH,
-            "Distance along gravity that the first point to touch the plane has fallen by then: the speed of impact is sqrt(2 g height).",
+            "Distance along gravity that the first point to touch the wall has fallen by then: the speed of impact is sqrt(2 g height).",
         )
         .positive()
         .required("\"1 m\""),
-        Key::text("onto", "a name in [walls]", "The wall, a plane, that the body falls onto.")
+        Key::text("onto", "a name in [walls]", "The wall that the body falls onto: a plane, a box, a cylinder or an STL surface below it.")
             .required("\"NAME\", a name in [walls]"),
     ],
 };
@@ -61,7 +61,7 @@ pub(super) fn read(body: &Table<'_>) -> Result<Option<Fall>> {
     }))
 }
 
-/// Refuses falls without gravity, past their wall, onto what is no plane, or of bodies that are fed;
+/// Refuses falls without gravity, onto an unknown wall, or of bodies that are fed;
 /// and a `position` along gravity, which is that of the fall.
 pub(super) fn refuse_falls(
     root: &Table<'_>,
@@ -71,7 +71,7 @@ pub(super) fn refuse_falls(
     inlets: &BTreeMap<String, Inlet>,
 ) -> Result<()> {
     for (name, body) in bodies {
-        let (Some(fall), Some(field)) = (&body.fall, root.find(&["bodies", name, "drop"])) else {
+        let (Some(_), Some(field)) = (&body.fall, root.find(&["bodies", name, "drop"])) else {
             continue;
         };
         let onto = Table::of(&field, &DROP)?.need("onto")?;
@@ -88,13 +88,6 @@ pub(super) fn refuse_falls(
             );
             return Err(field.refuse(problem, format!("remove it, or [inlets.{inlet}]")));
         }
-        if let Some(wall) = walls.get(&fall.onto)
-            && !matches!(wall.shape, WallShape::Plane { .. })
-        {
-            let problem = format!("{} is \"{}\", which is no plane", onto.path, fall.onto);
-            let remedy = "name a plane, or write position and velocity instead of drop";
-            return Err(onto.refuse(problem, remedy));
-        }
         let along = |one: [f64; 3], other: [f64; 3]| (0..3).map(|k| one[k] * other[k]).sum::<f64>();
         let position = body.position_m;
         let sizes = along(position, position) * along(gravity, gravity);
@@ -104,7 +97,7 @@ pub(super) fn refuse_falls(
                 "{} moves the body along gravity, and so does drop",
                 field.path
             );
-            let remedy = "leave its part along gravity at 0: it follows from the plane";
+            let remedy = "leave its part along gravity at 0: it follows from the wall";
             return Err(field.refuse(problem, remedy));
         }
     }

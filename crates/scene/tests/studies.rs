@@ -218,7 +218,7 @@ fn a_search_is_read() {
     assert_eq!((find.value.as_str(), find.unit.as_str()), ("2 mm", "s"));
     assert_eq!(study.average_over, Some(1));
     assert_eq!(labels(&study, 0), ["1 s", "3 s"]);
-    study.add_point(2.0);
+    study.add_point(0, 2.0);
     assert_eq!(study.points(), [1.0, 3.0, 2.0]);
     let added = &study.axes[0].values[2].settings[0];
     assert_eq!(
@@ -227,6 +227,25 @@ fn a_search_is_read() {
     );
     let scene = scene_with(&study, SCENE, study.first_settings()).unwrap();
     assert_eq!(value_to_find(&study, &scene).unwrap(), Some(2e-3));
+}
+
+/// A search for each value of the other axes; points are shared where they are the same.
+#[test]
+fn a_search_has_cases() {
+    let search = FIND.replace("10 ms", "0.01 s").replace(
+        "[measures",
+        "\"bonds.steel.model\" = [\"timoshenko\", \"parallel\"]\n\"body.bar\" = [\"a.csv\", \"b.csv\"]\n[measures",
+    );
+    let mut study = study(&search);
+    assert_eq!(study.average_over, Some(1));
+    let cases = [[0, 0, 0, 0], [0, 0, 0, 1], [0, 0, 1, 0], [0, 0, 1, 1]];
+    assert_eq!(study.cases(), cases);
+    study.add_point(2, 2.0);
+    study.add_point(0, 1.5);
+    study.add_point(3, 2.0);
+    assert_eq!(study.points(), [1.0, 3.0, 2.0, 1.5]);
+    let tried = study.find.unwrap().tried;
+    assert_eq!(tried, [&[0, 1, 3][..], &[0, 1], &[0, 1, 2], &[0, 1, 2]]);
 }
 
 #[test]
@@ -268,11 +287,6 @@ fn what_is_no_search() {
             "\"2 mm\"",
             "true",
             "find.value is true, but must be a number",
-        ),
-        (
-            "\"run.seed\" = [1, 2]",
-            "\"bonds.steel.model\" = [\"parallel\"]",
-            "[find] searches one value, but bonds.steel.model varies as well; move it into [set]",
         ),
         (
             "\"run.seed\" = [1, 2]",

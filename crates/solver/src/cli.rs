@@ -54,7 +54,11 @@ use crate::run::{
 };
 
 /// Options that had another name before version 0.1, and their new names.
-pub const RENAMED: [(&str, &str); 2] = [("--out", "--output"), ("--want", "--max-error")];
+pub const RENAMED: [(&str, &str); 3] = [
+    ("--out", "--output"),
+    ("--want", "--max-error"),
+    ("--colour", "--colour-by"),
+];
 
 /// Simulates the breakage of bonded particles with the discrete element method.
 #[derive(Debug, Parser)]
@@ -127,6 +131,9 @@ enum Command {
         /// Write a picture of the start to this file (.png)
         #[arg(long, value_name = "FILE")]
         picture: Option<PathBuf>,
+        /// Only print errors; --json is still printed
+        #[arg(long, short)]
+        quiet: bool,
     },
     /// Make a folder with a scene to start from: drop, chute, crusher, bending or compression
     #[command(
@@ -174,7 +181,7 @@ enum Command {
     Calibrate(Box<calibrate::CalibrateArguments>),
     /// Write a picture or a film of a finished run, from any side
     #[command(after_help = "Examples:\n  \
-                      dem-run picture chute-out -o impact.png --frame 40 --from 1,-2,0.5 --zoom 3 --colour speed\n  \
+                      dem-run picture chute-out -o impact.png --frame 40 --from 1,-2,0.5 --zoom 3 --colour-by speed\n  \
                       dem-run picture chute-out -o chute.gif --size 640x360")]
     Picture(picture::PictureArguments),
     /// Write the page of a finished run again: verdict, view in three dimensions, results, curves
@@ -245,6 +252,10 @@ struct RunArguments {
     /// Resume from the checkpoint in the folder
     #[arg(long)]
     resume: bool,
+    /// Files to keep once the run has ended: all, or tables, which removes frames, pictures, plots
+    /// and checkpoint
+    #[arg(long, value_name = "FILES", default_value = "all", value_parser = ["all", "tables"])]
+    keep: String,
     /// Only print errors: no progress, no warnings, no summary; --json is still printed
     #[arg(long, short)]
     quiet: bool,
@@ -296,7 +307,11 @@ pub fn run(
             "this is not a scene (.toml)",
             "name a scene; dem-run describes a body without check",
         )),
-        Some(Command::Check { scene, picture }) => in_pool(scene.threads, |threads| {
+        Some(Command::Check {
+            scene,
+            picture,
+            quiet,
+        }) => in_pool(scene.threads, |threads| {
             let (scene_data, bodies) = scene.read()?;
             let scene_data = match lowest_in_test_hz(&scene_data, &bodies, threads)? {
                 Some(lowest_hz) => arrange(&scene_data, lowest_hz, 1.0)?,
@@ -306,6 +321,9 @@ pub fn run(
             plan.inputs.set = scene.all_overrides();
             if let Some(file) = picture {
                 check::write_picture(&scene_data, &plan, file)?;
+            }
+            if *quiet && !scene.json {
+                return Ok(());
             }
             check::check(&scene_data, &plan, scene.json)
         }),
@@ -372,6 +390,7 @@ impl RunArguments {
             ("--output", self.output.is_some()),
             ("--force", self.force),
             ("--resume", self.resume),
+            ("--keep", self.keep != "all"),
             ("--set", !self.scene.overrides.is_empty()),
             ("--material", !self.scene.material.is_empty()),
             ("--force-step", self.scene.force_step),
@@ -570,6 +589,15 @@ fn run_scene(
     // A scene that cannot be resumed must not replace that of the run.
     if let Some(folder) = folder.as_ref().filter(|_| arguments.resume) {
         as_run::write_scene(folder, &arguments.scene, &scene)?;
+    }
+    let is_whole = outcome
+        .as_ref()
+        .is_ok_and(|outcome| outcome.problem.is_none());
+    if let Some(folder) = folder
+        .as_ref()
+        .filter(|_| is_whole && arguments.keep == "tables")
+    {
+        folder.keep_tables()?;
     }
     match outcome {
         Ok(outcome) => say_outcome(arguments, outcome),

@@ -4,6 +4,7 @@
 pub(crate) mod bodies;
 mod clumps;
 mod contacts;
+mod falls;
 mod forecast;
 pub(crate) mod groups;
 pub(crate) mod held;

@@ -1,7 +1,7 @@
 //! From a study to its runs.
 
 use dem_io::{Diagnostic, Result};
-use dem_scene::study::{Axis, Combine, Setting, Study};
+use dem_scene::study::{Axis, Combine, Find, Setting, Study};
 
 /// Largest number of processes started without confirmation.
 pub const MOST_UNASKED: u64 = 10_000;
@@ -13,7 +13,8 @@ const MOST_CHOICES: u64 = 10_000_000;
 /// One combination of values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Run {
-    /// Number, from 1.
+    /// Number, from 1: that of its folder. Consecutive, except where searches of several cases end
+    /// after different numbers of points.
     pub number: usize,
     /// Index of the value on each axis, from 0.
     pub choice: Vec<usize>,
@@ -42,11 +43,16 @@ impl Run {
 /// Paired axes of different lengths; more than [`MOST_UNASKED`] processes unless `yes`.
 pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
     let lengths: Vec<usize> = study.axes.iter().map(|axis| axis.values.len()).collect();
-    let count = match study.combine {
-        Combine::Grid => lengths.iter().fold(1, |product: u64, &length| {
+    let count = match (study.combine, &study.find) {
+        (Combine::Grid, Some(find)) => {
+            let averaged = study.average_over.map_or(1, |at| lengths[at]);
+            let tried: usize = find.tried.iter().map(Vec::len).sum();
+            tried as u64 * averaged as u64
+        }
+        (Combine::Grid, None) => lengths.iter().fold(1, |product: u64, &length| {
             product.saturating_mul(length as u64)
         }),
-        Combine::Paired => paired(&study.axes)? as u64,
+        (Combine::Paired, _) => paired(&study.axes)? as u64,
     };
     let processes = count.saturating_mul(u64::from(study.repeats()));
     if processes > MOST || (processes > MOST_UNASKED && !yes) {
@@ -77,6 +83,9 @@ pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
             "vary less, or join axes in [together.NAME]",
         ));
     }
+    if let Some(find) = &study.find {
+        return Ok(runs_of_search(study, find, &lengths));
+    }
     // Not above MOST.
     Ok((0..count as usize)
         .map(|index| Run {
@@ -84,6 +93,33 @@ pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
             choice: choice(study.combine, &lengths, index),
         })
         .collect())
+}
+
+/// The runs of a search so far: number k of the points of each case, before number k + 1 of any. The
+/// number of a run depends neither on the other cases nor on the order in which they get on.
+fn runs_of_search(study: &Study, find: &Find, lengths: &[usize]) -> Vec<Run> {
+    let cases = study.cases();
+    let others: usize = lengths[1..].iter().product();
+    let mut runs = Vec::new();
+    for other in 0..others {
+        let mut choice = choice(Combine::Grid, lengths, other);
+        let mut case = choice.clone();
+        if let Some(averaged) = study.average_over {
+            case[averaged] = 0;
+        }
+        let Some(case) = cases.iter().position(|one| *one == case) else {
+            continue;
+        };
+        for (k, at) in find.tried[case].iter().enumerate() {
+            choice[0] = *at;
+            runs.push(Run {
+                number: k * others + other + 1,
+                choice: choice.clone(),
+            });
+        }
+    }
+    runs.sort_by_key(|run| run.number);
+    runs
 }
 
 fn paired(axes: &[Axis]) -> Result<usize> {

@@ -20,7 +20,13 @@ const SCENE_TEXT: &str = "text of the scene";
 const VARY: &str = "[vary]";
 
 /// Files of which a sweep makes one each, besides [`IDENTITY`].
-const TABLES: [&str; 4] = ["sweep.csv", "responses.csv", "sweep.json", "sweep.html"];
+const TABLES: [&str; 5] = [
+    "sweep.csv",
+    "responses.csv",
+    "find.csv",
+    "sweep.json",
+    "sweep.html",
+];
 
 /// The folder of a sweep. No other sweep can use it as long as this exists.
 #[derive(Debug)]
@@ -129,7 +135,7 @@ impl SweepFolder {
             if job.is_alive(&runs) {
                 return Err(Diagnostic::input(
                     job.folder(&runs).display().to_string(),
-                    format!("run {} of this sweep is still going on", job.run + 1),
+                    format!("run {} of this sweep is still going on", job.number),
                     "wait until it has ended, or end its process; then say the same again",
                 ));
             }

@@ -1,6 +1,6 @@
 //! The processes of a sweep: what to start, in which order, and what is left.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -11,7 +11,7 @@ use std::time::Duration;
 use dem_io::program::own_command;
 use dem_io::{Diagnostic, Result};
 use dem_results::folder::{is_locked, is_written_to};
-use dem_scene::study::{BODY, Study, override_text};
+use dem_scene::study::{BODY, Keep, Study, override_text};
 use serde_json::Value;
 
 use super::expand::Run;
@@ -27,8 +27,8 @@ const LOOK: Duration = Duration::from_millis(5);
 /// One process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Job {
-    /// Index of the run in the list of all, from 0.
-    pub run: usize,
+    /// Number of the run, from 1.
+    pub number: usize,
     /// Number of the repeat, from 1.
     pub repeat: u32,
 }
@@ -36,24 +36,30 @@ pub struct Job {
 impl Job {
     /// Folder of its results.
     pub fn folder(&self, runs: &Path) -> PathBuf {
-        runs.join(format!("{:04}-{}", self.run + 1, self.repeat))
+        runs.join(format!("{:04}-{}", self.number, self.repeat))
     }
 
     /// File of its error messages.
     pub fn complaint(&self, runs: &Path) -> PathBuf {
-        runs.join(format!("{:04}-{}.txt", self.run + 1, self.repeat))
+        runs.join(format!("{:04}-{}.txt", self.number, self.repeat))
     }
 
     /// The job whose folder or error file has this name, such as `0007-2` or `0007-2.txt`.
     pub fn named(name: &str) -> Option<Self> {
         let (run, repeat) = name.strip_suffix(".txt").unwrap_or(name).split_once('-')?;
         let job = Self {
-            run: run.parse::<usize>().ok()?.checked_sub(1)?,
+            number: run.parse::<usize>().ok().filter(|number| *number > 0)?,
             repeat: repeat.parse().ok()?,
         };
         let is_same = |path: PathBuf| path.as_os_str() == name;
         let own = [job.folder(Path::new("")), job.complaint(Path::new(""))];
         own.into_iter().any(is_same).then_some(job)
+    }
+
+    /// Index of its run in the list of all, which is in the order of the numbers.
+    pub fn index(&self, all: &[Run]) -> Option<usize> {
+        all.binary_search_by_key(&self.number, |run| run.number)
+            .ok()
     }
 
     /// True if its process is running at this moment, although the sweep that started it may have
@@ -75,10 +81,13 @@ impl Job {
 
 /// All processes. Each run is done once before any is repeated, forwards and backwards in turn, so
 /// that a machine that slows down favours none.
-pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
+pub fn jobs(all: &[Run], repeats: u32) -> Vec<Job> {
     let mut jobs = Vec::new();
     for repeat in 1..=repeats {
-        let one = (0..runs).map(|run| Job { run, repeat });
+        let one = all.iter().map(|run| Job {
+            number: run.number,
+            repeat,
+        });
         if repeat % 2 == 1 {
             jobs.extend(one);
         } else {
@@ -90,7 +99,7 @@ pub fn jobs(runs: usize, repeats: u32) -> Vec<Job> {
 
 /// Further repeats of short runs, from the outcomes of all [`jobs`] of each run. None for a run
 /// with an unfinished job.
-pub fn further_jobs(repeats: u32, outcomes: &[Vec<Outcome>]) -> Vec<Job> {
+pub fn further_jobs(all: &[Run], repeats: u32, outcomes: &[Vec<Outcome>]) -> Vec<Job> {
     if repeats == 1 {
         return Vec::new();
     }
@@ -103,9 +112,13 @@ pub fn further_jobs(repeats: u32, outcomes: &[Vec<Outcome>]) -> Vec<Job> {
         let mean_s = all_s.unwrap_or(f64::INFINITY) / f64::from(repeats);
         (MEASURED_S / mean_s).ceil().min(f64::from(MOST_REPEATS)) as u32
     };
-    let wanted: Vec<u32> = outcomes.iter().map(wanted).collect();
-    let mut jobs = jobs(outcomes.len(), MOST_REPEATS);
-    jobs.retain(|job| job.repeat > repeats && job.repeat <= wanted[job.run]);
+    let numbers = all.iter().map(|run| run.number);
+    let wanted: BTreeMap<usize, u32> = numbers.zip(outcomes.iter().map(wanted)).collect();
+    let mut jobs = jobs(all, MOST_REPEATS);
+    jobs.retain(|job| {
+        let wanted = wanted.get(&job.number).copied().unwrap_or_default();
+        job.repeat > repeats && job.repeat <= wanted
+    });
     jobs
 }
 
@@ -123,6 +136,9 @@ pub fn arguments(study: &Study, run: &Run, job: Job, runs: &Path) -> Vec<String>
         "--quiet",
     ] {
         arguments.push(argument.to_owned());
+    }
+    if study.keep == Keep::Tables {
+        arguments.extend(["--keep", "tables"].map(str::to_owned));
     }
     arguments
 }
@@ -231,6 +247,9 @@ pub fn work(
         while started.len() < at_a_time
             && let Some(job) = waiting.pop_front()
         {
+            let Some(run) = job.index(all) else {
+                continue;
+            };
             let complaint = job.complaint(runs);
             let say = File::create(&complaint).map_err(|error| {
                 let problem = format!("cannot be written: {error}");
@@ -243,7 +262,7 @@ pub fn work(
             let _ = say.try_lock();
             let child = Command::new(&program)
                 .args(&first)
-                .args(arguments(study, &all[job.run], job, runs))
+                .args(arguments(study, &all[run], job, runs))
                 .stdin(Stdio::null())
                 .stdout(Stdio::null())
                 .stderr(say)
@@ -286,28 +305,37 @@ mod tests {
 
     #[test]
     fn repeats_go_there_and_back() {
-        let order: Vec<(usize, u32)> = jobs(3, 3).iter().map(|job| (job.run, job.repeat)).collect();
+        let all = [1, 2, 5].map(|number| Run {
+            number,
+            choice: Vec::new(),
+        });
+        let jobs = jobs(&all, 3);
+        let order: Vec<(usize, u32)> = jobs.iter().map(|job| (job.number, job.repeat)).collect();
+        assert_eq!(jobs[2].index(&all), Some(2));
         let wanted = [
-            (0, 1),
             (1, 1),
             (2, 1),
+            (5, 1),
+            (5, 2),
             (2, 2),
             (1, 2),
-            (0, 2),
-            (0, 3),
             (1, 3),
             (2, 3),
+            (5, 3),
         ];
         assert_eq!(order, wanted);
     }
 
     #[test]
     fn jobs_are_known_by_the_names_of_their_files() {
-        let job = Job { run: 6, repeat: 2 };
+        let job = Job {
+            number: 7,
+            repeat: 2,
+        };
         assert_eq!(Job::named("0007-2"), Some(job));
         assert_eq!(Job::named("0007-2.txt"), Some(job));
         let long = Job {
-            run: 12344,
+            number: 12345,
             repeat: 11,
         };
         assert_eq!(Job::named("12345-11"), Some(long));

@@ -13,7 +13,8 @@ use super::rows::Row;
 pub struct Response {
     /// Index of the measure.
     pub measure: usize,
-    /// Its values, in the order of the runs; for a search ascending in the parameter.
+    /// Its values, in the order of the runs; for a search case by case, ascending in the
+    /// parameter.
     pub points: Vec<ResponsePoint>,
 }
 
@@ -101,7 +102,10 @@ fn points(study: &Study, runs: &[Run], rows: &[Row], measure: usize) -> Vec<Resp
     let mut points: Vec<ResponsePoint> = groups.into_iter().filter_map(of_group).collect();
     if study.find.is_some() {
         let tried = study.points();
-        points.sort_by(|a, b| tried[a.choice[0]].total_cmp(&tried[b.choice[0]]));
+        points.sort_by(|a, b| {
+            let by_case = a.choice[1..].cmp(&b.choice[1..]);
+            by_case.then(tried[a.choice[0]].total_cmp(&tried[b.choice[0]]))
+        });
     }
     points
 }

@@ -4,7 +4,7 @@ use dem_plots::{Column, Page, Row, Table};
 
 use super::page::number;
 use super::response::Response;
-use super::response_plot::{plots, shown_axes, with_unit};
+use super::response_plot::{found_plots, plots, shown_axes, with_unit};
 use super::rows::SweepTable;
 
 /// Largest number of points in a table; the CSV has all of them.
@@ -17,20 +17,34 @@ pub(crate) fn add_search(page: &mut Page, table: &SweepTable) {
     };
     let measure = &table.measures[search.measure];
     page.heading("Search");
-    page.paragraph(&format!("{}.", search.in_words(&measure.name)));
+    for case in &search.cases {
+        page.paragraph(&format!("{}.", search.in_words(case, &measure.name)));
+    }
+    for plot in found_plots(table, search) {
+        page.figure(&plot.svg());
+    }
     page.small(&format!(
         "Bisection until the interval is no wider than {}: the points tried, ascending.",
         search.shown(search.tolerance)
     ));
     let parameter = with_unit(&search.parameter, &search.unit);
     let value = with_unit(&measure.name, &measure.unit);
-    let rows = search.tried.iter().map(|[x, mean]| {
-        let cells = [number(Some(*x), 6), number(Some(*mean), 4)];
-        Row::from(cells.to_vec())
+    let axes: Vec<usize> = shown_axes(table).filter(|at| *at > 0).collect();
+    let columns = axes.iter().map(|at| Column::text(&table.axes[*at].name));
+    let columns = columns.chain([&parameter, &value].map(|name| Column::number(name)));
+    let rows = search.cases.iter().flat_map(|case| {
+        let settings = axes
+            .iter()
+            .map(|at| table.axes[*at].values[case.choice[*at]].clone());
+        let settings: Vec<String> = settings.collect();
+        case.tried.iter().map(move |[x, mean]| {
+            let cells = [number(Some(*x), 6), number(Some(*mean), 4)];
+            Row::from([&settings[..], &cells].concat())
+        })
     });
     page.table(&Table {
-        columns: [&parameter, &value].map(|name| Column::number(name)).into(),
-        rows: rows.collect(),
+        columns: columns.collect(),
+        rows: rows.take(MOST_POINTS).collect(),
     });
 }
 

@@ -7,6 +7,7 @@ use dem_plots::{Axis, Marks, Plot, Point};
 
 use super::response::{Response, ResponsePoint};
 use super::rows::{AxisColumn, SweepTable};
+use super::search::{Search, SearchCase, SearchResult};
 
 /// A logarithmic axis is used from this ratio of the largest to the smallest value on.
 const LOG_FROM: f64 = 30.0;
@@ -15,6 +16,64 @@ const LOG_FROM: f64 = 30.0;
 pub fn plots(table: &SweepTable, response: &Response) -> Vec<Plot> {
     let over = shown_axes(table).filter(|at| table.axes[*at].values.len() > 1);
     over.map(|at| plot(table, response, at)).collect()
+}
+
+/// The plots of the values that `[find]` found, over each of the other axes; bars show the interval.
+pub fn found_plots(table: &SweepTable, search: &Search) -> Vec<Plot> {
+    let over = shown_axes(table).filter(|at| *at > 0 && table.axes[*at].values.len() > 1);
+    over.map(|at| found_plot(table, search, at)).collect()
+}
+
+fn found_plot(table: &SweepTable, search: &Search, over: usize) -> Plot {
+    let axis = &table.axes[over];
+    let series = series(table, over).filter(|at| *at > 0);
+    let cases = search.cases.iter();
+    let found: Vec<(ResponsePoint, &SearchCase)> = cases
+        .filter_map(|case| Some((found_point(case)?, case)))
+        .collect();
+    let marks = |kind: usize| {
+        let is_of = |(_, case): &&(_, &SearchCase)| series.is_none_or(|at| case.choice[at] == kind);
+        let of_kind: Vec<_> = found.iter().filter(is_of).collect();
+        let points: Vec<&ResponsePoint> = of_kind.iter().map(|(point, _)| point).collect();
+        let mark = |(point, case): &&(ResponsePoint, &SearchCase)| Point {
+            at: place(axis, over, point),
+            y_spread: 2.0 * point.standard_deviation.unwrap_or(0.0),
+            filled: true,
+            title: format!("{}: {}", case.settings, search.shown(point.mean)),
+            ..Point::default()
+        };
+        Marks {
+            name: series.map_or(String::new(), |at| table.axes[at].values[kind].clone()),
+            points: of_kind.iter().map(mark).collect(),
+            chains: chains(axis, over, &points),
+        }
+    };
+    let kinds = series.map_or(1, |at| table.axes[at].values.len());
+    let measure = table.measures[search.measure].name.replace('_', " ");
+    Plot {
+        title: format!("where {measure} is {}", search.value_as_written),
+        x: horizontal(axis),
+        y: Axis::of(&with_unit(&search.parameter, &search.unit)),
+        marks: (0..kinds).map(marks).collect(),
+        kinds: series.map_or(String::new(), |at| table.axes[at].name.clone()),
+        if_empty: "no value was found".to_owned(),
+        ..Plot::default()
+    }
+}
+
+/// The value found in a case, with the half of its interval as its scatter.
+fn found_point(case: &SearchCase) -> Option<ResponsePoint> {
+    let SearchResult::Found { at, between, .. } = &case.result else {
+        return None;
+    };
+    let half = 0.5 * (between[1] - between[0]);
+    Some(ResponsePoint {
+        choice: case.choice.clone(),
+        settings: Vec::new(),
+        values: vec![*at],
+        mean: *at,
+        standard_deviation: Some(half),
+    })
 }
 
 /// All axes except the averaged one.

@@ -37,7 +37,7 @@ pub struct SweepTable {
     pub orders: Vec<Order>,
     /// Responses of the measures without a reference, and of that of `find`.
     pub responses: Vec<Response>,
-    /// The search for a value.
+    /// The search for a value, once for each case.
     pub find: Option<Search>,
     /// Notes on the results.
     pub notes: Vec<String>,

@@ -1,5 +1,5 @@
 //! `[find]`: the value of a parameter at which the mean of a measure has a given value, by
-//! bisection.
+//! bisection, once for each case.
 
 use dem_io::units::significant;
 use dem_scene::study::{Find, Study};
@@ -11,7 +11,7 @@ use super::response::{Response, ResponsePoint};
 /// other side.
 const SURE: f64 = 2.0;
 
-/// A search and its result.
+/// The searches of a study, one for each case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Search {
     /// Path of the parameter.
@@ -26,7 +26,19 @@ pub struct Search {
     pub value_as_written: String,
     /// Largest width of the interval, in `unit`.
     pub tolerance: f64,
-    /// Points tried, ascending, in `unit`, with the mean of the measure there.
+    /// The cases, in the order of the values of their axes: one if nothing varies but the parameter
+    /// and the averaged axis.
+    pub cases: Vec<SearchCase>,
+}
+
+/// The search of one case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SearchCase {
+    /// Index of its value on each axis, from 0; 0 for the parameter and for the averaged axis.
+    pub choice: Vec<usize>,
+    /// Its values in words: `bonds.cake.model parallel`. Empty for the only case.
+    pub settings: String,
+    /// Points tried, ascending, in the unit of the parameter, with the mean of the measure there.
     pub tried: Vec<[f64; 2]>,
     /// The result.
     pub result: SearchResult,
@@ -96,29 +108,37 @@ pub fn next_step(find: &Find, points: &[Option<[f64; 2]>]) -> Step {
     }
 }
 
-/// The step after the points of the response so far. `value` is the one that is looked for.
-pub fn next_of(study: &Study, find: &Find, response: &Response, value: f64) -> Step {
+/// The step of a case, by its number in [`Study::cases`], after the points of the response so far.
+/// `value` is the one that is looked for.
+pub fn next_of(study: &Study, find: &Find, response: &Response, value: f64, case: usize) -> Step {
     let points = study.points();
-    let mean = |at: usize| {
-        let point = complete_point(study, response, at)?;
-        Some([points[at], point.mean - value])
+    let cases = study.cases();
+    let (Some(choice), Some(tried)) = (cases.get(case), find.tried.get(case)) else {
+        return Step::Wait;
     };
-    let means: Vec<_> = (0..points.len()).map(mean).collect();
+    let mean = |at: &usize| {
+        let point = complete_point(study, response, choice, *at)?;
+        Some([points[*at], point.mean - value])
+    };
+    let means: Vec<_> = tried.iter().map(mean).collect();
     next_step(find, &means)
 }
 
-/// The point of the response with this index on the first axis, if all its runs have values.
+/// The point of the response of a case with this index on the first axis, if all its runs have
+/// values.
 fn complete_point<'a>(
     study: &Study,
     response: &'a Response,
+    case: &[usize],
     at: usize,
 ) -> Option<&'a ResponsePoint> {
     let averaged = study.average_over.map(|axis| study.axes[axis].values.len());
-    let found = response.points.iter().find(|point| point.choice[0] == at);
+    let mut points = response.points.iter();
+    let found = points.find(|point| point.choice[0] == at && point.choice[1..] == case[1..]);
     found.filter(|point| point.values.len() == averaged.unwrap_or(1))
 }
 
-/// The search of a study as its page shows it, and notes on its result.
+/// The searches of a study as its page shows them, and notes on their results.
 pub(crate) fn search(
     study: &Study,
     response: &Response,
@@ -126,68 +146,103 @@ pub(crate) fn search(
 ) -> Option<(Search, Vec<String>)> {
     let find = study.find.as_ref()?;
     let axis = study.axes.first()?;
-    let points = study.points();
-    let mut tried: Vec<[f64; 2]> = response
-        .points
-        .iter()
-        .map(|point| [points[point.choice[0]], point.mean])
-        .collect();
-    tried.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let mut notes = Vec::new();
-    let result = match next_of(study, find, response, value) {
-        Step::Found(between) => {
-            let is_end = |point: &&ResponsePoint| between.contains(&points[point.choice[0]]);
-            let is_uncertain = |point: &ResponsePoint| {
-                let error = point.standard_error();
-                error.is_some_and(|error| (point.mean - value).abs() < SURE * error)
-            };
-            SearchResult::Found {
-                at: f64::midpoint(between[0], between[1]),
-                between,
-                is_uncertain: response.points.iter().filter(is_end).any(is_uncertain),
-            }
-        }
-        Step::NotBracketed => SearchResult::NotBracketed,
-        Step::Try(_) | Step::Wait => SearchResult::Unfinished,
-    };
-    let search = Search {
+    let mut search = Search {
         parameter: axis.name.clone(),
         unit: find.unit.clone(),
         measure: find.measure,
         value,
         value_as_written: find.value.clone(),
         tolerance: find.tolerance,
-        tried,
-        result,
+        cases: Vec::new(),
     };
     let name = &study.measures[find.measure].name;
-    let crossings = search.crossings();
-    if crossings > 1 {
-        notes.push(format!(
-            "{name} passes {} {crossings} times between the points tried: the value found is one of them",
-            find.value
-        ));
-    }
-    if let SearchResult::Found {
-        is_uncertain: true, ..
-    } = search.result
-    {
-        notes.push(format!(
-            "the mean of {name} at an end of the interval found is within twice its standard error of {}: more values of the averaged axis make the result surer",
-            find.value
-        ));
+    let mut notes = Vec::new();
+    for (number, choice) in study.cases().into_iter().enumerate() {
+        let case = search_case(study, find, response, value, (number, choice));
+        let of_case = case.of_case();
+        let crossings = case.crossings(value);
+        if crossings > 1 {
+            notes.push(format!(
+                "{name} passes {} {crossings} times between the points tried{of_case}: the value found is one of them",
+                find.value
+            ));
+        }
+        if let SearchResult::Found {
+            is_uncertain: true, ..
+        } = case.result
+        {
+            notes.push(format!(
+                "the mean of {name} at an end of the interval found{of_case} is within twice its standard error of {}: more values of the averaged axis make the result surer",
+                find.value
+            ));
+        }
+        search.cases.push(case);
     }
     Some((search, notes))
 }
 
-impl Search {
+/// The search of one case: its number in [`Study::cases`] and its choice.
+fn search_case(
+    study: &Study,
+    find: &Find,
+    response: &Response,
+    value: f64,
+    (number, choice): (usize, Vec<usize>),
+) -> SearchCase {
+    let points = study.points();
+    let own: Vec<&ResponsePoint> = (response.points.iter())
+        .filter(|point| point.choice[1..] == choice[1..])
+        .collect();
+    let result = match next_of(study, find, response, value, number) {
+        Step::Found(between) => {
+            let is_end = |point: &&&ResponsePoint| between.contains(&points[point.choice[0]]);
+            let is_uncertain = |point: &&ResponsePoint| {
+                let error = point.standard_error();
+                error.is_some_and(|error| (point.mean - value).abs() < SURE * error)
+            };
+            SearchResult::Found {
+                at: f64::midpoint(between[0], between[1]),
+                between,
+                is_uncertain: own.iter().filter(is_end).any(is_uncertain),
+            }
+        }
+        Step::NotBracketed => SearchResult::NotBracketed,
+        Step::Try(_) | Step::Wait => SearchResult::Unfinished,
+    };
+    let place = |point: &&ResponsePoint| [points[point.choice[0]], point.mean];
+    let mut tried: Vec<[f64; 2]> = own.iter().map(place).collect();
+    tried.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let others = (1..choice.len()).filter(|at| Some(*at) != study.average_over);
+    let words = others.map(|at| {
+        let axis = &study.axes[at];
+        format!("{} {}", axis.name, axis.values[choice[at]].label)
+    });
+    SearchCase {
+        settings: words.collect::<Vec<String>>().join(", "),
+        choice,
+        tried,
+        result,
+    }
+}
+
+impl SearchCase {
     /// How often the means of neighbouring points lie on different sides of the value.
-    fn crossings(&self) -> usize {
-        let above = self.tried.iter().map(|[_, mean]| *mean > self.value);
+    fn crossings(&self, value: f64) -> usize {
+        let above = self.tried.iter().map(|[_, mean]| *mean > value);
         let above: Vec<bool> = above.collect();
         above.windows(2).filter(|two| two[0] != two[1]).count()
     }
 
+    /// ` for bonds.cake.model parallel`; nothing for the only case.
+    fn of_case(&self) -> String {
+        match self.settings.as_str() {
+            "" => String::new(),
+            settings => format!(" for {settings}"),
+        }
+    }
+}
+
+impl Search {
     /// A value of the parameter with its unit.
     pub fn shown(&self, number: f64) -> String {
         format!("{} {}", significant(number, 4), self.unit)
@@ -195,42 +250,46 @@ impl Search {
             .to_owned()
     }
 
-    /// The result in one sentence; `measure` is the name of the measure.
-    pub fn in_words(&self, measure: &str) -> String {
+    /// The result of a case in one sentence; `measure` is the name of the measure.
+    pub fn in_words(&self, case: &SearchCase, measure: &str) -> String {
         let Self { parameter, .. } = self;
         let value = &self.value_as_written;
-        match &self.result {
+        let of_case = case.of_case();
+        match &case.result {
             SearchResult::Found {
                 at,
                 between: [low, high],
                 ..
             } if low == high => {
-                format!("{measure} is {value} at {parameter} = {}", self.shown(*at))
+                format!(
+                    "{measure} is {value} at {parameter} = {}{of_case}",
+                    self.shown(*at)
+                )
             }
             SearchResult::Found {
                 at,
                 between: [low, high],
                 ..
             } => format!(
-                "{measure} is {value} at {parameter} = {}, between {} and {}",
+                "{measure} is {value} at {parameter} = {}, between {} and {}{of_case}",
                 self.shown(*at),
                 self.shown(*low),
                 self.shown(*high)
             ),
             SearchResult::NotBracketed => format!(
-                "{value} does not lie between the values of {measure} at the ends: {}",
-                self.ends()
+                "{value} does not lie between the values of {measure} at the ends{of_case}: {}",
+                self.ends(case)
             ),
             SearchResult::Unfinished => format!(
-                "the search for {measure} = {value} is not finished: {} points have values",
-                self.tried.len()
+                "the search for {measure} = {value}{of_case} is not finished: {} points have values",
+                case.tried.len()
             ),
         }
     }
 
     /// The values at the ends of the range.
-    fn ends(&self) -> String {
-        let ends = [self.tried.first(), self.tried.last()]
+    fn ends(&self, case: &SearchCase) -> String {
+        let ends = [case.tried.first(), case.tried.last()]
             .into_iter()
             .flatten();
         let texts =
@@ -251,6 +310,7 @@ mod tests {
             ends,
             tolerance,
             unit: "m".to_owned(),
+            tried: vec![vec![0, 1]],
             place: "here".to_owned(),
         }
     }

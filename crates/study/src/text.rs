@@ -8,6 +8,7 @@ use dem_io::units::significant;
 use super::response::Response;
 use super::response_plot::{named, shown_axes, with_unit};
 use super::rows::{Judged, Row, SweepTable};
+use super::search::{Search, SearchResult};
 
 /// Largest number of lines of a part of the text.
 const MOST_LINES: usize = 20;
@@ -83,11 +84,7 @@ pub fn response_csv(table: &SweepTable) -> String {
         for point in &response.points {
             let mut cells = vec![measure.name.clone(), measure.unit.clone()];
             for &at in &axes {
-                let value = match &table.axes[at].numbers {
-                    Some(numbers) => number(numbers.get(point.choice[at]).copied()),
-                    None => point.settings[at].clone(),
-                };
-                cells.push(value);
+                cells.push(cell(table, at, point.choice[at]));
             }
             let [smallest, largest] = point.range();
             cells.push(point.values.len().to_string());
@@ -98,6 +95,44 @@ pub fn response_csv(table: &SweepTable) -> String {
         }
     }
     out
+}
+
+/// The results of `[find]` with one line for each case: the values of the other axes, as numbers in
+/// the unit of their column where they are such, the value found and the ends of its interval.
+pub fn find_csv(table: &SweepTable, search: &Search) -> String {
+    let axes: Vec<usize> = shown_axes(table).filter(|at| *at > 0).collect();
+    let mut columns: Vec<String> = (axes.iter())
+        .map(|at| with_unit(&table.axes[*at].name, &table.axes[*at].unit))
+        .collect();
+    columns.push(with_unit(&search.parameter, &search.unit));
+    columns.extend(["from", "to", "result"].map(str::to_owned));
+    let mut out = line(&columns);
+    for case in &search.cases {
+        let mut cells: Vec<String> = axes
+            .iter()
+            .map(|at| cell(table, *at, case.choice[*at]))
+            .collect();
+        let (found, word) = match &case.result {
+            SearchResult::Found { at, between, .. } => {
+                (Some([*at, between[0], between[1]]), "found")
+            }
+            SearchResult::NotBracketed => (None, "not bracketed"),
+            SearchResult::Unfinished => (None, "unfinished"),
+        };
+        cells.extend([0, 1, 2].map(|k| number(found.map(|found| found[k]))));
+        cells.push(word.to_owned());
+        out += &line(&cells);
+    }
+    out
+}
+
+/// A value of an axis: a number in its unit if it is one, or as written.
+fn cell(table: &SweepTable, axis: usize, at: usize) -> String {
+    let column = &table.axes[axis];
+    match &column.numbers {
+        Some(numbers) => number(numbers.get(at).copied()),
+        None => column.values.get(at).cloned().unwrap_or_default(),
+    }
 }
 
 fn number(value: Option<f64>) -> String {
@@ -179,7 +214,11 @@ impl fmt::Display for SweepTable {
         }
         if let Some(search) = &self.find {
             let measure = &self.measures[search.measure].name;
-            writeln!(f, "find         {}", visible(&search.in_words(measure)))?;
+            let lines = search.cases.iter().map(|case| {
+                let words = search.in_words(case, measure);
+                format!("find         {}", visible(&words))
+            });
+            cut(f, &lines.collect::<Vec<String>>())?;
         }
         for (at, measure) in self.measures.iter().enumerate() {
             let Some(reference) = &measure.reference else {

@@ -37,7 +37,7 @@ pub(super) fn settle(
     if shrink == 0.0 {
         return Ok(Settled::default());
     }
-    let progress = |done: f64| progress("settling", done);
+    let progress = |done: f64| progress("densifying", done);
     let overlap = job.settings.overlap;
     minimise_overlaps(
         &job.solid.boundary,

@@ -221,7 +221,7 @@ fn the_front_begins_at_the_point_given() {
 #[test]
 fn a_stop_asked_for_by_progress_stops_it() {
     let (surface, _) = surface_of(&cuboid([20.0, 10.0, 10.0]));
-    for stage in ["front", "settling", "filling voids"] {
+    for stage in ["front", "densifying", "filling voids"] {
         let stop = |now: &str, _: f64| {
             if now == stage {
                 Err(dem_io::Diagnostic::failed("", "stopped", ""))

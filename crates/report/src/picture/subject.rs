@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use dem_io::Result;
 use dem_io::body::stored_walls::StoredWalls;
 use dem_io::units::show_quantity;
+use dem_io::{Diagnostic, Result};
 use dem_pictures::colours::of_fragment;
-use dem_pictures::{Ball, Surface};
+use dem_pictures::{Ball, Camera, Surface};
 use dem_plots::viridis;
 
 use super::ColourBy;
@@ -28,6 +28,19 @@ impl Seen {
         Ok(Self {
             spheres: Spheres::read(&frame, 1, false)?,
             walls: read_walls(&frame)?,
+        })
+    }
+
+    /// Whether a sphere is within a picture of this size, px.
+    pub(super) fn is_within(&self, camera: &Camera, size_px: [u32; 2]) -> bool {
+        let spheres = self.spheres.centres_m.iter().zip(&self.spheres.radii_m);
+        let mut spheres = spheres.map(|(centre_m, radius_m)| {
+            let [x, y, _] = camera.project(*centre_m);
+            ([x, y], radius_m * camera.px_per_m())
+        });
+        let [wide, high] = size_px.map(f64::from);
+        spheres.any(|([x, y], more)| {
+            (-more..=wide + more).contains(&x) && (-more..=high + more).contains(&y)
         })
     }
 
@@ -87,6 +100,7 @@ impl Colours {
         for frame in frames {
             let spheres = Seen::read(frame)?.spheres;
             last = spheres.fragments.iter().copied().fold(last, u32::max);
+            colours.refuse_missing(&spheres, frame)?;
             for i in 0..spheres.centres_m.len() {
                 colours.highest = colours.highest.max(colours.value(&spheres, i));
             }
@@ -95,12 +109,35 @@ impl Colours {
         Ok(colours)
     }
 
+    /// Refuses a quantity that a frame does not have.
+    fn refuse_missing(&self, spheres: &Spheres, (path, _): &(PathBuf, f64)) -> Result<()> {
+        let is_missing = match self.by {
+            ColourBy::StrainRate => spheres.dynamic[0].is_empty(),
+            ColourBy::DynamicIncreaseFactor => spheres.dynamic[1].is_empty(),
+            ColourBy::DynamicUtilisation => spheres.dynamic[2].is_empty(),
+            _ => false,
+        };
+        if !is_missing {
+            return Ok(());
+        }
+        let problem = format!(
+            "{} has none: the scene has no bonds with rate_strengthening",
+            path.display()
+        );
+        let remedy = "utilisation is that of the static strength";
+        Err(Diagnostic::input("--colour-by", problem, remedy))
+    }
+
     /// The value of a sphere on the scale, in SI units; 0 without a scale.
     fn value(&self, spheres: &Spheres, i: usize) -> f64 {
+        let dynamic = |at: usize| spheres.dynamic[at].get(i).copied().unwrap_or(0.0);
         match self.by {
             ColourBy::Fragment | ColourBy::Body => 0.0,
             ColourBy::Speed => spheres.speeds_m_s[i],
-            ColourBy::Mass => spheres.masses_kg[i],
+            ColourBy::FragmentMass => spheres.masses_kg[i],
+            ColourBy::StrainRate => dynamic(0),
+            ColourBy::DynamicIncreaseFactor => dynamic(1),
+            ColourBy::DynamicUtilisation => dynamic(2),
             ColourBy::Utilisation => spheres.utilisations[i],
             ColourBy::Stress => spheres.stresses_pa[i].abs(),
         }
@@ -122,7 +159,10 @@ impl Colours {
         let (name, unit) = match self.by {
             ColourBy::Fragment | ColourBy::Body => return None,
             ColourBy::Speed => ("speed", "m/s"),
-            ColourBy::Mass => ("fragment mass", "kg"),
+            ColourBy::FragmentMass => ("fragment mass", "kg"),
+            ColourBy::StrainRate => ("strain rate", "1/s"),
+            ColourBy::DynamicIncreaseFactor => ("dynamic increase factor", ""),
+            ColourBy::DynamicUtilisation => ("dynamic utilisation", ""),
             ColourBy::Utilisation => ("utilisation of bonds", ""),
             ColourBy::Stress => ("normal stress of bonds", "Pa"),
         };

@@ -72,11 +72,9 @@ pub(crate) fn choose(frames: &[(PathBuf, f64)]) -> Result<Option<Chosen>> {
     if particles == 0 {
         return Ok(None);
     }
-    let fitting = (MOST_SPHERES / particles).min(MOST_BONDS / bonds.max(1));
-    let wanted = fitting.clamp(FEWEST_FRAMES, MOST_FRAMES).min(frames.len());
+    let amount = Amount::of(particles, bonds, frames.len());
     let last = frames.len() - 1;
-    let numbers = (0..wanted).map(|k| k * last / (wanted - 1).max(1));
-    let every = (particles * wanted).div_ceil(MOST_SPHERES);
+    let numbers = (0..amount.frames).map(|k| k * last / (amount.frames - 1).max(1));
     Ok(Some(Chosen {
         frames: numbers
             .map(|number| {
@@ -85,15 +83,84 @@ pub(crate) fn choose(frames: &[(PathBuf, f64)]) -> Result<Option<Chosen>> {
             })
             .collect(),
         of_frames: frames.len(),
-        every,
-        // Of the bonds remain those whose two spheres are shown.
-        with_bonds: bonds / (every * every) * wanted <= 2 * MOST_BONDS,
+        every: amount.every,
+        with_bonds: amount.with_bonds,
         particles,
     }))
+}
+
+/// How much of a run is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Amount {
+    frames: usize,
+    /// One sphere of so many.
+    every: usize,
+    with_bonds: bool,
+}
+
+impl Amount {
+    /// For the largest numbers of particles, at least one, and bonds in a frame.
+    fn of(particles: usize, bonds: usize, frames: usize) -> Self {
+        let fitting = (MOST_SPHERES / particles).min(MOST_BONDS / bonds.max(1));
+        let frames = fitting.clamp(FEWEST_FRAMES, MOST_FRAMES).min(frames);
+        let every = (particles * frames).div_ceil(MOST_SPHERES);
+        Self {
+            frames,
+            every,
+            // Of the bonds remain those whose two spheres are shown.
+            with_bonds: bonds / (every * every) * frames <= 2 * MOST_BONDS,
+        }
+    }
 }
 
 /// Numbers of particles and bonds of a frame.
 fn counts(path: &Path) -> Result<[usize; 2]> {
     let arrays = read_arrays(path, &[])?;
     Ok([arrays.points, arrays.lines])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_million_spheres_are_thinned() {
+        let amount = Amount::of(1_000_000, 5_000_000, 500);
+        assert_eq!((amount.frames, amount.every), (FEWEST_FRAMES, 5));
+        assert!(amount.with_bonds);
+        assert!(1_000_000 / amount.every * amount.frames <= MOST_SPHERES);
+        let chosen = Chosen {
+            frames: vec![
+                ChosenFrame {
+                    path: PathBuf::new(),
+                    time_s: 0.0,
+                };
+                amount.frames
+            ],
+            of_frames: 500,
+            every: amount.every,
+            with_bonds: false,
+            particles: 1_000_000,
+        };
+        assert_eq!(
+            chosen.notes(),
+            [
+                "11 of 500 frames are shown.",
+                "One of 5 spheres is shown, as there are up to 1000000.",
+                "Bonds are not shown: there are too many."
+            ]
+        );
+    }
+
+    #[test]
+    fn what_fits_is_shown_whole() {
+        let whole = |frames| Amount {
+            frames,
+            every: 1,
+            with_bonds: true,
+        };
+        assert_eq!(Amount::of(1000, 5000, 40), whole(40));
+        assert_eq!(Amount::of(1000, 5000, 4000), whole(MOST_FRAMES));
+        assert_eq!(Amount::of(1_000_000, 0, 2), whole(2));
+    }
 }

@@ -18,6 +18,9 @@ pub(crate) struct Spheres {
     pub(crate) masses_kg: Vec<f64>,
     /// Largest utilisation of the intact bonds.
     pub(crate) utilisations: Vec<f64>,
+    /// Largest strain rate (1/s), dynamic increase factor and dynamic utilisation of the intact
+    /// bonds. Empty: the frame has none.
+    pub(crate) dynamic: [Vec<f64>; 3],
     /// Mean normal stress of the intact bonds, Pa.
     pub(crate) stresses_pa: Vec<f64>,
     pub(crate) bonds: Vec<Bond>,
@@ -57,6 +60,9 @@ impl Spheres {
             of_bonds("utilisation"),
             of_bonds("normal_stress_pa"),
             of_bonds(BROKEN),
+            of_bonds("strain_rate_1_s"),
+            of_bonds("dynamic_increase_factor"),
+            of_bonds("dynamic_utilisation"),
         ];
         let arrays = read_arrays(&frame.path, &wanted.each_ref().map(String::as_str))?;
         let all = |name: &String| arrays.get(name).unwrap_or_default();
@@ -110,6 +116,10 @@ impl Spheres {
         let count = self.radii_m.len();
         let mut sums = vec![(0.0, 0_u32); count];
         self.utilisations = vec![0.0; count];
+        self.dynamic = [5, 6, 7].map(|at| match values(at) {
+            [] => Vec::new(),
+            _ => vec![0.0; count],
+        });
         for (bond, ends) in ends.iter().enumerate() {
             let [Some(a), Some(b)] = ends.map(|end| numbers.get(end as usize).copied()) else {
                 continue;
@@ -124,6 +134,11 @@ impl Spheres {
             for end in [a, b].into_iter().flatten().filter(|_| !found.is_broken) {
                 let end = end as usize;
                 self.utilisations[end] = self.utilisations[end].max(found.utilisation);
+                for (at, largest) in (5..).zip(&mut self.dynamic) {
+                    if let Some(largest) = largest.get_mut(end) {
+                        *largest = largest.max(of(at, bond));
+                    }
+                }
                 sums[end].0 += found.stress_pa;
                 sums[end].1 += 1;
             }

@@ -23,6 +23,8 @@ pub struct Study {
     pub threads: u32,
     /// `force_step`: allows steps above the largest stable one; false unless given.
     pub force_step: bool,
+    /// `keep`, "tables" unless given.
+    pub keep: Keep,
     /// `time`, "wall" unless given.
     pub time: RunTime,
     /// `combine`, "grid" unless given.
@@ -72,7 +74,8 @@ impl Study {
     }
 }
 
-/// A search for the value of one parameter at which the mean of a measure has a given value.
+/// A search for the value of one parameter at which the mean of a measure has a given value, once for
+/// each case: each combination of the values of the other axes except the averaged one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Find {
     /// `measure`: its index among the measures of the study.
@@ -85,6 +88,9 @@ pub struct Find {
     pub tolerance: f64,
     /// Unit of the parameter, as written; empty for plain numbers.
     pub unit: String,
+    /// For each case, the points tried: indices of values on the first axis, the two ends first and
+    /// then in the order of trial. See [`Study::cases`].
+    pub tried: Vec<Vec<usize>>,
     /// Its place in the study.
     pub place: String,
 }
@@ -96,6 +102,15 @@ pub enum RunTime {
     Wall,
     /// "processor": processor time; other programs on the machine affect it less.
     Processor,
+}
+
+/// The files of a run that are kept once it has ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// "tables": summary, tables, page and scene.
+    Tables,
+    /// "all": frames, pictures, plots and checkpoint as well.
+    All,
 }
 
 /// How the values of several axes are combined.
@@ -241,6 +256,10 @@ impl Word for Pieces {
 impl Word for RunTime {
     const WORDS: &'static [(&'static str, Self)] =
         &[("wall", Self::Wall), ("processor", Self::Processor)];
+}
+
+impl Word for Keep {
+    const WORDS: &'static [(&'static str, Self)] = &[("tables", Self::Tables), ("all", Self::All)];
 }
 
 impl Word for Combine {

@@ -60,12 +60,11 @@ fn number(field: &Field<'_>, unit: Option<&str>) -> Result<(f64, String)> {
     }
 }
 
-/// Refuses what varies beside the parameter and the axis that is averaged over.
-pub(super) fn refuse_other_axes(
+/// Refuses pairs of values, and a mean over the parameter.
+pub(super) fn refuse_pairs_and_means(
     table: &Table<'_>,
     combine: Combine,
     average_over: Option<usize>,
-    axes: &[Axis],
 ) -> Result<()> {
     if combine == Combine::Paired {
         let problem = "[find] has no effect on pairs of values";
@@ -78,21 +77,13 @@ pub(super) fn refuse_other_axes(
             "name what the scatter comes from, such as run.seed",
         ));
     }
-    let other = (1..axes.len()).find(|at| Some(*at) != average_over);
-    match other {
-        None => Ok(()),
-        Some(at) => Err(table.refuse(
-            format!(
-                "[find] searches one value, but {} varies as well",
-                axes[at].name
-            ),
-            "move it into [set] and make a study of each, or name it as average_over",
-        )),
-    }
+    Ok(())
 }
 
 /// The search of a study with these measures.
-pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure]) -> Result<Find> {
+///
+/// `cases`: number of searches, one for each combination of the values of the other axes.
+pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure], cases: usize) -> Result<Find> {
     let (ends, unit) = ends(&table.need("from")?, &table.need("to")?)?;
     let tolerated = table.need("tolerance")?;
     let (tolerance, _) = number(&tolerated, Some(&unit))?;
@@ -127,24 +118,51 @@ pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure]) -> Result<Fin
         ends,
         tolerance,
         unit,
+        tried: vec![vec![0, 1]; cases],
         place: table.document.place(table.origin),
     })
 }
 
 impl Study {
-    /// The points at which the parameter of `[find]` is tried, in its unit: its ends, then those
-    /// that were added.
+    /// The points at which the parameter of `[find]` is tried in any case, in its unit: its ends,
+    /// then those that were added.
     pub fn points(&self) -> Vec<f64> {
         let numbers = self.axes.first().and_then(Axis::numbers);
         numbers.map_or(Vec::new(), |(numbers, _)| numbers)
     }
 
-    /// Adds a point at which the parameter of `[find]` is tried.
-    pub fn add_point(&mut self, number: f64) {
-        if let (Some(find), Some(axis)) = (&self.find, self.axes.first_mut()) {
-            let added = point(&axis.name, number, &find.unit, &axis.place);
-            axis.values.push(added);
+    /// Adds a point at which the parameter of `[find]` is tried in a case, by its number in
+    /// [`Study::cases`].
+    pub fn add_point(&mut self, case: usize, number: f64) {
+        let known = self.points().iter().position(|point| *point == number);
+        if let (Some(find), Some(axis)) = (&mut self.find, self.axes.first_mut()) {
+            let at = known.unwrap_or(axis.values.len());
+            if known.is_none() {
+                let added = point(&axis.name, number, &find.unit, &axis.place);
+                axis.values.push(added);
+            }
+            if let Some(tried) = find.tried.get_mut(case) {
+                tried.push(at);
+            }
         }
+    }
+
+    /// The cases of `[find]`: for each, the index of the value on each axis, 0 for the parameter and
+    /// for the axis that is averaged over. The last axis changes fastest.
+    pub fn cases(&self) -> Vec<Vec<usize>> {
+        let lengths = self.axes.iter().enumerate().map(|(at, axis)| {
+            let is_of_case = at > 0 && Some(at) != self.average_over;
+            if is_of_case { axis.values.len() } else { 1 }
+        });
+        let mut cases = vec![Vec::new()];
+        for length in lengths {
+            let longer = |case: &Vec<usize>| {
+                let case = case.clone();
+                (0..length).map(move |at| [&case[..], &[at]].concat())
+            };
+            cases = cases.iter().flat_map(longer).collect();
+        }
+        cases
     }
 }
 

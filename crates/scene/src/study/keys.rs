@@ -1,6 +1,6 @@
 //! The keys of a study.
 
-use super::contents::{BALANCES, CURVES, Combine, Pieces, RunTime};
+use super::contents::{BALANCES, CURVES, Combine, Keep, Pieces, RunTime};
 use crate::schema::{Key, Kind, Schema, Word, words_of};
 
 /// Largest number of threads.
@@ -40,6 +40,11 @@ pub(crate) static STUDY: Schema = Schema {
             "force_step",
             false,
             "Allow steps above the largest stable one: `run.time_step`, or a `run.safety_factor` of 1 and more.",
+        ),
+        Key::word::<Keep>(
+            "keep",
+            "tables",
+            "Files of each run that are kept: `tables` (summary, tables, page, scene) or `all` (frames, pictures, plots and checkpoint as well). Of a run that fails, all are kept.",
         ),
         Key::word::<RunTime>(
             "time",

@@ -15,6 +15,8 @@ use dem_io::diagnostic::{Diagnostic, Result};
 
 /// Largest number of axes of a study.
 const MOST_AXES: usize = 100;
+/// Largest number of cases of a search.
+const MOST_CASES: u64 = 10_000;
 /// Axis over which responses are averaged unless another one is given.
 const SEED: &str = "run.seed";
 
@@ -86,8 +88,15 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     let average_over = average_over(&root, combine, &axes)?;
     let find = match find {
         Some(table) => {
-            find::refuse_other_axes(&table, combine, average_over, &axes)?;
-            Some(find::search(&table, &measures)?)
+            find::refuse_pairs_and_means(&table, combine, average_over)?;
+            let others = (1..axes.len()).filter(|at| Some(*at) != average_over);
+            let lengths = others.map(|at| axes[at].values.len() as u64);
+            let cases = lengths.fold(1, u64::saturating_mul);
+            if cases > MOST_CASES {
+                let problem = format!("{cases} cases are more than {MOST_CASES}");
+                return Err(table.refuse(problem, "vary less, or in several studies"));
+            }
+            Some(find::search(&table, &measures, cases as usize)?)
         }
         None => None,
     };
@@ -99,6 +108,7 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         repeats: root.read_by("repeats", repeats)?,
         threads: root.read("threads")?,
         force_step: root.read("force_step")?,
+        keep: root.read("keep")?,
         time: root.read("time")?,
         combine,
         average_over,

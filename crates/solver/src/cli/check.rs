@@ -18,8 +18,12 @@ use crate::stages::ledger::CHECKS;
 use crate::state::State;
 use crate::step::{all_bytes, number_of, step};
 
-/// Number of steps tried on a copy, to predict the run time, and their time limit, s.
-const TRIAL: (u32, f64) = (2000, 0.5);
+/// The run time is predicted from this many samples of the first steps of a copy.
+const SAMPLES: usize = 8;
+/// Number of steps of a sample, and their time limit, s.
+const SAMPLE: (u32, f64) = (250, 0.07);
+/// Samples that differ by less than this factor are told as one.
+const ALIKE: f64 = 1.2;
 
 /// Writes a picture of the start of a scene.
 ///
@@ -89,6 +93,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "inactive": of_stages(false),
                 "memory_bytes": bytes,
                 "predicted_run_time_s": per_step_s.map(|s| steps * s),
+                "predicted_run_time_range_s": trial.as_ref().map(|trial| trial.range_s(steps)),
             });
             write_json_text(out, &value)
         } else {
@@ -135,15 +140,22 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
     line("memory", format!("about {}{with_fed}", size_text(bytes)));
     line(
         "run time",
-        trial.map(|trial| trial.per_step_s).map_or(
+        trial.map_or(
             "not predicted: bodies are fed, discharged or replaced".to_owned(),
-            |s| {
-                let run_s = significant(steps * s, 2);
-                format!("about {run_s} s on this machine")
-            },
+            |trial| run_time_text(trial.range_s(steps)),
         ),
     );
     text
+}
+
+/// The run time between two predictions, s.
+fn run_time_text([least_s, most_s]: [f64; 2]) -> String {
+    let [least, most] = [least_s, most_s].map(|s| significant(s, 2));
+    if most_s <= ALIKE * least_s {
+        format!("about {least} s on this machine")
+    } else {
+        format!("about {least} s on this machine, {most} s while it is as busy as now")
+    }
 }
 
 /// Contents of the scene, bodies to be added, and masses.
@@ -331,25 +343,38 @@ fn memory_bytes(state: &State) -> usize {
     now + may_come.map_or(0, |contacts| 3 * (8 + 128) * contacts.materials.len())
 }
 
-/// Cost of the first steps, tried on a copy.
+/// Cost of the first steps, tried on a copy in several samples.
 struct Trial {
+    /// Of the fastest sample, which other programs have disturbed least.
     per_step_s: f64,
+    /// Of the slowest sample.
+    most_per_step_s: f64,
     clock: StageClock,
 }
 
 impl Trial {
     fn of(state: &State) -> Self {
         let mut copy = state.clone();
-        let clock = Instant::now();
-        let mut done = 0;
-        while done < TRIAL.0 && (done < 3 || clock.elapsed().as_secs_f64() < TRIAL.1) {
-            step(&mut copy);
-            done += 1;
-        }
+        let mut sample_s = || {
+            let clock = Instant::now();
+            let mut done = 0;
+            while done < SAMPLE.0 && (done < 1 || clock.elapsed().as_secs_f64() < SAMPLE.1) {
+                step(&mut copy);
+                done += 1;
+            }
+            clock.elapsed().as_secs_f64() / f64::from(done)
+        };
+        let samples_s: Vec<f64> = (0..SAMPLES).map(|_| sample_s()).collect();
         Self {
-            per_step_s: clock.elapsed().as_secs_f64() / f64::from(done),
+            per_step_s: samples_s.iter().copied().fold(f64::INFINITY, f64::min),
+            most_per_step_s: samples_s.iter().copied().fold(0.0, f64::max),
             clock: copy.scratch.clock,
         }
+    }
+
+    /// The run time by the fastest and by the slowest sample, s.
+    fn range_s(&self, steps: f64) -> [f64; 2] {
+        [self.per_step_s, self.most_per_step_s].map(|s| steps * s)
     }
 
     /// Cost of a stage that has its own time and is active in steps, ns per step.

@@ -1,13 +1,15 @@
 //! `dem-run picture`: pictures and films of a finished run.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use dem_io::colour::{Colour, on_standard_error};
 use dem_io::safe_write::{need_folder_of, write_file, write_standard_output};
 use dem_io::text::visible;
-use dem_io::units::length_m;
+use dem_io::units::{NUMBER, TIME, length_m, quantity};
 use dem_io::{Diagnostic, Result};
-use dem_report::picture::{ColourBy, PictureKind, PictureOrder, picture};
+use dem_report::picture::{ColourBy, PictureKind, PictureOrder, Which, picture};
 
 /// Largest width and height, px, and largest magnification.
 const MOST_PX: u32 = 8192;
@@ -23,10 +25,13 @@ pub(super) struct PictureArguments {
     /// Number of the frame, from 0; the last unless given
     #[arg(long, value_name = "N")]
     frame: Option<usize>,
+    /// Time of the frame, such as 3ms: the nearest one is shown
+    #[arg(long, value_name = "TIME", conflicts_with = "frame")]
+    time: Option<String>,
     /// Direction of the viewer, such as 1,-2,0.5; that of the scene unless given
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     from: Option<String>,
-    /// Place in the middle of the picture, such as 0,0,20mm
+    /// Place in the middle of the picture, such as 0,0,20mm; plain numbers are metres
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     target: Option<String>,
     /// Magnification; with 1 everything is in the picture
@@ -35,9 +40,10 @@ pub(super) struct PictureArguments {
     /// Width and height in pixels
     #[arg(long, default_value = "960x540", value_name = "WIDTHxHEIGHT")]
     size: String,
-    /// What colours tell
-    #[arg(long, default_value = "fragment", value_parser = ["fragment", "body", "speed", "mass", "utilisation", "stress"])]
-    colour: String,
+    /// What colours tell, as output.colour_by of a scene: fragment, fragment_mass, strain_rate,
+    /// dynamic_increase_factor or dynamic_utilisation; or body, speed, utilisation or stress
+    #[arg(long, default_value = "fragment", value_name = "QUANTITY")]
+    colour_by: String,
 }
 
 /// Writes the picture.
@@ -50,10 +56,15 @@ pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
     let ending = target.extension().unwrap_or_default().to_ascii_lowercase();
     let kind = match ending.to_str() {
         Some("png") => PictureKind::Png,
-        Some("gif") if arguments.frame.is_some() => {
+        Some("gif") if arguments.frame.is_some() || arguments.time.is_some() => {
+            let option = if arguments.time.is_some() {
+                "--time"
+            } else {
+                "--frame"
+            };
             let problem = "a film shows all frames";
             return Err(Diagnostic::input(
-                "--frame",
+                option,
                 problem,
                 "write a .png, or leave it out",
             ));
@@ -70,8 +81,21 @@ pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
     };
     let order = order(arguments)?;
     need_folder_of(target)?;
-    let bytes = picture(&arguments.folder, &order, kind)?;
-    write_file(target, |out| out.write_all(&bytes))?;
+    let drawn = picture(&arguments.folder, &order, kind)?;
+    write_file(target, |out| out.write_all(&drawn.bytes))?;
+    if drawn.is_empty {
+        let word = on_standard_error("warning:", Colour::Yellow);
+        // A closed output is not a reason to fail: the picture is written.
+        let _ = writeln!(
+            std::io::stderr(),
+            "{word} {}: no particle is within the picture; {}",
+            visible(&name),
+            match (&arguments.target, arguments.zoom > 1.0) {
+                (None, false) => "show another frame, with --frame or --time",
+                _ => "leave out --target and --zoom to see everything",
+            }
+        );
+    }
     write_standard_output(|out| writeln!(out, "{}", visible(&name)))
 }
 
@@ -84,33 +108,59 @@ fn order(arguments: &PictureArguments) -> Result<PictureOrder> {
             "2 shows half of the width",
         ));
     }
-    let from = arguments.from.as_deref().map(|text| three("--from", text));
-    let from = from.transpose()?;
+    let plain = |text: &str| quantity(text, &NUMBER);
+    let from = arguments.from.as_deref();
+    let from = from.map(|text| three("--from", text, plain)).transpose()?;
     if from == Some([0.0; 3]) {
         let remedy = "1,-2,0.5 looks from the right, the front and above";
         return Err(Diagnostic::input("--from", "this is no direction", remedy));
     }
     let target = arguments.target.as_deref();
     Ok(PictureOrder {
-        frame: arguments.frame,
+        frame: which(arguments)?,
         from,
-        target_m: target.map(|text| three("--target", text)).transpose()?,
+        target_m: target
+            .map(|text| three("--target", text, length_m))
+            .transpose()?,
         zoom: arguments.zoom,
         size_px: size_px(&arguments.size)?,
-        colour_by: match arguments.colour.as_str() {
-            "body" => ColourBy::Body,
-            "speed" => ColourBy::Speed,
-            "mass" => ColourBy::Mass,
-            "utilisation" => ColourBy::Utilisation,
-            "stress" => ColourBy::Stress,
-            _ => ColourBy::Fragment,
-        },
+        colour_by: colour_by(&arguments.colour_by)?,
     })
 }
 
-/// Three lengths, m, or three plain numbers.
-fn three(option: &str, text: &str) -> Result<[f64; 3]> {
-    let parts = text.split(',').map(|part| length_m(part.trim()));
+fn which(arguments: &PictureArguments) -> Result<Which> {
+    let time = arguments.time.as_deref();
+    let time_s = time.map(|text| quantity(text, &TIME)).transpose();
+    let time_s = time_s.map_err(|error| error.within("--time"))?;
+    Ok(match (time_s, arguments.frame) {
+        (Some(time_s), _) => Which::Nearest(time_s),
+        (None, Some(number)) => Which::Number(number),
+        (None, None) => Which::Last,
+    })
+}
+
+fn colour_by(text: &str) -> Result<ColourBy> {
+    let found = ColourBy::WORDS.iter().find(|(name, _)| *name == text);
+    if let Some((_, colour_by)) = found {
+        return Ok(*colour_by);
+    }
+    if text == "mass" {
+        let remedy = "write fragment_mass, as in a scene";
+        return Err(Diagnostic::input(
+            "--colour-by",
+            "'mass' has another name",
+            remedy,
+        ));
+    }
+    let names = ColourBy::WORDS.map(|(name, _)| name);
+    let problem = format!("'{text}' is no quantity of a picture");
+    let remedy = format!("write one of {}", names.join(", "));
+    Err(Diagnostic::input("--colour-by", problem, remedy))
+}
+
+/// Three numbers in SI.
+fn three(option: &str, text: &str, of: impl Fn(&str) -> Result<f64>) -> Result<[f64; 3]> {
+    let parts = text.split(',').map(|part| of(part.trim()));
     let parts: Vec<f64> = parts
         .collect::<Result<_>>()
         .map_err(|error| error.within(option))?;

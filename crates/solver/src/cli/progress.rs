@@ -1,4 +1,4 @@
-//! Progress of a run on standard error: a bar on a terminal, a line for each tenth in a log.
+//! Progress of a run on standard error: a bar on a terminal, lines in a log.
 
 use std::cell::RefCell;
 use std::io::{IsTerminal, Write};
@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::run::SoFar;
 
-/// Runs that take less have no lines, s.
+/// Runs that take less have no lines, s; others have the first one by then.
 const SHORT_S: f64 = 30.0;
 
 /// Shows how far a run has come.
@@ -34,19 +34,26 @@ struct Tenths {
     first: Option<f64>,
     /// Number of tenths that need no line any more.
     told: u32,
+    /// Whether there has been a line.
+    has_begun: bool,
 }
 
 impl Tenths {
-    /// The time left, s, if a line is due at this fraction of the run, `elapsed_s` after its begin.
+    /// The time left, s, if a line is due at this fraction of the run, `elapsed_s` after its begin:
+    /// at each tenth of a run that will take [`SHORT_S`], and once that time has passed.
     fn due(&mut self, fraction: f64, elapsed_s: f64) -> Option<f64> {
         let first = *self.first.get_or_insert(fraction);
         let tenths = (10.0 * fraction + 1e-9) as u32;
-        if tenths <= self.told.max((10.0 * first) as u32) {
+        let is_tenth = tenths > self.told.max((10.0 * first) as u32);
+        let is_late = !self.has_begun && elapsed_s >= SHORT_S;
+        if !is_tenth && !is_late {
             return None;
         }
-        self.told = tenths;
-        let is_told = elapsed_s >= SHORT_S && fraction > first && tenths < 10;
-        is_told.then(|| elapsed_s * (1.0 - fraction) / (fraction - first))
+        self.told = self.told.max(tenths);
+        let left_s = elapsed_s * (1.0 - fraction) / (fraction - first);
+        let is_told = elapsed_s + left_s >= SHORT_S && left_s.is_finite() && tenths < 10;
+        self.has_begun |= is_told;
+        is_told.then_some(left_s)
     }
 }
 
@@ -134,12 +141,22 @@ mod tests {
         let percents: Vec<u32> = told.iter().map(|(percent, _)| *percent).collect();
         assert_eq!(
             percents,
-            [20, 30, 40, 50, 60, 70, 80, 90],
-            "none in the first 30 s"
+            [10, 20, 30, 40, 50, 60, 70, 80, 90],
+            "the first after 20 s"
         );
         for (percent, left_s) in told {
             assert!((left_s - 2.0 * f64::from(100 - percent)).abs() < 1e-9);
         }
+        // 1000 s, told every percent: the first line after 30 s.
+        let mut long = Tenths::default();
+        let lines = (0..=100).filter(|percent| {
+            let fraction = f64::from(*percent) / 100.0;
+            long.due(fraction, 1000.0 * fraction).is_some()
+        });
+        assert_eq!(
+            lines.collect::<Vec<u32>>(),
+            [3, 10, 20, 30, 40, 50, 60, 70, 80, 90]
+        );
         let mut short = Tenths::default();
         assert!((0..=100).all(|percent| short.due(f64::from(percent) / 100.0, 1.0).is_none()));
         // Resumed at 55 %: 45 % in 90 s.

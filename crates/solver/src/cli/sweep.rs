@@ -117,10 +117,13 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
             return Ok(());
         };
         table = SweepTable::new(&study, &all, &outcomes, &values, looked_for);
-        let Some(next) = next_point(&study, &table) else {
+        let next = next_points(&study, &table);
+        if next.is_empty() {
             break;
-        };
-        study.add_point(next);
+        }
+        for (case, point) in next {
+            study.add_point(case, point);
+        }
         all = runs(&study, options.yes)?;
         checked(&study, &scene_text, &all)?;
         if options.collect && !is_done(&study, &all, &folder) {
@@ -149,7 +152,8 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
         Some(fastest(&table, &wants)?)
     };
     if let (Some(best), Some(target)) = (best, &options.write) {
-        let settings = all[best.number - 1].settings(&study);
+        let run = all.iter().find(|run| run.number == best.number);
+        let settings = run.map_or(Vec::new(), |run| run.settings(&study));
         let text = rewritten(&study, &scene_text, &settings, target)?;
         write_file(target, |out| out.write_all(text.as_bytes()))?;
     }
@@ -191,14 +195,14 @@ fn outcomes_of(
     folder: &SweepFolder,
     interrupt: &Interrupt,
 ) -> Result<Option<Vec<Vec<Outcome>>>> {
-    let mut all_jobs = jobs(all.len(), study.repeats());
+    let mut all_jobs = jobs(all, study.repeats());
     let is_run_here = !options.collect && !options.list;
     if is_run_here {
         do_what_is_left(options, study, all, &all_jobs, folder, interrupt)?;
     }
     let mut outcomes: Vec<Vec<Outcome>> = vec![Vec::new(); all.len()];
-    read(study, &all_jobs, folder, &mut outcomes);
-    let further = further_jobs(study.repeats(), &outcomes);
+    read(study, all, &all_jobs, folder, &mut outcomes);
+    let further = further_jobs(all, study.repeats(), &outcomes);
     if options.list {
         all_jobs.extend(&further);
         all_jobs.retain(|job| !job.is_done(&folder.runs()));
@@ -210,24 +214,30 @@ fn outcomes_of(
     if is_run_here {
         do_what_is_left(options, study, all, &further, folder, interrupt)?;
     }
-    read(study, &further, folder, &mut outcomes);
+    read(study, all, &further, folder, &mut outcomes);
     Ok(Some(outcomes))
 }
 
-/// The point that `[find]` tries next. None if there is no search, or if it has come to its end.
-fn next_point(study: &Study, table: &SweepTable) -> Option<f64> {
-    let (find, search) = (study.find.as_ref()?, table.find.as_ref()?);
+/// The points that `[find]` tries next, with the numbers of their cases. Empty if there is no search,
+/// or if all cases have come to their end.
+fn next_points(study: &Study, table: &SweepTable) -> Vec<(usize, f64)> {
+    let (Some(find), Some(search)) = (&study.find, &table.find) else {
+        return Vec::new();
+    };
     let mut responses = table.responses.iter();
-    let response = responses.find(|response| response.measure == find.measure)?;
-    match next_of(study, find, response, search.value) {
-        Step::Try(point) => Some(point),
+    let Some(response) = responses.find(|response| response.measure == find.measure) else {
+        return Vec::new();
+    };
+    let next = |case: usize| match next_of(study, find, response, search.value, case) {
+        Step::Try(point) => Some((case, point)),
         Step::Found(_) | Step::NotBracketed | Step::Wait => None,
-    }
+    };
+    (0..search.cases.len()).filter_map(next).collect()
 }
 
 /// True if all runs have come to their end.
 fn is_done(study: &Study, all: &[Run], folder: &SweepFolder) -> bool {
-    let jobs = jobs(all.len(), study.repeats());
+    let jobs = jobs(all, study.repeats());
     jobs.iter().all(|job| job.is_done(&folder.runs()))
 }
 
@@ -235,10 +245,14 @@ fn is_done(study: &Study, all: &[Run], folder: &SweepFolder) -> bool {
 fn not_found(study: &Study, table: &SweepTable) -> Option<Diagnostic> {
     let (find, search) = (study.find.as_ref()?, table.find.as_ref()?);
     let name = &table.measures[search.measure].name;
-    (search.result == SearchResult::NotBracketed).then(|| {
-        let remedy = "widen from and to, or look for a value between these";
-        Diagnostic::failed(&find.place, search.in_words(name), remedy)
-    })
+    let mut cases = search.cases.iter();
+    let lost = cases.find(|case| case.result == SearchResult::NotBracketed)?;
+    let remedy = "widen from and to, or look for a value between these";
+    Some(Diagnostic::failed(
+        &find.place,
+        search.in_words(lost, name),
+        remedy,
+    ))
 }
 
 /// Refuses names that shell commands cannot represent.
@@ -278,10 +292,18 @@ fn failure(study: &Study, table: &SweepTable) -> Option<Diagnostic> {
 }
 
 /// Adds the results of jobs to the outcomes of their runs.
-fn read(study: &Study, jobs: &[Job], folder: &SweepFolder, outcomes: &mut [Vec<Outcome>]) {
+fn read(
+    study: &Study,
+    all: &[Run],
+    jobs: &[Job],
+    folder: &SweepFolder,
+    outcomes: &mut [Vec<Outcome>],
+) {
     let runs = folder.runs();
     for job in jobs {
-        outcomes[job.run].push(outcome(study, *job, &runs));
+        if let Some(of_run) = job.index(all).and_then(|index| outcomes.get_mut(index)) {
+            of_run.push(outcome(study, *job, &runs));
+        }
     }
 }
 

@@ -91,6 +91,15 @@ pub(super) fn place_walls(
     Ok(walls)
 }
 
+/// The shape and frame of a wall at the start.
+///
+/// # Errors
+/// Its file is not a surface.
+pub(super) fn standing(entry: &SceneWall, name: &str) -> Result<(Shape, Frame)> {
+    // What is odd about it is said when the walls are placed.
+    Ok((shape(entry, name, &mut Vec::new())?, frame(entry)))
+}
+
 /// The shape in the wall's own frame, whose origin is the pivot.
 fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape> {
     let from_pivot = |point: [f64; 3]| [0, 1, 2].map(|k| point[k] - entry.pivot_m[k]);

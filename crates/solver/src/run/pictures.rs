@@ -2,8 +2,9 @@
 
 use dem_io::Result;
 use dem_pictures::Image;
+use dem_pictures::animation::animation;
 use dem_pictures::film::{
-    COLUMNS, SMALLER, animation, chosen_for_film, chosen_for_strip, delay_ms, film_strip,
+    COLUMNS, SMALLER, chosen_for_film, chosen_for_strip, delay_ms, film_strip,
 };
 use dem_pictures::png_file::{Compression, read_png, to_png};
 use dem_results::{PictureFiles, ResultsFolder};
@@ -124,7 +125,7 @@ impl Pictures {
             .into_iter()
             .map(small)
             .collect::<Result<Vec<Image>>>()?;
-        let strip = to_png(&film_strip(&frames, COLUMNS), Compression::Balanced)?;
+        let strip = to_png(&film_strip(&frames, COLUMNS), Compression::High)?;
         let chosen = chosen_for_film(self.taken.count);
         let film = animation(chosen.len() as u32, delay_ms(chosen.len()), |k| {
             read(chosen[k as usize])

@@ -62,6 +62,20 @@ fn says_the_step_and_why_stages_memory_and_time() {
 }
 
 #[test]
+fn the_run_time_is_a_range_and_quiet_says_nothing() {
+    let bench = Bench::new();
+    let path = scene_of_data("cantilever.toml");
+    let scene = path.to_str().unwrap();
+    let value: serde_json::Value =
+        serde_json::from_str(&check(&bench, &[scene, "--json", "--quiet"])).unwrap();
+    let range = value["predicted_run_time_range_s"].as_array().unwrap();
+    let [least, most] = [0, 1].map(|k| range[k].as_f64().unwrap());
+    assert!(0.0 < least && least <= most, "{least} {most}");
+    assert_eq!(value["predicted_run_time_s"], least);
+    assert_eq!(check(&bench, &[scene, "--quiet"]), "");
+}
+
+#[test]
 fn a_run_without_end_has_a_short_number_of_steps() {
     let bench = Bench::new();
     let path = scene_of_data("cantilever.toml");

@@ -10,13 +10,22 @@ use super::{Bench, good, names_in, results};
 /// Width, height and pixels of a PNG file, and the number of its frames.
 fn decoded(path: &Path) -> ([u32; 2], Vec<u8>, u32) {
     let file = BufReader::new(fs::File::open(path).unwrap());
-    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut decoder = png::Decoder::new(file);
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().unwrap();
     let frames = reader
         .info()
         .animation_control()
         .map_or(1, |c| c.num_frames);
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
+    if info.color_type == png::ColorType::Rgba {
+        // The first picture of a film with a palette: no pixel is transparent.
+        pixels = pixels
+            .chunks_exact(4)
+            .flat_map(|pixel| pixel[..3].to_vec())
+            .collect();
+    }
     for _ in 1..frames {
         let mut part = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut part).unwrap();
@@ -52,7 +61,11 @@ fn are_taken_at_their_times_and_at_the_end() {
     assert!((0.05..0.95).contains(&inked(&pixels)));
     let (size, pixels, frames) = decoded(&bench.path("out/film.png"));
     assert_eq!((size, frames), ([960, 540], 4));
-    assert!(pixels == seen[0]);
+    // Its colours are those of a palette.
+    let both = || pixels.iter().zip(&seen[0]);
+    let off: u64 = both().map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    assert!((off as f64) < 0.5 * pixels.len() as f64, "{off}");
+    assert!(both().all(|(a, b)| a.abs_diff(*b) <= 32));
 }
 
 #[test]

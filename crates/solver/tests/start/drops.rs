@@ -106,6 +106,79 @@ fn a_fall_away_from_the_wall_is_refused() {
     assert!(said.contains("bodies.balls.drop: gravity does not point towards the free side of 'plate'; name a plane below"), "{said}");
 }
 
+/// The plate as another wall whose top is at the same height.
+fn onto(wall: &str, body: &str) -> String {
+    balls(body).replace(
+        "plane = { point = [0, 0, \"5 cm\"], normal = [0, 0, 1] }",
+        wall,
+    )
+}
+
+const BLOCK: &str = "box = { min = [-2, -2, 0], max = [2, 2, \"5 cm\"] }";
+
+/// Both spheres reach 1 mm below the origin: the place is that above a plane.
+#[test]
+fn a_body_falls_onto_boxes_cylinders_and_surfaces() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("roof.stl");
+    let corners =
+        [[-2, -2], [2, -2], [2, 2], [-2, 2]].map(|[x, y]| format!("vertex {x} {y} 0.05\n"));
+    let facet = |three: [usize; 3]| {
+        let loops = three.map(|k| corners[k].as_str()).concat();
+        format!("facet normal 0 0 1\nouter loop\n{loops}endloop\nendfacet\n")
+    };
+    let roof = format!(
+        "solid roof\n{}{}endsolid roof\n",
+        facet([0, 1, 2]),
+        facet([0, 2, 3])
+    );
+    std::fs::write(&path, roof).unwrap();
+    let roof = format!("stl = \"{}\", unit = \"m\"", path.display());
+    let pillar = "cylinder = { from = [0, 0, 0], to = [0, 0, \"5 cm\"], radius = 2 }";
+    for wall in [BLOCK, pillar, &roof] {
+        for height_m in [1e-3, 1.0] {
+            let drop = format!(
+                "position = [\"1 m\", \"0.5 m\", 0], drop = {{ height = {height_m}, onto = \"plate\" }}"
+            );
+            let plane = planned(&balls(&drop)).state;
+            let state = planned(&onto(wall, &drop)).state;
+            let gap = gap_m(&state);
+            assert!(gap > 0.0 && (gap - 1e-5).abs() < 2e-9, "{wall}: {gap:e}");
+            for i in [0, 1] {
+                assert!(
+                    (place(&state, i) - place(&plane, i)).norm() < 2e-9,
+                    "{wall}"
+                );
+                assert!(
+                    (velocity(&state, i) - velocity(&plane, i)).norm() < 1e-9,
+                    "{wall}"
+                );
+            }
+        }
+    }
+}
+
+/// A sphere of 1 mm whose centre is 0.6 mm beyond the edge of a box touches it 0.8 mm below its
+/// centre, at a normal with the cosine 0.8; the other sphere of the body passes.
+#[test]
+fn a_body_may_hit_an_edge_or_fall_past() {
+    let drop = |x_m: f64| {
+        onto(
+            BLOCK,
+            &format!("position = [{x_m}, 0, 0], drop = {{ height = 1, onto = \"plate\" }}"),
+        )
+    };
+    let state = planned(&drop(2.0006)).state;
+    let small = |i: &usize| state.particles.poses[*i].radius_m() < 1.5e-3;
+    let height_m = place(&state, (0..2).find(small).unwrap()).z - 0.05;
+    assert!((height_m - (0.8e-3 + 1.25e-5)).abs() < 1e-8, "{height_m:e}");
+    let said = try_planned(&drop(3.0)).unwrap_err().to_string();
+    assert!(
+        said.contains("bodies.balls.drop: the body falls past 'plate'; move it across gravity"),
+        "{said}"
+    );
+}
+
 /// Masses 1 and 8 at 0 and 4 mm: the centre is 8/9 of the way.
 #[test]
 fn a_position_of_the_centre_is_that_of_the_centre_of_mass() {

@@ -17,9 +17,9 @@ use dem_study::folder::SweepFolder;
 use dem_study::jobs::{Job, arguments, refuse_unlistable, scene_arguments, shell_line};
 use dem_study::page::page;
 use dem_study::plot::plot;
-use dem_study::response_plot::plots;
+use dem_study::response_plot::{found_plots, plots};
 use dem_study::rows::{Row, SweepTable};
-use dem_study::text::{csv, response_csv};
+use dem_study::text::{csv, find_csv, response_csv};
 
 /// Prints one sh command for each job.
 pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolder) -> Result<()> {
@@ -30,7 +30,10 @@ pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolde
     let runs = folder.runs();
     write_standard_output(|out| {
         for job in jobs {
-            let own = arguments(study, &all[job.run], *job, &runs);
+            let Some(run) = job.index(all) else {
+                continue;
+            };
+            let own = arguments(study, &all[run], *job, &runs);
             let arguments = [first.clone(), own].concat();
             let line = shell_line(&program, &arguments, Some(&job.complaint(&runs)));
             writeln!(out, "{line}")?;
@@ -39,7 +42,7 @@ pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolde
     })
 }
 
-/// `sweep.csv`, `responses.csv`, `sweep.json`, `sweep.html` and the plots of each measure.
+/// `sweep.csv`, `responses.csv`, `find.csv`, `sweep.json`, `sweep.html` and the plots of each measure.
 pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
     let file = |name: &str| folder.path().join(name);
     write_file(&file("sweep.csv"), |out| {
@@ -49,6 +52,16 @@ pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()
         write_file(&file("responses.csv"), |out| {
             out.write_all(response_csv(table).as_bytes())
         })?;
+    }
+    if let Some(search) = &table.find {
+        write_file(&file("find.csv"), |out| {
+            out.write_all(find_csv(table, search).as_bytes())
+        })?;
+        for (number, plot) in (1..).zip(found_plots(table, search)) {
+            // A measure may have the name `find`, but not one with a dot.
+            let path = file(&format!("find.{number}.svg"));
+            write_plot_file(&path, &plot.svg().file())?;
+        }
     }
     write_json(&file("sweep.json"), table)?;
     write_file(&file("sweep.html"), |out| {
@@ -92,7 +105,8 @@ pub(super) fn say(
     as_json: bool,
 ) -> Result<()> {
     let command = |row: &Row| {
-        let arguments = scene_arguments(study, &all[row.number - 1]);
+        let run = all.iter().find(|run| run.number == row.number);
+        let arguments = run.map_or(Vec::new(), |run| scene_arguments(study, run));
         shell_line("dem-run", &arguments, None)
     };
     if as_json {

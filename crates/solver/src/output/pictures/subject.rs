@@ -5,6 +5,7 @@ use dem_pictures::colours::{Piece, SINGLE, of_piece, of_pieces};
 use dem_pictures::surface::HalfSpace;
 use dem_pictures::{Ball, Surface};
 
+use super::reach::Reach;
 use super::scale::Scale;
 use crate::geometry::{Bounds, Shape};
 use crate::state::State;
@@ -42,22 +43,22 @@ fn by_fragment(state: &State, bodies: &[PlacedBody]) -> Vec<[u8; 3]> {
     (0..count).map(|i| colour_of(i).unwrap_or(SINGLE)).collect()
 }
 
-/// The outermost points of all particles, and the corners of all inlets, m. Shape n x 3.
+/// The outermost points of all particles, and those that fed bodies will reach, m. Shape n x 3.
 pub(crate) fn points_of(state: &State) -> Vec<[f64; 3]> {
     let poses = &state.particles.poses;
     let mut points_m: Vec<[f64; 3]> = (poses.iter())
         .flat_map(|pose| outermost(pose.place().into(), pose.radius_m()))
         .collect();
-    for inlet in &state.model.rules.inlets {
-        points_m.extend(state.model.rules.regions[inlet.region].bounds().corners());
-    }
+    points_m.extend(Reach::of(state).points_m);
     points_m
 }
 
 /// The box of a scene around which planes are drawn: these points, m, with room at their sides, and
 /// the walls that are no planes.
 pub(crate) fn around(state: &State, points_m: &[[f64; 3]]) -> Bounds {
-    let room = with_room(Bounds::of(points_m.iter().copied()));
+    let points = Bounds::of(points_m.iter().copied());
+    let room = with_room(points, Reach::of(state).fall_m);
+    let room = points.with(&room.common(&Reach::within(state)));
     state.walls.iter().fold(room, |around, wall| {
         let corners = corners_m(&wall.model.shape).unwrap_or_default();
         let in_space = corners.into_iter().flatten();
@@ -66,12 +67,13 @@ pub(crate) fn around(state: &State, points_m: &[[f64; 3]]) -> Bounds {
     })
 }
 
-/// A box with room at its sides, for parts that will fall over or break.
-fn with_room(bounds: Bounds) -> Bounds {
+/// A box with room at its sides, for parts that will fall over or break, and for bodies that fall
+/// from an inlet by `fall_m`.
+fn with_room(bounds: Bounds, fall_m: f64) -> Bounds {
     let [x, y] = [0, 1].map(|k| bounds.high[k] - bounds.low[k]);
     // No room if there is nothing.
     let room = if x > 0.0 && y > 0.0 {
-        ROOM * (x * y).sqrt()
+        ROOM * (x * y).sqrt().max(fall_m)
     } else {
         0.0
     };

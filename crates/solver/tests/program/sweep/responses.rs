@@ -24,6 +24,20 @@ fn elongation_m(force_n: f64, modulus_pa: f64) -> f64 {
     force_n * 0.4 / (modulus_pa * PI * 0.04)
 }
 
+#[test]
+fn a_study_may_keep_everything() {
+    let bench = bench(&format!(
+        "keep = \"all\"\n{REST}\"bonds.steel.young_modulus\" = [\"100 GPa\"]\n[measures.tip]\n"
+    ));
+    good(&bench, &[]);
+    for name in ["series.csv", "frames.pvd"] {
+        assert!(
+            bench.path("study-sweep/runs/0002-1").join(name).exists(),
+            "{name}"
+        );
+    }
+}
+
 fn study_bench(rest: &str) -> Bench {
     bench(&format!("{REST}{rest}"))
 }
@@ -126,7 +140,7 @@ tolerance = "1 GPa"
 fn assert_found(table: &Value) {
     // The mean elongation is that under the mean force.
     let wanted = 1e-9 * elongation_m(1000.0, 1.0) / 2e-8;
-    let found = &table["find"]["result"]["found"];
+    let found = &table["find"]["cases"][0]["result"]["found"];
     let [low, high] = [0, 1].map(|end| found["between"][end].as_f64().unwrap());
     assert!(
         low <= wanted && wanted <= high && high - low <= 1.0,
@@ -147,7 +161,7 @@ fn a_value_is_found() {
     );
     let table = json(&bench);
     assert_found(&table);
-    let tried = table["find"]["tried"].as_array().unwrap();
+    let tried = table["find"]["cases"][0]["tried"].as_array().unwrap();
     assert_eq!(tried.len(), 10);
     let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
     assert_well_formed(&html);
@@ -162,6 +176,10 @@ fn a_value_is_found() {
             .to_string()
             .contains("within twice its standard error")
     );
+
+    // The runs keep their tables.
+    let kept = |name: &str| bench.path("study-sweep/runs/0001-1").join(name).exists();
+    assert!(kept("series.csv") && kept("report.html") && !kept("frames") && !kept("frames.pvd"));
 
     // Only what is missing is done again, and a smaller tolerance goes on from there.
     let summary = |run: &str| {
@@ -187,6 +205,64 @@ fn a_value_is_found() {
     );
     let said = bad(&bench, &["--resume"], 2);
     assert!(said.contains("its runs are of another [find]"), "{said}");
+}
+
+/// The area of the bonds is proportional to the square of their radius, the modulus that gives the
+/// elongation to its inverse: 159 GPa over 1, 0.81 and 0.49. The last one is beyond the range.
+#[test]
+fn a_value_is_found_in_each_case() {
+    let cases = "\"bonds.steel.radius_factor\" = [1, 0.7, 0.9]\n";
+    let bench = study_bench(&format!("{cases}{FIND}"));
+    let output = sweep(&bench, &[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("2e-8 m does not lie between the values of tip at the ends for bonds.steel.radius_factor 0.7: "),
+        "{said}"
+    );
+    let said = String::from_utf8(output.stdout).unwrap();
+    // Ten points of two cases and the ends of the third, each with two forces.
+    assert!(said.contains("44 runs of spring.toml"), "{said}");
+    let lines = said.lines().filter(|line| line.starts_with("find  "));
+    assert_eq!(lines.count(), 3);
+    let found = csv(&bench.path("study-sweep/find.csv"));
+    assert_eq!(found.len(), 3);
+    for (row, factor) in found.iter().zip([1.0, 0.7, 0.9_f64]) {
+        assert_near(&row["bonds.steel.radius_factor"], factor);
+        if factor == 0.7 {
+            assert_eq!(
+                (row["result"].as_str(), row["from"].as_str()),
+                ("not bracketed", "")
+            );
+            continue;
+        }
+        let wanted = 1e-9 * elongation_m(1000.0, factor.powi(2)) / 2e-8;
+        let [low, high] = ["from", "to"].map(|end| row[end].parse::<f64>().unwrap());
+        assert!(
+            low <= wanted && wanted <= high && high - low <= 1.0,
+            "{row:?}"
+        );
+        assert_near(&row["bonds.steel.young_modulus (GPa)"], 0.5 * (low + high));
+        assert_eq!(row["result"], "found");
+    }
+    let svg = fs::read_to_string(bench.path("study-sweep/find.1.svg")).unwrap();
+    assert_well_formed(&svg);
+    assert_eq!(svg.matches("class=\"mark\"").count(), 2);
+    let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
+    assert_well_formed(&html);
+    assert!(html.contains("where tip is 2e-8 m"), "{html}");
+
+    // The numbers of runs do not depend on the other cases: all are known again.
+    let runs = bench.path("study-sweep/runs");
+    let count = || fs::read_dir(&runs).unwrap().count();
+    let before = count();
+    fs::remove_file(runs.join("0002-1/summary.json")).unwrap();
+    assert_eq!(
+        sweep(&bench, &["--resume"]).output().unwrap().status.code(),
+        Some(1)
+    );
+    assert_eq!(count(), before);
+    assert!(csv(&bench.path("study-sweep/find.csv")) == found);
 }
 
 #[test]
