@@ -5,6 +5,7 @@ pub mod bonds;
 pub mod breakage;
 pub mod clumps;
 pub mod contacts;
+mod damped;
 pub mod damping;
 pub(crate) mod flow;
 pub mod incremental;

@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
-use crate::stages::bonds::bond_wrenches;
-use crate::stages::damping::damping_wrenches;
+use crate::stages::bonds::{bond_wrenches, damping_wrenches};
 use crate::state::State;
 use crate::state::bonds::BondRule;
 use crate::state::particles::{Motion, Pose, Wrench};

@@ -140,22 +140,20 @@ pub(super) fn fetch_soon<T>(value: &T) {
 /// Prefetch distance, in bonds.
 const AHEAD: usize = 64;
 
-/// Prefetches the particles at the second ends of the bonds that follow a block soon: in a large
-/// body they are far away in memory, while first ends follow one another.
+/// Second ends of the bonds that follow a block soon. In a large body they are far away in memory,
+/// while first ends follow one another: they are to be prefetched.
 #[inline(always)]
-pub(super) fn fetch_second_ends(
-    bonds: &Bonds,
-    block: usize,
-    poses: &[Pose],
-    wrenches: &[Wrench],
-    particles: &Range<usize>,
-) {
+pub(super) fn coming_second_ends(bonds: &Bonds, block: usize) -> impl Iterator<Item = usize> {
     let soon = block * BLOCK + AHEAD;
-    for &[_, b] in bonds.ends.get(soon..soon + BLOCK).unwrap_or_default() {
-        fetch_soon(&poses[b as usize]);
-        if particles.contains(&(b as usize)) {
-            fetch_soon(&wrenches[b as usize - particles.start]);
-        }
+    let coming = bonds.ends.get(soon..soon + BLOCK).unwrap_or_default();
+    coming.iter().map(|&[_, b]| b as usize)
+}
+
+/// Prefetches the wrench of a particle, if it is one of the partition.
+#[inline(always)]
+pub(super) fn fetch_wrench_soon(wrenches: &[Wrench], i: usize, particles: &Range<usize>) {
+    if let Some(wrench) = wrenches.get(i.wrapping_sub(particles.start)) {
+        fetch_soon(wrench);
     }
 }
 
@@ -166,16 +164,29 @@ pub(super) fn for_each_partition(
     wrenches: &mut [Wrench],
     work: &(impl Fn(&mut Partition, &mut [Wrench]) + Sync),
 ) {
+    let of_one = |partition: &mut Partition, [wrenches, _]: [&mut [Wrench]; 2]| {
+        work(partition, wrenches);
+    };
+    for_each_partition_of_two(partitions, [wrenches, &mut []], &of_one);
+}
+
+/// The same for two lists of wrenches, the second of which may be empty.
+pub(super) fn for_each_partition_of_two(
+    partitions: &mut [Partition],
+    [wrenches, others]: [&mut [Wrench]; 2],
+    work: &(impl Fn(&mut Partition, [&mut [Wrench]; 2]) + Sync),
+) {
     match partitions {
         [] => {}
-        [partition] => work(partition, wrenches),
+        [partition] => work(partition, [wrenches, others]),
         _ => {
             let (left, right) = partitions.split_at_mut(partitions.len() / 2);
             let count = right[0].particles.start - left[0].particles.start;
             let (of_left, of_right) = wrenches.split_at_mut(count);
+            let (others_of_left, others_of_right) = others.split_at_mut(count.min(others.len()));
             rayon::join(
-                || for_each_partition(left, of_left, work),
-                || for_each_partition(right, of_right, work),
+                || for_each_partition_of_two(left, [of_left, others_of_left], work),
+                || for_each_partition_of_two(right, [of_right, others_of_right], work),
             );
         }
     }

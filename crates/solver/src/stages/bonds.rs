@@ -10,14 +10,17 @@ use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::bond_response;
 use crate::physics::number::{Rotation, Vec3};
 use crate::stages::blocks::{
-    BondGroup, blocks_of, fetch_second_ends, for_each_partition, separations,
+    BondGroup, blocks_of, coming_second_ends, fetch_soon, fetch_wrench_soon, for_each_partition,
+    for_each_partition_of_two, separations,
 };
+use crate::stages::damped::damping_forces;
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_lanes};
 use crate::stages::motion::CHUNK;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
-use crate::state::particles::{Pose, Wrench};
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Computed, Partition};
+use crate::state::scratch::Scratch;
 
 /// Bond forces.
 pub const BONDS: Stage = Stage {
@@ -89,18 +92,19 @@ pub(crate) fn clear_wrenches(state: &mut State) -> usize {
     0
 }
 
-/// Sets the wrenches to the bond forces. Returns the number of bonds computed.
+/// Sets the wrenches to the bond forces, and the resistances of the bonds to their damping forces.
+/// Returns the number of bonds computed.
 pub(crate) fn compute_bonds(state: &mut State) -> usize {
     if state.bonds.is_empty() {
         return 0;
     }
     let p = &mut state.particles;
-    bond_wrenches(
-        &state.bonds,
-        &p.poses,
-        &mut state.scratch.partitions,
-        &mut p.wrenches,
-    );
+    if state.scratch.bond_resistance.is_empty() {
+        let partitions = &mut state.scratch.partitions;
+        bond_wrenches(&state.bonds, &p.poses, partitions, &mut p.wrenches);
+    } else {
+        damped_bond_wrenches(&state.bonds, p, &mut state.scratch);
+    }
     state
         .scratch
         .partitions
@@ -127,7 +131,44 @@ pub fn bond_wrenches(
     each_partition(bonds, poses, partitions, wrenches, &|work| with_lanes(work));
 }
 
-/// The same forces, one bond at a time.
+/// The same, with the damping forces.
+fn damped_bond_wrenches(bonds: &Bonds, particles: &mut Particles, scratch: &mut Scratch) {
+    let (poses, motions) = (&particles.poses, &particles.motions);
+    let both = [&mut particles.wrenches[..], &mut scratch.bond_resistance];
+    let work = |partition: &mut Partition, [wrenches, resisting]: [&mut [Wrench]; 2]| {
+        with_lanes(PartitionWork {
+            bonds,
+            poses,
+            partition,
+            wrenches,
+            elastic: true,
+            damping: Some(Damping { motions, resisting }),
+        });
+    };
+    for_each_partition_of_two(&mut scratch.partitions, both, &work);
+}
+
+/// Sets `resisting` (one for each particle) to the damping forces of the bonds.
+pub(crate) fn damping_wrenches(
+    bonds: &Bonds,
+    poses: &[Pose],
+    motions: &[Motion],
+    partitions: &mut [Partition],
+    resisting: &mut [Wrench],
+) {
+    for_each_partition(partitions, resisting, &|partition, resisting| {
+        with_lanes(PartitionWork {
+            bonds,
+            poses,
+            partition,
+            wrenches: &mut [],
+            elastic: false,
+            damping: Some(Damping { motions, resisting }),
+        });
+    });
+}
+
+/// The bond forces, one bond at a time.
 pub fn bond_wrenches_one_by_one(
     bonds: &Bonds,
     poses: &[Pose],
@@ -153,6 +194,8 @@ fn each_partition(
             poses,
             partition,
             wrenches,
+            elastic: true,
+            damping: None,
         });
     });
 }
@@ -208,80 +251,145 @@ struct PartitionWork<'a> {
     partition: &'a mut Partition,
     /// Wrenches of the particles of the partition.
     wrenches: &'a mut [Wrench],
+    /// Whether the bond forces are computed.
+    elastic: bool,
+    /// Damping forces, if they are computed.
+    damping: Option<Damping<'a>>,
+}
+
+/// Damping forces of the bonds of one partition.
+struct Damping<'a> {
+    motions: &'a [Motion],
+    /// Those on the particles of the partition.
+    resisting: &'a mut [Wrench],
 }
 
 impl LaneWork for PartitionWork<'_> {
     #[inline(always)]
-    fn with<T: Lanes>(self, proof: T::Proof) {
-        let Self {
-            bonds,
-            poses,
-            partition,
-            wrenches,
-        } = self;
-        let Partition {
-            particles,
-            awake,
-            batches,
-            failing,
-            computed,
-        } = partition;
-        *computed = Computed::default();
-        failing.clear();
-        for awake in awake {
-            wrenches[awake.clone()].fill(Wrench::default());
+    fn with<T: Lanes>(mut self, proof: T::Proof) {
+        self.partition.computed.damped = 0;
+        if self.elastic {
+            self.partition.computed = Computed::default();
+            self.partition.failing.clear();
         }
-        for Batch { rule, which } in batches.iter() {
-            let kind = Kind {
-                torsion_per_bending: bonds.torsion_per_bending[*rule],
-                screen: bonds.rules[*rule].criteria.as_ref().map(Screen::new),
-            };
-            if bonds.rules[*rule].incremental {
-                continue;
+        for awake in &self.partition.awake {
+            if self.elastic {
+                self.wrenches[awake.clone()].fill(Wrench::default());
             }
+            if let Some(damping) = &mut self.damping {
+                damping.resisting[awake.clone()].fill(Wrench::default());
+            }
+        }
+        let batches = std::mem::take(&mut self.partition.batches);
+        for batch in &batches {
+            let rule = &self.bonds.rules[batch.rule];
+            let total = self.elastic && !rule.incremental;
+            let damped = rule.damped && self.damping.is_some();
+            match (total, damped) {
+                (true, false) => self.of_batch::<T, true, false>(proof, batch),
+                (true, true) => self.of_batch::<T, true, true>(proof, batch),
+                (false, true) => self.of_batch::<T, false, true>(proof, batch),
+                (false, false) => {}
+            }
+        }
+        self.partition.batches = batches;
+    }
+}
+
+impl PartitionWork<'_> {
+    /// The bonds of a batch: their forces, by the total formulation, if `TOTAL`, and their damping
+    /// forces if `DAMPED`.
+    #[inline(always)]
+    fn of_batch<T: Lanes, const TOTAL: bool, const DAMPED: bool>(
+        &mut self,
+        proof: T::Proof,
+        Batch { rule, which }: &Batch,
+    ) {
+        let bonds = self.bonds;
+        let kind = Kind {
+            torsion_per_bending: bonds.torsion_per_bending[*rule],
+            screen: bonds.rules[*rule].criteria.as_ref().map(Screen::new),
+        };
+        let computed = &mut self.partition.computed;
+        if TOTAL {
             computed.total += which.count();
-            if kind.screen.is_some() {
-                computed.compared += which.count();
-            }
-            match which {
-                BondSelection::Run(range) => {
-                    for block in blocks_of(range) {
-                        fetch_second_ends(bonds, block, poses, wrenches, particles);
-                        let four = BondGroup::of_block(bonds, block, range);
-                        let numbers = &bonds.blocks[block];
-                        for first in (0..BLOCK).step_by(T::COUNT) {
-                            let found = kind.forces::<T>(proof, &four, numbers, first, poses);
-                            four.add(first, found.force_on_b, found.torques, wrenches, particles);
-                            list_failing(
-                                bonds,
-                                &four,
-                                numbers,
-                                first,
-                                &found.beyond[..T::COUNT],
-                                failing,
-                            );
-                        }
-                    }
+            computed.compared += if kind.screen.is_some() {
+                which.count()
+            } else {
+                0
+            };
+        }
+        if DAMPED {
+            computed.damped += which.count();
+        }
+        match which {
+            BondSelection::Run(range) => {
+                for block in blocks_of(range) {
+                    self.fetch_coming::<TOTAL, DAMPED>(block);
+                    let four = BondGroup::of_block(bonds, block, range);
+                    let numbers = &bonds.blocks[block];
+                    self.of_four::<T, TOTAL, DAMPED>(proof, &kind, &four, numbers, true);
                 }
-                BondSelection::Own(list) | BondSelection::Border(list) => {
-                    for some in list.chunks(BLOCK) {
-                        let four = BondGroup::of_list(bonds, some);
-                        let numbers = &BondBlock::of(bonds, four.numbers);
-                        for first in (0..BLOCK).step_by(T::COUNT) {
-                            let found = kind.forces::<T>(proof, &four, numbers, first, poses);
-                            four.add(first, found.force_on_b, found.torques, wrenches, particles);
-                            if matches!(which, BondSelection::Own(_)) {
-                                list_failing(
-                                    bonds,
-                                    &four,
-                                    numbers,
-                                    first,
-                                    &found.beyond[..T::COUNT],
-                                    failing,
-                                );
-                            }
-                        }
-                    }
+            }
+            BondSelection::Own(list) | BondSelection::Border(list) => {
+                let own = matches!(which, BondSelection::Own(_));
+                for some in list.chunks(BLOCK) {
+                    let four = BondGroup::of_list(bonds, some);
+                    let numbers = &BondBlock::of(bonds, four.numbers);
+                    self.of_four::<T, TOTAL, DAMPED>(proof, &kind, &four, numbers, own);
+                }
+            }
+        }
+    }
+
+    /// Prefetches what the bonds that follow a block soon need.
+    #[inline(always)]
+    fn fetch_coming<const TOTAL: bool, const DAMPED: bool>(&self, block: usize) {
+        let particles = &self.partition.particles;
+        for b in coming_second_ends(self.bonds, block) {
+            fetch_soon(&self.poses[b]);
+            if TOTAL {
+                fetch_wrench_soon(self.wrenches, b, particles);
+            }
+            if let (true, Some(damping)) = (DAMPED, &self.damping) {
+                fetch_soon(&damping.motions[b]);
+                fetch_wrench_soon(damping.resisting, b, particles);
+            }
+        }
+    }
+
+    /// Four bonds, whose first ends are in the partition if they are its `own`.
+    #[inline(always)]
+    fn of_four<T: Lanes, const TOTAL: bool, const DAMPED: bool>(
+        &mut self,
+        proof: T::Proof,
+        kind: &Kind,
+        four: &BondGroup,
+        numbers: &BondBlock,
+        own: bool,
+    ) {
+        let Partition {
+            particles, failing, ..
+        } = &mut *self.partition;
+        for first in (0..BLOCK).step_by(T::COUNT) {
+            let apart = separations(proof, &four.ends[first..], self.poses);
+            if let (true, Some(Damping { motions, resisting })) = (DAMPED, &mut self.damping) {
+                let (force_on_b, torques) =
+                    damping_forces::<T>(proof, self.bonds, four, numbers, first, apart, motions);
+                four.add(first, force_on_b, torques, resisting, particles);
+            }
+            if TOTAL {
+                let found = kind.forces::<T>(proof, four, numbers, first, apart, self.poses);
+                four.add(
+                    first,
+                    found.force_on_b,
+                    found.torques,
+                    self.wrenches,
+                    particles,
+                );
+                if own {
+                    let beyond = &found.beyond[..T::COUNT];
+                    list_failing(self.bonds, four, numbers, first, beyond, failing);
                 }
             }
         }
@@ -312,6 +420,7 @@ impl Kind {
         four: &BondGroup,
         numbers: &BondBlock,
         first: usize,
+        apart: Vec3<T>,
         poses: &[Pose],
     ) -> Found<T> {
         let ends = &four.ends[first..first + T::COUNT];
@@ -337,12 +446,7 @@ impl Kind {
             turns(proof, |lane| poses[ends[lane][0] as usize].turned),
             turns(proof, |lane| poses[ends[lane][1] as usize].turned),
         ];
-        let bond_response = bond_response(
-            &stiffness,
-            direction,
-            separations(proof, ends, poses),
-            turned,
-        );
+        let bond_response = bond_response(&stiffness, direction, apart, turned);
         let mut beyond = [-1.0; MOST];
         if let Some(screen) = &self.screen {
             let [used, factor] = screen.utilisation_and_factor(&bond_response.load, radius_m);
