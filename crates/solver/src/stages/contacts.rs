@@ -23,7 +23,7 @@ use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::neighbours::near_pairs;
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, ContactPartition, Contacts};
-use crate::state::particles::{Particles, Wrench};
+use crate::state::particles::{Particles, Pose, Wrench};
 
 /// Contacts between particles.
 pub const CONTACTS: Stage = Stage {
@@ -209,6 +209,8 @@ pub fn list_contacts(
 /// Replaces the list of pairs, and divides the work anew.
 pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, particles: &Particles) {
     let poses = &particles.poses;
+    let radii_m: f64 = poses.iter().map(Pose::radius_m).sum();
+    contacts.scratch.mean_radius_m = radii_m / poses.len().max(1) as f64;
     let relaxes = contacts.model.relaxes;
     contacts.relist(
         pairs,

@@ -126,6 +126,8 @@ pub struct ContactScratch {
     pub partitions: Vec<ContactPartition>,
     /// Requested number of partitions: few contacts need fewer.
     pub wanted_partitions: usize,
+    /// Mean radius of the particles at the last search, m.
+    pub mean_radius_m: f64,
     /// Only the listed pairs that were closer than this at the last check of all pairs are
     /// computed, m.
     pub close_m: f64,

@@ -12,15 +12,15 @@ const AHEAD: usize = 32;
 /// Largest number of steps, at the present speed, until the next check of all pairs; and the
 /// smallest, below which all are checked in each step.
 const STEPS: [f64; 2] = [32.0, 4.0];
-/// Pairs farther apart than this fraction of the skin are not computed.
-const CLOSE: f64 = 1.0 / 16.0;
+/// Pairs farther apart than this fraction of the mean radius are not computed.
+const CLOSE: f64 = 1.0 / 128.0;
 
 /// Pairs closer than this, m, are computed until a particle may have moved almost half of it: until
 /// then none of the others can touch, however positions are rounded. 0 if that would be soon: then
 /// all pairs are checked in each step.
 pub(super) fn close_m(contacts: &Contacts) -> f64 {
     let [most_m, least_m] = STEPS.map(|steps| 2.0 * steps * contacts.moved_m);
-    let close_m = most_m.min(CLOSE * contacts.skin_m);
+    let close_m = most_m.min(CLOSE * contacts.scratch.mean_radius_m);
     if close_m < least_m { 0.0 } else { close_m }
 }
 
