@@ -1,0 +1,278 @@
+//! The table of doc/performance.md: how fast a step is in scenes of bonded bodies, of loose spheres
+//! and of rigid clumps, and how much of it is the neighbour search. `cargo bench -p dem-tests
+//! --bench figures`, then the names of cases or nothing. Some minutes.
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a benchmark stops where it fails, and prints a table"
+)]
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use dem_io::Body;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
+use dem_run::plan::plan;
+use dem_run::state::State;
+use dem_run::step::{stages, step};
+
+/// Number of rounds, of which the median is taken.
+const ROUNDS: usize = 7;
+
+/// What is counted in a step.
+#[derive(Clone, Copy)]
+enum Counted {
+    Bonds,
+    Particles,
+    Steps,
+}
+
+/// A scene whose steps are timed.
+struct Case {
+    name: &'static str,
+    counted: Counted,
+    scene: String,
+    bodies: BTreeMap<String, Body>,
+    /// Simulated time before the first round, s, and in each round.
+    times_s: [f64; 2],
+}
+
+const HEAD: &str = "version = 1
+[run]
+end_time = \"10 s\"
+gravity = [0, 0, -9.81]
+initial_overlap = \"relax\"
+[materials.stuff]
+density = \"2050 kg/m3\"
+shear_modulus = \"10 MPa\"
+poisson_ratio = 0.3
+[contacts]
+stuff-stuff = { restitution = 0.3, friction = 0.5 }
+";
+
+/// A body of bonded spheres; with a bond table as given.
+fn bonded(bonds: &str, more: &str) -> String {
+    format!(
+        "{HEAD}[bonds.stuff]\nyoung_modulus = \"12.05 MPa\"\npoisson_ratio = 0.3\n{bonds}\nfailure = {{ von_mises_strength = \"1 GPa\" }}\n\
+         [bodies.cake]\nfile = \"cake.vtp\"\nmaterial = \"stuff\"\nbonds = \"stuff\"\n{more}"
+    )
+}
+
+/// Planes around a box with these sides, m, open above.
+fn planes([x, y]: [f64; 2]) -> String {
+    let mut text = String::new();
+    let (x, y) = (0.5 * x, 0.5 * y);
+    for (name, point, normal) in [
+        ("bottom", [0.0, 0.0, 0.0], [0, 0, 1]),
+        ("left", [-x, 0.0, 0.0], [1, 0, 0]),
+        ("right", [x, 0.0, 0.0], [-1, 0, 0]),
+        ("front", [0.0, -y, 0.0], [0, 1, 0]),
+        ("back", [0.0, y, 0.0], [0, -1, 0]),
+    ] {
+        write!(
+            text,
+            "[walls.{name}]\nplane = {{ point = {point:?}, normal = {normal:?} }}\nmaterial = \"stuff\"\n"
+        )
+        .expect("text grows");
+    }
+    text
+}
+
+fn cases(wanted: impl Fn(&str) -> bool) -> Vec<Case> {
+    let cake = |body: Body| BTreeMap::from([("cake".to_owned(), body)]);
+    let mut cases = Vec::new();
+    let mut add = |name: &'static str, counted, make: &dyn Fn() -> (String, Body), times_s| {
+        if wanted(name) {
+            let (scene, body) = make();
+            cases.push(Case {
+                name,
+                counted,
+                scene,
+                bodies: cake(body),
+                times_s,
+            });
+        }
+    };
+    let drop = |bonds: &'static str| {
+        move || {
+            let floor = "position = [\"-90 mm\", \"-15 mm\", \"1 mm\"]\nvelocity = [0, 0, -4]\n[walls.plate]\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = \"stuff\"\n";
+            let body = packed(&shape("filter-cake"), "2.85mm..3.48mm", 0.25, Some(4.9));
+            (bonded(bonds, floor), body)
+        }
+    };
+    let free = || {
+        let body = packed(&shape("bending-sample"), "1.22mm..1.53mm", 0.0, Some(4.9));
+        (bonded("", "angular_velocity = [1, 0, 0]\n"), body)
+    };
+    let bed = |ball: &'static str| {
+        move || {
+            let body = packed(&block(), "1.99mm..2.01mm", 0.0, None);
+            let text = format!(
+                "{HEAD}[bodies.cake]\nfile = \"cake.vtp\"\nmaterial = \"stuff\"\n{ball}{}",
+                planes([0.054, 0.054])
+            );
+            (text, body)
+        }
+    };
+    let pour = || {
+        let body = packed(&shape("filter-cake"), "8mm..10mm", 0.25, None);
+        let text = format!(
+            "{HEAD}[bodies.cake]\nfile = \"cake.vtp\"\nmaterial = \"stuff\"\nstart_as = \"clump\"\n{}\
+             [regions.gate]\nbox = {{ min = [-0.25, -0.25, 0.4], max = [0.25, 0.25, 1.2] }}\n\
+             [inlets.feed]\nbodies = [\"cake\"]\nregion = \"gate\"\nrate = 250\ncount = 300\norientation = \"random\"\n",
+            planes([0.6, 0.6])
+        );
+        (text, body)
+    };
+    let ball = "[bodies.ball]\nparticles = [[0, 0, 0.0705, 0.01]]\nmaterial = \"stuff\"\nvelocity = [0, 0, -2]\n";
+    add("free", Counted::Bonds, &free, [1e-4, 3e-4]);
+    let damped = drop("damping = { damping_ratio = 0.1 }");
+    add("drop-damped", Counted::Bonds, &damped, [1e-3, 1e-3]);
+    add("drop", Counted::Bonds, &drop(""), [1e-3, 1e-3]);
+    add("bed", Counted::Particles, &bed(""), [5e-3, 2e-3]);
+    add("bed-hit", Counted::Particles, &bed(ball), [5e-3, 2e-3]);
+    add("pour", Counted::Steps, &pour, [0.8, 0.1]);
+    cases
+}
+
+impl Case {
+    fn state(&self, threads: usize) -> State {
+        let scene = dem_scene::scene_from_text(&self.scene, "bench.toml", &[]).expect("a scene");
+        let mut bodies = self.bodies.clone();
+        if self.scene.contains("[bodies.ball]") {
+            let written = dem_scene::read_bodies(&only_ball(&scene)).expect("a ball");
+            bodies.extend(written);
+        }
+        plan(&scene, bodies, threads, false).expect("plans").state
+    }
+
+    /// A row: rates, and the fraction of the search.
+    fn row(&self, threads: usize) -> String {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads start").install(|| {
+            let mut state = self.state(threads);
+            go(&mut state, self.times_s[0]);
+            let mut rates: Vec<f64> = (0..ROUNDS).map(|_| self.rate(&mut state)).collect();
+            rates.sort_by(f64::total_cmp);
+            let search = stages().iter().position(|s| s.name == "neighbour search");
+            let fraction = state.scratch.clock.fraction(search.expect("a stage"));
+            let unit = match self.counted {
+                Counted::Bonds => "million bond-steps/s",
+                Counted::Particles => "million particle-steps/s",
+                Counted::Steps => "steps/s",
+            };
+            format!(
+                "| {} | {} | {} | {threads} | {:.1} | {unit} | {:.0} % |",
+                self.name,
+                state.particles.len(),
+                state.bonds.len(),
+                rates[ROUNDS / 2],
+                1e2 * fraction
+            )
+        })
+    }
+
+    /// Work per second in a round.
+    fn rate(&self, state: &mut State) -> f64 {
+        let (clock, before) = (Instant::now(), state.steps);
+        go(state, self.times_s[1]);
+        let items = match self.counted {
+            Counted::Bonds => 1e-6 * state.bonds.len() as f64,
+            Counted::Particles => 1e-6 * state.particles.len() as f64,
+            Counted::Steps => 1.0,
+        };
+        items * (state.steps - before) as f64 / clock.elapsed().as_secs_f64()
+    }
+}
+
+/// The scene with the body alone that is written in it.
+fn only_ball(scene: &dem_scene::Scene) -> dem_scene::Scene {
+    let mut scene = scene.clone();
+    scene.bodies.retain(|name, _| name == "ball");
+    scene
+}
+
+fn go(state: &mut State, time_s: f64) {
+    let end_s = state.time_s + time_s;
+    while state.time_s < end_s {
+        step(state);
+    }
+}
+
+fn shape(name: &str) -> Vec<u8> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/shapes");
+    std::fs::read(folder.join(name).with_extension("stl")).expect("the shape is in the repository")
+}
+
+/// A block of 54 mm x 54 mm x 60 mm as STL, in mm.
+fn block() -> Vec<u8> {
+    let corner = |n: usize| [(n & 4) * 54 / 4, (n & 2) * 27, (n & 1) * 60].map(|x| x as i64);
+    let sides = [
+        [0, 1, 3, 2],
+        [4, 6, 7, 5],
+        [0, 4, 5, 1],
+        [2, 3, 7, 6],
+        [0, 2, 6, 4],
+        [1, 5, 7, 3],
+    ];
+    let mut text = "solid block\n".to_owned();
+    for [a, b, c, d] in sides {
+        for facet in [[a, b, c], [a, c, d]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for [x, y, z] in facet.map(corner) {
+                writeln!(text, "vertex {} {} {z}", x - 27, y - 27).expect("text grows");
+            }
+            text += "endloop\nendfacet\n";
+        }
+    }
+    text += "endsolid block\n";
+    text.into_bytes()
+}
+
+/// A shape filled with spheres of these diameters. `bonds`: bonds per particle; none: bonds of
+/// spheres that overlap.
+fn packed(stl: &[u8], diameters: &str, overlap: f64, bonds: Option<f64>) -> Body {
+    let reading = ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    let surface = surface_from_stl(stl, "", reading).expect("the shape is sound");
+    let sizes = Sizes::parse(diameters, Basis::Number).expect("good diameters");
+    let settings = BodySettings {
+        packing: PackSettings {
+            overlap,
+            ..PackSettings::new(sizes)
+        },
+        bond_range: if bonds.is_some() || overlap > 0.0 {
+            1.1
+        } else {
+            1.0
+        },
+        bonds_per_particle: bonds,
+        bond_radius_factor: 1.0,
+        particle_density_kg_m3: None,
+        solid_density_kg_m3: None,
+    };
+    make_body(&surface, &settings, &|_, _| Ok(()))
+        .expect("packs")
+        .0
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|w| !w.starts_with('-'))
+        .collect();
+    let wanted = |name: &str| words.is_empty() || words.iter().any(|word| word == name);
+    println!("| case | particles | bonds | threads | rate | | neighbour search |");
+    println!("|---|---|---|---|---|---|---|");
+    for case in cases(wanted) {
+        for threads in [1, 2] {
+            println!("{}", case.row(threads));
+        }
+    }
+}
