@@ -20,8 +20,9 @@ const STEPS_OF_CLUMP: f64 = 60.0;
 const FARTHEST_OF_CLUMP: f64 = 2.0;
 /// A search is due when something has less than this fraction of its distance left.
 const NOW: f64 = 0.1;
-/// Then everything is searched for that has less than this fraction left.
-const SOON: f64 = 0.7;
+/// Then everything is searched for that has less than this fraction left: a free particle, and a
+/// clump.
+const SOON: [f64; 2] = [0.5, 0.7];
 /// After two more steps like the last, unlisted particles could overlap.
 const STEPS_LEFT: f64 = 2.0;
 
@@ -75,7 +76,7 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
     let step_s = state.time_step_s;
     let (loose, carried): (Vec<u32>, Vec<u32>) =
         references.due.iter().partition(|i| (**i as usize) < p.free);
-    let is_due = |i: &u32| free_is_due(p, references, *i, SOON, step_s);
+    let is_due = |i: &u32| free_is_due(p, references, *i, SOON[0], step_s);
     let free = (0..p.free as u32).into_par_iter().with_min_len(CHUNK);
     let mut particles: Vec<u32> = free.filter(is_due).collect();
     particles.extend(loose);
@@ -89,7 +90,7 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
         .enumerate()
     {
         reference.left_m = clump_left_m(&state.clumps, clump, reference);
-        if clump_is_due(clump, reference, SOON) {
+        if clump_is_due(clump, reference, SOON[1]) {
             clumps.push(n);
         }
     }
