@@ -152,7 +152,7 @@ pub fn kick(
 }
 
 /// Updates positions and orientations of the free particles over `time_step_s`. Returns the largest
-/// speed of a particle, m/s. `chunks_moved_m`: see [`Scratch::chunks_moved_m`].
+/// speed of a particle, m/s, and sets for each chunk how far its fastest particle moved, m.
 pub fn drift(particles: &mut Particles, time_step_s: f64, chunks_moved_m: &mut Vec<f64>) -> f64 {
     chunks_moved_m.resize(particles.free.div_ceil(CHUNK), 0.0);
     let Particles {
