@@ -18,9 +18,9 @@ use super::watch::Watch;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fall {
     pub(crate) name: &'static str,
-    angle: &'static str,
+    pub(crate) angle: &'static str,
     /// Settings of the scene.
-    sets: &'static [&'static str],
+    pub(crate) sets: &'static [&'static str],
 }
 
 const UPRIGHT: &str = "bodies.sample.rotation={axis=[0,1,0],angle=\"-90 deg\"}";

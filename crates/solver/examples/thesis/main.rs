@@ -6,6 +6,7 @@
 //! cargo run --release -p dem-run --example thesis -- steps
 //! cargo run --release -p dem-run --example thesis -- bending           # an hour and a half
 //! cargo run --release -p dem-run --example thesis -- drops             # two hours
+//! cargo run --release -p dem-run --example thesis -- strengthening     # two hours
 //! cargo run --release -p dem-run --example thesis -- rebound
 //! cargo run --release -p dem-run --example thesis -- page
 //! ```
@@ -13,7 +14,8 @@
 //! Each command but the last computes its cases one after another on one thread and writes a file
 //! for each into `target/thesis`. Cases whose file is there are not computed again. A word after
 //! the command selects the cases whose names contain it: `bending bending-2` are those with table 2.
-//! `page` writes `tests/verification/thesis.md` and its plots from the files that are there.
+//! `page` writes `tests/verification/thesis.md` and its plots from the files that are there; what has
+//! not been computed anew stays as it stands.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -32,6 +34,7 @@ mod programs;
 mod rebound;
 mod samples;
 mod steps;
+mod strengthening;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -39,7 +42,7 @@ mod watch;
 
 use bench::{Bench, Failed};
 
-const USAGE: &str = "write sample, steps, bending, drops, rebound or page, then a part of the names of the cases or nothing";
+const USAGE: &str = "write sample, steps, bending, drops, strengthening, rebound or page, then a part of the names of the cases or nothing";
 
 fn main() -> Result<(), Failed> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -48,6 +51,7 @@ fn main() -> Result<(), Failed> {
         Some("sample") => samples::compute(&Bench::new()?, part),
         Some("bending") => bending::compute(&Bench::new()?, part),
         Some("drops") => drops::compute(&Bench::new()?, part),
+        Some("strengthening") => strengthening::compute(&Bench::new()?, part),
         Some("rebound") => {
             oscillation::compute(&Bench::new()?)?;
             rebound::compute(&Bench::new()?, part)

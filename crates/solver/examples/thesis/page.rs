@@ -1,4 +1,5 @@
-//! The page: a text with places for tables, which are made from the results that are there.
+//! The page: a text with places for tables. They are made from the results that are there; what has
+//! not been computed anew stays as it stands on the page.
 
 use std::path::Path;
 
@@ -11,15 +12,22 @@ use super::plots;
 use super::rebound;
 use super::samples::{self, PACKINGS, Sample, Table as Spheres};
 use super::steps;
-use super::text::{Table, cells, mean, number, range, thousands};
+use super::strengthening::{self, WAYS};
+use super::text::{self, Table, cells, mean, number, range, rounded, thousands};
 
 pub(crate) const TEXT: &str = include_str!("thesis.md");
 
 /// Writes the page and its plots to `tests/verification`.
 pub(crate) fn write(results: &Path) -> Result<(), Failed> {
     let folder = root().join("tests/verification");
+    let before = std::fs::read_to_string(folder.join("thesis.md"))?;
     let mut page = TEXT.to_owned();
+    let mut words: Vec<&str> = Vec::new();
     for (name, table) in tables(results) {
+        let word = table.word;
+        let at = words.iter().filter(|other| **other == word).count();
+        words.push(word);
+        let table = table.kept(&text::rows(&before, word, at));
         page = page.replace(&format!("{{{name}}}"), &table.markdown());
     }
     std::fs::write(folder.join("thesis.md"), page)?;
@@ -30,7 +38,7 @@ pub(crate) fn write(results: &Path) -> Result<(), Failed> {
 }
 
 /// The tables with their places.
-pub(crate) fn tables(results: &Path) -> [(&'static str, Table); 8] {
+pub(crate) fn tables(results: &Path) -> [(&'static str, Table); 9] {
     [
         ("sample", sample(results)),
         ("steps", steps::table(results)),
@@ -39,6 +47,7 @@ pub(crate) fn tables(results: &Path) -> [(&'static str, Table); 8] {
         ("speed", speed(results)),
         ("drops", drops(results)),
         ("utilisation", utilisation(results)),
+        ("strengthening", strengthening(results)),
         ("rebound", rebound(results)),
     ]
 }
@@ -71,7 +80,10 @@ fn sample(results: &Path) -> Table {
             between(&spheres),
             between(&bonds),
             range(&each, 2),
-            range(&seconds, 1) + " s",
+            match range(&seconds, 1) {
+                none if none.is_empty() => none,
+                seconds => seconds + " s",
+            },
         ]);
     }
     Table {
@@ -84,6 +96,7 @@ fn sample(results: &Path) -> Table {
             "bonds per sphere",
             "time",
         ],
+        names: 1,
         rows,
     }
 }
@@ -192,15 +205,13 @@ fn readings(results: &Path) -> Table {
 fn bending_table(results: &Path, is_shown: fn(&bending::Row) -> bool) -> Table {
     let mut rows = vec![wanted()];
     for row in bending::rows().into_iter().filter(is_shown) {
-        let runs = bent(results, &row);
-        if !runs.is_empty() {
-            let first = vec![named(&row.sample), format!("`{}`", row.reading)];
-            rows.push([first, bent_cells(&runs)].concat());
-        }
+        let first = vec![named(&row.sample), format!("`{}`", row.reading)];
+        rows.push([first, bent_cells(&bent(results, &row))].concat());
     }
     Table {
         word: "bending",
         head: &BENDING_HEAD,
+        names: 2,
         rows,
     }
 }
@@ -223,17 +234,16 @@ fn speed(results: &Path) -> Table {
             values.iter().sum::<f64>() / values.len() as f64
         };
         let ratio = |name: &str| of(Spheres::One, name) / of(Spheres::Two, name);
-        if ratio("steps").is_finite() {
-            rows.push(vec![
-                format!("`{reading}`"),
-                format!("{:.0}", ratio("processor_s")),
-                format!("{:.1}", ratio("steps")),
-            ]);
-        }
+        rows.push(vec![
+            format!("`{reading}`"),
+            rounded(ratio("processor_s"), 0),
+            rounded(ratio("steps"), 1),
+        ]);
     }
     Table {
         word: "bending",
         head: &["table 1 over table 2", "processor time", "steps"],
+        names: 1,
         rows,
     }
 }
@@ -264,10 +274,8 @@ fn drops(results: &Path) -> Table {
     let mut rows = vec![thesis("yes", "intact"), thesis("no", "broken")];
     for row in drops::rows() {
         let mut cells = drop_name(&row);
-        let mut there = 0;
         for fall in FALLS {
             let runs = fallen(results, &row, fall.name);
-            there += runs.len();
             let all = |name: &str| {
                 runs.iter()
                     .map(|run| number(&run[name]))
@@ -282,13 +290,12 @@ fn drops(results: &Path) -> Table {
                 ),
             });
         }
-        if there > 0 {
-            rows.push(cells);
-        }
+        rows.push(cells);
     }
     Table {
         word: "drops",
         head: &DROPS_HEAD,
+        names: 4,
         rows,
     }
 }
@@ -318,11 +325,10 @@ fn utilisation(results: &Path) -> Table {
     ])];
     for row in drops::rows().iter().filter(|row| row.dif) {
         for fall in FALLS {
-            let Some(run) = fallen(results, row, fall.name).first().cloned() else {
-                continue;
-            };
+            let run = fallen(results, row, fall.name).first().cloned();
+            let run = run.unwrap_or_default();
             let percent = |name: &str, digits: usize| {
-                format!("{:.digits$}", 100.0 * number(&run["utilisation"][name]))
+                rounded(100.0 * number(&run["utilisation"][name]), digits)
             };
             rows.push(vec![
                 row.sample.table.number().to_string(),
@@ -348,12 +354,77 @@ fn utilisation(results: &Path) -> Table {
             "by 0.1 %, %",
             "bonds above 50 %, %",
         ],
+        names: 4,
         rows,
     }
 }
 
+/// Largest utilisation of any bond of samples whose bonds do not break, and the number of bonds
+/// that would.
+fn strengthening(results: &Path) -> Table {
+    let mut rows = Vec::new();
+    for row in strengthening::rows() {
+        for reading in READINGS {
+            for (name, way) in WAYS {
+                let mut cells = vec![
+                    row.sample.table.number().to_string(),
+                    row.damping.to_owned(),
+                    format!("`{reading}`"),
+                    way.to_owned(),
+                ];
+                for fall in FALLS {
+                    cells.push(endured(results, &row, fall.name, [reading, name]));
+                }
+                rows.push(cells);
+            }
+        }
+    }
+    Table {
+        word: "strengthening",
+        head: &[
+            "table",
+            "damping ratio",
+            "reading of eq. 13",
+            "factor",
+            "15 degrees, flat",
+            "15 degrees, upright",
+            "25 degrees, flat",
+            "25 degrees, upright",
+        ],
+        names: 4,
+        rows,
+    }
+}
+
+/// A cell of that table, for a reading and a way to apply the factor.
+fn endured(
+    results: &Path,
+    row: &strengthening::Row,
+    fall: &str,
+    [reading, way]: [&str; 2],
+) -> String {
+    let of = |seed| {
+        let run = read(&results.join(format!("{}.json", row.name(fall, seed))))?;
+        Some(run["readings"][reading][way].clone())
+    };
+    let runs: Vec<Value> = (1..=row.packings).filter_map(of).collect();
+    let all = |name: &str| {
+        runs.iter()
+            .map(|run| number(&run[name]))
+            .collect::<Vec<_>>()
+    };
+    match runs.len() {
+        0 => String::new(),
+        count => format!(
+            "{} bonds, {} % ({count})",
+            thousands(all("above_1").iter().sum::<f64>() / count as f64),
+            range(&scaled(&all("largest"), 100.0), 0),
+        ),
+    }
+}
+
 fn rebound(results: &Path) -> Table {
-    let row = |damping: &str| {
+    let row = |(damping, _): (&str, &str)| {
         let run = |seed| read(&results.join(format!("{}.json", rebound::name(damping, seed))));
         let runs: Vec<Value> = (1..=PACKINGS).filter_map(run).collect();
         let percent = |run: &Value| 100.0 * number(&run["fraction"]);
@@ -363,10 +434,11 @@ fn rebound(results: &Path) -> Table {
     Table {
         word: "rebound",
         head: &[
-            "damping ratio, sample of table 2",
+            "damping of the bonds, sample of table 2",
             "packings",
             "rebound over height of the fall, %",
         ],
+        names: 1,
         rows: rebound::DAMPING.map(row).into(),
     }
 }

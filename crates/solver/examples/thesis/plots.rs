@@ -12,24 +12,21 @@ use super::map::{self, View};
 use super::oscillation;
 use super::text::number;
 
-/// Every plot with the name of its file.
+/// Every plot whose results are there, with the name of its file.
 pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
-    let mut all = vec![
+    let plots = [
         ("thesis-bending.svg", curves(results)),
         ("thesis-oscillation.svg", oscillations(results)),
+        ("thesis-25-flat.svg", utilisation(results, "25-flat")),
+        ("thesis-25-upright.svg", utilisation(results, "25-upright")),
     ];
-    for (name, fall) in [
-        ("thesis-25-flat.svg", "25-flat"),
-        ("thesis-25-upright.svg", "25-upright"),
-    ] {
-        all.extend(utilisation(results, fall).map(|svg| (name, svg)));
-    }
-    all
+    let there = plots.into_iter();
+    there.filter_map(|(name, svg)| Some((name, svg?))).collect()
 }
 
 /// Load over travel of the first packing of each row with the default reading, beside the measured
-/// line of Platzer 2022: its stiffness up to its largest force.
-fn curves(results: &Path) -> String {
+/// line of Platzer 2022: its stiffness up to its largest force. Nothing unless all have been run.
+fn curves(results: &Path) -> Option<String> {
     let mut lines = vec![Line {
         name: "Platzer 2022".to_owned(),
         points: vec![[0.0, 0.0], [2.82e-3, 51.45]],
@@ -37,23 +34,25 @@ fn curves(results: &Path) -> String {
     }];
     for row in bending::rows() {
         let shown = row.sample.bond_range == "1.0" && READINGS[..2].contains(&row.reading);
-        let file = results.join(row.name(1)).join("force-displacement.csv");
-        if let (true, Ok(text)) = (shown, std::fs::read_to_string(file)) {
-            let texture = if row.sample.bare {
-                "bare front"
-            } else {
-                "settled"
-            };
-            lines.push(Line {
-                name: format!(
-                    "table {}, {texture}, {}",
-                    row.sample.table.number(),
-                    row.reading
-                ),
-                points: curve(&text),
-                dashed: false,
-            });
+        if !shown {
+            continue;
         }
+        let file = results.join(row.name(1)).join("force-displacement.csv");
+        let text = std::fs::read_to_string(file).ok()?;
+        let texture = if row.sample.bare {
+            "bare front"
+        } else {
+            "settled"
+        };
+        lines.push(Line {
+            name: format!(
+                "table {}, {texture}, {}",
+                row.sample.table.number(),
+                row.reading
+            ),
+            points: curve(&text),
+            dashed: false,
+        });
     }
     let plot = Plot {
         title: "Four-point bending, printed bonds".to_owned(),
@@ -62,7 +61,7 @@ fn curves(results: &Path) -> String {
         lines,
         ..Plot::default()
     };
-    plot.svg().file()
+    Some(plot.svg().file())
 }
 
 /// Displacement and load, from where the fitted line has no load.
@@ -79,8 +78,8 @@ fn curve(csv: &str) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn oscillations(results: &Path) -> String {
-    let all = read(&results.join(oscillation::FILE)).unwrap_or_default();
+fn oscillations(results: &Path) -> Option<String> {
+    let all = read(&results.join(oscillation::FILE))?;
     let line = |one: &Value| {
         let points = one["points"].as_array().map_or(&[][..], Vec::as_slice);
         Line {
@@ -105,7 +104,7 @@ fn oscillations(results: &Path) -> String {
             .collect(),
         ..Plot::default()
     };
-    plot.svg().file()
+    Some(plot.svg().file())
 }
 
 /// Utilisation and factor in the first drop of this kind that has been run with the factor, the

@@ -24,6 +24,14 @@ impl Table {
         }
     }
 
+    /// The critical equivalent stress, Pa.
+    pub(crate) fn strength_pa(self) -> f64 {
+        match self {
+            Self::One => 0.21e6,
+            Self::Two => 0.185e6,
+        }
+    }
+
     /// Settings of a scene, which has the bonds of table 1.
     pub(crate) fn sets(self) -> Vec<String> {
         let sets: &[&str] = match self {

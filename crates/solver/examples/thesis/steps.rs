@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::bench::{Bench, Failed, read, scene};
 use super::samples::{BARE, Sample, Table as Spheres};
-use super::text::{Table, number};
+use super::text::{Table, number, rounded};
 
 pub(crate) const FILE: &str = "steps.json";
 /// Damping: in the table, and in the scene.
@@ -58,9 +58,9 @@ pub(crate) fn table(results: &Path) -> Table {
     let limit = |table: Spheres, damping: &str| {
         let is = |entry: &&Value| entry["table"] == table.number() && entry["damping"] == damping;
         let found = all.as_array().and_then(|all| all.iter().find(is).cloned());
-        format!(
-            "{:.2}",
-            1e6 * found.map_or(f64::NAN, |entry| number(&entry["limit_s"]))
+        rounded(
+            1e6 * found.map_or(f64::NAN, |entry| number(&entry["limit_s"])),
+            2,
         )
     };
     let mut rows = vec![
@@ -78,6 +78,7 @@ pub(crate) fn table(results: &Path) -> Table {
     Table {
         word: "steps",
         head: &["damping of the bonds", "table 1, us", "table 2, us"],
+        names: 1,
         rows,
     }
 }

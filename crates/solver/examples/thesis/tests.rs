@@ -12,28 +12,11 @@ use serde_json::Value;
 
 use super::bench::{root, scene};
 use super::samples::{self, BARE, PACKINGS, Sample, Table};
-use super::{bending, drops, oscillation, page, rebound, steps};
+use super::text::rows;
+use super::{bending, drops, oscillation, page, rebound, steps, strengthening};
 
 fn page_text() -> String {
     std::fs::read_to_string(root().join("tests/verification/thesis.md")).unwrap()
-}
-
-/// The rows of the table below the comment with this word: the `at`-th such table.
-fn rows(page: &str, word: &str, at: usize) -> Vec<Vec<String>> {
-    let comment = format!("--example thesis -- {word} -->");
-    let after = page.split(&comment).nth(at + 1).unwrap();
-    let lines = after
-        .lines()
-        .skip(3)
-        .take_while(|line| line.starts_with('|'));
-    lines
-        .map(|line| {
-            line.trim_matches('|')
-                .split('|')
-                .map(|cell| cell.trim().to_owned())
-                .collect()
-        })
-        .collect()
 }
 
 /// Text, commands and heads of the page are those of the program, and every row has all its cells.
@@ -82,7 +65,10 @@ fn scenes_take_what_cases_set() {
     for row in drops::rows() {
         asked.extend(drops::FALLS.iter().map(|fall| ("drop", row.sets(fall))));
     }
-    asked.extend(rebound::DAMPING.map(|damping| ("drop", rebound::sets(damping))));
+    for row in strengthening::rows() {
+        asked.extend(drops::FALLS.iter().map(|fall| ("drop", row.sets(fall))));
+    }
+    asked.extend(rebound::DAMPING.map(|(_, damping)| ("drop", rebound::sets(damping))));
     for (_, damping) in steps::DAMPING {
         asked.push(("drop", steps::sets(Table::Two, damping)));
     }

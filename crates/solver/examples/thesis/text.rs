@@ -8,6 +8,8 @@ pub(crate) struct Table {
     /// What computes it: a word of the program.
     pub(crate) word: &'static str,
     pub(crate) head: &'static [&'static str],
+    /// Number of cells at the beginning of a row that name it.
+    pub(crate) names: usize,
     pub(crate) rows: Vec<Vec<String>>,
 }
 
@@ -23,6 +25,56 @@ impl Table {
         lines.extend(self.rows.iter().map(|row| line(row)));
         lines.join("\n")
     }
+
+    /// The table with what earlier rows have more: cells that are empty now, and rows of more
+    /// packings. Rows without any result are left out.
+    pub(crate) fn kept(mut self, earlier: &[Vec<String>]) -> Self {
+        let count = self.head.iter().position(|head| *head == "packings");
+        let names = self.names;
+        for row in &mut self.rows {
+            let same = |other: &&Vec<String>| other[..names] == row[..names];
+            let Some(other) = earlier.iter().find(same) else {
+                continue;
+            };
+            let packings = |row: &[String]| count.map_or(0, |at| row[at].parse().unwrap_or(0));
+            if packings(other) > packings(row) {
+                row.clone_from(other);
+            }
+            for (cell, other) in row.iter_mut().zip(other) {
+                if cell.is_empty() || packings_within(other) > packings_within(cell) {
+                    cell.clone_from(other);
+                }
+            }
+        }
+        self.rows.retain(|row| {
+            let mut results = row[names..].iter().enumerate();
+            results.any(|(at, cell)| Some(names + at) != count && !cell.is_empty())
+        });
+        self
+    }
+}
+
+/// Number of packings at the end of a cell: 4 in `broken (4)`; 0 if there is none.
+fn packings_within(cell: &str) -> u32 {
+    let inside = cell
+        .rsplit_once('(')
+        .and_then(|(_, end)| end.strip_suffix(')'));
+    inside.and_then(|count| count.parse().ok()).unwrap_or(0)
+}
+
+/// The rows of the table below the comment with this word: the `at`-th such table.
+pub(crate) fn rows(page: &str, word: &str, at: usize) -> Vec<Vec<String>> {
+    let comment = format!("--example thesis -- {word} -->");
+    let after = page.split(&comment).nth(at + 1).unwrap_or_default();
+    let lines = after
+        .lines()
+        .skip(3)
+        .take_while(|line| line.starts_with('|'));
+    let cells = |line: &str| {
+        let cells = line.trim_matches('|').split('|');
+        cells.map(|cell| cell.trim().to_owned()).collect()
+    };
+    lines.map(cells).collect()
 }
 
 fn line<T: AsRef<str>>(cells: &[T]) -> String {
@@ -37,6 +89,15 @@ pub(crate) fn cells<const N: usize>(cells: [&str; N]) -> Vec<String> {
 
 pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
+}
+
+/// A number with so many digits behind the point. Empty if there is none.
+pub(crate) fn rounded(number: f64, digits: usize) -> String {
+    if number.is_finite() {
+        format!("{number:.digits$}")
+    } else {
+        String::new()
+    }
 }
 
 /// Mean, and standard deviation if there are several: `12.05 +- 0.16`. Empty if there are none.

@@ -3,26 +3,26 @@
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
-use dem_run::stress::cases::{CASES, chosen};
+use dem_run::stress::cases::{CASES, Case, chosen};
 use dem_run::stress::limit_map::{largest_step_s, program_limit};
 use dem_run::stress::prediction::{ObservationMethod, Prediction};
 use dem_run::stress::text::row;
 use dem_run::stress::verdict::run_case;
+use rayon::prelude::*;
 
 use super::{member, members};
 
 #[test]
 fn every_case_does_as_predicted() {
-    let mut wrong = Vec::new();
-    for case in CASES {
-        let result = run_case(&case, &AtomicBool::new(false)).unwrap();
+    let wrong = |case: &Case| {
+        let result = run_case(case, &AtomicBool::new(false)).unwrap();
         eprintln!("{:.2} s {}", result.wall_s, row(&result));
-        wrong.extend(
-            result
-                .wrong()
-                .map(|member| format!("{}: {member:?}", case.name)),
-        );
-    }
+        let wrong = result.wrong();
+        wrong
+            .map(|member| format!("{}: {member:?}", case.name))
+            .collect::<Vec<_>>()
+    };
+    let wrong: Vec<String> = CASES.par_iter().flat_map_iter(wrong).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
