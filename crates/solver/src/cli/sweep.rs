@@ -24,8 +24,8 @@ use dem_study::expand::{MOST_UNASKED, Run, runs};
 use dem_study::folder::{Earlier, SweepFolder};
 use dem_study::jobs::{Job, further_jobs, jobs, refuse_unlistable, work};
 use dem_study::outcome::Outcome;
-use dem_study::rows::SweepTable;
 use dem_study::search::{SearchResult, Step, next_of};
+use dem_study::sweep_table::SweepTable;
 use dem_study::want::{Want, fastest};
 
 #[derive(Debug, Args)]

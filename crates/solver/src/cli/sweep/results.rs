@@ -18,7 +18,8 @@ use dem_study::jobs::{Job, arguments, refuse_unlistable, scene_arguments, shell_
 use dem_study::page::page;
 use dem_study::plot::plot;
 use dem_study::response_plot::{found_plots, plots};
-use dem_study::rows::{Row, SweepTable};
+use dem_study::row::Row;
+use dem_study::sweep_table::SweepTable;
 use dem_study::text::{csv, find_csv, response_csv};
 
 /// Prints one sh command for each job.
