@@ -11,8 +11,9 @@ use super::plot_file::{is_plot_file, write_plot_file};
 use dem_io::body::stored_walls::FIXED_WALLS_FILE;
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::{
-    PendingFile, UNFINISHED_PREFIX, explain, is_same_file, remove_if_abandoned, write_file,
+    PendingFile, UNFINISHED_PREFIX, explain, remove_if_abandoned, write_file,
 };
+use dem_io::write_target::is_same_file;
 
 use names::{FRAMES, frame_number, picture_number, walls_number};
 pub(super) use names::{fixed_walls_name, frame_name, walls_name};

@@ -29,9 +29,10 @@ use dem_io::diagnostic::Kind;
 use dem_io::program::{
     Shell, parsed, print_completions, print_man_page, take_size_limits_as_errors,
 };
-use dem_io::safe_write::{
-    remove_unfinished, write_file, write_standard_error, write_standard_json, write_standard_lines,
-    write_standard_output, write_visible_json,
+use dem_io::safe_write::{remove_unfinished, write_file};
+use dem_io::standard_output::{
+    write_standard_error, write_standard_json, write_standard_lines, write_standard_output,
+    write_visible_json,
 };
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result, read_input};

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use dem_io::body::{StoredFrame, vtp};
-use dem_io::safe_write::{PendingFile, write_standard_output};
+use dem_io::safe_write::PendingFile;
+use dem_io::standard_output::write_standard_output;
 use dem_io::stl::write_stl;
 use dem_io::text::visible;
 use dem_io::units::significant;

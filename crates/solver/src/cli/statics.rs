@@ -1,7 +1,7 @@
 //! `dem-run check` of a static scene.
 
 use dem_io::Result;
-use dem_io::safe_write::{write_json_text, write_standard_output};
+use dem_io::standard_output::{write_json_text, write_standard_output};
 use dem_scene::Scene;
 use serde_json::json;
 

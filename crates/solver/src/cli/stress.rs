@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 
 use clap::Args;
-use dem_io::safe_write::{write_standard_json, write_standard_output};
+use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::{Diagnostic, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 

@@ -8,7 +8,8 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dem_io::safe_write::{need_folder_of, refuse_input, write_file};
+use dem_io::safe_write::write_file;
+use dem_io::write_target::{need_folder_of, refuse_input};
 use dem_io::{Diagnostic, Result};
 use dem_scene::study::{
     Combine, Reference, Study, read_study, reference_values, rewritten, scene_with,

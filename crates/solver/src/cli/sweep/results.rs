@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::program::own_command;
-use dem_io::safe_write::{write_file, write_standard_json, write_standard_output};
+use dem_io::safe_write::write_file;
+use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
