@@ -24,8 +24,9 @@ use dem_pack::cli::Recipe;
 use dem_scene::{Scene, material_text, scene_from_text, text_of};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::SceneArguments;
 use super::packings::{Packings, spheres_across};
+use super::pool::in_pool;
+use super::scene_arguments::SceneArguments;
 use crate::calibration::{Bench, ModulusBy, Prospect, SceneText, prospect, unknowns};
 use crate::interrupt::Interrupt;
 
@@ -101,7 +102,7 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
         source: &source,
         overrides: &overrides,
     };
-    super::in_pool(options.scene.threads, |threads| {
+    in_pool(options.scene.threads, |threads| {
         let others = packings.other_bodies(&scene)?;
         let first = packings.make(0, 0, &AtomicBool::new(false))?;
         let prospect = prospect(&scene, &packings.body, &first, &others, threads)?;
