@@ -14,8 +14,8 @@ use crate::unknown::Unknown;
 pub type TestFunction<'a> = dyn Fn(&[f64], usize) -> Result<Trial> + Sync + 'a;
 
 /// Does rounds of tests, from the first factors of `case`, until the targets are met or cannot be
-/// met. Rounds that `case` already has
-/// are not repeated. `workers` tests run at a time; `save` is called after every test.
+/// met. Rounds that `case` already has are not repeated. `workers` tests run at a time; `save` is
+/// called after every test.
 ///
 /// # Errors
 /// Those of the tests and of `save`; the tests that are finished are in `case`.
