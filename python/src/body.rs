@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::body::files::body_files;
 use dem_io::body::write_body;
-use dem_io::safe_write::{need_folder_of, refuse_to_replace};
+use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::BodyReport;
 use dem_pack::cli::{Recipe, thread_pool};

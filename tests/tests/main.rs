@@ -10,6 +10,7 @@ mod pipe;
 #[cfg(unix)]
 mod readme;
 mod shapes;
+mod structure;
 mod verification;
 
 use std::path::{Path, PathBuf};

@@ -5,6 +5,7 @@
 //! The tests themselves are done by the caller. [`calibrate`] says with which factors on the
 //! numbers, and ends when all targets are met, or cannot be met.
 
+mod case;
 mod confidence;
 mod page;
 mod record;
@@ -14,11 +15,12 @@ mod search;
 mod text;
 mod unknown;
 
+pub use case::{Case, End, Round, Start, Trial};
 pub use confidence::{half_width, student_95};
 pub use page::{page, sizes};
 pub use record::{FORMAT_VERSION, Record, read_record, write_record};
 pub use resolution::{coarsest, curve_error};
-pub use rounds::{Case, Round, Start, TestFunction, Trial, calibrate};
-pub use search::{End, Step, next};
+pub use rounds::{TestFunction, calibrate};
+pub use search::{Step, next};
 pub use text::{origin, report};
 pub use unknown::{Number, Unknown};

@@ -3,9 +3,9 @@
 use dem_io::units::{show_quantity, significant};
 use dem_plots::{Axis, Column, Line, MOST_LINES, Page, Plot, Row, Table};
 
+use crate::case::{Case, Round};
 use crate::record::Record;
 use crate::resolution::{curve_error, mean_curve};
-use crate::rounds::Case;
 use crate::text::{coarsest_size, numbers, results, warnings};
 
 /// Everything about a calibration on one page that needs no other file. `most_error`: wanted error
@@ -119,7 +119,7 @@ fn history(record: &Record, case: &Case) -> Table {
     }
     heads.push("run time".to_owned());
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    let row = |(number, round): (usize, &crate::Round)| {
+    let row = |(number, round): (usize, &Round)| {
         let mut cells = vec![(number + 1).to_string()];
         for (at, (unknown, factor)) in record.unknowns.iter().zip(&round.factors).enumerate() {
             let show = |value: Option<f64>| {

@@ -6,7 +6,7 @@ use dem_io::safe_write::write_file;
 use dem_io::{Diagnostic, Result, read_input};
 use serde::{Deserialize, Serialize};
 
-use crate::rounds::{Case, Round};
+use crate::case::{Case, Round};
 use crate::unknown::Unknown;
 
 /// Version of the format of [`Record`].

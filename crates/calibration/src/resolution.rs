@@ -3,8 +3,8 @@
 use dem_io::interpolation::interpolated;
 use dem_laboratory::area_between;
 
+use crate::case::{Case, Round};
 use crate::record::Record;
-use crate::rounds::{Case, Round};
 
 /// Points of a mean curve.
 const POINTS: usize = 101;

@@ -1,9 +1,7 @@
 //! The next factors, from the results so far: the secant method on logarithms.
 
-use serde::{Deserialize, Serialize};
-
+use crate::case::{End, Round};
 use crate::confidence::half_width;
-use crate::rounds::Round;
 use crate::unknown::Unknown;
 
 /// Rounds of tests after which a calibration ends if all results are proportional to their numbers.
@@ -32,17 +30,6 @@ const CHANGES: [f64; 2] = [0.4, 1.0];
 const FLAT: f64 = 0.05;
 /// Largest factor on a number of the scene, and the inverse of the smallest.
 const FURTHEST: f64 = 1e3;
-
-/// How a calibration ended.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum End {
-    /// All mean results are within their tolerances.
-    Met,
-    /// They are not, but each target is within the 95 % confidence interval of its mean.
-    WithinScatter,
-    /// The problem, and a remedy.
-    NotMet(String, String),
-}
 
 /// What is to be done after a round.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,11 +4,11 @@ use std::fmt::Write;
 
 use dem_io::units::{show_quantity, significant};
 
+use crate::case::{Case, End};
 use crate::confidence::half_width;
 use crate::record::Record;
 use crate::resolution::{coarsest, curve_error};
-use crate::rounds::Case;
-use crate::search::End;
+use crate::unknown::Number;
 
 /// Change of a result at half the rate above which it is in doubt.
 const RATE_MATTERS: f64 = 0.02;
@@ -103,8 +103,7 @@ pub(crate) fn numbers(record: &Record, case: &Case) -> Vec<[String; 3]> {
     };
     let all = record.unknowns.iter().zip(&round.factors);
     all.flat_map(|(unknown, factor)| {
-        let of =
-            |number: &crate::Number| [number.path.clone(), number.text(*factor), number.text(1.0)];
+        let of = |number: &Number| [number.path.clone(), number.text(*factor), number.text(1.0)];
         unknown.numbers.iter().map(of).collect::<Vec<_>>()
     })
     .collect()

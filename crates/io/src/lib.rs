@@ -17,11 +17,13 @@ pub mod lines;
 pub mod program;
 pub mod random;
 pub mod safe_write;
+pub mod standard_output;
 pub mod stl;
 pub mod surface;
 pub mod text;
 pub mod units;
 pub mod vtk;
+pub mod write_target;
 mod xml;
 
 pub use body::Body;

@@ -8,8 +8,8 @@ use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Command, Parser};
 pub use clap_complete::Shell;
 
+use super::standard_output::write_standard_output;
 use crate::diagnostic::{Diagnostic, Result};
-use crate::safe_write::write_standard_output;
 
 /// Turns a file size limit of the shell (`ulimit -f`) into a write error, like a full disk, instead
 /// of the end of the program.

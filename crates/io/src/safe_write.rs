@@ -11,12 +11,10 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use serde::Serialize;
 use tempfile::NamedTempFile;
 
-use crate::colour::{Colour, on_standard_error, on_standard_output};
 use crate::diagnostic::{Diagnostic, Result};
-use crate::text::{visible_json, visible_lines};
+use crate::write_target::{folder_of, no_folder_of};
 
 const BUFFER_BYTES: usize = 1 << 16;
 
@@ -145,111 +143,6 @@ pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<
     PendingFile::write(path, write)?.publish()
 }
 
-/// Writes lines of text to standard output, without characters that control a terminal
-/// ([`crate::text`]). A reader that closes the pipe early is not an error.
-///
-/// # Errors
-/// Standard output cannot be written to, such as a full disk behind it (exit code 1).
-pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
-    write_standard_bytes(|out| {
-        let mut lines = VisibleLines {
-            out,
-            last: Vec::new(),
-        };
-        write(&mut lines)?;
-        lines.flush()
-    })
-}
-
-/// Writes lines of text to standard output as [`write_standard_output`] does. The first word of a
-/// line has the colour that `colour` gives for the line, where colours are shown.
-///
-/// # Errors
-/// As [`write_standard_output`].
-pub fn write_standard_lines(text: &str, colour: impl Fn(&str) -> Option<Colour>) -> Result<()> {
-    write_standard_bytes(|out| {
-        for line in visible_lines(text).lines() {
-            let (word, rest) = line.split_at(line.find(' ').unwrap_or(line.len()));
-            match colour(line) {
-                Some(colour) => writeln!(out, "{}{rest}", on_standard_output(word, colour))?,
-                None => writeln!(out, "{line}")?,
-            }
-        }
-        Ok(())
-    })
-}
-
-/// Passes complete lines on, without characters that control a terminal.
-struct VisibleLines<'a> {
-    out: &'a mut dyn Write,
-    last: Vec<u8>,
-}
-
-impl Write for VisibleLines<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.last.extend_from_slice(bytes);
-        if bytes.contains(&b'\n') {
-            let end = self.last.iter().rposition(|byte| *byte == b'\n');
-            let rest = self.last.split_off(end.map_or(0, |at| at + 1));
-            let whole = std::mem::replace(&mut self.last, rest);
-            let text = String::from_utf8_lossy(&whole);
-            self.out.write_all(visible_lines(&text).as_bytes())?;
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        let text = String::from_utf8_lossy(&self.last);
-        self.out.write_all(visible_lines(&text).as_bytes())?;
-        self.last.clear();
-        self.out.flush()
-    }
-}
-
-/// Writes `value` to standard output as indented JSON. Numbers that are not finite become `null`.
-///
-/// # Errors
-/// As [`write_standard_output`]; `value` cannot be represented as JSON (exit code 1).
-pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
-    write_standard_output(|out| write_json_text(out, value))
-}
-
-/// Writes `value` as indented JSON for a terminal, without characters that control it. Numbers that
-/// are not finite become `null`.
-///
-/// # Errors
-/// Those of `out`; `value` cannot be represented as JSON.
-pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
-    let json = serde_json::to_string_pretty(value)?;
-    write_visible_json(out, &json)?;
-    out.write_all(b"\n")
-}
-
-/// Writes a JSON text for a terminal, without characters that control it; its meaning is unchanged.
-///
-/// # Errors
-/// Those of `out`.
-pub fn write_visible_json(out: &mut dyn Write, json: &str) -> io::Result<()> {
-    out.write_all(visible_json(json).as_bytes())
-}
-
-/// Writes bytes that are not text unchanged to standard output.
-///
-/// # Errors
-/// As [`write_standard_output`].
-pub(crate) fn write_standard_bytes(
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<()> {
-    quiet_when_closed(write_buffered(io::stdout().lock(), write))
-        .map_err(|error| explain(Path::new("standard output"), &error))
-}
-
-/// Prints an error on standard error. If that is full or closed, there is nowhere to report it.
-pub fn write_standard_error(error: &Diagnostic) {
-    let word = on_standard_error("error:", Colour::Red);
-    let _ = io::stderr().write_all(format!("{word} {error}\n").as_bytes());
-}
-
 /// Removes the temporary files of unfinished writes: for a program that is interrupted and about to
 /// end.
 pub fn remove_unfinished() {
@@ -263,7 +156,7 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn write_buffered(
+pub(crate) fn write_buffered(
     to: impl Write,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
@@ -272,7 +165,7 @@ fn write_buffered(
     buffered.flush()
 }
 
-fn quiet_when_closed(written: io::Result<()>) -> io::Result<()> {
+pub(crate) fn quiet_when_closed(written: io::Result<()>) -> io::Result<()> {
     written.or_else(|error| {
         if error.kind() == ErrorKind::BrokenPipe {
             Ok(())
@@ -299,103 +192,6 @@ fn check_target(path: &Path, metadata: &Metadata) -> Result<()> {
         ));
     }
     Ok(())
-}
-
-/// True if two names refer to the same file, also through links of both types. False for a device
-/// or a missing file.
-pub fn is_same_file(one: &Path, other: &Path) -> bool {
-    let (Ok(a), Ok(b)) = (fs::metadata(one), fs::metadata(other)) else {
-        return false;
-    };
-    if !(a.is_file() && b.is_file()) {
-        return false;
-    }
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::MetadataExt;
-        (a.dev(), a.ino()) == (b.dev(), b.ino())
-    }
-    #[cfg(not(unix))]
-    {
-        let whole = [one, other].map(fs::canonicalize);
-        matches!(whole, [Ok(a), Ok(b)] if a == b)
-    }
-}
-
-/// Refuses to write `target`, called `place` in messages (an option or a file), if it is one of the
-/// files that are read.
-///
-/// # Errors
-/// It is the same file as one of `inputs`, also through a link (exit code 2).
-pub fn refuse_input(place: &str, target: &Path, inputs: &[PathBuf]) -> Result<()> {
-    match inputs.iter().find(|input| is_same_file(target, input)) {
-        None => Ok(()),
-        Some(input) => Err(Diagnostic::input(
-            place,
-            format!(
-                "'{}' is read here and would be overwritten",
-                input.display()
-            ),
-            "name another file",
-        )),
-    }
-}
-
-/// Checks before the work that the folder for a file exists.
-///
-/// # Errors
-/// It does not exist: bad input, as the name was given so.
-pub fn need_folder_of(target: &Path) -> Result<()> {
-    if folder_of(target).is_dir() {
-        return Ok(());
-    }
-    let (problem, remedy) = no_folder_of(target);
-    Err(Diagnostic::input(
-        target.display().to_string(),
-        problem,
-        remedy,
-    ))
-}
-
-/// Refuses to overwrite files that are read, under whatever name.
-///
-/// # Errors
-/// One of `written` is one of `read` (bad input): the same path, or a link to it.
-pub fn refuse_to_replace(written: &[PathBuf], read: &[PathBuf]) -> Result<()> {
-    for target in written {
-        if let Some(input) = read.iter().find(|input| is_same_file(target, input)) {
-            let problem = if target == input {
-                "it would replace the file that it is made from".to_owned()
-            } else {
-                format!(
-                    "it would replace '{}', which it is made from",
-                    input.display()
-                )
-            };
-            return Err(Diagnostic::input(
-                target.display().to_string(),
-                problem,
-                "write to another name",
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// Problem and remedy of a file whose folder is missing.
-fn no_folder_of(target: &Path) -> (String, &'static str) {
-    let folder = folder_of(target).display();
-    (
-        format!("there is no folder '{folder}'"),
-        "make it first, or write elsewhere",
-    )
-}
-
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(folder) if folder != Path::new("") => folder,
-        _ => Path::new("."),
-    }
 }
 
 fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
@@ -662,81 +458,6 @@ mod tests {
         assert!(temporary.exists());
         pending.publish().unwrap();
         assert_eq!(names(folder.path()), ["b.csv", "cake.vtp"]);
-    }
-
-    #[test]
-    fn a_file_is_not_written_over_itself() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        fs::write(path("cake.vtp"), "").unwrap();
-        fs::hard_link(path("cake.vtp"), path("hard.vtp")).unwrap();
-        fs::write(path("other.vtp"), "").unwrap();
-        let refused = |name: &str| refuse_to_replace(&[path(name)], &[path("cake.vtp")]);
-        assert!(refused("new.vtp").is_ok() && refused("other.vtp").is_ok());
-        let said = refused("cake.vtp").unwrap_err();
-        assert_eq!(said.exit_code(), 2);
-        assert!(
-            said.problem.contains("the file that it is made from"),
-            "{said}"
-        );
-        assert!(
-            refused("hard.vtp")
-                .unwrap_err()
-                .problem
-                .contains("cake.vtp")
-        );
-        #[cfg(unix)]
-        {
-            std::os::unix::fs::symlink("cake.vtp", path("soft.vtp")).unwrap();
-            assert!(refused("soft.vtp").is_err());
-        }
-    }
-
-    #[test]
-    fn lines_pass_without_what_a_terminal_obeys_however_they_are_cut() {
-        let text = "a\u{1b}[2J é\u{202e}x\nsecond\r\n\nlast µ".as_bytes();
-        for at in 0..text.len() {
-            let mut shown = Vec::new();
-            let mut lines = VisibleLines {
-                out: &mut shown,
-                last: Vec::new(),
-            };
-            lines.write_all(&text[..at]).unwrap();
-            lines.write_all(&text[at..]).unwrap();
-            lines.flush().unwrap();
-            let wanted = "a\\u{1b}[2J é\\u{202e}x\nsecond\\u{d}\n\nlast µ";
-            assert_eq!(String::from_utf8(shown).unwrap(), wanted, "cut at {at}");
-        }
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn the_same_file_is_known_by_any_name() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        fs::write(path("a"), "x").unwrap();
-        fs::write(path("b"), "x").unwrap();
-        std::os::unix::fs::symlink(path("a"), path("link")).unwrap();
-        fs::hard_link(path("a"), path("hard")).unwrap();
-        for other in ["a", "link", "hard", "../a"] {
-            let other = match other.strip_prefix("../") {
-                Some(name) => path(&format!(
-                    "../{}/{name}",
-                    folder.path().file_name().unwrap().display()
-                )),
-                None => path(other),
-            };
-            assert!(is_same_file(&path("a"), &other), "{}", other.display());
-            let said = refuse_input("here", &other, &[path("b"), path("a")]).unwrap_err();
-            assert_eq!(said.exit_code(), 2);
-            assert!(
-                said.problem
-                    .ends_with("a' is read here and would be overwritten"),
-                "{said}"
-            );
-        }
-        assert!(!is_same_file(&path("a"), &path("b")) && !is_same_file(&path("no"), &path("no")));
-        assert_eq!(refuse_input("here", &path("new"), &[path("a")]), Ok(()));
     }
 
     #[test]

@@ -3,9 +3,10 @@
 mod inputs;
 mod results;
 mod time;
+mod values;
 
 use dem_io::Result;
-use dem_io::units::{show_quantity, significant};
+use dem_io::units::show_quantity;
 use dem_plots::Page;
 use serde_json::Value;
 
@@ -14,6 +15,8 @@ use crate::folder::Folder;
 pub(crate) use inputs::add_inputs;
 pub(crate) use results::{add_results, add_test};
 pub(crate) use time::add_time;
+
+use values::{counted, number, text, texts};
 
 /// Plots that come first, in this order.
 const FIRST_PLOTS: [&str; 6] = [
@@ -68,26 +71,4 @@ pub(crate) fn add_curves(page: &mut Page, folder: &Folder) -> Result<()> {
         page.gallery(&plots);
     }
     Ok(())
-}
-
-fn text(value: &Value) -> &str {
-    value.as_str().unwrap_or_default()
-}
-
-fn texts(value: &Value) -> Vec<String> {
-    let all = value.as_array().into_iter().flatten();
-    all.map(|value| text(value).to_owned()).collect()
-}
-
-/// NaN of what is no number.
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or(f64::NAN)
-}
-
-fn percent(fraction: f64) -> String {
-    format!("{} %", significant(100.0 * fraction, 3))
-}
-
-fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }

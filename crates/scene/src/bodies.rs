@@ -7,7 +7,8 @@ use dem_io::body::files::body_files;
 use dem_io::body::read_body;
 use dem_io::{Body, Result};
 
-use super::{BodySource, Scene};
+use super::body::BodySource;
+use super::root::Scene;
 
 /// The bodies of a scene by name, from their files or from the scene itself.
 ///

@@ -15,6 +15,7 @@ mod describe;
 mod direction;
 mod factor;
 mod fall;
+mod fall_check;
 mod field;
 mod group;
 mod include;

@@ -12,8 +12,9 @@ use super::run::Integrator;
 use super::table::Table;
 use super::targets::Targets;
 use super::{
-    body, bond, clusters, contact, fall, group, initial, inlet, load, material, measure, outlet,
-    output, region, relaxation, replacement, run, search, sleep, statics, support, test, wall,
+    body, bond, clusters, contact, fall_check, group, initial, inlet, load, material, measure,
+    outlet, output, region, relaxation, replacement, run, search, sleep, statics, support, test,
+    wall,
 };
 use crate::field::Field;
 use dem_io::diagnostic::Result;
@@ -58,7 +59,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     };
     let groups = group::read_all(&root, &presence)?;
     let walls = wall::read_all(&root, &materials, &bodies, &groups, folder)?;
-    fall::refuse_falls(&root, &run, &bodies, &walls, &inlets)?;
+    fall_check::refuse_falls(&root, &run, &bodies, &walls, &inlets)?;
     let targets = Targets {
         groups: &groups,
         presence: &presence,

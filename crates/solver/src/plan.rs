@@ -31,12 +31,14 @@ use dem_scene::{Integrator, Quantity, Scene};
 use crate::stages::ledger::opened;
 use crate::stages::population::apply_topology_change;
 use crate::state::State;
+use crate::state::bonds::Bonds;
 use crate::state::clumps::Template;
 use crate::state::clusters::sizes::{Sphere, box_lengths_m};
 use crate::state::clusters::{Clusters, Triggers};
 use crate::state::events::TopologyChange;
 use crate::state::loads::GroupLoad;
 use crate::state::model::NamedBody;
+use crate::state::particles::Particles;
 use crate::state::population::{InletProgress, OutletTotals};
 use crate::state::sleep::{Sleep, SleepRule};
 use crate::state::supports::GroupSupport;
@@ -127,11 +129,8 @@ pub fn plan(
     let (particles, bonds, bodies) = place_bodies(scene, read)?;
     let masses = masses::masses(scene, &about, &templates, &bodies, &particles);
     let groups = resolve_groups(scene, &bodies, &particles)?;
-    let size = |template: &Arc<Template>| template.spheres.len() + template.bonds.len();
-    let enough = 1
-        + (particles.len() + bonds.len() + templates.iter().map(size).sum::<usize>())
-            / WORTH_A_THREAD;
-    let mut state = State::new(particles, bonds, 1.0, threads.min(enough));
+    let threads = threads.min(enough_threads(&particles, &bonds, &templates));
+    let mut state = State::new(particles, bonds, 1.0, threads);
     state.model.bodies = named;
     state.model.gravity_m_s2 = scene.run.gravity_m_s2;
     state.model.particle_damping = scene.run.local_damping;
@@ -148,35 +147,13 @@ pub fn plan(
     state.model.templates.clone_from(&templates);
     state.clumps.templates = templates;
     state.model.ball_m = ball_m;
-    if !state.clumps.templates.is_empty() && state.model.particle_damping > 0.0 {
-        return Err(Diagnostic::input(
-            format!("{}: run.local_damping", scene.source),
-            "it has no effect on clumps",
-            "remove it, or start bodies as \"bonded\"",
-        ));
-    }
+    refuse_damped_clumps(scene, &state)?;
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     refuse_valueless(scene, &groups, &state)?;
     let mut warnings = masses::warnings(scene, &about);
     warnings.extend(doubts(scene, &state));
     state.ledger = opened(&state);
-    let mut step = match scene.run.integrator {
-        Integrator::Leapfrog => choose_step(scene, &mut state, allow_any_step)?,
-        Integrator::Static => {
-            // Walls press the body of a test.
-            if scene.test.is_none() {
-                refuse_loose(&state, &bodies, &scene.source)?;
-            }
-            StepChoice::none(scene.run.end_time_s)
-        }
-    };
-    if scene.run.integrator == Integrator::Leapfrog {
-        refuse_endless_output(scene, step.step_s)?;
-    }
-    state.time_step_s = step.step_s;
-    choose_skin(scene, step.impact_speed_m_s, &mut state);
-    state.fastest_m_s = step.impact_speed_m_s;
-    step.rayleigh_s = rayleigh_s(scene, &state, &bodies);
+    let step = first_step(scene, &bodies, &mut state, allow_any_step)?;
     let arriving = arriving_as_clusters(&state);
     let forecast = forecast(
         scene,
@@ -207,6 +184,53 @@ pub fn plan(
         forecast,
         inputs,
     })
+}
+
+fn refuse_damped_clumps(scene: &Scene, state: &State) -> Result<()> {
+    if state.clumps.templates.is_empty() || state.model.particle_damping <= 0.0 {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("{}: run.local_damping", scene.source),
+        "it has no effect on clumps",
+        "remove it, or start bodies as \"bonded\"",
+    ))
+}
+
+/// Number of threads that this many particles and bonds are worth.
+fn enough_threads(particles: &Particles, bonds: &Bonds, templates: &[Arc<Template>]) -> usize {
+    let size = |template: &Arc<Template>| template.spheres.len() + template.bonds.len();
+    let of_templates = templates.iter().map(size).sum::<usize>();
+    1 + (particles.len() + bonds.len() + of_templates) / WORTH_A_THREAD
+}
+
+/// Chooses the time step, and sets what follows from it in the state: the step itself, the largest
+/// speed, the skin of the search for contacts.
+fn first_step(
+    scene: &Scene,
+    bodies: &[PlacedBody],
+    state: &mut State,
+    allow_any_step: bool,
+) -> Result<StepChoice> {
+    let mut step = match scene.run.integrator {
+        Integrator::Leapfrog => {
+            let step = choose_step(scene, state, allow_any_step)?;
+            refuse_endless_output(scene, step.step_s)?;
+            step
+        }
+        Integrator::Static => {
+            // Walls press the body of a test.
+            if scene.test.is_none() {
+                refuse_loose(state, bodies, &scene.source)?;
+            }
+            StepChoice::none(scene.run.end_time_s)
+        }
+    };
+    state.time_step_s = step.step_s;
+    choose_skin(scene, step.impact_speed_m_s, state);
+    state.fastest_m_s = step.impact_speed_m_s;
+    step.rayleigh_s = rayleigh_s(scene, state, bodies);
+    Ok(step)
 }
 
 /// Names, materials and sizes of all bodies.

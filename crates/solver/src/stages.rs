@@ -3,7 +3,9 @@
 pub(crate) mod blocks;
 pub mod bonds;
 pub mod breakage;
+pub(crate) mod chunks;
 pub mod clumps;
+mod cluster_bytes;
 pub mod contacts;
 mod damped;
 pub mod damping;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use dem_plots::{Axis, Line, MOST_LINES, Plot};
 
-use super::rows::SweepTable;
+use super::sweep_table::SweepTable;
 
 /// The curve of the test with its results in this folder: points (displacement in m, load in N),
 /// ascending in displacement.

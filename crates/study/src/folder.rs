@@ -4,7 +4,7 @@
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use dem_io::safe_write::is_same_file;
+use dem_io::write_target::is_same_file;
 use dem_io::{Diagnostic, Result};
 use dem_results::{Existing, ResultsFolder, is_plot_file, write_json};
 use dem_scene::study::{Setting, Study};

@@ -9,7 +9,7 @@ use super::expand::{Run, group};
 use super::masses::{by_chance, distance};
 use super::outcome::Done;
 use super::reference::{Extrapolated, richardson};
-use super::rows::{Judged, Row};
+use super::row::{Judged, Row};
 use dem_laboratory::area_between;
 
 /// Determines the references of one measure, and from them the errors.

@@ -6,7 +6,8 @@ use dem_scene::study::{Reference, Study};
 
 use super::expand::{Run, group};
 use super::reference::{observed_order, richardson};
-use super::rows::{Order, Row};
+use super::row::Row;
+use super::sweep_table::Order;
 
 /// Smallest number of runs for an order.
 const FEWEST: usize = 3;

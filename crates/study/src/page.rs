@@ -6,9 +6,10 @@ use dem_plots::{Column, Page, Table};
 use super::curves;
 use super::plot::plot;
 use super::response_page;
-use super::response_plot::with_unit;
-use super::rows::{Judged, Row, SweepTable};
+use super::row::{Judged, Row};
+use super::sweep_table::SweepTable;
 use super::text::front_of;
+use super::words::{number, with_unit};
 
 /// Largest number of runs in the table; the CSV has all of them.
 const MOST_ROWS: usize = 2000;
@@ -66,11 +67,6 @@ fn subject(table: &SweepTable) -> &'static str {
         (true, false) => "Response, and error against run time",
         (false, _) => "Response",
     }
-}
-
-/// A number with these digits, or nothing.
-pub(crate) fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or(String::new(), |value| significant(value, digits))
 }
 
 fn of_axes(table: &SweepTable) -> impl Iterator<Item = Column> {

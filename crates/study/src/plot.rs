@@ -4,7 +4,8 @@
 use dem_io::units::significant;
 use dem_plots::{Axis, Marks, Plot, Point};
 
-use super::rows::{Row, SweepTable};
+use super::row::Row;
+use super::sweep_table::SweepTable;
 
 /// A run in the plot.
 struct Mark<'a> {

@@ -6,7 +6,7 @@ use dem_scene::study::{Reference, Study};
 use serde::Serialize;
 
 use super::expand::Run;
-use super::rows::Row;
+use super::row::Row;
 
 /// The values of a measure without a reference.
 #[derive(Debug, Clone, PartialEq, Serialize)]

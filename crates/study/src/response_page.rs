@@ -2,10 +2,10 @@
 
 use dem_plots::{Column, Page, Row, Table};
 
-use super::page::number;
 use super::response::Response;
-use super::response_plot::{found_plots, plots, shown_axes, with_unit};
-use super::rows::SweepTable;
+use super::response_plot::{found_plots, plots, shown_axes};
+use super::sweep_table::SweepTable;
+use super::words::{number, with_unit};
 
 /// Largest number of points in a table; the CSV has all of them.
 const MOST_POINTS: usize = 500;

@@ -6,8 +6,9 @@ use dem_io::units::significant;
 use dem_plots::{Axis, Marks, Plot, Point};
 
 use super::response::{Response, ResponsePoint};
-use super::rows::{AxisColumn, SweepTable};
 use super::search::{Search, SearchCase, SearchResult};
+use super::sweep_table::{AxisColumn, SweepTable};
+use super::words::with_unit;
 
 /// A logarithmic axis is used from this ratio of the largest to the smallest value on.
 const LOG_FROM: f64 = 30.0;
@@ -154,15 +155,6 @@ fn horizontal(axis: &AxisColumn) -> Axis {
         Axis::log(&label)
     } else {
         Axis::of(&label)
-    }
-}
-
-/// `name (unit)`.
-pub(crate) fn with_unit(name: &str, unit: &str) -> String {
-    if unit.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{name} ({unit})")
     }
 }
 

@@ -10,8 +10,9 @@ use super::judge::{in_words, judge};
 use super::order::orders;
 use super::outcome::{Done, Outcome};
 use super::response::responses;
-use super::rows::{AxisColumn, Judged, MeasureColumn, Row, SweepTable};
+use super::row::{Judged, Row};
 use super::search::search;
+use super::sweep_table::{AxisColumn, MeasureColumn, SweepTable};
 
 /// Smallest significant relative difference of run times, however close the repeats are.
 const LEAST_SPREAD: f64 = 0.1;

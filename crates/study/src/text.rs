@@ -6,9 +6,11 @@ use dem_io::text::visible;
 use dem_io::units::significant;
 
 use super::response::Response;
-use super::response_plot::{named, shown_axes, with_unit};
-use super::rows::{Judged, Row, SweepTable};
+use super::response_plot::{named, shown_axes};
+use super::row::{Judged, Row};
 use super::search::{Search, SearchResult};
+use super::sweep_table::SweepTable;
+use super::words::with_unit;
 
 /// Largest number of lines of a part of the text.
 const MOST_LINES: usize = 20;

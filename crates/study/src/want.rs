@@ -3,7 +3,8 @@
 use dem_io::units::{NUMBER, quantity, significant};
 use dem_io::{Diagnostic, Result};
 
-use super::rows::{Row, SweepTable};
+use super::row::Row;
+use super::sweep_table::SweepTable;
 
 /// A target error.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,6 +10,7 @@ mod decode;
 mod guard;
 mod header;
 mod names;
+mod numbers;
 mod read;
 mod walls;
 

@@ -1,9 +1,9 @@
 //! A band of rows of the picture, with four samples per pixel.
 
-use nalgebra::Vector3;
-
-use super::shade::{self, linear, mixed, stored};
-use super::{Face, Line, Scene};
+use super::linear::{linear, mixed, stored};
+use super::scene::Scene;
+use super::shade;
+use super::shapes::{Line, crossings, range};
 
 /// Number of rows of pixels in a band.
 pub(super) const ROWS: usize = 16;
@@ -57,17 +57,6 @@ pub(super) struct Band {
     skies: Vec<Sky>,
 }
 
-impl Face {
-    pub(super) fn depth(&self, x: f64, y: f64) -> f64 {
-        let [a, ..] = self.corners;
-        a[2] + self.slope[0] * (x - a[0]) + self.slope[1] * (y - a[1])
-    }
-
-    pub(super) fn point(&self, x: f32, y: f32) -> Vector3<f32> {
-        Vector3::new(x, y, self.depth(f64::from(x), f64::from(y)) as f32)
-    }
-}
-
 /// Fraction of the sky visible from one face in a band.
 struct Sky {
     face: u32,
@@ -80,7 +69,7 @@ struct Sky {
 impl Sky {
     /// For a face in a picture of this width, px.
     fn new(face: u32, corners: &[[f64; 3]; 3], width: usize) -> Self {
-        let [first, last] = super::range(corners.map(|corner| corner[0]))
+        let [first, last] = range(corners.map(|corner| corner[0]))
             .map(|x| x.clamp(0.0, width as f64) as usize / STEP);
         Self {
             face,
@@ -177,7 +166,7 @@ impl Band {
         for &number in numbers {
             let face = &scene.faces[number as usize];
             self.skies.push(Sky::new(number, &face.corners, self.width));
-            let [low, high] = super::range(face.corners.map(|c| c[1] - self.top));
+            let [low, high] = range(face.corners.map(|c| c[1] - self.top));
             for row in Self::samples(low, high, 2 * ROWS) {
                 let y = self.top + 0.5 * (row as f64 + 0.5);
                 let [left, right] = crossings(&face.corners, y);
@@ -394,23 +383,5 @@ impl Band {
         for (pixel, light) in pixels.chunks_exact_mut(3).zip(&self.light) {
             pixel.copy_from_slice(&stored(*light));
         }
-    }
-}
-
-/// The x of the crossings between a row and a triangle: equal for both triangles on one edge.
-pub(super) fn crossings(corners: &[[f64; 3]; 3], y: f64) -> [f64; 2] {
-    let mut found = [f64::INFINITY, f64::NEG_INFINITY];
-    for k in 0..3 {
-        let (a, b) = (corners[k], corners[(k + 1) % 3]);
-        let (a, b) = if a[1] < b[1] { (a, b) } else { (b, a) };
-        if a[1] <= y && y < b[1] {
-            let x = a[0] + (y - a[1]) * ((b[0] - a[0]) / (b[1] - a[1]));
-            found = [found[0].min(x), found[1].max(x)];
-        }
-    }
-    if found[0] <= found[1] {
-        found
-    } else {
-        [0.0; 2]
     }
 }

@@ -6,8 +6,7 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::band::crossings;
-use super::{Body, range};
+use super::shapes::{Body, crossings, range};
 use crate::camera::Camera;
 
 /// Direction to the lamp in view space, where y points downwards: from the upper left, a little

@@ -1,9 +1,10 @@
-//! Brightness of a point of a surface. Colours are proportional to light: the square of the values
-//! stored in a picture.
+//! Brightness of a point of a surface.
 
 use nalgebra::Vector3;
 
-use super::{Body, Face, Scene};
+use super::linear::mixed;
+use super::scene::Scene;
+use super::shapes::{Body, Face};
 
 /// Light of the lamp and of the sky.
 const LAMP: f32 = 0.72;
@@ -19,23 +20,6 @@ const RIM_FROM: f32 = 0.5;
 /// Darkening of walls by shadows.
 const SHADOW: f32 = 0.46;
 const DEPTH_OF_SKY: f32 = 0.50;
-
-/// Light of a stored colour.
-pub(super) fn linear(colour: [u8; 3]) -> [f32; 3] {
-    colour.map(|c| {
-        let fraction = f32::from(c) / 255.0;
-        fraction * fraction
-    })
-}
-
-/// The stored colour of a light.
-pub(super) fn stored(light: [f32; 3]) -> [u8; 3] {
-    light.map(|c| (255.0 * c.clamp(0.0, 1.0).sqrt() + 0.5) as u8)
-}
-
-pub(super) fn mixed(a: [f32; 3], b: [f32; 3], fraction: f32) -> [f32; 3] {
-    [0, 1, 2].map(|k| a[k] + fraction * (b[k] - a[k]))
-}
 
 /// The light of a ball at `x`, `y`.
 pub(super) fn body(scene: &Scene, body: &Body, x: f32, y: f32) -> [f32; 3] {

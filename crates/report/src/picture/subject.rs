@@ -9,7 +9,7 @@ use dem_pictures::colours::of_fragment;
 use dem_pictures::{Ball, Camera, Surface};
 use dem_plots::viridis;
 
-use super::ColourBy;
+use super::colour_by::ColourBy;
 use crate::view::{ChosenFrame, Spheres, piece_colours, read_walls};
 
 /// A frame in memory.

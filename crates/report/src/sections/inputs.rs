@@ -4,7 +4,7 @@ use dem_io::units::show_quantity;
 use dem_plots::{Column, Page, Table};
 use serde_json::Value;
 
-use super::{counted, number, text, texts};
+use super::values::{counted, number, text, texts};
 use crate::folder::Folder;
 
 /// Scene, bodies, settings and files.

@@ -4,7 +4,7 @@ use dem_io::units::{show_quantity, significant};
 use dem_plots::{Column, Page, Table};
 use serde_json::Value;
 
-use super::{number, percent, text};
+use super::values::{number, percent, text};
 use crate::folder::Folder;
 
 /// Results of a laboratory test.

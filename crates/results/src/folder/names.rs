@@ -1,10 +1,44 @@
-//! Names of numbered files in the folder of a run.
+//! Names of the files and folders in the folder of a run.
 
 use std::path::{Path, PathBuf};
 
 use dem_io::body::stored_walls::FIXED_WALLS_FILE;
 
 pub(super) const FRAMES: &str = "frames";
+pub(super) const PLOTS: &str = "plots";
+pub(super) const PICTURES: &str = "pictures";
+pub(super) const FILM_STRIP: &str = "film-strip.png";
+pub(super) const FILM: &str = "film.png";
+pub(super) const INDEX: &str = "frames.pvd";
+pub(super) const SERIES: &str = "series.csv";
+pub(super) const EVENTS: &str = "events.csv";
+pub(super) const FRAGMENTS: &str = "fragments.csv";
+pub(super) const FRAGMENT_TREE: &str = "fragment-tree.csv";
+pub(super) const DISCHARGE: &str = "discharge.csv";
+pub(super) const DISTRIBUTION: &str = "distribution.csv";
+pub(super) const SUMMARY: &str = "summary.json";
+pub(super) const REPORT: &str = "report.html";
+pub(super) const SCENE: &str = "scene.toml";
+pub(super) const TEST_CURVE: &str = "force-displacement.csv";
+pub(super) const CHECKPOINT: &str = "checkpoint.dem";
+pub(super) const ENDED: &str = ".ended.json";
+/// Files of which a run writes one each.
+pub(super) const SINGLE_FILES: [&str; 14] = [
+    INDEX,
+    SERIES,
+    EVENTS,
+    FRAGMENTS,
+    FRAGMENT_TREE,
+    DISCHARGE,
+    DISTRIBUTION,
+    SUMMARY,
+    REPORT,
+    TEST_CURVE,
+    FILM_STRIP,
+    FILM,
+    CHECKPOINT,
+    ENDED,
+];
 
 /// Frame `number` of the results folder `path`.
 pub fn frame_in(path: &Path, number: usize) -> PathBuf {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::bench::{Bench, number};
 use super::programs::Failed;
-use super::{Table, head};
+use super::table::{Table, head};
 
 pub(crate) const SIZES: [&str; 2] = ["5mm..7mm", "4mm..6mm"];
 const PACKINGS: u32 = 4;

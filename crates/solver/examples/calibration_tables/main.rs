@@ -23,20 +23,13 @@ mod programs;
 mod scatter;
 mod sizes;
 mod stiffness;
+mod table;
 #[cfg(test)]
 mod tests;
 
 use programs::Failed;
 
 const USAGE: &str = "write sizes, scatter, stiffness or breaks";
-
-/// A table of the page.
-struct Table {
-    /// The word that selects it.
-    word: &'static str,
-    head: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
 
 fn main() -> Result<(), Failed> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -49,24 +42,4 @@ fn main() -> Result<(), Failed> {
     };
     println!("{}", table?.markdown());
     Ok(())
-}
-
-/// The head of a table of fixed columns.
-fn head(names: &[&str]) -> Vec<String> {
-    names.iter().map(|name| (*name).to_owned()).collect()
-}
-
-impl Table {
-    /// The command that prints it, as a comment, and the table.
-    fn markdown(&self) -> String {
-        let command = "cargo run --release -p dem-run --example calibration_tables --";
-        let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
-        let mut lines = vec![
-            format!("<!-- {command} {} -->", self.word),
-            line(&self.head),
-            format!("|{}", "---|".repeat(self.head.len())),
-        ];
-        lines.extend(self.rows.iter().map(|row| line(row)));
-        lines.join("\n")
-    }
 }

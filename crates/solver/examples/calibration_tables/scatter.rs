@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::bench::{Bench, number, result};
 use super::programs::Failed;
-use super::{Table, head};
+use super::table::{Table, head};
 
 /// Width of the bar over the mean diameter, the diameters, and the number of packings.
 pub(crate) const RATIOS: [(u32, &str, u32); 5] = [

@@ -5,9 +5,9 @@ use std::process::Command;
 
 use dem_calibration::{Record, read_record, sizes};
 
-use super::Table;
 use super::bench::Bench;
 use super::programs::{Failed, output};
+use super::table::Table;
 
 const SIZES: [&str; 3] = ["7mm..9mm", "5mm..7mm", "3.5mm..4.5mm"];
 /// Measured curves, with the dimensions of their specimens.

@@ -13,7 +13,7 @@ use dem_run::run::statics::elastic_test::elastic_test;
 use dem_scene::read_scene;
 
 use super::programs::Failed;
-use super::{Table, head};
+use super::table::{Table, head};
 
 const SCENE: &str = "data/scenes/four-point-bending.toml";
 const SHAPE: &str = "data/shapes/bending-sample.stl";

@@ -7,7 +7,8 @@ use std::path::Path;
 use dem_scene::read_scene;
 
 use super::programs::root;
-use super::{Table, breaks, head, scatter, stiffness};
+use super::table::{Table, head};
+use super::{breaks, scatter, stiffness};
 
 /// The rows of the table of the page that has this word, as cells.
 fn rows(table: &Table) -> Vec<Vec<String>> {

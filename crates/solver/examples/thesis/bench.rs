@@ -8,7 +8,6 @@ use serde_json::Value;
 
 use super::programs::{self, Programs, output};
 pub(crate) use super::programs::{Failed, root};
-use super::samples::Sample;
 
 /// The folder of the results.
 pub(crate) fn results() -> Result<PathBuf, Failed> {
@@ -26,7 +25,7 @@ pub(crate) fn scene_file(name: &str) -> PathBuf {
 }
 
 pub(crate) struct Bench {
-    programs: Programs,
+    pub(crate) programs: Programs,
     pub(crate) results: PathBuf,
 }
 
@@ -37,19 +36,6 @@ impl Bench {
             programs: Programs::build()?,
             results: results()?,
         })
-    }
-
-    /// The file of a packed sample; its report stands next to it, as JSON.
-    pub(crate) fn pack(&self, sample: &Sample) -> Result<PathBuf, Failed> {
-        let body = self.results.join(format!("{}.vtp", sample.name()));
-        let report = body.with_extension("json");
-        if !report.exists() {
-            let mut command = Command::new(&self.programs.dem_pack);
-            command.args(sample.options()).args(["--json", "-o"]);
-            let said = output(command.arg(&body))?;
-            std::fs::write(report, said)?;
-        }
-        Ok(body)
     }
 
     /// Runs the four-point test of `data/thesis` with these settings, if that has not been done.

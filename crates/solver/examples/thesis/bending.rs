@@ -72,7 +72,7 @@ pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
         for seed in 1..=row.packings {
             let name = row.name(seed);
             if name.contains(part) {
-                let body = bench.pack(&Sample { seed, ..row.sample })?;
+                let body = Sample { seed, ..row.sample }.packed(bench)?;
                 bench.bend(&name, &body, &row.sets())?;
             }
         }

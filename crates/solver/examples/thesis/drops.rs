@@ -160,7 +160,7 @@ pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
                 if !name.contains(part) || file.exists() {
                     continue;
                 }
-                let body = bench.pack(&Sample { seed, ..row.sample })?;
+                let body = Sample { seed, ..row.sample }.packed(bench)?;
                 eprintln!("{name}");
                 let result = drop(&body, &row.sets(&fall))?;
                 std::fs::write(file, serde_json::to_vec(&result)?)?;

@@ -76,7 +76,7 @@ pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
             if !name.contains(part) || file.exists() {
                 continue;
             }
-            let body = bench.pack(&Sample { seed, ..SAMPLE })?;
+            let body = Sample { seed, ..SAMPLE }.packed(bench)?;
             eprintln!("{name}");
             let result = rebound(&body, &sets(damping))?;
             std::fs::write(file, serde_json::to_vec(&result)?)?;

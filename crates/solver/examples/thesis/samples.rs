@@ -1,6 +1,10 @@
 //! The samples: which spheres, which texture, which bonds.
 
+use std::path::PathBuf;
+use std::process::Command;
+
 use super::bench::{Bench, Failed};
+use super::programs::output;
 
 /// The sphere sizes and bonds of a table of Platzer 2022; its printed sizes are radii.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +102,19 @@ impl Sample {
         options.extend(["--seed".to_owned(), self.seed.to_string()]);
         options
     }
+
+    /// Its file, which is packed if that has not been done; the report stands next to it, as JSON.
+    pub(crate) fn packed(&self, bench: &Bench) -> Result<PathBuf, Failed> {
+        let body = bench.results.join(format!("{}.vtp", self.name()));
+        let report = body.with_extension("json");
+        if !report.exists() {
+            let mut command = Command::new(&bench.programs.dem_pack);
+            command.args(self.options()).args(["--json", "-o"]);
+            let said = output(command.arg(&body))?;
+            std::fs::write(report, said)?;
+        }
+        Ok(body)
+    }
 }
 
 /// Samples of 180 mm whose spheres and bonds are counted.
@@ -137,7 +154,7 @@ pub(crate) fn counted() -> Vec<(&'static str, Vec<Sample>)> {
 pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
     let all = counted().into_iter().flat_map(|(_, samples)| samples);
     for sample in all.filter(|sample| sample.name().contains(part)) {
-        bench.pack(&sample)?;
+        sample.packed(bench)?;
     }
     Ok(())
 }

@@ -37,7 +37,7 @@ pub(crate) fn sets(table: Spheres, damping: &str) -> Vec<String> {
 pub(crate) fn compute(bench: &Bench) -> Result<(), Failed> {
     let mut all = Vec::new();
     for table in TABLES {
-        let body = bench.pack(&Sample { table, ..BARE })?;
+        let body = Sample { table, ..BARE }.packed(bench)?;
         for (name, damping) in DAMPING {
             let scene = scene("drop", Some(&body), &sets(table, damping))?;
             let limit_s = limit_s(&scene, read_bodies(&scene)?)?;

@@ -387,7 +387,7 @@ fn start(roots: &Field) -> Field {
 }
 
 fn dot(a: &Field, b: &Field) -> f64 {
-    crate::stages::motion::ordered_sum(a.len(), |i| (0..6).map(|k| a[i][k] * b[i][k]).sum())
+    crate::stages::chunks::ordered_sum(a.len(), |i| (0..6).map(|k| a[i][k] * b[i][k]).sum())
 }
 
 /// Displacements and rotations, or velocities and spins, that an entry of a field stands for; and

@@ -4,13 +4,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use dem_io::body::{StoredFrame, vtp};
-use dem_io::safe_write::{PendingFile, write_standard_output};
+use dem_io::safe_write::PendingFile;
+use dem_io::standard_output::write_standard_output;
 use dem_io::stl::write_stl;
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 
-use super::fragment::about;
+use super::fragment_body::fragment_body;
 use crate::shape::hull::{SMALLER_BY, convex_hull};
 
 /// Millimetres in a metre: STL files are in millimetres, as dem-pack and scenes read them.
@@ -106,8 +107,7 @@ fn write_files(frame: &StoredFrame, path: &Path, output: &Path, as_hulls: bool) 
                 write_stl(&header, &facets, out)
             })?);
         } else {
-            let mut body = frame.body(id).map_err(named)?;
-            about(&mut body, path, id);
+            let body = fragment_body(frame, path, id).map_err(named)?;
             body.check().map_err(named)?;
             let file = file_of(output, id, "vtp");
             pending.push(PendingFile::write(&file, |out| vtp::write(&body, out))?);

@@ -6,7 +6,7 @@ use dem_io::Result;
 use dem_results::ResultsFolder;
 use dem_scene::{Scene, piped_bodies, scene_as_run, text_of};
 
-use super::SceneArguments;
+use super::scene_arguments::SceneArguments;
 
 /// Writes the scene of a run, with `--set`, `--material`, `include` and `--body` in it, to
 /// `scene.toml` in its folder.

@@ -15,18 +15,18 @@ use dem_calibration::{
 use dem_io::diagnostic::Kind;
 use dem_io::hash::{file_hash, fnv1a_of_parts};
 use dem_io::program::today;
-use dem_io::safe_write::{
-    explain, need_folder_of, refuse_to_replace, write_file, write_standard_json,
-    write_standard_output,
-};
+use dem_io::safe_write::{explain, write_file};
+use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::visible;
+use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::cli::Recipe;
 use dem_scene::{Scene, material_text, scene_from_text, text_of};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::SceneArguments;
 use super::packings::{Packings, spheres_across};
+use super::pool::in_pool;
+use super::scene_arguments::SceneArguments;
 use crate::calibration::{Bench, ModulusBy, Prospect, SceneText, prospect, unknowns};
 use crate::interrupt::Interrupt;
 
@@ -102,7 +102,7 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
         source: &source,
         overrides: &overrides,
     };
-    super::in_pool(options.scene.threads, |threads| {
+    in_pool(options.scene.threads, |threads| {
         let others = packings.other_bodies(&scene)?;
         let first = packings.make(0, 0, &AtomicBool::new(false))?;
         let prospect = prospect(&scene, &packings.body, &first, &others, threads)?;

@@ -3,20 +3,27 @@
 use std::path::Path;
 use std::time::Instant;
 
-use dem_io::safe_write::{need_folder_of, write_file, write_json_text, write_standard_output};
+use dem_io::safe_write::write_file;
+use dem_io::standard_output::{write_json_text, write_standard_output};
 use dem_io::units::significant;
+use dem_io::write_target::need_folder_of;
 use dem_io::{Diagnostic, Result};
 use dem_pictures::png_file::{Compression, to_png};
 use dem_scene::{Integrator, Scene};
 use serde_json::{Value, json};
 
+use super::memory::{memory_bytes, size_text};
+use super::pool::in_pool;
+use super::scene_arguments::SceneArguments;
+use super::statics;
 use crate::clock::StageClock;
+use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::output::pictures::View;
 use crate::plan::masses;
-use crate::plan::{Plan, PlannedStage};
+use crate::plan::{Plan, PlannedStage, plan};
 use crate::stages::ledger::CHECKS;
 use crate::state::State;
-use crate::step::{all_bytes, number_of, step};
+use crate::step::{number_of, step};
 
 /// The run time is predicted from this many samples of the first steps of a copy.
 const SAMPLES: usize = 8;
@@ -25,11 +32,46 @@ const SAMPLE: (u32, f64) = (250, 0.07);
 /// Samples that differ by less than this factor are told as one.
 const ALIKE: f64 = 1.2;
 
+/// Does a dry run of the scene that the arguments name, with a picture of its start if a file for it
+/// is named.
+///
+/// # Errors
+/// No scene is named; bad input; the file of the picture is not a .png, or cannot be written.
+pub(super) fn check_scene(
+    arguments: &SceneArguments,
+    picture: Option<&Path>,
+    quiet: bool,
+) -> Result<()> {
+    if !arguments.names_a_scene() {
+        return Err(Diagnostic::input(
+            arguments.place(),
+            "this is not a scene (.toml)",
+            "name a scene; dem-run describes a body without check",
+        ));
+    }
+    in_pool(arguments.threads, |threads| {
+        let (scene, bodies) = arguments.read()?;
+        let scene = match lowest_in_test_hz(&scene, &bodies, threads)? {
+            Some(lowest_hz) => arrange(&scene, lowest_hz, 1.0)?,
+            None => scene,
+        };
+        let mut plan = plan(&scene, bodies, threads, arguments.force_step)?;
+        plan.inputs.set = arguments.all_overrides();
+        if let Some(file) = picture {
+            write_picture(&scene, &plan, file)?;
+        }
+        if quiet && !arguments.json {
+            return Ok(());
+        }
+        check(&scene, &plan, arguments.json)
+    })
+}
+
 /// Writes a picture of the start of a scene.
 ///
 /// # Errors
 /// The file is not a .png, or cannot be written.
-pub(super) fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<()> {
+fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<()> {
     if file.extension().is_none_or(|ending| ending != "png") {
         let name = file.display().to_string();
         let problem = "this is not the name of a picture";
@@ -45,9 +87,9 @@ pub(super) fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<(
 }
 
 /// Prints the plan of a scene, as text or as JSON.
-pub(super) fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
+fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     if scene.run.integrator == Integrator::Static {
-        return super::statics::check(scene, plan, memory_bytes(&plan.state), as_json);
+        return statics::check(scene, plan, memory_bytes(&plan.state), as_json);
     }
     let steps = (scene.run.end_time_s / plan.step.step_s).round();
     let bytes = memory_bytes(&plan.state);
@@ -321,26 +363,6 @@ fn time_text(ns: f64) -> String {
         some if some < 1e6 => format!("{} us per step", significant(some * 1e-3, 2)),
         many => format!("{} ms per step", significant(many * 1e-6, 2)),
     }
-}
-
-/// Human-readable number of bytes.
-pub(super) fn size_text(bytes: usize) -> String {
-    match bytes as f64 {
-        few if few < 1e3 => format!("{bytes} bytes"),
-        some if some < 1e6 => format!("{} kB", significant(some * 1e-3, 3)),
-        many => format!("{} MB", significant(many * 1e-6, 3)),
-    }
-}
-
-/// Memory of the arrays of a state, and estimated memory of later contacts, bytes.
-fn memory_bytes(state: &State) -> usize {
-    let now = all_bytes(state);
-    let may_come = state
-        .contacts
-        .as_ref()
-        .filter(|contacts| !contacts.model.alone);
-    // Every particle may get a few contacts.
-    now + may_come.map_or(0, |contacts| 3 * (8 + 128) * contacts.materials.len())
 }
 
 /// Cost of the first steps, tried on a copy in several samples.

@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use dem_io::body::{StoredParticles, read_particles};
-use dem_io::safe_write::{PendingFile, need_folder_of, write_standard_output};
+use dem_io::safe_write::PendingFile;
+use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::vtk::exact;
+use dem_io::write_target::need_folder_of;
 use dem_io::{Bounds, Diagnostic, Result};
 use dem_results::folder::{frame_in, frames_in};
 

@@ -6,16 +6,18 @@ use clap::{ArgGroup, Args};
 use dem_io::body::files::body_files;
 use dem_io::body::write_body;
 use dem_io::body::{StoredFragment, read_frame};
-use dem_io::safe_write::{need_folder_of, refuse_input, write_standard_output};
+use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::units::significant;
-use dem_io::{Body, Diagnostic, Result};
+use dem_io::write_target::{need_folder_of, refuse_input};
+use dem_io::{Diagnostic, Result};
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::folder::{frame_in, frames_in, result_among};
 use dem_scene::read_scene;
 use serde_json::Value;
 
 use super::all_fragments::write_all;
+use super::fragment_body::fragment_body;
 use crate::run::snapshot::Snapshot;
 
 #[derive(Debug, Args)]
@@ -78,8 +80,7 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
         .id
         .or(fragments.first().map(|heaviest| heaviest.id));
     let id = id.ok_or_else(|| within(Diagnostic::input("", "the frame has no particles", "")))?;
-    let mut body = frame.body(id).map_err(within)?;
-    about(&mut body, &path, id);
+    let body = fragment_body(&frame, &path, id).map_err(within)?;
     write_body(&body, output)?;
     if arguments.quiet || output == Path::new("-") {
         return Ok(());
@@ -97,12 +98,6 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
             significant(mass_kg, 4)
         )
     })
-}
-
-/// Notes in a body which fragment of which frame it is.
-pub(super) fn about(body: &mut Body, frame: &Path, id: u32) {
-    body.about.program = Some(concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned());
-    body.about.source = Some(format!("{}: fragment {id}", frame.display()));
 }
 
 /// Refuses to overwrite the results or the inputs of their run with the body, as far as the folder

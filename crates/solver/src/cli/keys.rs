@@ -1,7 +1,7 @@
 //! `dem-run keys`: the reference of the keys of scenes and studies.
 
 use clap::Args;
-use dem_io::safe_write::write_standard_output;
+use dem_io::standard_output::write_standard_output;
 use dem_io::{Diagnostic, Result};
 use dem_scene::reference;
 

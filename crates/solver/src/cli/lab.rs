@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dem_io::safe_write::{
-    need_folder_of, refuse_to_replace, write_file, write_standard_json, write_standard_output,
-};
+use dem_io::safe_write::write_file;
+use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::visible;
 use dem_io::units::{AREA, LENGTH, quantity, show_quantity};
+use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::{
     ColumnChoice, Curve, Dimensions, EvaluatedSpecimen, ListedSpecimen, MeasuredMaterial,

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use dem_io::body::files::write_body;
-use dem_io::safe_write::{explain, write_file, write_standard_output};
+use dem_io::safe_write::{explain, write_file};
+use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::{Diagnostic, Result};
 use dem_pack::cli::Recipe;

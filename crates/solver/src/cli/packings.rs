@@ -10,7 +10,7 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_pack::cli::Recipe;
 use dem_scene::{BodySource, Scene, read_bodies};
 
-use super::named_body;
+use super::scene_arguments::named_body;
 
 /// Packings of one body of a scene.
 pub(super) struct Packings {

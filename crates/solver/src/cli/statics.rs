@@ -1,11 +1,11 @@
 //! `dem-run check` of a static scene.
 
 use dem_io::Result;
-use dem_io::safe_write::{write_json_text, write_standard_output};
+use dem_io::standard_output::{write_json_text, write_standard_output};
 use dem_scene::Scene;
 use serde_json::json;
 
-use super::check::size_text;
+use super::memory::size_text;
 use crate::plan::Plan;
 use crate::plan::masses;
 use crate::run::statics::StaticsEstimate;

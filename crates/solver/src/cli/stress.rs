@@ -3,11 +3,11 @@
 use std::io::IsTerminal;
 
 use clap::Args;
-use dem_io::safe_write::{write_standard_json, write_standard_output};
+use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::{Diagnostic, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::in_pool;
+use super::pool::in_pool;
 use crate::interrupt::Interrupt;
 use crate::stress::cases::chosen;
 use crate::stress::text::{HEAD, row};

@@ -8,7 +8,8 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dem_io::safe_write::{need_folder_of, refuse_input, write_file};
+use dem_io::safe_write::write_file;
+use dem_io::write_target::{need_folder_of, refuse_input};
 use dem_io::{Diagnostic, Result};
 use dem_scene::study::{
     Combine, Reference, Study, read_study, reference_values, rewritten, scene_with,
@@ -24,8 +25,8 @@ use dem_study::expand::{MOST_UNASKED, Run, runs};
 use dem_study::folder::{Earlier, SweepFolder};
 use dem_study::jobs::{Job, further_jobs, jobs, refuse_unlistable, work};
 use dem_study::outcome::Outcome;
-use dem_study::rows::SweepTable;
 use dem_study::search::{SearchResult, Step, next_of};
+use dem_study::sweep_table::SweepTable;
 use dem_study::want::{Want, fastest};
 
 #[derive(Debug, Args)]
@@ -71,65 +72,12 @@ pub(super) struct SweepArguments {
 ///
 /// # Errors
 /// Bad input, interrupted, files that cannot be written; runs that failed or are missing, once the
-/// tables of the others
-/// are written.
+/// tables of the others are written.
 pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<()> {
-    if !(1..=1024).contains(&options.jobs) {
-        let problem = format!("{} is not between 1 and 1024", options.jobs);
-        return Err(Diagnostic::input(
-            "--jobs",
-            problem,
-            "1 measures run times best",
-        ));
-    }
-    if let Some(target) = &options.write {
-        need_folder_of(target).map_err(|error| error.within("--write"))?;
-    }
-    let mut study = read_study(&options.study)?;
-    let scene_text = text_of(&study.scene, "a scene")
-        .map_err(|error| error.within(&format!("{}: scene", study.source)))?;
-    // What is wrong with it is said when the scenes of all runs are checked.
-    let first = scene_with(&study, &scene_text, study.first_settings()).ok();
-    if let Some(first) = &first {
-        settle_references(&mut study, first);
-    }
-    let wants = wants(options, &study)?;
-    let mut all = runs(&study, options.yes)?;
-    let path = options.output.clone().unwrap_or_else(|| {
-        let stem = options.study.file_stem().unwrap_or_default();
-        PathBuf::from(format!("{}-sweep", stem.to_string_lossy()))
-    });
-    refuse_unlistable_names(options, &study, &path)?;
-    let (values, mut inputs) = checked(&study, &scene_text, &all)?;
-    let looked_for = match &first {
-        Some(first) => value_to_find(&study, first)?,
-        None => None,
+    let mut sweep = Sweep::prepared(options)?;
+    let Some(mut table) = sweep.table(options, interrupt)? else {
+        return Ok(());
     };
-    inputs.push(options.study.clone());
-    SweepFolder::refuse_inputs(&path, &inputs)?;
-    if let Some(target) = &options.write {
-        refuse_input(&format!("--write {}", target.display()), target, &inputs)?;
-    }
-    let folder = SweepFolder::create(&path, earlier(options), &study, &scene_text)?;
-    let mut table;
-    loop {
-        let Some(outcomes) = outcomes_of(options, &study, &all, &folder, interrupt)? else {
-            return Ok(());
-        };
-        table = SweepTable::new(&study, &all, &outcomes, &values, looked_for);
-        let next = next_points(&study, &table);
-        if next.is_empty() {
-            break;
-        }
-        for (case, point) in next {
-            study.add_point(case, point);
-        }
-        all = runs(&study, options.yes)?;
-        checked(&study, &scene_text, &all)?;
-        if options.collect && !is_done(&study, &all, &folder) {
-            break;
-        }
-    }
     if options.list {
         return Ok(());
     }
@@ -139,31 +87,144 @@ pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<(
             options.jobs
         ));
     }
-    write_files(&folder, &table)?;
-    let failure = failure(&study, &table);
-    if let Some(failure) = &failure
-        && table.failed().count() == table.runs.len()
-    {
-        return Err(failure.clone());
+    sweep.conclude(options, &table)
+}
+
+/// A study, and what follows from it before anything is run.
+struct Sweep {
+    study: Study,
+    /// Text of its scene.
+    scene_text: String,
+    runs: Vec<Run>,
+    /// The reference of each measure, if it is a number.
+    references: Vec<Option<f64>>,
+    /// The value of `[find]`.
+    looked_for: Option<f64>,
+    wants: Vec<Want>,
+    folder: SweepFolder,
+}
+
+impl Sweep {
+    /// Reads and checks everything, and makes the folder.
+    fn prepared(options: &SweepArguments) -> Result<Self> {
+        if !(1..=1024).contains(&options.jobs) {
+            let problem = format!("{} is not between 1 and 1024", options.jobs);
+            return Err(Diagnostic::input(
+                "--jobs",
+                problem,
+                "1 measures run times best",
+            ));
+        }
+        if let Some(target) = &options.write {
+            need_folder_of(target).map_err(|error| error.within("--write"))?;
+        }
+        let mut study = read_study(&options.study)?;
+        let scene_text = text_of(&study.scene, "a scene")
+            .map_err(|error| error.within(&format!("{}: scene", study.source)))?;
+        // What is wrong with it is said when the scenes of all runs are checked.
+        let first = scene_with(&study, &scene_text, study.first_settings()).ok();
+        if let Some(first) = &first {
+            settle_references(&mut study, first);
+        }
+        let wants = wants(options, &study)?;
+        let runs = runs(&study, options.yes)?;
+        let path = options.output.clone().unwrap_or_else(|| {
+            let stem = options.study.file_stem().unwrap_or_default();
+            PathBuf::from(format!("{}-sweep", stem.to_string_lossy()))
+        });
+        refuse_unlistable_names(options, &study, &path)?;
+        let (references, mut inputs) = checked(&study, &scene_text, &runs)?;
+        let looked_for = match &first {
+            Some(first) => value_to_find(&study, first)?,
+            None => None,
+        };
+        inputs.push(options.study.clone());
+        SweepFolder::refuse_inputs(&path, &inputs)?;
+        if let Some(target) = &options.write {
+            refuse_input(&format!("--write {}", target.display()), target, &inputs)?;
+        }
+        let folder = SweepFolder::create(&path, earlier(options), &study, &scene_text)?;
+        Ok(Self {
+            study,
+            scene_text,
+            runs,
+            references,
+            looked_for,
+            wants,
+            folder,
+        })
     }
-    let best = if wants.is_empty() {
-        None
-    } else {
-        Some(fastest(&table, &wants)?)
-    };
-    if let (Some(best), Some(target)) = (best, &options.write) {
-        let run = all.iter().find(|run| run.number == best.number);
-        let settings = run.map_or(Vec::new(), |run| run.settings(&study));
-        let text = rewritten(&study, &scene_text, &settings, target)?;
-        write_file(target, |out| out.write_all(text.as_bytes()))?;
+
+    /// Does the runs, and further ones until the value that is looked for is found. None: they have
+    /// been listed.
+    fn table(
+        &mut self,
+        options: &SweepArguments,
+        interrupt: &Interrupt,
+    ) -> Result<Option<SweepTable>> {
+        loop {
+            let Self {
+                study,
+                runs: all,
+                folder,
+                ..
+            } = self;
+            let Some(outcomes) = outcomes_of(options, study, all, folder, interrupt)? else {
+                return Ok(None);
+            };
+            let table = SweepTable::new(study, all, &outcomes, &self.references, self.looked_for);
+            let next = next_points(study, &table);
+            if next.is_empty() {
+                return Ok(Some(table));
+            }
+            for (case, point) in next {
+                study.add_point(case, point);
+            }
+            *all = runs(study, options.yes)?;
+            checked(study, &self.scene_text, all)?;
+            if options.collect && !is_done(study, all, folder) {
+                return Ok(Some(table));
+            }
+        }
     }
-    if options.json || !options.quiet {
-        let written = options.write.as_deref();
-        say(&study, &all, &table, best, written, &folder, options.json)?;
+
+    /// Writes the results, and the scene with the fastest setting, and says what they are.
+    fn conclude(&self, options: &SweepArguments, table: &SweepTable) -> Result<()> {
+        let study = &self.study;
+        write_files(&self.folder, table)?;
+        let failure = failure(study, table);
+        if let Some(failure) = &failure
+            && table.failed().count() == table.runs.len()
+        {
+            return Err(failure.clone());
+        }
+        let best = if self.wants.is_empty() {
+            None
+        } else {
+            Some(fastest(table, &self.wants)?)
+        };
+        if let (Some(best), Some(target)) = (best, &options.write) {
+            let run = self.runs.iter().find(|run| run.number == best.number);
+            let settings = run.map_or(Vec::new(), |run| run.settings(study));
+            let text = rewritten(study, &self.scene_text, &settings, target)?;
+            write_file(target, |out| out.write_all(text.as_bytes()))?;
+        }
+        if options.json || !options.quiet {
+            let written = options.write.as_deref();
+            say(
+                study,
+                &self.runs,
+                table,
+                best,
+                written,
+                &self.folder,
+                options.json,
+            )?;
+        }
+        failure
+            .or_else(|| not_found(study, table))
+            .map_or(Ok(()), Err)
     }
-    failure
-        .or_else(|| not_found(&study, &table))
-        .map_or(Ok(()), Err)
 }
 
 /// The errors that are asked for, of measures with a reference.

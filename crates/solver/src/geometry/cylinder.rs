@@ -4,7 +4,8 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::{Bounds, Touch, are_finite};
+use super::touch::{Touch, are_finite};
+use dem_io::Bounds;
 
 /// A solid cylinder. Features: 0 the lateral surface, 1 and 2 the first and the second end, 3 and 4
 /// their rims.

@@ -3,7 +3,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::Touch;
+use super::touch::Touch;
 
 /// Place and orientation of a wall's own frame in space.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

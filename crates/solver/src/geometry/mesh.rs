@@ -22,7 +22,8 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::{Bounds, Touch, are_finite};
+use super::touch::{Touch, are_finite};
+use dem_io::Bounds;
 use features::features;
 use triangle::{REGIONS, Triangle};
 

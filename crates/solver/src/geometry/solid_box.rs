@@ -4,7 +4,8 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::{Bounds, Touch, are_finite};
+use super::touch::{Touch, are_finite};
+use dem_io::Bounds;
 
 /// A solid box.
 ///

@@ -145,6 +145,16 @@ fn region(entry: &SceneRegion) -> Result<Region> {
 /// Rules that cannot work as intended, a sentence each: triggers that never fire, inlets that feed
 /// nothing, bodies that have to wait.
 pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
+    let mut doubts = replacement_doubts(scene, state);
+    doubts.extend(sleep_doubt(scene));
+    for inlet in &state.model.rules.inlets {
+        doubts.extend(inlet_doubts(scene, state, inlet));
+    }
+    doubts
+}
+
+/// Clumps that may never be replaced.
+fn replacement_doubts(scene: &Scene, state: &State) -> Vec<String> {
     let mut doubts = Vec::new();
     for (template, trigger) in state
         .clumps
@@ -177,60 +187,67 @@ pub(super) fn doubts(scene: &Scene, state: &State) -> Vec<String> {
             ));
         }
     }
-    if let (Some(sleep), g) = (&scene.sleep, Vector3::from(scene.run.gravity_m_s2).norm()) {
-        // Time on the way up and down again.
-        let turning_s = 2.0 * sleep.speed_m_s / g;
-        if sleep.after_s < turning_s {
+    doubts
+}
+
+/// Bodies that fall asleep in flight.
+fn sleep_doubt(scene: &Scene) -> Option<String> {
+    let sleep = scene.sleep.as_ref()?;
+    let g = Vector3::from(scene.run.gravity_m_s2).norm();
+    // Time on the way up and down again.
+    let turning_s = 2.0 * sleep.speed_m_s / g;
+    (sleep.after_s < turning_s).then(|| {
+        format!(
+            "sleep: a body that flies is slower than {} m/s for {} s where it turns, and falls asleep there: sleep.after should be longer",
+            significant(sleep.speed_m_s, 4),
+            significant(turning_s, 4)
+        )
+    })
+}
+
+/// An inlet that starts too late, whose bodies are removed immediately, or have to wait.
+fn inlet_doubts(scene: &Scene, state: &State, inlet: &Inlet) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if inlet.between_s[0] >= scene.run.end_time_s {
+        doubts.push(format!(
+            "inlet '{}': it starts at {} s, and the run ends at {} s",
+            inlet.name,
+            significant(inlet.between_s[0], 6),
+            significant(scene.run.end_time_s, 6)
+        ));
+    }
+    let gate = state.model.rules.regions[inlet.region].bounds();
+    for outlet in state
+        .model
+        .rules
+        .outlets
+        .iter()
+        .filter(|outlet| outlet.removes_outside)
+    {
+        if !gate.overlaps(&state.model.rules.regions[outlet.region].bounds()) {
             doubts.push(format!(
-                "sleep: a body that flies is slower than {} m/s for {} s where it turns, and falls asleep there: sleep.after should be longer",
-                significant(sleep.speed_m_s, 4),
-                significant(turning_s, 4)
+                "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed immediately",
+                outlet.name, inlet.name
             ));
         }
     }
-    for inlet in &state.model.rules.inlets {
-        if inlet.between_s[0] >= scene.run.end_time_s {
+    if let Some(most_per_s) = most_per_s(inlet, state) {
+        let wanted = match inlet.feed {
+            Feed::Number(per_s) => per_s,
+            Feed::Mass(kg_s) => {
+                let mean = inlet.templates.iter();
+                let mean = mean
+                    .map(|(t, fraction)| fraction * state.clumps.templates[*t as usize].mass_kg);
+                kg_s / mean.sum::<f64>()
+            }
+        };
+        if wanted > most_per_s {
             doubts.push(format!(
-                "inlet '{}': it starts at {} s, and the run ends at {} s",
+                "inlet '{}': {} bodies per second are wanted, and at its velocity places for about {} become free: some will wait",
                 inlet.name,
-                significant(inlet.between_s[0], 6),
-                significant(scene.run.end_time_s, 6)
+                significant(wanted, 4),
+                significant(most_per_s, 2)
             ));
-        }
-        let gate = state.model.rules.regions[inlet.region].bounds();
-        for outlet in state
-            .model
-            .rules
-            .outlets
-            .iter()
-            .filter(|outlet| outlet.removes_outside)
-        {
-            if !gate.overlaps(&state.model.rules.regions[outlet.region].bounds()) {
-                doubts.push(format!(
-                    "outlet '{}': the region of inlet '{}' lies outside its own, so what is fed is removed immediately",
-                    outlet.name, inlet.name
-                ));
-            }
-        }
-        if let Some(most_per_s) = most_per_s(inlet, state) {
-            let wanted = match inlet.feed {
-                Feed::Number(per_s) => per_s,
-                Feed::Mass(kg_s) => {
-                    let mean = inlet.templates.iter();
-                    let mean = mean.map(|(t, fraction)| {
-                        fraction * state.clumps.templates[*t as usize].mass_kg
-                    });
-                    kg_s / mean.sum::<f64>()
-                }
-            };
-            if wanted > most_per_s {
-                doubts.push(format!(
-                    "inlet '{}': {} bodies per second are wanted, and at its velocity places for about {} become free: some will wait",
-                    inlet.name,
-                    significant(wanted, 4),
-                    significant(most_per_s, 2)
-                ));
-            }
         }
     }
     doubts

@@ -112,12 +112,11 @@ fn forwards(along: Vector3<f64>) -> Vector3<f64> {
 
 type Refusal = (String, &'static str);
 
-/// A beam between pins.
-fn beam(
-    scene: &Scene,
-    test: &Test,
-    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
-) -> std::result::Result<Setup, Refusal> {
+/// A point of the axis of a pin, m, and the unit vector along it.
+type Pin = (Vector3<f64>, Vector3<f64>);
+
+/// The pins of a bending test that load it, and those that support it.
+fn bending_pins(scene: &Scene, test: &Test) -> std::result::Result<[Vec<Pin>; 2], Refusal> {
     let (loads, supports): (Vec<_>, Vec<_>) = scene
         .walls
         .iter()
@@ -138,13 +137,19 @@ fn beam(
             "add or remove walls, and name those that load in moves",
         ));
     }
-    let pins = |walls: &[(&String, &Wall)]| {
-        walls
-            .iter()
-            .map(|(name, wall)| pin(name, wall))
-            .collect::<std::result::Result<Vec<_>, _>>()
+    let pins = |walls: &[(&String, &Wall)]| -> std::result::Result<Vec<Pin>, Refusal> {
+        walls.iter().map(|(name, wall)| pin(name, wall)).collect()
     };
-    let (loads, supports) = (pins(&loads)?, pins(&supports)?);
+    Ok([pins(&loads)?, pins(&supports)?])
+}
+
+/// A beam between pins.
+fn beam(
+    scene: &Scene,
+    test: &Test,
+    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
+) -> std::result::Result<Setup, Refusal> {
+    let [loads, supports] = bending_pins(scene, test)?;
     let direction = Vector3::from(test.direction);
     let across = loads[0].1;
     let along = across.cross(&direction);
@@ -161,7 +166,7 @@ fn beam(
         ));
     }
     let along = forwards(along.normalize());
-    let place = |pins: &[(Vector3<f64>, Vector3<f64>)]| -> Vec<f64> {
+    let place = |pins: &[Pin]| -> Vec<f64> {
         let mut places: Vec<f64> = pins.iter().map(|(place, _)| place.dot(&along)).collect();
         places.sort_by(f64::total_cmp);
         places
@@ -208,7 +213,7 @@ fn beam(
 }
 
 /// Middle of a pin and unit vector along it.
-fn pin(name: &str, wall: &Wall) -> std::result::Result<(Vector3<f64>, Vector3<f64>), Refusal> {
+fn pin(name: &str, wall: &Wall) -> std::result::Result<Pin, Refusal> {
     let WallShape::Cylinder { from_m, to_m, .. } = &wall.shape else {
         let problem = format!("the wall '{name}' is no cylinder, which pins are");
         return Err((

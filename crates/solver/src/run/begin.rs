@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
+use dem_results::ResultsFolder;
 use dem_scene::Scene;
 
 use super::events::{change_step, new_step};
@@ -73,12 +74,7 @@ impl<'a> Run<'a> {
     pub(super) fn begin(plan: Plan, scene: &'a Scene, settings: RunSettings<'a>) -> Result<Self> {
         let mut settings = settings;
         let mut probes = probes(scene, &plan);
-        let watch = match (&scene.test, &plan.test, settings.test.take()) {
-            (Some(test), Some(setup), Some(of_test)) => {
-                Some(Watch::new(scene, test, setup.clone(), of_test, &plan))
-            }
-            _ => None,
-        };
+        let watch = watch_of_test(scene, &plan, &mut settings);
         let Plan {
             mut state,
             mut bodies,
@@ -121,20 +117,8 @@ impl<'a> Run<'a> {
         if let Some(((folder, fingerprint), walls)) = settings.folder.zip(fingerprint).zip(walls) {
             let columns = series::columns(scene.walls.keys(), &probes);
             let continued = is_continued.then_some(&progress);
-            let has_fragments = state.clusters.is_some();
-            let mut open = Files::open(
-                folder,
-                fingerprint,
-                (order, walls),
-                &columns,
-                has_fragments,
-                continued,
-            )?;
-            open.discharge = open_discharge(folder, &state, continued)?;
-            if let Some(order) = of_pictures {
-                let continued = is_continued.then_some((&state, progress.pictures));
-                open.pictures = Some(Pictures::open(folder, order, continued)?);
-            }
+            let orders = (order, walls, of_pictures);
+            let mut open = open_files(folder, fingerprint, orders, &columns, &state, continued)?;
             if let Some(detail) = &changed_step {
                 open.events.append(&[new_step(&state, "resumed", detail)])?;
             }
@@ -168,4 +152,43 @@ impl<'a> Run<'a> {
             processor_before_s: processor_time_s(),
         })
     }
+}
+
+/// The laboratory test of the scene, watched. None: the scene has none.
+fn watch_of_test<'a>(
+    scene: &'a Scene,
+    plan: &Plan,
+    settings: &mut RunSettings<'_>,
+) -> Option<Watch<'a>> {
+    let of_test = settings.test.take()?;
+    let (test, setup) = (scene.test.as_ref()?, plan.test.as_ref()?);
+    Some(Watch::new(scene, test, setup.clone(), of_test, plan))
+}
+
+/// The files of a run, new or at the point where it is `continued` in this state. `orders`: what
+/// frames, walls and pictures show.
+fn open_files<'a>(
+    folder: &'a ResultsFolder,
+    fingerprint: u64,
+    (frames, walls, pictures): (FrameOrder, WallOutput, Option<Order>),
+    columns: &[String],
+    state: &State,
+    continued: Option<&Progress>,
+) -> Result<Files<'a>> {
+    let has_fragments = state.clusters.is_some();
+    let orders = (frames, walls);
+    let mut files = Files::open(
+        folder,
+        fingerprint,
+        orders,
+        columns,
+        has_fragments,
+        continued,
+    )?;
+    files.discharge = open_discharge(folder, state, continued)?;
+    if let Some(order) = pictures {
+        let continued = continued.map(|at| (state, at.pictures));
+        files.pictures = Some(Pictures::open(folder, order, continued)?);
+    }
+    Ok(files)
 }

@@ -192,7 +192,7 @@ fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
 /// Sum of mass times position of all particles, kg m. Length 3.
 fn moments(state: &State) -> [f64; 3] {
     let p = &state.particles;
-    crate::stages::motion::ordered_sums(p.len(), |i| {
+    crate::stages::chunks::ordered_sums(p.len(), |i| {
         let mass_kg = 1.0 / p.motions[i].inverse_mass;
         let [x, y, z, _] = p.poses[i].position_m;
         [x, y, z].map(|x| mass_kg * x)

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
+use super::chunks::CHUNK;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
@@ -15,7 +16,6 @@ use crate::stages::blocks::{
 };
 use crate::stages::damped::damping_forces;
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_lanes};
-use crate::stages::motion::CHUNK;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};

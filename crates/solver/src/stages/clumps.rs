@@ -3,7 +3,7 @@
 
 use nalgebra::{Rotation3, Vector3};
 
-use super::pieces::clusters_bytes;
+use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::rigid::rotation_vector;
 use crate::physics::rotation;
@@ -39,7 +39,7 @@ pub(crate) const CLUMPS: Stage = Stage {
     },
     bytes: |state| {
         let templates = state.clumps.templates.iter();
-        clusters_bytes(state, CLUMPS.name)
+        clusters_bytes(state, ClusterUser::Clumps)
             + size_of::<Clump>() * state.clumps.all.len()
             + size_of_val(&state.clumps.near[..])
             + templates.map(|template| template.bytes()).sum::<usize>()

@@ -4,12 +4,13 @@
 //! half at its end. So the ledger is as accurate as the step: its error falls with the square of
 //! the time step.
 
+use super::chunks::{ordered_sum, ordered_sums};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::contact::law::ContactKind;
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
-use crate::stages::motion::{ordered_sum, ordered_sums, power_w};
+use crate::stages::motion::power_w;
 use crate::stages::supports::reactions_work_j;
 use crate::stages::totals::{elastic_energy, kinetic_energy, momenta, synchronous_motions};
 use crate::state::State;

@@ -8,9 +8,9 @@ use nalgebra::Vector3;
 
 use self::moved::{Due, due, find_left, may_be_due, refer_clump, refer_particle, use_up};
 use super::clumps;
+use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::contacts::{list_contacts, relist};
 use super::neighbours::overlapping_pairs;
-use super::pieces::clusters_bytes;
 use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{list_near, reached, reaches};
@@ -36,7 +36,7 @@ pub(crate) const SEARCH: Stage = Stage {
         let of_contacts = contacts.map_or(0, |c| {
             size_of_val(&c.pairs[..]) + size_of_val(&c.lost_j[..]) + c.materials.len()
         });
-        of_contacts + clusters_bytes(state, SEARCH.name)
+        of_contacts + clusters_bytes(state, ClusterUser::Contacts)
     },
     saving: NO_SAVING,
 };

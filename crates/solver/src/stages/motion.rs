@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::clumps::awake;
 use super::stage::{NO_SAVING, Need, Saving, Stage};
 use crate::physics::rigid::{room_to_small, turn, turn_a_little};
+use crate::stages::chunks::{CHUNK, ordered_sum};
 use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
 use crate::state::State;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
@@ -106,9 +107,6 @@ pub(crate) fn drift_particles(state: &mut State) -> usize {
     state.fastest_m_s = drift(&mut state.particles, state.time_step_s, moved_m);
     0
 }
-
-/// Particles handled by one task.
-pub const CHUNK: usize = 1024;
 
 /// Changes the velocities of the free particles by the wrenches, by the resisting wrenches (each
 /// list empty or with one for each particle) and by gravity, over the time `kick_s`.
@@ -322,37 +320,4 @@ pub fn power_w(wrenches: &[Wrench], particles: &Particles) -> f64 {
             })
             .sum()
     })
-}
-
-/// The sum of `term` over 0..count, in an order that does not depend on the number of threads.
-pub(crate) fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let [sum] = ordered_sums(count, |i| [term(i)]);
-    sum
-}
-
-/// Sums of several terms over 0..count, in an order that does not depend on the number of threads.
-pub(crate) fn ordered_sums<const N: usize>(
-    count: usize,
-    terms: impl Fn(usize) -> [f64; N] + Sync,
-) -> [f64; N] {
-    let of_chunk = |chunk: usize| {
-        let end = ((chunk + 1) * CHUNK).min(count);
-        (chunk * CHUNK..end).fold([0.0; N], |sums, i| add(sums, terms(i)))
-    };
-    if count <= CHUNK {
-        return of_chunk(0);
-    }
-    (0..count.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(of_chunk)
-        .collect::<Vec<_>>()
-        .into_iter()
-        .fold([0.0; N], add)
-}
-
-fn add<const N: usize>(mut sums: [f64; N], terms: [f64; N]) -> [f64; N] {
-    for (sum, term) in sums.iter_mut().zip(terms) {
-        *sum += term;
-    }
-    sums
 }

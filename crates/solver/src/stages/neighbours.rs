@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use self::grid::{Grids, Seeker};
 use self::groups::Groups;
 use self::meetings::{Large, Meetings};
-use crate::stages::motion::CHUNK;
+use super::chunks::CHUNK;
 use crate::state::particles::Pose;
 use crate::state::references::Ball;
 

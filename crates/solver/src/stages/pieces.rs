@@ -1,5 +1,7 @@
 //! The search for fragments of clusters in which bonds have broken.
 
+use super::bonds::any_bond;
+use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
 use crate::state::clusters::Clusters;
@@ -12,7 +14,7 @@ pub(crate) const CLUSTERS: Stage = Stage {
     need: |state, _| {
         let breaks = state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
         Need::of(
-            state.clusters.is_some() && breaks && super::bonds::any_bond(state, |_| true),
+            state.clusters.is_some() && breaks && any_bond(state, |_| true),
             || {
                 format!(
                     "every {} steps, if bonds have broken",
@@ -22,7 +24,7 @@ pub(crate) const CLUSTERS: Stage = Stage {
             "no bond can break",
         )
     },
-    bytes: |state| clusters_bytes(state, CLUSTERS.name),
+    bytes: |state| clusters_bytes(state, ClusterUser::Fragments),
     saving: NO_SAVING,
 };
 
@@ -66,22 +68,5 @@ fn search_for_fragments(contacts: &mut Contacts, clusters: &Clusters, fragments:
     for id in fragments.iter().filter(|id| Some(*id) != largest) {
         let members = clusters.members(*id);
         contacts.scratch.references.due.extend(members);
-    }
-}
-
-/// Bytes of the cluster data, if the stage of this name needs them. They belong to the search for
-/// clusters if bonds can break; otherwise to the contacts, which need to tell bodies apart;
-/// otherwise to clumps, or to measures that count fragments.
-pub(super) fn clusters_bytes(state: &State, stage: &str) -> usize {
-    let breaks = (state.bonds.rules.iter()).any(|rule| rule.criteria.is_some());
-    let owner = match (breaks, &state.contacts) {
-        (true, _) => CLUSTERS.name,
-        (false, Some(_)) => super::listing::SEARCH.name,
-        (false, None) if !state.clumps.templates.is_empty() => super::clumps::CLUMPS.name,
-        (false, None) => super::watching::OUTPUT.name,
-    };
-    match &state.clusters {
-        Some(clusters) if stage == owner => clusters.bytes(),
-        _ => 0,
     }
 }

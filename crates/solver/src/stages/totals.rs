@@ -1,9 +1,9 @@
 //! Totals of a state: velocities at the time of its positions, kinetic and elastic energy, momenta.
 
+use super::chunks::{CHUNK, ordered_sum, ordered_sums};
 use crate::physics::bond::total::BondEnergy;
 use crate::stages::clumps::synchronous;
 use crate::stages::loads::add_resultant;
-use crate::stages::motion::{CHUNK, ordered_sum, ordered_sums};
 use crate::stages::supports::velocity_at_kick;
 use crate::state::State;
 use crate::state::clumps::Clumps;

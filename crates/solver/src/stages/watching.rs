@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 
+use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::contacts::{overlap_m, pair_force_n};
-use super::pieces::clusters_bytes;
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{gap_m, touch_force_n};
 use crate::state::State;
@@ -20,7 +20,7 @@ pub(crate) const OUTPUT: Stage = Stage {
     need: |_, _| Need::Needed("measures, files and pictures".to_owned()),
     bytes: |state| {
         let watched = state.watches.iter().map(|watch| watch.of.bytes());
-        clusters_bytes(state, OUTPUT.name) + watched.sum::<usize>()
+        clusters_bytes(state, ClusterUser::Measures) + watched.sum::<usize>()
     },
     saving: NO_SAVING,
 };

@@ -333,7 +333,7 @@ impl Bonds {
 mod histories {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use super::History;
+    use crate::state::bonds::History;
 
     pub(super) fn serialize<S: Serializer>(
         histories: &[History],

@@ -1,8 +1,8 @@
 //! The arrays of a .vtp file as walls.
 
-use super::contents::{check_count, float, particle, texts};
 use super::decode::{Number, Values};
 use super::header::{Array, Counts, Role};
+use super::numbers::{check_count, float, particle, texts};
 use crate::body::stored_walls::{FIXED_WALLS, StoredWalls, WALL_FORCES, WALL_NAMES};
 use crate::diagnostic::Result;
 

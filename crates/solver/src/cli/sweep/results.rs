@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::program::own_command;
-use dem_io::safe_write::{write_file, write_standard_json, write_standard_output};
+use dem_io::safe_write::write_file;
+use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
@@ -18,7 +19,8 @@ use dem_study::jobs::{Job, arguments, refuse_unlistable, scene_arguments, shell_
 use dem_study::page::page;
 use dem_study::plot::plot;
 use dem_study::response_plot::{found_plots, plots};
-use dem_study::rows::{Row, SweepTable};
+use dem_study::row::Row;
+use dem_study::sweep_table::SweepTable;
 use dem_study::text::{csv, find_csv, response_csv};
 
 /// Prints one sh command for each job.

@@ -2,9 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::super::{Bounds, Touch};
 use super::Mesh;
 use super::triangle::Triangle;
+use crate::geometry::touch::Touch;
+use dem_io::Bounds;
 
 /// Offsets of rays from the point, in fractions of the diagonal: with them no ray runs along a
 /// face, or through an edge or a corner, of typical models. The majority of three rays is right.

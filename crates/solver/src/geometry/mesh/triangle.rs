@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::super::Touch;
+use crate::geometry::touch::Touch;
 
 /// Regions of a triangle: 0 its face; 1, 2, 3 the edges from its first, second, third corner; 4, 5,
 /// 6 its corners.

@@ -2,9 +2,10 @@
 //! wall: relaxation, law, friction, torques and losses.
 
 use super::kinematics::{ContactKinematics, torques};
+use super::normal::NormalLaw;
 use super::relaxation::relaxed;
 use super::rolling::RollingFriction;
-use super::{ContactSprings, Damped, NormalLaw, Response, response};
+use super::{ContactSprings, Damped, Response, response};
 use crate::physics::number::{Number, Vec3};
 
 /// History of a contact.

@@ -9,8 +9,8 @@
 //!   1992), and the [ratio zeta](super::restitution) that gives the required restitution.
 
 use super::kinematics::ContactKinematics;
+use super::normal::{ImpactLaw, NormalLaw, NormalResponse};
 use super::pair_parameters::{Elastic, PairInput, PairParameters};
-use super::{ImpactLaw, NormalLaw, NormalResponse};
 use crate::physics::number::Number;
 use serde::Serialize;
 

@@ -5,8 +5,9 @@ use super::assembly::{Assembled, StoredContact, assemble};
 use super::hertz_mindlin::HertzMindlin;
 use super::kinematics::ContactKinematics;
 use super::linear::Linear;
+use super::normal::{ImpactLaw, NormalLaw};
 use super::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
-use super::{ImpactLaw, Linearised, NormalLaw, linearised};
+use super::{Linearised, linearised};
 use crate::physics::number::Number;
 use serde::Serialize;
 

@@ -9,8 +9,8 @@
 //! ends meet, the first kick contains only the fraction of the dashpot's force since then.
 
 use super::kinematics::ContactKinematics;
+use super::normal::{ImpactLaw, NormalLaw, NormalResponse};
 use super::pair_parameters::{PairInput, PairParameters};
-use super::{ImpactLaw, NormalLaw, NormalResponse};
 use crate::physics::number::Number;
 use serde::Serialize;
 

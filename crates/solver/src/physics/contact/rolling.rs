@@ -13,8 +13,8 @@
 //!   towards the limit, so that it fades out instead of jumping to 0 when the spring begins to
 //!   slip; and the spring is treated like the tangential one when the load changes.
 
-use super::NormalResponse;
 use super::kinematics::{ContactKinematics, FrameRotation};
+use super::normal::NormalResponse;
 use super::slider::{TangentialStep, coulomb_return_map};
 use crate::physics::number::{Number, Vec3};
 use serde::Serialize;

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, Vector3};
 
+use super::degrees_of_freedom::Node;
 use super::direct::{DirectFactor, NoFactor};
 use super::matrix::Matrix;
 
@@ -19,19 +20,6 @@ const MOST_ITERATIONS: usize = 5000;
 /// Addition to the diagonal of the coarse matrix, relative to its largest entry: groups without a
 /// rigid motion of their own have empty rows.
 const REGULAR: f64 = 1e-12;
-
-/// The particle and the degree of freedom (0 to 5) of an unknown, and the place of the particle, m.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Node {
-    /// Number of the particle.
-    pub particle: usize,
-    /// Translation along x, y, z, or rotation about x, y, z.
-    pub freedom: usize,
-    /// Initial centre, m. Length 3.
-    pub place_m: [f64; 3],
-    /// Radius, m.
-    pub radius_m: f64,
-}
 
 /// A matrix, and what approximates its inverse.
 #[derive(Debug)]

@@ -6,7 +6,18 @@ use crate::state::State;
 use crate::state::loads::factor_at;
 use crate::state::particles::Pose;
 
-use super::conjugate::Node;
+/// The particle and the degree of freedom (0 to 5) of an unknown, and the place of the particle, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Node {
+    /// Number of the particle.
+    pub particle: usize,
+    /// Translation along x, y, z, or rotation about x, y, z.
+    pub freedom: usize,
+    /// Initial centre, m. Length 3.
+    pub place_m: [f64; 3],
+    /// Radius, m.
+    pub radius_m: f64,
+}
 
 /// Marks a held degree of freedom.
 pub(crate) const HELD: usize = usize::MAX;

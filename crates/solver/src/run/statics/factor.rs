@@ -1,6 +1,7 @@
 //! Linear systems with the tangent: by factors, or without them if they would be large.
 
-use super::conjugate::{ConjugateGradients, Node};
+use super::conjugate::ConjugateGradients;
+use super::degrees_of_freedom::Node;
 use super::direct::{DirectFactor, NoFactor};
 use super::matrix::Matrix;
 

@@ -4,7 +4,7 @@ use crate::physics::contact::NormalLaw;
 use crate::physics::contact::kinematics::{ContactKinematics, contact_kinematics};
 use crate::physics::contact::law::ContactWork;
 use crate::physics::contact::rolling::RollingFriction;
-use crate::stages::motion::{ordered_sum, ordered_sums};
+use crate::stages::chunks::{ordered_sum, ordered_sums};
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::particles::{Particles, Pose};
 use nalgebra::Vector3;

@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use pulp::cast;
 use pulp::x86::V3;
 
-use super::{FOUR, Lanes, MOST};
+use super::common::{FOUR, Lanes, MOST};
 use crate::physics::number::Number;
 
 /// Four numbers in an AVX2 register.

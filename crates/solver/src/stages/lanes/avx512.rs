@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use pulp::cast;
 use pulp::x86::V4;
 
-use super::{Lanes, MOST};
+use super::common::{Lanes, MOST};
 use crate::physics::number::Number;
 
 /// Eight numbers in an AVX-512 register.

@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use crate::stages::motion::CHUNK;
+use crate::stages::chunks::CHUNK;
 use crate::state::State;
 use crate::state::clumps::{Clump, Clumps};
 use crate::state::contacts::Contacts;

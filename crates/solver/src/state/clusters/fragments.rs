@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Serialize;
 
-use super::Clusters;
+use super::detection::Clusters;
 use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::particles::{Motion, Particles};
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::Clusters;
+use super::detection::Clusters;
 use crate::physics::rotation::rotation;
 use crate::shape::inertia::of_spheres;
 use crate::state::clumps::Clumps;

@@ -1,10 +1,11 @@
 //! The data of a .vtp file as a frame of a run, its particles or its walls.
 
-use super::{Contents, OfFrame, check_count};
+use super::{Contents, OfFrame};
 use crate::body::stored_frame::{self as frame, StoredFrame};
 use crate::body::stored_particles::StoredParticles;
 use crate::body::stored_walls::StoredWalls;
 use crate::body::vtp::decode::DAMAGED;
+use crate::body::vtp::numbers::check_count;
 use crate::diagnostic::{Diagnostic, Result};
 
 impl Contents {

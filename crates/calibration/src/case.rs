@@ -1,0 +1,147 @@
+//! What a calibration has done so far: its tests, in rounds, and how it ended.
+
+use dem_laboratory::Statistic;
+use serde::{Deserialize, Serialize};
+
+use crate::unknown::Unknown;
+
+/// The test of one packing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// The result of each unknown, in its unit. None: the test did not give it.
+    pub results: Vec<Option<f64>>,
+    /// Where there is no result, a value that it is at least, in its unit: the stress at which the
+    /// body was still whole. One for each unknown.
+    pub at_least: Vec<Option<f64>>,
+    /// Displacement, m, and load, N.
+    pub curve: Vec<[f64; 2]>,
+    /// Reasons to doubt the test, a sentence each.
+    pub doubts: Vec<String>,
+    /// Number of bonds that broke before the largest load.
+    pub broken_at_peak: usize,
+    /// Run time, s.
+    pub wall_s: f64,
+}
+
+/// One test of each packing with the same factors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Round {
+    /// Factor on the numbers of each unknown.
+    pub factors: Vec<f64>,
+    /// One for each packing; None: not done yet.
+    pub trials: Vec<Option<Trial>>,
+}
+
+impl Round {
+    /// Mean and scatter of a result. None: no packing has it.
+    pub fn statistic(&self, unknown: usize) -> Option<Statistic> {
+        let trials = self.trials.iter().flatten();
+        let values: Vec<f64> = trials.filter_map(|trial| trial.results[unknown]).collect();
+        // A mean over some of the packings only is not that of all.
+        (values.len() == self.trials.len()).then(|| Statistic::of(&values))
+    }
+
+    /// Mean of a result.
+    pub fn mean(&self, unknown: usize) -> Option<f64> {
+        self.statistic(unknown).map(|statistic| statistic.mean)
+    }
+
+    /// (mean - target)/target of each unknown.
+    pub fn deviations(&self, unknowns: &[Unknown]) -> Vec<Option<f64>> {
+        let of = |(at, unknown): (usize, &Unknown)| {
+            self.mean(at).map(|mean| mean / unknown.target - 1.0)
+        };
+        unknowns.iter().enumerate().map(of).collect()
+    }
+
+    /// The largest value that a result of a packing is at least, if there are any.
+    pub(crate) fn largest_bound(&self, unknown: usize) -> Option<f64> {
+        let trials = self.trials.iter().flatten();
+        let bounds = trials.filter_map(|trial| trial.results[unknown].or(trial.at_least[unknown]));
+        bounds.reduce(f64::max)
+    }
+}
+
+/// The first factors, from tests without time steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    /// Factor on the numbers of each unknown.
+    pub factors: Vec<f64>,
+    /// Number of tests without steps.
+    pub tests: usize,
+    /// Run time, s.
+    pub wall_s: f64,
+}
+
+/// How a calibration ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum End {
+    /// All mean results are within their tolerances.
+    Met,
+    /// They are not, but each target is within the 95 % confidence interval of its mean.
+    WithinScatter,
+    /// The problem, and a remedy.
+    NotMet(String, String),
+}
+
+/// A calibration of one set of packings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// Its name: the sizes of the spheres. Empty: there is only one.
+    pub name: String,
+    /// Particles of the first packing.
+    pub particles: usize,
+    /// Bonds of the first packing.
+    pub bonds: usize,
+    /// Smallest extent of the body over the mean diameter of its spheres.
+    pub spheres_across: f64,
+    /// The first factors. None: 1.
+    pub start: Option<Start>,
+    /// The rounds.
+    pub rounds: Vec<Round>,
+    /// The round that is the result, and how it ended. None: it has not ended.
+    pub end: Option<(usize, End)>,
+    /// The test of the first packing with the numbers of the result at twice the rate. None: not
+    /// done.
+    pub at_twice_the_rate: Option<Trial>,
+    /// Why there is no such test although the scene asks for it.
+    pub rate_problem: Option<String>,
+}
+
+impl Case {
+    /// The round that is the result, or the last one.
+    pub fn result(&self) -> Option<&Round> {
+        match &self.end {
+            Some((at, _)) => self.rounds.get(*at),
+            None => self.rounds.last(),
+        }
+    }
+
+    /// True if its targets are met, at least within the scatter of the packings.
+    pub fn is_met(&self) -> bool {
+        matches!(&self.end, Some((_, End::Met | End::WithinScatter)))
+    }
+
+    /// Problem and remedy of a target that is not met.
+    pub fn problem(&self) -> Option<(String, String)> {
+        match &self.end {
+            Some((_, End::NotMet(problem, remedy))) => Some((problem.clone(), remedy.clone())),
+            _ => None,
+        }
+    }
+
+    /// True if the test at twice the rate has been done, or has failed.
+    pub fn has_rate_check(&self) -> bool {
+        self.at_twice_the_rate.is_some() || self.rate_problem.is_some()
+    }
+
+    /// Run time of all tests, s, and their number.
+    pub fn cost(&self) -> (f64, usize) {
+        let trials = || {
+            self.rounds
+                .iter()
+                .flat_map(|round| round.trials.iter().flatten())
+        };
+        (trials().map(|trial| trial.wall_s).sum(), trials().count())
+    }
+}

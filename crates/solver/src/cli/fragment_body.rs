@@ -1,0 +1,17 @@
+//! A fragment of a frame as a body that says where it comes from.
+
+use std::path::Path;
+
+use dem_io::body::StoredFrame;
+use dem_io::{Body, Result};
+
+/// The fragment `id` of a frame, whose file is `path`.
+///
+/// # Errors
+/// The frame has no such fragment.
+pub(super) fn fragment_body(frame: &StoredFrame, path: &Path, id: u32) -> Result<Body> {
+    let mut body = frame.body(id)?;
+    body.about.program = Some(concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned());
+    body.about.source = Some(format!("{}: fragment {id}", path.display()));
+    Ok(body)
+}

@@ -1,0 +1,32 @@
+//! The threads of a command.
+
+use dem_io::{Diagnostic, Result};
+
+/// Does the work on as many threads as wanted, 1 to 1024, or on all cores; it is told their number.
+///
+/// # Errors
+/// Another number (exit code 2); threads that cannot be started (exit code 1); those of the work.
+pub(super) fn in_pool(
+    wanted: Option<usize>,
+    work: impl FnOnce(usize) -> Result<()> + Send,
+) -> Result<()> {
+    if let Some(threads @ (0 | 1025..)) = wanted {
+        return Err(Diagnostic::input(
+            "--threads",
+            format!("{threads} is not between 1 and 1024"),
+            "leave it out for all cores",
+        ));
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(wanted.unwrap_or(0))
+        .build()
+        .map_err(|error| {
+            Diagnostic::failed(
+                "--threads",
+                format!("the threads cannot be started: {error}"),
+                "ask for fewer",
+            )
+        })?;
+    let threads = pool.current_num_threads();
+    pool.install(|| work(threads))
+}

@@ -1,0 +1,101 @@
+//! Parts of the summary that only some runs have: adaptive steps, bodies that come and go, sleep.
+
+use serde::Serialize;
+
+use crate::stages::ledger::over;
+use crate::state::State;
+use crate::state::sleep::Sleep;
+
+/// Range of an adaptive step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AdaptiveSummary {
+    /// Smallest step, s.
+    pub smallest_step_s: f64,
+    /// Largest step, s.
+    pub largest_step_s: f64,
+    /// Number of its changes.
+    pub changes: u64,
+}
+
+/// Bodies added, removed and replaced.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PopulationSummary {
+    /// Rigid clumps of two or more spheres at the end.
+    pub clumps: usize,
+    /// Single loose spheres of clumps and inlets at the end.
+    pub single_spheres: usize,
+    /// Clumps that became bonded clusters.
+    pub replaced: u32,
+    /// Clusters and fragments that became rigid clumps again.
+    pub restored: u32,
+    /// Bodies fed by inlets.
+    pub fed: u32,
+    /// Their mass, kg.
+    pub fed_kg: f64,
+    /// Bodies that had to wait for a free position.
+    pub delayed: u32,
+    /// Bodies that inlets have still to feed at the end.
+    pub waiting: u32,
+    /// Bodies and fragments discharged through outlets.
+    pub discharged: u32,
+    /// Their mass, kg.
+    pub discharged_kg: f64,
+    /// Fraction of bond updates that was skipped because bodies were clumps.
+    pub bond_updates_skipped: f64,
+    /// Fraction of the spheres of a clump that nothing can touch, the mean of all templates.
+    pub inner_sphere_fraction: f64,
+}
+
+impl PopulationSummary {
+    /// From a state at its end. None: no body can be added, removed or replaced.
+    pub fn of(state: &State) -> Option<Self> {
+        let (rules, clumps) = (&state.model.rules, &state.clumps);
+        let population = &state.population;
+        if !state.bodies_change() {
+            return None;
+        }
+        let several = clumps.of_several_spheres();
+        let [done, left_out] = population.bond_steps.map(|count| count as f64);
+        let inner = clumps.templates.iter();
+        let inner: f64 = inner
+            .map(|t| 1.0 - t.outer.len() as f64 / t.spheres.len() as f64)
+            .sum();
+        Some(Self {
+            clumps: several,
+            single_spheres: clumps.all.len() - several,
+            replaced: population.replaced,
+            restored: population.restored,
+            fed: population.inlets.iter().map(|come| come.bodies).sum(),
+            fed_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),
+            delayed: population.inlets.iter().map(|come| come.delayed).sum(),
+            waiting: (rules.inlets.iter().zip(&population.inlets))
+                // Bodies that are due at the very end have not been tried.
+                .map(|(inlet, come)| inlet.owed(come, state.time_s - state.time_step_s))
+                .sum(),
+            discharged: population.outlets.iter().map(|left| left.bodies).sum(),
+            discharged_kg: (population.outlets.iter()).fold(0.0, |sum, left| sum + left.mass_kg),
+            bond_updates_skipped: over(left_out, done + left_out),
+            inner_sphere_fraction: over(inner, clumps.templates.len() as f64),
+        })
+    }
+}
+
+/// Sleeping bodies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SleepSummary {
+    /// Bodies asleep at the end.
+    pub bodies: usize,
+    /// Fraction of particle updates that was skipped because their bodies slept.
+    pub particle_updates_skipped: f64,
+}
+
+impl SleepSummary {
+    /// From the data at the end.
+    pub fn of(sleep: &Sleep) -> Self {
+        let [done, left_out] = sleep.particle_steps.map(|count| count as f64);
+        Self {
+            bodies: sleep.bodies,
+            particle_updates_skipped: over(left_out, done + left_out),
+        }
+    }
+}

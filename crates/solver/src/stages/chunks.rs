@@ -1,0 +1,39 @@
+//! Particles by chunks: what one task handles, and sums that do not depend on the number of threads.
+
+use rayon::prelude::*;
+
+/// Particles handled by one task.
+pub(crate) const CHUNK: usize = 1024;
+
+/// The sum of `term` over 0..count, in an order that does not depend on the number of threads.
+pub(crate) fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let [sum] = ordered_sums(count, |i| [term(i)]);
+    sum
+}
+
+/// Sums of several terms over 0..count, in an order that does not depend on the number of threads.
+pub(crate) fn ordered_sums<const N: usize>(
+    count: usize,
+    terms: impl Fn(usize) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let of_chunk = |chunk: usize| {
+        let end = ((chunk + 1) * CHUNK).min(count);
+        (chunk * CHUNK..end).fold([0.0; N], |sums, i| add(sums, terms(i)))
+    };
+    if count <= CHUNK {
+        return of_chunk(0);
+    }
+    (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(of_chunk)
+        .collect::<Vec<_>>()
+        .into_iter()
+        .fold([0.0; N], add)
+}
+
+fn add<const N: usize>(mut sums: [f64; N], terms: [f64; N]) -> [f64; N] {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        *sum += term;
+    }
+    sums
+}
