@@ -77,21 +77,21 @@ const CASES: [Case; 12] = [
     Case {
         name: "failure",
         stage: FAILURE,
-        bonds: "failure = { von_mises_strength = 1e12 }",
+        bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\" }",
         ..CASE
     },
     Case {
         name: "strength scatter",
         beside: "failure",
         stage: SCATTER,
-        bonds: "failure = { von_mises_strength = 1e12, weibull_modulus = 5 }",
+        bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\", weibull_modulus = 5 }",
         ..CASE
     },
     Case {
         name: "rate strengthening",
         beside: "failure",
         stage: RATES,
-        bonds: "failure = { von_mises_strength = 1e12, rate_strengthening = true }",
+        bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\", rate_strengthening = true }",
         ..CASE
     },
     Case {
@@ -128,7 +128,7 @@ const CASES: [Case; 12] = [
         name: "particle contacts",
         beside: "failure",
         stage: CONTACTS,
-        bonds: "failure = { von_mises_strength = 1e12 }",
+        bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\" }",
         tables: MEETS,
         ..CASE
     },

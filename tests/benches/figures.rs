@@ -56,7 +56,7 @@ stuff-stuff = { restitution = 0.3, friction = 0.5 }
 /// A body of bonded spheres; with a bond table as given.
 fn bonded(bonds: &str, more: &str) -> String {
     format!(
-        "{HEAD}[bonds.stuff]\nyoung_modulus = \"12.05 MPa\"\npoisson_ratio = 0.3\n{bonds}\nfailure = {{ von_mises_strength = \"1 GPa\" }}\n\
+        "{HEAD}[bonds.stuff]\nyoung_modulus = \"12.05 MPa\"\npoisson_ratio = 0.3\n{bonds}\nfailure = {{ von_mises_strength = \"1 GPa\", equivalent_stress = \"axial-in-tension\" }}\n\
          [bodies.cake]\nfile = \"cake.vtp\"\nmaterial = \"stuff\"\nbonds = \"stuff\"\n{more}"
     )
 }

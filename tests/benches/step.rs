@@ -41,7 +41,7 @@ density = "2050 kg/m3"
 young_modulus = "12.05 MPa"
 poisson_ratio = 0.3
 DAMPING
-failure = { von_mises_strength = "185 kPa" }
+failure = { von_mises_strength = "185 kPa", equivalent_stress = "axial-in-tension" }
 [bodies.cake]
 file = "cake.vtp"
 material = "cake"

@@ -89,10 +89,10 @@ pub enum StrainRateMeasure {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub enum EquivalentStress {
     /// "forces-only": the axial stress if it is tensile, and the shear force; no moments.
+    #[default]
     ForcesOnly,
     /// "axial-in-tension": the axial stress if it is tensile, and the bending stress always; shear
     /// and torsion.
-    #[default]
     AxialInTension,
     /// "tensile-edge": axial and bending stress at the edge with the largest tension, if their sum
     /// is tensile.
@@ -229,7 +229,7 @@ pub(super) static FAILURE: Schema = Schema {
         .not_negative(),
         Key::word::<EquivalentStress>(
             "equivalent_stress",
-            "axial-in-tension",
+            "forces-only",
             "Stresses that count in the equivalent stress: `forces-only`, the axial stress if it is tensile, and the shear \
              force, but no moments. The others count shear and torsion, and `axial-in-tension` the axial stress if it is tensile \
              and bending always, `tensile-edge` axial and bending stress at the edge with the largest tension, `bond-in-tension` \

@@ -61,7 +61,9 @@ impl Criterion {
             Self::Tension => format!("tensile_strength = {TENSION_PA:e}"),
             Self::Compression => format!("compressive_strength = {COMPRESSION_PA:e}"),
             Self::Shear => format!("shear_strength = {SHEAR_PA:e}"),
-            Self::VonMises => format!("von_mises_strength = {VON_MISES_PA:e}"),
+            Self::VonMises => format!(
+                "von_mises_strength = {VON_MISES_PA:e}, equivalent_stress = \"axial-in-tension\""
+            ),
         }
     }
 

@@ -32,10 +32,9 @@ const EQUIVALENT_STRESSES: [EquivalentStress; READINGS.len()] = [
 ];
 
 /// Ways to apply the factor: how they are called in the results, and on the page.
-pub(crate) const WAYS: [(&str, &str); 5] = [
+pub(crate) const WAYS: [(&str, &str); 4] = [
     ("none", "none"),
     ("now", "that of the moment"),
-    ("now_without_end", "that of the moment, also above 50/s"),
     ("held", "the largest so far"),
     ("held_without_end", "the largest so far, also above 50/s"),
 ];
@@ -98,7 +97,7 @@ pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
                 if !name.contains(part) || file.exists() {
                     continue;
                 }
-                let body = bench.pack(&Sample { seed, ..row.sample })?;
+                let body = Sample { seed, ..row.sample }.packed(bench)?;
                 eprintln!("{name}");
                 let result = drop(&body, &row.sets(&fall), row.sample.table.strength_pa())?;
                 std::fs::write(file, serde_json::to_vec(&result)?)?;
@@ -205,7 +204,7 @@ fn factors(rate_1_s: f64, held: &mut [f64; 2]) -> [f64; WAYS.len()] {
     for (held, now) in held.iter_mut().zip(now) {
         *held = held.max(now);
     }
-    [1.0, now[0], now[1], held[0], held[1]]
+    [1.0, now[0], held[0], held[1]]
 }
 
 /// Eq. 20 as printed, beyond the 50/s up to which it holds.

@@ -134,7 +134,7 @@ density = 2000
 [bonds.clay]
 young_modulus = "15 MPa"
 poisson_ratio = 0.3
-failure = { von_mises_strength = "0.185 MPa" }
+failure = { von_mises_strength = "0.185 MPa", equivalent_stress = "axial-in-tension" }
 [bodies.bar]
 particles = [[0, 0, 0, 1]]
 material = "clay"

@@ -186,7 +186,7 @@ fn a_bond_without_strength_is_none() {
     for failure in [
         "tensile_strength = 1e-3, shear_strength = 1e-3",
         "tensile_strength = 0, shear_strength = \"0 Pa\"",
-        "von_mises_strength = 0, tensile_strength = 0",
+        "von_mises_strength = 0, equivalent_stress = \"axial-in-tension\", tensile_strength = 0",
         "tensile_strength = 0, shear_strength = 0, rate_strengthening = true, weibull_modulus = 3",
     ] {
         for velocity_m_s in [INTO_EACH_OTHER, BY_EACH_OTHER, AWAY] {
@@ -216,7 +216,7 @@ fn a_bond_without_strength_is_none() {
 fn a_bond_without_strength_holds_a_body_at_rest_together() {
     let text = cube(0.25, "").replace(
         "tensile_strength = 1e9",
-        "tensile_strength = 0, von_mises_strength = 0",
+        "tensile_strength = 0, von_mises_strength = 0, equivalent_stress = \"axial-in-tension\"",
     );
     let Plan { mut state, .. } = planned(&text);
     interact(&mut state);

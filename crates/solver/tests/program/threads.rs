@@ -66,7 +66,7 @@ fn of_a_body_that_is_divided_among_them() {
              output.frames = \"0.25 ms\"\n\
              [bonds.cake]\nyoung_modulus = \"12 MPa\"\npoisson_ratio = 0.3\nformulation = \"{formulation}\"\n\
              damping = {{ damping_ratio = 0.1 }}\n\
-             failure = {{ von_mises_strength = \"20 kPa\", weibull_modulus = 4, rate_strengthening = true }}\n\
+             failure = {{ von_mises_strength = \"20 kPa\", equivalent_stress = \"axial-in-tension\", weibull_modulus = 4, rate_strengthening = true }}\n\
              [bodies.block]\nfile = \"block.vtp\"\nmaterial = \"cake\"\nbonds = \"cake\"\n\
              [groups.foot]\nbox = {{ min = [-1, -1, -1], max = [1, 1, 1e-3] }}\n\
              [groups.head]\nbox = {{ min = [-1, -1, 69e-3], max = [1, 1, 1] }}\n\
