@@ -72,6 +72,7 @@ fn found_point(case: &SearchCase) -> Option<ResponsePoint> {
         settings: Vec::new(),
         values: vec![*at],
         mean: *at,
+        median: *at,
         standard_deviation: Some(half),
     })
 }

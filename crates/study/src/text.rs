@@ -13,10 +13,11 @@ use super::search::{Search, SearchResult};
 /// Largest number of lines of a part of the text.
 const MOST_LINES: usize = 20;
 
-/// The table with one line for each run: comma-separated, texts in quotes where needed.
+/// The table with one line for each run: comma-separated, texts in quotes where needed. A parameter
+/// whose values are numbers in one unit is a number, with the unit in the name of its column.
 pub fn csv(table: &SweepTable) -> String {
     let mut columns = vec!["run".to_owned()];
-    columns.extend(table.axes.iter().map(|axis| axis.name.clone()));
+    columns.extend((table.axes.iter()).map(|axis| with_unit(&axis.name, &axis.unit)));
     for name in ["time_s", "spread_s", "repeats", "steps", "time_step_s"] {
         columns.push(name.to_owned());
     }
@@ -31,7 +32,7 @@ pub fn csv(table: &SweepTable) -> String {
     let mut out = line(&columns);
     for row in &table.runs {
         let mut cells = vec![row.number.to_string()];
-        cells.extend(row.settings.iter().cloned());
+        cells.extend((0..table.axes.len()).map(|at| cell(table, at, row.choice[at])));
         cells.push(number(row.time_s));
         cells.push(number(row.spread_s));
         cells.push(row.times_s.len().to_string());
@@ -75,7 +76,14 @@ pub fn response_csv(table: &SweepTable) -> String {
     let axes: Vec<usize> = shown_axes(table).collect();
     let mut columns = vec!["measure".to_owned(), "unit".to_owned()];
     columns.extend((axes.iter()).map(|at| with_unit(&table.axes[*at].name, &table.axes[*at].unit)));
-    for name in ["runs", "mean", "standard_deviation", "smallest", "largest"] {
+    for name in [
+        "runs",
+        "mean",
+        "standard_deviation",
+        "smallest",
+        "median",
+        "largest",
+    ] {
         columns.push(name.to_owned());
     }
     let mut out = line(&columns);
@@ -90,7 +98,8 @@ pub fn response_csv(table: &SweepTable) -> String {
             cells.push(point.values.len().to_string());
             cells.push(number(Some(point.mean)));
             cells.push(number(point.standard_deviation));
-            cells.extend([smallest, largest].map(|value| number(Some(value))));
+            let ends = [smallest, point.median, largest];
+            cells.extend(ends.map(|value| number(Some(value))));
             out += &line(&cells);
         }
     }
