@@ -9,10 +9,11 @@ use std::path::{Path, PathBuf};
 use dem_io::{Diagnostic, Result, read_input};
 use dem_pictures::label::{colour_bar, label, scale_bar, time_text};
 use dem_pictures::png_file::{Compression, to_png};
-use dem_pictures::{Camera, Image, render};
+use dem_pictures::{Camera, Image, Surface, render};
 use dem_plots::viridis;
+use serde_json::Value;
 
-use crate::folder::Folder;
+use crate::folder::{Folder, is_solid, view_from};
 use gif_film::film;
 use subject::{Colours, Seen};
 
@@ -119,10 +120,12 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
             "name the folder of results of a run whose scene has output.frames",
         ));
     }
-    let from = match order.from {
-        Some(from) => from,
-        None => from_of_scene(path, &folder)?,
+    // A run that has not finished has none, but the viewer may say from where to look.
+    let summary = match (summary(path), order.from) {
+        (Err(_), Some(_)) => Value::Null,
+        (summary, _) => summary?,
     };
+    let from = order.from.or_else(|| view_from(&summary));
     let frames = folder.frames();
     let chosen = chosen(frames, order, kind)?;
     let colours = Colours::of(order.colour_by, path, &chosen)?;
@@ -137,7 +140,8 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
         if seen.is_within(&camera, order.size_px) {
             is_empty.set(false);
         }
-        Ok(drawn(&seen, frame.1, &camera, &colours, every_s))
+        let walls = seen.walls(&|name| is_solid(&summary, name));
+        Ok(drawn(&seen, &walls, frame.1, &camera, &colours, every_s))
     };
     let bytes = match kind {
         PictureKind::Png => to_png(&one(&chosen[0])?, Compression::High),
@@ -183,22 +187,27 @@ fn chosen(
     }
 }
 
-fn from_of_scene(path: &Path, folder: &Folder) -> Result<[f64; 3]> {
+/// The summary of the run.
+fn summary(path: &Path) -> Result<Value> {
     let summary = path.join("summary.json");
     let text = read_input(&summary, "the summary of a run")?;
-    let summary = serde_json::from_slice(&text).map_err(|error| {
+    serde_json::from_slice(&text).map_err(|error| {
         let problem = format!("this is not the summary of a run: {error}");
         Diagnostic::input(
             summary.display().to_string(),
             problem,
             "write the folder again",
         )
-    })?;
-    Ok(folder.subject(&summary).from)
+    })
 }
 
-/// The camera of all pictures: everything in the chosen frames, or a part of it.
-fn camera(order: &PictureOrder, from: [f64; 3], frames: &[(PathBuf, f64)]) -> Result<Camera> {
+/// The camera of all pictures: everything in the chosen frames, or a part of it. Without a direction
+/// it looks as in pictures that are made during a run.
+fn camera(
+    order: &PictureOrder,
+    from: Option<[f64; 3]>,
+    frames: &[(PathBuf, f64)],
+) -> Result<Camera> {
     let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for frame in frames {
         for point in Seen::read(frame)?.points_m() {
@@ -219,16 +228,21 @@ fn camera(order: &PictureOrder, from: [f64; 3], frames: &[(PathBuf, f64)]) -> Re
             [0, 1, 2].map(|k| middle_m[k] + sign(k) * half[k])
         })
         .collect();
-    Ok(Camera::around(
-        from.map(|part| -part),
-        UP,
-        &corners,
-        order.size_px,
-    ))
+    Ok(match from {
+        Some(from) => Camera::around(from.map(|part| -part), UP, &corners, order.size_px),
+        None => Camera::three_quarter(&corners, order.size_px),
+    })
 }
 
-fn drawn(seen: &Seen, time_s: f64, camera: &Camera, colours: &Colours, every_s: f64) -> Image {
-    let mut image = render(camera, &seen.balls(colours), &seen.walls());
+fn drawn(
+    seen: &Seen,
+    walls: &[Surface],
+    time_s: f64,
+    camera: &Camera,
+    colours: &Colours,
+    every_s: f64,
+) -> Image {
+    let mut image = render(camera, &seen.balls(colours), walls);
     if let Some((name, highest)) = colours.scale() {
         colour_bar(&mut image, name, ["0", &highest], &viridis);
     }

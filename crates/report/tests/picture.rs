@@ -96,6 +96,37 @@ fn every_part_of_the_order_changes_the_picture() {
     );
 }
 
+/// A plane is not seen from behind, a surface from a file is; from the front they are alike.
+#[test]
+fn walls_are_drawn_as_during_the_run() {
+    let folder = made();
+    let drawn_as = |shape: &str, from: [f64; 3]| {
+        let mut summary = summary();
+        summary["inputs"]["scene"][format!("walls.floor.{shape}")] = "".into();
+        std::fs::write(out(&folder).join("summary.json"), summary.to_string()).unwrap();
+        let from = Some(from);
+        drawn(&folder, &PictureOrder { from, ..order() })
+    };
+    let [above, below] = [[0.2, -1.0, 0.4], [0.2, -1.0, -0.4]];
+    assert_eq!(drawn_as("plane.point", above), drawn_as("stl", above));
+    let behind = drawn_as("plane.point", below);
+    assert_ne!(behind, drawn_as("stl", below));
+    assert_eq!(behind, drawn_as("box.min", below));
+
+    // Without a direction: that of pictures made during a run. The floor is 2 m long both ways.
+    let usual = drawn(
+        &folder,
+        &PictureOrder {
+            from: None,
+            ..order()
+        },
+    );
+    assert_eq!(usual, drawn_as("box.min", USUAL));
+}
+
+/// From the front, the right and above.
+const USUAL: [f64; 3] = [0.42, -0.80, 0.43];
+
 #[test]
 fn colours_differ_by_what_they_tell() {
     let folder = made();
