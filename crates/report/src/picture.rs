@@ -6,6 +6,7 @@ mod subject;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
+use dem_io::units::show_quantity;
 use dem_io::{Diagnostic, Result, read_input};
 use dem_pictures::label::{colour_bar, label, scale_bar, time_text};
 use dem_pictures::png_file::{Compression, to_png};
@@ -170,6 +171,9 @@ fn chosen(
             Ok(chosen)
         }
         PictureKind::Png => {
+            if let Which::Nearest(time_s) = order.frame {
+                refuse_beyond(time_s, frames)?;
+            }
             let off_s = |number: &usize, time_s: f64| (frames[*number].1 - time_s).abs();
             let number = match order.frame {
                 Which::Last => last,
@@ -185,6 +189,21 @@ fn chosen(
             Ok(vec![frame.clone()])
         }
     }
+}
+
+/// Refuses a time that is further from the frames than they are from each other.
+fn refuse_beyond(time_s: f64, frames: &[(PathBuf, f64)]) -> Result<()> {
+    let [(_, first_s), .., (_, last_s)] = frames else {
+        return Ok(());
+    };
+    let every_s = (last_s - first_s) / (frames.len() - 1) as f64;
+    if (first_s - every_s..=last_s + every_s).contains(&time_s) {
+        return Ok(());
+    }
+    let [asked, first, last] = [time_s, *first_s, *last_s].map(|time| show_quantity(time, "s"));
+    let problem = format!("there are no frames near {asked}");
+    let remedy = format!("the run has frames from {first} to {last}");
+    Err(Diagnostic::input("--time", problem, remedy))
 }
 
 /// The summary of the run.

@@ -190,6 +190,20 @@ fn what_is_not_there_is_named() {
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("there is no frame 3"), "{error}");
     assert!(error.to_string().contains("0 to 2"), "{error}");
+    for (time_s, is_near) in [(1.4, true), (1.6, false), (-0.6, false)] {
+        let order = PictureOrder {
+            frame: Which::Nearest(time_s),
+            ..order
+        };
+        let drawn = picture(&out(&folder), &order, PictureKind::Png);
+        assert_eq!(drawn.is_ok(), is_near, "{time_s} s");
+        if let Err(error) = drawn {
+            assert!(
+                error.to_string().contains("frames from 0 s to 1 s"),
+                "{error}"
+            );
+        }
+    }
     let empty = tempfile::tempdir().unwrap();
     let error = picture(empty.path(), &order, PictureKind::Png).unwrap_err();
     assert!(

@@ -5,7 +5,7 @@ use dem_scene::study::Average;
 
 use super::page::number;
 use super::response::Response;
-use super::response_plot::{found_plots, plots, shown_axes, with_unit};
+use super::response_plot::{average, found_plots, plots, shown_axes, with_unit};
 use super::rows::SweepTable;
 
 /// Largest number of points in a table; the CSV has all of them.
@@ -58,7 +58,11 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
     let averaged = table.average_over.map(|at| &table.axes[at]);
     if let Some(averaged) = averaged {
         page.paragraph(&format!(
-            "Means over {} values of {}; bars show one standard deviation to either side.",
+            "{} over {} values of {}; bars show one standard deviation to either side.",
+            match average(table, response) {
+                Average::Mean => "Means",
+                Average::Median => "Medians",
+            },
             averaged.values.len(),
             averaged.name
         ));

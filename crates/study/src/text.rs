@@ -6,7 +6,7 @@ use dem_io::text::visible;
 use dem_io::units::significant;
 
 use super::response::Response;
-use super::response_plot::{named, shown_axes, with_unit};
+use super::response_plot::{average, named, shown_axes, with_unit};
 use super::rows::{Judged, Row, SweepTable};
 use super::search::{Search, SearchResult};
 
@@ -190,8 +190,13 @@ fn write_response(
     response: &Response,
 ) -> fmt::Result {
     let measure = &table.measures[response.measure];
+    let average = average(table, response);
     let averaged = table.average_over.map_or(String::new(), |at| {
-        format!(", mean and standard deviation over {}", table.axes[at].name)
+        let average = average.word();
+        format!(
+            ", {average} and standard deviation over {}",
+            table.axes[at].name
+        )
     });
     let name = with_unit(&measure.name, &measure.unit);
     writeln!(f, "response     {name}{}", visible(&averaged))?;
@@ -199,7 +204,8 @@ fn write_response(
         let scatter = (point.standard_deviation).map_or(String::new(), |deviation| {
             format!(" ± {}", significant(deviation, 2))
         });
-        let value = format!("{}{scatter}", significant(point.mean, 4));
+        let value = significant(point.average(average), 4);
+        let value = format!("{value}{scatter}");
         format!("  {value:<20} {}", visible(&named(table, point)))
     });
     cut(f, &lines.collect::<Vec<String>>())
