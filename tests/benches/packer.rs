@@ -38,7 +38,7 @@ type Stage = (&'static str, fn(&BodyReport) -> f64);
 const BARE_FRONT: [Stage; 1] = [("bare front", |made| made.history.front_seconds)];
 const SETTLED: [Stage; 5] = [
     ("front", |made| made.history.front_seconds),
-    ("settling", |made| made.history.densify_seconds),
+    ("densification", |made| made.history.densify_seconds),
     ("voids", |made| made.history.fill_seconds),
     ("bonds", |made| made.seconds.bonds),
     ("report", |made| made.seconds.report),

@@ -72,10 +72,14 @@ pub fn parsed<P: Parser>(name: &str, given: &[OsString], renamed: &[(&str, &str)
         if !error.use_stderr() || error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
             error.exit();
         }
+        let command = P::command();
+        let word = given.get(1).and_then(|word| word.to_str());
+        let sub = word.filter(|word| command.find_subcommand(word).is_some());
+        let sub = sub.map_or(String::new(), |word| format!(" {word}"));
         Diagnostic::input(
             "",
             on_one_line(&error.to_string()),
-            format!("see {name} --help"),
+            format!("see {name}{sub} --help"),
         )
     })
 }

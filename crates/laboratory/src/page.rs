@@ -119,6 +119,7 @@ fn specimen_row(one: &EvaluatedSpecimen) -> Row {
             show_quantity(regions.drift_n_m * span_m, "N"),
         ],
         is_bad: !one.doubts.is_empty(),
+        link: None,
     }
 }
 

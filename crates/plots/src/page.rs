@@ -40,13 +40,17 @@ pub struct Row {
     pub cells: Vec<String>,
     /// True for a failure, shown in red.
     pub is_bad: bool,
+    /// The file to which its first cell links, relative to the page.
+    pub link: Option<String>,
 }
 
 impl From<Vec<String>> for Row {
     /// A row without failures.
     fn from(cells: Vec<String>) -> Self {
-        let is_bad = false;
-        Self { cells, is_bad }
+        Self {
+            cells,
+            ..Self::default()
+        }
     }
 }
 
@@ -174,10 +178,15 @@ impl Page {
                     @if columns.iter().any(|column| !column.name.is_empty()) {
                         tr { @for column in columns { th class=[column.class()] { (shown(&column.name)) } } }
                     }
-                    @for Row { cells, is_bad } in rows {
+                    @for Row { cells, is_bad, link } in rows {
                         tr class=[is_bad.then_some("bad")] {
                             @for (at, cell) in cells.iter().enumerate() {
-                                td class=[class(at)] { (shown(cell)) }
+                                td class=[class(at)] {
+                                    @match link.as_ref().filter(|_| at == 0) {
+                                        Some(link) => a href=(shown(link)) { (shown(cell)) },
+                                        None => (shown(cell)),
+                                    }
+                                }
                             }
                         }
                         "\n"

@@ -17,6 +17,7 @@ fn pages_hold_neither_tags_nor_control_characters_of_others() {
         rows: vec![Row {
             cells: vec![NASTY.to_owned(), "7".to_owned()],
             is_bad: true,
+            link: Some("runs/0001-1/report.html".to_owned()),
         }],
     });
     let plot = Plot {
@@ -27,6 +28,8 @@ fn pages_hold_neither_tags_nor_control_characters_of_others() {
     page.figure(&plot.svg());
     let html = page.html();
     assert_eq!(html.matches(SHOWN).count(), 11, "{html}");
+    let linked = format!("<td><a href=\"runs/0001-1/report.html\">{SHOWN}</a></td>");
+    assert!(html.contains(&linked), "{html}");
     assert!(!html.contains("<script>") && html.contains("<td class=\"n\">7</td>"));
     assert!(!html.chars().any(|c| c.is_control() && c != '\n'));
     // No other address is requested.

@@ -57,17 +57,10 @@ impl Folder {
     /// What the view shows.
     pub(crate) fn subject(&self, summary: &Value) -> Subject<'_> {
         const FROM: [f64; 3] = [0.5, -0.8, 0.4];
-        let text = summary["inputs"]["scene"]["output.view.from"].as_str();
-        let numbers = text.map(|text| {
-            let numbers = text.trim_matches(['[', ']']).split(',');
-            let numbers = numbers.filter_map(|number| number.trim().parse().ok());
-            numbers.collect::<Vec<f64>>()
-        });
-        let from = numbers.and_then(|numbers| numbers.try_into().ok());
         Subject {
             folder: &self.path,
             frames: &self.frames,
-            from: from.unwrap_or(FROM),
+            from: view_from(summary).unwrap_or(FROM),
         }
     }
 
@@ -102,6 +95,25 @@ impl Folder {
         };
         paths.iter().map(read).collect()
     }
+}
+
+/// The direction of the viewer, of any length. None: the scene gives none.
+pub(crate) fn view_from(summary: &Value) -> Option<[f64; 3]> {
+    let text = summary["inputs"]["scene"]["output.view.from"].as_str()?;
+    let numbers = text.trim_matches(['[', ']']).split(',');
+    let numbers = numbers.filter_map(|number| number.trim().parse().ok());
+    numbers.collect::<Vec<f64>>().try_into().ok()
+}
+
+/// Whether a wall of the scene is solid and seen from outside only: a plane, a box or a cylinder.
+/// Surfaces from STL files have two sides.
+pub(crate) fn is_solid(summary: &Value, wall: &str) -> bool {
+    let scene = &summary["inputs"]["scene"];
+    let shapes = ["plane.point", "box.min", "cylinder.from"];
+    let mut keys = shapes
+        .map(|shape| format!("walls.{wall}.{shape}"))
+        .into_iter();
+    keys.any(|key| scene.get(&key).is_some())
 }
 
 fn attribute<'a>(element: &'a str, name: &str) -> Option<&'a str> {

@@ -9,13 +9,15 @@ pub use colour_by::ColourBy;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
+use dem_io::units::show_quantity;
 use dem_io::{Diagnostic, Result, read_input};
 use dem_pictures::label::{colour_bar, label, scale_bar, time_text};
 use dem_pictures::png_file::{Compression, to_png};
-use dem_pictures::{Camera, Image, render};
+use dem_pictures::{Camera, Image, Surface, render};
 use dem_plots::viridis;
+use serde_json::Value;
 
-use crate::folder::Folder;
+use crate::folder::{Folder, is_solid, view_from};
 use gif_film::film;
 use subject::{Colours, Seen};
 
@@ -84,10 +86,12 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
             "name the folder of results of a run whose scene has output.frames",
         ));
     }
-    let from = match order.from {
-        Some(from) => from,
-        None => from_of_scene(path, &folder)?,
+    // A run that has not finished has none, but the viewer may say from where to look.
+    let summary = match (summary(path), order.from) {
+        (Err(_), Some(_)) => Value::Null,
+        (summary, _) => summary?,
     };
+    let from = order.from.or_else(|| view_from(&summary));
     let frames = folder.frames();
     let chosen = chosen(frames, order, kind)?;
     let colours = Colours::of(order.colour_by, path, &chosen)?;
@@ -102,7 +106,8 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
         if seen.is_within(&camera, order.size_px) {
             is_empty.set(false);
         }
-        Ok(drawn(&seen, frame.1, &camera, &colours, every_s))
+        let walls = seen.walls(&|name| is_solid(&summary, name));
+        Ok(drawn(&seen, &walls, frame.1, &camera, &colours, every_s))
     };
     let bytes = match kind {
         PictureKind::Png => to_png(&one(&chosen[0])?, Compression::High),
@@ -131,6 +136,9 @@ fn chosen(
             Ok(chosen)
         }
         PictureKind::Png => {
+            if let Which::Nearest(time_s) = order.frame {
+                refuse_beyond(time_s, frames)?;
+            }
             let off_s = |number: &usize, time_s: f64| (frames[*number].1 - time_s).abs();
             let number = match order.frame {
                 Which::Last => last,
@@ -148,22 +156,42 @@ fn chosen(
     }
 }
 
-fn from_of_scene(path: &Path, folder: &Folder) -> Result<[f64; 3]> {
+/// Refuses a time that is further from the frames than they are from each other.
+fn refuse_beyond(time_s: f64, frames: &[(PathBuf, f64)]) -> Result<()> {
+    let [(_, first_s), .., (_, last_s)] = frames else {
+        return Ok(());
+    };
+    let every_s = (last_s - first_s) / (frames.len() - 1) as f64;
+    if (first_s - every_s..=last_s + every_s).contains(&time_s) {
+        return Ok(());
+    }
+    let [asked, first, last] = [time_s, *first_s, *last_s].map(|time| show_quantity(time, "s"));
+    let problem = format!("there are no frames near {asked}");
+    let remedy = format!("the run has frames from {first} to {last}");
+    Err(Diagnostic::input("--time", problem, remedy))
+}
+
+/// The summary of the run.
+fn summary(path: &Path) -> Result<Value> {
     let summary = path.join("summary.json");
     let text = read_input(&summary, "the summary of a run")?;
-    let summary = serde_json::from_slice(&text).map_err(|error| {
+    serde_json::from_slice(&text).map_err(|error| {
         let problem = format!("this is not the summary of a run: {error}");
         Diagnostic::input(
             summary.display().to_string(),
             problem,
             "write the folder again",
         )
-    })?;
-    Ok(folder.subject(&summary).from)
+    })
 }
 
-/// The camera of all pictures: everything in the chosen frames, or a part of it.
-fn camera(order: &PictureOrder, from: [f64; 3], frames: &[(PathBuf, f64)]) -> Result<Camera> {
+/// The camera of all pictures: everything in the chosen frames, or a part of it. Without a direction
+/// it looks as in pictures that are made during a run.
+fn camera(
+    order: &PictureOrder,
+    from: Option<[f64; 3]>,
+    frames: &[(PathBuf, f64)],
+) -> Result<Camera> {
     let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for frame in frames {
         for point in Seen::read(frame)?.points_m() {
@@ -184,16 +212,21 @@ fn camera(order: &PictureOrder, from: [f64; 3], frames: &[(PathBuf, f64)]) -> Re
             [0, 1, 2].map(|k| middle_m[k] + sign(k) * half[k])
         })
         .collect();
-    Ok(Camera::around(
-        from.map(|part| -part),
-        UP,
-        &corners,
-        order.size_px,
-    ))
+    Ok(match from {
+        Some(from) => Camera::around(from.map(|part| -part), UP, &corners, order.size_px),
+        None => Camera::three_quarter(&corners, order.size_px),
+    })
 }
 
-fn drawn(seen: &Seen, time_s: f64, camera: &Camera, colours: &Colours, every_s: f64) -> Image {
-    let mut image = render(camera, &seen.balls(colours), &seen.walls());
+fn drawn(
+    seen: &Seen,
+    walls: &[Surface],
+    time_s: f64,
+    camera: &Camera,
+    colours: &Colours,
+    every_s: f64,
+) -> Image {
+    let mut image = render(camera, &seen.balls(colours), walls);
     if let Some((name, highest)) = colours.scale() {
         colour_bar(&mut image, name, ["0", &highest], &viridis);
     }

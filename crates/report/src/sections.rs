@@ -19,11 +19,12 @@ pub(crate) use time::add_time;
 use values::{counted, number, text, texts};
 
 /// Plots that come first, in this order.
-const FIRST_PLOTS: [&str; 6] = [
+const FIRST_PLOTS: [&str; 7] = [
     "force-displacement",
     "crack",
     "fragment_sizes",
-    "fragment_count",
+    "discharged_mass",
+    "fragments",
     "broken_bonds",
     "energy",
 ];

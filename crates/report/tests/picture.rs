@@ -96,6 +96,37 @@ fn every_part_of_the_order_changes_the_picture() {
     );
 }
 
+/// A plane is not seen from behind, a surface from a file is; from the front they are alike.
+#[test]
+fn walls_are_drawn_as_during_the_run() {
+    let folder = made();
+    let drawn_as = |shape: &str, from: [f64; 3]| {
+        let mut summary = summary();
+        summary["inputs"]["scene"][format!("walls.floor.{shape}")] = "".into();
+        std::fs::write(out(&folder).join("summary.json"), summary.to_string()).unwrap();
+        let from = Some(from);
+        drawn(&folder, &PictureOrder { from, ..order() })
+    };
+    let [above, below] = [[0.2, -1.0, 0.4], [0.2, -1.0, -0.4]];
+    assert_eq!(drawn_as("plane.point", above), drawn_as("stl", above));
+    let behind = drawn_as("plane.point", below);
+    assert_ne!(behind, drawn_as("stl", below));
+    assert_eq!(behind, drawn_as("box.min", below));
+
+    // Without a direction: that of pictures made during a run. The floor is 2 m long both ways.
+    let usual = drawn(
+        &folder,
+        &PictureOrder {
+            from: None,
+            ..order()
+        },
+    );
+    assert_eq!(usual, drawn_as("box.min", USUAL));
+}
+
+/// From the front, the right and above.
+const USUAL: [f64; 3] = [0.42, -0.80, 0.43];
+
 #[test]
 fn colours_differ_by_what_they_tell() {
     let folder = made();
@@ -159,6 +190,20 @@ fn what_is_not_there_is_named() {
     assert_eq!(error.exit_code(), 2);
     assert!(error.to_string().contains("there is no frame 3"), "{error}");
     assert!(error.to_string().contains("0 to 2"), "{error}");
+    for (time_s, is_near) in [(1.4, true), (1.6, false), (-0.6, false)] {
+        let order = PictureOrder {
+            frame: Which::Nearest(time_s),
+            ..order
+        };
+        let drawn = picture(&out(&folder), &order, PictureKind::Png);
+        assert_eq!(drawn.is_ok(), is_near, "{time_s} s");
+        if let Err(error) = drawn {
+            assert!(
+                error.to_string().contains("frames from 0 s to 1 s"),
+                "{error}"
+            );
+        }
+    }
     let empty = tempfile::tempdir().unwrap();
     let error = picture(empty.path(), &order, PictureKind::Png).unwrap_err();
     assert!(

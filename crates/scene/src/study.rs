@@ -12,7 +12,7 @@ mod values;
 
 pub use check::{override_text, reference_values, scene_with, settle_references, value_to_find};
 pub use contents::{
-    Axis, AxisValue, BODY, Combine, Find, Keep, MeasureOf, Pieces, Reference, RunTime,
+    Average, Axis, AxisValue, BODY, Combine, Find, Keep, MeasureOf, Pieces, Reference, RunTime,
     STUDY_VERSION, Setting, Study, StudyMeasure,
 };
 pub(crate) use keys::STUDY;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dem_scene::study::{
-    Combine, MeasureOf, Reference, Study, reference_values, rewritten, scene_with,
+    Average, Combine, MeasureOf, Reference, Study, reference_values, rewritten, scene_with,
     settle_references, study_from_text, value_to_find,
 };
 
@@ -216,6 +216,10 @@ fn a_search_is_read() {
         (0, [1.0, 3.0], 0.01)
     );
     assert_eq!((find.value.as_str(), find.unit.as_str()), ("2 mm", "s"));
+    assert_eq!(find.statistic, Average::Mean);
+    let median = search.replace("measure =", "statistic = \"median\"\nmeasure =");
+    let of_median = self::study(&median).find.unwrap();
+    assert_eq!(of_median.statistic, Average::Median);
     assert_eq!(study.average_over, Some(1));
     assert_eq!(labels(&study, 0), ["1 s", "3 s"]);
     study.add_point(0, 2.0);

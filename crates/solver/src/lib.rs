@@ -66,3 +66,8 @@ pub mod internals {
 #[cfg(doctest)]
 #[doc = include_str!("../../../doc/adding-a-model.md")]
 struct AddingAModel;
+
+/// The same.
+#[cfg(doctest)]
+#[doc = include_str!("../../../doc/library.md")]
+struct Library;

@@ -25,7 +25,20 @@ pub fn outcome(study: &Study, job: Job, runs: &Path) -> Outcome {
             Outcome::Failed(line.strip_prefix("error: ").unwrap_or(line).to_owned())
         });
     };
-    done(study, &summary, &job.folder(runs)).map_or_else(Outcome::Failed, Outcome::Done)
+    let done = done(study, &summary, &job.folder(runs)).map(|done| Done {
+        report: report(job, runs),
+        ..done
+    });
+    done.map_or_else(Outcome::Failed, Outcome::Done)
+}
+
+/// The page of a job, relative to the folder of the sweep, in which `runs` is.
+fn report(job: Job, runs: &Path) -> Option<String> {
+    let page = job.folder(runs).join("report.html");
+    let within = page.strip_prefix(runs.parent()?).ok()?;
+    let parts = within.iter().map(|part| part.to_str());
+    let parts: Vec<&str> = parts.collect::<Option<_>>()?;
+    page.is_file().then(|| parts.join("/"))
 }
 
 fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> {
@@ -60,6 +73,7 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
         time_step_s: number("time_step_s")?,
         machine: summary["machine"].as_str().unwrap_or_default().to_owned(),
         doubt: doubt(summary),
+        report: None,
         readings,
     })
 }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use dem_io::write_target::is_same_file;
 use dem_io::{Diagnostic, Result};
 use dem_results::{Existing, ResultsFolder, is_plot_file, write_json};
-use dem_scene::study::{Setting, Study};
+use dem_scene::study::{Average, Setting, Study};
 use serde_json::{Value, json};
 
 use super::jobs::Job;
@@ -251,7 +251,11 @@ fn identity(study: &Study, scene_text: &str) -> Value {
     if let Some(find) = &study.find {
         let measure = &study.measures[find.measure];
         let looked_for = format!("{:?} {} {:?}", measure.of, find.value, study.average_over);
-        identity["[find]"] = looked_for.into();
+        // Studies of the mean had no statistic once.
+        identity["[find]"] = match find.statistic {
+            Average::Mean => looked_for.into(),
+            Average::Median => format!("{looked_for} median").into(),
+        };
     }
     identity
 }

@@ -15,6 +15,7 @@ pub(crate) mod front;
 pub mod jobs;
 pub(crate) mod judge;
 pub mod masses;
+pub(crate) mod median;
 pub(crate) mod order;
 pub mod outcome;
 pub mod page;

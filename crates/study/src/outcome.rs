@@ -13,6 +13,8 @@ pub struct Done {
     pub machine: String,
     /// The first warning of its verdict; None: it is sound.
     pub doubt: Option<String>,
+    /// Its page, relative to the folder of the sweep; None: it has none.
+    pub report: Option<String>,
     /// One for each measure of the study.
     pub readings: Vec<Reading>,
 }

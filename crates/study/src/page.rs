@@ -137,6 +137,7 @@ fn add_failed(page: &mut Page, table: &SweepTable) {
         dem_plots::Row {
             cells,
             is_bad: true,
+            link: None,
         }
     });
     page.table(&Table {
@@ -147,6 +148,9 @@ fn add_failed(page: &mut Page, table: &SweepTable) {
 
 fn add_all(page: &mut Page, table: &SweepTable) {
     page.heading("All runs");
+    if table.runs.iter().any(|row| row.report.is_some()) {
+        page.small("The number of a run leads to its page, with its view in three dimensions if the scene has output.frames.");
+    }
     let mut columns = vec![Column::number("run")];
     columns.extend(of_axes(table));
     columns.extend(["time (s)", "scatter (s)", "steps"].map(Column::number));
@@ -171,6 +175,7 @@ fn of_run(table: &SweepTable, row: &Row) -> dem_plots::Row {
         return dem_plots::Row {
             cells,
             is_bad: true,
+            link: None,
         };
     }
     cells.push(number(row.time_s, 3));
@@ -180,7 +185,11 @@ fn of_run(table: &SweepTable, row: &Row) -> dem_plots::Row {
         cells.push(number(Some(judged.value), 4));
         cells.extend(measure.reference.as_ref().map(|_| error_text(judged)));
     }
-    cells.into()
+    dem_plots::Row {
+        cells,
+        is_bad: false,
+        link: row.report.clone(),
+    }
 }
 
 fn error_text(judged: &Judged) -> String {

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use dem_scene::study::{Reference, Study};
+use dem_scene::study::{Average, Reference, Study};
 use serde::Serialize;
 
 use super::expand::Run;
+use super::median::median;
 use super::row::Row;
 
 /// The values of a measure without a reference.
@@ -30,6 +31,8 @@ pub struct ResponsePoint {
     pub values: Vec<f64>,
     /// Their mean.
     pub mean: f64,
+    /// Their median; of an even number the mean of the middle two.
+    pub median: f64,
     /// Their standard deviation (divided by their number less 1). None for a single value.
     pub standard_deviation: Option<f64>,
 }
@@ -39,13 +42,25 @@ impl ResponsePoint {
     pub(crate) fn new(choice: Vec<usize>, settings: Vec<String>, values: Vec<f64>) -> Self {
         let count = values.len() as f64;
         let mean = values.iter().sum::<f64>() / count;
+        let mut rising = values.clone();
+        rising.sort_by(f64::total_cmp);
         let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
         Self {
             choice,
             settings,
             mean,
+            // There is at least one.
+            median: median(&rising).unwrap_or(mean),
             standard_deviation: (values.len() > 1).then(|| (squares / (count - 1.0)).sqrt()),
             values,
+        }
+    }
+
+    /// The mean or the median.
+    pub fn average(&self, average: Average) -> f64 {
+        match average {
+            Average::Mean => self.mean,
+            Average::Median => self.median,
         }
     }
 
@@ -123,7 +138,10 @@ mod tests {
         assert_eq!(point.standard_deviation, Some(deviation));
         assert_eq!(point.standard_error(), Some(deviation / 2.0));
         assert_eq!(point.range(), [2.0, 6.0]);
+        let skewed = ResponsePoint::new(Vec::new(), Vec::new(), vec![0.2, 1.0, 0.96, 0.3]);
+        assert_eq!((skewed.median, skewed.mean), (0.63, 0.615));
         let one = ResponsePoint::new(Vec::new(), Vec::new(), vec![3.0]);
-        assert_eq!((one.mean, one.standard_deviation), (3.0, None));
+        assert_eq!((one.mean, one.median), (3.0, 3.0));
+        assert_eq!(one.standard_deviation, None);
     }
 }

@@ -1,9 +1,10 @@
 //! Responses and the search on the page of a sweep.
 
 use dem_plots::{Column, Page, Row, Table};
+use dem_scene::study::Average;
 
 use super::response::Response;
-use super::response_plot::{found_plots, plots, shown_axes};
+use super::response_plot::{average, found_plots, plots, shown_axes};
 use super::sweep_table::SweepTable;
 use super::words::{number, with_unit};
 
@@ -28,7 +29,11 @@ pub(crate) fn add_search(page: &mut Page, table: &SweepTable) {
         search.shown(search.tolerance)
     ));
     let parameter = with_unit(&search.parameter, &search.unit);
-    let value = with_unit(&measure.name, &measure.unit);
+    let name = match search.statistic {
+        Average::Mean => measure.name.clone(),
+        Average::Median => format!("median of {}", measure.name),
+    };
+    let value = with_unit(&name, &measure.unit);
     let axes: Vec<usize> = shown_axes(table).filter(|at| *at > 0).collect();
     let columns = axes.iter().map(|at| Column::text(&table.axes[*at].name));
     let columns = columns.chain([&parameter, &value].map(|name| Column::number(name)));
@@ -37,8 +42,8 @@ pub(crate) fn add_search(page: &mut Page, table: &SweepTable) {
             .iter()
             .map(|at| table.axes[*at].values[case.choice[*at]].clone());
         let settings: Vec<String> = settings.collect();
-        case.tried.iter().map(move |[x, mean]| {
-            let cells = [number(Some(*x), 6), number(Some(*mean), 4)];
+        case.tried.iter().map(move |[x, found]| {
+            let cells = [number(Some(*x), 6), number(Some(*found), 4)];
             Row::from([&settings[..], &cells].concat())
         })
     });
@@ -53,7 +58,11 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
     let averaged = table.average_over.map(|at| &table.axes[at]);
     if let Some(averaged) = averaged {
         page.paragraph(&format!(
-            "Means over {} values of {}; bars show one standard deviation to either side.",
+            "{} over {} values of {}; bars show one standard deviation to either side.",
+            match average(table, response) {
+                Average::Mean => "Means",
+                Average::Median => "Medians",
+            },
             averaged.values.len(),
             averaged.name
         ));
@@ -62,15 +71,22 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
         page.figure(&plot.svg());
     }
     let measure = &table.measures[response.measure];
-    let name = with_unit(&measure.name, &measure.unit);
     let axes: Vec<usize> = shown_axes(table).collect();
     let mut columns: Vec<Column> = (axes.iter())
         .map(|at| Column::text(&table.axes[*at].name))
         .collect();
-    columns.push(Column::number(&name));
     if averaged.is_some() {
-        let scatter = ["standard deviation", "smallest", "largest", "runs"];
+        columns.push(Column::number(&with_unit("mean", &measure.unit)));
+        let scatter = [
+            "standard deviation",
+            "smallest",
+            "median",
+            "largest",
+            "runs",
+        ];
         columns.extend(scatter.map(Column::number));
+    } else {
+        columns.push(Column::number(&with_unit(&measure.name, &measure.unit)));
     }
     let rows = response.points.iter().take(MOST_POINTS).map(|point| {
         let mut cells: Vec<String> = axes.iter().map(|at| point.settings[*at].clone()).collect();
@@ -78,7 +94,8 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
         if averaged.is_some() {
             let [smallest, largest] = point.range();
             cells.push(number(point.standard_deviation, 2));
-            cells.extend([smallest, largest].map(|value| number(Some(value), 4)));
+            let ends = [smallest, point.median, largest];
+            cells.extend(ends.map(|value| number(Some(value), 4)));
             cells.push(point.values.len().to_string());
         }
         Row::from(cells)

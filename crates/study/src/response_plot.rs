@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use dem_io::units::significant;
 use dem_plots::{Axis, Marks, Plot, Point};
+use dem_scene::study::Average;
 
 use super::response::{Response, ResponsePoint};
 use super::search::{Search, SearchCase, SearchResult};
@@ -37,7 +38,7 @@ fn found_plot(table: &SweepTable, search: &Search, over: usize) -> Plot {
         let of_kind: Vec<_> = found.iter().filter(is_of).collect();
         let points: Vec<&ResponsePoint> = of_kind.iter().map(|(point, _)| point).collect();
         let mark = |(point, case): &&(ResponsePoint, &SearchCase)| Point {
-            at: place(axis, over, point),
+            at: place(axis, over, point, Average::Mean),
             y_spread: 2.0 * point.standard_deviation.unwrap_or(0.0),
             filled: true,
             title: format!("{}: {}", case.settings, search.shown(point.mean)),
@@ -46,7 +47,7 @@ fn found_plot(table: &SweepTable, search: &Search, over: usize) -> Plot {
         Marks {
             name: series.map_or(String::new(), |at| table.axes[at].values[kind].clone()),
             points: of_kind.iter().map(mark).collect(),
-            chains: chains(axis, over, &points),
+            chains: chains(axis, over, &points, Average::Mean),
         }
     };
     let kinds = series.map_or(1, |at| table.axes[at].values.len());
@@ -73,6 +74,7 @@ fn found_point(case: &SearchCase) -> Option<ResponsePoint> {
         settings: Vec::new(),
         values: vec![*at],
         mean: *at,
+        median: *at,
         standard_deviation: Some(half),
     })
 }
@@ -88,6 +90,7 @@ fn plot(table: &SweepTable, response: &Response, over: usize) -> Plot {
     let axis = &table.axes[over];
     let series = series(table, over);
     let wanted = wanted(table, response);
+    let average = average(table, response);
     let is_of =
         |point: &&ResponsePoint, kind: usize| series.is_none_or(|at| point.choice[at] == kind);
     let marks = |kind: usize| {
@@ -100,8 +103,10 @@ fn plot(table: &SweepTable, response: &Response, over: usize) -> Plot {
                 None if wanted.is_some() => "found".to_owned(),
                 None => String::new(),
             },
-            points: points.iter().map(|p| mark(table, axis, over, p)).collect(),
-            chains: chains(axis, over, &points),
+            points: (points.iter())
+                .map(|point| mark(table, over, point, average))
+                .collect(),
+            chains: chains(axis, over, &points, average),
         }
     };
     let kinds = series.map_or(1, |at| table.axes[at].values.len());
@@ -121,7 +126,8 @@ fn title(table: &SweepTable, response: &Response, name: &str) -> String {
     match &table.average_over {
         Some(averaged) if response.points.iter().any(|point| point.values.len() > 1) => {
             format!(
-                "{name}: mean and standard deviation over {}",
+                "{name}: {} and standard deviation over {}",
+                average(table, response).word(),
                 table.axes[*averaged].name
             )
         }
@@ -134,6 +140,14 @@ fn wanted(table: &SweepTable, response: &Response) -> Option<(f64, String)> {
     let search = table.find.as_ref()?;
     let text = format!("looked for: {}", search.value_as_written);
     (search.measure == response.measure).then_some((search.value, text))
+}
+
+/// What is shown of the values along the averaged axis: that in which `[find]` looks for a value, if it
+/// does so in this response, else the mean.
+pub(crate) fn average(table: &SweepTable, response: &Response) -> Average {
+    let search = table.find.as_ref();
+    let search = search.filter(|search| search.measure == response.measure);
+    search.map_or(Average::Mean, |search| search.statistic)
 }
 
 /// The axis shown by colours: that of the page, or the first other one.
@@ -158,13 +172,13 @@ fn horizontal(axis: &AxisColumn) -> Axis {
     }
 }
 
-fn place(axis: &AxisColumn, over: usize, point: &ResponsePoint) -> [f64; 2] {
+fn place(axis: &AxisColumn, over: usize, point: &ResponsePoint, average: Average) -> [f64; 2] {
     let at = point.choice[over];
     let x = (axis.numbers.as_ref()).map_or(at as f64, |numbers| numbers[at]);
-    [x, point.mean]
+    [x, point.average(average)]
 }
 
-fn mark(table: &SweepTable, axis: &AxisColumn, over: usize, point: &ResponsePoint) -> Point {
+fn mark(table: &SweepTable, over: usize, point: &ResponsePoint, average: Average) -> Point {
     let deviation = point.standard_deviation.unwrap_or(0.0);
     let scatter = point.standard_deviation.map_or(String::new(), |deviation| {
         format!(
@@ -174,13 +188,13 @@ fn mark(table: &SweepTable, axis: &AxisColumn, over: usize, point: &ResponsePoin
         )
     });
     Point {
-        at: place(axis, over, point),
+        at: place(&table.axes[over], over, point, average),
         y_spread: 2.0 * deviation,
         filled: true,
         title: format!(
             "{}: {}{scatter}",
             named(table, point),
-            significant(point.mean, 4)
+            significant(point.average(average), 4)
         ),
         ..Point::default()
     }
@@ -194,13 +208,18 @@ pub(crate) fn named(table: &SweepTable, point: &ResponsePoint) -> String {
 }
 
 /// Lines through points that differ along this axis only, ascending along it.
-fn chains(axis: &AxisColumn, over: usize, points: &[&ResponsePoint]) -> Vec<Vec<[f64; 2]>> {
+fn chains(
+    axis: &AxisColumn,
+    over: usize,
+    points: &[&ResponsePoint],
+    average: Average,
+) -> Vec<Vec<[f64; 2]>> {
     let mut groups: BTreeMap<Vec<usize>, Vec<[f64; 2]>> = BTreeMap::new();
     for point in points {
         let mut others = point.choice.clone();
         others[over] = 0;
         let chain = groups.entry(others).or_default();
-        chain.push(place(axis, over, point));
+        chain.push(place(axis, over, point, average));
     }
     let mut chains: Vec<Vec<[f64; 2]>> = groups.into_values().collect();
     for chain in &mut chains {

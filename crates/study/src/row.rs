@@ -25,6 +25,8 @@ pub struct Row {
     pub steps: Option<u64>,
     /// Last time step, s.
     pub time_step_s: Option<f64>,
+    /// Page of its first repeat, relative to the folder of the sweep. None: it has none.
+    pub report: Option<String>,
     /// One result for each measure; none for a failed run.
     pub results: Vec<Judged>,
 }

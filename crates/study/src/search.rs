@@ -1,14 +1,15 @@
-//! `[find]`: the value of a parameter at which the mean of a measure has a given value, by
+//! `[find]`: the value of a parameter at which the mean or median of a measure has a given value, by
 //! bisection, once for each case.
 
 use dem_io::units::significant;
-use dem_scene::study::{Find, Study};
+use dem_scene::study::{Average, Find, Study};
 use serde::Serialize;
 
 use super::response::{Response, ResponsePoint};
 
 /// A mean that is nearer to the value than this many standard deviations of the mean may lie on its
-/// other side.
+/// other side; so may a median from which the number of values on one side differs by no more than
+/// this many standard deviations of that number.
 const SURE: f64 = 2.0;
 
 /// The searches of a study, one for each case.
@@ -20,6 +21,8 @@ pub struct Search {
     pub unit: String,
     /// Index of the measure.
     pub measure: usize,
+    /// What of the measure has the value.
+    pub statistic: Average,
     /// The value that is looked for, in the unit of the measure.
     pub value: f64,
     /// The same as written.
@@ -38,7 +41,8 @@ pub struct SearchCase {
     pub choice: Vec<usize>,
     /// Its values in words: `bonds.cake.model parallel`. Empty for the only case.
     pub settings: String,
-    /// Points tried, ascending, in the unit of the parameter, with the mean of the measure there.
+    /// Points tried, ascending, in the unit of the parameter, with the mean or median of the measure
+    /// there.
     pub tried: Vec<[f64; 2]>,
     /// The result.
     pub result: SearchResult,
@@ -52,12 +56,13 @@ pub enum SearchResult {
     Found {
         /// The middle of the interval, in the unit of the parameter.
         at: f64,
-        /// The ends of the interval: the mean is below the value at one and above it at the other.
+        /// The ends of the interval: the mean or median is below the value at one and above it at
+        /// the other.
         between: [f64; 2],
-        /// True if the mean at an end is within two of its standard deviations of the value.
+        /// True if, at an end, the mean or median may lie on the other side of the value.
         is_uncertain: bool,
     },
-    /// The means at both ends of the range are on the same side of the value.
+    /// The means or medians at both ends of the range are on the same side of the value.
     NotBracketed,
     /// Points are missing or have failed.
     Unfinished,
@@ -76,8 +81,8 @@ pub enum Step {
     Wait,
 }
 
-/// The step after the points tried so far, `[place, mean - value]`, the two ends first and then in
-/// the order of trial; None for a point without a mean.
+/// The step after the points tried so far, `[place, mean or median - value]`, the two ends first and
+/// then in the order of trial; None for a point without values.
 pub fn next_step(find: &Find, points: &[Option<[f64; 2]>]) -> Step {
     let Some(points) = points.iter().copied().collect::<Option<Vec<[f64; 2]>>>() else {
         return Step::Wait;
@@ -116,12 +121,12 @@ pub fn next_of(study: &Study, find: &Find, response: &Response, value: f64, case
     let (Some(choice), Some(tried)) = (cases.get(case), find.tried.get(case)) else {
         return Step::Wait;
     };
-    let mean = |at: &usize| {
+    let offset = |at: &usize| {
         let point = complete_point(study, response, choice, *at)?;
-        Some([points[*at], point.mean - value])
+        Some([points[*at], point.average(find.statistic) - value])
     };
-    let means: Vec<_> = tried.iter().map(mean).collect();
-    next_step(find, &means)
+    let offsets: Vec<_> = tried.iter().map(offset).collect();
+    next_step(find, &offsets)
 }
 
 /// The point of the response of a case with this index on the first axis, if all its runs have
@@ -150,6 +155,7 @@ pub(crate) fn search(
         parameter: axis.name.clone(),
         unit: find.unit.clone(),
         measure: find.measure,
+        statistic: find.statistic,
         value,
         value_as_written: find.value.clone(),
         tolerance: find.tolerance,
@@ -171,8 +177,9 @@ pub(crate) fn search(
             is_uncertain: true, ..
         } = case.result
         {
+            let statistic = find.statistic.word();
             notes.push(format!(
-                "the mean of {name} at an end of the interval found{of_case} is within twice its standard error of {}: more values of the averaged axis make the result surer",
+                "the {statistic} of {name} at an end of the interval found{of_case} is within twice its standard error of {}: more values of the averaged axis make the result surer",
                 find.value
             ));
         }
@@ -196,10 +203,7 @@ fn search_case(
     let result = match next_of(study, find, response, value, number) {
         Step::Found(between) => {
             let is_end = |point: &&&ResponsePoint| between.contains(&points[point.choice[0]]);
-            let is_uncertain = |point: &&ResponsePoint| {
-                let error = point.standard_error();
-                error.is_some_and(|error| (point.mean - value).abs() < SURE * error)
-            };
+            let is_uncertain = |point: &&ResponsePoint| is_uncertain(point, find.statistic, value);
             SearchResult::Found {
                 at: f64::midpoint(between[0], between[1]),
                 between,
@@ -209,7 +213,7 @@ fn search_case(
         Step::NotBracketed => SearchResult::NotBracketed,
         Step::Try(_) | Step::Wait => SearchResult::Unfinished,
     };
-    let place = |point: &&ResponsePoint| [points[point.choice[0]], point.mean];
+    let place = |point: &&ResponsePoint| [points[point.choice[0]], point.average(find.statistic)];
     let mut tried: Vec<[f64; 2]> = own.iter().map(place).collect();
     tried.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let others = (1..choice.len()).filter(|at| Some(*at) != study.average_over);
@@ -225,10 +229,27 @@ fn search_case(
     }
 }
 
+/// Whether the mean or median of a point may lie on the other side of a value: the mean by its
+/// standard error, the median by the number of values below it, which scatters by chance as that of
+/// heads in as many tosses of a coin.
+fn is_uncertain(point: &ResponsePoint, statistic: Average, value: f64) -> bool {
+    match statistic {
+        Average::Mean => {
+            let error = point.standard_error();
+            error.is_some_and(|error| (point.mean - value).abs() < SURE * error)
+        }
+        Average::Median => {
+            let count = point.values.len() as f64;
+            let below = point.values.iter().filter(|own| **own < value).count() as f64;
+            count > 1.0 && (below - 0.5 * count).abs() < SURE * 0.5 * count.sqrt()
+        }
+    }
+}
+
 impl SearchCase {
-    /// How often the means of neighbouring points lie on different sides of the value.
+    /// How often the means or medians of neighbouring points lie on different sides of the value.
     fn crossings(&self, value: f64) -> usize {
-        let above = self.tried.iter().map(|[_, mean]| *mean > value);
+        let above = self.tried.iter().map(|[_, found]| *found > value);
         let above: Vec<bool> = above.collect();
         above.windows(2).filter(|two| two[0] != two[1]).count()
     }
@@ -253,6 +274,10 @@ impl Search {
     /// The result of a case in one sentence; `measure` is the name of the measure.
     pub fn in_words(&self, case: &SearchCase, measure: &str) -> String {
         let Self { parameter, .. } = self;
+        let measure = &match self.statistic {
+            Average::Mean => measure.to_owned(),
+            Average::Median => format!("the median of {measure}"),
+        };
         let value = &self.value_as_written;
         let of_case = case.of_case();
         match &case.result {
@@ -293,7 +318,7 @@ impl Search {
             .into_iter()
             .flatten();
         let texts =
-            ends.map(|[x, mean]| format!("{} at {}", significant(*mean, 4), self.shown(*x)));
+            ends.map(|[x, found]| format!("{} at {}", significant(*found, 4), self.shown(*x)));
         texts.collect::<Vec<String>>().join(", ")
     }
 }
@@ -307,6 +332,7 @@ mod tests {
         Find {
             measure: 0,
             value: "0".to_owned(),
+            statistic: Average::Mean,
             ends,
             tolerance,
             unit: "m".to_owned(),
@@ -340,6 +366,23 @@ mod tests {
         assert_eq!(tried(&find, |x| x + 1.0).1, Step::NotBracketed);
         let missing = [Some([0.0, 1.0]), None];
         assert_eq!(next_step(&find, &missing), Step::Wait);
+    }
+
+    #[test]
+    fn a_median_is_sure_when_nearly_all_values_lie_on_one_side() {
+        let point = |below: usize| {
+            let values = (0..9).map(|at| if at < below { 0.1 } else { 1.0 });
+            ResponsePoint::new(Vec::new(), Vec::new(), values.collect())
+        };
+        // Nine values: 4.5 on each side, give or take twice 1.5.
+        let uncertain = (0..=9).map(|below| is_uncertain(&point(below), Average::Median, 0.9));
+        let uncertain: Vec<bool> = uncertain.collect();
+        assert_eq!(
+            uncertain,
+            [0, 0, 1, 1, 1, 1, 1, 1, 0, 0].map(|sign| sign == 1)
+        );
+        let lone = ResponsePoint::new(Vec::new(), Vec::new(), vec![0.5]);
+        assert!(!is_uncertain(&lone, Average::Median, 0.9));
     }
 
     proptest! {

@@ -7,6 +7,7 @@ use dem_scene::study::{Axis, RunTime, Study};
 use super::expand::Run;
 use super::front::{Point, front};
 use super::judge::{in_words, judge};
+use super::median::median;
 use super::order::orders;
 use super::outcome::{Done, Outcome};
 use super::response::responses;
@@ -180,6 +181,7 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
         times_s,
         steps: first.map(|done| done.steps),
         time_step_s: first.map(|done| done.time_step_s),
+        report: first.and_then(|done| done.report.clone()),
         results: first.map_or(Vec::new(), |done| {
             let judged = done.readings.iter().map(|reading| Judged {
                 value: reading.value,
@@ -193,16 +195,6 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
             });
             judged.collect()
         }),
-    }
-}
-
-/// Of ascending times.
-fn median(rising: &[f64]) -> Option<f64> {
-    let middle = rising.len() / 2;
-    match rising.len() {
-        0 => None,
-        even if even % 2 == 0 => Some(f64::midpoint(rising[middle - 1], rising[middle])),
-        _ => Some(rising[middle]),
     }
 }
 

@@ -6,7 +6,7 @@ use dem_io::text::visible;
 use dem_io::units::significant;
 
 use super::response::Response;
-use super::response_plot::{named, shown_axes};
+use super::response_plot::{average, named, shown_axes};
 use super::row::{Judged, Row};
 use super::search::{Search, SearchResult};
 use super::sweep_table::SweepTable;
@@ -15,10 +15,11 @@ use super::words::with_unit;
 /// Largest number of lines of a part of the text.
 const MOST_LINES: usize = 20;
 
-/// The table with one line for each run: comma-separated, texts in quotes where needed.
+/// The table with one line for each run: comma-separated, texts in quotes where needed. A parameter
+/// whose values are numbers in one unit is a number, with the unit in the name of its column.
 pub fn csv(table: &SweepTable) -> String {
     let mut columns = vec!["run".to_owned()];
-    columns.extend(table.axes.iter().map(|axis| axis.name.clone()));
+    columns.extend((table.axes.iter()).map(|axis| with_unit(&axis.name, &axis.unit)));
     for name in ["time_s", "spread_s", "repeats", "steps", "time_step_s"] {
         columns.push(name.to_owned());
     }
@@ -33,7 +34,7 @@ pub fn csv(table: &SweepTable) -> String {
     let mut out = line(&columns);
     for row in &table.runs {
         let mut cells = vec![row.number.to_string()];
-        cells.extend(row.settings.iter().cloned());
+        cells.extend((0..table.axes.len()).map(|at| cell(table, at, row.choice[at])));
         cells.push(number(row.time_s));
         cells.push(number(row.spread_s));
         cells.push(row.times_s.len().to_string());
@@ -77,7 +78,14 @@ pub fn response_csv(table: &SweepTable) -> String {
     let axes: Vec<usize> = shown_axes(table).collect();
     let mut columns = vec!["measure".to_owned(), "unit".to_owned()];
     columns.extend((axes.iter()).map(|at| with_unit(&table.axes[*at].name, &table.axes[*at].unit)));
-    for name in ["runs", "mean", "standard_deviation", "smallest", "largest"] {
+    for name in [
+        "runs",
+        "mean",
+        "standard_deviation",
+        "smallest",
+        "median",
+        "largest",
+    ] {
         columns.push(name.to_owned());
     }
     let mut out = line(&columns);
@@ -92,7 +100,8 @@ pub fn response_csv(table: &SweepTable) -> String {
             cells.push(point.values.len().to_string());
             cells.push(number(Some(point.mean)));
             cells.push(number(point.standard_deviation));
-            cells.extend([smallest, largest].map(|value| number(Some(value))));
+            let ends = [smallest, point.median, largest];
+            cells.extend(ends.map(|value| number(Some(value))));
             out += &line(&cells);
         }
     }
@@ -183,8 +192,13 @@ fn write_response(
     response: &Response,
 ) -> fmt::Result {
     let measure = &table.measures[response.measure];
+    let average = average(table, response);
     let averaged = table.average_over.map_or(String::new(), |at| {
-        format!(", mean and standard deviation over {}", table.axes[at].name)
+        let average = average.word();
+        format!(
+            ", {average} and standard deviation over {}",
+            table.axes[at].name
+        )
     });
     let name = with_unit(&measure.name, &measure.unit);
     writeln!(f, "response     {name}{}", visible(&averaged))?;
@@ -192,7 +206,8 @@ fn write_response(
         let scatter = (point.standard_deviation).map_or(String::new(), |deviation| {
             format!(" ± {}", significant(deviation, 2))
         });
-        let value = format!("{}{scatter}", significant(point.mean, 4));
+        let value = significant(point.average(average), 4);
+        let value = format!("{value}{scatter}");
         format!("  {value:<20} {}", visible(&named(table, point)))
     });
     cut(f, &lines.collect::<Vec<String>>())

@@ -64,8 +64,8 @@ impl Seen {
         (0..spheres.centres_m.len()).map(ball).collect()
     }
 
-    /// Each wall as a surface.
-    pub(super) fn walls(&self) -> Vec<Surface> {
+    /// Each wall as a surface; those for whose names `is_solid` holds are seen from outside only.
+    pub(super) fn walls(&self, is_solid: &dyn Fn(&str) -> bool) -> Vec<Surface> {
         let Some(walls) = &self.walls else {
             return Vec::new();
         };
@@ -73,7 +73,10 @@ impl Seen {
             let numbers = walls.triangles.iter().zip(&walls.wall_of_triangle);
             let own = numbers.filter(|(_, of)| **of as usize == wall);
             let triangles: Vec<[u32; 3]> = own.map(|(triangle, _)| *triangle).collect();
-            Surface::mesh(&walls.points_m, &triangles)
+            Surface {
+                solid: is_solid(&walls.names[wall]),
+                ..Surface::mesh(&walls.points_m, &triangles)
+            }
         };
         (0..walls.names.len()).map(of).collect()
     }

@@ -278,7 +278,7 @@ const camera = {};
 function reset() {
   const [fx, fy, fz] = head.from;
   camera.target = [...head.focus_m];
-  camera.distance = head.reach_m * Math.max(2.8, 2.8 * canvas.clientHeight / canvas.clientWidth);
+  camera.distance = 2.8 * head.reach_m;
   camera.turn = Math.atan2(fy, fx);
   camera.rise = Math.atan2(fz, Math.hypot(fx, fy));
 }
@@ -292,8 +292,10 @@ function matrices() {
   const eye = back.map((part, k) => camera.target[k] + camera.distance * part);
   const view = [0, 1, 2].flatMap(k => [right[k], up[k], back[k], 0]);
   view.push(-dot(right, eye), -dot(up, eye), -dot(back, eye), 1);
-  const f = 1 / Math.tan(0.3), near = camera.distance / 50, far = camera.distance + 40 * head.reach_m;
+  const near = camera.distance / 50, far = camera.distance + 40 * head.reach_m;
   const aspect = canvas.width / canvas.height;
+  // The angle of view is that of the shorter side, so that upright screens show the whole as well.
+  const f = Math.min(1, aspect) / Math.tan(0.3);
   const projection = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
   return { view, projection };
 }
@@ -404,7 +406,7 @@ canvas.addEventListener("keydown", event => {
 });
 function zoom(factor) { camera.distance = Math.max(1e-3 * head.reach_m, Math.min(100 * head.reach_m, camera.distance * factor)); }
 function shift(moved) {
-  const { right, up } = axes(), unit = 0.62 * camera.distance / canvas.clientHeight;
+  const { right, up } = axes(), unit = 0.62 * camera.distance / Math.min(canvas.clientWidth, canvas.clientHeight);
   for (let k = 0; k < 3; k++) camera.target[k] += unit * (moved[1] * up[k] - moved[0] * right[k]);
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use serde::Serialize;
+
 use crate::schema::Word;
 
 /// Version of the study format.
@@ -74,14 +76,16 @@ impl Study {
     }
 }
 
-/// A search for the value of one parameter at which the mean of a measure has a given value, once for
-/// each case: each combination of the values of the other axes except the averaged one.
+/// A search for the value of one parameter at which the mean or median of a measure has a given value,
+/// once for each case: each combination of the values of the other axes except the averaged one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Find {
     /// `measure`: its index among the measures of the study.
     pub measure: usize,
     /// `value`, as written, with or without a unit.
     pub value: String,
+    /// `statistic`: what of the values has it.
+    pub statistic: Average,
     /// `from` and `to`: the ends between which the parameter is searched, in `unit`, ascending.
     pub ends: [f64; 2],
     /// `tolerance`: largest width of the interval found, in `unit`, above 0.
@@ -93,6 +97,26 @@ pub struct Find {
     pub tried: Vec<Vec<usize>>,
     /// Its place in the study.
     pub place: String,
+}
+
+/// What is taken of the values along the averaged axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Average {
+    /// "mean".
+    Mean,
+    /// "median": half of the values lie on either side.
+    Median,
+}
+
+impl Average {
+    /// Its name.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Mean => "mean",
+            Self::Median => "median",
+        }
+    }
 }
 
 /// The time of a run that is compared. Both exclude start-up.

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::contents::{Axis, Combine, Find, Study, StudyMeasure};
+use super::contents::{Average, Axis, Combine, Find, Study, StudyMeasure};
+use super::keys::AVERAGES;
 use super::values::{point, rounded, setting};
 use crate::field::Field;
 use crate::names::suggestion;
@@ -115,6 +116,9 @@ pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure], cases: usize)
             Value::Text(text) => text.clone(),
             _ => return Err(value.wrong("a number", "write it with its unit, such as \"2 mm\"")),
         },
+        statistic: table
+            .read_by("statistic", |field| field.choice(&AVERAGES))?
+            .unwrap_or(Average::Mean),
         ends,
         tolerance,
         unit,

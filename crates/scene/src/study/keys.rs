@@ -1,6 +1,6 @@
 //! The keys of a study.
 
-use super::contents::{BALANCES, CURVES, Combine, Keep, Pieces, RunTime};
+use super::contents::{Average, BALANCES, CURVES, Combine, Keep, Pieces, RunTime};
 use crate::schema::{Key, Kind, Schema, Word, words_of};
 
 /// Largest number of threads.
@@ -97,8 +97,8 @@ pub(crate) static STUDY: Schema = Schema {
 
 pub(super) static FIND: Schema = Schema {
     title: "[find]",
-    doc: "Search for the value of a parameter at which the mean of a measure has a given value, by bisection. Only the axis \
-          of `average_over` may vary besides.",
+    doc: "Search for the value of a parameter at which the mean or the median of a measure has a given value, by bisection. \
+          What else varies, except the axis of `average_over`, makes cases, each with a search of its own.",
     keys: &[
         Key::text(
             "parameter",
@@ -115,6 +115,13 @@ pub(super) static FIND: Schema = Schema {
         )
         .required("\"largest\""),
         Key::new("value", ANYTHING, "Its value that is looked for.").required("0.5"),
+        Key::new(
+            "statistic",
+            Kind::Word(|| words_of(&AVERAGES)),
+            "What of the values along the axis of `average_over` has that value: their mean, or their median, on either side \
+             of which lie half of the runs.",
+        )
+        .or_word("mean"),
         Key::new(
             "tolerance",
             ANYTHING,
@@ -167,6 +174,10 @@ pub(super) static RANGE: Schema = Schema {
         .or_word("linear"),
     ],
 };
+
+/// Averages of a search.
+pub(super) const AVERAGES: [(&str, Average); 2] =
+    [("mean", Average::Mean), ("median", Average::Median)];
 
 /// Spacings of a range; true for logarithmic.
 pub(super) const SPACINGS: [(&str, bool); 2] = [("linear", false), ("log", true)];

@@ -25,7 +25,7 @@ pub(crate) fn rows() -> Vec<Row> {
         table: Table::Two,
         ..fine
     };
-    let settled = |of: Sample| Sample { bare: false, ..of };
+    let densified = |of: Sample| Sample { bare: false, ..of };
     let row = |sample, packings, reading| Row {
         sample,
         packings,
@@ -39,11 +39,11 @@ pub(crate) fn rows() -> Vec<Row> {
         row(fine, PACKINGS, READINGS[0]),
         row(fine, PACKINGS, READINGS[1]),
         row(further, 1, READINGS[0]),
-        row(settled(fine), 1, READINGS[1]),
+        row(densified(fine), 1, READINGS[1]),
     ];
     for reading in READINGS {
         rows.push(row(coarse, PACKINGS, reading));
-        rows.push(row(settled(coarse), PACKINGS, reading));
+        rows.push(row(densified(coarse), PACKINGS, reading));
     }
     rows
 }

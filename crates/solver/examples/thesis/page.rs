@@ -184,7 +184,11 @@ fn wanted() -> Vec<String> {
 }
 
 fn named(sample: &Sample) -> String {
-    let texture = if sample.bare { "bare front" } else { "settled" };
+    let texture = if sample.bare {
+        "bare front"
+    } else {
+        "densified"
+    };
     format!(
         "table {}, {texture}, bond range {}",
         sample.table.number(),

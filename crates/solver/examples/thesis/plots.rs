@@ -42,7 +42,7 @@ fn curves(results: &Path) -> Option<String> {
         let texture = if row.sample.bare {
             "bare front"
         } else {
-            "settled"
+            "densified"
         };
         lines.push(Line {
             name: format!(

@@ -55,7 +55,7 @@ pub(crate) struct Sample {
     pub(crate) table: Table,
     /// 200 mm long for the bending test, otherwise 180 mm.
     pub(crate) long: bool,
-    /// The bare front, as in Platzer 2022, or settled.
+    /// The bare front, as in Platzer 2022, or densified.
     pub(crate) bare: bool,
     /// `--bond-range`
     pub(crate) bond_range: &'static str,
@@ -76,7 +76,7 @@ pub(crate) const PACKINGS: u32 = 4;
 
 impl Sample {
     pub(crate) fn texture(&self) -> &'static str {
-        if self.bare { "bare" } else { "settled" }
+        if self.bare { "bare" } else { "densified" }
     }
 
     pub(crate) fn name(&self) -> String {
@@ -134,7 +134,7 @@ pub(crate) fn counted() -> Vec<(&'static str, Vec<Sample>)> {
             }],
         ),
         (
-            "table 1, settled, bond range 1.0",
+            "table 1, densified, bond range 1.0",
             vec![Sample {
                 bare: false,
                 ..BARE
@@ -142,7 +142,7 @@ pub(crate) fn counted() -> Vec<(&'static str, Vec<Sample>)> {
         ),
         ("table 2, bare front, bond range 1.0", seeds(table_2)),
         (
-            "table 2, settled, bond range 1.0",
+            "table 2, densified, bond range 1.0",
             seeds(Sample {
                 bare: false,
                 ..table_2

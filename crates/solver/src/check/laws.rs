@@ -34,7 +34,7 @@ pub(crate) fn strain_warning(largest: f64, where_: &str) -> Option<String> {
 pub(crate) fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     (largest > LARGEST_OVERLAP).then(|| {
         format!(
-            "a contact was pressed in by {} of the smaller radius{where_}: contact laws hold for small overlaps, up to about {LARGEST_OVERLAP}; check the moduli of the materials, the loads and the speeds",
+            "a contact overlapped by {} of the smaller radius{where_}: contact laws hold for small overlaps, up to about {LARGEST_OVERLAP}; check the moduli of the materials, the loads and the speeds",
             significant(largest, 3),
         )
     })

@@ -81,7 +81,7 @@ fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<()> {
     let output = scene.output.as_ref();
     let from = output.and_then(|output| output.view_from);
     let view = View::of(&plan.state, from, None);
-    let image = view.picture(&plan.state, &plan.bodies, scene.run.end_time_s);
+    let image = view.picture_with_regions(&plan.state, &plan.bodies, scene.run.end_time_s);
     let bytes = to_png(&image, Compression::High)?;
     write_file(file, |out| out.write_all(&bytes))
 }

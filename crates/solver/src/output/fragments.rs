@@ -1,5 +1,7 @@
 //! Output on the fragments of bodies: tables, plots, and a line of the summary.
 
+use std::collections::BTreeSet;
+
 use dem_io::Result;
 use dem_io::units::significant;
 use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
@@ -15,6 +17,7 @@ use crate::state::model::Model;
 /// Names of the plots of fragments.
 pub(super) const COUNT: &str = "fragments";
 pub(super) const SIZES: &str = "fragment_sizes";
+pub(super) const DISCHARGE: &str = "discharged_mass";
 
 /// Largest number of fragments named in the text of a split.
 const NAMED: usize = 8;
@@ -102,8 +105,8 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
     text
 }
 
-/// Plots the number of fragments over time, if it changes, and the sizes of those at the end and
-/// those discharged, if there is more than one.
+/// Plots the discharged mass over time, if there is any; the number of fragments over time, if it
+/// changes; and the sizes of those at the end and those discharged, if there is more than one.
 ///
 /// # Errors
 /// Those of the files.
@@ -113,6 +116,10 @@ pub(crate) fn write_fragment_plots(
     fragments: &Fragments,
     end_s: f64,
 ) -> Result<()> {
+    if !state.population.discharged.is_empty() {
+        let plot = discharge_plot(state, end_s);
+        folder.write_plot(DISCHARGE, &plot.svg().file())?;
+    }
     let Some(clusters) = &state.clusters else {
         return Ok(());
     };
@@ -126,6 +133,36 @@ pub(crate) fn write_fragment_plots(
         folder.write_plot(SIZES, &size_plot(fragments, &state.model).svg().file())?;
     }
     Ok(())
+}
+
+/// Mass that has left through outlets, over time: a line for each body, the slope of which is its mass
+/// flow.
+fn discharge_plot(state: &State, end_s: f64) -> Plot {
+    let discharged = &state.population.discharged;
+    let bodies: BTreeSet<u32> = discharged.iter().map(|one| one.size.body).collect();
+    let line = |body: u32| {
+        let own = discharged.iter().filter(|one| one.size.body == body);
+        let mut points = vec![[0.0, 0.0]];
+        let mut mass_kg = 0.0;
+        for one in own {
+            points.push([one.time_s, mass_kg]);
+            mass_kg += one.size.mass_kg;
+            points.push([one.time_s, mass_kg]);
+        }
+        points.push([end_s, mass_kg]);
+        Line {
+            name: state.model.body_name(body).to_owned(),
+            points,
+            dashed: false,
+        }
+    };
+    Plot {
+        title: "Discharged mass".to_owned(),
+        x: Axis::of("time (s)"),
+        y: Axis::of("mass (kg)"),
+        lines: bodies.into_iter().take(MOST_LINES).map(line).collect(),
+        ..Plot::default()
+    }
 }
 
 /// Cumulative mass over sieve size: a line for each body, and for all if there are several; d50 is

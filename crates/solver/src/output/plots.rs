@@ -4,12 +4,12 @@ use dem_io::Result;
 use dem_plots::{Axis, Line, Plot};
 use dem_results::{ResultsFolder, Series, read_series};
 
-use super::fragments::{COUNT, SIZES};
+use super::fragments::{COUNT, DISCHARGE, SIZES};
 use super::series::ENERGIES;
 use crate::measure::Probe;
 
 /// Names of plots that any run may have, which no measure may overwrite.
-const OVERALL: [&str; 5] = [ENERGY, ERRORS, BROKEN, COUNT, SIZES];
+const OVERALL: [&str; 6] = [ENERGY, ERRORS, BROKEN, COUNT, SIZES, DISCHARGE];
 const ENERGY: &str = "energy";
 const ERRORS: &str = "errors";
 const BROKEN: &str = "broken_bonds";

@@ -358,7 +358,7 @@ impl Seen {
         let fraction = apart_j / self.largest_kinetic_j;
         if can_break && fraction > FLYING {
             warnings.push(format!(
-                "{count} pieces still fly apart at the end, with {} % of the largest kinetic energy of the run: what they hit later may break them further; set run.end_time later than {} s",
+                "{count} fragments still moved apart at the end, with {} % of the largest kinetic energy of the run: later impacts may break them further; set run.end_time later than {} s",
                 significant(100.0 * fraction, 2),
                 significant(scene.run.end_time_s, 4)
             ));

@@ -40,7 +40,10 @@ pub const CONTACTS: Stage = Stage {
         };
         Need::of(
             can_meet(state),
-            || format!("{pieces} pieces at the start"),
+            || {
+                let s = if pieces == 1 { "" } else { "s" };
+                format!("{pieces} piece{s} at the start")
+            },
             why_not,
         )
     },

@@ -106,6 +106,8 @@ fn arguments_are_refused_on_one_line() {
     }
     let said = refusal(&["scene.toml", "--sett", "a=1"]);
     assert!(said.ends_with("; see dem-run --help"), "{said}");
+    let said = refusal(&["new"]);
+    assert!(said.ends_with("; see dem-run new --help"), "{said}");
 }
 
 #[test]

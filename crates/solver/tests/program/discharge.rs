@@ -34,6 +34,8 @@ fn what_leaves_is_in_the_table_with_its_body_and_size() {
         (sum_kg / discharged_kg - 1.0).abs() < 1e-12,
         "{sum_kg} {discharged_kg}"
     );
+    let plot = fs::read_to_string(bench.path("out/plots/discharged_mass.svg")).unwrap();
+    assert!(plot.contains(">Discharged mass</text>"), "{plot}");
     // The same moments and fragments as in the table of events.
     let events = rows(&bench, "events.csv");
     let events = events.iter().filter(|row| row["event"] == "discharged");

@@ -194,7 +194,7 @@ fn tables_and_pages_of_a_sweep() {
     assert_eq!(rows.len(), 8);
     for (row, run) in rows.iter().zip(table["runs"].as_array().unwrap()) {
         let number = |column: &str| row[column].parse::<f64>().unwrap();
-        assert_eq!(row["run.safety_factor"], run["settings"][1]);
+        assert_eq!(number("run.safety_factor").to_string(), run["settings"][1]);
         assert_same_number(number("time_s"), &run["time_s"]);
         // Until half a second has been measured, extrapolated from the first two.
         let times = run["times_s"].as_array().unwrap();

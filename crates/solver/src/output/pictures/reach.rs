@@ -35,7 +35,7 @@ impl Solid {
 
 impl Reach {
     /// From each corner of each inlet on a parabola to the first plane; from there sideways, at right
-    /// angles to gravity, to planes nearby; and the regions in which outlets take bodies.
+    /// angles to gravity, to planes nearby.
     pub(crate) fn of(state: &State) -> Self {
         let model = &state.model;
         let gravity = Vector3::from(model.gravity_m_s2);
@@ -69,18 +69,24 @@ impl Reach {
                     .extend(sides(&solids, landing, gravity, near_m));
             }
         }
-        if !model.rules.inlets.is_empty() {
-            let outlets = model
-                .rules
-                .outlets
-                .iter()
-                .filter(|outlet| !outlet.removes_outside);
-            let regions = outlets.map(|outlet| model.rules.regions[outlet.region].bounds());
-            reach
-                .points_m
-                .extend(regions.flat_map(|region| region.corners()));
-        }
         reach
+    }
+
+    /// Where outlets take fed bodies, m: of each region its part within the `scene`, or else its side
+    /// towards the scene. Regions of outlets are often far larger than the scene. Shape n x 3.
+    pub(crate) fn outlets(state: &State, scene: &Bounds) -> Vec<[f64; 3]> {
+        let rules = &state.model.rules;
+        if rules.inlets.is_empty() {
+            return Vec::new();
+        }
+        let outlets = rules
+            .outlets
+            .iter()
+            .filter(|outlet| !outlet.removes_outside);
+        let regions = outlets.map(|outlet| rules.regions[outlet.region].bounds());
+        regions
+            .flat_map(|region| nearest(&region, scene).corners())
+            .collect()
     }
 
     /// The box within which all outlets leave bodies: the common part of the regions outside of which
@@ -95,6 +101,18 @@ impl Reach {
         outlets.fold(everywhere, |within, outlet| {
             within.common(&rules.regions[outlet.region].bounds())
         })
+    }
+}
+
+/// The part of a box within another, or else its side towards that.
+fn nearest(region: &Bounds, scene: &Bounds) -> Bounds {
+    let side = |end: f64, k: usize| {
+        let within = end.max(scene.low[k]).min(scene.high[k]);
+        within.max(region.low[k]).min(region.high[k])
+    };
+    Bounds {
+        low: [0, 1, 2].map(|k| side(region.low[k], k)),
+        high: [0, 1, 2].map(|k| side(region.high[k], k)),
     }
 }
 
@@ -249,10 +267,26 @@ mod tests {
             removes_outside,
         };
         state.model.rules.outlets = vec![outlet(false)];
-        assert_eq!(bounds(&Reach::of(&state)).high[0], 0.6);
+        let scene = bounds(&Reach::of(&state));
+        // The bin is to the right of the gate, whose lower side it touches.
+        let side = Bounds::of(Reach::outlets(&state, &scene));
+        assert_eq!((side.low, side.high), ([0.5, 0.0, 0.1], [0.5, 0.1, 0.2]));
+        let wider = scene.with(&bin);
+        assert_eq!(Bounds::of(Reach::outlets(&state, &wider)), bin);
+        // A region that reaches far below and beyond the scene.
+        state.model.rules.regions[1] = Region::Box(Bounds {
+            low: [-9.0; 3],
+            high: [9.0, 9.0, -0.5],
+        });
+        let side = Bounds::of(Reach::outlets(&state, &scene));
+        assert_eq!(
+            (side.low, side.high),
+            ([-0.1, -0.1, -0.5], [0.1, 0.1, -0.5])
+        );
+        state.model.rules.regions[1] = Region::Box(bin);
         assert_eq!(Reach::within(&state).high[0], f64::INFINITY);
         state.model.rules.outlets = vec![outlet(true)];
-        assert_eq!(bounds(&Reach::of(&state)).high[0], 0.1);
+        assert!(Reach::outlets(&state, &scene).is_empty());
         assert_eq!(Reach::within(&state), bin);
     }
 }

@@ -50,7 +50,30 @@ pub(crate) fn points_of(state: &State) -> Vec<[f64; 3]> {
         .flat_map(|pose| outermost(pose.place().into(), pose.radius_m()))
         .collect();
     points_m.extend(Reach::of(state).points_m);
+    let scene = with_walls(Bounds::of(points_m.iter().copied()), state);
+    points_m.extend(Reach::outlets(state, &scene));
     points_m
+}
+
+/// A box, and the walls that are no planes.
+fn with_walls(bounds: Bounds, state: &State) -> Bounds {
+    state.walls.iter().fold(bounds, |bounds, wall| {
+        let corners = corners_m(&wall.model.shape).unwrap_or_default();
+        let in_space = corners.into_iter().flatten();
+        let in_space = in_space.map(|corner| wall.frame.to_space(corner));
+        bounds.with(&Bounds::of(in_space))
+    })
+}
+
+/// The edges of the boxes around all regions.
+pub(crate) fn outlines_of_regions(state: &State) -> Vec<Surface> {
+    let regions = state.model.rules.regions.iter();
+    regions
+        .map(|region| Surface {
+            triangles: Vec::new(),
+            ..Surface::solid_box(&region.bounds())
+        })
+        .collect()
 }
 
 /// The box of a scene around which planes are drawn: these points, m, with room at their sides, and
@@ -59,12 +82,7 @@ pub(crate) fn around(state: &State, points_m: &[[f64; 3]]) -> Bounds {
     let points = Bounds::of(points_m.iter().copied());
     let room = with_room(points, Reach::of(state).fall_m);
     let room = points.with(&room.common(&Reach::within(state)));
-    state.walls.iter().fold(room, |around, wall| {
-        let corners = corners_m(&wall.model.shape).unwrap_or_default();
-        let in_space = corners.into_iter().flatten();
-        let in_space = in_space.map(|corner| wall.frame.to_space(corner));
-        around.with(&Bounds::of(in_space))
-    })
+    with_walls(room, state)
 }
 
 /// A box with room at its sides, for parts that will fall over or break, and for bodies that fall

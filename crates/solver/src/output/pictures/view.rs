@@ -4,7 +4,7 @@ use dem_pictures::label::{label, scale_bar, time_text};
 use dem_pictures::{Camera, Image, Surface, render};
 
 use super::scale::Scale;
-use super::subject::{around, balls, points_of, surfaces};
+use super::subject::{around, balls, outlines_of_regions, points_of, surfaces};
 use crate::geometry::Bounds;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
@@ -47,8 +47,30 @@ impl View {
     /// The picture of a state, with its time. `every_s`: time between pictures, s.
     pub fn picture(&self, state: &State, bodies: &[PlacedBody], every_s: f64) -> Image {
         let surfaces = surfaces(&state.walls, &self.around);
+        self.drawn(state, bodies, &surfaces, every_s)
+    }
+
+    /// The same, with the edges of the boxes around all regions.
+    pub fn picture_with_regions(
+        &self,
+        state: &State,
+        bodies: &[PlacedBody],
+        every_s: f64,
+    ) -> Image {
+        let mut surfaces = surfaces(&state.walls, &self.around);
+        surfaces.extend(outlines_of_regions(state));
+        self.drawn(state, bodies, &surfaces, every_s)
+    }
+
+    fn drawn(
+        &self,
+        state: &State,
+        bodies: &[PlacedBody],
+        surfaces: &[Surface],
+        every_s: f64,
+    ) -> Image {
         let balls = balls(state, bodies, self.scale.as_ref());
-        let mut image = render(&self.camera, &balls, &surfaces);
+        let mut image = render(&self.camera, &balls, surfaces);
         if let Some(scale) = &self.scale {
             scale.draw(&mut image);
         }

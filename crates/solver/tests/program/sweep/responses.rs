@@ -73,6 +73,8 @@ fn a_response_is_the_mean_with_its_scatter() {
         assert_near(&row["mean"], 0.5 * (ends[0] + ends[1]));
         assert_near(&row["smallest"], ends[0]);
         assert_near(&row["largest"], ends[1]);
+        // Of two values their mean.
+        assert_eq!(row["median"], row["mean"]);
         // Of two values: their difference over the root of two.
         assert_near(
             &row["standard_deviation"],
@@ -80,11 +82,14 @@ fn a_response_is_the_mean_with_its_scatter() {
         );
     }
     let runs = csv(&bench.path("study-sweep/sweep.csv"));
-    assert_eq!(runs[0]["loads.tip.force"], "0.9 kN");
+    assert_eq!(runs[0]["loads.tip.force (kN)"], "9e-1");
     assert!(runs[0].contains_key("tip_value") && !runs[0].contains_key("tip_error"));
     let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
     assert_well_formed(&html);
     assert!(html.contains("<h1>Response: spring.toml</h1>"), "{html}");
+    // A run leads to its page.
+    let link = "<td class=\"n\"><a href=\"runs/0001-1/report.html\">1</a></td>";
+    assert!(html.contains(link), "{html}");
     for absent in ["Pareto", "error", "Times"] {
         assert!(!html.contains(absent), "{absent}");
     }
@@ -147,6 +152,37 @@ fn assert_found(table: &Value) {
         "{found}"
     );
     assert_eq!(found["at"].as_f64().unwrap(), 0.5 * (low + high));
+}
+
+/// One of three forces pulls the mean away from the median.
+#[test]
+fn the_median_is_found_where_that_is_looked_for() {
+    let bench = bench(&format!(
+        "{}{}",
+        REST.replace("1.1 kN", "1 kN\", 0, 0], [\"5 kN"),
+        FIND.replace("measure =", "statistic = \"median\"\nmeasure =")
+    ));
+    let said = good(&bench, &[]);
+    assert!(
+        said.contains(
+            "find         the median of tip is 2e-8 m at bonds.steel.young_modulus = 159"
+        ),
+        "{said}"
+    );
+    let table = json(&bench);
+    assert_eq!(table["find"]["statistic"], "median");
+    assert_found(&table);
+    let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
+    assert!(html.contains("median of tip (m)"), "{html}");
+    // One of three lies on the other side: that may be chance.
+    assert!(table["notes"].to_string().contains("the median of tip at"));
+
+    // The points that were tried for the median are not those for the mean.
+    let mean = FIND.to_owned();
+    let forces = REST.replace("1.1 kN", "1 kN\", 0, 0], [\"5 kN");
+    bench.write("study.toml", format!("{forces}{mean}"));
+    let said = bad(&bench, &["--resume"], 2);
+    assert!(said.contains("its runs are of another [find]"), "{said}");
 }
 
 #[test]
