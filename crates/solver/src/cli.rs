@@ -6,6 +6,7 @@ mod calibrate;
 mod check;
 mod export;
 mod fragment;
+mod import;
 mod keys;
 mod lab;
 mod new;
@@ -154,13 +155,17 @@ enum Command {
                       dem-run fragment results --all --stl -o hulls"
     )]
     Fragment(fragment::FragmentArguments),
-    /// Write all frames of a run as one file for another program
+    /// Write all frames of a run as one file for another program, or a scene for LAMMPS
     #[command(
         after_help = "A LAMMPS dump opens in OVITO: particles with id, type (the body), radius, position, velocity and fragment; with --bonds, the unbroken bonds \
                       as a dump of local data.\n\
-                      Example:\n  dem-run export results --to lammps-dump -o frames.dump --bonds bonds.dump"
+                      Example:\n  dem-run export results --to lammps-dump -o frames.dump --bonds bonds.dump\n  \
+                      dem-run export lammps data/scenes/cantilever.toml -o bar"
     )]
     Export(export::ExportArguments),
+    /// Read what LAMMPS computed from an exported scene, as results of a run: frames and page
+    #[command(after_help = "Example:\n  dem-run import bar -o bar-results")]
+    Import(import::ImportArguments),
     /// Evaluate measured force-displacement curves: modulus, strength, mean curve
     #[command(
         after_help = "Finds in each curve the offset of the load cell, the seating and the linear part; leaves out specimens in doubt, and says why.\n\
@@ -331,6 +336,7 @@ pub fn run(
         Some(Command::Keys(arguments)) => keys::keys(arguments),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Export(arguments)) => export::export(arguments),
+        Some(Command::Import(arguments)) => import::import(arguments),
         Some(Command::Lab(arguments)) => lab::lab(arguments),
         Some(Command::Calibrate(arguments)) => calibrate::calibrate(arguments, interrupt),
         Some(Command::Picture(arguments)) => in_pool(None, |_| picture::write_picture(arguments)),
