@@ -31,6 +31,7 @@ use crate::plan::Plan;
 /// Names of the files of an export, in its folder.
 pub(crate) const DATA: &str = "particles.data";
 pub(crate) const INPUT: &str = "in.lammps";
+pub(crate) const TYPES: &str = "bond-types.lammps";
 pub(crate) const CLUMPS: &str = "clumps.txt";
 pub(crate) const PAGE: &str = "README.md";
 pub(crate) const MANIFEST: &str = "export.json";
@@ -109,6 +110,9 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
         write_file(&folder.join(DATA), |out| {
             data::write(plan, &contacts, &types, &molecules, out)
         })?;
+        if !types.types.is_empty() {
+            write_file(&folder.join(TYPES), |out| bonds::write(&types, out))?;
+        }
         if clumps::has_bodies(&plan.state) {
             write_file(&folder.join(CLUMPS), |out| {
                 clumps::write(&plan.state, &molecules, out)

@@ -13,6 +13,7 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::io::{self, Write};
 
 use dem_io::Result;
 use dem_scene::Scene;
@@ -59,6 +60,25 @@ impl BondTypes {
         let limits = |one: &BondType| one.coefficients[4..8].iter().any(|limit| *limit < NEVER);
         self.types.iter().any(limits)
     }
+}
+
+/// Writes a `bond_coeff` for each type.
+///
+/// # Errors
+/// Those of `out`.
+pub(crate) fn write(types: &BondTypes, out: &mut dyn Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "# type, Kr Ks (N/m), Kt Kb (N m/rad), fcr fcs (N), tct tcb (N m), gnorm gslide (N s/m), groll (N s/rad), gtwist (N m s/rad)"
+    )?;
+    for (number, one) in (1..).zip(&types.types) {
+        write!(out, "bond_coeff {number}")?;
+        for x in &one.coefficients {
+            write!(out, " {x:e}")?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
 }
 
 /// Sorts the bonds of a state into types.

@@ -1,4 +1,4 @@
-//! The data file: particles as `atom_style bpm/sphere`, bonds and the coefficients of their types.
+//! The data file: particles as `atom_style bpm/sphere`, and bonds.
 //!
 //! <https://docs.lammps.org/read_data.html>
 
@@ -129,20 +129,12 @@ pub(super) fn write(
     if types.types.is_empty() {
         return Ok(());
     }
-    writeln!(out, "\nBond Coeffs # bpm/rotational\n")?;
-    for (number, one) in (1..).zip(&types.types) {
-        write!(out, "{number}")?;
-        for x in &one.coefficients {
-            write!(out, " {x:e}")?;
-        }
-        writeln!(out)?;
-    }
     writeln!(out, "\nBonds\n")?;
     for (number, (ends, of)) in (1..).zip(state.bonds.ends.iter().zip(&types.type_of)) {
         let [a, b] = ends.map(|end| atom(plan, end as usize));
         writeln!(out, "{number} {} {a} {b}", of + 1)?;
     }
-    writeln!(out)
+    Ok(())
 }
 
 /// Whether a particle of a clump moves by itself: a clump of one sphere.

@@ -10,7 +10,7 @@ use super::contacts::Contacts;
 use super::data::{atom, lone_spheres};
 use super::forces::Forces;
 use super::walls::WrittenWall;
-use super::{BONDS, BROKEN, CLUMPS, DATA, FRAMES};
+use super::{BONDS, BROKEN, CLUMPS, DATA, FRAMES, TYPES};
 use crate::plan::Plan;
 
 /// What the script is written from.
@@ -72,7 +72,6 @@ impl Input<'_> {
     }
 
     fn add_begin(&self, text: &mut String) {
-        let bonded = !self.types.types.is_empty();
         for line in [
             "# Written by dem-run export lammps; README.md says what is carried over and what is not.",
             "# mpirun -np N lmp -in in.lammps",
@@ -86,7 +85,10 @@ impl Input<'_> {
         ] {
             Self::line(text, line);
         }
-        if bonded {
+        // Neighbours within the longest bond are known, on other ranks too.
+        Self::line(text, format!("comm_modify cutoff {:e}", self.reach_m()));
+        Self::line(text, format!("read_data {DATA}"));
+        if !self.types.types.is_empty() {
             let breaks = if self.types.break_at_all() {
                 "yes"
             } else {
@@ -106,10 +108,8 @@ impl Input<'_> {
                 text,
                 format!("bond_style bpm/rotational smooth no break {breaks}{stored}"),
             );
+            Self::line(text, format!("include {TYPES}"));
         }
-        // Neighbours within the longest bond are known, on other ranks too.
-        Self::line(text, format!("comm_modify cutoff {:e}", self.reach_m()));
-        Self::line(text, format!("read_data {DATA}"));
     }
 
     /// Distance at which particles must be known to another rank, m: one and a half times the
