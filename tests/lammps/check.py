@@ -86,7 +86,7 @@ def bouncing():
 [run]
 end_time = "0.5 s"
 gravity = [0, 0, -9.81]
-safety_factor = 0.2
+safety_factor = 0.02
 {SOFT}
 [contacts]
 grain-plate = {{ restitution = 0.5, friction = 0.3 }}
@@ -137,7 +137,7 @@ bonds = "grain"
 particles = {particles(places, radius)}
 bond_list = [{", ".join(bonds)}]
 rotation = {{ axis = [1, 0.8, 0.1], angle = "35 deg" }}
-position = [0, 0, "45 mm"]
+position = [0, 0, "20 mm"]
 velocity = [0, 0, "-5 m/s"]
 [walls.plate]
 plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
@@ -157,7 +157,7 @@ def heap():
         for i in range(5):
             for j in range(4):
                 shift = [0.04 * d * draw.uniform(-1, 1) for _ in range(3)]
-                place = (1.05 * d * i + 0.7 * d, 1.15 * d * j + 0.8 * d, 1.1 * d * (layer + 1))
+                place = (1.09 * d * i + 0.7 * d, 1.15 * d * j + 0.8 * d, 1.1 * d * (layer + 1))
                 column.append(tuple(round(a + b, 6) for a, b in zip(place, shift)))
     walls = ""
     for name, point, normal in [("back", [0, 0, 0], [1, 0, 0]), ("left", [0, 0, 0], [0, 1, 0]), ("right", [0, 5 * d, 0], [0, -1, 0])]:

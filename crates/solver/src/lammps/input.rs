@@ -103,7 +103,7 @@ impl Input<'_> {
                 String::new()
             };
             // Without pair forces between bonded particles, and with them once their bond is broken.
-            Self::line(text, "special_bonds lj 0.0 1.0 1.0 coul 0.0 1.0 1.0");
+            Self::line(text, "special_bonds lj 0.0 1.0 1.0 coul 1.0 1.0 1.0");
             Self::line(
                 text,
                 format!("bond_style bpm/rotational smooth no break {breaks}{stored}"),
@@ -361,7 +361,7 @@ impl Input<'_> {
             );
             Self::line(text, format!("dump_modify broken format float {exact}"));
         }
-        Self::line(text, "thermo_style custom step time atoms ke");
+        Self::line(text, "thermo_style custom step time atoms");
         Self::line(text, "thermo_modify lost error");
         Self::line(text, format!("thermo {every}"));
         Self::line(text, format!("run {steps}"));
