@@ -235,16 +235,17 @@ impl Input<'_> {
             text,
             format!("timestep {:e}", step_s(self.scene, self.plan)),
         );
+        // The bodies of rigid/small have their own gravity.
+        let mut moving = if has_bodies(state) { "loose" } else { "all" };
         let gravity = state.model.gravity_m_s2;
         let size = gravity.iter().map(|x| x * x).sum::<f64>().sqrt();
         if size > 0.0 {
             let [x, y, z] = gravity.map(|g| g / size);
             Self::line(
                 text,
-                format!("fix gravity all gravity {size:e} vector {x:e} {y:e} {z:e}"),
+                format!("fix gravity {moving} gravity {size:e} vector {x:e} {y:e} {z:e}"),
             );
         }
-        let mut moving = if has_bodies(state) { "loose" } else { "all" };
         if has_bodies(state) {
             let by = if size > 0.0 { " gravity gravity" } else { "" };
             Self::line(
