@@ -55,8 +55,6 @@ pub(crate) struct Manifest {
     pub is_clump: Vec<bool>,
     /// Radius of the bonds of each type, m.
     pub bond_radii_m: Vec<f64>,
-    /// Whether bonds may break.
-    pub breaks: bool,
 }
 
 /// What has been written.
@@ -103,7 +101,6 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
         body_of_molecule: molecules.bodies.clone(),
         is_clump: molecules.are_clumps.clone(),
         bond_radii_m: types.types.iter().map(|one| one.radius_m).collect(),
-        breaks: types.break_at_all(),
     };
     let texts = [(INPUT, input.text()), (PAGE, page::page(&input))];
     in_new_folder(folder, |folder| {

@@ -61,6 +61,7 @@ impl Input<'_> {
         self.add_interactions(&mut text);
         self.add_groups(&mut text);
         self.add_motion(&mut text);
+        self.add_forces(&mut text);
         self.add_walls(&mut text);
         self.add_output(&mut text);
         text
@@ -113,12 +114,18 @@ impl Input<'_> {
     }
 
     /// Distance at which particles must be known to another rank, m: one and a half times the
-    /// longest bond, or two diameters.
+    /// longest bond, two diameters, or the width of a clump.
     fn reach_m(&self) -> f64 {
         let state = &self.plan.state;
         let lengths = (0..state.bonds.len()).map(|at| state.bonds.initial_length_m(at));
         let longest = lengths.fold(0.0, f64::max);
-        (1.5 * longest).max(4.0 * state.largest_radius_m())
+        let clumps = state
+            .clumps
+            .templates
+            .iter()
+            .map(|template| 2.0 * template.reach_m);
+        let widest = clumps.fold(4.0 * state.largest_radius_m(), f64::max);
+        (1.5 * longest).max(widest)
     }
 
     fn add_interactions(&self, text: &mut String) {
@@ -184,11 +191,14 @@ impl Input<'_> {
         }
     }
 
-    /// Particles of bodies whose bonds cannot break.
+    /// Particles of bodies of one piece whose bonds cannot break.
     fn unbreakable(&self) -> Vec<u32> {
         let state = &self.plan.state;
+        let cluster = |i: u32| (state.clusters.as_ref()).map(|c| c.of_particle[i as usize]);
         let whole = self.plan.bodies.iter().filter(|body| {
-            !body.bonds.is_empty() && {
+            let first = body.particles.first().and_then(|i| cluster(*i));
+            let is_one = body.particles.iter().all(|i| cluster(*i) == first);
+            !body.bonds.is_empty() && is_one && {
                 let rule = state.bonds.rule_of(body.first_bond);
                 state.bonds.rules[rule].criteria.is_none()
             }
@@ -267,6 +277,9 @@ impl Input<'_> {
             moving = "moving";
         }
         Self::line(text, format!("fix motion {moving} nve/bpm/sphere"));
+    }
+
+    fn add_forces(&self, text: &mut String) {
         for (number, load) in (1..).zip(&self.forces.loads) {
             Self::line(text, format!("# load {}", load.name));
             for (axis, formula) in ["x", "y", "z"].into_iter().zip(&load.formulas) {
@@ -282,7 +295,7 @@ impl Input<'_> {
                 ),
             );
         }
-        let damping = state.model.particle_damping;
+        let damping = self.plan.state.model.particle_damping;
         if damping > 0.0 {
             Self::line(
                 text,

@@ -1,10 +1,13 @@
 //! What a scene has and LAMMPS has no word for.
 
+use std::collections::HashSet;
+
 use dem_io::Result;
 use dem_scene::{InitialOverlap, Integrator, Scene};
 
 use super::{counted, refused};
 use crate::plan::Plan;
+use crate::state::bodies::PlacedBody;
 
 /// Groups that LAMMPS allows, without `all` and those of the export itself.
 const MOST_GROUPS: usize = 27;
@@ -96,24 +99,16 @@ fn refuse_parts(scene: &Scene) -> Result<()> {
 /// overlap they would fly apart when a bond breaks, or push each other from the start if no bond
 /// joins them.
 fn refuse_overlaps(scene: &Scene, plan: &Plan) -> Result<()> {
-    let state = &plan.state;
-    let poses = &state.particles.poses;
-    let touching_m = |[a, b]: [u32; 2]| poses[a as usize].radius_m() + poses[b as usize].radius_m();
-    let apart_m = |[a, b]: [u32; 2]| (poses[b as usize].place() - poses[a as usize].place()).norm();
-    for body in &plan.bodies {
-        if body.bonds.is_empty() {
+    let bonds = &plan.state.bonds;
+    for body in plan.bodies.iter().filter(|body| !body.bonds.is_empty()) {
+        if bonds.rules[bonds.rule_of(body.first_bond)]
+            .criteria
+            .is_none()
+        {
             continue;
         }
-        let bonds = body.first_bond..body.first_bond + body.bonds.len();
-        let rule = state.bonds.rule_of(body.first_bond);
-        if state.bonds.rules[rule].criteria.is_none() {
-            continue;
-        }
-        let overlaps = |ends: &[u32; 2]| apart_m(*ends) < touching_m(*ends) * (1.0 - ROUNDING);
-        let bonded = state.bonds.ends[bonds.clone()]
-            .iter()
-            .filter(|ends| overlaps(ends));
-        let count = bonded.count();
+        let ends = &bonds.ends[body.first_bond..body.first_bond + body.bonds.len()];
+        let count = ends.iter().filter(|pair| overlap(plan, **pair)).count();
         let part = format!("[bodies.{}]", body.name);
         if count > 0 {
             let why = format!(
@@ -127,35 +122,40 @@ fn refuse_overlaps(scene: &Scene, plan: &Plan) -> Result<()> {
                 "pack it without overlap (dem-pack --overlap 0), or with bonds that cannot break",
             ));
         }
-        let joined: std::collections::HashSet<[u32; 2]> =
-            state.bonds.ends[bonds].iter().copied().collect();
-        let mut particles = body.particles.clone();
-        particles.sort_unstable_by(|a, b| {
-            let x = |i: &u32| poses[*i as usize].position_m[0];
-            x(a).total_cmp(&x(b))
-        });
-        let widest_m = 2.0
-            * particles
-                .iter()
-                .map(|i| poses[*i as usize].radius_m())
-                .fold(0.0, f64::max);
-        for (n, &a) in particles.iter().enumerate() {
-            let x = |i: u32| poses[i as usize].position_m[0];
-            let near = particles[n + 1..]
-                .iter()
-                .take_while(|b| x(**b) - x(a) < widest_m);
-            for &b in near {
-                let pair = [a.min(b), a.max(b)];
-                if overlaps(&pair) && !joined.contains(&pair) {
-                    return Err(refused(
-                        scene,
-                        part,
-                        "two of its particles overlap without a bond, and it would push them apart although they belong to one piece",
-                        "bond them (dem-pack --bond-range 1), or pack it without overlap",
-                    ));
-                }
-            }
+        let joined: HashSet<[u32; 2]> = ends.iter().copied().collect();
+        if near_pairs(plan, body).any(|pair| overlap(plan, pair) && !joined.contains(&pair)) {
+            return Err(refused(
+                scene,
+                part,
+                "two of its particles overlap without a bond, and LAMMPS would push them apart although they belong to one piece",
+                "bond them (dem-pack --bond-range 1), or pack it without overlap",
+            ));
         }
     }
     Ok(())
+}
+
+/// Whether two particles overlap at the start.
+fn overlap(plan: &Plan, pair: [u32; 2]) -> bool {
+    let [a, b] = pair.map(|i| &plan.state.particles.poses[i as usize]);
+    let touching_m = a.radius_m() + b.radius_m();
+    (b.place() - a.place()).norm() < touching_m * (1.0 - ROUNDING)
+}
+
+/// Pairs of particles of a body whose x differ by less than the largest diameter, the smaller number
+/// first.
+fn near_pairs(plan: &Plan, body: &PlacedBody) -> impl Iterator<Item = [u32; 2]> {
+    let poses = &plan.state.particles.poses;
+    let x = |i: u32| poses[i as usize].position_m[0];
+    let radii = body.particles.iter().map(|i| poses[*i as usize].radius_m());
+    let widest_m = 2.0 * radii.fold(0.0, f64::max);
+    let mut sorted = body.particles.clone();
+    sorted.sort_unstable_by(|a, b| x(*a).total_cmp(&x(*b)));
+    (0..sorted.len()).flat_map(move |n| {
+        let a = sorted[n];
+        let after = sorted[n + 1..].iter().copied();
+        let near = after.take_while(|b| x(*b) - x(a) < widest_m);
+        let pairs: Vec<[u32; 2]> = near.map(|b| [a.min(b), a.max(b)]).collect();
+        pairs
+    })
 }
