@@ -9,6 +9,7 @@ mod check;
 mod export;
 mod fragment;
 mod fragment_body;
+mod import;
 mod keys;
 mod lab;
 mod memory;
@@ -93,6 +94,7 @@ pub fn run(
         Some(Command::Keys(arguments)) => keys::keys(arguments),
         Some(Command::Fragment(arguments)) => fragment::fragment(arguments),
         Some(Command::Export(arguments)) => export::export(arguments),
+        Some(Command::Import(arguments)) => import::import(arguments),
         Some(Command::Lab(arguments)) => lab::lab(arguments),
         Some(Command::Calibrate(arguments)) => calibrate::calibrate(arguments, interrupt),
         Some(Command::Picture(arguments)) => in_pool(None, |_| picture::write_picture(arguments)),

@@ -31,6 +31,7 @@ pub mod clock;
 pub mod geometry;
 pub mod interrupt;
 pub mod laboratory;
+pub mod lammps;
 pub(crate) mod machine;
 pub mod measure;
 pub mod output;

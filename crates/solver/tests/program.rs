@@ -19,6 +19,7 @@ mod inputs;
 mod interrupted;
 mod lab;
 pub(crate) mod laboratory;
+mod lammps;
 mod masses;
 mod names;
 mod new;

@@ -19,8 +19,20 @@ const LOCK: &str = ".lock";
 const SCENE_TEXT: &str = "text of the scene";
 const VARY: &str = "[vary]";
 
+/// The commands of the remaining runs, one a line.
+pub(crate) const COMMANDS: &str = "commands.txt";
+/// A Slurm job array of them.
+pub(crate) const SLURM: &str = "array.slurm";
+/// A Snakemake file of them.
+pub(crate) const SNAKEFILE: &str = "Snakefile";
+/// Marks of the runs that Snakemake has done.
+const DONE: &str = "done";
+
 /// Files of which a sweep makes one each, besides [`IDENTITY`].
-const TABLES: [&str; 5] = [
+const TABLES: [&str; 8] = [
+    COMMANDS,
+    SLURM,
+    SNAKEFILE,
     "sweep.csv",
     "responses.csv",
     "find.csv",
@@ -109,6 +121,7 @@ impl SweepFolder {
                 fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
             }
         }
+        self.remove_marks()?;
         for path in entries(&self.runs())? {
             let name = path.file_name().and_then(|name| name.to_str());
             if name.and_then(Job::named).is_none() {
@@ -118,6 +131,20 @@ impl SweepFolder {
                 fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
             } else if fs::symlink_metadata(&path).is_ok_and(|metadata| metadata.is_dir()) {
                 ResultsFolder::create(&path, Existing::Replace)?.remove()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the marks of the runs that Snakemake has done: these runs are listed again.
+    ///
+    /// # Errors
+    /// No permission (exit code 1).
+    pub fn remove_marks(&self) -> Result<()> {
+        for path in entries(&self.path.join(DONE)).unwrap_or_default() {
+            let name = path.file_name().and_then(|name| name.to_str());
+            if name.and_then(Job::named).is_some() && is_plain_file(&path) {
+                fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
             }
         }
         Ok(())

@@ -10,6 +10,7 @@ use dem_io::{Diagnostic, Result};
 use super::calibrate::CalibrateArguments;
 use super::export::ExportArguments;
 use super::fragment::FragmentArguments;
+use super::import::ImportArguments;
 use super::keys::KeysArguments;
 use super::lab::LabArguments;
 use super::new::NewArguments;
@@ -120,13 +121,17 @@ pub(super) enum Command {
                       dem-run fragment results --all --stl -o hulls"
     )]
     Fragment(FragmentArguments),
-    /// Write all frames of a run as one file for another program
+    /// Write all frames of a run as one file for another program, or a scene for LAMMPS
     #[command(
         after_help = "A LAMMPS dump opens in OVITO: particles with id, type (the body), radius, position, velocity and fragment; with --bonds, the unbroken bonds \
                       as a dump of local data.\n\
-                      Example:\n  dem-run export results --to lammps-dump -o frames.dump --bonds bonds.dump"
+                      Example:\n  dem-run export results --to lammps-dump -o frames.dump --bonds bonds.dump\n  \
+                       dem-run export lammps data/scenes/cantilever.toml -o bar"
     )]
     Export(ExportArguments),
+    /// Read what LAMMPS computed from an exported scene, as results of a run: frames and page
+    #[command(after_help = "Example:\n  dem-run import bar -o bar-results")]
+    Import(ImportArguments),
     /// Evaluate measured force-displacement curves: modulus, strength, mean curve
     #[command(
         after_help = "Finds in each curve the offset of the load cell, the seating and the linear part; leaves out specimens in doubt, and says why.\n\

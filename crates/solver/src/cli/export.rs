@@ -1,12 +1,12 @@
-//! `dem-run export`: all frames of a run as one file for another program.
+//! `dem-run export`: all frames of a run as one file for another program, or a scene for LAMMPS.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 use dem_io::body::{StoredParticles, read_particles};
 use dem_io::safe_write::PendingFile;
-use dem_io::standard_output::write_standard_output;
+use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::visible;
 use dem_io::vtk::exact;
 use dem_io::write_target::need_folder_of;
@@ -14,9 +14,45 @@ use dem_io::{Bounds, Diagnostic, Result};
 use dem_results::folder::{frame_in, frames_in};
 
 use super::fragment::refuse_overwriting_files;
+use super::pool::in_pool;
+use super::scene_arguments::SceneArguments;
+use crate::lammps;
+use crate::plan::plan;
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(super) struct ExportArguments {
+    #[command(subcommand)]
+    engine: Option<Engine>,
+    #[command(flatten)]
+    frames: Option<FramesArguments>,
+}
+
+/// Another program that runs a scene.
+#[derive(Debug, Subcommand)]
+enum Engine {
+    /// Write a scene as data file and input script of LAMMPS, with a page of what is carried over
+    #[command(
+        after_help = "What LAMMPS has no word for is refused by name. Run the script where LAMMPS is, then read its dumps with dem-run import.\n\
+                      Example:\n  dem-run export lammps data/scenes/cantilever.toml -o bar && cd bar && mpirun -np 4 lmp -in in.lammps"
+    )]
+    Lammps(LammpsArguments),
+}
+
+#[derive(Debug, Args)]
+struct LammpsArguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The folder to write: new or empty
+    #[arg(long, short, value_name = "FOLDER")]
+    output: PathBuf,
+    /// Only print errors; --json is still printed
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(Debug, Args)]
+struct FramesArguments {
     /// The folder of results of a run
     results: PathBuf,
     /// Format of the file
@@ -40,11 +76,61 @@ enum Format {
     LammpsDump,
 }
 
+/// Writes frames or a scene.
+///
+/// # Errors
+/// Those of the two.
+pub(super) fn export(arguments: &ExportArguments) -> Result<()> {
+    match (&arguments.engine, &arguments.frames) {
+        (Some(Engine::Lammps(arguments)), _) => in_pool(arguments.scene.threads, |threads| {
+            export_scene(arguments, threads)
+        }),
+        (None, Some(frames)) => export_frames(frames),
+        (None, None) => Err(Diagnostic::input(
+            "dem-run export",
+            "no results are named, and no program",
+            "write dem-run export RESULTS --to lammps-dump -o FILE, or dem-run export lammps SCENE -o FOLDER",
+        )),
+    }
+}
+
+/// Writes a scene for LAMMPS.
+fn export_scene(arguments: &LammpsArguments, threads: usize) -> Result<()> {
+    if !arguments.scene.names_a_scene() {
+        return Err(Diagnostic::input(
+            arguments.scene.place(),
+            "this is not a scene (.toml)",
+            "name a scene; dem-pack writes a body as LAMMPS data with -o FILE.data",
+        ));
+    }
+    let (scene, bodies) = arguments.scene.read()?;
+    let plan = plan(&scene, bodies, threads, arguments.scene.force_step)?;
+    let written = lammps::export(&scene, &plan, &arguments.output)?;
+    if arguments.scene.json {
+        return write_standard_json(&written);
+    }
+    if arguments.quiet {
+        return Ok(());
+    }
+    write_standard_output(|out| {
+        writeln!(
+            out,
+            "{} particles, {} bonds of {} types, {} clumps, {} steps -> {}",
+            written.particles,
+            written.bonds,
+            written.bond_types,
+            written.clumps,
+            written.steps,
+            visible(&arguments.output.display().to_string())
+        )
+    })
+}
+
 /// Writes all frames.
 ///
 /// # Errors
 /// The folder has no frames; a frame is damaged; a file cannot be written.
-pub(super) fn export(arguments: &ExportArguments) -> Result<()> {
+fn export_frames(arguments: &FramesArguments) -> Result<()> {
     let Format::LammpsDump = arguments.to;
     let results = &arguments.results;
     let targets: Vec<PathBuf> = std::iter::once(&arguments.output)

@@ -48,7 +48,8 @@ pub(super) struct SweepArguments {
     /// Allow more than 10000 runs
     #[arg(long)]
     yes: bool,
-    /// Run nothing: print one sh command for each remaining run
+    /// Run nothing: print one sh command for each remaining run, and write them as a Slurm job
+    /// array and a Snakemake file into the folder
     #[arg(long, conflicts_with_all = ["collect", "max_error", "json", "quiet"])]
     list: bool,
     /// Run nothing: collect the finished runs into tables and pages

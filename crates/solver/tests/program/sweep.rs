@@ -342,6 +342,42 @@ fn listed_commands_give_the_same_table() {
     assert_eq!(timeless(&bench.path("apart/sweep.csv")), whole);
 }
 
+/// The array and the Snakemake file start the listed commands, line by line, from the folder in
+/// which they were listed. `--force` removes them.
+#[test]
+fn the_list_is_written_for_clusters() {
+    let bench = bench(STEPS);
+    let commands = good(&bench, &["--list", "--output", "apart"]);
+    let text = |name: &str| fs::read_to_string(bench.path("apart").join(name)).unwrap();
+    assert_eq!(text("commands.txt"), commands);
+    let array = text("array.slurm");
+    assert!(array.contains("#SBATCH --array=1-16\n"), "{array}");
+    // As Slurm does: each task by itself, from wherever.
+    for task in 1..=16 {
+        let status = Command::new("sh")
+            .arg(bench.path("apart/array.slurm"))
+            .env("SLURM_ARRAY_TASK_ID", task.to_string())
+            .current_dir("/")
+            .status();
+        assert!(status.unwrap().success());
+    }
+    good(&bench, &["--collect", "--output", "apart"]);
+    let rules = text("Snakefile");
+    for name in ["0001-1", "0008-2"] {
+        assert!(rules.contains(&format!("\"{name}\"")), "{rules}");
+    }
+    // A mark of a run that is listed again would keep Snakemake from doing it.
+    fs::create_dir(bench.path("apart/done")).unwrap();
+    bench.write("apart/done/0001-1", "");
+    bench.write("apart/done/mine", "");
+    good(&bench, &["--list", "--output", "apart", "--force"]);
+    assert!(!bench.path("apart/done/0001-1").exists() && bench.path("apart/done/mine").exists());
+    good(&bench, &["--output", "apart", "--force", "--jobs", "2"]);
+    for name in ["commands.txt", "array.slurm", "Snakefile"] {
+        assert!(!bench.path("apart").join(name).exists(), "{name}");
+    }
+}
+
 #[test]
 fn the_fastest_setting_is_said_and_written() {
     let bench = bench(STEPS);

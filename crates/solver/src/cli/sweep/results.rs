@@ -12,6 +12,7 @@ use dem_results::{write_json, write_plot_file};
 use dem_scene::study::Study;
 use serde_json::json;
 
+use dem_study::cluster::{ListedRun, write_cluster_files};
 use dem_study::curves;
 use dem_study::expand::Run;
 use dem_study::folder::SweepFolder;
@@ -23,22 +24,35 @@ use dem_study::row::Row;
 use dem_study::sweep_table::SweepTable;
 use dem_study::text::{csv, find_csv, response_csv};
 
-/// Prints one sh command for each job.
+/// Prints one sh command for each job, and writes them for the schedulers of a cluster.
 pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolder) -> Result<()> {
     let own = own_command();
     let (program, first) = own.unwrap_or_else(|_| (PathBuf::from("dem-run"), Vec::new()));
     refuse_unlistable("this program", &program)?;
     let program = program.display().to_string();
     let runs = folder.runs();
+    let mut listed = Vec::new();
+    for job in jobs {
+        let Some(run) = job.index(all) else {
+            continue;
+        };
+        let own = arguments(study, &all[run], *job, &runs);
+        let arguments = [first.clone(), own].concat();
+        let name = job.folder(Path::new("")).display().to_string();
+        let command = shell_line(&program, &arguments, Some(&job.complaint(&runs)));
+        listed.push(ListedRun { name, command });
+    }
+    folder.remove_marks()?;
+    if !listed.is_empty() {
+        let here = std::env::current_dir().map_err(|error| {
+            let problem = format!("the present folder is not known: {error}");
+            Diagnostic::failed("--list", problem, "run it in a folder that exists")
+        })?;
+        write_cluster_files(folder.path(), &here, &listed, study.threads)?;
+    }
     write_standard_output(|out| {
-        for job in jobs {
-            let Some(run) = job.index(all) else {
-                continue;
-            };
-            let own = arguments(study, &all[run], *job, &runs);
-            let arguments = [first.clone(), own].concat();
-            let line = shell_line(&program, &arguments, Some(&job.complaint(&runs)));
-            writeln!(out, "{line}")?;
+        for run in &listed {
+            writeln!(out, "{}", run.command)?;
         }
         Ok(())
     })

@@ -1,0 +1,47 @@
+//! `dem-run import`: what LAMMPS computed from an exported scene, as results of a run.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use dem_io::Result;
+use dem_io::standard_output::write_standard_output;
+use dem_io::text::visible;
+use dem_results::Existing;
+
+use crate::lammps::import::import as import_run;
+
+#[derive(Debug, Args)]
+pub(super) struct ImportArguments {
+    /// The folder that dem-run export lammps wrote, with the dumps of the run
+    folder: PathBuf,
+    /// Folder for the results
+    #[arg(long, short, value_name = "FOLDER")]
+    output: PathBuf,
+    /// Overwrite the results in the folder
+    #[arg(long)]
+    force: bool,
+    /// Only print errors
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Reads the dumps and writes frames and page.
+///
+/// # Errors
+/// Bad or missing files, or a folder that cannot be written to.
+pub(super) fn import(arguments: &ImportArguments) -> Result<()> {
+    let existing = if arguments.force {
+        Existing::Replace
+    } else {
+        Existing::Refuse
+    };
+    let frames = import_run(&arguments.folder, &arguments.output, existing)?;
+    if arguments.quiet {
+        return Ok(());
+    }
+    write_standard_output(|out| {
+        let s = if frames == 1 { "" } else { "s" };
+        let results = arguments.output.display().to_string();
+        writeln!(out, "{frames} frame{s} -> {}", visible(&results))
+    })
+}

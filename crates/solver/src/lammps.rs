@@ -1,0 +1,196 @@
+//! Scenes for LAMMPS: a data file, an input script and a page of what is carried over, and the way
+//! back from its dumps to frames.
+//!
+//! Bonds become `bond_style bpm/rotational`, contacts `pair_style granular`, walls `fix
+//! wall/gran/region`, clumps `fix rigid/small`. What LAMMPS has no word for is refused by name.
+//!
+//! Written for LAMMPS of 22 July 2025 with the packages BPM, GRANULAR, RIGID and EXTRA-FIX.
+
+pub mod bonds;
+mod clumps;
+mod contacts;
+mod data;
+pub(crate) mod dump;
+mod forces;
+pub(crate) mod import;
+mod input;
+mod page;
+mod refusals;
+mod walls;
+
+use std::fmt::Display;
+use std::path::Path;
+
+use dem_io::safe_write::write_file;
+use dem_io::standard_output::write_json_text;
+use dem_io::write_target::need_folder_of;
+use dem_io::{Diagnostic, Result};
+use dem_scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use crate::plan::Plan;
+
+/// Names of the files of an export, in its folder.
+pub(crate) const DATA: &str = "particles.data";
+pub(crate) const INPUT: &str = "in.lammps";
+pub(crate) const TYPES: &str = "bond-types.lammps";
+pub(crate) const CLUMPS: &str = "clumps.txt";
+pub(crate) const PAGE: &str = "README.md";
+pub(crate) const MANIFEST: &str = "export.json";
+/// Names of the files that LAMMPS writes there.
+pub(crate) const FRAMES: &str = "frames.dump";
+pub(crate) const BONDS: &str = "bonds.dump";
+pub(crate) const BROKEN: &str = "broken.dump";
+
+/// What the way back needs and LAMMPS does not keep.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Manifest {
+    /// Program that wrote it.
+    pub program: String,
+    /// The scene.
+    pub scene: String,
+    /// Names of the bodies.
+    pub body_names: Vec<String>,
+    /// For each molecule, its body: number in `body_names`.
+    pub body_of_molecule: Vec<u32>,
+    /// For each molecule whether it is a rigid clump.
+    pub is_clump: Vec<bool>,
+    /// Radius of the bonds of each type, m.
+    pub bond_radii_m: Vec<f64>,
+}
+
+/// What has been written.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(crate) struct Written {
+    pub particles: usize,
+    pub bonds: usize,
+    pub bond_types: usize,
+    pub clumps: usize,
+    pub steps: u64,
+}
+
+/// Writes a planned scene for LAMMPS into a new or empty folder. All files appear in it, or none.
+///
+/// # Errors
+/// The scene has something that LAMMPS has no word for; the folder is not empty (both exit code 2);
+/// a file cannot be written (exit code 1).
+pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Written> {
+    refusals::refuse(scene, plan)?;
+    let types = bonds::bond_types(scene, &plan.state)?;
+    let contacts = contacts::contacts(scene, plan)?;
+    let walls = walls::walls(scene, plan)?;
+    let forces = forces::forces(scene, plan)?;
+    let molecules = data::molecules(plan);
+    let steps = input::steps(scene, plan);
+    let input = input::Input {
+        scene,
+        plan,
+        types: &types,
+        contacts: &contacts,
+        walls: &walls,
+        forces: &forces,
+    };
+    let manifest = Manifest {
+        program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+        scene: scene.source.clone(),
+        body_names: plan
+            .state
+            .model
+            .bodies
+            .iter()
+            .map(|b| b.name.clone())
+            .collect(),
+        body_of_molecule: molecules.bodies.clone(),
+        is_clump: molecules.are_clumps.clone(),
+        bond_radii_m: types.types.iter().map(|one| one.radius_m).collect(),
+    };
+    let texts = [(INPUT, input.text()), (PAGE, page::page(&input))];
+    in_new_folder(folder, |folder| {
+        write_file(&folder.join(DATA), |out| {
+            data::write(plan, &contacts, &types, &molecules, out)
+        })?;
+        if !types.types.is_empty() {
+            write_file(&folder.join(TYPES), |out| bonds::write(&types, out))?;
+        }
+        if clumps::has_bodies(&plan.state) {
+            write_file(&folder.join(CLUMPS), |out| {
+                clumps::write(&plan.state, &molecules, out)
+            })?;
+        }
+        for (name, text) in &texts {
+            write_file(&folder.join(name), |out| out.write_all(text.as_bytes()))?;
+        }
+        write_file(&folder.join(MANIFEST), |out| {
+            write_json_text(out, &manifest)
+        })
+    })?;
+    Ok(Written {
+        particles: plan.state.particles.len(),
+        bonds: plan.state.bonds.len(),
+        bond_types: types.types.len(),
+        clumps: plan.state.clumps.all.len(),
+        steps,
+    })
+}
+
+/// Writes into a folder that must be new or empty. If it fails, nothing is left of it.
+fn in_new_folder(folder: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+    let place = || folder.display().to_string();
+    need_folder_of(folder)?;
+    let is_there = folder.exists();
+    let is_empty = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
+    if is_there && !is_empty {
+        return Err(Diagnostic::input(
+            place(),
+            "it exists and is not an empty folder",
+            "name a new folder with --output",
+        ));
+    }
+    let failed = |error: std::io::Error| {
+        Diagnostic::failed(place(), format!("cannot be written: {error}"), "")
+    };
+    let target = std::path::absolute(folder).map_err(failed)?;
+    let parent = target.parent().unwrap_or(Path::new("."));
+    let unfinished = tempfile::Builder::new()
+        .prefix(".lammps-")
+        .tempdir_in(parent)
+        .map_err(failed)?;
+    write(unfinished.path())?;
+    if is_there {
+        std::fs::remove_dir(&target).map_err(failed)?;
+    }
+    make_readable(unfinished.path()).map_err(failed)?;
+    std::fs::rename(unfinished.keep(), &target).map_err(failed)
+}
+
+/// Gives a folder the permissions of one that a user makes: temporary ones are private.
+#[cfg(unix)]
+fn make_readable(folder: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))
+}
+
+#[cfg(not(unix))]
+fn make_readable(_: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
+/// The refusal of a part of a scene.
+fn refused(
+    scene: &Scene,
+    part: impl Display,
+    why: impl Display,
+    remedy: impl Display,
+) -> Diagnostic {
+    Diagnostic::input(
+        format!("{}: {part}", scene.source),
+        format!("LAMMPS has no word for it: {why}"),
+        remedy.to_string(),
+    )
+}
+
+/// A number of things: "1 bond", "2 bonds".
+fn counted(count: usize, what: &str) -> String {
+    let s = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{s}")
+}

@@ -1,0 +1,158 @@
+//! Text dumps of LAMMPS: sections of atoms or of local entries.
+//!
+//! <https://docs.lammps.org/dump.html>
+
+use std::io::BufRead;
+
+use dem_io::lines::{Lines, on_line};
+use dem_io::{Diagnostic, Result};
+
+/// A section of a dump: the rows at one time.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Section {
+    /// Time, s. None: the dump has none.
+    pub time_s: Option<f64>,
+    /// Number of the time step.
+    pub step: u64,
+    /// Names of the columns.
+    pub columns: Vec<String>,
+    /// Rows, each as long as `columns`.
+    pub rows: Vec<Vec<f64>>,
+}
+
+impl Section {
+    /// The numbers of the columns with these names.
+    ///
+    /// # Errors
+    /// A column is missing.
+    pub(crate) fn find<const N: usize>(&self, names: [&str; N]) -> Result<[usize; N]> {
+        let mut found = [0; N];
+        for (slot, name) in found.iter_mut().zip(names) {
+            let at = self.columns.iter().position(|column| column == name);
+            *slot = at.ok_or_else(|| {
+                Diagnostic::input(
+                    format!("step {}", self.step),
+                    format!("there is no column '{name}'"),
+                    "keep the dump commands of the exported script",
+                )
+            })?;
+        }
+        Ok(found)
+    }
+}
+
+/// Reads the sections of a dump one by one.
+pub(crate) struct Dump<'a> {
+    lines: Lines<'a>,
+    /// The name of the item that begins the next section.
+    next: Option<String>,
+}
+
+impl<'a> Dump<'a> {
+    /// Begins to read.
+    ///
+    /// # Errors
+    /// Those of the file.
+    pub(crate) fn new(input: &'a mut dyn BufRead) -> Result<Self> {
+        let mut lines = Lines::new(input);
+        let next = lines.next_line()?.map(|(_, line)| line.trim().to_owned());
+        Ok(Self { lines, next })
+    }
+
+    /// The next section. None: the file ends before one, or within it, as that of an interrupted run
+    /// does.
+    ///
+    /// # Errors
+    /// An invalid line.
+    pub(crate) fn section(&mut self) -> Result<Option<Section>> {
+        let mut section = Section::default();
+        let mut count = None;
+        while let Some(item) = self.next.take() {
+            let Some(name) = item.strip_prefix("ITEM: ") else {
+                return Err(Diagnostic::input(
+                    "",
+                    format!("'{}' is not the head of a section", item.escape_debug()),
+                    "it must be a text dump of LAMMPS: dump custom or dump local",
+                ));
+            };
+            if let Some(columns) = name
+                .strip_prefix("ATOMS ")
+                .or(name.strip_prefix("ENTRIES "))
+            {
+                section.columns = columns
+                    .split_ascii_whitespace()
+                    .map(str::to_owned)
+                    .collect();
+                let is_whole = self.take_rows(&mut section, count.unwrap_or(0))?;
+                self.next = self.word()?;
+                return Ok(is_whole.then_some(section));
+            }
+            match name.split(' ').next() {
+                Some("TIME") => section.time_s = self.number()?,
+                Some("TIMESTEP") => match self.number()? {
+                    Some(step) => section.step = step as u64,
+                    None => return Ok(None),
+                },
+                Some("NUMBER") => match self.number()? {
+                    Some(number) => count = Some(number as usize),
+                    None => return Ok(None),
+                },
+                Some("BOX") => {
+                    for _ in 0..3 {
+                        self.word()?;
+                    }
+                }
+                _ => {
+                    self.word()?;
+                }
+            }
+            self.next = self.word()?;
+        }
+        Ok(None)
+    }
+
+    fn word(&mut self) -> Result<Option<String>> {
+        Ok(self
+            .lines
+            .next_line()?
+            .map(|(_, line)| line.trim().to_owned()))
+    }
+
+    fn number(&mut self) -> Result<Option<f64>> {
+        let Some((number, line)) = self.lines.next_line()? else {
+            return Ok(None);
+        };
+        parsed(line.trim())
+            .map(Some)
+            .map_err(|error| on_line(number, error))
+    }
+
+    /// Reads this many rows. False: the file ends before.
+    fn take_rows(&mut self, section: &mut Section, count: usize) -> Result<bool> {
+        let width = section.columns.len();
+        for _ in 0..count {
+            let Some((number, line)) = self.lines.next_line()? else {
+                return Ok(false);
+            };
+            let row: Result<Vec<f64>> = line.split_ascii_whitespace().map(parsed).collect();
+            let row = row.map_err(|error| on_line(number, error))?;
+            if row.len() != width {
+                let problem = format!("{} numbers for {width} columns", row.len());
+                let problem = Diagnostic::input("", problem, "write or copy the dump again");
+                return Err(on_line(number, problem));
+            }
+            section.rows.push(row);
+        }
+        Ok(true)
+    }
+}
+
+fn parsed(word: &str) -> Result<f64> {
+    word.parse().map_err(|_| {
+        Diagnostic::input(
+            "",
+            format!("'{}' is not a number", word.escape_debug()),
+            "write or copy the file again",
+        )
+    })
+}

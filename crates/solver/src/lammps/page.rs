@@ -1,0 +1,107 @@
+//! The page of an export: what is carried over, and what is not.
+
+use std::fmt::Write;
+
+use super::bonds::CLASS_WIDTH;
+use super::clumps::has_bodies;
+use super::input::{Input, step_s, steps};
+use super::{BONDS, BROKEN, FRAMES, counted};
+
+/// The page as Markdown.
+pub(super) fn page(input: &Input<'_>) -> String {
+    let state = &input.plan.state;
+    let mut text = format!(
+        "# {} for LAMMPS\n\n\
+         ```sh\nmpirun -np 4 lmp -in in.lammps      # or lmp -in in.lammps\n\
+         dem-run import . -o results          # back to frames, a page and pictures\n```\n\n\
+         SI units (m, kg, s, N). Written for LAMMPS of 22 July 2025 with the packages BPM, EXTRA-FIX, GRANULAR and RIGID.\n\n\
+         ## Carried over\n\n",
+        input.scene.source
+    );
+    let mut item = |line: String| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "- {line}");
+    };
+    item(format!(
+        "{}: places, radii, densities, velocities, spins. The id of an atom is `particle_id` + 1.",
+        counted(state.particles.len(), "particle")
+    ));
+    if !input.types.types.is_empty() {
+        item(format!(
+            "{} as `bpm/rotational` in {}: classes of stiffness and strength no wider than {CLASS_WIDTH:e}; no coefficient of a bond differs by more than {:.1e} from that of its type.",
+            counted(state.bonds.len(), "bond"),
+            counted(input.types.types.len(), "type"),
+            input.types.largest_error
+        ));
+    }
+    for ([a, b], law) in &input.contacts.laws {
+        let names = &input.contacts.materials;
+        item(format!("contacts {}-{}: `{law}`", names[*a], names[*b]));
+    }
+    for wall in input.walls {
+        let moves = if wall.moves.is_some() { ", moving" } else { "" };
+        item(format!(
+            "wall {}: `region {}`{moves}",
+            wall.name, wall.region
+        ));
+    }
+    if has_bodies(state) {
+        item(format!(
+            "{} as `rigid/small`, with mass, centre and inertia of the clump",
+            counted(state.clumps.all.len(), "clump")
+        ));
+    }
+    for load in &input.forces.loads {
+        item(format!("load {} (`addforce`)", load.name));
+    }
+    for support in &input.forces.supports {
+        item(format!("support {}", support.name));
+    }
+    if state.model.particle_damping > 0.0 {
+        item("local damping (`damping/cundall`)".to_owned());
+    }
+    item(format!(
+        "{} of {:e} s, frames every {}: `{FRAMES}`, unbroken bonds `{BONDS}`, broken ones `{BROKEN}`",
+        counted(steps(input.scene, input.plan) as usize, "step"),
+        step_s(input.scene, input.plan),
+        counted(input.frame_every() as usize, "step"),
+    ));
+    text += "\n## Different\n\n";
+    for line in different(input) {
+        let _ = writeln!(text, "- {line}");
+    }
+    text
+}
+
+/// What the exported run does differently.
+fn different(input: &Input<'_>) -> Vec<String> {
+    let mut lines = Vec::new();
+    let scene = input.scene;
+    if scene.run.rest_energy_ratio.is_some() {
+        lines.push("`run.rest_energy_ratio`: the run goes on to `end_time`.".to_owned());
+    }
+    if input.plan.is_adaptive {
+        lines.push("The time step stays that of the start.".to_owned());
+    }
+    if !scene.measures.is_empty() {
+        lines.push(
+            "Measures, energies, events and the verdict: LAMMPS does not compute them.".to_owned(),
+        );
+    }
+    if input.types.break_at_all() && !input.contacts.laws.is_empty() {
+        lines.push("Particles of one piece without a bond between them push each other where they touch; in Crumble they do not.".to_owned());
+        lines.push("Particles that overlap when their bond breaks push each other with the full force of that overlap; in Crumble it becomes the origin of their law.".to_owned());
+    }
+    if input
+        .walls
+        .iter()
+        .any(|wall| wall.region.starts_with("cylinder"))
+    {
+        lines.push("On cylinders, LAMMPS takes the curvature of the wall into account; in Crumble a wall is flat where it is touched.".to_owned());
+    }
+    if !input.contacts.laws.is_empty() || !input.walls.is_empty() {
+        lines.push("Where a contact slides, LAMMPS limits spring and damper together; in Crumble the spring first, and the damper to what is left.".to_owned());
+    }
+    lines.push("Large deformations: bending and torsion are proportional to angles; in Crumble to twice the sine of half of them.".to_owned());
+    lines
+}

