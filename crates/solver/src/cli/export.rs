@@ -13,7 +13,7 @@ use dem_results::folder::{frame_in, frames_in};
 
 use super::fragment::refuse_overwriting_files;
 use super::{SceneArguments, in_pool};
-use crate::lammps;
+use crate::lammps::{self, refusals::refuse_parts};
 use crate::plan::plan;
 
 #[derive(Debug, Args)]
@@ -101,6 +101,7 @@ fn export_scene(arguments: &LammpsArguments, threads: usize) -> Result<()> {
         ));
     }
     let (scene, bodies) = arguments.scene.read()?;
+    refuse_parts(&scene)?;
     let plan = plan(&scene, bodies, threads, arguments.scene.force_step)?;
     let written = lammps::export(&scene, &plan, &arguments.output)?;
     if arguments.scene.json {
