@@ -542,7 +542,10 @@ fn studies_of_laboratory_tests_bodies_and_full_folders_are_refused() {
     let (said, code) = refused(&go(&bench, &["export", "lammps", "body.vtp", "-o", "out"]));
     assert!(code == 2 && said.contains("this is not a scene"), "{said}");
     let (said, code) = refused(&go(&bench, &["export"]));
-    assert!(code == 2 && said.contains("no results are named"), "{said}");
+    assert!(
+        code == 2 && said.contains("required arguments were not provided"),
+        "{said}"
+    );
     bench.write("scene.toml", SCENE);
     fs::create_dir(bench.path("full")).unwrap();
     bench.write("full/mine.txt", "mine");
