@@ -61,7 +61,7 @@ def free_bar():
     return f"""version = 1
 [run]
 end_time = "0.3 s"
-safety_factor = 0.1
+safety_factor = 0.3
 {STEEL}
 [bodies.bar]
 {bar()}
@@ -76,7 +76,7 @@ velocity = [0, "0.11 m/s", 0]
 group = "ends"
 velocity = [0, "-0.055 m/s", 0]
 [output]
-frames = "0.1 ms"
+frames = "0.2 ms"
 """
 
 
@@ -291,7 +291,7 @@ class Runs:
 
 
 def run(command, cwd=None):
-    said = subprocess.run(command, cwd=cwd, capture_output=True, text=True)
+    said = subprocess.run(command, cwd=cwd, stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if said.returncode != 0:
         fail(f"{' '.join(command)}: {said.stdout[-2000:]}{said.stderr[-2000:]}")
 
