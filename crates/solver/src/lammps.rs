@@ -15,7 +15,7 @@ mod forces;
 pub(crate) mod import;
 mod input;
 mod page;
-mod refusals;
+pub(crate) mod refusals;
 mod walls;
 
 use std::fmt::Display;

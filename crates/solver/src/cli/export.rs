@@ -16,7 +16,7 @@ use dem_results::folder::{frame_in, frames_in};
 use super::fragment::refuse_overwriting_files;
 use super::pool::in_pool;
 use super::scene_arguments::SceneArguments;
-use crate::lammps;
+use crate::lammps::{self, refusals::refuse_parts};
 use crate::plan::plan;
 
 #[derive(Debug, Args)]
@@ -104,6 +104,7 @@ fn export_scene(arguments: &LammpsArguments, threads: usize) -> Result<()> {
         ));
     }
     let (scene, bodies) = arguments.scene.read()?;
+    refuse_parts(&scene)?;
     let plan = plan(&scene, bodies, threads, arguments.scene.force_step)?;
     let written = lammps::export(&scene, &plan, &arguments.output)?;
     if arguments.scene.json {

@@ -102,7 +102,7 @@ pub(super) fn forces(scene: &Scene, plan: &Plan) -> Result<Forces> {
                 scene,
                 part,
                 "fix freeze holds all six degrees of freedom, and fix move moves without turning and at one velocity",
-                "use fixed = true, or velocities along x, y and z without ramp, with rx, ry and rz fixed",
+                "use fixed = true; or velocities along x, y and z, without ramp, and fixed = [\"rx\", \"ry\", \"rz\"]",
             ));
         };
         forces.supports.push(WrittenSupport {

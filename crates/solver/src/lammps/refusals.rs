@@ -15,13 +15,12 @@ const MOST_GROUPS: usize = 27;
 /// cause.
 const ROUNDING: f64 = 1e-9;
 
-/// Refuses a scene with something that is not exported, apart from bonds, contacts, walls, loads and
-/// supports.
+/// Refuses a planned scene with something that is not exported, apart from bonds, contacts, walls,
+/// loads and supports.
 ///
 /// # Errors
 /// The first part that is not exported, by its name (exit code 2).
 pub(super) fn refuse(scene: &Scene, plan: &Plan) -> Result<()> {
-    refuse_parts(scene)?;
     let groups = scene.loads.len() + scene.supports.len() + scene.materials.len();
     if groups > MOST_GROUPS {
         let why = format!("it has 32 groups, and loads, supports and materials need {groups}");
@@ -42,7 +41,11 @@ pub(super) fn refuse(scene: &Scene, plan: &Plan) -> Result<()> {
     Ok(())
 }
 
-fn refuse_parts(scene: &Scene) -> Result<()> {
+/// Refuses a scene with tables or keys that are not exported, before it is planned.
+///
+/// # Errors
+/// The first of them, by its name (exit code 2).
+pub(crate) fn refuse_parts(scene: &Scene) -> Result<()> {
     let first = |names: Option<&String>| names.cloned().unwrap_or_default();
     let run_it = "leave it out, or run the scene with dem-run";
     let parts = [
