@@ -11,14 +11,16 @@ mod clumps;
 mod contacts;
 mod data;
 pub(crate) mod dump;
+pub(crate) mod files;
 mod forces;
 pub(crate) mod import;
 mod input;
+mod molecules;
 mod page;
 pub(crate) mod refusals;
 mod walls;
+mod words;
 
-use std::fmt::Display;
 use std::path::Path;
 
 use dem_io::safe_write::write_file;
@@ -26,38 +28,10 @@ use dem_io::standard_output::write_json_text;
 use dem_io::write_target::need_folder_of;
 use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use self::files::{CLUMPS, DATA, INPUT, MANIFEST, Manifest, PAGE, TYPES};
 use crate::plan::Plan;
-
-/// Names of the files of an export, in its folder.
-pub(crate) const DATA: &str = "particles.data";
-pub(crate) const INPUT: &str = "in.lammps";
-pub(crate) const TYPES: &str = "bond-types.lammps";
-pub(crate) const CLUMPS: &str = "clumps.txt";
-pub(crate) const PAGE: &str = "README.md";
-pub(crate) const MANIFEST: &str = "export.json";
-/// Names of the files that LAMMPS writes there.
-pub(crate) const FRAMES: &str = "frames.dump";
-pub(crate) const BONDS: &str = "bonds.dump";
-pub(crate) const BROKEN: &str = "broken.dump";
-
-/// What the way back needs and LAMMPS does not keep.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub(crate) struct Manifest {
-    /// Program that wrote it.
-    pub program: String,
-    /// The scene.
-    pub scene: String,
-    /// Names of the bodies.
-    pub body_names: Vec<String>,
-    /// For each molecule, its body: number in `body_names`.
-    pub body_of_molecule: Vec<u32>,
-    /// For each molecule whether it is a rigid clump.
-    pub is_clump: Vec<bool>,
-    /// Radius of the bonds of each type, m.
-    pub bond_radii_m: Vec<f64>,
-}
 
 /// What has been written.
 #[derive(Debug, Clone, Copy, Serialize)]
@@ -80,7 +54,7 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
     let contacts = contacts::contacts(scene, plan)?;
     let walls = walls::walls(scene, plan)?;
     let forces = forces::forces(scene, plan)?;
-    let molecules = data::molecules(plan);
+    let molecules = molecules::molecules(plan);
     let steps = input::steps(scene, plan);
     let input = input::Input {
         scene,
@@ -173,24 +147,4 @@ fn make_readable(folder: &Path) -> std::io::Result<()> {
 #[cfg(not(unix))]
 fn make_readable(_: &Path) -> std::io::Result<()> {
     Ok(())
-}
-
-/// The refusal of a part of a scene.
-fn refused(
-    scene: &Scene,
-    part: impl Display,
-    why: impl Display,
-    remedy: impl Display,
-) -> Diagnostic {
-    Diagnostic::input(
-        format!("{}: {part}", scene.source),
-        format!("LAMMPS has no word for it: {why}"),
-        remedy.to_string(),
-    )
-}
-
-/// A number of things: "1 bond", "2 bonds".
-fn counted(count: usize, what: &str) -> String {
-    let s = if count == 1 { "" } else { "s" };
-    format!("{count} {what}{s}")
 }

@@ -147,7 +147,13 @@ impl SweepTable {
 }
 
 fn column(axis: &Axis) -> AxisColumn {
-    let (numbers, unit) = axis.numbers().unzip();
+    // Equal numbers do not tell the values of paths that vary together apart; their names do.
+    let differ = |numbers: &[f64]| {
+        let before = |at: usize| numbers[..at].contains(&numbers[at]);
+        !(0..numbers.len()).any(before)
+    };
+    let numbers = axis.numbers().filter(|(numbers, _)| differ(numbers));
+    let (numbers, unit) = numbers.unzip();
     AxisColumn {
         name: axis.name.clone(),
         values: axis.values.iter().map(|v| v.label.clone()).collect(),

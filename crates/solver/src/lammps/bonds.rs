@@ -18,7 +18,7 @@ use std::io::{self, Write};
 use dem_io::Result;
 use dem_scene::Scene;
 
-use super::refused;
+use super::words::refused;
 use crate::physics::bond::failure::Criteria;
 use crate::state::State;
 use crate::state::bonds::BondRule;

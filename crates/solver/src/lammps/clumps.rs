@@ -9,7 +9,7 @@ use std::io::{self, Write};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::data::Molecules;
+use super::molecules::Molecules;
 use crate::physics::rotation::rotation;
 use crate::state::State;
 use crate::state::clumps::Clump;

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use dem_io::Result;
 use dem_scene::Scene;
 
-use super::refused;
+use super::words::refused;
 use crate::physics::contact::law::{ContactKind, Law, Rolling};
 use crate::physics::contact::pair_parameters::PairParameters;
 use crate::plan::Plan;

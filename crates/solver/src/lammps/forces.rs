@@ -3,7 +3,7 @@
 use dem_io::Result;
 use dem_scene::{Factor, Hold, Scene};
 
-use super::refused;
+use super::words::refused;
 use crate::plan::Plan;
 
 /// A load on a group of particles.

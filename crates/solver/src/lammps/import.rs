@@ -19,7 +19,7 @@ use dem_results::{
 use serde_json::json;
 
 use super::dump::{Dump, Section};
-use super::{BONDS, DATA, FRAMES, MANIFEST, Manifest};
+use super::files::{BONDS, DATA, FRAMES, MANIFEST, Manifest};
 
 /// The particles and bonds of an export, from its data file. Particles in the order of their ids.
 #[derive(Debug, Default)]

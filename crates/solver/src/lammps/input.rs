@@ -8,9 +8,9 @@ use super::bonds::BondTypes;
 use super::clumps::has_bodies;
 use super::contacts::Contacts;
 use super::data::{atom, lone_spheres};
+use super::files::{BONDS, BROKEN, CLUMPS, DATA, FRAMES, TYPES};
 use super::forces::Forces;
 use super::walls::WrittenWall;
-use super::{BONDS, BROKEN, CLUMPS, DATA, FRAMES, TYPES};
 use crate::plan::Plan;
 
 /// What the script is written from.

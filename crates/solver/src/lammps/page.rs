@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use super::bonds::CLASS_WIDTH;
 use super::clumps::has_bodies;
+use super::files::{BONDS, BROKEN, FRAMES};
 use super::input::{Input, step_s, steps};
-use super::{BONDS, BROKEN, FRAMES, counted};
+use super::words::counted;
 
 /// The page as Markdown.
 pub(super) fn page(input: &Input<'_>) -> String {

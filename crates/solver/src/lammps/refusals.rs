@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use dem_io::Result;
 use dem_scene::{InitialOverlap, Integrator, Scene};
 
-use super::{counted, refused};
+use super::words::{counted, refused};
 use crate::plan::Plan;
 use crate::state::bodies::PlacedBody;
 

@@ -8,7 +8,7 @@ use dem_scene::{Factor, Scene, WallMotion};
 
 use super::contacts::{NO_KIND, law_in_words};
 use super::forces::formula;
-use super::refused;
+use super::words::refused;
 use crate::geometry::{Shape, SolidBox};
 use crate::plan::Plan;
 use crate::state::walls::Wall;

@@ -104,7 +104,13 @@ fn a_time_shows_the_nearest_frame() {
     let near_s = 0.7 * times_s[3] + 0.3 * times_s[4];
     assert!(third == by(&["--time", &format!("{} ms", 1e3 * near_s)]));
     assert!(third == by(&["--time", &near_s.to_string()]));
-    assert!(by(&[]) == by(&["--time", "9 h"]));
+    let late = go(&bench, &["picture", "out", "-o", "y.png", "--time", "9 h"]);
+    assert_eq!(late.status.code(), Some(2));
+    assert!(!bench.path("y.png").exists());
+    assert_eq!(
+        String::from_utf8(late.stderr).unwrap(),
+        "error: --time: there are no frames near 32400 s; the run has frames from 0 s to 4 ms\n"
+    );
     for (name, _) in dem_report::picture::ColourBy::WORDS {
         by(&["--colour-by", name]);
     }

@@ -1,0 +1,32 @@
+//! Files of an export, and what the way back needs.
+
+use serde::{Deserialize, Serialize};
+
+/// Names of the files of an export, in its folder.
+pub(crate) const DATA: &str = "particles.data";
+pub(crate) const INPUT: &str = "in.lammps";
+pub(crate) const TYPES: &str = "bond-types.lammps";
+pub(crate) const CLUMPS: &str = "clumps.txt";
+pub(crate) const PAGE: &str = "README.md";
+pub(crate) const MANIFEST: &str = "export.json";
+/// Names of the files that LAMMPS writes there.
+pub(crate) const FRAMES: &str = "frames.dump";
+pub(crate) const BONDS: &str = "bonds.dump";
+pub(crate) const BROKEN: &str = "broken.dump";
+
+/// What the way back needs and LAMMPS does not keep.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Manifest {
+    /// Program that wrote it.
+    pub program: String,
+    /// The scene.
+    pub scene: String,
+    /// Names of the bodies.
+    pub body_names: Vec<String>,
+    /// For each molecule, its body: number in `body_names`.
+    pub body_of_molecule: Vec<u32>,
+    /// For each molecule whether it is a rigid clump.
+    pub is_clump: Vec<bool>,
+    /// Radius of the bonds of each type, m.
+    pub bond_radii_m: Vec<f64>,
+}

@@ -1,0 +1,26 @@
+//! Refusals and counts in words.
+
+use std::fmt::Display;
+
+use dem_io::Diagnostic;
+use dem_scene::Scene;
+
+/// The refusal of a part of a scene.
+pub(super) fn refused(
+    scene: &Scene,
+    part: impl Display,
+    why: impl Display,
+    remedy: impl Display,
+) -> Diagnostic {
+    Diagnostic::input(
+        format!("{}: {part}", scene.source),
+        format!("LAMMPS has no word for it: {why}"),
+        remedy.to_string(),
+    )
+}
+
+/// A number of things: "1 bond", "2 bonds".
+pub(super) fn counted(count: usize, what: &str) -> String {
+    let s = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{s}")
+}
