@@ -7,17 +7,24 @@ use dem_io::units::significant;
 
 use super::response::Response;
 use super::response_plot::{average, named, shown_axes, with_unit};
-use super::rows::{Judged, Row, SweepTable};
+use super::rows::{AxisColumn, Judged, Row, SweepTable};
 use super::search::{Search, SearchResult};
 
 /// Largest number of lines of a part of the text.
 const MOST_LINES: usize = 20;
 
 /// The table with one line for each run: comma-separated, texts in quotes where needed. A parameter
-/// whose values are numbers in one unit is a number, with the unit in the name of its column.
+/// whose values are numbers in one unit, and have no names, is a number, with the unit in the name of
+/// its column.
 pub fn csv(table: &SweepTable) -> String {
     let mut columns = vec!["run".to_owned()];
-    columns.extend((table.axes.iter()).map(|axis| with_unit(&axis.name, &axis.unit)));
+    columns.extend(table.axes.iter().map(|axis| {
+        if is_named(axis) {
+            axis.name.clone()
+        } else {
+            with_unit(&axis.name, &axis.unit)
+        }
+    }));
     for name in ["time_s", "spread_s", "repeats", "steps", "time_step_s"] {
         columns.push(name.to_owned());
     }
@@ -32,7 +39,13 @@ pub fn csv(table: &SweepTable) -> String {
     let mut out = line(&columns);
     for row in &table.runs {
         let mut cells = vec![row.number.to_string()];
-        cells.extend((0..table.axes.len()).map(|at| cell(table, at, row.choice[at])));
+        cells.extend(table.axes.iter().enumerate().map(|(at, axis)| {
+            if is_named(axis) {
+                row.settings[at].clone()
+            } else {
+                cell(table, at, row.choice[at])
+            }
+        }));
         cells.push(number(row.time_s));
         cells.push(number(row.spread_s));
         cells.push(row.times_s.len().to_string());
@@ -133,6 +146,16 @@ pub fn find_csv(table: &SweepTable, search: &Search) -> String {
         out += &line(&cells);
     }
     out
+}
+
+/// Whether a value of an axis is shown by something else than its number.
+fn is_named(axis: &AxisColumn) -> bool {
+    let shown = axis.values.iter().map(|value| {
+        let number = value.split_whitespace().next()?;
+        number.parse::<f64>().ok()
+    });
+    let numbers = axis.numbers.iter().flatten().copied().map(Some);
+    !shown.eq(numbers)
 }
 
 /// A value of an axis: a number in its unit if it is one, or as written.

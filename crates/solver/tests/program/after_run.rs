@@ -104,7 +104,13 @@ fn a_time_shows_the_nearest_frame() {
     let near_s = 0.7 * times_s[3] + 0.3 * times_s[4];
     assert!(third == by(&["--time", &format!("{} ms", 1e3 * near_s)]));
     assert!(third == by(&["--time", &near_s.to_string()]));
-    assert!(by(&[]) == by(&["--time", "9 h"]));
+    // The frames end at 4 ms and are 0.5 ms apart.
+    assert!(by(&[]) == by(&["--time", "4.4 ms"]));
+    let words = ["picture", "out", "-o", "x.png", "--time", "9 h"];
+    let output = go(&bench, &words);
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("no frames near 32400 s"), "{said}");
     for (name, _) in dem_report::picture::ColourBy::WORDS {
         by(&["--colour-by", name]);
     }
