@@ -40,6 +40,12 @@ fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
+/// A number of things: "1 bond", "2 bonds".
+pub fn counted(count: usize, what: &str) -> String {
+    let s = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{s}")
+}
+
 /// JSON with the characters that control a terminal as `\u001b`, which has the same meaning.
 pub(crate) fn visible_json(json: &str) -> Cow<'_, str> {
     let is_escaped = |letter: char| letter != '\n' && is_obeyed(letter);

@@ -6,6 +6,7 @@ mod time;
 mod values;
 
 use dem_io::Result;
+use dem_io::text::counted;
 use dem_io::units::show_quantity;
 use dem_plots::Page;
 use serde_json::Value;
@@ -16,7 +17,7 @@ pub(crate) use inputs::add_inputs;
 pub(crate) use results::{add_results, add_test};
 pub(crate) use time::add_time;
 
-use values::{counted, number, text, texts};
+use values::{number, text, texts};
 
 /// Plots that come first, in this order.
 const FIRST_PLOTS: [&str; 7] = [

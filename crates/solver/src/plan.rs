@@ -3,7 +3,7 @@
 
 pub(crate) mod bodies;
 mod clumps;
-mod contacts;
+pub(crate) mod contacts;
 mod falls;
 mod forecast;
 pub(crate) mod groups;

@@ -56,6 +56,15 @@ pub struct AxisColumn {
     pub numbers: Option<Vec<f64>>,
     /// Their unit as written; empty for plain numbers.
     pub unit: String,
+    /// True if the study names the values: tables show the names, plots the numbers.
+    pub named: bool,
+}
+
+impl AxisColumn {
+    /// The numbers that a table shows: none if the study names the values.
+    pub fn numbers_in_tables(&self) -> Option<&[f64]> {
+        self.numbers.as_deref().filter(|_| !self.named)
+    }
 }
 
 /// A measure.

@@ -160,6 +160,7 @@ fn column(axis: &Axis) -> AxisColumn {
         sizes: axis.sizes(),
         numbers,
         unit: unit.unwrap_or_default(),
+        named: axis.named,
     }
 }
 

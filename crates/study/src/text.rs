@@ -9,17 +9,18 @@ use super::response::Response;
 use super::response_plot::{average, named, shown_axes};
 use super::row::{Judged, Row};
 use super::search::{Search, SearchResult};
-use super::sweep_table::SweepTable;
+use super::sweep_table::{AxisColumn, SweepTable};
 use super::words::with_unit;
 
 /// Largest number of lines of a part of the text.
 const MOST_LINES: usize = 20;
 
 /// The table with one line for each run: comma-separated, texts in quotes where needed. A parameter
-/// whose values are numbers in one unit is a number, with the unit in the name of its column.
+/// whose values are numbers in one unit, and have no names, is a number, with the unit in the name of
+/// its column.
 pub fn csv(table: &SweepTable) -> String {
     let mut columns = vec!["run".to_owned()];
-    columns.extend((table.axes.iter()).map(|axis| with_unit(&axis.name, &axis.unit)));
+    columns.extend(table.axes.iter().map(heading));
     for name in ["time_s", "spread_s", "repeats", "steps", "time_step_s"] {
         columns.push(name.to_owned());
     }
@@ -72,12 +73,11 @@ fn of_error(judged: &Judged) -> [String; 5] {
     ]
 }
 
-/// The responses with one line for each measure and setting. A parameter whose values are numbers in
-/// one unit is a number, with the unit in the name of its column.
+/// The responses with one line for each measure and setting, with parameters as in [`csv`].
 pub fn response_csv(table: &SweepTable) -> String {
     let axes: Vec<usize> = shown_axes(table).collect();
     let mut columns = vec!["measure".to_owned(), "unit".to_owned()];
-    columns.extend((axes.iter()).map(|at| with_unit(&table.axes[*at].name, &table.axes[*at].unit)));
+    columns.extend(axes.iter().map(|at| heading(&table.axes[*at])));
     for name in [
         "runs",
         "mean",
@@ -108,13 +108,11 @@ pub fn response_csv(table: &SweepTable) -> String {
     out
 }
 
-/// The results of `[find]` with one line for each case: the values of the other axes, as numbers in
-/// the unit of their column where they are such, the value found and the ends of its interval.
+/// The results of `[find]` with one line for each case: the values of the other axes as in [`csv`],
+/// the value found and the ends of its interval.
 pub fn find_csv(table: &SweepTable, search: &Search) -> String {
     let axes: Vec<usize> = shown_axes(table).filter(|at| *at > 0).collect();
-    let mut columns: Vec<String> = (axes.iter())
-        .map(|at| with_unit(&table.axes[*at].name, &table.axes[*at].unit))
-        .collect();
+    let mut columns: Vec<String> = axes.iter().map(|at| heading(&table.axes[*at])).collect();
     columns.push(with_unit(&search.parameter, &search.unit));
     columns.extend(["from", "to", "result"].map(str::to_owned));
     let mut out = line(&columns);
@@ -137,10 +135,18 @@ pub fn find_csv(table: &SweepTable, search: &Search) -> String {
     out
 }
 
-/// A value of an axis: a number in its unit if it is one, or as written.
+/// The heading of a parameter in a table.
+fn heading(axis: &AxisColumn) -> String {
+    match axis.numbers_in_tables() {
+        Some(_) => with_unit(&axis.name, &axis.unit),
+        None => axis.name.clone(),
+    }
+}
+
+/// A value of a parameter in a table: a number in the unit of its heading, or as written.
 fn cell(table: &SweepTable, axis: usize, at: usize) -> String {
     let column = &table.axes[axis];
-    match &column.numbers {
+    match column.numbers_in_tables() {
         Some(numbers) => number(numbers.get(at).copied()),
         None => column.values.get(at).cloned().unwrap_or_default(),
     }

@@ -1,10 +1,11 @@
 //! What was run.
 
+use dem_io::text::counted;
 use dem_io::units::show_quantity;
 use dem_plots::{Column, Page, Table};
 use serde_json::Value;
 
-use super::values::{counted, number, text, texts};
+use super::values::{number, text, texts};
 use crate::folder::Folder;
 
 /// Scene, bodies, settings and files.

@@ -20,7 +20,3 @@ pub(super) fn number(value: &Value) -> f64 {
 pub(super) fn percent(fraction: f64) -> String {
     format!("{} %", significant(100.0 * fraction, 3))
 }
-
-pub(super) fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-}

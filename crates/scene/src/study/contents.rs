@@ -166,6 +166,8 @@ pub struct Axis {
     pub place: String,
     /// Values, at least one.
     pub values: Vec<AxisValue>,
+    /// True if the study names the values.
+    pub named: bool,
 }
 
 impl Axis {

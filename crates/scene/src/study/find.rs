@@ -30,6 +30,7 @@ pub(super) fn axis(table: &Table<'_>, folder: &Path) -> Result<Axis> {
         name: path.to_owned(),
         place,
         values,
+        named: false,
     })
 }
 

@@ -30,6 +30,7 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
                     .map(|(number, unit)| point(path, number, &unit, &place))
                     .collect(),
                 place,
+                named: false,
             });
         }
         Value::Table(entries) if entries.iter().any(|(key, _)| key == "values") => {
@@ -60,6 +61,7 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
         name: path.to_owned(),
         place,
         values,
+        named: names.is_some(),
     })
 }
 
@@ -90,15 +92,13 @@ pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<A
         let problem = format!("{} names no path", field.path);
         return Err(field.refuse(problem, "add \"run.safety_factor\" = [0.9, 0.5], say"));
     }
-    with_sizes(
-        &mut values,
-        table.get("size").as_ref(),
-        table.get("names").as_ref(),
-    )?;
+    let [size, names] = ["size", "names"].map(|key| table.get(key));
+    with_sizes(&mut values, size.as_ref(), names.as_ref())?;
     Ok(Axis {
         name: name.to_owned(),
         place: field.document.place(field.node.origin),
         values,
+        named: names.is_some(),
     })
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use dem_io::Result;
 use dem_io::standard_output::write_standard_output;
-use dem_io::text::visible;
+use dem_io::text::{counted, visible};
 use dem_results::Existing;
 
 use crate::lammps::import::import as import_run;
@@ -40,8 +40,7 @@ pub(super) fn import(arguments: &ImportArguments) -> Result<()> {
         return Ok(());
     }
     write_standard_output(|out| {
-        let s = if frames == 1 { "" } else { "s" };
         let results = arguments.output.display().to_string();
-        writeln!(out, "{frames} frame{s} -> {}", visible(&results))
+        writeln!(out, "{} -> {}", counted(frames, "frame"), visible(&results))
     })
 }

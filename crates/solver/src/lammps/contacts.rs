@@ -15,9 +15,7 @@ use super::words::refused;
 use crate::physics::contact::law::{ContactKind, Law, Rolling};
 use crate::physics::contact::pair_parameters::PairParameters;
 use crate::plan::Plan;
-
-/// Marks a pair of materials without a contact law.
-pub(super) const NO_KIND: u8 = u8::MAX;
+use crate::plan::contacts::NO_KIND;
 
 /// The contacts of an export.
 #[derive(Debug, Clone, Default)]

@@ -2,8 +2,9 @@
 //!
 //! <https://docs.lammps.org/read_data.html>
 
-use std::f64::consts::PI;
 use std::io::{self, Write};
+
+use dem_io::body::mass::volume_m3;
 
 use super::bonds::BondTypes;
 use super::clumps::is_body;
@@ -14,7 +15,7 @@ use crate::plan::Plan;
 /// Density of each particle, kg/m3, with which the spheres of a clump have its mass together.
 fn densities(plan: &Plan) -> Vec<f64> {
     let state = &plan.state;
-    let volume = |i: usize| 4.0 / 3.0 * PI * state.particles.poses[i].radius_m().powi(3);
+    let volume = |i: usize| volume_m3(state.particles.poses[i].radius_m());
     let free = 0..state.particles.free;
     let mut densities: Vec<f64> = free.map(|i| state.particles.density_kg_m3(i)).collect();
     densities.resize(state.particles.len(), 0.0);

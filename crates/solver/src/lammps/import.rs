@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
+use dem_io::body::mass::volume_m3;
 use dem_io::body::stored_frame::{
     BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, PARTICLE_ID, RADIUS, VELOCITY,
 };
@@ -301,10 +302,8 @@ fn append(
     let ends = |i: usize| exported.bonds[bonds[i]].map(|end| place_of[&end]);
     let broken: Vec<bool> = bonds.iter().map(|bond| is_broken(*bond)).collect();
     let fragments = fragments(manifest, exported, &numbers, &ends, &broken);
-    let mass = |i: usize| {
-        let radius = exported.radii_m[numbers[i]];
-        exported.densities_kg_m3[numbers[i]] * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3)
-    };
+    let mass =
+        |i: usize| exported.densities_kg_m3[numbers[i]] * volume_m3(exported.radii_m[numbers[i]]);
     let mut masses_kg: BTreeMap<u32, f64> = BTreeMap::new();
     for (i, fragment) in fragments.iter().enumerate() {
         *masses_kg.entry(*fragment).or_default() += mass(i);

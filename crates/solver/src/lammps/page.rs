@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
+use dem_io::text::counted;
+
 use super::bonds::CLASS_WIDTH;
 use super::clumps::has_bodies;
 use super::files::{BONDS, BROKEN, FRAMES};
 use super::input::{Input, step_s, steps};
-use super::words::counted;
 
 /// The page as Markdown.
 pub(super) fn page(input: &Input<'_>) -> String {

@@ -3,9 +3,10 @@
 use std::collections::HashSet;
 
 use dem_io::Result;
+use dem_io::text::counted;
 use dem_scene::{InitialOverlap, Integrator, Scene};
 
-use super::words::{counted, refused};
+use super::words::refused;
 use crate::plan::Plan;
 use crate::state::bodies::PlacedBody;
 

@@ -6,11 +6,12 @@
 use dem_io::Result;
 use dem_scene::{Factor, Scene, WallMotion};
 
-use super::contacts::{NO_KIND, law_in_words};
+use super::contacts::law_in_words;
 use super::forces::formula;
 use super::words::refused;
 use crate::geometry::{Shape, SolidBox};
 use crate::plan::Plan;
+use crate::plan::contacts::NO_KIND;
 use crate::state::walls::Wall;
 
 /// Cosine from which a direction counts as that of an axis.

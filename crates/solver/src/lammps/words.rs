@@ -18,9 +18,3 @@ pub(super) fn refused(
         remedy.to_string(),
     )
 }
-
-/// A number of things: "1 bond", "2 bonds".
-pub(super) fn counted(count: usize, what: &str) -> String {
-    let s = if count == 1 { "" } else { "s" };
-    format!("{count} {what}{s}")
-}

@@ -32,7 +32,8 @@ const STEPS_PER_LIST: f64 = 30.0;
 pub(super) const ROUNDING: f64 = 1e-6;
 /// Number of materials that fit into a byte, besides one value for none.
 const MOST_MATERIALS: usize = 255;
-const NO_KIND: u8 = u8::MAX;
+/// Marks a pair of materials, or a material at a wall, without a contact law.
+pub(crate) const NO_KIND: u8 = u8::MAX;
 
 /// Types of contacts, and the type of each pair of materials.
 pub(super) struct Kinds<'a> {

@@ -104,6 +104,8 @@ fn a_time_shows_the_nearest_frame() {
     let near_s = 0.7 * times_s[3] + 0.3 * times_s[4];
     assert!(third == by(&["--time", &format!("{} ms", 1e3 * near_s)]));
     assert!(third == by(&["--time", &near_s.to_string()]));
+    // The frames end at 4 ms and are 0.5 ms apart.
+    assert!(by(&[]) == by(&["--time", "4.4 ms"]));
     let late = go(&bench, &["picture", "out", "-o", "y.png", "--time", "9 h"]);
     assert_eq!(late.status.code(), Some(2));
     assert!(!bench.path("y.png").exists());

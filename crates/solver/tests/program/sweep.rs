@@ -238,6 +238,10 @@ fn tables_and_pages_of_a_sweep() {
     for request in ["http:", "https:", "src=", "url(", "@import"] {
         assert!(!html.contains(request), "{request}");
     }
+    // Only the pages of runs, on demand.
+    let links = html.matches("href=").count();
+    assert_eq!(links, html.matches("<a href=\"runs/").count());
+    assert_eq!(links, 8);
     assert_well_formed(&html);
     for measure in ["tip", "energy"] {
         let svg = fs::read_to_string(bench.path(&format!("study-sweep/{measure}.svg"))).unwrap();

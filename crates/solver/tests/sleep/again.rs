@@ -6,6 +6,7 @@ use dem_run::run::snapshot::{Snapshot, fingerprint};
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
 use dem_run::state::partitions::divide;
+use rayon::prelude::*;
 
 use super::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, plan_of, slab, sleep};
 
@@ -140,7 +141,7 @@ fn an_interruption_changes_nothing() {
         shots.len(),
         state.steps
     );
-    for bytes in &shots {
+    shots.par_iter().for_each(|bytes| {
         let Plan {
             state: mut again,
             mut bodies,
@@ -151,5 +152,5 @@ fn an_interruption_changes_nothing() {
         let from = again.steps;
         go_until(&mut again, END_S);
         assert!(same(&state, &again), "from step {from}");
-    }
+    });
 }
