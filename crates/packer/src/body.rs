@@ -7,7 +7,9 @@ use crate::geometry::depth_map::DepthMap;
 use crate::pack::{
     PackHistory, PackSettings, Packing, Progress, Solid, can_fill_voids, pack_solid,
 };
-use crate::quality::{BondedPacking, DEFAULT_GAP_LIMIT, Report, assess, depth_needed};
+use crate::quality::{
+    BondedPacking, DEFAULT_GAP_LIMIT, Report, assess, depth_needed, find_warnings,
+};
 use crate::sizes::Sizes;
 use crate::spheres::{Spheres, Vector3};
 use dem_io::body::About;
@@ -101,6 +103,54 @@ pub fn make_body(
     settings: &BodySettings,
     progress: Progress,
 ) -> Result<(Body, BodyReport)> {
+    let (made, mut quality) = make(surface, settings, progress, assess)?;
+    quality.warnings.extend(made.packed.warnings());
+    let body = made.body(settings, quality.warnings.clone());
+    let report = BodyReport {
+        mass: of_named_density(&body),
+        mass_over_shape: spheres_volume_m3(&body) / surface.volume_m3(),
+        centre_m: of_body(&body, 1.0).centre_m,
+        quality,
+        history: made.packed.packing.history,
+        bond_range: made.bond_range,
+        density_search: made.packed.density_search,
+        repairs: surface.repairs.clone(),
+        seconds: made.seconds,
+    };
+    Ok((body, report))
+}
+
+/// The body of [`make_body`], with the same warnings, but without a report: what only a report
+/// shows is not computed.
+///
+/// # Errors
+/// As [`make_body`].
+pub fn make_body_only(
+    surface: &Surface,
+    settings: &BodySettings,
+    progress: Progress,
+) -> Result<Body> {
+    let (made, mut warnings) = make(surface, settings, progress, find_warnings)?;
+    warnings.extend(made.packed.warnings());
+    Ok(made.body(settings, warnings))
+}
+
+/// A bonded packing.
+struct Made<'a> {
+    solid: Solid<'a>,
+    packed: Packed,
+    bonds: Vec<[u32; 2]>,
+    bond_range: f64,
+    seconds: StageSeconds,
+}
+
+/// Packs a shape with spheres, bonds them and judges the result.
+fn make<'a, Q>(
+    surface: &'a Surface,
+    settings: &BodySettings,
+    progress: Progress,
+    judge: fn(&BondedPacking) -> Result<Q>,
+) -> Result<(Made<'a>, Q)> {
     let started = Instant::now();
     let solid = Solid::new(surface)?;
     let prepared = started.elapsed().as_secs_f64();
@@ -140,7 +190,7 @@ pub fn make_body(
 
     let started = Instant::now();
     progress("report", 0.0)?;
-    let mut quality = assess(&BondedPacking {
+    let judged = judge(&BondedPacking {
         spheres,
         overlap: packed.settings.overlap,
         bonds: &bonds,
@@ -157,22 +207,16 @@ pub fn make_body(
         gap_limit: DEFAULT_GAP_LIMIT,
         parts: parts(surface),
     })?;
-    quality.warnings.extend(packed.warnings());
     seconds.report += started.elapsed().as_secs_f64();
-
-    let body = body_of(&solid, settings, &packed, bonds, bond_range, &quality);
-    let report = BodyReport {
-        mass: of_named_density(&body),
-        mass_over_shape: spheres_volume_m3(&body) / surface.volume_m3(),
-        centre_m: of_body(&body, 1.0).centre_m,
-        quality,
-        history: packed.packing.history,
+    drop(map);
+    let made = Made {
+        solid,
+        packed,
+        bonds,
         bond_range,
-        density_search: packed.density_search,
-        repairs: surface.repairs.clone(),
         seconds,
     };
-    Ok((body, report))
+    Ok((made, judged))
 }
 
 /// Map of distances to the wall as far as the report needs them, with cells two mean diameters
@@ -225,39 +269,36 @@ impl Packed {
     }
 }
 
-/// The body in metres.
-fn body_of(
-    solid: &Solid,
-    settings: &BodySettings,
-    packed: &Packed,
-    bonds: Vec<[u32; 2]>,
-    bond_range: f64,
-    quality: &Report,
-) -> Body {
-    let surface = solid.surface;
-    let spheres = &packed.packing.spheres;
-    let in_metres = |lengths: Vec<f64>| lengths.into_iter().map(|l| l * surface.unit_m).collect();
-    Body {
-        bond_radii: in_metres(bond_radii(spheres, &bonds, settings.bond_radius_factor)),
-        bond_lengths: in_metres(bond_lengths(spheres, &bonds)),
-        positions: spheres
-            .positions
-            .iter()
-            .map(|p| solid.to_metres(&Vector3::from(*p)))
-            .collect(),
-        radii: spheres.radii.iter().map(|r| r * surface.unit_m).collect(),
-        bonds,
-        about: About {
-            program: Some(format!("dem-pack {}", env!("CARGO_PKG_VERSION"))),
-            source: Some(surface.source.clone()),
-            source_hash: Some(surface.source_hash),
-            shape_volume_m3: Some(surface.volume_m3()),
-            particle_density_kg_m3: settings.particle_density_kg_m3,
-            overlap: Some(packed.settings.overlap),
-            bond_range: Some(bond_range),
-            seed: Some(packed.settings.seed),
-            warnings: quality.warnings.clone(),
-        },
+impl Made<'_> {
+    /// The body in metres.
+    fn body(&self, settings: &BodySettings, warnings: Vec<String>) -> Body {
+        let surface = self.solid.surface;
+        let spheres = &self.packed.packing.spheres;
+        let in_metres =
+            |lengths: Vec<f64>| lengths.into_iter().map(|l| l * surface.unit_m).collect();
+        let bonds = &self.bonds;
+        Body {
+            bond_radii: in_metres(bond_radii(spheres, bonds, settings.bond_radius_factor)),
+            bond_lengths: in_metres(bond_lengths(spheres, bonds)),
+            positions: spheres
+                .positions
+                .iter()
+                .map(|p| self.solid.to_metres(&Vector3::from(*p)))
+                .collect(),
+            radii: spheres.radii.iter().map(|r| r * surface.unit_m).collect(),
+            bonds: bonds.clone(),
+            about: About {
+                program: Some(format!("dem-pack {}", env!("CARGO_PKG_VERSION"))),
+                source: Some(surface.source.clone()),
+                source_hash: Some(surface.source_hash),
+                shape_volume_m3: Some(surface.volume_m3()),
+                particle_density_kg_m3: settings.particle_density_kg_m3,
+                overlap: Some(self.packed.settings.overlap),
+                bond_range: Some(self.bond_range),
+                seed: Some(self.packed.settings.seed),
+                warnings,
+            },
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use self::arguments::{Command, PackArguments, Reading};
 pub use self::recipe::Recipe;
 use self::report::{summary_text, surface_summary, surface_text};
 use self::shape::{check_unit_of_diameter, read_surface};
-use crate::body::{BodySettings, make_body};
+use crate::body::{BodySettings, make_body, make_body_only};
 use crate::sizes::Sizes;
 use clap::CommandFactory;
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
@@ -110,6 +110,9 @@ fn pack_and_write(
         bar.set_position((done.clamp(0.0, 1.0) * 1000.0) as u64);
         Ok(())
     };
+    if arguments.quiet && !arguments.json {
+        return write_body(&make_body_only(&surface, settings, &progress)?, output);
+    }
     let (body, made) = make_body(&surface, settings, &progress)?;
     bar.set_message("writing");
     write_body(&body, output)?;
@@ -121,11 +124,7 @@ fn pack_and_write(
         return write_standard_json(&made);
     }
     if arguments.output.is_some() && output != Path::new("-") {
-        if arguments.quiet {
-            Ok(())
-        } else {
-            write_standard_output(|out| out.write_all(text.as_bytes()))
-        }
+        write_standard_output(|out| out.write_all(text.as_bytes()))
     } else {
         if let Some(mut person) = person {
             // If standard error cannot be written to, there is nowhere to report that.

@@ -30,7 +30,7 @@ mod seed;
 mod sizes;
 mod spheres;
 
-pub use body::{BodyReport, BodySettings, StageSeconds, make_body};
+pub use body::{BodyReport, BodySettings, StageSeconds, make_body, make_body_only};
 pub use bonds::{CrossesSurface, bond_lengths, bond_radii, bond_range_for, find_bonds};
 pub use density::DensitySearch;
 pub use pack::{PackHistory, PackSettings, Packing, Progress, pack};

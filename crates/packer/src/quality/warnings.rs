@@ -1,6 +1,6 @@
 //! Warnings about a packing before it is used, with advice.
 
-use super::report::Report;
+use super::Checks;
 use crate::bonds::WELL_BONDED;
 use dem_io::units::{show_length, significant};
 
@@ -17,12 +17,12 @@ const CLEARLY_OFF: f64 = 1.5;
 pub(super) const RARE: f64 = 0.01;
 
 pub(super) fn warnings(
-    report: &Report,
+    checks: &Checks,
     advised_bond_range: Option<f64>,
     parts: usize,
 ) -> Vec<String> {
     let mut warnings = Vec::new();
-    let contacts = &report.contacts;
+    let contacts = &checks.contacts;
     if contacts.largest_overlap > EXACT {
         warnings.push(format!(
             "spheres overlap in r_gen by up to {} of a radius: the packing is not finished: please report the command",
@@ -35,7 +35,7 @@ pub(super) fn warnings(
             significant(contacts.largest_protrusion, 2)
         ));
     }
-    if let Some(thinnest) = report
+    if let Some(thinnest) = checks
         .thinnest
         .as_ref()
         .filter(|t| t.particles_across.round() < ENOUGH_ACROSS)
@@ -48,34 +48,34 @@ pub(super) fn warnings(
             show_length(significant_down(thinnest.thickness_m / ENOUGH_ACROSS)),
         ));
     }
-    let pieces = &report.pieces;
+    let pieces = &checks.pieces;
     if pieces.count > parts.max(1) {
         warnings.push(format!(
             "the body is in {} pieces: {} of {} particles are not bonded to the largest; a larger --bond-range or smaller \
              particles join them",
-            pieces.count, pieces.outside_largest, report.particles
+            pieces.count, pieces.outside_largest, checks.particles
         ));
     }
-    if report.particles > 1 && report.bonds_per_particle < ENOUGH_BONDS {
+    if checks.particles > 1 && checks.bonds_per_particle < ENOUGH_BONDS {
         let advice = match advised_bond_range {
             Some(radius) => format!("--bond-range {radius} gives {WELL_BONDED}"),
             None => "use smaller particles".to_owned(),
         };
         warnings.push(format!(
             "{} bonds per particle, fewer than {ENOUGH_BONDS} are hardly rigid; {advice}",
-            significant(report.bonds_per_particle, 3)
+            significant(checks.bonds_per_particle, 3)
         ));
     }
-    warnings.extend(statistical_warnings(report));
+    warnings.extend(statistical_warnings(checks));
     warnings
 }
 
 /// Warnings about deviations that chance does not explain: sizes, and directions of bonds.
-fn statistical_warnings(report: &Report) -> Vec<String> {
+fn statistical_warnings(checks: &Checks) -> Vec<String> {
     let mut warnings = Vec::new();
     for (fit, by) in [
-        (report.sizes_by_number, "number"),
-        (report.sizes_by_mass, "mass"),
+        (checks.sizes_by_number, "number"),
+        (checks.sizes_by_mass, "mass"),
     ] {
         if fit.distance > CLEARLY_OFF * fit.limit_95 {
             warnings.push(format!(
@@ -86,7 +86,7 @@ fn statistical_warnings(report: &Report) -> Vec<String> {
             ));
         }
     }
-    if let Some(fabric) = report.interior_fabric.as_ref().filter(|f| f.chance < RARE) {
+    if let Some(fabric) = checks.interior_fabric.as_ref().filter(|f| f.chance < RARE) {
         warnings.push(format!(
             "bonds prefer a direction in the interior (eigenvalue {} off by {} sigma, chance {}): cracks will too; another \
              --seed or a larger --densify helps",

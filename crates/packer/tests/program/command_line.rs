@@ -1,6 +1,7 @@
 //! Help, man page, completions, reports.
 
 use super::{Bench, dem_pack, shape};
+use dem_io::body::read_body;
 use serde_json::Value;
 use std::process::Output;
 
@@ -100,6 +101,25 @@ fn quiet_says_nothing_but_json() {
         !output.stderr.is_empty(),
         "what is wrong is said all the same"
     );
+}
+
+/// What only the report shows is left out, not what the body's file says.
+#[test]
+fn quiet_makes_the_same_body_with_the_same_warnings() {
+    let bench = Bench::new();
+    let arguments = ["-d", "2mm", "--bond-range", "1.01"];
+    let body = |name: &str, more: &[&str]| {
+        let output = bench.run(&shape("02"), &[&arguments, more, &["-o", name]].concat());
+        assert!(output.status.success());
+        std::fs::read(bench.folder.path().join(name)).unwrap()
+    };
+    let with_report = body("with.vtp", &["--json"]);
+    assert_eq!(body("without.vtp", &["--quiet"]), with_report);
+    let warnings = read_body(&bench.folder.path().join("without.vtp"))
+        .unwrap()
+        .about
+        .warnings;
+    assert!(!warnings.is_empty());
 }
 
 #[test]
