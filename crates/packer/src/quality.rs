@@ -1,6 +1,7 @@
 //! The quality of a packing: density, sizes, bonds, contacts, fabric, and warnings.
 
 mod bonded_packing;
+mod checks;
 mod contacts;
 mod densities;
 mod depth;
@@ -12,17 +13,16 @@ mod text;
 mod thickness;
 mod warnings;
 
+use self::bonded_packing::mean_diameter;
 pub use self::bonded_packing::{BondedPacking, DEFAULT_GAP_LIMIT, depth_needed};
-use self::bonded_packing::{INTERIOR_DEPTH_IN_LARGEST_DIAMETERS, mean_diameter};
+use self::checks::{Checks, interior_depth};
 pub use self::contacts::Contacts;
 pub use self::densities::{Fraction, Layer};
 pub use self::fabric::{Fabric, chi_squared_5_exceeds};
 pub use self::pieces::Pieces;
 pub use self::report::Report;
 pub use self::thickness::Thinnest;
-use self::warnings::{ENOUGH_BONDS, warnings};
-use crate::bonds::suggested_bond_range;
-use crate::sizes::{Fit, ks_distance_by_mass, ks_distance_by_number};
+use self::warnings::warnings;
 use dem_io::Result;
 
 /// Assesses a packing. The result is the same to the last bit for any number of threads.
@@ -32,8 +32,7 @@ use dem_io::Result;
 pub fn assess(packing: &BondedPacking) -> Result<Report> {
     with_finite_depths(packing, |packing| {
         let depths = depth::of_centres(packing, depth_needed(packing.spheres));
-        let checks = Checks::new(packing, &depths)?;
-        Ok(report(packing, checks))
+        Ok(report(packing, Checks::new(packing, &depths)?))
     })
 }
 
@@ -44,7 +43,7 @@ pub fn assess(packing: &BondedPacking) -> Result<Report> {
 pub(crate) fn find_warnings(packing: &BondedPacking) -> Result<Vec<String>> {
     with_finite_depths(packing, |packing| {
         let depths = depth::of_centres(packing, depth_needed(packing.spheres));
-        Ok(Checks::new(packing, &depths)?.warnings)
+        Ok(warnings(&Checks::new(packing, &depths)?, packing.parts))
     })
 }
 
@@ -62,58 +61,9 @@ fn with_finite_depths<T>(
     })
 }
 
-/// The part of a report on which the warnings depend.
-struct Checks {
-    particles: usize,
-    bonds_per_particle: f64,
-    sizes_by_number: Fit,
-    sizes_by_mass: Fit,
-    contacts: Contacts,
-    pieces: Pieces,
-    interior_fabric: Option<Fabric>,
-    thinnest: Option<Thinnest>,
-    warnings: Vec<String>,
-}
-
-impl Checks {
-    /// `depths` are those of the centres below the wall, local units, one per sphere.
-    fn new(packing: &BondedPacking, depths: &[f64]) -> Result<Self> {
-        let spheres = packing.spheres;
-        let particles = spheres.radii.len();
-        let diameters_m: Vec<f64> =
-            (spheres.radii.iter().map(|r| 2.0 * r * packing.unit_m)).collect();
-        let interior_depth = interior_depth(packing);
-        let mut checks = Self {
-            particles,
-            bonds_per_particle: packing.bonds.len() as f64 / particles.max(1) as f64,
-            sizes_by_number: ks_distance_by_number(&diameters_m, packing.sizes),
-            sizes_by_mass: ks_distance_by_mass(&diameters_m, packing.sizes),
-            contacts: contacts::count(packing, depths)?,
-            pieces: pieces::find(particles, packing.bonds),
-            interior_fabric: fabric::of(spheres, packing.bonds, |i| {
-                depths[i as usize] > interior_depth
-            }),
-            thinnest: thickness::thinnest(packing, depths, mean_diameter(spheres)),
-            warnings: Vec::new(),
-        };
-        let advised = if particles > 1 && checks.bonds_per_particle < ENOUGH_BONDS {
-            suggested_bond_range(spheres, packing.crosses_surface)
-        } else {
-            None
-        };
-        checks.warnings = warnings(&checks, advised, packing.parts);
-        Ok(checks)
-    }
-}
-
-/// Depth at which the interior begins, local units.
-fn interior_depth(packing: &BondedPacking) -> f64 {
-    let largest_radius = packing.spheres.radii.iter().copied().fold(0.0, f64::max);
-    INTERIOR_DEPTH_IN_LARGEST_DIAMETERS * 2.0 * largest_radius
-}
-
 /// The complete report.
 fn report(packing: &BondedPacking, checks: Checks) -> Report {
+    let warnings = warnings(&checks, packing.parts);
     let spheres = packing.spheres;
     let unit = packing.unit_m;
     let (interior_depth, mean_diameter) = (interior_depth(packing), mean_diameter(spheres));
@@ -150,6 +100,6 @@ fn report(packing: &BondedPacking, checks: Checks) -> Report {
         fabric: fabric::of(spheres, packing.bonds, |_| true),
         interior_fabric: checks.interior_fabric,
         thinnest: checks.thinnest,
-        warnings: checks.warnings,
+        warnings,
     }
 }

@@ -1,13 +1,11 @@
 //! Warnings about a packing before it is used, with advice.
 
-use super::Checks;
+use super::checks::{Checks, ENOUGH_BONDS};
 use crate::bonds::WELL_BONDED;
 use dem_io::units::{show_length, significant};
 
 /// Number of particles across below which a body shows its particles more than its material.
 const ENOUGH_ACROSS: f64 = 10.0;
-/// Number of bonds per particle below which a body is hardly rigid.
-pub(super) const ENOUGH_BONDS: f64 = 4.0;
 /// Overlaps (in r_gen) and protrusions above this fraction of a radius are not rounding errors.
 const EXACT: f64 = 1e-9;
 /// Sizes are reported as wrong beyond this multiple of the statistical limit: chance alone exceeds
@@ -16,11 +14,7 @@ const CLEARLY_OFF: f64 = 1.5;
 /// Probability below which a fabric is reported as anisotropic.
 pub(super) const RARE: f64 = 0.01;
 
-pub(super) fn warnings(
-    checks: &Checks,
-    advised_bond_range: Option<f64>,
-    parts: usize,
-) -> Vec<String> {
+pub(super) fn warnings(checks: &Checks, parts: usize) -> Vec<String> {
     let mut warnings = Vec::new();
     let contacts = &checks.contacts;
     if contacts.largest_overlap > EXACT {
@@ -57,7 +51,7 @@ pub(super) fn warnings(
         ));
     }
     if checks.particles > 1 && checks.bonds_per_particle < ENOUGH_BONDS {
-        let advice = match advised_bond_range {
+        let advice = match checks.advised_bond_range {
             Some(radius) => format!("--bond-range {radius} gives {WELL_BONDED}"),
             None => "use smaller particles".to_owned(),
         };
