@@ -115,6 +115,14 @@ impl Bench {
     }
 
     /// Packs a shape that can be packed.
+    /// The body alone, without its report.
+    fn pack_only(&self, stl: &Path, options: &[&str]) -> Body {
+        let output = self.run(stl, &[options, &["--quiet", "-o", "body.vtp"]].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{}: {said}", stl.display());
+        read_body(&self.path("body.vtp")).unwrap()
+    }
+
     fn pack(&self, stl: &Path, options: &[&str]) -> Made {
         let output = self.run(stl, &[options, &["--json", "-o", "body.vtp"]].concat());
         let said = String::from_utf8(output.stderr).unwrap();
