@@ -71,20 +71,20 @@ impl BondBlock {
     /// Copies of these bonds.
     #[inline(always)]
     pub fn of(bonds: &Bonds, some: [usize; BLOCK]) -> Self {
-        let collect = |column: fn(&Self) -> &Column| {
-            some.map(|at| column(&bonds.blocks[at / BLOCK])[at % BLOCK])
-        };
-        Self {
-            direction: [
-                collect(|b| &b.direction[0]),
-                collect(|b| &b.direction[1]),
-                collect(|b| &b.direction[2]),
-            ],
-            levers_m: [collect(|b| &b.levers_m[0]), collect(|b| &b.levers_m[1])],
-            normal: collect(|b| &b.normal),
-            shear: collect(|b| &b.shear),
-            radii_m: collect(|b| &b.radii_m),
+        let mut block = Self::EMPTY;
+        for (i, at) in some.into_iter().enumerate() {
+            let (from, lane) = (&bonds.blocks[at / BLOCK], at % BLOCK);
+            for axis in 0..3 {
+                block.direction[axis][i] = from.direction[axis][lane];
+            }
+            for end in 0..2 {
+                block.levers_m[end][i] = from.levers_m[end][lane];
+            }
+            block.normal[i] = from.normal[lane];
+            block.shear[i] = from.shear[lane];
+            block.radii_m[i] = from.radii_m[lane];
         }
+        block
     }
 }
 
