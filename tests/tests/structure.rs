@@ -92,8 +92,8 @@ fn imports(module: &[String], code: &str, known: &BTreeSet<Module>) -> BTreeSet<
     found
 }
 
-/// Adds the paths at the beginning of a text, one or a tree of them: `a::b`, `a::{b, c::d}`. Returns
-/// the rest of the text.
+/// Adds the paths at the beginning of a text, one or a tree of them: `a::b`, `a::{b, c::d}`.
+/// Returns the rest of the text.
 fn add_paths<'a>(text: &'a str, before: &[String], paths: &mut Vec<Module>) -> &'a str {
     let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_'));
     let (name, rest) = text.split_at(end.unwrap_or(text.len()));

@@ -56,8 +56,8 @@ pub fn curve_error(record: &Record, case: &Case) -> Option<f64> {
     (!own.is_empty() && !wanted.is_empty()).then(|| area_between(&own, &wanted))
 }
 
-/// The coarsest case that has met its targets and whose curve is at most `most` away from the wanted
-/// one.
+/// The coarsest case that has met its targets and whose curve is at most `most` away from the
+/// wanted one.
 pub fn coarsest(record: &Record, most: f64) -> Option<&Case> {
     let is_near = |case: &&Case| curve_error(record, case).is_some_and(|error| error <= most);
     record

@@ -1,4 +1,5 @@
-//! Standard output and standard error: text without characters that control a terminal, JSON, bytes.
+//! Standard output and standard error: text without characters that control a terminal, JSON,
+//! bytes.
 
 use std::io::{self, Write};
 use std::path::Path;

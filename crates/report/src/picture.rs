@@ -185,8 +185,8 @@ fn summary(path: &Path) -> Result<Value> {
     })
 }
 
-/// The camera of all pictures: everything in the chosen frames, or a part of it. Without a direction
-/// it looks as in pictures that are made during a run.
+/// The camera of all pictures: everything in the chosen frames, or a part of it. Without a
+/// direction it looks as in pictures that are made during a run.
 fn camera(
     order: &PictureOrder,
     from: Option<[f64; 3]>,

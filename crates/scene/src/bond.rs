@@ -114,8 +114,8 @@ pub struct BondFailure {
     pub shear_strength_pa: Option<f64>,
     /// `von_mises_strength`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
     pub von_mises_strength_pa: Option<f64>,
-    /// `equivalent_stress`: the stresses that count in it, axial stress in tension, bending, shear and
-    /// torsion unless given.
+    /// `equivalent_stress`: the stresses that count in it, those of axial tension and shear forces
+    /// unless given.
     pub equivalent_stress: EquivalentStress,
     /// `rate_strengthening`: strain rate above which all strengths except the compressive one rise
     /// with the rate (Platzer 2022, eqs. 20, 21), 1/s; `true` stands for 4.64e-6. None: never.

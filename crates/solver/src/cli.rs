@@ -73,8 +73,8 @@ pub fn program(given: impl Iterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Does what was requested. `interrupt` tells a run to stop; `tell` is called from time to time with
-/// how far the run of a scene has come.
+/// Does what was requested. `interrupt` tells a run to stop; `tell` is called from time to time
+/// with how far the run of a scene has come.
 ///
 /// # Errors
 /// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. It

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use dem_io::write_target::is_same_file;
 use dem_io::{Diagnostic, Result};
+use dem_results::folder::lock_file;
 use dem_results::{Existing, ResultsFolder, is_plot_file, write_json};
 use dem_scene::study::{Average, Setting, Study};
 use serde_json::{Value, json};
@@ -44,7 +45,7 @@ const TABLES: [&str; 8] = [
 #[derive(Debug)]
 pub struct SweepFolder {
     path: PathBuf,
-    _lock: Option<File>,
+    _lock: File,
 }
 
 /// Treatment of an existing sweep.
@@ -287,25 +288,18 @@ fn identity(study: &Study, scene_text: &str) -> Value {
     identity
 }
 
-/// Locks a folder. The system releases the lock when the program ends. Some network disks do not
-/// support locks: that is not a reason to refuse the sweep.
-fn lock(folder: &Path) -> Result<Option<File>> {
+/// Locks a folder. The system releases the lock when the program ends.
+fn lock(folder: &Path) -> Result<File> {
     let path = folder.join(LOCK);
-    let file = File::options()
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(&path)
-        .map_err(|error| cannot(&path, &error))?;
-    match file.try_lock() {
-        Ok(()) => Ok(Some(file)),
-        Err(fs::TryLockError::Error(_)) => Ok(None),
-        Err(fs::TryLockError::WouldBlock) => Err(Diagnostic::input(
-            folder.display().to_string(),
-            "another sweep is writing into it",
-            "wait until it has ended, or name another folder with --output",
-        )),
-    }
+    lock_file(&path)
+        .map_err(|error| cannot(&path, &error))?
+        .ok_or_else(|| {
+            Diagnostic::input(
+                folder.display().to_string(),
+                "another sweep is writing into it",
+                "wait until it has ended, or name another folder with --output",
+            )
+        })
 }
 
 fn cannot(path: &Path, error: &std::io::Error) -> Diagnostic {

@@ -20,7 +20,8 @@ pub fn plots(table: &SweepTable, response: &Response) -> Vec<Plot> {
     over.map(|at| plot(table, response, at)).collect()
 }
 
-/// The plots of the values that `[find]` found, over each of the other axes; bars show the interval.
+/// The plots of the values that `[find]` found, over each of the other axes; bars show the
+/// interval.
 pub fn found_plots(table: &SweepTable, search: &Search) -> Vec<Plot> {
     let over = shown_axes(table).filter(|at| *at > 0 && table.axes[*at].values.len() > 1);
     over.map(|at| found_plot(table, search, at)).collect()
@@ -142,8 +143,8 @@ fn wanted(table: &SweepTable, response: &Response) -> Option<(f64, String)> {
     (search.measure == response.measure).then_some((search.value, text))
 }
 
-/// What is shown of the values along the averaged axis: that in which `[find]` looks for a value, if it
-/// does so in this response, else the mean.
+/// What is shown of the values along the averaged axis: that in which `[find]` looks for a value,
+/// if it does so in this response, else the mean.
 pub(crate) fn average(table: &SweepTable, response: &Response) -> Average {
     let search = table.find.as_ref();
     let search = search.filter(|search| search.measure == response.measure);

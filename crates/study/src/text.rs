@@ -16,8 +16,8 @@ use super::words::with_unit;
 const MOST_LINES: usize = 20;
 
 /// The table with one line for each run: comma-separated, texts in quotes where needed. A parameter
-/// whose values are numbers in one unit, and have no names, is a number, with the unit in the name of
-/// its column.
+/// whose values are numbers in one unit, and have no names, is a number, with the unit in the name
+/// of its column.
 pub fn csv(table: &SweepTable) -> String {
     let mut columns = vec!["run".to_owned()];
     columns.extend(table.axes.iter().map(heading));

@@ -201,7 +201,8 @@ pub(super) struct PackArguments {
     /// Print the report as JSON on standard output (the body then needs --output)
     #[arg(long, requires = "output", help_heading = "Running")]
     pub(super) json: bool,
-    /// Only print errors: no progress, and no report, which is not computed; --json is still printed
+    /// Only print errors: no progress, and no report, which is not computed; --json is still
+    /// printed
     #[arg(short, long, help_heading = "Running")]
     pub(super) quiet: bool,
 }

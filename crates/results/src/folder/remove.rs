@@ -35,8 +35,8 @@ impl ResultsFolder {
         Ok(())
     }
 
-    /// Removes what is neither a table nor the summary, the page or the scene of a run that has ended:
-    /// frames, pictures, plots and checkpoint.
+    /// Removes what is neither a table nor the summary, the page or the scene of a run that has
+    /// ended: frames, pictures, plots and checkpoint.
     ///
     /// # Errors
     /// A file cannot be removed (exit code 1).
@@ -52,8 +52,8 @@ impl ResultsFolder {
         Ok(())
     }
 
-    /// Removes frame `number` and all after it, with their walls; if it is the first, also the walls
-    /// that never move.
+    /// Removes frame `number` and all after it, with their walls; if it is the first, also the
+    /// walls that never move.
     ///
     /// # Errors
     /// No permission (exit code 1).

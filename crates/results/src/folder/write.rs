@@ -15,8 +15,8 @@ use dem_io::safe_write::write_file;
 const SCENE_BEGIN: &str = "# Written by dem-run";
 
 impl ResultsFolder {
-    /// Writes the scene as it is run to `scene.toml`, after a line that says so. Replaces that of an
-    /// earlier run.
+    /// Writes the scene as it is run to `scene.toml`, after a line that says so. Replaces that of
+    /// an earlier run.
     ///
     /// # Errors
     /// A scene that no run has written is there (exit code 2); no permission, full disk (exit code

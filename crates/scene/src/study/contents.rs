@@ -76,8 +76,9 @@ impl Study {
     }
 }
 
-/// A search for the value of one parameter at which the mean or median of a measure has a given value,
-/// once for each case: each combination of the values of the other axes except the averaged one.
+/// A search for the value of one parameter at which the mean or median of a measure has a given
+/// value, once for each case: each combination of the values of the other axes except the averaged
+/// one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Find {
     /// `measure`: its index among the measures of the study.

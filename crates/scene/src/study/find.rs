@@ -152,8 +152,8 @@ impl Study {
         }
     }
 
-    /// The cases of `[find]`: for each, the index of the value on each axis, 0 for the parameter and
-    /// for the axis that is averaged over. The last axis changes fastest.
+    /// The cases of `[find]`: for each, the index of the value on each axis, 0 for the parameter
+    /// and for the axis that is averaged over. The last axis changes fastest.
     pub fn cases(&self) -> Vec<Vec<usize>> {
         let lengths = self.axes.iter().enumerate().map(|(at, axis)| {
             let is_of_case = at > 0 && Some(at) != self.average_over;

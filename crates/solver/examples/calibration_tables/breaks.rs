@@ -1,6 +1,6 @@
-//! Cost of fracture as a sequence of equilibria: number of bonds that break one after another before
-//! the largest load, and processor time of the Newton steps between them, against the test with
-//! steps.
+//! Cost of fracture as a sequence of equilibria: number of bonds that break one after another
+//! before the largest load, and processor time of the Newton steps between them, against the test
+//! with steps.
 
 use dem_laboratory::Statistic;
 use serde_json::{Value, json};

@@ -3,8 +3,8 @@
 use super::bench::{Bench, Failed};
 use super::samples::{BARE, PACKINGS, Sample, Table};
 
-/// Readings of Platzer 2022, eq. 13: values of `equivalent_stress`. The first, eq. 13 at its word, is
-/// that of the program unless given.
+/// Readings of Platzer 2022, eq. 13: values of `equivalent_stress`. The first, eq. 13 at its word,
+/// is that of the program unless given.
 pub(crate) const READINGS: [&str; 4] = [
     "forces-only",
     "axial-in-tension",

@@ -156,14 +156,8 @@ pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
         for fall in FALLS {
             for seed in 1..=row.packings {
                 let name = row.name(fall.name, seed);
-                let file = bench.results.join(format!("{name}.json"));
-                if !name.contains(part) || file.exists() {
-                    continue;
-                }
-                let body = Sample { seed, ..row.sample }.packed(bench)?;
-                eprintln!("{name}");
-                let result = drop(&body, &row.sets(&fall))?;
-                std::fs::write(file, serde_json::to_vec(&result)?)?;
+                let sample = Sample { seed, ..row.sample };
+                sample.keep(bench, &name, part, |body| drop(body, &row.sets(&fall)))?;
             }
         }
     }

@@ -13,9 +13,9 @@
 //!
 //! Each command but the last computes its cases one after another on one thread and writes a file
 //! for each into `target/thesis`. Cases whose file is there are not computed again. A word after
-//! the command selects the cases whose names contain it: `bending bending-2` are those with table 2.
-//! `page` writes `tests/verification/thesis.md` and its plots from the files that are there; what has
-//! not been computed anew stays as it stands.
+//! the command selects the cases whose names contain it: `bending bending-2` are those of table
+//! two. `page` writes `tests/verification/thesis.md` and its plots from the files that are there;
+//! what has not been computed anew stays as it stands.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,

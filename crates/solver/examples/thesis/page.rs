@@ -363,8 +363,8 @@ fn utilisation(results: &Path) -> Table {
     }
 }
 
-/// Of samples whose bonds do not break: the number of bonds whose utilisation exceeds 1, the largest
-/// of any bond, and the fraction of bonds above a half.
+/// Of samples whose bonds do not break: the number of bonds whose utilisation exceeds 1, the
+/// largest of any bond, and the fraction of bonds above a half.
 fn strengthening(results: &Path) -> Table {
     let mut rows = Vec::new();
     for row in strengthening::rows() {

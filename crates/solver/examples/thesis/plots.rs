@@ -24,8 +24,9 @@ pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
     there.filter_map(|(name, svg)| Some((name, svg?))).collect()
 }
 
-/// Load over travel of the first packing of each row with the first two readings, beside the measured
-/// line of Platzer 2022: its stiffness up to its largest force. Nothing unless all have been run.
+/// Load over travel of the first packing of each row with the first two readings, beside the
+/// measured line of Platzer 2022: its stiffness up to its largest force. Nothing unless all have
+/// been run.
 fn curves(results: &Path) -> Option<String> {
     let mut lines = vec![Line {
         name: "Platzer 2022".to_owned(),

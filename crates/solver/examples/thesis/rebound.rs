@@ -72,14 +72,8 @@ pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
     for (label, damping) in DAMPING {
         for seed in 1..=PACKINGS {
             let name = name(label, seed);
-            let file = bench.results.join(format!("{name}.json"));
-            if !name.contains(part) || file.exists() {
-                continue;
-            }
-            let body = Sample { seed, ..SAMPLE }.packed(bench)?;
-            eprintln!("{name}");
-            let result = rebound(&body, &sets(damping))?;
-            std::fs::write(file, serde_json::to_vec(&result)?)?;
+            let sample = Sample { seed, ..SAMPLE };
+            sample.keep(bench, &name, part, |body| rebound(body, &sets(damping)))?;
         }
     }
     Ok(())

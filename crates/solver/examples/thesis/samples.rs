@@ -1,7 +1,9 @@
 //! The samples: which spheres, which texture, which bonds.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use serde_json::Value;
 
 use super::bench::{Bench, Failed};
 use super::programs::output;
@@ -101,6 +103,25 @@ impl Sample {
         }
         options.extend(["--seed".to_owned(), self.seed.to_string()]);
         options
+    }
+
+    /// Computes a result from its file and writes it as JSON, if the name of the result contains
+    /// `part` and the result is not there.
+    pub(crate) fn keep(
+        &self,
+        bench: &Bench,
+        name: &str,
+        part: &str,
+        compute: impl FnOnce(&Path) -> Result<Value, Failed>,
+    ) -> Result<(), Failed> {
+        let file = bench.results.join(format!("{name}.json"));
+        if !name.contains(part) || file.exists() {
+            return Ok(());
+        }
+        let body = self.packed(bench)?;
+        eprintln!("{name}");
+        let result = compute(&body)?;
+        Ok(std::fs::write(file, serde_json::to_vec(&result)?)?)
     }
 
     /// Its file, which is packed if that has not been done; the report stands next to it, as JSON.

@@ -7,18 +7,19 @@ use dem_run::measure::load;
 use dem_run::physics::bond::failure::{
     Criteria, EquivalentStress, Factors, Stresses, stresses, utilisation,
 };
-use dem_run::physics::bond::strain_rate::dynamic_increase_factor;
-use dem_run::physics::bond::strain_rate::{HIGHEST_1_S, PLATZER_LOWEST_RATE_1_S};
+use dem_run::physics::bond::strain_rate::{
+    HIGHEST_1_S, PLATZER_LOWEST_RATE_1_S, dynamic_increase_factor, fast_branch,
+};
 use dem_run::step::{advance, interact};
 use dem_run::{State, plan};
 use dem_scene::read_bodies;
-use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 use super::bench::{Bench, Failed, scene};
 use super::bending::READINGS;
 use super::drops::{FALLS, Fall};
 use super::samples::{BARE, PACKINGS, Sample, Table};
+use super::watch::rate_1_s;
 
 /// Time between two looks, s.
 const EVERY_S: f64 = 25e-6;
@@ -93,14 +94,11 @@ pub(crate) fn compute(bench: &Bench, part: &str) -> Result<(), Failed> {
         for fall in FALLS {
             for seed in 1..=row.packings {
                 let name = row.name(fall.name, seed);
-                let file = bench.results.join(format!("{name}.json"));
-                if !name.contains(part) || file.exists() {
-                    continue;
-                }
-                let body = Sample { seed, ..row.sample }.packed(bench)?;
-                eprintln!("{name}");
-                let result = drop(&body, &row.sets(&fall), row.sample.table.strength_pa())?;
-                std::fs::write(file, serde_json::to_vec(&result)?)?;
+                let sample = Sample { seed, ..row.sample };
+                let strength_pa = sample.table.strength_pa();
+                sample.keep(bench, &name, part, |body| {
+                    drop(body, &row.sets(&fall), strength_pa)
+                })?;
             }
         }
     }
@@ -188,13 +186,6 @@ impl Used {
     }
 }
 
-/// Relative velocity of the ends over the initial length (Platzer 2022, eq. 21), 1/s.
-fn rate_1_s(state: &State, at: usize) -> f64 {
-    let [a, b] = state.bonds.ends[at]
-        .map(|end| Vector3::from(state.particles.motions[end as usize].velocity_m_s));
-    (b - a).norm() / state.bonds.initial_length_m(at)
-}
-
 /// The factors of all ways, in their order; `held` follows.
 fn factors(rate_1_s: f64, held: &mut [f64; 2]) -> [f64; WAYS.len()] {
     let now = [
@@ -209,9 +200,8 @@ fn factors(rate_1_s: f64, held: &mut [f64; 2]) -> [f64; WAYS.len()] {
 
 /// Eq. 20 as printed, beyond the 50/s up to which it holds.
 fn without_end(rate_1_s: f64) -> f64 {
-    let lg = rate_1_s.max(HIGHEST_1_S).log10();
     if rate_1_s > HIGHEST_1_S {
-        1.6 + (0.7325 * lg + 1.235) * lg
+        fast_branch(rate_1_s.log10())
     } else {
         dynamic_increase_factor(rate_1_s, PLATZER_LOWEST_RATE_1_S)
     }

@@ -95,20 +95,25 @@ impl Watch {
     }
 }
 
+/// Relative velocity of the ends over the initial length (Platzer 2022, eq. 21), 1/s.
+pub(crate) fn rate_1_s(state: &State, at: usize) -> f64 {
+    let [a, b] = state.bonds.ends[at]
+        .map(|end| Vector3::from(state.particles.motions[end as usize].velocity_m_s));
+    (b - a).norm() / state.bonds.initial_length_m(at)
+}
+
 /// Utilisation of a bond, all of which follow one rule, against its strength at its strain rate
-/// (Platzer 2022, eq. 21, with the full relative velocity), and the factor by which that rate raises
-/// the strength.
+/// and the factor by which that rate raises the strength.
 fn of_bond(state: &State, at: usize) -> [f64; 2] {
     let bonds = &state.bonds;
     let rule = &bonds.rules[0];
     let (Some(criteria), false) = (&rule.criteria, bonds.is_broken(at)) else {
         return [0.0, 1.0];
     };
-    let [a, b] =
-        bonds.ends[at].map(|end| Vector3::from(state.particles.motions[end as usize].velocity_m_s));
-    let rate_1_s = (b - a).norm() / bonds.initial_length_m(at);
     let from = rule.strengthening_from_1_s;
-    let factor = from.map_or(1.0, |from| dynamic_increase_factor(rate_1_s, from));
+    let factor = from.map_or(1.0, |from| {
+        dynamic_increase_factor(rate_1_s(state, at), from)
+    });
     let factors = Factors {
         scatter: 1.0,
         rate: factor,

@@ -32,8 +32,8 @@ const SAMPLE: (u32, f64) = (250, 0.07);
 /// Samples that differ by less than this factor are told as one.
 const ALIKE: f64 = 1.2;
 
-/// Does a dry run of the scene that the arguments name, with a picture of its start if a file for it
-/// is named.
+/// Does a dry run of the scene that the arguments name, with a picture of its start if a file for
+/// it is named.
 ///
 /// # Errors
 /// No scene is named; bad input; the file of the picture is not a .png, or cannot be written.

@@ -41,7 +41,8 @@ pub(super) struct FragmentArguments {
     /// Number of the frame, from 0; the last one unless given
     #[arg(long, value_name = "K")]
     frame: Option<usize>,
-    /// The body to write, or with --all a new folder: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
+    /// The body to write, or with --all a new folder: .vtp, .data (LAMMPS), .csv, .txt; standard
+    /// output if not given
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
     /// Only print warnings and errors

@@ -248,8 +248,8 @@ fn earlier(options: &SweepArguments) -> Earlier {
     }
 }
 
-/// The outcomes of all runs, after those that are left have been done. With `--list` the commands of
-/// those that are left are printed instead; if there are any, the result is None.
+/// The outcomes of all runs, after those that are left have been done. With `--list` the commands
+/// of those that are left are printed instead; if there are any, the result is None.
 fn outcomes_of(
     options: &SweepArguments,
     study: &Study,
@@ -280,8 +280,8 @@ fn outcomes_of(
     Ok(Some(outcomes))
 }
 
-/// The points that `[find]` tries next, with the numbers of their cases. Empty if there is no search,
-/// or if all cases have come to their end.
+/// The points that `[find]` tries next, with the numbers of their cases. Empty if there is no
+/// search, or if all cases have come to their end.
 fn next_points(study: &Study, table: &SweepTable) -> Vec<(usize, f64)> {
     let (Some(find), Some(search)) = (&study.find, &table.find) else {
         return Vec::new();

@@ -59,8 +59,8 @@ impl<'a> Dump<'a> {
         Ok(Self { lines, next })
     }
 
-    /// The next section. None: the file ends before one, or within it, as that of an interrupted run
-    /// does.
+    /// The next section. None: the file ends before one, or within it, as that of an interrupted
+    /// run does.
     ///
     /// # Errors
     /// An invalid line.

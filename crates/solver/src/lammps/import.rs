@@ -37,8 +37,8 @@ struct Exported {
     bond_types: Vec<usize>,
 }
 
-/// Reads what LAMMPS left in the folder of an export, and writes it as the results of a run. Returns
-/// the number of frames.
+/// Reads what LAMMPS left in the folder of an export, and writes it as the results of a run.
+/// Returns the number of frames.
 ///
 /// # Errors
 /// The folder is not that of an export or has no dump; a file is damaged (exit code 2); results

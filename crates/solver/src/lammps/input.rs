@@ -103,7 +103,8 @@ impl Input<'_> {
             } else {
                 String::new()
             };
-            // Without pair forces between bonded particles, and with them once their bond is broken.
+            // Without pair forces between bonded particles, and with them once their bond is
+            // broken.
             Self::line(text, "special_bonds lj 0.0 1.0 1.0 coul 1.0 1.0 1.0");
             Self::line(
                 text,

@@ -146,8 +146,8 @@ fn overlap(plan: &Plan, pair: [u32; 2]) -> bool {
     (b.place() - a.place()).norm() < touching_m * (1.0 - ROUNDING)
 }
 
-/// Pairs of particles of a body whose x differ by less than the largest diameter, the smaller number
-/// first.
+/// Pairs of particles of a body whose x differ by less than the largest diameter, the smaller
+/// number first.
 fn near_pairs(plan: &Plan, body: &PlacedBody) -> impl Iterator<Item = [u32; 2]> {
     let poses = &plan.state.particles.poses;
     let x = |i: u32| poses[i as usize].position_m[0];

@@ -1,4 +1,5 @@
-//! Particles by chunks: what one task handles, and sums that do not depend on the number of threads.
+//! Particles by chunks: what one task handles, and sums that do not depend on the number of
+//! threads.
 
 use rayon::prelude::*;
 

@@ -91,7 +91,8 @@ pub fn motions_before_kick(state: &State) -> Vec<Motion> {
             }
         }
     }
-    // The ends of a bond that broke in this step have had its half of the kick after the comparison.
+    // The ends of a bond that broke in this step have had its half of the kick after the
+    // comparison.
     let half_s = 0.5 * state.previous_time_step_s;
     for (end, on_end) in state.scratch.events.broken.iter().flat_map(|b| b.ends) {
         let motion = &mut motions[end as usize];

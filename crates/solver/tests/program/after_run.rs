@@ -1,4 +1,5 @@
-//! What can be made of a run that has ended: its page, pictures, films; and of one before it begins.
+//! What can be made of a run that has ended: its page, pictures, films; and of one before it
+//! begins.
 
 use std::fs;
 use std::process::Output;

@@ -239,7 +239,8 @@ fn contacts_and_walls_are_read_back() {
         words[8..],
         ["damping", "coeff_restitution", "limit_damping"]
     );
-    // The damping ratio with which attraction cut off gives 0.5, in the words of the formula with it.
+    // The damping ratio with which attraction cut off gives 0.5, in the words of the formula with
+    // it.
     let wanted = number(2).ln() / number(2).ln().hypot(std::f64::consts::PI);
     let zeta = -wanted;
     let loss = 2.0 * zeta * zeta.acos() / (1.0 - zeta * zeta).sqrt();

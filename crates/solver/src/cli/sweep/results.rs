@@ -58,7 +58,8 @@ pub(super) fn list(study: &Study, all: &[Run], jobs: &[Job], folder: &SweepFolde
     })
 }
 
-/// `sweep.csv`, `responses.csv`, `find.csv`, `sweep.json`, `sweep.html` and the plots of each measure.
+/// `sweep.csv`, `responses.csv`, `find.csv`, `sweep.json`, `sweep.html` and the plots of each
+/// measure.
 pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()> {
     let file = |name: &str| folder.path().join(name);
     write_file(&file("sweep.csv"), |out| {
@@ -109,8 +110,8 @@ pub(super) fn write_files(folder: &SweepFolder, table: &SweepTable) -> Result<()
     Ok(())
 }
 
-/// Prints the table, as text or as JSON, with the fastest setting if that is asked for, and the name
-/// of the scene that was `written` with it.
+/// Prints the table, as text or as JSON, with the fastest setting if that is asked for, and the
+/// name of the scene that was `written` with it.
 pub(super) fn say(
     study: &Study,
     all: &[Run],

@@ -33,6 +33,12 @@ pub fn elongation_rate(
     (b - a).dot(c) / initial_length_m
 }
 
+/// The second branch of eq. 20, for the decimal logarithm of the rate in 1/s.
+#[inline(always)]
+pub fn fast_branch(lg_rate: f64) -> f64 {
+    1.6 + (0.7325 * lg_rate + 1.235) * lg_rate
+}
+
 /// Ratio of dynamic to static strength at this rate of elongation: 1 while the bond gets shorter
 /// and below the rate `from_1_s`, where the factor jumps to its value (from 1 to 1.652 at 1.1/s).
 /// Never below 1: the printed fit gives 0.999996 at its lower end.
@@ -43,8 +49,11 @@ pub fn elongation_rate(
 pub fn dynamic_increase_factor(rate_1_s: f64, from_1_s: f64) -> f64 {
     let lg = rate_1_s.clamp(LOWEST_1_S, HIGHEST_1_S).log10();
     let slow = 1.0 + 0.0225 * (lg + 5.3333);
-    let fast = 1.6 + (0.7325 * lg + 1.235) * lg;
-    let factor = if rate_1_s <= BRANCH_1_S { slow } else { fast };
+    let factor = if rate_1_s <= BRANCH_1_S {
+        slow
+    } else {
+        fast_branch(lg)
+    };
     if rate_1_s < from_1_s {
         1.0
     } else {

@@ -30,8 +30,8 @@ pub struct Criteria {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub enum EquivalentStress {
     /// The axial stress if it is tensile, and that of the shear force, but neither bending nor
-    /// torsion: the stresses of eq. 11 without those of eq. 12, as eq. 13 names them. A bond that is
-    /// only bent or twisted does not break.
+    /// torsion: the stresses of eq. 11 without those of eq. 12, as eq. 13 names them. A bond that
+    /// is only bent or twisted does not break.
     #[default]
     ForcesOnly,
     /// The axial stress if it is tensile, and the bending stress always; shear and torsion.
