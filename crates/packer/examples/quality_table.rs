@@ -1,4 +1,5 @@
-//! Prints the tables of doc/packing-method.md as Markdown, in the bending sample of `data/shapes`:
+//! Prints the tables of doc/packing-method.md as Markdown, in the bending sample of `data/shapes`,
+//! and draws the first one into `doc`:
 //!
 //! ```text
 //! cargo run --release -p dem-pack --example quality_table           # quality, each --densify
@@ -17,9 +18,10 @@ use dem_io::body::vtp;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
 use dem_io::{Diagnostic, Result};
 use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
+use dem_plots::{Axis, Marks, Plot, Point};
 
 /// Values of `--densify` in the first table.
-const SETTLE: [f64; 10] = [
+const DENSIFY: [f64; 10] = [
     0.0, 0.01, 0.02, 0.025, 0.03, 0.033, 0.036, 0.039, 0.041, 0.043,
 ];
 /// Seeds over which each line of the first table is averaged.
@@ -44,44 +46,133 @@ fn number(text: &str) -> std::result::Result<usize, Error> {
         .map_err(|_| Error::other(format!("'{text}' is not a whole number")))
 }
 
-/// Density, isotropy and time on one thread, for diameters of 2 mm to 3 mm without overlap.
+/// Density, isotropy, sizes and time of a fraction of densification: means over the seeds.
+struct Quality {
+    densify: f64,
+    spheres: f64,
+    overall: f64,
+    interior: f64,
+    /// Deviation of an eigenvalue of the fabric from 1/3, over the standard deviation of chance.
+    anisotropy: f64,
+    /// Distance between the sizes placed and those requested, over the limit of chance (95 %).
+    size_error: f64,
+    removed: f64,
+    front_s: f64,
+    densifying_s: f64,
+    all_s: f64,
+}
+
+impl Quality {
+    fn of(densify: f64, all: &[BodyReport]) -> Self {
+        let mean = |value: &dyn Fn(&BodyReport) -> f64| {
+            all.iter().map(value).sum::<f64>() / all.len() as f64
+        };
+        Self {
+            densify,
+            spheres: mean(&|made| made.quality.particles as f64),
+            overall: mean(&|made| made.quality.generating_density),
+            interior: mean(&|made| {
+                let interior = made.quality.interior_generating_density.as_ref();
+                interior.map_or(f64::NAN, |fraction| fraction.value)
+            }),
+            anisotropy: mean(&|made| {
+                let fabric = made.quality.interior_fabric.as_ref();
+                fabric.map_or(f64::NAN, |fabric| fabric.largest_deviation_in_sigma)
+            }),
+            size_error: mean(&|made| {
+                let fit = &made.quality.sizes_by_number;
+                fit.distance / fit.limit_95
+            }),
+            removed: mean(&|made| made.history.removed as f64),
+            front_s: mean(&|made| made.history.front_seconds),
+            densifying_s: mean(&|made| made.history.densify_seconds),
+            all_s: mean(&|made| made.seconds.packing + made.seconds.bonds + made.seconds.report),
+        }
+    }
+
+    fn seconds_per_sphere(&self) -> f64 {
+        self.all_s / self.spheres
+    }
+}
+
+/// Quality over run time on one thread, for diameters of 2 mm to 3 mm without overlap: a table, and
+/// plots in `doc`.
 fn quality_table() -> std::result::Result<(), Error> {
     let surface = bending_sample()?;
     let mut out = std::io::stdout();
     writeln!(
         out,
-        "| `--densify` | spheres | overall | interior | eigenvalue off 1/3, sigma | removed | front, s | densification, s | spheres/s |\n\
-         |---|---|---|---|---|---|---|---|---|"
+        "| `--densify` | spheres | overall | interior | eigenvalue off 1/3, sigma | sizes off, of chance | removed | front, s | densification, s | spheres/s |\n\
+         |---|---|---|---|---|---|---|---|---|---|"
     )?;
-    for settle in SETTLE {
+    let mut table = Vec::new();
+    for densify in DENSIFY {
         let all = SEEDS
             .iter()
-            .map(|seed| on_threads(1, || make(&surface, "2mm..3mm", Some(settle), *seed)))
+            .map(|seed| on_threads(1, || make(&surface, "2mm..3mm", Some(densify), *seed)))
             .collect::<Result<Vec<_>>>()
             .map_err(Error::other)?;
-        let mean = |value: &dyn Fn(&BodyReport) -> f64| {
-            all.iter().map(value).sum::<f64>() / all.len() as f64
-        };
+        let row = Quality::of(densify, &all);
         writeln!(
             out,
-            "| {settle} | {:.0} | {:.4} | {:.4} | {:.1} | {:.1} | {:.2} | {:.2} | {:.0} |",
-            mean(&|made| made.quality.particles as f64),
-            mean(&|made| made.quality.generating_density),
-            mean(&|made| made
-                .quality
-                .interior_generating_density
-                .map_or(f64::NAN, |fraction| fraction.value)),
-            mean(&|made| made
-                .quality
-                .interior_fabric
-                .as_ref()
-                .map_or(f64::NAN, |fabric| fabric.largest_deviation_in_sigma)),
-            mean(&|made| made.history.removed as f64),
-            mean(&|made| made.history.front_seconds),
-            mean(&|made| made.history.densify_seconds),
-            mean(&|made| made.quality.particles as f64
-                / (made.seconds.packing + made.seconds.bonds + made.seconds.report)),
+            "| {densify} | {:.0} | {:.4} | {:.4} | {:.1} | {:.2} | {:.1} | {:.2} | {:.2} | {:.0} |",
+            row.spheres,
+            row.overall,
+            row.interior,
+            row.anisotropy,
+            row.size_error,
+            row.removed,
+            row.front_s,
+            row.densifying_s,
+            row.spheres / row.all_s,
         )?;
+        table.push(row);
+    }
+    draw(&table)
+}
+
+/// Draws density, isotropy and error of the sizes over run time.
+fn draw(table: &[Quality]) -> std::result::Result<(), Error> {
+    let doc = concat!(env!("CARGO_MANIFEST_DIR"), "/../../doc");
+    let quantities: [(&str, &str, &str, fn(&Quality) -> f64); 3] = [
+        (
+            "density",
+            "Density of the interior",
+            "fraction of volume",
+            |row| row.interior,
+        ),
+        (
+            "isotropy",
+            "Contact directions: chance gives about 2",
+            "deviation of an eigenvalue (standard deviations)",
+            |row| row.anisotropy,
+        ),
+        (
+            "sizes",
+            "Sizes placed: chance stays below 1 in 95 %",
+            "distance from the requested sizes (of chance)",
+            |row| row.size_error,
+        ),
+    ];
+    for (name, title, label, value) in quantities {
+        let point = |row: &Quality| Point {
+            at: [row.seconds_per_sphere(), value(row)],
+            filled: true,
+            title: format!("--densify {}", row.densify),
+            ..Point::default()
+        };
+        let plot = Plot {
+            title: title.to_owned(),
+            x: Axis::of("run time per sphere, one thread (s)"),
+            y: Axis::of(label),
+            marks: vec![Marks {
+                points: table.iter().map(point).collect(),
+                chains: vec![table.iter().map(|row| point(row).at).collect()],
+                ..Marks::default()
+            }],
+            ..Plot::default()
+        };
+        std::fs::write(format!("{doc}/densify-{name}.svg"), plot.svg().file())?;
     }
     Ok(())
 }
@@ -163,19 +254,19 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) 
         .install(work)
 }
 
-fn make(surface: &Surface, diameter: &str, settle: Option<f64>, seed: u64) -> Result<BodyReport> {
-    make_body(surface, &settings(diameter, settle, seed)?, &|_, _| Ok(())).map(|(_, made)| made)
+fn make(surface: &Surface, diameter: &str, densify: Option<f64>, seed: u64) -> Result<BodyReport> {
+    make_body(surface, &settings(diameter, densify, seed)?, &|_, _| Ok(())).map(|(_, made)| made)
 }
 
 /// Settings for spheres without overlap. Bonds join those that touch, so that the fabric is that of
 /// the contacts.
-fn settings(diameter: &str, settle: Option<f64>, seed: u64) -> Result<BodySettings> {
+fn settings(diameter: &str, densify: Option<f64>, seed: u64) -> Result<BodySettings> {
     Ok(BodySettings {
         packing: PackSettings {
             sizes: Sizes::parse(diameter, Basis::Number)?,
             overlap: 0.0,
             seed,
-            densify: settle,
+            densify,
             seed_point_m: None,
         },
         bond_range: 1.001,

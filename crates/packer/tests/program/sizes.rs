@@ -3,6 +3,7 @@
 
 use super::{Bench, Made};
 use crate::helpers::facets::cuboid;
+use rayon::prelude::*;
 use std::fs;
 use std::path::Path;
 
@@ -37,7 +38,7 @@ fn kolmogorov_smirnov(
 /// (mm), by Simpson's rule.
 struct Law {
     breaks: Vec<f64>,
-    density: Box<dyn Fn(f64) -> f64>,
+    density: Box<dyn Fn(f64) -> f64 + Send>,
 }
 
 impl Law {
@@ -87,7 +88,7 @@ fn laws(folder: &Path) -> Vec<(String, Law)> {
     // Mean and deviation of the lognormal law are those of the diameter itself.
     let variance = (1.0 + (0.3_f64 / 1.2).powi(2)).ln();
     let centre = 1.2_f64.ln() - 0.5 * variance;
-    let law = |breaks: &[f64], density: Box<dyn Fn(f64) -> f64>| Law {
+    let law = |breaks: &[f64], density: Box<dyn Fn(f64) -> f64 + Send>| Law {
         breaks: breaks.to_vec(),
         density,
     };
@@ -181,7 +182,7 @@ fn no_size_is_favoured() {
     const SEEDS: usize = 10;
     let bench = Bench::new();
     let file = bench.stl("box.stl", &cuboid([15.0, 12.0, 11.0]));
-    for (diameter, law) in laws(bench.folder.path()) {
+    (laws(bench.folder.path()).into_par_iter()).for_each(|(diameter, law)| {
         let [mean, deviation] = law.mean_and_deviation(0);
         let in_sigma = |seed: usize| {
             let body = bench.pack_only(&file, &["-d", &diameter, "--seed", &seed.to_string()]);
@@ -196,7 +197,7 @@ fn no_size_is_favoured() {
             bias.abs() < limit,
             "{diameter}: the mean diameter is off by {bias:.2} sigma on average, chance allows {limit:.2}"
         );
-    }
+    });
 }
 
 #[test]

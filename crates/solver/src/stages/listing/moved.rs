@@ -9,7 +9,7 @@ use crate::state::State;
 use crate::state::clumps::{Clump, Clumps};
 use crate::state::contacts::Contacts;
 use crate::state::particles::{Particles, Pose};
-use crate::state::references::{Ball, ClumpReference, References};
+use crate::state::references::{ClumpReference, References};
 
 /// Number of steps that a particle may go on at its present speed until its next search.
 const STEPS: f64 = 30.0;
@@ -76,7 +76,7 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
     let step_s = state.time_step_s;
     let (loose, carried): (Vec<u32>, Vec<u32>) =
         references.due.iter().partition(|i| (**i as usize) < p.free);
-    let is_due = |i: &u32| free_is_due(p, references, *i, SOON[0], step_s);
+    let is_due = |i: &u32| free_left_m(p, references, *i as usize, SOON[0], step_s)[1] < 0.0;
     let free = (0..p.free as u32).into_par_iter().with_min_len(CHUNK);
     let mut particles: Vec<u32> = free.filter(is_due).collect();
     particles.extend(loose);
@@ -107,10 +107,9 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
     for chunk in 0..references.chunks_left_m.len() {
         let moved_m = state.scratch.chunks_moved_m.get(chunk).copied();
         if references.chunks_left_m[chunk] < STEPS_LEFT * moved_m.unwrap_or(0.0) {
-            let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(p.free);
-            let is_due = |i: usize| free_is_due(p, references, i as u32, NOW, state.time_step_s);
-            urgent |= own.clone().any(is_due);
-            references.chunks_left_m[chunk] = chunk_left_m(p, references, own);
+            let [left_m, beyond_m] = chunk_left_m(p, references, chunk, state.time_step_s);
+            urgent |= beyond_m < 0.0;
+            references.chunks_left_m[chunk] = left_m;
         }
     }
     for (clump, reference) in state.clumps.all.iter().zip(&mut references.clumps) {
@@ -122,20 +121,24 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
     urgent
 }
 
-/// Whether a free particle has less than this fraction of its distance left, or little for its
-/// speed.
-fn free_is_due(
+/// Distance that a free particle may still move, m, and what of it is left beyond the distance at
+/// which it is due: this fraction of the distance of its ball, and little for its speed.
+#[inline(always)]
+fn free_left_m(
     particles: &Particles,
     references: &References,
-    i: u32,
+    i: usize,
     fraction: f64,
     step_s: f64,
-) -> bool {
-    let i = i as usize;
-    let (pose, ball) = (&particles.poses[i], &references.balls[i]);
+) -> [f64; 2] {
+    let (pose, [x, y, z, radius_m]) = (&particles.poses[i], references.balls[i]);
+    let allowance_m = radius_m - pose.radius_m();
+    let left_m = allowance_m - (pose.place() - Vector3::new(x, y, z)).norm();
     let moved_m = Vector3::from(particles.motions[i].velocity_m_s).norm() * step_s;
-    let allowance_m = ball[3] - pose.radius_m();
-    left_m(pose, ball) < (fraction * allowance_m).max(STEPS_LEFT * moved_m)
+    [
+        left_m,
+        left_m - (fraction * allowance_m).max(STEPS_LEFT * moved_m),
+    ]
 }
 
 fn clump_is_due(clump: &Clump, reference: &ClumpReference, fraction: f64) -> bool {
@@ -146,28 +149,25 @@ fn clump_is_due(clump: &Clump, reference: &ClumpReference, fraction: f64) -> boo
 pub(super) fn find_left(particles: &Particles, references: &mut References) {
     let chunks = 0..particles.free.div_ceil(CHUNK);
     let left = chunks.into_par_iter().map(|chunk| {
-        let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(particles.free);
-        chunk_left_m(particles, references, own)
+        let [left_m, _] = chunk_left_m(particles, references, chunk, 0.0);
+        left_m
     });
     references.chunks_left_m = left.collect();
 }
 
-/// The least distance that is left to the free particles of a range, m.
+/// The least of the distances of [`free_left_m`] of the particles of a chunk, m: those left, and
+/// those beyond where one is due now.
 fn chunk_left_m(
     particles: &Particles,
     references: &References,
-    own: std::ops::Range<usize>,
-) -> f64 {
-    let poses = particles.poses[own.clone()].iter();
-    let left = poses.zip(&references.balls[own]);
-    let left = left.map(|(pose, ball)| left_m(pose, ball));
-    left.fold(f64::INFINITY, f64::min)
-}
-
-/// Distance that a free particle may still move, m.
-fn left_m(pose: &Pose, &[x, y, z, radius_m]: &Ball) -> f64 {
-    let moved_m = (pose.place() - Vector3::new(x, y, z)).norm();
-    radius_m - pose.radius_m() - moved_m
+    chunk: usize,
+    step_s: f64,
+) -> [f64; 2] {
+    let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(particles.free);
+    own.fold([f64::INFINITY; 2], |least, i| {
+        let of_one = free_left_m(particles, references, i, NOW, step_s);
+        [0, 1].map(|k| least[k].min(of_one[k]))
+    })
 }
 
 /// Distance that each sphere of a clump may still move, m, at least.
