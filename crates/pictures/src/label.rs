@@ -20,11 +20,20 @@ const COLOURS: f64 = 0.22;
 /// Units of length with their size, m.
 const LENGTHS: [(&str, f64); 4] = [("km", 1e3), ("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)];
 
-/// A time as a label: `t = 0.125 s`, with as many decimals as needed for frames `step_s` apart.
-/// Both in s.
+/// Units of time with their size, s.
+const TIMES: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)];
+
+/// A time as a label: `t = 0.125 s`, or `t = 0.2 ms` where frames are less than a millisecond apart,
+/// with as many decimals as needed for frames `step_s` apart. Both in s.
 pub fn time_text(time_s: f64, step_s: f64) -> String {
+    let (unit, size) = match step_s.abs() {
+        step_s if step_s < 0.999e-6 => TIMES[2],
+        step_s if step_s < 0.999e-3 => TIMES[1],
+        _ => TIMES[0],
+    };
+    let (time, step) = (time_s / size, step_s / size);
     let mut decimals = 0;
-    let mut rest = step_s.abs();
+    let mut rest = step.abs();
     // Up to the first step that is whole except for rounding, and three digits of it.
     while decimals < 9
         && rest.is_normal()
@@ -36,7 +45,7 @@ pub fn time_text(time_s: f64, step_s: f64) -> String {
         rest *= 10.0;
         decimals += 1;
     }
-    format!("t = {time_s:.decimals$} s")
+    format!("t = {time:.decimals$} {unit}")
 }
 
 /// Writes a label into the top left corner. Characters without a glyph become blanks.
@@ -124,7 +133,11 @@ mod tests {
         assert_eq!(time_text(20.0, 10.0), "t = 20 s");
         assert_eq!(time_text(0.1 + 0.2, 0.1), "t = 0.3 s");
         assert_eq!(time_text(1.0, 1.0 / 3.0), "t = 1.000 s");
-        assert_eq!(time_text(1e-5, 1e-5), "t = 0.00001 s");
+        assert_eq!(time_text(0.002, 0.001), "t = 0.002 s");
+        assert_eq!(time_text(2e-4, 1e-4), "t = 0.2 ms");
+        assert_eq!(time_text(2e-3, 1e-4), "t = 2.0 ms");
+        assert_eq!(time_text(1e-5, 1e-5), "t = 0.01 ms");
+        assert_eq!(time_text(3e-7, 1e-7), "t = 0.3 µs");
         for odd in [f64::NAN, f64::INFINITY, 0.0, -1.0, 1e300, 1e-300] {
             let _ = [time_text(odd, odd), time_text(1.0, odd)];
         }

@@ -17,6 +17,9 @@ const HEIGHT: f64 = 400.0;
 const GRID: &str = "#e4e4e4";
 const FINE_GRID: &str = "#f2f2f2";
 
+/// Room beside the first and the last mark, as a fraction of the distance between them.
+const ROOM: f64 = 0.03;
+
 /// The part of the picture in which lines are drawn, px, and the axes along it.
 struct Area {
     left: f64,
@@ -91,7 +94,7 @@ fn area(plot: &Plot, reference: Option<f64>) -> Area {
         let marks = of_marks().flat_map(ends);
         of_lines().map(move |point| point[k]).chain(marks)
     };
-    let x = Scale::new(&plot.x, values(0), false);
+    let x = Scale::new(&plot.x, values(0).chain(room(plot)), false);
     let y = Scale::new(&plot.y, values(1).chain(reference), true);
     let numbers = y.ticks.iter().map(|tick| width(&tick.label, 12.0));
     Area {
@@ -102,6 +105,19 @@ fn area(plot: &Plot, reference: Option<f64>) -> Area {
         x,
         y,
     }
+}
+
+/// Ends of a linear horizontal axis with room for the marks at both ends; none without marks.
+fn room(plot: &Plot) -> Vec<f64> {
+    let places = plot.marks.iter().flat_map(seen).map(|point| point.at[0]);
+    let ends = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+        [low.min(x), high.max(x)]
+    });
+    let room = ROOM * (ends[1] - ends[0]);
+    if plot.x.log || !plot.x.names.is_empty() || !room.is_finite() {
+        return Vec::new();
+    }
+    vec![ends[0] - room, ends[1] + room]
 }
 
 /// Marks with a valid position.

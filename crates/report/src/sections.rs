@@ -48,8 +48,15 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Value) {
         return;
     }
     let quantity = |name: &str, unit: &str| show_quantity(number(&summary[name]), unit);
+    let part = match summary["resumed_at_s"].as_f64() {
+        Some(at_s) => {
+            let last_s = number(&summary["simulated_s"]) - at_s;
+            format!(", the last {} of it", show_quantity(last_s, "s"))
+        }
+        None => String::new(),
+    };
     let mut ended = format!(
-        "{} simulated in {} on {}, ended by {}; {}.",
+        "{} simulated{part} in {} on {}, ended by {}; {}.",
         quantity("simulated_s", "s"),
         quantity("wall_s", "s"),
         counted(number(&summary["threads"]) as usize, "thread"),

@@ -33,7 +33,7 @@ pub(super) static MATERIAL: Schema = Schema {
     keys: &[
         Key::quantity("density", &DENSITY, "Density of the spheres.")
             .positive()
-            .otherwise("from the body's file"),
+            .otherwise("from the body, where one needs it"),
         Key::quantity(
             "young_modulus",
             &STRESS,

@@ -244,11 +244,16 @@ fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> 
         });
         box_lengths_m(&spheres)[1]
     };
+    let smallest_diameter_m = |name: &String| {
+        let radii = read.get(name).map_or(&[][..], |body| &body.radii);
+        2.0 * radii.iter().copied().fold(f64::INFINITY, f64::min)
+    };
     (scene.bodies.iter())
         .map(|(name, body)| NamedBody {
             name: name.clone(),
             material: body.material.clone(),
             sieve_m: sieve_m(name),
+            smallest_diameter_m: smallest_diameter_m(name),
         })
         .collect()
 }

@@ -5,6 +5,7 @@ mod end;
 mod events;
 mod files;
 mod finish;
+mod flying;
 mod fragments;
 mod limits;
 mod observe;

@@ -169,6 +169,7 @@ fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     if let Some(summary) = found.get_mut("summary.json") {
         let mut value: Value = serde_json::from_slice(summary).unwrap();
         for of_time in [
+            "resumed_at_s",
             "wall_s",
             "processor_s",
             "threads",

@@ -72,17 +72,17 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
         steps: number("steps")? as u64,
         time_step_s: number("time_step_s")?,
         machine: summary["machine"].as_str().unwrap_or_default().to_owned(),
-        doubt: doubt(summary),
+        doubts: doubts(summary),
         report: None,
         readings,
     })
 }
 
-/// The first warning of a doubtful run.
-fn doubt(summary: &Value) -> Option<String> {
-    let verdict = &summary["verdict"];
-    let first = verdict["warnings"][0].as_str().unwrap_or_default();
-    (verdict["sound"] == false).then(|| first.to_owned())
+/// The warnings of a doubtful run.
+fn doubts(summary: &Value) -> Vec<String> {
+    let warnings = summary["verdict"]["warnings"].as_array();
+    let warnings = warnings.into_iter().flatten().filter_map(Value::as_str);
+    warnings.map(str::to_owned).collect()
 }
 
 /// A value that is not a number is null in JSON.

@@ -11,8 +11,8 @@ pub struct Done {
     pub time_step_s: f64,
     /// Processor and cores.
     pub machine: String,
-    /// The first warning of its verdict; None: it is sound.
-    pub doubt: Option<String>,
+    /// The warnings of its verdict; none: it is sound.
+    pub doubts: Vec<String>,
     /// Its page, relative to the folder of the sweep; None: it has none.
     pub report: Option<String>,
     /// One for each measure of the study.

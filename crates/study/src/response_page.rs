@@ -19,7 +19,8 @@ pub(crate) fn add_search(page: &mut Page, table: &SweepTable) {
     let measure = &table.measures[search.measure];
     page.heading("Search");
     for case in &search.cases {
-        page.paragraph(&format!("{}.", search.in_words(case, &measure.name)));
+        let result = search.in_words(case, &measure.name);
+        page.paragraph(&format!("Result: {result}."));
     }
     for plot in found_plots(table, search) {
         page.figure(&plot.svg());
@@ -58,13 +59,17 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
     let averaged = table.average_over.map(|at| &table.axes[at]);
     if let Some(averaged) = averaged {
         page.paragraph(&format!(
-            "{} over {} values of {}; bars show one standard deviation to either side.",
+            "{} over {} values of {}; {}.",
             match average(table, response) {
                 Average::Mean => "Means",
                 Average::Median => "Medians",
             },
             averaged.values.len(),
-            averaged.name
+            averaged.name,
+            match average(table, response) {
+                Average::Mean => "bars show one standard deviation to either side",
+                Average::Median => "thin lines reach from the smallest to the largest value",
+            }
         ));
     }
     for plot in plots(table, response) {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use dem_io::units::significant;
-use dem_plots::{Axis, Marks, Plot, Point};
+use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_scene::study::Average;
 
 use super::response::{Response, ResponsePoint};
@@ -101,17 +101,22 @@ fn plot(table: &SweepTable, response: &Response, over: usize) -> Plot {
             name: match series {
                 Some(at) => table.axes[at].values[kind].clone(),
                 // For the legend, next to the value that is looked for.
-                None if wanted.is_some() => "found".to_owned(),
+                None if wanted.is_some() => average.word().to_owned(),
                 None => String::new(),
             },
             points: (points.iter())
                 .map(|point| mark(table, over, point, average))
                 .collect(),
-            chains: chains(axis, over, &points, average),
+            chains: [
+                chains(axis, over, &points, average),
+                ranges(axis, over, &points, average),
+            ]
+            .concat(),
         }
     };
     let kinds = series.map_or(1, |at| table.axes[at].values.len());
     Plot {
+        lines: found_lines(table, response, over),
         title: title(table, response, &name),
         x: horizontal(axis),
         y: Axis::of(&with_unit(&name, &measure.unit)),
@@ -126,14 +131,48 @@ fn plot(table: &SweepTable, response: &Response, over: usize) -> Plot {
 fn title(table: &SweepTable, response: &Response, name: &str) -> String {
     match &table.average_over {
         Some(averaged) if response.points.iter().any(|point| point.values.len() > 1) => {
+            let average = average(table, response);
+            let scatter = match average {
+                Average::Mean => "standard deviation",
+                Average::Median => "range",
+            };
             format!(
-                "{name}: {} and standard deviation over {}",
-                average(table, response).word(),
+                "{name}: {} and {scatter} over {}",
+                average.word(),
                 table.axes[*averaged].name
             )
         }
         _ => name.to_owned(),
     }
+}
+
+/// The intervals that `[find]` has found, at the height of the value that it looks for: one for each
+/// case, over the parameter.
+fn found_lines(table: &SweepTable, response: &Response, over: usize) -> Vec<Line> {
+    let search = table.find.as_ref();
+    let Some(search) = search.filter(|search| over == 0 && search.measure == response.measure)
+    else {
+        return Vec::new();
+    };
+    let line = |case: &SearchCase| {
+        let SearchResult::Found { between, .. } = &case.result else {
+            return None;
+        };
+        Some(Line {
+            name: match case.settings.as_str() {
+                "" => "found".to_owned(),
+                settings => format!("found for {settings}"),
+            },
+            points: between.map(|x| [x, search.value]).into(),
+            dashed: false,
+        })
+    };
+    search
+        .cases
+        .iter()
+        .filter_map(line)
+        .take(MOST_LINES)
+        .collect()
 }
 
 /// The value that `[find]` looks for, if it does so in this response.
@@ -180,7 +219,11 @@ fn place(axis: &AxisColumn, over: usize, point: &ResponsePoint, average: Average
 }
 
 fn mark(table: &SweepTable, over: usize, point: &ResponsePoint, average: Average) -> Point {
-    let deviation = point.standard_deviation.unwrap_or(0.0);
+    let deviation = match average {
+        Average::Mean => point.standard_deviation.unwrap_or(0.0),
+        // Its range is drawn instead.
+        Average::Median => 0.0,
+    };
     let scatter = point.standard_deviation.map_or(String::new(), |deviation| {
         format!(
             " ± {} ({} runs)",
@@ -206,6 +249,24 @@ pub(crate) fn named(table: &SweepTable, point: &ResponsePoint) -> String {
     let shown =
         shown_axes(table).map(|at| format!("{} {}", table.axes[at].name, point.settings[at]));
     shown.collect::<Vec<String>>().join(", ")
+}
+
+/// For medians: a line from the smallest to the largest value of each point.
+fn ranges(
+    axis: &AxisColumn,
+    over: usize,
+    points: &[&ResponsePoint],
+    average: Average,
+) -> Vec<Vec<[f64; 2]>> {
+    let several = points.iter().filter(|point| point.values.len() > 1);
+    let range = |point: &&ResponsePoint| {
+        let [x, _] = place(axis, over, point, average);
+        point.range().map(|y| [x, y]).into()
+    };
+    match average {
+        Average::Mean => Vec::new(),
+        Average::Median => several.map(range).collect(),
+    }
 }
 
 /// Lines through points that differ along this axis only, ascending along it.

@@ -296,10 +296,10 @@ impl Search {
                 between: [low, high],
                 ..
             } => format!(
-                "{measure} is {value} at {parameter} = {}, between {} and {}{of_case}",
-                self.shown(*at),
+                "{measure} passes {value} between {parameter} = {} and {}, middle {}{of_case}",
                 self.shown(*low),
-                self.shown(*high)
+                self.shown(*high),
+                self.shown(*at)
             ),
             SearchResult::NotBracketed => format!(
                 "{value} does not lie between the values of {measure} at the ends{of_case}: {}",

@@ -238,15 +238,40 @@ fn mark_front(rows: &mut [Row], measure: usize) {
     }
 }
 
-/// A sentence on the runs whose verdict is doubtful, if there are any.
+/// A sentence on the runs whose verdict is doubtful, if there are any: each kind of warning once,
+/// with the number of its runs.
 fn doubtful(runs: &[Run], of_runs: &[Option<&Done>]) -> Option<String> {
-    let doubts = runs.iter().zip(of_runs);
-    let mut doubts =
-        doubts.filter_map(|(run, done)| Some((run.number, done.as_ref()?.doubt.as_ref()?)));
-    let (number, first) = doubts.next()?;
-    let count = 1 + doubts.count();
-    let all = of_runs.iter().flatten().count();
-    Some(format!(
-        "{count} of {all} runs are doubtful (verdict in their summary.json); the first, run {number}: {first}"
-    ))
+    let done = runs.iter().zip(of_runs);
+    let done = done.filter_map(|(run, done)| Some((run.number, done.as_ref()?)));
+    let (mut all, mut doubtful) = (0, 0);
+    // Key of a kind, the number of its runs, and the first of them with its warning.
+    let mut kinds: Vec<(String, usize, usize, &str)> = Vec::new();
+    for (number, done) in done {
+        all += 1;
+        doubtful += usize::from(!done.doubts.is_empty());
+        for warning in &done.doubts {
+            let key = kind_of(warning);
+            match kinds.iter_mut().find(|kind| kind.0 == key) {
+                Some(kind) => kind.1 += 1,
+                None => kinds.push((key, 1, number, warning)),
+            }
+        }
+    }
+    let told = kinds.iter().map(|(_, count, number, warning)| {
+        format!("{count} of them, run {number} first: {warning}")
+    });
+    let told: Vec<String> = told.collect();
+    (doubtful > 0).then(|| {
+        format!(
+            "{doubtful} of {all} runs are doubtful (verdict in their summary.json); {}",
+            told.join("; ")
+        )
+    })
+}
+
+/// The first words of a warning that contain no digit: the same for all runs with such a warning.
+fn kind_of(warning: &str) -> String {
+    let words = warning.split_whitespace();
+    let words = words.filter(|word| !word.contains(|c: char| c.is_ascii_digit()));
+    words.take(5).collect::<Vec<&str>>().join(" ")
 }

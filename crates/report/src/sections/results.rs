@@ -72,9 +72,88 @@ pub(crate) fn add_results(page: &mut Page, summary: &Value, folder: &Folder) {
             .map(|fact| fact.to_vec().into())
             .collect(),
     });
-    if let Some(distribution) = folder.text("distribution.csv") {
-        page.details("Fragment sizes (distribution.csv)", &distribution);
+    add_sizes(page, &summary["sizes"]);
+    let distribution = folder.text("distribution.csv");
+    if let Some(table) = distribution.as_deref().and_then(passing) {
+        page.paragraph("Mass that passes a sieve, inside and discharged (distribution.csv):");
+        page.table(&table);
     }
+}
+
+/// Sizes of the fragments: a row for each body and place.
+fn add_sizes(page: &mut Page, sizes: &Value) {
+    let bodies: Vec<(&String, &Value)> =
+        sizes["bodies"].as_object().into_iter().flatten().collect();
+    let is_one = bodies.len() == 1;
+    let all = (!is_one).then_some(("all", &sizes["all"]));
+    let named = bodies.iter().map(|(name, places)| (name.as_str(), *places));
+    let mut rows = Vec::new();
+    for (name, places) in named.chain(all) {
+        let places = places.as_object().into_iter().flatten();
+        let gone = places.clone().any(|(place, _)| place == "discharged");
+        for (place, found) in places.filter(|(place, _)| gone || *place == "both") {
+            let name = if gone {
+                format!("{name}, {place}")
+            } else {
+                name.to_owned()
+            };
+            let length = |name: &str| show_quantity(number(&found[name]), "m");
+            let t10 = found["t10"]
+                .as_f64()
+                .map_or("not resolved".to_owned(), percent);
+            let mut cells = vec![name, show_quantity(number(&found["mass_kg"]), "kg")];
+            cells.extend(["d10_m", "d50_m", "d80_m"].map(length));
+            cells.push(t10);
+            rows.push(cells.into());
+        }
+    }
+    if rows.is_empty() {
+        return;
+    }
+    let mut columns = vec![Column::text("fragments")];
+    columns.extend(["mass", "d10", "d50", "d80", "t10"].map(Column::number));
+    page.table(&Table { columns, rows });
+}
+
+/// The table of `distribution.csv`: a row for each sieve, a column for each body. None: the file has
+/// other columns.
+fn passing(csv: &str) -> Option<Table> {
+    let mut lines = csv.lines();
+    let head: Vec<&str> = lines.next()?.split(',').collect();
+    let at = |name: &str| head.iter().position(|column| *column == name);
+    let [body, place, sieve, passing] = [
+        at("body")?,
+        at("location")?,
+        at("sieve_m")?,
+        at("passing_fraction")?,
+    ];
+    let mut bodies: Vec<&str> = Vec::new();
+    let mut sieves: Vec<(f64, Vec<String>)> = Vec::new();
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        if *cells.get(place)? != "both" {
+            continue;
+        }
+        let body = *cells.get(body)?;
+        if bodies.last() != Some(&body) {
+            bodies.push(body);
+        }
+        let sieve_m: f64 = cells.get(sieve)?.parse().ok()?;
+        let fraction: f64 = cells.get(passing)?.parse().ok()?;
+        match sieves.iter_mut().find(|(known_m, _)| *known_m == sieve_m) {
+            Some((_, row)) => row.push(percent(fraction)),
+            None => sieves.push((sieve_m, vec![percent(fraction)])),
+        }
+    }
+    let mut columns = vec![Column::text("sieve")];
+    columns.extend(bodies.into_iter().map(Column::number));
+    let row = |(sieve_m, passes): (f64, Vec<String>)| {
+        let mut cells = vec![show_quantity(sieve_m, "m")];
+        cells.extend(passes);
+        cells.into()
+    };
+    let rows = sieves.into_iter().map(row).collect();
+    Some(Table { columns, rows })
 }
 
 fn add_measures(page: &mut Page, summary: &Value) {
@@ -118,7 +197,8 @@ fn facts(summary: &Value) -> Vec<[String; 2]> {
     add("broken bonds", broken.to_string());
     for (cause, number) in summary["broken_by_cause"].as_object().into_iter().flatten() {
         if number.as_u64().is_some_and(|number| number > 0) {
-            add(&format!("by {}", cause.replace('_', " ")), count(number));
+            let name = format!("broken by {}", cause.replace('_', " "));
+            add(&name, count(number));
         }
     }
     let fragments = &summary["fragments"];
@@ -126,12 +206,6 @@ fn facts(summary: &Value) -> Vec<[String; 2]> {
         add("fragments", count(&fragments["count"]));
         let largest = number(&fragments["mass_fraction_of_largest"]);
         add("mass of the largest over that of all", percent(largest));
-    }
-    for (place, sizes) in summary["sizes"]["all"].as_object().into_iter().flatten() {
-        let size = |name: &str| show_quantity(number(&sizes[name]), "m");
-        let three = ["d10_m", "d50_m", "d80_m"].map(size).join(", ");
-        add(&format!("d10, d50, d80, {place}"), three);
-        add(&format!("t10, {place}"), percent(number(&sizes["t10"])));
     }
     let population = &summary["population"];
     if population.is_object() {
@@ -151,7 +225,18 @@ fn facts(summary: &Value) -> Vec<[String; 2]> {
             add("restored to clumps", count(&population["restored"]));
         }
         if some("discharged") {
-            add("discharged", bodies("discharged"));
+            add("bodies and fragments discharged", bodies("discharged"));
+        }
+        let outlets = population["outlets"].as_object().into_iter().flatten();
+        let outlets: Vec<(&String, &Value)> = outlets.collect();
+        if outlets.len() > 1 {
+            for (name, outlet) in outlets {
+                let mass = kilograms(&outlet["mass_kg"]);
+                add(
+                    &format!("of them through {name}"),
+                    format!("{} ({mass})", count(&outlet["bodies"])),
+                );
+            }
         }
         let skipped = number(&population["bond_updates_skipped"]);
         add("bond updates skipped", percent(skipped));

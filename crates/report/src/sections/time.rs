@@ -54,7 +54,7 @@ pub(crate) fn add_time(page: &mut Page, summary: &Value) {
     }
     let folder = text(&summary["results"]);
     if !folder.is_empty() {
-        page.small("`dem-run report FOLDER` writes this page again from the files of the folder.");
+        page.small("dem-run report FOLDER writes this page again from the files of the folder.");
     }
 }
 

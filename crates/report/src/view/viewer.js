@@ -5,7 +5,7 @@ const root = document.getElementById("view");
 const find = name => root.querySelector("." + name);
 const say = text => { find("say").textContent = text; };
 const canvas = find("canvas");
-const gl = canvas.getContext("webgl2", { antialias: true });
+const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
 if (!gl || typeof DecompressionStream === "undefined") {
   say("This browser cannot show the view: it needs WebGL 2. The rest of the page does not.");
   root.dataset.state = "none";

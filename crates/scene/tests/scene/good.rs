@@ -534,7 +534,7 @@ run.gravity                     [0, 0, 0] m/s2
 run.local_damping               0
 run.seed                        0
 run.initial_overlap             refuse
-materials.clay.density          from the body's file
+materials.clay.density          from the body, where one needs it
 materials.clay.young_modulus    none
 materials.clay.poisson_ratio    0.3
 bodies.block.file               block.vtp

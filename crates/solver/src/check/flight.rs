@@ -86,6 +86,17 @@ pub(crate) fn free_bodies(state: &State, bodies: &[PlacedBody], ahead_s: f64) ->
     free_bodies
 }
 
+/// Clusters in free flight, from their particles. Their velocities are those of `ahead_s` after
+/// their positions.
+pub(crate) fn free_clusters(state: &State, clusters: &[&[u32]], ahead_s: f64) -> Vec<FreeBody> {
+    let of_one = |particles: &&[u32]| {
+        let mut flyer = FreeBody::of_particles(state, "", particles);
+        flyer.velocity_m_s -= ahead_s * flyer.gravity_m_s2;
+        flyer
+    };
+    clusters.iter().map(of_one).collect()
+}
+
 impl FreeBody {
     fn of_particles(state: &State, name: &str, particles: &[u32]) -> Self {
         let p = &state.particles;

@@ -33,9 +33,11 @@ pub(crate) fn strain_warning(largest: f64, where_: &str) -> Option<String> {
 /// Warning that a contact overlaps beyond the validity of its law, `where_`. None: it does not.
 pub(crate) fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     (largest > LARGEST_OVERLAP).then(|| {
+        // A value that three digits do not tell from the limit gets more.
+        let digits = if largest < 1.01 * LARGEST_OVERLAP { 6 } else { 3 };
         format!(
             "a contact overlapped by {} of the smaller radius{where_}: contact laws hold for small overlaps, up to about {LARGEST_OVERLAP}; check the moduli of the materials, the loads and the speeds",
-            significant(largest, 3),
+            significant(largest, digits),
         )
     })
 }

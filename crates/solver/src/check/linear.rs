@@ -11,6 +11,7 @@ use crate::physics::contact::law::Law;
 use crate::physics::number::Vec3;
 use crate::stages::walls::wall_contact;
 use crate::state::State;
+use crate::state::clumps::{Clump, Clumps};
 use crate::state::contacts::ContactPartition;
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallContact};
@@ -95,18 +96,42 @@ pub(crate) fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2]
     }
     let mut rates = [0.0_f64; 2];
     for (clump, sum) in clumps.all.iter().zip(sums) {
-        let template = clumps.template(clump);
-        let least = template
-            .moments_kg_m2
-            .into_iter()
-            .fold(f64::INFINITY, f64::min);
-        let easy = 1.0 / template.mass_kg + template.reach_m.powi(2) / least;
+        let inverse_kg = largest_inverse_mass(clumps, clump);
         for (rate, sum) in rates.iter_mut().zip(sum) {
             // Two clumps may push each other: each takes as much as the other.
-            *rate = rate.max(2.0 * sum * easy);
+            *rate = rate.max(2.0 * sum * inverse_kg);
         }
     }
     rates
+}
+
+/// One over the mass with which a clump resists where a force rotates it most easily, 1/kg.
+fn largest_inverse_mass(clumps: &Clumps, clump: &Clump) -> f64 {
+    let template = clumps.template(clump);
+    let moments = template.moments_kg_m2.into_iter();
+    let least = moments.fold(f64::INFINITY, f64::min);
+    1.0 / template.mass_kg + template.reach_m.powi(2) / least
+}
+
+/// The largest stiffness over effective mass, 1/s2, and damping over effective mass, 1/s, of any one
+/// touching contact: as [`at_impact`], at the overlaps that are there. 0 if nothing touches.
+pub fn stiffest_contact(state: &State) -> [f64; 2] {
+    let inverse_kg = |end: u32| match state.clumps.carrier_of(end as usize) {
+        Some(at) => largest_inverse_mass(&state.clumps, &state.clumps.all[at]),
+        None => state.particles.motions[end as usize].inverse_mass,
+    };
+    let mut largest = [0.0_f64; 2];
+    for contact in linear_contacts(state) {
+        let ends = contact.ends.into_iter().flatten();
+        let per_mass: f64 = ends.map(inverse_kg).sum();
+        let answer = &contact.answer;
+        let stiffest = answer.normal_n_m.max(WITH_ROTATION * answer.tangential_n_m);
+        let damping = answer.normal_damping_n_s_m;
+        let damping = damping.max(WITH_ROTATION * answer.tangential_damping_n_s_m);
+        largest[0] = largest[0].max(per_mass * stiffest);
+        largest[1] = largest[1].max(per_mass * damping);
+    }
+    largest
 }
 
 /// Upper bounds of the same eigenvalues for all contacts of a state together, of particles and of

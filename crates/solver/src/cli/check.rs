@@ -91,7 +91,7 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     if scene.run.integrator == Integrator::Static {
         return statics::check(scene, plan, memory_bytes(&plan.state), as_json);
     }
-    let steps = (scene.run.end_time_s / plan.step.step_s).round();
+    let steps = steps(scene, plan);
     let bytes = memory_bytes(&plan.state);
     // The time of the first steps predicts nothing if bodies are added, removed or replaced.
     let trial = (plan.state.model.rules.are_none()).then(|| Trial::of(&plan.state));
@@ -130,12 +130,13 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "limit_undamped_s": plan.step.limit.undamped_step_s,
                 "rayleigh_s": plan.step.rayleigh_s.is_finite().then_some(plan.step.rayleigh_s),
                 "platzer_eq_15_s": plan.step.platzer_eq_15_s.is_finite().then_some(plan.step.platzer_eq_15_s),
-                "steps": steps,
+                "steps": steps.first,
+                "steps_once_replaced": steps.once_replaced,
                 "stages": of_stages(true),
                 "inactive": of_stages(false),
                 "memory_bytes": bytes,
-                "predicted_run_time_s": per_step_s.map(|s| steps * s),
-                "predicted_run_time_range_s": trial.as_ref().map(|trial| trial.range_s(steps)),
+                "predicted_run_time_s": per_step_s.map(|s| steps.first * s),
+                "predicted_run_time_range_s": trial.as_ref().map(|trial| trial.range_s(steps.first)),
             });
             write_json_text(out, &value)
         } else {
@@ -149,18 +150,45 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     })
 }
 
-fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String {
+/// Number of steps of a run.
+#[derive(Clone, Copy)]
+struct Steps {
+    /// With the first step.
+    first: f64,
+    /// With the smaller step of an adaptive run whose clumps have all become clusters.
+    once_replaced: Option<f64>,
+}
+
+fn steps(scene: &Scene, plan: &Plan) -> Steps {
+    let number = |step_s: f64| (scene.run.end_time_s / step_s).round();
+    let replaced_s = plan.step.replaced.step_s;
+    let becomes_smaller = plan.is_adaptive && replaced_s < plan.step.step_s;
+    Steps {
+        first: number(plan.step.step_s),
+        once_replaced: becomes_smaller.then(|| number(replaced_s)),
+    }
+}
+
+fn text(plan: &Plan, steps: Steps, bytes: usize, trial: Option<&Trial>) -> String {
     let mut text = contents(plan) + &time_step(plan);
     let mut line = |name: &str, what: String| text += &format!("{name:14} {what}\n");
     let state = &plan.state;
-    let exact = steps < 1e15;
-    line(
-        "steps",
-        if exact {
+    let number = |steps: f64| {
+        if steps < 1e15 {
             format!("{steps}")
         } else {
             significant(steps, 2)
-        },
+        }
+    };
+    let first = number(steps.first);
+    line(
+        "steps",
+        steps.once_replaced.map_or(first.clone(), |more| {
+            format!(
+                "{first} at the first step, {} at that of clusters, more while contacts are pressed",
+                number(more)
+            )
+        }),
     );
     for stage in &plan.stages {
         let name = if stage.needed { "active" } else { "inactive" };
@@ -184,7 +212,7 @@ fn text(plan: &Plan, steps: f64, bytes: usize, trial: Option<&Trial>) -> String 
         "run time",
         trial.map_or(
             "not predicted: bodies are fed, discharged or replaced".to_owned(),
-            |trial| run_time_text(trial.range_s(steps)),
+            |trial| run_time_text(trial.range_s(steps.first)),
         ),
     );
     text
@@ -257,10 +285,13 @@ fn time_step(plan: &Plan) -> String {
     let step = significant(choice.step_s, 5);
     let limit = if choice.foreseen_s.is_finite() {
         format!(
-            "{} of the largest stable one, {} s ({} Lanczos steps)",
+            "{} of the largest stable one, {} s{}",
             significant(choice.fraction_of_limit(), 3),
             significant(choice.foreseen_s, 5),
-            choice.limit.iterations,
+            match choice.limit.iterations {
+                0 => String::new(),
+                iterations => format!(" ({iterations} Lanczos steps)"),
+            }
         )
     } else {
         "no limit, as nothing vibrates".to_owned()
@@ -282,8 +313,12 @@ fn time_step(plan: &Plan) -> String {
         line(
             "",
             format!(
-                "{} s without impacts; impacts at {} m/s are predicted",
-                significant(choice.limit.step_s, 5),
+                "{} without impacts; impacts at {} m/s are predicted",
+                if choice.limit.step_s.is_finite() {
+                    format!("{} s", significant(choice.limit.step_s, 5))
+                } else {
+                    "no limit".to_owned()
+                },
                 significant(choice.impact_speed_m_s, 3)
             ),
         );

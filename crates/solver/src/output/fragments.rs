@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::sizes::Fragments;
 use crate::state::State;
 use crate::state::clusters::fragments::mass_fraction_of_largest;
+use crate::state::clusters::sizes::Discharged;
 use crate::state::clusters::{Cluster, Clusters, Fragment, Split};
 use crate::state::model::Model;
 
@@ -135,13 +136,22 @@ pub(crate) fn write_fragment_plots(
     Ok(())
 }
 
-/// Mass that has left through outlets, over time: a line for each body, the slope of which is its mass
-/// flow.
+/// Mass that has left through outlets, over time: a line for each outlet and body, the slope of which
+/// is its mass flow.
 fn discharge_plot(state: &State, end_s: f64) -> Plot {
     let discharged = &state.population.discharged;
-    let bodies: BTreeSet<u32> = discharged.iter().map(|one| one.size.body).collect();
-    let line = |body: u32| {
-        let own = discharged.iter().filter(|one| one.size.body == body);
+    let outlets = &state.model.rules.outlets;
+    let flow = |one: &Discharged| (one.outlet, one.size.body);
+    let flows: BTreeSet<(u32, u32)> = discharged.iter().map(flow).collect();
+    let name = |(outlet, body): (u32, u32)| {
+        let body = state.model.body_name(body);
+        match outlets.get(outlet as usize) {
+            Some(outlet) if outlets.len() > 1 => format!("{}: {body}", outlet.name),
+            _ => body.to_owned(),
+        }
+    };
+    let line = |of: (u32, u32)| {
+        let own = discharged.iter().filter(|one| flow(one) == of);
         let mut points = vec![[0.0, 0.0]];
         let mut mass_kg = 0.0;
         for one in own {
@@ -151,7 +161,7 @@ fn discharge_plot(state: &State, end_s: f64) -> Plot {
         }
         points.push([end_s, mass_kg]);
         Line {
-            name: state.model.body_name(body).to_owned(),
+            name: name(of),
             points,
             dashed: false,
         }
@@ -160,7 +170,7 @@ fn discharge_plot(state: &State, end_s: f64) -> Plot {
         title: "Discharged mass".to_owned(),
         x: Axis::of("time (s)"),
         y: Axis::of("mass (kg)"),
-        lines: bodies.into_iter().take(MOST_LINES).map(line).collect(),
+        lines: flows.into_iter().take(MOST_LINES).map(line).collect(),
         ..Plot::default()
     }
 }
@@ -175,29 +185,29 @@ fn size_plot(fragments: &Fragments, model: &Model) -> Plot {
     }
     curves.truncate(MOST_LINES);
     let millimetres = |[size_m, fraction]: [f64; 2]| [1e3 * size_m, fraction];
-    let d50 = |(name, _, d50_m): &(&str, Vec<[f64; 2]>, f64)| Point {
-        at: [1e3 * d50_m, 0.5],
-        filled: true,
-        title: format!("{name}: d50 = {} mm", significant(1e3 * d50_m, 3)),
-        ..Point::default()
+    // As many kinds of marks as lines, so that each has the colour of its line.
+    let d50 = |(name, _, d50_m): &(&str, Vec<[f64; 2]>, f64)| Marks {
+        points: vec![Point {
+            at: [1e3 * d50_m, 0.5],
+            filled: true,
+            title: format!("{name}: d50 = {} mm", significant(1e3 * d50_m, 3)),
+            ..Point::default()
+        }],
+        ..Marks::default()
     };
     let lines = curves.iter().map(|(name, points, _)| Line {
         name: (*name).to_owned(),
         points: points.iter().copied().map(millimetres).collect(),
         dashed: false,
     });
-    let mut x = Axis::of("sieve size: second of three box lengths (mm)");
+    let mut x = Axis::of("sieve size, the width of a fragment (mm)");
     x.log = true;
     Plot {
-        title: "Fragment sizes".to_owned(),
+        title: "Fragment sizes, with marks at d50".to_owned(),
         x,
         y: Axis::of("cumulative mass fraction"),
         lines: lines.collect(),
-        marks: vec![Marks {
-            name: "d50".to_owned(),
-            points: curves.iter().map(d50).collect(),
-            chains: Vec::new(),
-        }],
+        marks: curves.iter().map(d50).collect(),
         ..Plot::default()
     }
 }

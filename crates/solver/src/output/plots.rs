@@ -3,6 +3,7 @@
 use dem_io::Result;
 use dem_plots::{Axis, Line, Plot};
 use dem_results::{ResultsFolder, Series, read_series};
+use dem_scene::Statistic;
 
 use super::fragments::{COUNT, DISCHARGE, SIZES};
 use super::series::ENERGIES;
@@ -59,13 +60,25 @@ pub(crate) fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()
         for line in &mut one.lines {
             line.name.clone_from(&title);
         }
-        one.reference = probe
-            .measure
-            .reference
-            .map(|value| (value, "reference".to_owned()));
+        one.reference = level(probe);
         folder.write_plot(&plot_name(probe), &one.svg().file())?;
     }
     Ok(())
+}
+
+/// The horizontal line in the plot of a measure: its reference, or else its result, if that is of
+/// every step and not only of the rows of the series.
+fn level(probe: &Probe) -> Option<(f64, String)> {
+    let reference = probe.measure.reference;
+    let result = match probe.measure.statistic {
+        Statistic::End => None,
+        Statistic::Largest => Some("largest of all steps"),
+        Statistic::Smallest => Some("smallest of all steps"),
+        Statistic::Mean => Some("mean"),
+    };
+    let result = result.map(|name| (probe.result().value, name.to_owned()));
+    let reference = reference.map(|value| (value, "reference".to_owned()));
+    reference.or(result.filter(|(value, _)| value.is_finite()))
 }
 
 /// The plot of a measure.

@@ -40,8 +40,9 @@ pub struct SizeSummary {
     pub d50_m: f64,
     /// The same for 80 % of the mass, m.
     pub d80_m: f64,
-    /// Mass fraction smaller than a tenth of the mean size of the bodies before they broke.
-    pub t10: f64,
+    /// Mass fraction smaller than a tenth of the mean size of the bodies before they broke. None: no
+    /// sphere is as small, so that it could only be 0.
+    pub t10: Option<f64>,
 }
 
 /// Size distributions at the end of a run.
@@ -108,11 +109,23 @@ impl Fragments {
         all.iter().map(|one| one.mass_kg * size(one)).sum::<f64>() / mass_kg(&all)
     }
 
+    /// Diameter of the smallest sphere of the bodies that the fragments come from, m.
+    fn smallest_m(&self, body: Option<u32>, model: &Model) -> f64 {
+        let all = self.chosen(body, true, true);
+        let bodies = all
+            .iter()
+            .filter_map(|one| model.bodies.get(one.body as usize));
+        bodies.fold(f64::INFINITY, |least, body| {
+            least.min(body.smallest_diameter_m)
+        })
+    }
+
     /// The numbers of the summary.
     pub fn sizes(&self, model: &Model) -> Sizes {
         let mut sizes = Sizes::default();
         for (body, name) in self.groups(model) {
             let tenth_m = 0.1 * self.mean_size_m(body, model);
+            let tenth_m = (tenth_m > self.smallest_m(body, model)).then_some(tenth_m);
             let of_group = LOCATIONS
                 .iter()
                 .filter_map(|(location, discharged, inside)| {
@@ -164,7 +177,7 @@ impl Fragments {
     pub(super) fn curves<'a>(&self, model: &'a Model) -> Vec<(&'a str, Vec<[f64; 2]>, f64)> {
         let curve = |(body, name): (Option<u32>, &'a str)| {
             let chosen = self.chosen(body, true, true);
-            let d50_m = summary(&chosen, 0.0).map_or(0.0, |summary| summary.d50_m);
+            let d50_m = summary(&chosen, None).map_or(0.0, |summary| summary.d50_m);
             (name, steps(&chosen), d50_m)
         };
         self.groups(model).into_iter().map(curve).collect()
@@ -194,8 +207,9 @@ fn mass_kg(fragments: &[FragmentSize]) -> f64 {
     fragments.iter().fold(0.0, |sum, one| sum + one.mass_kg)
 }
 
-/// Of fragments by ascending size; `tenth_m`: the size for t10. None: there are none.
-fn summary(sorted: &[FragmentSize], tenth_m: f64) -> Option<SizeSummary> {
+/// Of fragments by ascending size; `tenth_m`: the size for t10, if it is resolved. None: there are
+/// none.
+fn summary(sorted: &[FragmentSize], tenth_m: Option<f64>) -> Option<SizeSummary> {
     let last = sorted.last()?;
     let mass_kg = mass_kg(sorted);
     let at = |fraction: f64| {
@@ -206,14 +220,16 @@ fn summary(sorted: &[FragmentSize], tenth_m: f64) -> Option<SizeSummary> {
         });
         reached.unwrap_or(last).sieve_m()
     };
-    let fines = sorted.partition_point(|one| one.sieve_m() < tenth_m);
-    let fines_kg = self::mass_kg(&sorted[..fines]);
+    let fines_kg = |tenth_m: f64| {
+        let fines = sorted.partition_point(|one| one.sieve_m() < tenth_m);
+        self::mass_kg(&sorted[..fines])
+    };
     Some(SizeSummary {
         mass_kg,
         d10_m: at(0.1),
         d50_m: at(0.5),
         d80_m: at(0.8),
-        t10: fines_kg / mass_kg,
+        t10: tenth_m.map(|tenth_m| fines_kg(tenth_m) / mass_kg),
     })
 }
 

@@ -7,7 +7,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use crate::check::limit::{Limit, limit, safe_step};
-use crate::check::linear::{StiffestContacts, at_impact, contact_rates, largest_contact_rate_1_s2};
+use crate::check::linear::{
+    StiffestContacts, at_impact, largest_contact_rate_1_s2, stiffest_contact,
+};
 use crate::geometry::{Bounds, Shape};
 use crate::stages::population::apply_topology_change;
 use crate::state::State;
@@ -60,6 +62,8 @@ pub struct StepBasis {
     pub contact_rate_1_s2: f64,
     /// Largest automatic step, s.
     pub step_s: f64,
+    /// What makes it no larger, in words.
+    pub limited_by: &'static str,
 }
 
 impl StepBasis {
@@ -87,26 +91,34 @@ impl StepBasis {
             f64::INFINITY
         };
         // A contact under load now is part of an impact: an adaptive step must not rise before its
-        // end. Contacts under load from the start are treated like an impact, too.
+        // end. Contacts under load from the start are treated like an impact, too. Each of them on
+        // its own: the limit holds for all together.
         let keeps = run.initial_overlap == InitialOverlap::Keep;
         let [pressed_k, pressed_c] = if run.adaptive || keeps {
-            contact_rates(state)
+            stiffest_contact(state)
         } else {
             [0.0; 2]
         };
-        let step_s = (run.safety_factor * foreseen_s)
-            .min(
-                share_of_impact(state, run.safety_factor)
-                    * safe_step(k.max(pressed_k), c.max(pressed_c)),
-            )
-            .min(run.end_time_s / 100.0)
-            .min(across);
+        let share = share_of_impact(state, run.safety_factor);
+        let limits = [
+            (run.safety_factor * foreseen_s, "stability"),
+            (share * safe_step(k, c), "impacts foreseen"),
+            (
+                share * safe_step(pressed_k, pressed_c),
+                "contacts under load",
+            ),
+            (run.end_time_s / 100.0, "the end time"),
+            (across, "the way of a particle in a step"),
+        ];
+        let least = limits.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let (step_s, limited_by) = least.unwrap_or(limits[0]);
         Self {
             limit: found,
             foreseen_s,
             impact_speed_m_s,
             contact_rate_1_s2: rate.max(largest_contact_rate_1_s2(state, StiffestContacts::ALL)),
             step_s,
+            limited_by,
         }
     }
 }
@@ -128,6 +140,7 @@ impl StepChoice {
             impact_speed_m_s: 0.0,
             contact_rate_1_s2: 0.0,
             step_s: end_s,
+            limited_by: "the end time",
         };
         Self {
             step_s: end_s,

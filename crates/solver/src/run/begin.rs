@@ -51,6 +51,8 @@ pub(super) struct Run<'a> {
     /// Parts of the plan that the summary repeats.
     pub(super) planned: Planned,
     pub(super) first_step: u64,
+    /// Time at which this part of the run began, s.
+    pub(super) first_time_s: f64,
     pub(super) began: Instant,
     pub(super) processor_before_s: Option<f64>,
 }
@@ -147,6 +149,7 @@ impl<'a> Run<'a> {
                 changed_step,
             },
             first_step: state.steps,
+            first_time_s: state.time_s,
             state,
             began,
             processor_before_s: processor_time_s(),

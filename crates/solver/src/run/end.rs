@@ -36,7 +36,11 @@ impl Run<'_> {
         let seen = &self.progress.seen;
         let mut warnings = std::mem::take(&mut self.planned.warnings);
         warnings.extend(seen.warnings(&self.state, self.scene, &self.bodies, pieces, is_stopped));
+        let notes = seen.notes(&self.state, self.scene, pieces);
         let mut summary = self.summary(&ended, fragments.as_deref(), test.transpose()?);
+        if !is_stopped {
+            summary.notes.extend(notes);
+        }
         summary.judge(warnings);
         let Some(folder) = folder else {
             return Ok(Outcome {
@@ -109,6 +113,7 @@ impl Run<'_> {
             problem: ended.problem.as_ref().map(ToString::to_string),
             inputs: self.planned.inputs.clone(),
             simulated_s: state.time_s,
+            resumed_at_s: (self.first_step > 0).then_some(self.first_time_s),
             wall_s,
             processor_s: processor_s.map(|(after, before)| after - before),
             threads: self.settings.threads,

@@ -1,5 +1,6 @@
 //! The files that grow during a run, and its checkpoints.
 
+use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use dem_results::checkpoint::write_checkpoint;
 use dem_results::{DischargeFile, EventFile, FragmentFile, FrameFiles, ResultsFolder, SeriesFile};
@@ -150,8 +151,9 @@ pub(super) fn interruption(state: &State, files: Option<&Files<'_>>) -> Diagnost
     };
     Diagnostic::interrupted(
         format!(
-            "interrupted at {:.6e} s, step {}",
-            state.time_s, state.steps
+            "interrupted at {} s, step {}",
+            significant(state.time_s, 6),
+            state.steps
         ),
         remedy,
     )

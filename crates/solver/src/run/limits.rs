@@ -194,7 +194,8 @@ impl<'a> Limits<'a> {
             let is_unstable =
                 state.time_step_s > adaptive.scene.run.safety_factor * basis.foreseen_s;
             if is_larger || is_unstable || state.time_step_s > SMALLER * basis.step_s {
-                self.set(state, basis.step_s, "adaptive", progress, files)?;
+                let cause = ("adaptive", Some(basis.limited_by));
+                self.set(state, basis.step_s, cause, progress, files)?;
             }
         }
         Ok(())
@@ -212,15 +213,15 @@ impl<'a> Limits<'a> {
         if state.time_step_s <= largest_s {
             return Ok(());
         }
-        self.set(state, largest_s, cause, progress, files)
+        self.set(state, largest_s, (cause, None), progress, files)
     }
 
-    /// Sets this step, or one slightly smaller, and records it.
+    /// Sets this step, or one slightly smaller, and records it with its cause and what limits it.
     fn set(
         &self,
         state: &mut State,
         largest_s: f64,
-        cause: &str,
+        (cause, limited_by): (&str, Option<&str>),
         progress: &mut Progress,
         files: Option<&mut Files<'_>>,
     ) -> Result<()> {
@@ -231,7 +232,10 @@ impl<'a> Limits<'a> {
         } else {
             largest_s
         };
-        let detail = change(state.time_step_s, step_s);
+        let mut detail = change(state.time_step_s, step_s);
+        if let Some(limited_by) = limited_by {
+            detail += &format!(", limited by {limited_by}");
+        }
         if step_s > state.time_step_s {
             look_anew_for_near(state);
         }

@@ -1,12 +1,13 @@
 //! Quantities that a run monitors besides its measures, and reasons to doubt its result: bodies
 //! that nothing touched, laws used beyond their range of validity, breakage that is not over.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use dem_io::units::{show_length, significant};
 use dem_scene::{Scene, StartAs};
 use serde::{Deserialize, Serialize};
 
+use super::flying::still_flying;
 use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies};
 use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
 use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
@@ -20,8 +21,6 @@ use crate::state::events::STARTS_BONDED;
 
 /// Fraction of the run at its end in which a breaking bond shows that breakage is not over.
 const LATE: f64 = 0.05;
-/// Fraction of the largest kinetic energy in the relative motion of fragments that shows the same.
-const FLYING: f64 = 0.05;
 /// Number of bodies that a warning names; the others are counted.
 const NAMED: usize = 3;
 
@@ -328,16 +327,10 @@ impl Seen {
         !self.came.contains(name) && inlets.any(|inlet| inlet.templates.iter().any(is_own))
     }
 
-    /// Warning that breakage is not over.
+    /// Warnings that breakage is not over.
     fn not_over(&self, state: &State, scene: &Scene, fragments: &[Fragment]) -> Vec<String> {
         let mut warnings = Vec::new();
-        let is_fed = state
-            .model
-            .rules
-            .inlets
-            .iter()
-            .any(|inlet| inlet.between_s[1] >= state.time_s);
-        let Some(last_s) = self.last_break_s.filter(|_| !is_fed) else {
+        let Some(last_s) = self.last_break_s.filter(|_| !is_fed(state)) else {
             return warnings;
         };
         if last_s >= (1.0 - LATE) * state.time_s {
@@ -348,23 +341,35 @@ impl Seen {
                 significant(scene.run.end_time_s, 4)
             ));
         }
-        let can_break = (0..state.bonds.len()).any(|at| {
-            let rule = &state.bonds.rules[state.bonds.rule_of(at)];
-            rule.criteria.is_some() && !state.bonds.is_broken(at)
-        });
-        let pieces = pieces_by_body(state, fragments);
-        let apart_j: f64 = pieces.values().map(|pieces| kinetic_apart_j(pieces)).sum();
-        let count: usize = pieces.values().map(Vec::len).sum();
-        let fraction = apart_j / self.largest_kinetic_j;
-        if can_break && fraction > FLYING {
-            warnings.push(format!(
-                "{count} fragments still moved apart at the end, with {} % of the largest kinetic energy of the run: later impacts may break them further; set run.end_time later than {} s",
-                significant(100.0 * fraction, 2),
-                significant(scene.run.end_time_s, 4)
-            ));
-        }
+        let flying = still_flying(state, fragments, self.largest_kinetic_j);
+        warnings.extend(
+            flying
+                .filter(|flying| flying.touches)
+                .map(|flying| flying.text),
+        );
         warnings
     }
+
+    /// What is to be known of the end of a run, a sentence each, without a doubt in its result.
+    pub(super) fn notes(
+        &self,
+        state: &State,
+        scene: &Scene,
+        fragments: &[Fragment],
+    ) -> Vec<String> {
+        if self.last_break_s.is_none() || is_fed(state) || scene.test.is_some() {
+            return Vec::new();
+        }
+        let flying = still_flying(state, fragments, self.largest_kinetic_j);
+        let flying = flying.filter(|flying| !flying.touches);
+        flying.map(|flying| flying.text).into_iter().collect()
+    }
+}
+
+/// Whether an inlet still feeds.
+fn is_fed(state: &State) -> bool {
+    let mut inlets = state.model.rules.inlets.iter();
+    inlets.any(|inlet| inlet.between_s[1] >= state.time_s)
 }
 
 /// Whether any part of a body is in the scene.
@@ -410,42 +415,6 @@ fn outlook(flyer: &FreeBody, state: &State, flying: &[FreeBody]) -> String {
             )
         }
     }
-}
-
-/// Fragments grouped by the cluster that they come from.
-fn pieces_by_body<'a>(
-    state: &State,
-    fragments: &'a [Fragment],
-) -> BTreeMap<u32, Vec<&'a Fragment>> {
-    let mut pieces: BTreeMap<u32, Vec<&Fragment>> = BTreeMap::new();
-    let Some(clusters) = &state.clusters else {
-        return pieces;
-    };
-    for fragment in fragments
-        .iter()
-        .filter(|fragment| fragment.parent_id.is_some())
-    {
-        let mut root = fragment.fragment_id;
-        while let Some(parent) = clusters.history[root as usize].parent {
-            root = parent;
-        }
-        pieces.entry(root).or_default().push(fragment);
-    }
-    pieces
-}
-
-/// Kinetic energy of the motion of fragments relative to their common centre of mass, J.
-fn kinetic_apart_j(fragments: &[&Fragment]) -> f64 {
-    let (mut mass_kg, mut momentum, mut kinetic_j) = (0.0, [0.0; 3], 0.0);
-    for fragment in fragments {
-        mass_kg += fragment.mass_kg;
-        for (sum, v) in momentum.iter_mut().zip(fragment.velocity_m_s) {
-            *sum += fragment.mass_kg * v;
-            kinetic_j += 0.5 * fragment.mass_kg * v * v;
-        }
-    }
-    let of_all: f64 = momentum.iter().map(|p| 0.5 * p * p / mass_kg).sum();
-    (kinetic_j - of_all).max(0.0)
 }
 
 /// Triggers, inlets and outlets that did nothing.

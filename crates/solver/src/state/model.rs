@@ -22,6 +22,8 @@ pub struct NamedBody {
     /// Size of the smallest sieve opening that it passes, m: see
     /// [`super::clusters::sizes::FragmentSize::sieve_m`].
     pub sieve_m: f64,
+    /// Diameter of its smallest sphere, m: no fragment of it is smaller.
+    pub smallest_diameter_m: f64,
 }
 
 /// Data fixed by the plan: no step changes them.

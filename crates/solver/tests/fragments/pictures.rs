@@ -97,8 +97,8 @@ fn plots_of_a_rod_that_burst() {
         (
             "fragment_sizes",
             [
-                ">Fragment sizes</text>",
-                ">sieve size: second of three box lengths (mm)</text>",
+                ">Fragment sizes, with marks at d50</text>",
+                ">sieve size, the width of a fragment (mm)</text>",
                 ">cumulative mass fraction</text>",
             ],
         ),

@@ -91,6 +91,7 @@ fn pieces() -> (Fragments, Model) {
         name: name.to_owned(),
         material: "m".to_owned(),
         sieve_m,
+        smallest_diameter_m: 3e-3,
     };
     let model = Model {
         bodies: vec![
@@ -121,14 +122,16 @@ fn numbers_of_a_distribution_are_those_counted_by_hand() {
         [4e-3, 30e-3, 30e-3]
     );
     // Smaller than 4 mm, a tenth of the stone: the piece of 3 mm, but not that of 4 mm.
-    assert_eq!(stone.t10, 0.5 / 8.0);
+    assert_eq!(stone.t10, Some(0.5 / 8.0));
+    // A tenth of the lump is smaller than its smallest sphere.
+    assert_eq!(sizes.bodies["lump"]["both"].t10, None);
     let gone = &sizes.bodies["stone"]["discharged"];
     assert_eq!([gone.mass_kg, gone.d10_m, gone.d50_m], [2.5, 4e-3, 10e-3]);
     assert!(!sizes.bodies["lump"].contains_key("discharged"));
     assert!(!sizes.bodies.contains_key("never"));
     // All: the mean size of the bodies by mass is (8 * 40 + 2 * 20) / 10 = 36 mm.
     let all = &sizes.all["both"];
-    assert_eq!([all.mass_kg, all.t10], [10.0, 0.05]);
+    assert_eq!((all.mass_kg, all.t10), (10.0, Some(0.05)));
     assert_eq!([all.d10_m, all.d50_m, all.d80_m], [4e-3, 20e-3, 30e-3]);
 }
 

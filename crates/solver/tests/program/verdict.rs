@@ -40,6 +40,33 @@ fn every_doubtful_scene_is_called_so() {
     hold_messages(scenes[0].parent().unwrap(), &messages);
 }
 
+/// Pieces in free flight are no doubt in what has been simulated: a note gives the time at which the
+/// pair that can still break reaches the plate, sqrt(2 h/g), and there is none without a plate.
+#[test]
+fn pieces_in_free_flight_are_a_note() {
+    let bench = Bench::new();
+    let scene = corpus("doubtful").into_iter();
+    let scene = scene.filter(|path| path.ends_with("still-flying.toml"));
+    let text = std::fs::read_to_string(scene.last().unwrap()).unwrap();
+    let text = text.replace("[0, 0, 0.13002]", "[0, 0, 0.15]");
+    let far = bench.write("far.toml", &text);
+    let summary = json(&bench, &far, &["--json", "--quiet"]);
+    let doubts = |summary: &Value| {
+        let warnings = strings(&summary["verdict"]["warnings"]).into_iter();
+        warnings.filter(|said| said.contains("moved apart")).count()
+    };
+    assert_eq!(doubts(&summary), 0, "{summary}");
+    let notes = strings(&summary["notes"]);
+    let meets_s = (2.0 * 0.02 / 9.81_f64).sqrt();
+    let time = format!("'plate' at {meets_s:.4} s");
+    assert!(notes.iter().any(|note| note.contains(&time)), "{notes:?}");
+    let kept = text.lines().filter(|line| !line.starts_with("walls."));
+    let alone = bench.write("alone.toml", kept.collect::<Vec<_>>().join("\n"));
+    let summary = json(&bench, &alone, &["--json", "--quiet"]);
+    assert_eq!(doubts(&summary), 0, "{summary}");
+    assert_eq!(strings(&summary["notes"]), Vec::<String>::new());
+}
+
 #[test]
 fn a_run_that_was_stopped_leaves_its_summary_and_what_happened() {
     let bench = Bench::new();

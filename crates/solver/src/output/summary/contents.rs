@@ -40,7 +40,11 @@ pub struct Summary {
     pub inputs: Inputs,
     /// Simulated time, s.
     pub simulated_s: f64,
-    /// Wall time, s; that since the last checkpoint for a run that was resumed.
+    /// Time at which the run was resumed, s: wall time, processor time and the times of stages are
+    /// those of what follows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resumed_at_s: Option<f64>,
+    /// Wall time, s.
     pub wall_s: f64,
     /// Processor time of the same, s, all threads together.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,5 +1,7 @@
 //! Parts of the summary that only some runs have: adaptive steps, bodies that come and go, sleep.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use crate::stages::ledger::over;
@@ -15,6 +17,15 @@ pub struct AdaptiveSummary {
     pub largest_step_s: f64,
     /// Number of its changes.
     pub changes: u64,
+}
+
+/// Bodies and fragments discharged through an outlet.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OutletSummary {
+    /// Their number.
+    pub bodies: u32,
+    /// Their mass, kg.
+    pub mass_kg: f64,
 }
 
 /// Bodies added, removed and replaced.
@@ -40,6 +51,8 @@ pub struct PopulationSummary {
     pub discharged: u32,
     /// Their mass, kg.
     pub discharged_kg: f64,
+    /// The same for each outlet, by name.
+    pub outlets: BTreeMap<String, OutletSummary>,
     /// Fraction of bond updates that was skipped because bodies were clumps.
     pub bond_updates_skipped: f64,
     /// Fraction of the spheres of a clump that nothing can touch, the mean of all templates.
@@ -74,6 +87,12 @@ impl PopulationSummary {
                 .sum(),
             discharged: population.outlets.iter().map(|left| left.bodies).sum(),
             discharged_kg: (population.outlets.iter()).fold(0.0, |sum, left| sum + left.mass_kg),
+            outlets: (rules.outlets.iter().zip(&population.outlets))
+                .map(|(outlet, left)| {
+                    let (bodies, mass_kg) = (left.bodies, left.mass_kg);
+                    (outlet.name.clone(), OutletSummary { bodies, mass_kg })
+                })
+                .collect(),
             bond_updates_skipped: over(left_out, done + left_out),
             inner_sphere_fraction: over(inner, clumps.templates.len() as f64),
         })

@@ -8,6 +8,7 @@ use dem_io::units::significant;
 use super::contents::Summary;
 use crate::measure::Measured;
 use crate::output::equilibrium::EquilibriumSummary;
+use crate::output::sizes::SizeSummary;
 use crate::plan::masses;
 
 impl fmt::Display for Summary {
@@ -21,9 +22,13 @@ impl fmt::Display for Summary {
             .map_or(String::new(), |r| format!(" -> {}", visible(r)));
         writeln!(
             f,
-            "{}: {} s simulated in {} s on {} thread{}{results}",
+            "{}: {} s simulated{} in {} s on {} thread{}{results}",
             visible(&self.scene),
             significant(self.simulated_s, 6),
+            self.resumed_at_s.map_or(String::new(), |at_s| {
+                let last = significant(self.simulated_s - at_s, 3);
+                format!(", the last {last} s of it")
+            }),
             significant(self.wall_s, 3),
             self.threads,
             if self.threads == 1 { "" } else { "s" },
@@ -149,6 +154,17 @@ impl Summary {
                 count => format!(" and {count} single spheres"),
             },
         )?;
+        if p.outlets.len() > 1 {
+            let outlets = p.outlets.iter().map(|(name, outlet)| {
+                format!(
+                    "{name} {} ({} kg)",
+                    outlet.bodies,
+                    significant(outlet.mass_kg, 4)
+                )
+            });
+            let outlets: Vec<String> = outlets.collect();
+            writeln!(f, "outlets      {}", outlets.join(", "))?;
+        }
         let hidden = match 100.0 * p.inner_sphere_fraction {
             fraction if fraction >= 0.5 => {
                 format!("; {fraction:.0} % of the spheres of clumps, which nothing can touch")
@@ -209,19 +225,33 @@ impl Summary {
     /// Sizes of all fragments, if any body has broken.
     fn write_sizes(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
-        let sizes = self.sizes.as_ref().and_then(|sizes| sizes.all.get("both"));
-        let Some(sizes) = sizes.filter(|_| has_split) else {
+        let Some(sizes) = self.sizes.as_ref().filter(|_| has_split) else {
             return Ok(());
         };
         let mm = |size_m: f64| significant(size_m * 1e3, 3);
-        writeln!(
-            f,
-            "sizes        d10 {} mm   d50 {} mm   d80 {} mm   t10 {}",
-            mm(sizes.d10_m),
-            mm(sizes.d50_m),
-            mm(sizes.d80_m),
-            significant(sizes.t10, 3)
-        )
+        let mut line = |name: &str, of: &str, sizes: &SizeSummary| {
+            writeln!(
+                f,
+                "{name:12} d10 {} mm   d50 {} mm   d80 {} mm   t10 {}{of}",
+                mm(sizes.d10_m),
+                mm(sizes.d50_m),
+                mm(sizes.d80_m),
+                sizes
+                    .t10
+                    .map_or("not resolved".to_owned(), |t10| significant(t10, 3))
+            )
+        };
+        if let Some(all) = sizes.all.get("both") {
+            line("sizes", "", all)?;
+        }
+        if sizes.bodies.len() > 1 {
+            for (name, body) in &sizes.bodies {
+                if let Some(both) = body.get("both") {
+                    line("", &format!("   of {name}"), both)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Two lines for each body: its masses.

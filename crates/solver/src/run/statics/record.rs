@@ -74,6 +74,7 @@ impl AtRest<'_> {
             problem: None,
             inputs,
             simulated_s: state.time_s,
+            resumed_at_s: None,
             wall_s,
             processor_s,
             threads: settings.threads,
