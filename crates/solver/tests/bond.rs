@@ -8,6 +8,7 @@ mod pair;
 mod scatter;
 mod stiffness;
 mod strain_rate;
+mod structural;
 mod tangent;
 mod total;
 

@@ -26,12 +26,21 @@ pub struct BondRule {
     pub incremental: bool,
     /// Bonds have damping coefficients.
     pub damped: bool,
+    /// Fraction of the load of a bond that resists its relative motion: gamma. 0: none.
+    pub structural_damping: f64,
     /// Strengths. None: the bonds never break.
     pub criteria: Option<Criteria>,
     /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
     pub strengthening_from_1_s: Option<f64>,
     /// The strain whose rate is used.
     pub strain_rate_measure: StrainRateMeasure,
+}
+
+impl BondRule {
+    /// Whether bonds have damping forces of any kind.
+    pub fn resists(&self) -> bool {
+        self.damped || self.structural_damping > 0.0
+    }
 }
 
 /// Bonds in a block.

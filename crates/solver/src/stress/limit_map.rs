@@ -118,6 +118,10 @@ pub fn map() -> Result<Vec<Member>> {
         "damping_ratio = 0.3, per_mode = true",
         "damping_ratio = 10, per_mode = true",
         "damping_coefficient = \"30 N s/m\", torque_factor = 1",
+        "normal_damping_ratio = 0.1, shear_damping_ratio = 0.3, torsion_damping_ratio = 1, bending_damping_ratio = 3",
+        "structural_damping = 0.1",
+        "structural_damping = 0.5",
+        "structural_damping = 0.9",
     ] {
         members.push(of("timoshenko", "total", damping, "0")?);
     }
