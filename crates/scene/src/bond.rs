@@ -20,6 +20,11 @@ pub enum BondModel {
         /// Normal over shear stiffness.
         stiffness_ratio: Option<f64>,
     },
+    /// "pin": as "parallel", without moments.
+    Pin {
+        /// Normal over shear stiffness.
+        stiffness_ratio: Option<f64>,
+    },
     /// "euler-bernoulli"
     EulerBernoulli,
     /// "timoshenko"
@@ -157,12 +162,12 @@ pub(super) static BOND: Schema = Schema {
         Key::new(
             "model",
             Kind::Word(|| words_of(&models(None, 0.0))),
-            "Beam model of the bond.",
+            "Model of the bond: a beam, or `pin`, which resists neither torsion nor bending.",
         )
         .or_word("timoshenko"),
         Key::number(
             "stiffness_ratio",
-            "Normal over shear stiffness of the model `parallel`.",
+            "Normal over shear stiffness of the models `parallel` and `pin`.",
         )
         .positive()
         .otherwise("2 (1 + nu)"),
@@ -342,9 +347,10 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
 }
 
 /// The models and their names.
-fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 5] {
+fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 6] {
     [
         ("parallel", BondModel::Parallel { stiffness_ratio }),
+        ("pin", BondModel::Pin { stiffness_ratio }),
         ("euler-bernoulli", BondModel::EulerBernoulli),
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
@@ -364,7 +370,7 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
         (
             "stiffness_ratio",
             "parallel",
-            matches!(model, BondModel::Parallel { .. }),
+            matches!(model, BondModel::Parallel { .. } | BondModel::Pin { .. }),
         ),
         (
             "shear_coefficient",
@@ -531,7 +537,7 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     let name = known.iter().find(|(_, other)| same(other));
     listing.text("model", name.map_or("", |(name, _)| *name));
     match kind.model {
-        BondModel::Parallel { stiffness_ratio } => {
+        BondModel::Parallel { stiffness_ratio } | BondModel::Pin { stiffness_ratio } => {
             let stiffness_ratio = stiffness_ratio.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
             listing.value("stiffness_ratio", &stiffness_ratio);
         }

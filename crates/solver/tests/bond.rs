@@ -17,8 +17,9 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 
 /// Every bond model.
-pub(crate) const MODELS: [BondModel; 5] = [
+pub(crate) const MODELS: [BondModel; 6] = [
     BondModel::Parallel { kappa: None },
+    BondModel::Pin { kappa: None },
     BondModel::EulerBernoulli,
     BondModel::Timoshenko,
     BondModel::ElasticSolid,

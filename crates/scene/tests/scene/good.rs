@@ -327,6 +327,11 @@ fn bonds() {
             weibull_modulus: Some(7.0),
         }
     );
+    let stiffness_ratio = Some(3.0);
+    assert_eq!(
+        scene.bonds["pinned"].model,
+        BondModel::Pin { stiffness_ratio }
+    );
     let sheared = &scene.bonds["sheared"];
     assert_eq!(sheared.model, BondModel::ShearCoefficient { alpha: 0.85 });
     assert_eq!(sheared.formulation, Formulation::Total);

@@ -394,6 +394,9 @@ fn model(model: SceneModel) -> BondModel {
         SceneModel::Parallel {
             stiffness_ratio: kappa,
         } => BondModel::Parallel { kappa },
+        SceneModel::Pin {
+            stiffness_ratio: kappa,
+        } => BondModel::Pin { kappa },
         SceneModel::EulerBernoulli => BondModel::EulerBernoulli,
         SceneModel::Timoshenko => BondModel::Timoshenko,
         SceneModel::ElasticSolid => BondModel::ElasticSolid,

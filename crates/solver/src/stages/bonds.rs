@@ -230,9 +230,17 @@ pub(crate) fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize
 pub(crate) fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
     let load = bonds.forces(at, poses).load;
     let (stiffness, radius_m) = (bonds.stiffness(at), bonds.radius_m(at));
+    // Without moments nothing is bent or twisted that could strain an edge.
+    let turn = |moment_n_m: f64, stiffness: f64| {
+        if stiffness == 0.0 {
+            0.0
+        } else {
+            radius_m * moment_n_m / stiffness
+        }
+    };
     let normal_m =
-        load.normal_n.abs() / stiffness.normal + radius_m * load.bending_n_m / stiffness.bending;
-    let shear_m = load.shear_n / stiffness.shear + radius_m * load.torsion_n_m / stiffness.torsion;
+        load.normal_n.abs() / stiffness.normal + turn(load.bending_n_m, stiffness.bending);
+    let shear_m = load.shear_n / stiffness.shear + turn(load.torsion_n_m, stiffness.torsion);
     normal_m.max(shear_m) / bonds.initial_length_m(at)
 }
 
@@ -350,6 +358,7 @@ impl PartitionWork<'_> {
         let bonds = self.bonds;
         let kind = Kind {
             torsion_per_bending: bonds.torsion_per_bending[*rule],
+            bending_per_normal: bonds.bending_per_normal[*rule],
             screen: bonds.rules[*rule].criteria.as_ref().map(Screen::new),
         };
         let computed = &mut self.partition.computed;
@@ -456,6 +465,7 @@ struct Found<T> {
 /// Properties that the bonds of a rule share.
 struct Kind {
     torsion_per_bending: f64,
+    bending_per_normal: f64,
     screen: Option<Screen>,
 }
 
@@ -474,7 +484,7 @@ impl Kind {
         let ends = &four.ends[first..first + T::COUNT];
         let normal = T::load(proof, &numbers.normal, first);
         let radius_m = T::load(proof, &numbers.radii_m, first);
-        let bending = bending_stiffness(normal, radius_m);
+        let bending = bending_stiffness(normal, radius_m, self.bending_per_normal);
         let stiffness = Stiffness {
             normal,
             shear: T::load(proof, &numbers.shear, first),

@@ -2,7 +2,7 @@
 //! disturbance grows.
 //!
 //! Neither the program's limit nor its watchdog is used: the scene's state is stepped as it is, and
-//! its energy is observed. Both must agree to a hundredth for all entries of the map: five bond
+//! its energy is observed. Both must agree to a hundredth for all entries of the map: six bond
 //! models with damping from none to ten times the critical value.
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -87,7 +87,7 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
     Ok(false)
 }
 
-/// The map: five models in both formulations, with no, light, critical and very high damping; also
+/// The map: six models in both formulations, with no, light, critical and very high damping; also
 /// other types of damping.
 ///
 /// # Errors
@@ -95,6 +95,7 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
 pub fn map() -> Result<Vec<Member>> {
     let models = [
         "parallel",
+        "pin",
         "euler-bernoulli",
         "timoshenko",
         "elastic-solid",
