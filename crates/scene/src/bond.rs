@@ -7,14 +7,21 @@ use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::tree::Value;
 use dem_io::diagnostic::Result;
-use dem_io::units::{RATE, STRESS, VISCOUS_DAMPING};
+use dem_io::units::{ANGLE, RATE, STRESS, VISCOUS_DAMPING};
 use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Bound::{Excluded, Included};
 
 /// Beam model of the bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BondModel {
     /// "parallel": `stiffness_ratio` is normal over shear stiffness, 2 (1 + nu) unless given.
     Parallel {
+        /// Normal over shear stiffness.
+        stiffness_ratio: Option<f64>,
+    },
+    /// "pin": as "parallel", without moments.
+    Pin {
         /// Normal over shear stiffness.
         stiffness_ratio: Option<f64>,
     },
@@ -60,7 +67,7 @@ pub struct BondKind {
     pub failure: BondFailure,
 }
 
-/// Viscous damping at the bond. Both may act together.
+/// Viscous and structural damping at the bond. All may act together.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BondDamping {
     /// `damping_ratio`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
@@ -72,6 +79,18 @@ pub struct BondDamping {
     pub damping_coefficient_n_s_m: f64,
     /// `torque_factor`: factor of the damping torque of Platzer 2022, eq. 9 (1 there). 0: none.
     pub torque_factor: f64,
+    /// `normal_damping_ratio`: of critical damping, along the bond, with the stiffness of this
+    /// mode. 0: none. The next three likewise.
+    pub normal_damping_ratio: f64,
+    /// `shear_damping_ratio`: across the bond.
+    pub shear_damping_ratio: f64,
+    /// `torsion_damping_ratio`: about the axis of the bond.
+    pub torsion_damping_ratio: f64,
+    /// `bending_damping_ratio`: about the axes across the bond.
+    pub bending_damping_ratio: f64,
+    /// `structural_damping`: gamma, the fraction of the load of each mode that resists its motion,
+    /// in [0, 1). 0: none.
+    pub structural_damping: f64,
 }
 
 /// The quantity whose rate strengthens bonds.
@@ -112,6 +131,11 @@ pub struct BondFailure {
     pub compressive_strength_pa: Option<f64>,
     /// `shear_strength`: largest shear stress, Pa (MUSEN's tau_max).
     pub shear_strength_pa: Option<f64>,
+    /// `cohesion`: largest tau + sigma tan(phi), Pa, with sigma = F_n/A, tension positive (Mohr and
+    /// Coulomb). Given with the friction angle only.
+    pub cohesion_pa: Option<f64>,
+    /// `friction_angle`: phi there, rad, from 0 to below a right angle.
+    pub friction_angle_rad: Option<f64>,
     /// `von_mises_strength`: largest equivalent stress, Pa (Platzer 2022, eqs. 11-13).
     pub von_mises_strength_pa: Option<f64>,
     /// `equivalent_stress`: the stresses that count in it, those of axial tension and shear forces
@@ -138,12 +162,12 @@ pub(super) static BOND: Schema = Schema {
         Key::new(
             "model",
             Kind::Word(|| words_of(&models(None, 0.0))),
-            "Beam model of the bond.",
+            "Model of the bond: a beam, or `pin`, which resists neither torsion nor bending.",
         )
         .or_word("timoshenko"),
         Key::number(
             "stiffness_ratio",
-            "Normal over shear stiffness of the model `parallel`.",
+            "Normal over shear stiffness of the models `parallel` and `pin`.",
         )
         .positive()
         .otherwise("2 (1 + nu)"),
@@ -169,7 +193,7 @@ pub(super) static BOND: Schema = Schema {
         )
         .positive()
         .otherwise("radii of the body"),
-        Key::table("damping", &DAMPING, "Viscous damping at the bond."),
+        Key::table("damping", &DAMPING, "Damping at the bond."),
         Key::table(
             "failure",
             &FAILURE,
@@ -180,7 +204,7 @@ pub(super) static BOND: Schema = Schema {
 
 pub(super) static DAMPING: Schema = Schema {
     title: "Damping",
-    doc: "Viscous damping at the bond. Both types may act together.",
+    doc: "Viscous and structural damping at the bond. What is given adds up.",
     keys: &[
         Key::number(
             "damping_ratio",
@@ -206,6 +230,22 @@ pub(super) static DAMPING: Schema = Schema {
         )
         .not_negative()
         .or(0.0),
+        Key::number(
+            "normal_damping_ratio",
+            "Fraction of critical damping along the bond, by the stiffness of this mode; 0: none.",
+        )
+        .not_negative()
+        .or(0.0),
+        Key::number("shear_damping_ratio", "The same across the bond.").not_negative().or(0.0),
+        Key::number("torsion_damping_ratio", "The same about the axis of the bond.").not_negative().or(0.0),
+        Key::number("bending_damping_ratio", "The same about the axes across the bond.").not_negative().or(0.0),
+        Key::number(
+            "structural_damping",
+            "Fraction of the force or moment of each mode that acts against its relative motion: gamma; 0: none.",
+        )
+        .within(Included(0.0), Excluded(1.0))
+        .remedy("write 0 for none")
+        .or(0.0),
     ],
 };
 
@@ -221,6 +261,19 @@ pub(super) static FAILURE: Schema = Schema {
         )
         .not_negative(),
         Key::quantity("shear_strength", &STRESS, "Largest shear stress that the bond can bear.").not_negative(),
+        Key::quantity(
+            "cohesion",
+            &STRESS,
+            "Largest shear stress that the bond can bear without axial force, by Mohr-Coulomb; needs `friction_angle`.",
+        )
+        .not_negative(),
+        Key::quantity(
+            "friction_angle",
+            &ANGLE,
+            "Its tangent times the axial pressure adds to `cohesion`, times the axial tension is subtracted (Mohr-Coulomb).",
+        )
+        .within(Included(0.0), Excluded(FRAC_PI_2))
+        .remedy("write an angle such as \"35 deg\""),
         Key::quantity(
             "von_mises_strength",
             &STRESS,
@@ -294,9 +347,10 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
 }
 
 /// The models and their names.
-fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 5] {
+fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 6] {
     [
         ("parallel", BondModel::Parallel { stiffness_ratio }),
+        ("pin", BondModel::Pin { stiffness_ratio }),
         ("euler-bernoulli", BondModel::EulerBernoulli),
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
@@ -316,7 +370,7 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
         (
             "stiffness_ratio",
             "parallel",
-            matches!(model, BondModel::Parallel { .. }),
+            matches!(model, BondModel::Parallel { .. } | BondModel::Pin { .. }),
         ),
         (
             "shear_coefficient",
@@ -343,6 +397,11 @@ one_field_a_key! {
         per_mode: "per_mode",
         damping_coefficient_n_s_m: "damping_coefficient",
         torque_factor: "torque_factor",
+        normal_damping_ratio: "normal_damping_ratio",
+        shear_damping_ratio: "shear_damping_ratio",
+        torsion_damping_ratio: "torsion_damping_ratio",
+        bending_damping_ratio: "bending_damping_ratio",
+        structural_damping: "structural_damping",
     }
 }
 
@@ -369,24 +428,72 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
         tensile_strength_pa: table.read("tensile_strength")?,
         compressive_strength_pa: table.read("compressive_strength")?,
         shear_strength_pa: table.read("shear_strength")?,
+        cohesion_pa: table.read("cohesion")?,
+        friction_angle_rad: table.read("friction_angle")?,
         von_mises_strength_pa: table.read("von_mises_strength")?,
         equivalent_stress: table.read("equivalent_stress")?,
         rate_strengthening_from_1_s: rate_strengthening(&table)?,
         strain_rate_measure: table.read("strain_rate_measure")?,
         weibull_modulus: table.read("weibull_modulus")?,
     };
+    check_strengths(field, &table, &failure)?;
+    check_friction(&table)?;
+    check_effects(&table, &failure)?;
+    Ok(failure)
+}
+
+/// Whether there is a strength, and one that the rate raises where that is asked for.
+fn check_strengths(field: &Field<'_>, table: &Table<'_>, failure: &BondFailure) -> Result<()> {
     let by_rate = [
         failure.tensile_strength_pa,
         failure.shear_strength_pa,
+        failure.cohesion_pa,
         failure.von_mises_strength_pa,
     ];
     let has_none = by_rate.iter().all(Option::is_none);
     if has_none && failure.compressive_strength_pa.is_none() {
-        let remedy = "add tensile_strength, compressive_strength, shear_strength or von_mises_strength, such as von_mises_strength = \"0.185 MPa\"";
+        let remedy = "add tensile_strength, compressive_strength, shear_strength, cohesion or von_mises_strength, such as von_mises_strength = \"0.185 MPa\"";
         let field = table.get("rate_strengthening").unwrap_or(field.clone());
         let problem = format!("{} has no strength to exceed", field.path);
         return Err(field.refuse(problem, remedy));
     }
+    let strengthens = table.get("rate_strengthening");
+    let strengthens = strengthens.filter(|_| failure.rate_strengthening_from_1_s.is_some());
+    if let (Some(field), true) = (strengthens, has_none) {
+        let problem = format!(
+            "{} has no effect without tensile_strength, shear_strength, cohesion or von_mises_strength, which it raises; it does not raise compressive_strength",
+            field.path
+        );
+        return Err(field.refuse(
+            problem,
+            "add tensile_strength = \"1 MPa\", or remove rate_strengthening",
+        ));
+    }
+    Ok(())
+}
+
+/// Whether cohesion and friction angle are given together.
+fn check_friction(table: &Table<'_>) -> Result<()> {
+    let (cohesion, angle) = (table.get("cohesion"), table.get("friction_angle"));
+    match (cohesion, angle) {
+        (Some(field), None) => {
+            let problem = format!("{} needs friction_angle", field.path);
+            let remedy = "add friction_angle = \"35 deg\", or write shear_strength instead";
+            Err(field.refuse(problem, remedy))
+        }
+        (None, Some(field)) => {
+            let problem = format!("{} has no effect without cohesion", field.path);
+            Err(field.refuse(
+                problem,
+                "add cohesion = \"1 MPa\", or remove friction_angle",
+            ))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether the keys that say how others act have any to act on.
+fn check_effects(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
     if let (Some(field), None) = (
         table.get("equivalent_stress"),
         failure.von_mises_strength_pa,
@@ -405,19 +512,7 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
             "add rate_strengthening = true, or remove strain_rate_measure",
         ));
     }
-    let strengthens = table.get("rate_strengthening");
-    let strengthens = strengthens.filter(|_| failure.rate_strengthening_from_1_s.is_some());
-    if let (Some(field), true) = (strengthens, has_none) {
-        let problem = format!(
-            "{} has no effect without tensile_strength, shear_strength or von_mises_strength, which it raises; it does not raise compressive_strength",
-            field.path
-        );
-        return Err(field.refuse(
-            problem,
-            "add tensile_strength = \"1 MPa\", or remove rate_strengthening",
-        ));
-    }
-    Ok(failure)
+    Ok(())
 }
 
 /// The strain rate above which strengths rise, 1/s. None for `false`.
@@ -442,7 +537,7 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     let name = known.iter().find(|(_, other)| same(other));
     listing.text("model", name.map_or("", |(name, _)| *name));
     match kind.model {
-        BondModel::Parallel { stiffness_ratio } => {
+        BondModel::Parallel { stiffness_ratio } | BondModel::Pin { stiffness_ratio } => {
             let stiffness_ratio = stiffness_ratio.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
             listing.value("stiffness_ratio", &stiffness_ratio);
         }
@@ -459,6 +554,8 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
         listing.value("tensile_strength", &failure.tensile_strength_pa);
         listing.value("compressive_strength", &failure.compressive_strength_pa);
         listing.value("shear_strength", &failure.shear_strength_pa);
+        listing.value("cohesion", &failure.cohesion_pa);
+        listing.value("friction_angle", &failure.friction_angle_rad);
         listing.value("von_mises_strength", &failure.von_mises_strength_pa);
         listing.value("equivalent_stress", &failure.equivalent_stress);
         listing.value("rate_strengthening", &failure.rate_strengthening_from_1_s);

@@ -25,6 +25,7 @@ pub(crate) mod replacement;
 pub mod restoring;
 pub(crate) mod sleep;
 pub mod stage;
+pub(crate) mod structural;
 pub mod supports;
 pub mod totals;
 pub mod walls;

@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::physics::bond::failure::CauseCounts;
 
-use self::bonds::Bonds;
+use self::bonds::{BondRule, Bonds};
 use self::clumps::Clumps;
 use self::clusters::Clusters;
 use self::contacts::Contacts;
@@ -157,7 +157,7 @@ impl State {
         let scratch = &mut self.scratch;
         let asleep = &self.particles.asleep;
         scratch.partitions = divide_awake(&self.bonds, free, scratch.threads, asleep);
-        let damped = self.bonds.rules.iter().any(|rule| rule.damped);
+        let damped = self.bonds.rules.iter().any(BondRule::resists);
         let resistances = if damped { free } else { 0 };
         scratch.bond_resistance = vec![Wrench::default(); resistances];
         let is_damped = self.model.particle_damping > 0.0;

@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use crate::stages::bonds::{BONDS, clear_wrenches, compute_bonds};
 use crate::stages::breakage::{
-    FAILURE, RATES, SCATTER, break_failed_bonds, count_rates, count_scattered,
+    FAILURE, FRICTION, RATES, SCATTER, break_failed_bonds, count_frictional, count_rates,
+    count_scattered,
 };
 use crate::stages::clumps::{CLUMPS, drift_clumps, gather_clumps, kick_clumps};
 use crate::stages::contacts::{
@@ -27,6 +28,7 @@ use crate::stages::replacement::{REPLACEMENT, replace_clumps};
 use crate::stages::restoring::restore_clumps;
 use crate::stages::sleep::{SLEEP, update_sleep};
 use crate::stages::stage::Stage;
+use crate::stages::structural::{STRUCTURAL_DAMPING, add_structural_damping};
 use crate::stages::supports::{SUPPORTS, hold_supports, remember_held};
 use crate::stages::walls::{WALLS, compute_wall_contacts, drift_walls, plan_wall_motions};
 use crate::stages::watching::{OUTPUT, watch};
@@ -53,9 +55,11 @@ const INTERACT: &[Part] = &[
     (&FAILURE, break_failed_bonds),
     (&RATES, count_rates),
     (&SCATTER, count_scattered),
+    (&FRICTION, count_frictional),
     (&CLUSTERS, find_pieces),
     (&LOADS, apply_loads),
     (&BOND_DAMPING, compute_bond_damping),
+    (&STRUCTURAL_DAMPING, add_structural_damping),
     (&PARTICLE_DAMPING, compute_particle_damping),
     (&LEDGER, book_before_kick),
     (&MOTION, kick_particles),

@@ -15,6 +15,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub(crate) const ELASTIC: BondRule = BondRule {
     incremental: false,
     damped: false,
+    structural_damping: 0.0,
     criteria: None,
     strengthening_from_1_s: None,
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

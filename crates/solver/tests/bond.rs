@@ -8,6 +8,7 @@ mod pair;
 mod scatter;
 mod stiffness;
 mod strain_rate;
+mod structural;
 mod tangent;
 mod total;
 
@@ -16,8 +17,9 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 
 /// Every bond model.
-pub(crate) const MODELS: [BondModel; 5] = [
+pub(crate) const MODELS: [BondModel; 6] = [
     BondModel::Parallel { kappa: None },
+    BondModel::Pin { kappa: None },
     BondModel::EulerBernoulli,
     BondModel::Timoshenko,
     BondModel::ElasticSolid,

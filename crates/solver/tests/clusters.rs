@@ -22,6 +22,7 @@ pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
         rules: Arc::new([BondRule {
             incremental: false,
             damped: false,
+            structural_damping: 0.0,
             criteria: None,
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

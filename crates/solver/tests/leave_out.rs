@@ -28,7 +28,7 @@ fn planned_with(scene: &Scene, read: impl Fn(&str) -> Option<Body>) -> Result<Pl
     plan(scene, bodies, 1, true)
 }
 
-fn planned(text: &str) -> (Scene, Plan) {
+pub(crate) fn planned(text: &str) -> (Scene, Plan) {
     let scene = scene_from_text(text, "scene.toml", &[]).unwrap();
     let plan = planned_with(&scene, |_| None).unwrap_or_else(|e| panic!("{e}: {text}"));
     (scene, plan)

@@ -24,9 +24,13 @@ enum Mode {
     Axial,
     Torsion,
     Bending,
+    /// Across the bond: the ends move apart sideways and turn in the same sense.
+    Shear,
 }
 
+/// Those of which Chen et al. 2022 and Platzer 2022 give the damping in closed form.
 const MODES: [Mode; 3] = [Mode::Axial, Mode::Torsion, Mode::Bending];
+const ALL_MODES: [Mode; 4] = [Mode::Axial, Mode::Torsion, Mode::Bending, Mode::Shear];
 
 fn mass_kg() -> f64 {
     DENSITY_KG_M3 * 4.0 / 3.0 * PI * RADIUS_M.powi(3)
@@ -34,6 +38,17 @@ fn mass_kg() -> f64 {
 
 fn inertia_kg_m2() -> f64 {
     0.4 * mass_kg() * RADIUS_M * RADIUS_M
+}
+
+/// What the rotation of the ends adds to the inverse reduced mass of shear, plus 1.
+fn sideways() -> f64 {
+    1.0 + 0.25 * LENGTH_M * LENGTH_M * mass_kg() / inertia_kg_m2()
+}
+
+/// Shear stiffness of the Timoshenko bond, N/m.
+fn shear_n_m() -> f64 {
+    let phi = 20.0 * RADIUS_M * RADIUS_M * (1.0 + POISSON) / (3.0 * LENGTH_M * LENGTH_M);
+    12.0 * YOUNG_PA * second_moment_m4() / (LENGTH_M.powi(3) * (1.0 + phi))
 }
 
 fn second_moment_m4() -> f64 {
@@ -46,6 +61,7 @@ impl Mode {
             Self::Axial => "axial",
             Self::Torsion => "torsion",
             Self::Bending => "bending",
+            Self::Shear => "shear",
         }
     }
 
@@ -56,14 +72,25 @@ impl Mode {
             Self::Axial => YOUNG_PA * PI * RADIUS_M * RADIUS_M / LENGTH_M,
             Self::Torsion => 2.0 * shear * second_moment_m4() / LENGTH_M,
             Self::Bending => YOUNG_PA * second_moment_m4() / LENGTH_M,
+            Self::Shear => shear_n_m(),
         }
     }
 
-    /// Reduced mass or inertia, kg or kg m2, of two equal spheres.
+    /// Reduced mass or inertia, kg or kg m2, of two equal spheres: of shear with their rotation,
+    /// 1/(2/m + 2 l^2/I) with half of the length as the lever l.
     fn reduced(self) -> f64 {
-        0.5 * match self {
-            Self::Axial => mass_kg(),
-            Self::Torsion | Self::Bending => inertia_kg_m2(),
+        match self {
+            Self::Axial => 0.5 * mass_kg(),
+            Self::Torsion | Self::Bending => 0.5 * inertia_kg_m2(),
+            Self::Shear => 0.5 * mass_kg() / sideways(),
+        }
+    }
+
+    /// Rate of the mode over the speed of each sphere at the start.
+    fn rate_per_speed(self) -> f64 {
+        match self {
+            Self::Axial | Self::Torsion | Self::Bending => 2.0,
+            Self::Shear => 2.0 * sideways(),
         }
     }
 
@@ -73,7 +100,7 @@ impl Mode {
 
     /// Initial speed of each of two free spheres, m/s or rad/s.
     fn start_speed(self) -> f64 {
-        let moved = if matches!(self, Self::Axial) {
+        let moved = if matches!(self, Self::Axial | Self::Shear) {
             LENGTH_M
         } else {
             1.0
@@ -87,9 +114,15 @@ impl Mode {
             Self::Axial => "velocity = [V, 0, 0]",
             Self::Torsion => "angular_velocity = [V, 0, 0]",
             Self::Bending => "angular_velocity = [0, 0, V]",
+            Self::Shear => "velocity = [0, V, 0], angular_velocity = [0, 0, W]",
         };
         let speed = self.start_speed();
-        let of = |speed: f64| of.replace('V', &format!("{speed:e}"));
+        // Without angular momentum, both turn in the same sense.
+        let spin = -0.5 * LENGTH_M * mass_kg() / inertia_kg_m2() * speed;
+        let of = |speed: f64| {
+            let of = of.replace('V', &format!("{speed:e}"));
+            of.replace('W', &format!("{spin:e}"))
+        };
         format!(
             "initial.left = {{ group = \"left\", {} }}\ninitial.right = {{ group = \"right\", {} }}",
             of(-speed),
@@ -109,6 +142,14 @@ impl Mode {
             }
             Self::Torsion => [turned.x, turns.x],
             Self::Bending => [turned.z, turns.z],
+            Self::Shear => {
+                let lever = 0.5 * LENGTH_M;
+                let moves = velocity(state, 1) - velocity(state, 0);
+                let both = turn(1) + turn(0);
+                let rates = spin(state, 1) + spin(state, 0);
+                let apart = place(state, 1) - place(state, 0);
+                [apart.y - lever * both.z, moves.y - lever * rates.z]
+            }
         }
     }
 }
@@ -170,6 +211,8 @@ fn damped_bonds() -> [String; 2] {
         Mode::Axial => 1.0,
         Mode::Torsion => 2.0_f64.sqrt(),
         Mode::Bending => (2.0 * Mode::Torsion.stiffness() / Mode::Bending.stiffness()).sqrt(),
+        // Damping refers to the mass alone, and the ends turn as well.
+        Mode::Shear => sideways().sqrt(),
     };
     let mut cases = Vec::new();
     for mode in MODES {
@@ -187,6 +230,14 @@ fn damped_bonds() -> [String; 2] {
     ));
     cases.push((Mode::Torsion, "torque_factor = 0.2".to_owned(), 0.1));
     cases.push((Mode::Bending, "torque_factor = 0.2".to_owned(), 0.1));
+    for (mode, key, zeta) in [
+        (Mode::Axial, "normal", 0.1),
+        (Mode::Torsion, "torsion", 0.1),
+        (Mode::Bending, "bending", 0.1),
+        (Mode::Shear, "shear", 0.1 * fraction(Mode::Shear)),
+    ] {
+        cases.push((mode, format!("{key}_damping_ratio = 0.1"), zeta));
+    }
     for (mode, damping, zeta) in cases {
         let omega = mode.omega_rad_s();
         let run = format!("time_step = {:e}", STEP / omega);
@@ -220,14 +271,14 @@ fn damped_bonds() -> [String; 2] {
     ]
 }
 
-/// Energy recorded as dissipated by damping once an oscillation has decayed, over the initial
+/// Energy recorded as dissipated by such damping once an oscillation has decayed, over the initial
 /// energy.
-fn booked() -> String {
+fn booked(modes: &[Mode], damping: &str) -> String {
     let mut cases = Vec::new();
-    for mode in MODES {
+    for &mode in modes {
         let run = format!("time_step = {:e}", STEP / mode.omega_rad_s());
-        let mut state = pair(&run, "damping_ratio = 0.2, per_mode = true", &mode.start());
-        let speed = 2.0 * mode.start_speed();
+        let mut state = pair(&run, damping, &mode.start());
+        let speed = mode.rate_per_speed() * mode.start_speed();
         let start_j = 0.5 * mode.reduced() * speed * speed;
         while state.time_s * mode.omega_rad_s() < 100.0 {
             step(&mut state);
@@ -236,6 +287,33 @@ fn booked() -> String {
         cases.push(Case::new(mode.name(), taken, 1.0, STEP * STEP));
     }
     compared("mode", "", &cases)
+}
+
+/// Structural damping of two free spheres: decrement and duration of half an oscillation.
+fn structural() -> [String; 2] {
+    let (mut decrements, mut durations) = (Vec::new(), Vec::new());
+    for mode in ALL_MODES {
+        for gamma in [0.05_f64, 0.2, 0.5] {
+            let omega = mode.omega_rad_s();
+            let run = format!("time_step = {:e}", STEP / omega);
+            let damping = format!("structural_damping = {gamma:e}");
+            let mut state = pair(&run, &damping, &mode.start());
+            let [decrement, half_s] = half_swing(&crossings(mode, &mut state, 9));
+            let what = format!("{}, {gamma}", mode.name());
+            let wanted = 0.5 * ((1.0 + gamma) / (1.0 - gamma)).ln();
+            let bound = gamma * STEP + STEP * STEP;
+            decrements.push(Case::new(what.clone(), decrement, wanted, bound));
+            let quarter = |fraction: f64| 0.5 * PI / omega / fraction.sqrt();
+            let wanted = quarter(1.0 - gamma) + quarter(1.0 + gamma);
+            let late = 2.0 * gamma / (1.0 - gamma) * STEP / (omega * wanted);
+            let bound = late + STEP * STEP;
+            durations.push(Case::new(what, 1e6 * half_s, 1e6 * wanted, bound));
+        }
+    }
+    [
+        compared("mode, gamma", "", &decrements),
+        compared("mode, gamma", "us", &durations),
+    ]
 }
 
 const HELD: &str = "supports.left = { group = \"left\", fixed = true }\n";
@@ -296,8 +374,7 @@ fn fall() -> String {
 
 /// Rest position of a loaded sphere, for any type of damping.
 fn rest() -> String {
-    let phi = 20.0 * RADIUS_M * RADIUS_M * (1.0 + POISSON) / (3.0 * LENGTH_M * LENGTH_M);
-    let shear = 12.0 * YOUNG_PA * second_moment_m4() / (LENGTH_M.powi(3) * (1.0 + phi));
+    let shear = shear_n_m();
     let omega = (Mode::Axial.stiffness() / mass_kg()).sqrt();
     let (along, across) = (1.0, 1e-3);
     let mut cases = Vec::new();
@@ -338,12 +415,22 @@ fn the_page_shows_what_the_solver_gives() {
     let page = on_one_thread(|| {
         let [ratios, frequencies] = damped_bonds();
         let [decrements, durations] = particle_damping();
+        let [structural_decrements, structural_durations] = structural();
         filled(
             include_str!("damping.md"),
             &[
                 ("ratios", ratios),
                 ("frequencies", frequencies),
-                ("booked", booked()),
+                (
+                    "booked",
+                    booked(&MODES, "damping_ratio = 0.2, per_mode = true"),
+                ),
+                ("structural decrements", structural_decrements),
+                ("structural durations", structural_durations),
+                (
+                    "structural booked",
+                    booked(&ALL_MODES, "structural_damping = 0.3"),
+                ),
                 ("decrements", decrements),
                 ("durations", durations),
                 ("fall", fall()),

@@ -15,10 +15,14 @@ const POISSON: f64 = 0.2;
 /// eta of Chen et al. 2022, eqs. 9 and 10.
 const DAMPING: f64 = 0.3;
 
-/// The strengths in tension and compression, in shear, and by the equivalent stress, Pa.
+/// The strengths in tension and compression, in shear, by Mohr-Coulomb and by the equivalent
+/// stress, Pa.
 const TENSION_PA: f64 = 1.0e6;
 const COMPRESSION_PA: f64 = 1.3e6;
 const SHEAR_PA: f64 = 0.7e6;
+const COHESION_PA: f64 = 0.5e6;
+/// Its friction angle, degrees.
+const FRICTION_DEG: f64 = 35.0;
 const VON_MISES_PA: f64 = 1.1e6;
 
 /// Number of steps in which a load rises to its final value. A bond breaks at the first step at
@@ -52,6 +56,7 @@ enum Criterion {
     Tension,
     Compression,
     Shear,
+    MohrCoulomb,
     VonMises,
 }
 
@@ -61,6 +66,9 @@ impl Criterion {
             Self::Tension => format!("tensile_strength = {TENSION_PA:e}"),
             Self::Compression => format!("compressive_strength = {COMPRESSION_PA:e}"),
             Self::Shear => format!("shear_strength = {SHEAR_PA:e}"),
+            Self::MohrCoulomb => {
+                format!("cohesion = {COHESION_PA:e}, friction_angle = \"{FRICTION_DEG} deg\"")
+            }
             Self::VonMises => format!(
                 "von_mises_strength = {VON_MISES_PA:e}, equivalent_stress = \"axial-in-tension\""
             ),
@@ -72,6 +80,7 @@ impl Criterion {
             Self::Tension => "tensile strength",
             Self::Compression => "compressive strength",
             Self::Shear => "shear strength",
+            Self::MohrCoulomb => "Mohr-Coulomb",
             Self::VonMises => "equivalent stress",
         }
     }
@@ -83,6 +92,9 @@ impl Criterion {
             Self::Tension => (s.bending + s.axial) / TENSION_PA,
             Self::Compression => (s.bending - s.axial) / COMPRESSION_PA,
             Self::Shear => sheared / SHEAR_PA,
+            Self::MohrCoulomb => {
+                (sheared + s.axial * FRICTION_DEG.to_radians().tan()) / COHESION_PA
+            }
             Self::VonMises => {
                 let pulled = s.axial.max(0.0) + s.bending;
                 (pulled * pulled + 3.0 * sheared * sheared).sqrt() / VON_MISES_PA
@@ -159,7 +171,7 @@ fn breaks_at(criterion: Criterion, end: Stresses) -> f64 {
 }
 
 /// Proportions of stresses, by their type.
-const LOADS: [(&str, Stresses); 9] = [
+const LOADS: [(&str, Stresses); 11] = [
     ("tension", Stresses { axial: 1.0, ..NONE }),
     (
         "compression",
@@ -208,6 +220,22 @@ const LOADS: [(&str, Stresses); 9] = [
         },
     ),
     (
+        "compression and shear",
+        Stresses {
+            axial: -0.5,
+            shear: 0.5,
+            ..NONE
+        },
+    ),
+    (
+        "tension and torsion",
+        Stresses {
+            axial: 0.4,
+            torsion: 0.2,
+            ..NONE
+        },
+    ),
+    (
         "all",
         Stresses {
             axial: 0.3,
@@ -219,7 +247,7 @@ const LOADS: [(&str, Stresses); 9] = [
 ];
 
 /// The loads with which each criterion is tested.
-const TRIED: [(Criterion, &[&str]); 4] = [
+const TRIED: [(Criterion, &[&str]); 5] = [
     (
         Criterion::Tension,
         &["tension", "bending", "tension and bending", "all"],
@@ -231,6 +259,17 @@ const TRIED: [(Criterion, &[&str]); 4] = [
     (
         Criterion::Shear,
         &["shear", "torsion", "shear and torsion", "all"],
+    ),
+    (
+        Criterion::MohrCoulomb,
+        &[
+            "shear",
+            "torsion",
+            "tension",
+            "compression and shear",
+            "tension and torsion",
+            "all",
+        ],
     ),
     (
         Criterion::VonMises,

@@ -63,7 +63,7 @@ impl Row<'_> {
                 let square = (self.bond_radius_m() / LENGTH_M).powi(2);
                 slender / (1.0 + 20.0 / 3.0 * square * (1.0 + POISSON))
             }
-            "elastic-solid" => self.normal() / (2.0 * (1.0 + POISSON)),
+            "elastic-solid" | "pin" => self.normal() / (2.0 * (1.0 + POISSON)),
             _ => panic!("{}", self.model),
         }
     }
@@ -107,7 +107,11 @@ impl Row<'_> {
     /// Squares of the frequencies of two equal spheres: stretch, torsion, bending, shear, 1/s2.
     fn pair_rates(&self) -> [f64; 4] {
         let (mass, inertia) = (mass_kg(), 0.4 * mass_kg() * RADIUS_M * RADIUS_M);
-        let bending = YOUNG_PA * self.second_moment_m4() / LENGTH_M;
+        let bending = if self.model == "pin" {
+            0.0
+        } else {
+            YOUNG_PA * self.second_moment_m4() / LENGTH_M
+        };
         let torsion = bending / (1.0 + POISSON);
         [
             2.0 * self.normal() / mass,
@@ -160,7 +164,7 @@ impl Row<'_> {
 /// Pairs: the highest of their four frequencies.
 fn pairs() -> String {
     let mut cases = Vec::new();
-    for model in ["euler-bernoulli", "timoshenko", "elastic-solid"] {
+    for model in ["euler-bernoulli", "timoshenko", "elastic-solid", "pin"] {
         for radius_factor in [0.1, 0.5, 1.0] {
             let row = Row {
                 model,

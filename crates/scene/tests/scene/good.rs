@@ -304,7 +304,12 @@ fn bonds() {
             damping_ratio: 0.1,
             per_mode: true,
             damping_coefficient_n_s_m: 3.0,
-            torque_factor: 1.0
+            torque_factor: 1.0,
+            normal_damping_ratio: 0.2,
+            shear_damping_ratio: 0.3,
+            torsion_damping_ratio: 0.4,
+            bending_damping_ratio: 0.5,
+            structural_damping: 0.25,
         }
     );
     assert_eq!(
@@ -313,12 +318,19 @@ fn bonds() {
             tensile_strength_pa: Some(1e6),
             shear_strength_pa: Some(2e6),
             compressive_strength_pa: Some(15e6),
+            cohesion_pa: Some(3e6),
+            friction_angle_rad: Some(35.0_f64.to_radians()),
             von_mises_strength_pa: Some(3e6),
             equivalent_stress: EquivalentStress::TensileEdge,
             rate_strengthening_from_1_s: Some(1e-5),
             strain_rate_measure: StrainRateMeasure::RelativeVelocity,
             weibull_modulus: Some(7.0),
         }
+    );
+    let stiffness_ratio = Some(3.0);
+    assert_eq!(
+        scene.bonds["pinned"].model,
+        BondModel::Pin { stiffness_ratio }
     );
     let sheared = &scene.bonds["sheared"];
     assert_eq!(sheared.model, BondModel::ShearCoefficient { alpha: 0.85 });

@@ -213,6 +213,8 @@ fn used(reading: EquivalentStress, strength_pa: f64, stresses: &Stresses) -> f64
         tensile_strength_pa: f64::INFINITY,
         compressive_strength_pa: f64::INFINITY,
         shear_strength_pa: f64::INFINITY,
+        cohesion_pa: f64::INFINITY,
+        friction_tangent: 0.0,
         von_mises_strength_pa: strength_pa,
         equivalent_stress: reading,
     };

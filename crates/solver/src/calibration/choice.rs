@@ -12,10 +12,11 @@ const MODULUS_TOLERANCE: f64 = 0.01;
 /// The same for the strength and other results.
 const STRENGTH_TOLERANCE: f64 = 0.02;
 /// Strengths of bonds, as keys of a scene.
-const STRENGTHS: [&str; 4] = [
+const STRENGTHS: [&str; 5] = [
     "von_mises_strength",
     "tensile_strength",
     "shear_strength",
+    "cohesion",
     "compressive_strength",
 ];
 

@@ -9,7 +9,7 @@ use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts,
 use crate::physics::rigid::turn;
 use crate::stages::bonds::{bond_wrenches, damping_wrenches};
 use crate::state::State;
-use crate::state::bonds::BondRule;
+use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
 use crate::state::scratch::Scratch;
 
@@ -80,14 +80,23 @@ pub struct Bound {
 ///
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always
 /// against its force, which damping of particles raises by a fraction: K counts 1 + gamma
-/// times.
+/// times. In the same way the stiffness of each bond counts 1 + gamma times for its structural
+/// damping.
 ///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the
 /// same. Contacts count at the overlap that they have, stuck. Afterwards no wrench acts on any
 /// particle.
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
-    let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
+    let (undamped, of_undamped) =
+        largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
+    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
+    let (k, iterations) = if unstiffened.is_some() {
+        let (k, more) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
+        (k, of_undamped + more)
+    } else {
+        (undamped, of_undamped)
+    };
     let stiffer = stiffer_by_damping(state);
     let (c, of_damping) = if is_damped(state, contacts) {
         largest_eigenvalue(state, contacts, Weights::DAMPING, Search::Fine)
@@ -101,8 +110,8 @@ pub fn limit(state: &mut State) -> Limit {
     };
     let of_particles = Limit {
         step_s,
-        undamped_step_s: safe_step(k, 0.0),
-        omega_rad_s: k.sqrt(),
+        undamped_step_s: safe_step(undamped, 0.0),
+        omega_rad_s: undamped.sqrt(),
         damping_1_s: c,
         iterations,
         all_iterations: iterations + of_damping + of_both,
@@ -111,6 +120,7 @@ pub fn limit(state: &mut State) -> Limit {
         step_s: of_particles.bound().with_more(clump_rates(state, contacts)),
         ..of_particles
     };
+    restore_stiffness(&mut state.bonds, unstiffened);
     clear_trial_wrenches(state);
     limit
 }
@@ -121,7 +131,9 @@ pub fn limit(state: &mut State) -> Limit {
 pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
     let contacts = &linear_contacts(state);
     let both = Weights::of_step(stiffer_by_damping(state), step_s);
+    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
     let (value, _) = largest_eigenvalue(state, contacts, both, Search::Rough);
+    restore_stiffness(&mut state.bonds, unstiffened);
     let is_damped = is_damped(state, contacts);
     let of_particles = Bound {
         step_s: not_too_long(step_s, value),
@@ -138,6 +150,31 @@ fn stiffer_by_damping(state: &State) -> f64 {
         1.0
     } else {
         1.0 + state.model.particle_damping
+    }
+}
+
+/// Makes bonds with structural damping stiffer by its gamma. Returns what they were; None: there are
+/// none.
+fn stiffen_by_structural_damping(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
+    let gamma = |rule: &BondRule| rule.structural_damping;
+    if bonds.rules.iter().all(|rule| gamma(rule) == 0.0) {
+        return None;
+    }
+    let before = bonds.blocks.clone();
+    for (rule, run) in bonds.runs(0..bonds.len()).collect::<Vec<_>>() {
+        let stiffer = 1.0 + gamma(&bonds.rules[rule]);
+        for at in run {
+            let (block, lane) = (&mut bonds.blocks[at / BLOCK], at % BLOCK);
+            block.normal[lane] *= stiffer;
+            block.shear[lane] *= stiffer;
+        }
+    }
+    Some(before)
+}
+
+fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>>) {
+    if let Some(blocks) = before {
+        bonds.blocks = blocks;
     }
 }
 

@@ -201,6 +201,13 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
             "use formulation = \"total\"",
         );
     }
+    if rule.structural_damping > 0.0 {
+        return refuse(
+            "damping.structural_damping",
+            "damping of bpm/rotational is viscous",
+            "use damping_ratio, or run the scene with dem-run",
+        );
+    }
     if rule.strengthening_from_1_s.is_some() {
         return refuse(
             "rate_strengthening",
@@ -224,6 +231,13 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
             "compressive_strength",
             "bpm/rotational breaks no bond by compression",
             "leave it out, or run the scene with dem-run",
+        );
+    }
+    if criteria.is_frictional() {
+        return refuse(
+            "cohesion",
+            "strengths of bpm/rotational do not rise with pressure",
+            "use shear_strength, or run the scene with dem-run",
         );
     }
     let (tension, shear) = (criteria.tensile_strength_pa, criteria.shear_strength_pa);

@@ -15,7 +15,7 @@ use dem_scene::{
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::physics::bond::damping::{DampingCoefficients, DampingModel, reduced};
-use crate::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
+use crate::physics::bond::damping_models::{Chen, ChenByMode, ModeRatios, Platzer};
 use crate::physics::bond::failure::{Criteria, EquivalentStress, has_strength};
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::pair::frequencies;
@@ -394,6 +394,9 @@ fn model(model: SceneModel) -> BondModel {
         SceneModel::Parallel {
             stiffness_ratio: kappa,
         } => BondModel::Parallel { kappa },
+        SceneModel::Pin {
+            stiffness_ratio: kappa,
+        } => BondModel::Pin { kappa },
         SceneModel::EulerBernoulli => BondModel::EulerBernoulli,
         SceneModel::Timoshenko => BondModel::Timoshenko,
         SceneModel::ElasticSolid => BondModel::ElasticSolid,
@@ -408,16 +411,20 @@ fn rule(kind: &BondKind) -> BondRule {
         tensile_strength_pa: strength_pa(failure.tensile_strength_pa),
         compressive_strength_pa: strength_pa(failure.compressive_strength_pa),
         shear_strength_pa: strength_pa(failure.shear_strength_pa),
+        cohesion_pa: strength_pa(failure.cohesion_pa),
+        friction_tangent: failure.friction_angle_rad.map_or(0.0, f64::tan),
         von_mises_strength_pa: strength_pa(failure.von_mises_strength_pa),
         equivalent_stress: equivalent_stress(failure.equivalent_stress),
     };
     let undamped = BondDamping {
         per_mode: kind.damping.per_mode,
+        structural_damping: kind.damping.structural_damping,
         ..BondDamping::default()
     };
     BondRule {
         incremental: kind.formulation == Formulation::Incremental,
         damped: kind.damping != undamped,
+        structural_damping: kind.damping.structural_damping,
         criteria: has_strength(&criteria).then_some(criteria),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,
@@ -454,7 +461,13 @@ fn damping(
         coefficient_n_s_m: damping.damping_coefficient_n_s_m,
         moment_factor: damping.torque_factor,
     };
-    let models: [&dyn DampingModel; 2] = [by_ratio, &by_coefficient];
+    let by_mode = ModeRatios {
+        normal: damping.normal_damping_ratio,
+        shear: damping.shear_damping_ratio,
+        torsion: damping.torsion_damping_ratio,
+        bending: damping.bending_damping_ratio,
+    };
+    let models: [&dyn DampingModel; 3] = [by_ratio, &by_coefficient, &by_mode];
     let coefficients = models.map(|model| model.coefficients(answer, &reduced));
     let all = coefficients
         .into_iter()

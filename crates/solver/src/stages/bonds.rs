@@ -22,6 +22,8 @@ use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Computed, Partition};
 use crate::state::scratch::Scratch;
 
+use LaneChoice::{AsManyLanes, OneLane};
+
 /// Bond forces.
 pub const BONDS: Stage = Stage {
     name: "bond forces",
@@ -128,7 +130,7 @@ pub fn bond_wrenches(
     partitions: &mut [Partition],
     wrenches: &mut [Wrench],
 ) {
-    each_partition(bonds, poses, partitions, wrenches, &|work| with_lanes(work));
+    each_partition(bonds, poses, partitions, wrenches, AsManyLanes);
 }
 
 /// The same, with the damping forces.
@@ -136,14 +138,15 @@ fn damped_bond_wrenches(bonds: &Bonds, particles: &mut Particles, scratch: &mut 
     let (poses, motions) = (&particles.poses, &particles.motions);
     let both = [&mut particles.wrenches[..], &mut scratch.bond_resistance];
     let work = |partition: &mut Partition, [wrenches, resisting]: [&mut [Wrench]; 2]| {
-        with_lanes(PartitionWork {
+        let work = PartitionWork {
             bonds,
             poses,
             partition,
             wrenches,
             elastic: true,
             damping: Some(Damping { motions, resisting }),
-        });
+        };
+        work.done(AsManyLanes);
     };
     for_each_partition_of_two(&mut scratch.partitions, both, &work);
 }
@@ -157,14 +160,15 @@ pub(crate) fn damping_wrenches(
     resisting: &mut [Wrench],
 ) {
     for_each_partition(partitions, resisting, &|partition, resisting| {
-        with_lanes(PartitionWork {
+        let work = PartitionWork {
             bonds,
             poses,
             partition,
             wrenches: &mut [],
             elastic: false,
             damping: Some(Damping { motions, resisting }),
-        });
+        };
+        work.done(AsManyLanes);
     });
 }
 
@@ -175,9 +179,7 @@ pub fn bond_wrenches_one_by_one(
     partitions: &mut [Partition],
     wrenches: &mut [Wrench],
 ) {
-    each_partition(bonds, poses, partitions, wrenches, &|work| {
-        work.with::<f64>(())
-    });
+    each_partition(bonds, poses, partitions, wrenches, OneLane);
 }
 
 /// Has the work of each partition done.
@@ -186,17 +188,18 @@ fn each_partition(
     poses: &[Pose],
     partitions: &mut [Partition],
     wrenches: &mut [Wrench],
-    work: &(impl Fn(PartitionWork<'_>) + Sync),
+    lanes: LaneChoice,
 ) {
     for_each_partition(partitions, wrenches, &|partition, wrenches| {
-        work(PartitionWork {
+        let work = PartitionWork {
             bonds,
             poses,
             partition,
             wrenches,
             elastic: true,
             damping: None,
-        });
+        };
+        work.done(lanes);
     });
 }
 
@@ -227,9 +230,17 @@ pub(crate) fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize
 pub(crate) fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
     let load = bonds.forces(at, poses).load;
     let (stiffness, radius_m) = (bonds.stiffness(at), bonds.radius_m(at));
+    // Without moments nothing is bent or twisted that could strain an edge.
+    let turn = |moment_n_m: f64, stiffness: f64| {
+        if stiffness == 0.0 {
+            0.0
+        } else {
+            radius_m * moment_n_m / stiffness
+        }
+    };
     let normal_m =
-        load.normal_n.abs() / stiffness.normal + radius_m * load.bending_n_m / stiffness.bending;
-    let shear_m = load.shear_n / stiffness.shear + radius_m * load.torsion_n_m / stiffness.torsion;
+        load.normal_n.abs() / stiffness.normal + turn(load.bending_n_m, stiffness.bending);
+    let shear_m = load.shear_n / stiffness.shear + turn(load.torsion_n_m, stiffness.torsion);
     normal_m.max(shear_m) / bonds.initial_length_m(at)
 }
 
@@ -264,9 +275,31 @@ struct Damping<'a> {
     resisting: &'a mut [Wrench],
 }
 
-impl LaneWork for PartitionWork<'_> {
+/// How many bonds are computed at once. The results are the same bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum LaneChoice {
+    AsManyLanes,
+    OneLane,
+}
+
+/// One batch of a partition's work: compiled for itself, so that each kind has its own stack frame.
+struct BatchWork<'w, 'a, const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool>(
+    &'w mut PartitionWork<'a>,
+    &'w Batch,
+);
+
+impl<const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool> LaneWork
+    for BatchWork<'_, '_, TOTAL, DAMPED, FRICTIONAL>
+{
     #[inline(always)]
-    fn with<T: Lanes>(mut self, proof: T::Proof) {
+    fn with<T: Lanes>(self, proof: T::Proof) {
+        self.0
+            .of_batch::<T, TOTAL, DAMPED, FRICTIONAL>(proof, self.1);
+    }
+}
+
+impl PartitionWork<'_> {
+    fn done(mut self, lanes: LaneChoice) {
         self.partition.computed.damped = 0;
         if self.elastic {
             self.partition.computed = Computed::default();
@@ -285,11 +318,16 @@ impl LaneWork for PartitionWork<'_> {
             let rule = &self.bonds.rules[batch.rule];
             let total = self.elastic && !rule.incremental;
             let damped = rule.damped && self.damping.is_some();
-            match (total, damped) {
-                (true, false) => self.of_batch::<T, true, false>(proof, batch),
-                (true, true) => self.of_batch::<T, true, true>(proof, batch),
-                (false, true) => self.of_batch::<T, false, true>(proof, batch),
-                (false, false) => {}
+            let frictional = rule
+                .criteria
+                .is_some_and(|criteria| criteria.is_frictional());
+            match (total, damped, frictional) {
+                (true, false, false) => self.batch::<true, false, false>(batch, lanes),
+                (true, true, false) => self.batch::<true, true, false>(batch, lanes),
+                (true, false, true) => self.batch::<true, false, true>(batch, lanes),
+                (true, true, true) => self.batch::<true, true, true>(batch, lanes),
+                (false, true, _) => self.batch::<false, true, false>(batch, lanes),
+                (false, false, _) => {}
             }
         }
         self.partition.batches = batches;
@@ -297,10 +335,22 @@ impl LaneWork for PartitionWork<'_> {
 }
 
 impl PartitionWork<'_> {
+    fn batch<const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool>(
+        &mut self,
+        batch: &Batch,
+        lanes: LaneChoice,
+    ) {
+        let work = BatchWork::<TOTAL, DAMPED, FRICTIONAL>(self, batch);
+        match lanes {
+            AsManyLanes => with_lanes(work),
+            OneLane => work.with::<f64>(()),
+        }
+    }
+
     /// The bonds of a batch: their forces, by the total formulation, if `TOTAL`, and their damping
-    /// forces if `DAMPED`.
+    /// forces if `DAMPED`. `FRICTIONAL`: their strength is that of Mohr and Coulomb.
     #[inline(always)]
-    fn of_batch<T: Lanes, const TOTAL: bool, const DAMPED: bool>(
+    fn of_batch<T: Lanes, const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool>(
         &mut self,
         proof: T::Proof,
         Batch { rule, which }: &Batch,
@@ -308,6 +358,7 @@ impl PartitionWork<'_> {
         let bonds = self.bonds;
         let kind = Kind {
             torsion_per_bending: bonds.torsion_per_bending[*rule],
+            bending_per_normal: bonds.bending_per_normal[*rule],
             screen: bonds.rules[*rule].criteria.as_ref().map(Screen::new),
         };
         let computed = &mut self.partition.computed;
@@ -318,6 +369,9 @@ impl PartitionWork<'_> {
             } else {
                 0
             };
+            if FRICTIONAL {
+                computed.frictional += which.count();
+            }
         }
         if DAMPED {
             computed.damped += which.count();
@@ -328,7 +382,9 @@ impl PartitionWork<'_> {
                     self.fetch_coming::<TOTAL, DAMPED>(block);
                     let four = BondGroup::of_block(bonds, block, range);
                     let numbers = &bonds.blocks[block];
-                    self.of_four::<T, TOTAL, DAMPED>(proof, &kind, &four, numbers, true);
+                    self.of_four::<T, TOTAL, DAMPED, FRICTIONAL>(
+                        proof, &kind, &four, numbers, true,
+                    );
                 }
             }
             BondSelection::Own(list) | BondSelection::Border(list) => {
@@ -336,7 +392,7 @@ impl PartitionWork<'_> {
                 for some in list.chunks(BLOCK) {
                     let four = BondGroup::of_list(bonds, some);
                     let numbers = &BondBlock::of(bonds, four.numbers);
-                    self.of_four::<T, TOTAL, DAMPED>(proof, &kind, &four, numbers, own);
+                    self.of_four::<T, TOTAL, DAMPED, FRICTIONAL>(proof, &kind, &four, numbers, own);
                 }
             }
         }
@@ -360,7 +416,7 @@ impl PartitionWork<'_> {
 
     /// Four bonds, whose first ends are in the partition if they are its `own`.
     #[inline(always)]
-    fn of_four<T: Lanes, const TOTAL: bool, const DAMPED: bool>(
+    fn of_four<T: Lanes, const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool>(
         &mut self,
         proof: T::Proof,
         kind: &Kind,
@@ -379,7 +435,8 @@ impl PartitionWork<'_> {
                 four.add(first, force_on_b, torques, resisting, particles);
             }
             if TOTAL {
-                let found = kind.forces::<T>(proof, four, numbers, first, apart, self.poses);
+                let found =
+                    kind.forces::<T, FRICTIONAL>(proof, four, numbers, first, apart, self.poses);
                 four.add(
                     first,
                     found.force_on_b,
@@ -408,13 +465,14 @@ struct Found<T> {
 /// Properties that the bonds of a rule share.
 struct Kind {
     torsion_per_bending: f64,
+    bending_per_normal: f64,
     screen: Option<Screen>,
 }
 
 impl Kind {
     /// Forces of the bonds from `first` on, one for each lane.
     #[inline(always)]
-    fn forces<T: Lanes>(
+    fn forces<T: Lanes, const FRICTIONAL: bool>(
         &self,
         proof: T::Proof,
         four: &BondGroup,
@@ -426,7 +484,7 @@ impl Kind {
         let ends = &four.ends[first..first + T::COUNT];
         let normal = T::load(proof, &numbers.normal, first);
         let radius_m = T::load(proof, &numbers.radii_m, first);
-        let bending = bending_stiffness(normal, radius_m);
+        let bending = bending_stiffness(normal, radius_m, self.bending_per_normal);
         let stiffness = Stiffness {
             normal,
             shear: T::load(proof, &numbers.shear, first),
@@ -449,7 +507,8 @@ impl Kind {
         let bond_response = bond_response(&stiffness, direction, apart, turned);
         let mut beyond = [-1.0; MOST];
         if let Some(screen) = &self.screen {
-            let [used, factor] = screen.utilisation_and_factor(&bond_response.load, radius_m);
+            let [used, factor] =
+                screen.utilisation_and_factor::<T, FRICTIONAL>(&bond_response.load, radius_m);
             beyond = (used - factor.scale(NEARLY)).values();
         }
         Found {

@@ -1,7 +1,7 @@
 //! Breaks bonds that have reached their strength. Each is first checked again individually,
 //! including its strain rate where strength depends on it.
 
-use super::bonds::bonds_to_come;
+use super::bonds::{any_bond, bonds_to_come};
 use super::stage::{NO_SAVING, Need, Saving, Stage};
 use crate::physics::bond::failure::{Cause, Factors, cause, stresses, utilisation};
 use crate::physics::bond::total::BondForces;
@@ -65,6 +65,24 @@ pub const SCATTER: Stage = Stage {
     saving: |state| Saving::of(state.bonds.len(), size_of::<f64>(), SCATTER_NS),
 };
 
+/// Strengths that rise with pressure.
+pub const FRICTION: Stage = Stage {
+    name: "friction of bonds",
+    within: Some(FAILURE.name),
+    need: |state, _| {
+        Need::of(
+            any_bond(state, |rule| {
+                rule.criteria
+                    .is_some_and(|criteria| criteria.is_frictional())
+            }),
+            || "bonds have a cohesion and a friction angle".to_owned(),
+            "no bond has a cohesion",
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
 /// Breaks the bonds that have reached their strength. Returns the number of bonds compared with
 /// their strength.
 pub(crate) fn break_failed_bonds(state: &mut State) -> usize {
@@ -107,6 +125,14 @@ pub(crate) fn count_scattered(state: &mut State) -> usize {
         .partitions
         .iter()
         .map(|partition| partition.computed.compared)
+        .sum()
+}
+
+/// Number of bonds compared with a cohesion.
+pub(crate) fn count_frictional(state: &mut State) -> usize {
+    let partitions = state.scratch.partitions.iter();
+    partitions
+        .map(|partition| partition.computed.frictional)
         .sum()
 }
 

@@ -22,7 +22,12 @@ pub const BOND_DAMPING: Stage = Stage {
         )
     },
     bytes: |state| {
-        size_of_val(&state.bonds.damping[..]) + size_of_val(&state.scratch.bond_resistance[..])
+        let resistances = if any_damped(state) {
+            size_of_val(&state.scratch.bond_resistance[..])
+        } else {
+            0
+        };
+        size_of_val(&state.bonds.damping[..]) + resistances
     },
     saving: |state| {
         let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
@@ -32,6 +37,11 @@ pub const BOND_DAMPING: Stage = Stage {
         })
     },
 };
+
+/// Whether any rule has viscous damping.
+pub(super) fn any_damped(state: &State) -> bool {
+    state.bonds.rules.iter().any(|rule| rule.damped)
+}
 
 /// Sets the damping forces of bonds, if not done with the bond forces. Returns the number of bonds
 /// computed.

@@ -115,8 +115,11 @@ fn of_partition(bonds: &Bonds, poses: &[Pose], partition: &mut Partition, wrench
             continue;
         }
         computed.incremental += which.count();
-        if rule.criteria.is_some() {
+        if let Some(criteria) = &rule.criteria {
             computed.compared += which.count();
+            if criteria.is_frictional() {
+                computed.frictional += which.count();
+            }
         }
         let mut add = |at: usize| {
             if bonds.is_broken(at) {

@@ -26,12 +26,21 @@ pub struct BondRule {
     pub incremental: bool,
     /// Bonds have damping coefficients.
     pub damped: bool,
+    /// Fraction of the load of a bond that resists its relative motion: gamma. 0: none.
+    pub structural_damping: f64,
     /// Strengths. None: the bonds never break.
     pub criteria: Option<Criteria>,
     /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
     pub strengthening_from_1_s: Option<f64>,
     /// The strain whose rate is used.
     pub strain_rate_measure: StrainRateMeasure,
+}
+
+impl BondRule {
+    /// Whether bonds have damping forces of any kind.
+    pub fn resists(&self) -> bool {
+        self.damped || self.structural_damping > 0.0
+    }
 }
 
 /// Bonds in a block.
@@ -54,7 +63,7 @@ pub struct BondBlock {
     /// Across the bond, N/m.
     pub shear: Column,
     /// Bond radii, m. They give the bending stiffness, which is the normal stiffness times r^2/4 in
-    /// every model.
+    /// every model that has one.
     pub radii_m: Column,
 }
 
@@ -88,10 +97,15 @@ impl BondBlock {
     }
 }
 
-/// Bending stiffness of a round bond, N m/rad, from its normal stiffness, N/m: E I/L0 from E A/L0.
+/// Ratio of the bending stiffness to the normal stiffness times the square of the radius: E I/L0 to
+/// E A/L0 of a round bond.
+const BENDING_OF_ROUND_BOND: f64 = 0.25;
+
+/// Bending stiffness of a bond, N m/rad, from its normal stiffness, N/m, and its rule's number in
+/// [`Bonds::bending_per_normal`].
 #[inline(always)]
-pub(crate) fn bending_stiffness<T: Number>(normal: T, radius_m: T) -> T {
-    normal.scale(0.25) * radius_m * radius_m
+pub(crate) fn bending_stiffness<T: Number>(normal: T, radius_m: T, per_normal: f64) -> T {
+    normal.scale(per_normal) * radius_m * radius_m
 }
 
 /// All bonds of a scene, sorted by their first particle and then by their second.
@@ -115,6 +129,9 @@ pub struct Bonds {
     /// Ratio of torsional to bending stiffness, for each rule that has bonds: it depends only on
     /// the material.
     pub torsion_per_bending: Vec<f64>,
+    /// Ratio of bending stiffness to normal stiffness times the square of the radius, for each rule
+    /// that has bonds: 1/4, or 0 without moments.
+    pub bending_per_normal: Vec<f64>,
     /// Runs of consecutive bonds that follow the same rule: the end of each run, and the rule.
     pub rule_runs: Vec<(usize, usize)>,
 }
@@ -165,8 +182,16 @@ impl Bonds {
         }
         if self.torsion_per_bending.len() <= rule {
             self.torsion_per_bending.resize(rule + 1, 1.0);
+            self.bending_per_normal
+                .resize(rule + 1, BENDING_OF_ROUND_BOND);
         }
-        self.torsion_per_bending[rule] = stiffness.torsion / stiffness.bending;
+        if stiffness.bending == 0.0 {
+            self.torsion_per_bending[rule] = 0.0;
+            self.bending_per_normal[rule] = 0.0;
+        } else {
+            self.torsion_per_bending[rule] = stiffness.torsion / stiffness.bending;
+            self.bending_per_normal[rule] = BENDING_OF_ROUND_BOND;
+        }
         let end = self.len();
         match self.rule_runs.last_mut() {
             Some((last, of)) if *of == rule => *last = end,
@@ -182,6 +207,7 @@ impl Bonds {
         let direction = [0, 1, 2].map(|axis| from.direction[axis][k]);
         self.push(ends, direction, from.radii_m[k], &other.stiffness(at), rule);
         self.torsion_per_bending[rule] = other.torsion_per_bending[rule];
+        self.bending_per_normal[rule] = other.bending_per_normal[rule];
         let factor = factor * other.strength_factor(at);
         if factor != 1.0 || !self.strength_factors.is_empty() {
             self.strength_factors.resize(self.len() - 1, 1.0);
@@ -220,11 +246,12 @@ impl Bonds {
     /// Stiffnesses of bond `at`.
     pub fn stiffness(&self, at: usize) -> Stiffness {
         let (normal, radius_m) = (self.normal(at), self.radius_m(at));
-        let bending = bending_stiffness(normal, radius_m);
+        let rule = self.rule_of(at);
+        let bending = bending_stiffness(normal, radius_m, self.bending_per_normal[rule]);
         Stiffness {
             normal,
             shear: self.blocks[at / BLOCK].shear[at % BLOCK],
-            torsion: bending * self.torsion_per_bending[self.rule_of(at)],
+            torsion: bending * self.torsion_per_bending[rule],
             bending,
             levers_m: self.levers_m(at),
         }

@@ -53,8 +53,12 @@ pub struct Computed {
     pub incremental: usize,
     /// Comparisons with the strength.
     pub compared: usize,
+    /// Those of them with a cohesion.
+    pub frictional: usize,
     /// Damping forces.
     pub damped: usize,
+    /// Structural damping forces.
+    pub structural: usize,
 }
 
 impl BondSelection {

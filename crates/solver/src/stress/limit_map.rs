@@ -2,7 +2,7 @@
 //! disturbance grows.
 //!
 //! Neither the program's limit nor its watchdog is used: the scene's state is stepped as it is, and
-//! its energy is observed. Both must agree to a hundredth for all entries of the map: five bond
+//! its energy is observed. Both must agree to a hundredth for all entries of the map: six bond
 //! models with damping from none to ten times the critical value.
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -87,7 +87,7 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
     Ok(false)
 }
 
-/// The map: five models in both formulations, with no, light, critical and very high damping; also
+/// The map: six models in both formulations, with no, light, critical and very high damping; also
 /// other types of damping.
 ///
 /// # Errors
@@ -95,6 +95,7 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
 pub fn map() -> Result<Vec<Member>> {
     let models = [
         "parallel",
+        "pin",
         "euler-bernoulli",
         "timoshenko",
         "elastic-solid",
@@ -118,6 +119,10 @@ pub fn map() -> Result<Vec<Member>> {
         "damping_ratio = 0.3, per_mode = true",
         "damping_ratio = 10, per_mode = true",
         "damping_coefficient = \"30 N s/m\", torque_factor = 1",
+        "normal_damping_ratio = 0.1, shear_damping_ratio = 0.3, torsion_damping_ratio = 1, bending_damping_ratio = 3",
+        "structural_damping = 0.1",
+        "structural_damping = 0.5",
+        "structural_damping = 0.9",
     ] {
         members.push(of("timoshenko", "total", damping, "0")?);
     }

@@ -12,6 +12,8 @@ const NONE: Criteria = Criteria {
     tensile_strength_pa: f64::INFINITY,
     compressive_strength_pa: f64::INFINITY,
     shear_strength_pa: f64::INFINITY,
+    cohesion_pa: f64::INFINITY,
+    friction_tangent: 0.0,
     von_mises_strength_pa: f64::INFINITY,
     equivalent_stress: EquivalentStress::AxialInTension,
 };
@@ -87,6 +89,11 @@ fn of_no_strength_any_load_is_too_much() {
             ..NONE
         },
         Criteria {
+            cohesion_pa: 0.0,
+            friction_tangent: 0.5,
+            ..NONE
+        },
+        Criteria {
             von_mises_strength_pa: 0.0,
             ..NONE
         },
@@ -103,7 +110,8 @@ fn of_no_strength_any_load_is_too_much() {
             let factors = Factors::scattered(factor);
             assert_eq!(utilisation(&zero, &Stresses::default(), factors), 0.0);
         }
-        let [used, factor] = screen.utilisation_and_factor(&BondLoad::default(), RADIUS_M);
+        let [used, factor] =
+            screen.utilisation_and_factor::<f64, true>(&BondLoad::default(), RADIUS_M);
         assert!(used == 0.0 && factor > 0.0);
         let tiny = BondLoad {
             normal_n: 1e-30,
@@ -115,7 +123,7 @@ fn of_no_strength_any_load_is_too_much() {
             utilisation(&zero, &stresses(&tiny, RADIUS_M), Factors::scattered(2.0)),
             f64::INFINITY
         );
-        let [used, factor] = screen.utilisation_and_factor(&tiny, RADIUS_M);
+        let [used, factor] = screen.utilisation_and_factor::<f64, true>(&tiny, RADIUS_M);
         assert!(used > factor);
     }
 }
@@ -147,6 +155,15 @@ fn each_mode_uses_its_share_of_each_strength() {
             },
             [0.0, 0.0, 0.25, 0.25],
             Cause::Shear,
+        ),
+        (
+            Criteria {
+                cohesion_pa: 4e6,
+                friction_tangent: 0.5,
+                ..NONE
+            },
+            [0.125, 0.0, 0.25, 0.25],
+            Cause::MohrCoulomb,
         ),
         (
             Criteria {
@@ -294,6 +311,60 @@ fn each_edge_has_a_strength_of_its_own() {
     }
 }
 
+/// The envelope of Mohr and Coulomb: shear strength rises with pressure without end and falls with
+/// tension to 0 at c/tan(phi); the tensile strength cuts it off before. Bending does not count, and
+/// pressure alone breaks nothing.
+#[test]
+fn pressure_raises_the_shear_strength_of_mohr_and_coulomb() {
+    let criteria = Criteria {
+        cohesion_pa: 3.0,
+        friction_tangent: 0.75,
+        ..NONE
+    };
+    let cut_off = Criteria {
+        tensile_strength_pa: 2.5,
+        ..criteria
+    };
+    let at = |criteria: &Criteria, axial_pa: f64, shear_pa: f64| {
+        let stresses = Stresses {
+            axial_pa,
+            shear_pa: 0.5 * shear_pa,
+            torsion_pa: 0.5 * shear_pa,
+            bending_pa: 0.0,
+        };
+        let factors = Factors::scattered(1.0);
+        let used = utilisation(criteria, &stresses, factors);
+        (
+            used,
+            (used > 0.0).then(|| cause(criteria, &stresses, factors)),
+        )
+    };
+    let slides = Some(Cause::MohrCoulomb);
+    for (axial_pa, shear_pa) in [(-8.0, 9.0), (-2.0, 4.5), (0.0, 3.0), (2.0, 1.5), (4.0, 0.0)] {
+        assert_eq!(
+            at(&criteria, axial_pa, shear_pa),
+            (1.0, slides),
+            "{axial_pa}"
+        );
+        // The load at failure grows in proportion to the cohesion.
+        let stronger = Criteria {
+            cohesion_pa: 6.0,
+            ..criteria
+        };
+        assert_eq!(at(&stronger, axial_pa, shear_pa), (0.5, slides));
+    }
+    assert_eq!(at(&cut_off, -8.0, 9.0), (1.0, slides));
+    assert_eq!(at(&cut_off, 2.0, 1.5), (1.0, slides));
+    assert_eq!(at(&cut_off, 2.5, 0.0), (1.0, Some(Cause::Tension)));
+    assert_eq!(at(&criteria, -1e9, 1e6), (0.0, None));
+    let bent = Stresses {
+        bending_pa: 1e9,
+        ..Stresses::default()
+    };
+    assert_eq!(utilisation(&criteria, &bent, ONE), 0.0);
+    assert_eq!(utilisation(&cut_off, &bent, ONE), 1e9 / 2.5);
+}
+
 const READINGS: [EquivalentStress; 4] = [
     EquivalentStress::ForcesOnly,
     EquivalentStress::AxialInTension,
@@ -387,23 +458,27 @@ fn causes_are_counted_and_said() {
     assert_eq!(counts.to_string(), "2 in tension, 1 in shear");
     counts.count(Cause::Compression);
     counts.count(Cause::VonMises);
+    counts.count(Cause::MohrCoulomb);
     assert_eq!(
         counts.to_string(),
-        "2 in tension, 1 in compression, 1 in shear, 1 by equivalent stress"
+        "2 in tension, 1 in compression, 1 in shear, 1 by equivalent stress, 1 by Mohr-Coulomb"
     );
 }
 
 /// Loads, and radii of bonds.
 fn loads() -> impl Strategy<Value = (BondLoad, f64)> {
     let any = (-1e3..1e3, 0.0..1e3, 0.0..3.0, 0.0..3.0, 1e-4..1e-2);
-    // Including axial force and bending that nearly cancel at an edge.
-    let cancel = prop::option::of((proptest::bool::ANY, -15..0));
+    // Including axial force and bending that nearly cancel at an edge, and axial force and shear
+    // that nearly cancel at a friction of 0.7.
+    let cancel = prop::option::of((0..3_u8, -15..0));
     (any, cancel).prop_map(
         |((normal_n, shear_n, torsion_n_m, bending_n_m, radius_m), cancel)| {
             let normal_n = match cancel {
-                Some((is_pulled, digits)) => {
-                    let sign = if is_pulled { 1.0 } else { -1.0 };
-                    sign * 4.0 * bending_n_m / radius_m * (1.0 - 10.0_f64.powi(digits))
+                Some((against, digits)) => {
+                    let bending_n: f64 = 4.0 * bending_n_m / radius_m;
+                    let sliding_n: f64 = (shear_n + 2.0 * torsion_n_m / radius_m) / 0.7;
+                    let largest_n = [bending_n, -bending_n, -sliding_n][usize::from(against)];
+                    largest_n * (1.0 - 10.0_f64.powi(digits))
                 }
                 None => normal_n,
             };
@@ -420,18 +495,22 @@ fn loads() -> impl Strategy<Value = (BondLoad, f64)> {
 
 fn some_criteria() -> impl Strategy<Value = Criteria> {
     let readings = prop::sample::select(&READINGS[..]);
-    let strengths = prop::array::uniform4(prop::option::of(1e-3..1e9));
-    (strengths, readings).prop_map(|(strengths, equivalent_stress)| {
+    let strengths = prop::array::uniform5(prop::option::of(1e-3..1e9));
+    let tangents = prop::sample::select(&[0.0, 0.7, 30.0, 1e9][..]);
+    (strengths, tangents, readings).prop_map(|(strengths, friction_tangent, equivalent_stress)| {
         let [
             tensile_strength_pa,
             compressive_strength_pa,
             shear_strength_pa,
+            cohesion_pa,
             von_mises_strength_pa,
         ] = strengths.map(|s| s.unwrap_or(f64::INFINITY));
         Criteria {
             tensile_strength_pa,
             compressive_strength_pa,
             shear_strength_pa,
+            cohesion_pa,
+            friction_tangent,
             von_mises_strength_pa,
             equivalent_stress,
         }
@@ -448,10 +527,13 @@ proptest! {
     ) {
         let of_load = stresses(&load, radius_m);
         let exact = utilisation(&criteria, &of_load, ONE);
-        let [used, factor] = Screen::new(&criteria).utilisation_and_factor(&load, radius_m);
+        let [used, factor] = Screen::new(&criteria).utilisation_and_factor::<f64, true>(&load, radius_m);
         let screened = (used / factor).sqrt();
         let least = criteria.tensile_strength_pa.min(criteria.compressive_strength_pa);
-        let cancelled = (of_load.axial_pa.abs() + of_load.bending_pa) / least;
+        let axial_pa = of_load.axial_pa.abs();
+        let sheared_pa = of_load.shear_pa + of_load.torsion_pa;
+        let slid_pa = axial_pa * criteria.friction_tangent + sheared_pa;
+        let cancelled = (axial_pa + of_load.bending_pa) / least + slid_pa / criteria.cohesion_pa;
         let error = (screened - exact).abs();
         prop_assert!(error <= 1e-12 * exact + 2e-14 * cancelled, "{screened} {exact}");
     }
@@ -473,11 +555,12 @@ proptest! {
             tensile_strength_pa: criteria.tensile_strength_pa * scale,
             compressive_strength_pa: criteria.compressive_strength_pa * scale,
             shear_strength_pa: criteria.shear_strength_pa * scale,
+            cohesion_pa: criteria.cohesion_pa * scale,
             von_mises_strength_pa: criteria.von_mises_strength_pa * scale,
             ..criteria
         };
         if exact(&scaled) >= 1.0 {
-            let [used, factor] = Screen::new(&scaled).utilisation_and_factor(&load, radius_m);
+            let [used, factor] = Screen::new(&scaled).utilisation_and_factor::<f64, true>(&load, radius_m);
             prop_assert!(used >= (1.0 - 1e-9) * factor, "{} {}", used / factor, exact(&scaled));
         }
     }

@@ -36,6 +36,7 @@ fn chain(criteria: Criteria, is_scattered: bool) -> (Particles, Bonds) {
         rules: Arc::new([BondRule {
             incremental: false,
             damped: false,
+            structural_damping: 0.0,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
@@ -76,6 +77,8 @@ const NEVER: Criteria = Criteria {
     tensile_strength_pa: f64::INFINITY,
     compressive_strength_pa: f64::INFINITY,
     shear_strength_pa: f64::INFINITY,
+    cohesion_pa: f64::INFINITY,
+    friction_tangent: 0.0,
     von_mises_strength_pa: f64::INFINITY,
     equivalent_stress: EquivalentStress::AxialInTension,
 };
@@ -92,6 +95,11 @@ fn as_many_lanes_as_there_are_give_the_bits_of_one() {
     };
     let shear = Criteria {
         shear_strength_pa: 0.6,
+        ..NEVER
+    };
+    let mohr_coulomb = Criteria {
+        cohesion_pa: 1.0,
+        friction_tangent: 0.1,
         ..NEVER
     };
     let all = Criteria {
@@ -112,7 +120,7 @@ fn as_many_lanes_as_there_are_give_the_bits_of_one() {
         EquivalentStress::BondInTension,
     ]
     .map(equivalent);
-    let separate = [tension, compression, shear, all];
+    let separate = [tension, compression, shear, mohr_coulomb, all];
     for criteria in separate.into_iter().chain(readings) {
         for is_scattered in [false, true] {
             let (particles, bonds) = chain(criteria, is_scattered);

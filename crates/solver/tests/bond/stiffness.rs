@@ -1,7 +1,12 @@
 //! Stiffnesses compared with Chen et al. 2022, table 5, with the digits of an independent
 //! implementation.
 
+use std::f64::consts::PI;
+
+use dem_run::physics::bond::incremental::{self, History, Step, advance};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
+use dem_run::physics::bond::total::{End, bond_forces};
+use nalgebra::{UnitQuaternion, Vector3};
 
 const STEEL_PA: f64 = 200e9;
 const NU: f64 = 0.3;
@@ -64,6 +69,84 @@ fn a_given_kappa_is_the_ratio_of_normal_to_shear_stiffness() {
     let model = BondModel::Parallel { kappa: Some(2.0) };
     let k = stiffness(model, &bar_of(10), STEEL_PA, NU);
     assert_near(k.normal / k.shear, 2.0);
+}
+
+/// The pin has the springs of the parallel bond, at the same point, and no moments.
+#[test]
+fn a_pin_is_a_parallel_bond_without_moments() {
+    let shape = BondShape {
+        length_m: 0.6,
+        radius_m: 0.08,
+        end_radii_m: [0.1, 0.4],
+    };
+    for kappa in [None, Some(2.0)] {
+        let of = |model| stiffness(model, &shape, STEEL_PA, NU);
+        let (pin, parallel) = (
+            of(BondModel::Pin { kappa }),
+            of(BondModel::Parallel { kappa }),
+        );
+        assert_near(pin.normal, STEEL_PA * PI * 0.08 * 0.08 / 0.6);
+        assert_near(pin.normal / pin.shear, kappa.unwrap_or(2.6));
+        assert_eq!((pin.normal, pin.shear), (parallel.normal, parallel.shear));
+        assert_eq!(pin.levers_m, parallel.levers_m);
+        assert_eq!((pin.torsion, pin.bending), (0.0, 0.0));
+    }
+}
+
+/// Ends that turn against each other feel nothing; ends that move apart, or that both turn the same
+/// way, feel the springs at the point between them, in both formulations.
+#[test]
+fn a_pin_resists_no_rotation_of_its_ends_against_each_other() {
+    let shape = BondShape {
+        length_m: 2.0,
+        radius_m: 0.5,
+        end_radii_m: [1.0; 2],
+    };
+    let k = stiffness(BondModel::Pin { kappa: Some(4.0) }, &shape, 1e3, 0.3);
+    let at_rest = [0.0, 2.0].map(|x| End {
+        position_m: Vector3::new(x, 0.0, 0.0),
+        turned: UnitQuaternion::identity(),
+    });
+    let turned = |turns: [Vector3<f64>; 2]| {
+        let mut ends = at_rest;
+        for (end, turn) in ends.iter_mut().zip(turns) {
+            end.turned = UnitQuaternion::from_scaled_axis(turn);
+        }
+        let total = bond_forces(&k, &Vector3::x(), &ends);
+        let step = Step {
+            apart_before: 2.0 * Vector3::x(),
+            apart_after: 2.0 * Vector3::x(),
+            turns,
+        };
+        let history = advance(&k, &History::default(), &step);
+        let summed = incremental::bond_forces(&k, &history, &(2.0 * Vector3::x()));
+        [total, summed]
+    };
+    for axis in [Vector3::x(), Vector3::z()] {
+        for found in turned([-0.1 * axis, 0.1 * axis]) {
+            assert!(
+                found.force_on_b.norm() < 1e-12,
+                "{axis}: {}",
+                found.force_on_b
+            );
+            assert!(found.torques[0].norm() + found.torques[1].norm() < 1e-12);
+            assert_eq!((found.load.torsion_n_m, found.load.bending_n_m), (0.0, 0.0));
+            assert!(found.energy.total() < 1e-12, "{:?}", found.energy);
+        }
+    }
+    // Both by a small angle: the point slides by the length times that.
+    let angle = 1e-6;
+    for found in turned([angle * Vector3::z(); 2]) {
+        let force = k.shear * 2.0 * angle;
+        assert!(
+            (found.force_on_b.y / force - 1.0).abs() < 1e-9,
+            "{}",
+            found.force_on_b
+        );
+        for torque in found.torques {
+            assert!((torque.z / -force - 1.0).abs() < 1e-9, "{torque}");
+        }
+    }
 }
 
 /// A cantilever of bonds end to end under a force F at its tip: each bond shears by F / k_s and

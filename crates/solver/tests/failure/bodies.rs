@@ -33,6 +33,8 @@ pub(crate) const NONE: Criteria = Criteria {
     tensile_strength_pa: f64::INFINITY,
     compressive_strength_pa: f64::INFINITY,
     shear_strength_pa: f64::INFINITY,
+    cohesion_pa: f64::INFINITY,
+    friction_tangent: 0.0,
     von_mises_strength_pa: f64::INFINITY,
     equivalent_stress: EquivalentStress::AxialInTension,
 };
@@ -56,11 +58,19 @@ pub(crate) const VON_MISES: Criteria = Criteria {
     von_mises_strength_pa: 1.1 * STRENGTH_PA,
     ..NONE
 };
-/// All four.
+/// The strength of Mohr and Coulomb.
+pub(crate) const MOHR_COULOMB: Criteria = Criteria {
+    cohesion_pa: 0.55 * STRENGTH_PA,
+    friction_tangent: 0.6,
+    ..NONE
+};
+/// All five.
 pub(crate) const ALL: Criteria = Criteria {
     tensile_strength_pa: NORMAL.tensile_strength_pa,
     compressive_strength_pa: PRESSED.compressive_strength_pa,
     shear_strength_pa: SHEAR.shear_strength_pa,
+    cohesion_pa: MOHR_COULOMB.cohesion_pa,
+    friction_tangent: MOHR_COULOMB.friction_tangent,
     von_mises_strength_pa: VON_MISES.von_mises_strength_pa,
     ..NONE
 };
@@ -92,6 +102,7 @@ pub(crate) fn bonded(
         rules: Arc::new([BondRule {
             incremental,
             damped: false,
+            structural_damping: 0.0,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

@@ -9,8 +9,8 @@ use dem_run::state::loads::factor_at;
 use dem_run::step::{advance, interact};
 
 use super::bodies::{
-    ALL, LENGTH_M, LOAD_STEP, NONE, NORMAL, PRESSED, RADIUS_M, SHEAR, STRENGTH_PA, VON_MISES,
-    area_m2, hold, on_one_thread, push, rod,
+    ALL, LENGTH_M, LOAD_STEP, MOHR_COULOMB, NONE, NORMAL, PRESSED, RADIUS_M, SHEAR, STRENGTH_PA,
+    VON_MISES, area_m2, hold, on_one_thread, push, rod,
 };
 
 /// A load at the free end of a rod whose other end is fixed: force and torque, N and N m, in some
@@ -35,8 +35,8 @@ fn closed_form(end: &End, to_contact_m: f64) -> [f64; 4] {
     ]
 }
 
-/// Utilisation of each strength of such a bond (tension, compression, shear, equivalent).
-fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64; 4] {
+/// Utilisation of each strength of such a bond (tension, compression, shear, equivalent, Mohr-Coulomb).
+fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64; 5] {
     let pulled = axial.max(0.0) + bending;
     let sheared = shear + torsion;
     [
@@ -44,6 +44,7 @@ fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64
         (bending - axial).max(0.0) / criteria.compressive_strength_pa,
         sheared / criteria.shear_strength_pa,
         pulled.hypot(3.0_f64.sqrt() * sheared) / criteria.von_mises_strength_pa,
+        (sheared + axial * criteria.friction_tangent).max(0.0) / criteria.cohesion_pa,
     ]
 }
 
@@ -96,7 +97,7 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
 }
 
 /// Load proportions at the end of a rod of this length; the last number of each is a stress.
-fn ends(length_m: f64) -> [End; 8] {
+fn ends(length_m: f64) -> [End; 9] {
     let force = STRENGTH_PA * area_m2();
     let moment = STRENGTH_PA * PI * RADIUS_M.powi(3) / 4.0;
     // In the middle of the last bond, the moment of the force is subtracted.
@@ -123,6 +124,11 @@ fn ends(length_m: f64) -> [End; 8] {
             [moment, 0.0, 0.0],
         ),
         end(
+            "pressure and torsion",
+            [-0.5 * force, 0.0, 0.0],
+            [2.0 * moment, 0.0, 0.0],
+        ),
+        end(
             "all",
             [
                 0.3 * force,
@@ -138,7 +144,7 @@ fn ends(length_m: f64) -> [End; 8] {
 fn breaks_at_the_closed_form(bonds: usize, weakest: usize) {
     let length = LENGTH_M * bonds as f64;
     let mut rods = 0;
-    for criteria in [NORMAL, PRESSED, SHEAR, VON_MISES, ALL] {
+    for criteria in [NORMAL, PRESSED, SHEAR, VON_MISES, MOHR_COULOMB, ALL] {
         for end in ends(length) {
             let factors: Vec<f64> = (0..bonds)
                 .map(|at| if at == weakest { 0.9 } else { 1.2 })
@@ -178,6 +184,7 @@ fn breaks_at_the_closed_form(bonds: usize, weakest: usize) {
                     Cause::Compression,
                     Cause::Shear,
                     Cause::VonMises,
+                    Cause::MohrCoulomb,
                 ];
                 let worst = fractions.iter().position(|&fraction| fraction == largest);
                 assert_eq!(Some(cause), worst.map(|worst| causes[worst]), "{what}");

@@ -76,6 +76,12 @@ fn of_bonds() {
         &with(&FREE, &["bond damping"]),
     );
     expect(
+        "structural damping of bonds",
+        &scene("", ", damping = { structural_damping = 0.1 }", "", ""),
+        &with(&FREE, &["structural damping"]),
+        &with(&FREE, &["structural damping"]),
+    );
+    expect(
         "failure",
         &scene("", ", failure = { tensile_strength = 1e12 }", "", ""),
         &with(&FREE, &["failure"]),
@@ -91,6 +97,17 @@ fn of_bonds() {
         ),
         &with(&FREE, &["failure", "strength scatter"]),
         &with(&FREE, &["cluster search", "strength scatter"]),
+    );
+    expect(
+        "cohesion and friction angle",
+        &scene(
+            "",
+            ", failure = { cohesion = 1e12, friction_angle = \"35 deg\" }",
+            "",
+            "",
+        ),
+        &with(&FREE, &["failure", "friction of bonds"]),
+        &with(&FREE, &["cluster search"]),
     );
     let rate = ", failure = { tensile_strength = 1e12, rate_strengthening = true }";
     expect(

@@ -16,6 +16,8 @@ fn breaking(tensile_strength_pa: f64, incremental: bool) -> BondRule {
             tensile_strength_pa,
             compressive_strength_pa: f64::INFINITY,
             shear_strength_pa: f64::INFINITY,
+            cohesion_pa: f64::INFINITY,
+            friction_tangent: 0.0,
             von_mises_strength_pa: f64::INFINITY,
             equivalent_stress: EquivalentStress::AxialInTension,
         }),

@@ -20,10 +20,13 @@ use dem_scene::{Factor, Hold};
 const BREAKING: BondRule = BondRule {
     incremental: false,
     damped: false,
+    structural_damping: 0.1,
     criteria: Some(Criteria {
         tensile_strength_pa: 0.1e6,
         compressive_strength_pa: 0.1e6,
         shear_strength_pa: 0.2e6,
+        cohesion_pa: 0.2e6,
+        friction_tangent: 0.5,
         von_mises_strength_pa: 0.12e6,
         equivalent_stress: EquivalentStress::AxialInTension,
     }),

@@ -41,7 +41,7 @@ fn nothing_is_missing() {
     for (case, wanted) in [
         ("stiffness-ratio", [3, 0, 0]),
         ("mass-ratio", [4, 0, 0]),
-        ("damping", [66, 0, 0]),
+        ("damping", [82, 0, 0]),
         ("step", [3, 3, 3]),
         ("overlap", [5, 0, 1]),
         ("shatter", [1, 0, 0]),

@@ -107,6 +107,7 @@ impl Bar {
             rules: Arc::new([BondRule {
                 incremental: self.incremental,
                 damped: false,
+                structural_damping: 0.0,
                 criteria: None,
                 strengthening_from_1_s: None,
                 strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

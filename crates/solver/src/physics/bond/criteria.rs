@@ -2,6 +2,7 @@
 //! for how to add another.
 
 mod compression;
+mod mohr_coulomb;
 mod shear;
 mod tension;
 mod von_mises;
@@ -12,6 +13,7 @@ use super::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
 use self::compression::Compression;
+use self::mohr_coulomb::MohrCoulomb;
 use self::shear::Shear;
 use self::tension::Tension;
 use self::von_mises::VonMises;
@@ -72,4 +74,6 @@ criteria! {
     Shear,
     /// Equivalent stress.
     VonMises,
+    /// Cohesion and friction angle. The last, so that the loop over bonds can leave it out.
+    MohrCoulomb,
 }

@@ -105,21 +105,51 @@ pub fn damping_forces(
 #[inline(always)]
 pub fn resistance<T: Number>(
     coefficients: &DampingCoefficients<T>,
-    [lever_a, lever_b]: [T; 2],
+    levers_m: [T; 2],
     c: Vec3<T>,
     length_m: T,
-    [[velocity_a, spin_a], [velocity_b, spin_b]]: [[Vec3<T>; 2]; 2],
+    motions: [[Vec3<T>; 2]; 2],
 ) -> (Vec3<T>, [Vec3<T>; 2]) {
-    let scale = length_m / (lever_a + lever_b);
-    let (arm_a, arm_b) = (c * (scale * lever_a), c * (scale * lever_b));
-    let velocity = velocity_b - velocity_a - spin_a.cross(arm_a) - spin_b.cross(arm_b);
-    let spin = spin_b - spin_a;
-    let force = split(coefficients.normal, coefficients.shear, velocity, c);
-    let moment = split(coefficients.torsion, coefficients.bending, spin, c);
+    let RelativeMotion {
+        arms_m: [arm_a, arm_b],
+        velocity_m_s,
+        spin_rad_s,
+    } = relative_motion(levers_m, c, length_m, motions);
+    let force = split(coefficients.normal, coefficients.shear, velocity_m_s, c);
+    let moment = split(coefficients.torsion, coefficients.bending, spin_rad_s, c);
     (
         -force,
         [moment + arm_a.cross(force), arm_b.cross(force) - moment],
     )
+}
+
+/// Motion of the second end of a bond relative to the first at the contact point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct RelativeMotion<T> {
+    /// From the first centre to the contact point, and from there to the second centre, m.
+    pub(crate) arms_m: [Vec3<T>; 2],
+    /// m/s.
+    pub(crate) velocity_m_s: Vec3<T>,
+    /// rad/s.
+    pub(crate) spin_rad_s: Vec3<T>,
+}
+
+/// The relative motion of two ends with these velocities, m/s, and spins, rad/s, of a bond that is
+/// `length_m` long along the unit vector `c`; the contact point divides it like the levers.
+#[inline(always)]
+pub(crate) fn relative_motion<T: Number>(
+    [lever_a, lever_b]: [T; 2],
+    c: Vec3<T>,
+    length_m: T,
+    [[velocity_a, spin_a], [velocity_b, spin_b]]: [[Vec3<T>; 2]; 2],
+) -> RelativeMotion<T> {
+    let scale = length_m / (lever_a + lever_b);
+    let (arm_a, arm_b) = (c * (scale * lever_a), c * (scale * lever_b));
+    RelativeMotion {
+        arms_m: [arm_a, arm_b],
+        velocity_m_s: velocity_b - velocity_a - spin_a.cross(arm_a) - spin_b.cross(arm_b),
+        spin_rad_s: spin_b - spin_a,
+    }
 }
 
 /// `along` times the part of a vector along `c` plus `across` times the rest.

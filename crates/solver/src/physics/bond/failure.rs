@@ -1,7 +1,7 @@
 //! Failure of bonds: stresses from their forces and moments, compared with strengths.
 //!
 //! Sources: MUSEN's elastic solid bond (normal and shear strength); Platzer 2022, eqs. 11-13 (von
-//! Mises).
+//! Mises); the text books (Mohr and Coulomb).
 //!
 //! MUSEN's normal force is a magnitude. Here it has its sign: bending pulls one edge of the section
 //! and presses the opposite one, and each of the two edges has its own strength. Platzer 2022, eqs.
@@ -90,8 +90,9 @@ fn fraction(stress: f64, strength: f64) -> f64 {
 /// Largest factor that [`Screen`] uses: finite, so that 0 times it is 0.
 const LARGEST: f64 = 1e300;
 
-/// Factor by which [`Screen`] overestimates bending at the edges. If axial force and bending nearly
-/// cancel, their rounding errors, a few 1e-16 of either, are large compared with the difference.
+/// Factor by which [`Screen`] overestimates bending at the edges, and shear beside friction. If
+/// axial force and bending (or shear) nearly cancel, their rounding errors, a few 1e-16 of either,
+/// are large compared with the difference.
 const CANCELLATION: f64 = 1.0 + 1e-14;
 
 /// Finds the few bonds that may have reached their strength, without a square root or a division.
@@ -113,19 +114,30 @@ impl Screen {
     }
 
     /// Square of the utilisation times the factor (pi r^3)^2, and this factor: stresses times pi
-    /// r^3 are F r + 4 M and S r + 2 T.
+    /// r^3 are F r + 4 M and S r + 2 T. The criterion of Mohr and Coulomb counts only if
+    /// `FRICTIONAL`: without it, not even its zeros are computed.
     #[inline(always)]
-    pub fn utilisation_and_factor<T: Number>(&self, load: &BondLoad<T>, radius_m: T) -> [T; 2] {
+    pub fn utilisation_and_factor<T: Number, const FRICTIONAL: bool>(
+        &self,
+        load: &BondLoad<T>,
+        radius_m: T,
+    ) -> [T; 2] {
+        let of_shear = if FRICTIONAL { CANCELLATION } else { 1.0 };
         let stresses = Stresses {
             axial_pa: load.normal_n * radius_m,
             bending_pa: load.bending_n_m.scale(4.0 * CANCELLATION),
-            shear_pa: load.shear_n * radius_m,
-            torsion_pa: load.torsion_n_m.scale(2.0),
+            shear_pa: (load.shear_n * radius_m).scale(of_shear),
+            torsion_pa: load.torsion_n_m.scale(2.0 * of_shear),
         };
         let squared = squared(&self.criteria, &stresses);
         let used: [T; COUNT] =
             std::array::from_fn(|k| squared[k].scale(self.per_strength_squared[k]));
-        let used = used[1..]
+        let count = if FRICTIONAL {
+            COUNT
+        } else {
+            Cause::MohrCoulomb as usize
+        };
+        let used = used[1..count]
             .iter()
             .fold(used[0], |most, &one| most.maximum(one));
         let volume = (radius_m * radius_m * radius_m).scale(PI);

@@ -107,9 +107,9 @@ pub fn bond_forces(stiffness: &Stiffness, history: &History, apart_m: &Vector3<f
         ],
         energy: BondEnergy {
             normal: 0.5 * normal * stretch,
-            shear: 0.5 * history.shear_force.norm_squared() / stiffness.shear,
-            torsion: 0.5 * torsion * torsion / stiffness.torsion,
-            bending: 0.5 * bending.norm_squared() / stiffness.bending,
+            shear: stored_j(history.shear_force.norm_squared(), stiffness.shear),
+            torsion: stored_j(torsion * torsion, stiffness.torsion),
+            bending: stored_j(bending.norm_squared(), stiffness.bending),
         },
         load: BondLoad {
             normal_n: normal,
@@ -117,6 +117,16 @@ pub fn bond_forces(stiffness: &Stiffness, history: &History, apart_m: &Vector3<f
             torsion_n_m: torsion.abs(),
             bending_n_m: bending.norm(),
         },
+    }
+}
+
+/// Energy of a spring from the square of its load, J; 0 without a spring.
+#[inline(always)]
+fn stored_j(load_squared: f64, stiffness: f64) -> f64 {
+    if stiffness == 0.0 {
+        0.0
+    } else {
+        0.5 * load_squared / stiffness
     }
 }
 

@@ -4,6 +4,7 @@
 use super::models::elastic_solid::ElasticSolid;
 use super::models::euler_bernoulli::EulerBernoulli;
 use super::models::parallel::Parallel;
+use super::models::pin::Pin;
 use super::models::shear_coefficient::ShearCoefficient;
 use super::models::timoshenko::Timoshenko;
 pub use super::rod::{BondShape, Stiffness};
@@ -15,6 +16,11 @@ pub enum BondModel {
     /// Parallel bond: shear stiffness is the normal stiffness divided by `kappa`, 2 (1 + nu) unless
     /// given. Shear acts halfway between the surfaces of the spheres.
     Parallel {
+        /// Ratio of normal to shear stiffness.
+        kappa: Option<f64>,
+    },
+    /// As the parallel bond, without moments.
+    Pin {
         /// Ratio of normal to shear stiffness.
         kappa: Option<f64>,
     },
@@ -46,6 +52,7 @@ pub fn stiffness(
     };
     match model {
         BondModel::Parallel { kappa } => Parallel { kappa }.stiffness(&rod),
+        BondModel::Pin { kappa } => Pin { kappa }.stiffness(&rod),
         BondModel::EulerBernoulli => EulerBernoulli.stiffness(&rod),
         BondModel::Timoshenko => Timoshenko.stiffness(&rod),
         BondModel::ElasticSolid => ElasticSolid.stiffness(&rod),

@@ -19,10 +19,22 @@ pub struct Criteria {
     pub compressive_strength_pa: f64,
     /// MUSEN's shear strength: largest shear stress from shear force and torsion, Pa.
     pub shear_strength_pa: f64,
+    /// Cohesion of Mohr and Coulomb: largest tau + sigma tan(phi), with sigma = F_n / A, tension
+    /// positive, and tau from shear force and torsion, Pa.
+    pub cohesion_pa: f64,
+    /// tan(phi) there: 0 or more.
+    pub friction_tangent: f64,
     /// Equivalent stress of Platzer 2022, eq. 13, whose normal part counts only in tension, Pa.
     pub von_mises_strength_pa: f64,
     /// The stresses of which that equivalent stress consists.
     pub equivalent_stress: EquivalentStress,
+}
+
+impl Criteria {
+    /// Whether the cohesion is a strength that a stress can reach.
+    pub fn is_frictional(&self) -> bool {
+        self.cohesion_pa.is_finite()
+    }
 }
 
 /// Readings of Platzer 2022, eq. 13, and of "the normal stress component is only considered under

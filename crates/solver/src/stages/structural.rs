@@ -1,0 +1,122 @@
+//! Structural damping forces of bonds on the particles, added to those of viscous damping.
+
+use nalgebra::Vector3;
+
+use super::bonds::{BONDS, any_bond};
+use super::damping::any_damped;
+use super::stage::{NO_SAVING, Need, Stage};
+use crate::physics::bond::damping::{DampingForces, EndMotion};
+use crate::physics::bond::damping_models::structural_forces;
+use crate::stages::blocks::for_each_partition;
+use crate::state::State;
+use crate::state::bonds::Bonds;
+use crate::state::particles::{Motion, Pose, Wrench};
+use crate::state::partitions::{BondSelection, Partition};
+
+/// Structural damping of bonds.
+pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
+    name: "structural damping",
+    within: Some(BONDS.name),
+    need: |state, _| {
+        Need::of(
+            any_bond(state, |rule| rule.structural_damping > 0.0),
+            || "bonds resist relative motion with a fraction of their load".to_owned(),
+            "not asked for",
+        )
+    },
+    // Those of viscous damping serve both.
+    bytes: |state| {
+        if any_damped(state) {
+            0
+        } else {
+            size_of_val(&state.scratch.bond_resistance[..])
+        }
+    },
+    saving: NO_SAVING,
+};
+
+/// Adds the structural damping forces to the resistances of the bonds. Returns the number of bonds
+/// computed.
+pub(crate) fn add_structural_damping(state: &mut State) -> usize {
+    let rules = &state.bonds.rules;
+    if rules.iter().all(|rule| rule.structural_damping == 0.0) {
+        return 0;
+    }
+    let (bonds, p) = (&state.bonds, &state.particles);
+    let resisting = &mut state.scratch.bond_resistance;
+    for_each_partition(
+        &mut state.scratch.partitions,
+        resisting,
+        &|partition, resisting| {
+            of_partition(bonds, &p.poses, &p.motions, partition, resisting);
+        },
+    );
+    let partitions = state.scratch.partitions.iter();
+    partitions
+        .map(|partition| partition.computed.structural)
+        .sum()
+}
+
+fn of_partition(
+    bonds: &Bonds,
+    poses: &[Pose],
+    motions: &[Motion],
+    partition: &mut Partition,
+    resisting: &mut [Wrench],
+) {
+    let Partition {
+        particles: own,
+        batches,
+        computed,
+        ..
+    } = partition;
+    computed.structural = 0;
+    for batch in batches.iter() {
+        let gamma = bonds.rules[batch.rule].structural_damping;
+        if gamma == 0.0 {
+            continue;
+        }
+        computed.structural += batch.which.count();
+        let mut add = |at: usize| {
+            if bonds.is_broken(at) {
+                return;
+            }
+            let DampingForces {
+                force_on_b,
+                torques,
+            } = forces_of(bonds, at, gamma, poses, motions);
+            let on_ends = [-force_on_b, force_on_b];
+            for (end, (force, torque)) in bonds.ends[at].iter().zip(on_ends.iter().zip(&torques)) {
+                let end = *end as usize;
+                if own.contains(&end) {
+                    resisting[end - own.start].add(force, torque);
+                }
+            }
+        };
+        match &batch.which {
+            BondSelection::Own(list) | BondSelection::Border(list) => {
+                list.iter().for_each(|&at| add(at as usize));
+            }
+            BondSelection::Run(range) => range.clone().for_each(&mut add),
+        }
+    }
+}
+
+fn forces_of(
+    bonds: &Bonds,
+    at: usize,
+    gamma: f64,
+    poses: &[Pose],
+    motions: &[Motion],
+) -> DampingForces {
+    let ends = bonds.ends[at].map(|end| end as usize);
+    let apart = poses[ends[1]].place() - poses[ends[0]].place();
+    let length_m = apart.norm();
+    let moving = ends.map(|end| EndMotion {
+        velocity_m_s: Vector3::from(motions[end].velocity_m_s),
+        spin_rad_s: Vector3::from(motions[end].spin_rad_s),
+    });
+    let load = bonds.forces(at, poses).load;
+    let c = apart / length_m;
+    structural_forces(gamma, &load, &bonds.levers_m(at), &c, length_m, &moving)
+}
