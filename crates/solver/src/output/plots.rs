@@ -4,6 +4,7 @@ use dem_io::Result;
 use dem_plots::{Axis, Line, Plot};
 use dem_results::{ResultsFolder, Series, read_series};
 use dem_scene::Statistic;
+use serde_json::Value;
 
 use super::fragments::{COUNT, DISCHARGE, SIZES};
 use super::series::ENERGIES;
@@ -15,11 +16,12 @@ const ENERGY: &str = "energy";
 const ERRORS: &str = "errors";
 const BROKEN: &str = "broken_bonds";
 
-/// Draws the time series of a finished run into its folder.
+/// Draws the time series of a finished run into its folder. `results`: those of its measures, as in
+/// `summary.json`.
 ///
 /// # Errors
 /// Those of the files.
-pub(crate) fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()> {
+pub(crate) fn write_plots(folder: &ResultsFolder, probes: &[Probe], results: &Value) -> Result<()> {
     let series = read_series(&folder.series())?;
     let changing: Vec<&str> = ENERGIES
         .into_iter()
@@ -60,7 +62,7 @@ pub(crate) fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()
         for line in &mut one.lines {
             line.name.clone_from(&title);
         }
-        one.reference = level(probe);
+        one.reference = level(probe, results);
         folder.write_plot(&plot_name(probe), &one.svg().file())?;
     }
     Ok(())
@@ -68,7 +70,7 @@ pub(crate) fn write_plots(folder: &ResultsFolder, probes: &[Probe]) -> Result<()
 
 /// The horizontal line in the plot of a measure: its reference, or else its result, if that is of
 /// every step and not only of the rows of the series.
-fn level(probe: &Probe) -> Option<(f64, String)> {
+fn level(probe: &Probe, results: &Value) -> Option<(f64, String)> {
     let reference = probe.measure.reference;
     let result = match probe.measure.statistic {
         Statistic::End => None,
@@ -76,9 +78,11 @@ fn level(probe: &Probe) -> Option<(f64, String)> {
         Statistic::Smallest => Some("smallest of all steps"),
         Statistic::Mean => Some("mean"),
     };
-    let result = result.map(|name| (probe.result().value, name.to_owned()));
+    let result = result
+        .zip(results[&probe.name]["value"].as_f64())
+        .map(|(name, value)| (value, name.to_owned()));
     let reference = reference.map(|value| (value, "reference".to_owned()));
-    reference.or(result.filter(|(value, _)| value.is_finite()))
+    reference.or(result)
 }
 
 /// The plot of a measure.

@@ -7,6 +7,7 @@ use dem_report::report;
 use dem_results::{ResultsFolder, write_distribution};
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::pictures::{Order, Pictures};
 use super::schedule::OutputSchedule;
@@ -52,7 +53,8 @@ impl End {
         probes: &[Probe],
         pictures: Option<&Pictures>,
     ) -> Result<()> {
-        write_plots(folder, probes)?;
+        let summary: Value = serde_json::from_str(&self.summary).unwrap_or_default();
+        write_plots(folder, probes, &summary["measures"])?;
         if let Some(clusters) = &state.clusters {
             let fragments = Fragments::of(state).unwrap_or_default();
             write_tree(folder, clusters)?;

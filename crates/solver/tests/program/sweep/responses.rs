@@ -202,7 +202,7 @@ fn a_value_is_found() {
     let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
     assert_well_formed(&html);
     assert!(
-        html.contains("<h2>Search</h2>") && html.contains("between 15"),
+        html.contains("<h2>Search</h2>") && html.contains("between bonds.steel.young_modulus = 15"),
         "{html}"
     );
     let svg = fs::read_to_string(bench.path("study-sweep/tip.svg")).unwrap();
