@@ -16,6 +16,8 @@ pub(super) fn plain(page: &str) -> String {
         } else if let Some(row) = line.strip_prefix("| ") {
             text += &entry(row);
         } else {
+            // How the page is made is of no use on a terminal.
+            let line = line.split_once(" is read. ").map_or(line, |(_, rest)| rest);
             text += &wrapped(&words(line), 0);
         }
     }
