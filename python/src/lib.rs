@@ -11,6 +11,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use dem_io::program::set_own_command;
+use dem_io::units::{TIME, quantity};
 use dem_run::cli::Arguments;
 use dem_run::interrupt::Interrupt;
 use dem_scene::read_scene;
@@ -26,6 +27,7 @@ fn _crumble(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(body::read_body, module)?)?;
     module.add_function(wrap_pyfunction!(run, module)?)?;
     module.add_function(wrap_pyfunction!(results_folder, module)?)?;
+    module.add_function(wrap_pyfunction!(time_s, module)?)?;
     module.add_function(wrap_pyfunction!(frames::read_frame, module)?)?;
     module.add_function(wrap_pyfunction!(frames::read_walls, module)?)?;
     module.add_function(wrap_pyfunction!(program, module)?)?;
@@ -61,6 +63,12 @@ fn results_folder(py: Python<'_>, scene: PathBuf, overrides: Vec<String>) -> PyR
         .output
         .and_then(|output| output.folder)
         .unwrap_or_else(by_name))
+}
+
+/// A time in s, from a text with or without a unit.
+#[pyfunction]
+fn time_s(py: Python<'_>, text: &str) -> PyResult<f64> {
+    quantity(text, &TIME).map_err(|error| python_error(py, &error))
 }
 
 /// The program `dem-pack` or `dem-run` with these arguments. `command` is what starts it: a file and

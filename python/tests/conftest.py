@@ -34,6 +34,8 @@ def dropped(template: Path) -> crumble.Results:
     """Its results."""
     with pytest.warns(crumble.DoubtfulResult) as caught:
         results = crumble.run(template / "scene.toml", template / "results")
-    said = [str(one.message) for one in caught]
-    assert said == [f"{template / 'scene.toml'}: {why}" for why in results.verdict.warnings]
+    # One warning with all reasons.
+    reasons = results.verdict.warnings
+    head = f"{template / 'scene.toml'}: doubtful, for {len(reasons)} reasons:"
+    assert [str(one.message) for one in caught] == ["\n- ".join([head, *reasons])]
     return results

@@ -114,13 +114,13 @@ def test_warnings_of_the_report_are_warnings_of_python() -> None:
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({"overlap": 2}, "--overlap: 2 is not at least 0 and below 1"),
-        ({"overlap": -0.5}, "--overlap: -0.5 is not at least 0"),
-        ({"unit": "parsec"}, "--unit: unknown unit 'parsec'; use one of"),
-        ({"threads": 0}, "--threads: 0 is not between 1 and 1024"),
+        ({"overlap": 2}, "overlap: 2 is not at least 0 and below 1"),
+        ({"overlap": -0.5}, "overlap: -0.5 is not at least 0"),
+        ({"unit": "parsec"}, "unit: unknown unit 'parsec'; use one of"),
+        ({"threads": 0}, "threads: 0 is not between 1 and 1024"),
         ({"out": "no-such-folder/body.vtp"}, "there is no folder"),
         ({"out": "body.stl"}, "'.stl' is not the ending of a body"),
-        ({"solid_density": 1500}, "--particle-density"),
+        ({"solid_density": 1500}, "particle_density"),
         ({"seed": -1}, "a seed is a whole number from 0 to"),
     ],
 )
@@ -129,7 +129,9 @@ def test_bad_settings_are_refused_with_the_message_of_the_program(
 ) -> None:
     with pytest.raises(crumble.Error) as caught:
         pack(**settings)
+    # Arguments have their names in Python.
     assert said in str(caught.value)
+    assert "--" not in str(caught.value) + caught.value.place + caught.value.remedy
     assert caught.value.exit_code == 2 or "no folder" in said
 
 

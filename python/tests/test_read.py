@@ -4,6 +4,7 @@ import csv
 import gc
 import math
 import shutil
+import warnings
 import weakref
 from pathlib import Path
 from typing import Any
@@ -29,11 +30,11 @@ def test_tables_hold_every_value_of_the_files(
 ) -> None:
     recwarn.clear()
     dropped = crumble.read(dropped.folder)
-    wanted = ["distribution", "events", "fragment-tree", "fragments", "series"]
+    wanted = ["distribution", "events", "fragment_tree", "fragments", "series"]
     assert dropped.tables == wanted
     for name in wanted:
-        table = getattr(dropped, name.replace("-", "_"))
-        with open(dropped.folder / f"{name}.csv", newline="") as file:
+        table = getattr(dropped, name)
+        with open(dropped.folder / f"{name.replace('_', '-')}.csv", newline="") as file:
             rows = list(csv.reader(file))
         assert list(table.columns) == rows[0] and len(table) == len(rows) - 1 > 0
         for at, column in enumerate(rows[0]):
@@ -43,6 +44,7 @@ def test_tables_hold_every_value_of_the_files(
                 else:
                     assert math.isnan(value) if text in ("", "NaN") else value == float(text)
     assert list(recwarn) == []
+    assert dropped.table("fragment-tree").equals(dropped.table("fragment_tree"))
 
 
 def test_energies_are_the_columns_in_joule(dropped: crumble.Results) -> None:
@@ -116,6 +118,14 @@ def test_frames_are_a_sequence(dropped: crumble.Results) -> None:
     assert [frame.time_s for frame in reversed(some)] == list(some.times_s[::-1])
     with pytest.raises(IndexError):
         frames[31]
+    assert [frames.at(time).time_s for time in ("1.52 ms", 1.52e-3)] == [frames[15].time_s] * 2
+    assert frames.at("-0.05 ms").time_s == 0 and frames.at(3.05e-3).time_s == frames[30].time_s
+    with pytest.raises(crumble.Error, match="time: there are no frames near 0.02 s; .* from 0 s to 0.003 s"):
+        frames.at("20 ms")
+    with pytest.raises(crumble.Error, match="unknown unit 'mm'"):
+        frames.at("5 mm")
+    with pytest.raises(crumble.Error, match="the run has no frames"):
+        frames[:0].at(0)
     assert repr(frames) == "<31 frames>" and "830 particles" in repr(frames[0])
 
 
@@ -141,8 +151,9 @@ bodies.ball = { particles = [[0, 0, 0, 0.01]], material = "stone" }
 def test_what_is_no_folder_of_a_run_is_refused(tmp_path: Path) -> None:
     with pytest.raises(crumble.Error, match="this is not the folder of a run"):
         crumble.read(tmp_path)
-    with pytest.raises(crumble.Error, match="this is not the folder of a run"):
+    with pytest.raises(crumble.Error, match="none: there is no summary.json in it, so") as caught:
         crumble.read(tmp_path / "none")
+    assert caught.value.place == str(tmp_path / "none")
 
 
 def test_damaged_frames_are_refused(dropped: crumble.Results, tmp_path: Path) -> None:
@@ -166,3 +177,15 @@ def test_a_stored_body_is_read(dropped: crumble.Results) -> None:
     assert body.bonds.max() < len(body.radius_m)
     with pytest.raises(crumble.Error, match="this is a shape, not a body"):
         crumble.read_body(ROOT / "data" / "shapes" / "rock.stl")
+
+
+def test_numbers_of_things_are_whole(template: Path, tmp_path: Path) -> None:
+    count = {"of": "fragments", "quantity": "count"}
+    measures = {"pieces": count, "mean": {**count, "statistic": "mean"}}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", crumble.DoubtfulResult)
+        results = crumble.run(
+            template / "scene.toml", tmp_path / "out", run={"end_time": "0.01 ms"}, measures=measures
+        )
+    assert repr(results.measures["pieces"]) == "1" and repr(results.measures["mean"]) == "1.0"
+    assert isinstance(results.measures["push"], float)

@@ -14,6 +14,7 @@ import pytest
 from conftest import ROOT, RUST
 
 import crumble
+from crumble._errors import in_python
 from crumble._set import overrides, toml
 
 SPIN = ROOT / "data" / "scenes" / "spinning-bar.toml"
@@ -83,7 +84,7 @@ def test_the_folder_is_that_of_the_scene_or_named_after_it(
 
 def test_results_are_not_overwritten_unless_asked(tmp_path: Path) -> None:
     first = crumble.run(SPIN, tmp_path / "spin", run={"end_time": "1 ms"})
-    with pytest.raises(crumble.Error, match="--force") as caught:
+    with pytest.raises(crumble.Error, match="force=True.*resume=True") as caught:
         crumble.run(SPIN, tmp_path / "spin", run={"end_time": "1 ms"})
     assert caught.value.exit_code == 2
     second = crumble.run(SPIN, tmp_path / "spin", run={"end_time": "2 ms"}, force=True)
@@ -94,12 +95,13 @@ def test_results_are_not_overwritten_unless_asked(tmp_path: Path) -> None:
     ("settings", "said"),
     [
         ({"run": {"end_tim": "1 s"}}, "did you mean"),
+        ({"run": {"end_tim": "1 s"}}, "set run.end_tim="),
         ({"run": {"end_time": "1,5 s"}}, "write a decimal point"),
         ({"run": {"end_time": "5 mm"}}, "unknown unit 'mm'; use one of ns, us, ms, s, min, h"),
         ({"body": {"nobody": "x.vtp"}}, "the scene has no body 'nobody'"),
-        ({"threads": 2000}, "--threads: 2000 is not between 1 and 1024"),
+        ({"threads": 2000}, "threads: 2000 is not between 1 and 1024"),
         ({"resume": True}, "there is no such folder, so no run to continue"),
-        ({"resume": True, "force": True}, "cannot be used with"),
+        ({"resume": True, "force": True}, "'resume=True' cannot be used with 'force=True'"),
     ],
 )
 def test_bad_scenes_are_refused_with_the_message_of_the_program(
@@ -108,6 +110,7 @@ def test_bad_scenes_are_refused_with_the_message_of_the_program(
     with pytest.raises(crumble.Error) as caught:
         crumble.run(SPIN, tmp_path / "out", **settings)
     assert said in str(caught.value) and caught.value.exit_code == 2
+    assert "--" not in str(caught.value)
     with pytest.raises(crumble.Error):
         crumble.run(tmp_path / "none.toml", tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
@@ -194,3 +197,21 @@ def test_check_is_a_dry_run(template: Path) -> None:
     assert usual["particles"] == 830 and usual["warnings"]
     with pytest.raises(crumble.Error, match="end_tim"):
         crumble.check(template / "scene.toml", run={"end_tim": 1})
+
+
+def test_options_have_their_names_in_python(dropped: crumble.Results) -> None:
+    for theirs, ours in [
+        ("--set run.end_time=1: a; use --force, or --resume", "set run.end_time=1: a; use force=True, or resume=True"),
+        ("--bond-range: 9 is above 2 (--fill-holes)", "bond_range: 9 is above 2 (fill_holes=True)"),
+        ("name another folder with --output", "name another folder with out"),
+        ("a--b/--force.toml: 1--2", "a--b/--force.toml: 1--2"),
+    ]:
+        assert in_python(theirs) == ours
+    # Commands keep the words of the programs.
+    with pytest.raises(crumble.Error, match="--frame 99"):
+        crumble.command("dem-run", "fragment", dropped.folder, "--frame", "99", "--id", "1")
+
+
+def test_errors_and_warnings_are_named_as_they_are_imported() -> None:
+    assert f"{crumble.Error.__module__}.{crumble.Error.__qualname__}" == "crumble.Error"
+    assert crumble.DoubtfulResult.__module__ == "crumble"

@@ -229,9 +229,15 @@ class Dump:
                 count = int(next(lines))
             elif line.startswith(("ITEM: ATOMS", "ITEM: ENTRIES")):
                 columns = line.split()[2:]
-                rows = [dict(zip(columns, map(float, next(lines).split()))) for _ in range(count)]
+                rows = [self.row(columns, next(lines)) for _ in range(count)]
                 self.times.append(time)
                 self.rows.append({int(row["id"]): row for row in rows} if "id" in columns else rows)
+
+    @staticmethod
+    def row(columns, line):
+        """The numbers of a row; `element` is a name."""
+        words = zip(columns, line.split())
+        return {column: word if column == "element" else float(word) for column, word in words}
 
     def of(self, atom, column):
         return [frame[atom][column] for frame in self.rows]

@@ -105,7 +105,8 @@ def check_ovito(program, results, folder):
     from ovito.modifiers import LoadTrajectoryModifier
 
     dump, bonds = os.path.join(folder, "frames.dump"), os.path.join(folder, "bonds.dump")
-    subprocess.run([program, "export", results, "--to", "lammps-dump", "-o", dump, "--bonds", bonds, "-q"], check=True)
+    export = [program, "export", results, "--to", "lammps-dump", "-o", dump, "--bonds", bonds, "-q"]
+    subprocess.run([*export, "--walls", os.path.join(folder, "walls")], check=True)
     pipeline = import_file(dump)
     times = index(results)
     same(pipeline.num_frames, len(times), "number of frames")
@@ -122,9 +123,12 @@ def check_ovito(program, results, folder):
             close(data.particles["Radius"][n], radii.GetValue(i), 1e-6, "radius")
             for k in range(3):
                 close(data.particles.positions[n][k], frame.GetPoint(i)[k], 1e-6, "position")
-    # Bonds: the dump of local data as a trajectory of bonds.
+            kind = data.particles.particle_types.type_by_id(int(data.particles.particle_types[n])).name
+            bodies = names(frame.GetFieldData())["body_names"]
+            same(kind, bodies.GetValue(int(names(frame.GetPointData())["body"].GetValue(i))), "name of a type")
+    # Bonds: the dump of local data as a trajectory of bonds. The first column is not used.
     modifier = LoadTrajectoryModifier()
-    columns = [None, "Bond Type", "Particle Identifiers.1", "Particle Identifiers.2"]
+    columns = ["", "Bond Type", "Particle Identifiers.1", "Particle Identifiers.2", "Width"]
     modifier.source.load(bonds, columns=columns)
     pipeline.modifiers.append(modifier)
     number, (_, parts) = len(times) - 1, times[-1]
@@ -133,6 +137,19 @@ def check_ovito(program, results, folder):
     intact = sum(broken.GetValue(i) == 0 for i in range(frame.GetNumberOfLines())) if broken else 0
     data = pipeline.compute(number)
     same(data.particles.bonds.count if data.particles.bonds else 0, intact, "number of bonds")
+    if intact:
+        unbroken = [i for i in range(frame.GetNumberOfLines()) if broken.GetValue(i) == 0]
+        ids, radii = names(frame.GetPointData())["particle_id"], names(frame.GetCellData())["bond_radius_m"]
+        for n, i in enumerate(unbroken):
+            ends = [frame.GetCell(i).GetPointId(end) for end in (0, 1)]
+            wanted = [int(ids.GetValue(end)) + 1 for end in ends]
+            found = [int(data.particles.identifiers[end]) for end in data.particles.bonds.topology[n]]
+            same(sorted(found), sorted(wanted), "ends of a bond")
+            close(data.particles.bonds["Width"][n], 2 * radii.GetValue(i), 1e-6, "width of a bond")
+    walls = import_file(os.path.join(folder, "walls", "walls_*.stl"))
+    mesh = walls.compute(walls.num_frames - 1).objects[-1]
+    files = [path for part, path in parts.items() if part > 0]
+    same(mesh.face_count, sum(read_vtk(path).GetNumberOfPolys() for path in files), "triangles of walls")
     version = ".".join(map(str, ovito.version))
     print(f"OVITO {version}: {pipeline.num_frames} frames, {data.particles.count} particles and {intact} bonds at the end")
 

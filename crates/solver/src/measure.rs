@@ -150,8 +150,8 @@ pub fn place_watches(probes: &[Probe], state: &mut State) {
     state.watches = watches;
 }
 
-/// Evaluates all probes between a kick and the drift after it, and records their values. Returns
-/// one value for each.
+/// Evaluates all probes between the two halves of a step, `interact` and `advance`, and records
+/// their values. Returns one value for each.
 pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Vec<f64> {
     let needs_motions = |g: &Probe| {
         matches!(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from crumble import _crumble
 from crumble._arrays import array
-from crumble._errors import DoubtfulResult
+from crumble._errors import arguments_of_python, warn_of_doubts
 from crumble._progress import Progress, shown
 
 if TYPE_CHECKING:
@@ -126,8 +125,8 @@ def pack(
     it the body is in memory only. `progress=True` shows the progress on standard error; a function
     is called with the fraction done and the name of the stage.
 
-    Raises `Error` with the message of the program, warns `DoubtfulResult` for each warning of the
-    report. Ctrl-C raises `KeyboardInterrupt` and leaves no file.
+    Raises `Error` with the message of the program, warns `DoubtfulResult` with the warnings of
+    the report. Ctrl-C raises `KeyboardInterrupt` and leaves no file.
     """
     options: dict[str, object] = {
         "diameter": diameter,
@@ -149,11 +148,10 @@ def pack(
     ]
     if fill_holes:
         arguments.append("--fill-holes")
-    with shown(progress) as tell:
+    with arguments_of_python(), shown(progress) as tell:
         stored, report = _crumble.pack([*arguments, "--", os.fspath(stl)], out, threads, tell)
     body = Body(stored, None if out is None else Path(out), json.loads(report))
-    for warning in body.warnings:
-        warnings.warn(f"{os.fspath(stl)}: {warning}", DoubtfulResult, stacklevel=2)
+    warn_of_doubts(os.fspath(stl), body.warnings)
     return body
 
 

@@ -115,6 +115,26 @@ class Frames(Sequence[Frame]):
 
         return np.array([time_s for time_s, _ in self._files], dtype=np.float64)
 
+    def at(self, time: str | float) -> Frame:
+        """The frame nearest to a time: a text with a unit, such as "3 ms", or a number of seconds.
+
+        Raises `Error` if the time is further beyond the frames than they are apart.
+        """
+        import numpy as np
+
+        time_s = _crumble.time_s(time) if isinstance(time, str) else float(time)
+        times_s = self.times_s
+        if not len(times_s):
+            raise Error("time: the run has no frames", 2, "time", "the run has no frames")
+        first_s, last_s = float(times_s[0]), float(times_s[-1])
+        every_s = (last_s - first_s) / max(1, len(times_s) - 1)
+        if len(times_s) > 1 and not first_s - every_s <= time_s <= last_s + every_s:
+            problem = f"there are no frames near {time_s:.6g} s"
+            remedy = f"the run has frames from {first_s:.6g} s to {last_s:.6g} s"
+            raise Error(f"time: {problem}; {remedy}", 2, "time", problem, remedy)
+        nearest = int(np.argmin(np.abs(times_s - time_s)))
+        return self[nearest]
+
     def __len__(self) -> int:
         return len(self._files)
 

@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+COUNTS = ("count", "broken_bonds")
+"""Quantities that are whole numbers at one time."""
+
+
 @dataclass(frozen=True)
 class Verdict:
     """Whether a result can be trusted."""
@@ -42,7 +46,9 @@ class Results:
         try:
             text = (self.folder / "summary.json").read_text(encoding="utf-8")
         except OSError as problem:
-            raise self._missing("summary.json", "this is not the folder of a run") from problem
+            why = "there is no summary.json in it, so this is not the folder of a run"
+            place = str(self.folder)
+            raise Error(f"{place}: {why}", 2, place, why) from problem
         summary: dict[str, Any] = json.loads(text)
         return summary
 
@@ -58,21 +64,34 @@ class Results:
 
     @property
     def measures(self) -> dict[str, float | None]:
-        """The value of each measure of the scene. None: it has no value."""
+        """The value of each measure of the scene: an `int` for a number of fragments or bonds at
+        one time. None: it has no value.
+        """
         measures = self.summary.get("measures") or {}
-        return {name: measure["value"] for name, measure in measures.items()}
+        return {name: self._whole(name, measure["value"]) for name, measure in measures.items()}
+
+    def _whole(self, name: str, value: float | None) -> float | None:
+        """A number of things at one time as an `int`."""
+        scene = self.summary["inputs"]["scene"]
+        is_count = scene.get(f"measures.{name}.quantity") in COUNTS
+        is_mean = scene.get(f"measures.{name}.statistic") == "mean"
+        return int(value) if value is not None and is_count and not is_mean else value
 
     @property
     def tables(self) -> list[str]:
-        """The tables that the run wrote, such as `series` for `series.csv`."""
-        return sorted(file.stem for file in self.folder.glob("*.csv"))
+        """The tables that the run wrote, by the names of the attributes: `series` for `series.csv`,
+        `fragment_tree` for `fragment-tree.csv`.
+        """
+        return sorted(file.stem.replace("-", "_") for file in self.folder.glob("*.csv"))
 
     def table(self, name: str) -> pd.DataFrame:
-        """`NAME.csv`."""
+        """`NAME.csv`, with `-` for `_` where there is no other such file."""
         # Imported here, so that the programs start without it.
         import pandas as pd
 
         file = self.folder / f"{name}.csv"
+        if not file.is_file():
+            file = file.with_stem(name.replace("_", "-"))
         if not file.is_file():
             have = ", ".join(self.tables) or "none"
             raise self._missing(file.name, f"there is no such table; the run wrote {have}")

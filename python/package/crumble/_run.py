@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Union
 
 from crumble import _crumble
 from crumble._body import Body
-from crumble._errors import DoubtfulResult
+from crumble._errors import arguments_of_python, warn_of_doubts
 from crumble._programs import command
 from crumble._progress import Progress, shown
 from crumble._results import Results
@@ -51,23 +50,23 @@ def run(
     accepts a time step above the largest stable one. `progress=True` shows the progress on
     standard error; a function is called with the fraction done and a text.
 
-    Raises `Error` with the message of the program; warns `DoubtfulResult` where the verdict is
-    doubtful. Ctrl-C stops the run after its present step, writes its results and a checkpoint,
+    Raises `Error` with the message of the program; warns `DoubtfulResult` with all
+    reasons where the verdict is doubtful. Ctrl-C stops the run after its present step, writes its results and a checkpoint,
     and raises `KeyboardInterrupt`; `read` opens the folder, `resume=True` goes on.
     """
     changes = overrides(set, tables)
-    folder = os.fspath(out) if out is not None else _crumble.results_folder(scene, changes)
+    with arguments_of_python():
+        folder = os.fspath(out) if out is not None else _crumble.results_folder(scene, changes)
     arguments = [f"--output={os.fspath(folder)}", "--quiet"]
     for given, name in [(resume, "--resume"), (force, "--force")]:
         if given:
             arguments.append(name)
     arguments += _scene_arguments(changes, body, material, threads, force_step)
-    with shown(progress) as tell:
+    with arguments_of_python(), shown(progress) as tell:
         _crumble.run([*arguments, "--", os.fspath(scene)], tell)
     results = Results(Path(folder))
     if not results.verdict.sound:
-        for warning in results.verdict.warnings:
-            warnings.warn(f"{os.fspath(scene)}: {warning}", DoubtfulResult, stacklevel=2)
+        warn_of_doubts(os.fspath(scene), results.verdict.warnings)
     return results
 
 
@@ -88,7 +87,8 @@ def check(
     """
     changes = overrides(set, tables)
     arguments = _scene_arguments(changes, body, material, threads, force_step)
-    said = command("dem-run", "check", "--json", *arguments, "--", scene)
+    with arguments_of_python():
+        said = command("dem-run", "check", "--json", *arguments, "--", scene)
     plan: dict[str, Any] = json.loads(said)
     return plan
 

@@ -21,6 +21,8 @@ pub struct StoredParticles {
     pub fragments: Option<Vec<u32>>,
     /// The two particles of each bond.
     pub bonds: Vec<[u32; 2]>,
+    /// Radius of each bond, m.
+    pub bond_radii: Vec<f64>,
     /// For each bond, true if it is broken.
     pub broken: Vec<bool>,
 }

@@ -63,9 +63,13 @@ impl Frame {
         self.corner + self.size * local
     }
 
-    /// A local point for a message, in units of the file.
+    /// A local point for a message, in units of the file. What rounding leaves of a zero is 0.
     pub(super) fn show(&self, local: Point) -> String {
-        let [x, y, z] = <[f64; 3]>::from(self.in_file(local)).map(|x| significant(x, 9));
+        let shown = |x: f64| match x.abs() < 1e-9 * self.size {
+            true => "0".to_owned(),
+            false => significant(x, 9),
+        };
+        let [x, y, z] = <[f64; 3]>::from(self.in_file(local)).map(shown);
         format!("({x}, {y}, {z})")
     }
 
@@ -125,6 +129,16 @@ mod tests {
         let far = Frame::around(&[far_facet], 1e-3).unwrap();
         assert_eq!(near.to_local(vec![facet]), far.to_local(vec![far_facet]));
         assert_eq!((far.corner, far.size), ([1e6; 3].into(), 16.0));
+    }
+
+    #[test]
+    fn rounding_errors_of_zero_are_shown_as_zero() {
+        let frame =
+            Frame::around(&[[[-6.0, -6.0, 0.0], [6.0; 3], [6.0, -6.0, 0.0]]], 1e-3).unwrap();
+        let almost = [0.75, 0.75 + f64::EPSILON, 0.625].into();
+        assert_ne!(frame.in_file(almost)[1], 0.0);
+        assert_eq!(frame.show(almost), "(0, 0, 5)");
+        assert_eq!(frame.show([0.75, 0.751, 0.0].into()), "(0, 0.008, 0)");
     }
 
     #[test]

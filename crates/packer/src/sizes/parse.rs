@@ -233,7 +233,7 @@ fn same_notation(texts: &[&str]) -> Result<()> {
     Err(Diagnostic::input(
         "",
         format!(
-            "'{}' mixes numbers with and without a unit, and a plain number is metres",
+            "'{}' mix numbers with and without a unit, and a plain number is metres",
             texts.join("' and '")
         ),
         "write a unit at each of them, such as 2mm..3mm",

@@ -54,8 +54,8 @@ fn bad_sizes_name_value_limit_and_remedy() {
         ("1e400mm", "not a finite", ""),
         ("1e300mm", "outside", "check the unit"),
         ("2 furlong", "unknown unit 'furlong'", "use one of"),
-        ("2..3mm", "mixes numbers", "unit at each"),
-        ("2mm..3", "mixes numbers", "unit at each"),
+        ("2..3mm", "mix numbers", "unit at each"),
+        ("2mm..3", "mix numbers", "unit at each"),
         (
             "gauss:2mm,1mm",
             "'gauss' is not a distribution",

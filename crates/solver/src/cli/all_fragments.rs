@@ -1,6 +1,5 @@
 //! `dem-run fragment --all`: every fragment of a frame as a file of its own.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use dem_io::body::{StoredFrame, vtp};
@@ -12,6 +11,7 @@ use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 
 use super::fragment_body::fragment_body;
+use super::new_folder::NewFolder;
 use crate::shape::hull::{SMALLER_BY, convex_hull};
 
 /// Millimetres in a metre: STL files are in millimetres, as dem-pack and scenes read them.
@@ -30,13 +30,16 @@ pub(super) fn write_all(
     quiet: bool,
 ) -> Result<()> {
     let place = output.display().to_string();
-    let is_new = make_empty_folder(output)?;
-    let written = write_files(frame, path, output, as_hulls);
-    if written.is_err() && is_new {
-        // The user must see the problem itself.
-        let _ = fs::remove_dir(output);
+    if output == Path::new("-") {
+        return Err(Diagnostic::input(
+            "--all",
+            "no folder is named",
+            "add --output FOLDER",
+        ));
     }
-    let count = written?;
+    let folder = NewFolder::make(output, "--output")?;
+    let count = write_files(frame, path, output, as_hulls)?;
+    folder.keep();
     if quiet {
         return Ok(());
     }
@@ -54,34 +57,6 @@ pub(super) fn write_all(
             visible(&place)
         )
     })
-}
-
-/// Makes a folder, or takes an empty one. Whether it is new.
-fn make_empty_folder(folder: &Path) -> Result<bool> {
-    let refused = |problem: &str| {
-        let remedy = "name a new folder with --output";
-        Err(Diagnostic::input(
-            folder.display().to_string(),
-            problem,
-            remedy,
-        ))
-    };
-    if folder == Path::new("-") {
-        return Err(Diagnostic::input(
-            "--all",
-            "no folder is named",
-            "add --output FOLDER",
-        ));
-    }
-    if folder.exists() {
-        return match fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
-            Ok(true) => Ok(false),
-            Ok(false) => refused("this folder is not empty"),
-            Err(_) => refused("this is not a folder that can be read"),
-        };
-    }
-    fs::create_dir(folder).map_err(|error| dem_io::safe_write::explain(folder, &error))?;
-    Ok(true)
 }
 
 /// Writes the files, and returns their number.

@@ -110,7 +110,9 @@ pub(super) enum Command {
     )]
     New(NewArguments),
     /// Print the keys of scenes and studies: type, unit, default, limits and meaning
-    #[command(after_help = "Examples:\n  dem-run keys bodies\n  dem-run keys study")]
+    #[command(
+        after_help = "Examples:\n  dem-run keys bodies\n  dem-run keys drop\n  dem-run keys study"
+    )]
     Keys(KeysArguments),
     /// Write a fragment of a run as a body: its particles as they stand in a frame, and its
     /// unbroken bonds
@@ -123,9 +125,9 @@ pub(super) enum Command {
     Fragment(FragmentArguments),
     /// Write all frames of a run as one file for another program, or a scene for LAMMPS
     #[command(
-        after_help = "A LAMMPS dump opens in OVITO: particles with id, type (the body), radius, position, velocity and fragment; with --bonds, the unbroken bonds \
-                      as a dump of local data.\n\
-                      Example:\n  dem-run export results --to lammps-dump -o frames.dump --bonds bonds.dump\n  \
+        after_help = "A LAMMPS dump opens in OVITO: particles with id, type (named after the body), radius, position, velocity and fragment; with --bonds, the unbroken bonds \
+                      as a dump of local data; with --walls, the walls as STL.\n\
+                      Example:\n  dem-run export results --to lammps-dump -o frames.dump --bonds bonds.dump --walls walls\n  \
                        dem-run export lammps data/scenes/cantilever.toml -o bar"
     )]
     Export(ExportArguments),

@@ -5,10 +5,12 @@ use dem_io::standard_output::write_standard_output;
 use dem_io::{Diagnostic, Result};
 use dem_scene::reference;
 
+use super::keys_text::plain;
+
 #[derive(Debug, Args)]
 pub(super) struct KeysArguments {
-    /// A table of a scene, such as bodies or run; study for the keys of a study. All tables of a
-    /// scene unless given
+    /// A table of a scene or a study, such as bodies, drop or find; study for all keys of a study.
+    /// All tables of a scene unless given
     #[arg(value_name = "TABLE")]
     table: Option<String>,
 }
@@ -18,45 +20,71 @@ pub(super) struct KeysArguments {
 /// # Errors
 /// There is no such table.
 pub(super) fn keys(arguments: &KeysArguments) -> Result<()> {
-    let wanted = arguments.table.as_deref();
-    let file = match wanted {
-        Some("study") => "study-keys.md",
-        _ => "scene-keys.md",
-    };
     let files = reference::files();
-    let page = files.iter().find(|(name, _)| *name == file);
-    let page = page.map_or("", |(_, text)| text.as_str());
-    let text = match wanted {
-        None | Some("study" | "scene") => page.to_owned(),
-        Some(table) => sections(page, table)?,
+    let page = |name: &str| {
+        let page = files.iter().find(|(file, _)| *file == name);
+        page.map_or("", |(_, text)| text.as_str())
     };
-    write_standard_output(|out| out.write_all(text.as_bytes()))
+    let (scene, study) = (page("scene-keys.md"), page("study-keys.md"));
+    let markdown = match arguments.table.as_deref() {
+        None | Some("scene") => scene.to_owned(),
+        Some("study") => study.to_owned(),
+        Some(table) => sections(scene, table)
+            .or_else(|| sections(study, table))
+            .ok_or_else(|| no_table(table, scene, study))?,
+    };
+    write_standard_output(|out| out.write_all(plain(&markdown).as_bytes()))
 }
 
-/// The section of `[table]` or `[table.NAME]`, and those of the tables within it.
-fn sections(page: &str, table: &str) -> Result<String> {
-    let bare = table.trim_matches(['[', ']']);
-    let bare = bare.split('.').next().unwrap_or_default();
+/// The sections of a page, each with its heading: `[bodies.NAME]`, or `Drop` for a table within a
+/// table, which follows it.
+fn headed(page: &str) -> impl Iterator<Item = (&str, &str)> {
+    let sections = page.split("\n## ").skip(1);
+    let headed = sections.map(|section| {
+        let heading = section.lines().next().unwrap_or_default();
+        (heading.trim_matches('`'), section.trim_end())
+    });
+    headed.filter(|(heading, _)| *heading != "Units")
+}
+
+/// `bodies` for `[bodies.NAME]`, and as it is for others.
+fn bare(heading: &str) -> &str {
+    let inner = heading.trim_matches(['[', ']']);
+    inner.split('.').next().unwrap_or_default()
+}
+
+/// The section of `[table]` or `[table.NAME]`, and those of the tables within it; or that of a table
+/// within another.
+fn sections(page: &str, table: &str) -> Option<String> {
+    let wanted = bare(table);
     let mut text = String::new();
-    let mut names = Vec::new();
-    let mut is_wanted = false;
-    for section in page.split("\n## ").skip(1) {
-        // Those of tables within a table follow it, with a plain heading.
-        if let Some(name) = section.strip_prefix("`[") {
-            let name = name.split(['.', ']']).next().unwrap_or_default();
-            names.push(name);
-            is_wanted = name == bare;
+    let mut is_within = false;
+    for (heading, section) in headed(page) {
+        if heading.starts_with('[') {
+            is_within = bare(heading) == wanted;
         }
-        if is_wanted && !section.starts_with("Units") {
-            text += &format!("## {}\n\n", section.trim_end());
+        if is_within || heading.to_lowercase() == wanted.to_lowercase() {
+            let blank = if text.is_empty() { "" } else { "\n" };
+            text += &format!("{blank}## {section}\n");
         }
     }
-    if text.is_empty() {
-        return Err(Diagnostic::input(
-            format!("dem-run keys {table}"),
-            format!("a scene has no table '{bare}'"),
-            format!("use one of {}, or study", names.join(", ")),
-        ));
-    }
-    Ok(text)
+    (!text.is_empty()).then_some(text)
+}
+
+fn no_table(table: &str, scene: &str, study: &str) -> Diagnostic {
+    let names = |page| {
+        let outer = headed(page).filter(|(heading, _)| heading.starts_with('['));
+        outer
+            .map(|(heading, _)| bare(heading))
+            .collect::<Vec<&str>>()
+    };
+    Diagnostic::input(
+        format!("dem-run keys {table}"),
+        format!("a scene has no table '{}'", bare(table)),
+        format!(
+            "use one of {}, or of a study {}; study prints all of a study",
+            names(scene).join(", "),
+            names(study).join(", ")
+        ),
+    )
 }

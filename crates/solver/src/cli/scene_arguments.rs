@@ -29,7 +29,7 @@ pub(super) struct SceneArguments {
     /// Number of threads; all cores unless given. The results are the same for any number
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
-    /// Print it as JSON
+    /// Print the result as JSON
     #[arg(long)]
     pub(super) json: bool,
 }

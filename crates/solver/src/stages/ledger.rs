@@ -296,7 +296,8 @@ fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3
     [[fx, fy, fz], [mx, my, mz]]
 }
 
-/// The ledger between a kick and the drift after it. Records the largest energies and momenta.
+/// The ledger between the two halves of a step, `interact` and `advance`. Records the largest
+/// energies and momenta.
 pub fn balance(state: &mut State) -> Balance {
     let motions = synchronous_motions(state);
     let p = &state.particles;

@@ -5,8 +5,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use dem_io::body::{read_frame, read_particles};
+use dem_io::body::{read_frame, read_particles, read_walls};
 use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_io::units::significant;
+use dem_results::folder::walls_in;
 use nalgebra::Vector3;
 
 use super::burst;
@@ -176,7 +178,7 @@ fn nothing_is_written_where_something_is() {
 }
 
 /// A section of a dump: time, timestep, columns and rows.
-type Section = (f64, usize, Vec<String>, Vec<Vec<f64>>);
+type Section = (f64, usize, Vec<String>, Vec<Vec<String>>);
 
 fn sections(path: &Path) -> Vec<Section> {
     let text = fs::read_to_string(path).unwrap();
@@ -199,7 +201,7 @@ fn sections(path: &Path) -> Vec<Section> {
             .skip(2)
             .map(str::to_owned)
             .collect();
-        let row = |line: &str| line.split(' ').map(|word| word.parse().unwrap()).collect();
+        let row = |line: &str| line.split(' ').map(str::to_owned).collect();
         let rows = lines.by_ref().take(count).map(row).collect();
         sections.push((time_s, step, columns, rows));
     }
@@ -220,18 +222,20 @@ fn a_dump_has_every_particle_and_bond_of_every_frame() {
     ];
     let said = good(here, &[&["export", "out"], &options[..]].concat());
     assert!(said.contains("frames -> frames.dump, bonds.dump"), "{said}");
+    let number = |word: &String| word.parse::<f64>().unwrap();
     let particles = sections(&here.join("frames.dump"));
     let bonds = sections(&here.join("bonds.dump"));
     assert_eq!(particles.len(), bonds.len());
     assert!(particles.len() > 5);
     let mut broken = 0;
-    for (number, (time_s, step, columns, rows)) in particles.iter().enumerate() {
-        let frame = read_particles(&folder.frame(number)).unwrap();
+    let mut thinnest_m = f64::INFINITY;
+    for (at, (time_s, step, columns, rows)) in particles.iter().enumerate() {
+        let frame = read_particles(&folder.frame(at)).unwrap();
         assert_eq!(
             columns.join(" "),
-            "id type radius x y z vx vy vz body fragment_id"
+            "id type element radius x y z vx vy vz body fragment_id"
         );
-        assert_eq!((*time_s, *step), (frame.time_s, number));
+        assert_eq!((*time_s, *step), (frame.time_s, at));
         assert_eq!(rows.len(), frame.positions.len());
         let mut place_of: BTreeMap<u64, [f64; 3]> = BTreeMap::new();
         for (i, row) in rows.iter().enumerate() {
@@ -253,18 +257,25 @@ fn a_dump_has_every_particle_and_bond_of_every_frame() {
                 body,
                 fragment,
             ];
-            assert_eq!(row[..], wanted);
-            place_of.insert(row[0] as u64, [x, y, z]);
+            let mut numbers = row.clone();
+            let name = numbers.remove(2);
+            assert_eq!(name, frame.body_names[frame.bodies[i] as usize]);
+            assert_eq!(numbers.iter().map(number).collect::<Vec<f64>>(), wanted);
+            place_of.insert(u64::from(frame.ids[i] + 1), [x, y, z]);
         }
         assert_eq!(place_of.len(), rows.len(), "an id occurs twice");
-        let (bond_time_s, _, columns, rows) = &bonds[number];
+        let (bond_time_s, _, columns, rows) = &bonds[at];
         assert_eq!(bond_time_s, time_s);
-        assert_eq!(columns.join(" "), "index btype batom1 batom2");
-        let whole = frame.broken.iter().filter(|broken| !**broken).count();
-        assert_eq!(rows.len(), whole);
-        broken = frame.broken.len() - whole;
-        for row in rows {
-            let [a, b] = [2, 3].map(|k| Vector3::from(place_of[&(row[k] as u64)]));
+        assert_eq!(columns.join(" "), "index btype batom1 batom2 width_m");
+        let unbroken: Vec<usize> = (0..frame.broken.len())
+            .filter(|&bond| !frame.broken[bond])
+            .collect();
+        assert_eq!(rows.len(), unbroken.len());
+        broken = frame.broken.len() - unbroken.len();
+        for (row, &bond) in rows.iter().zip(&unbroken) {
+            assert_eq!(number(&row[4]), 2.0 * frame.bond_radii[bond]);
+            thinnest_m = thinnest_m.min(number(&row[4]));
+            let [a, b] = [2, 3].map(|k| Vector3::from(place_of[&row[k].parse().unwrap()]));
             assert!(
                 (a - b).norm() < 4e-3,
                 "bonded particles are near each other"
@@ -272,6 +283,11 @@ fn a_dump_has_every_particle_and_bond_of_every_frame() {
         }
     }
     assert!(broken > 5);
+    let width = significant(thinnest_m, 2);
+    assert!(
+        said.contains(&format!("or set the width of bonds to {width} (m)")),
+        "{said}"
+    );
     let body_names = read_particles(&folder.frame(0)).unwrap().body_names;
     assert!(body_names.is_sorted() && body_names.len() == 2);
     for (arguments, problem) in [
@@ -306,4 +322,97 @@ fn a_dump_has_every_particle_and_bond_of_every_frame() {
         said.contains("frame_000002.vtp") && !here.join("x.dump").exists(),
         "{said}"
     );
+}
+
+/// A ball above a floor, and a lid that moves if asked for: two frames.
+const BOXED: &str = r#"version = 1
+run = { end_time = "1 ms" }
+materials.stone = { density = 2600, young_modulus = "1 GPa" }
+contacts.stone-stone = { law = "hertz-mindlin", restitution = 0.5, friction = 0.3 }
+bodies.ball = { particles = [[0, 0, 0.02, 0.01]], material = "stone" }
+walls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = "stone" }
+walls.lid = { box = { min = [-0.02, -0.02, 0.045], max = [0.02, 0.02, 0.055] }, material = "stone" }
+output = { frames = "0.5 ms" }
+"#;
+
+#[test]
+fn walls_are_those_of_the_frames() {
+    let parent = tempfile::tempdir().unwrap();
+    let here = parent.path();
+    fs::write(here.join("scene.toml"), BOXED).unwrap();
+    let export = |results: &str, walls: &str| {
+        let fixed = ["--to", "lammps-dump", "-o", "frames.dump", "--walls"];
+        good(here, &[&["export", results][..], &fixed, &[walls]].concat())
+    };
+    let names = |folder: &str| {
+        let entries = fs::read_dir(here.join(folder)).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    good(here, &["scene.toml", "--output", "still", "-q"]);
+    assert!(export("still", "fixed").contains("3 frames -> frames.dump, fixed"));
+    assert_eq!(names("fixed"), ["walls_000000.stl"]);
+    let moving = ["--set", "walls.lid.velocity=[0, 0, -1]"];
+    good(
+        here,
+        &[&["scene.toml", "--output", "out", "-q"][..], &moving].concat(),
+    );
+    export("out", "walls");
+    assert_eq!(
+        names("walls"),
+        ["walls_000000.stl", "walls_000001.stl", "walls_000002.stl"]
+    );
+    let mut lowest_m = Vec::new();
+    for number in 0..3 {
+        let walls = read_walls(&walls_in(&here.join("out"), number)).unwrap();
+        let corner = |point: u32| Vector3::from(walls.points_m[point as usize]);
+        let wanted: Vec<[Vector3<f64>; 3]> =
+            walls.triangles.iter().map(|t| t.map(corner)).collect();
+        let found = facets(&here.join(format!("walls/walls_{number:06}.stl")));
+        assert_eq!(found, wanted, "frame {number}");
+        assert!(wanted.len() > 12);
+        let lid = found
+            .iter()
+            .flatten()
+            .map(|corner| corner.z)
+            .filter(|z| *z > 0.01);
+        lowest_m.push(lid.fold(f64::INFINITY, f64::min));
+    }
+    // In metres: the lid moves by 0.5 mm from frame to frame.
+    for (number, z) in lowest_m.iter().enumerate() {
+        assert!(
+            (z - 0.045 + 5e-4 * number as f64).abs() < 1e-6,
+            "{lowest_m:?}"
+        );
+    }
+}
+
+#[test]
+fn walls_that_cannot_be_exported_leave_nothing() {
+    let (parent, ..) = burst();
+    let here = parent.path();
+    fs::create_dir(here.join("full")).unwrap();
+    fs::write(here.join("full/mine"), "").unwrap();
+    for (walls, problem) in [
+        ("walls", "out: its frames have no walls; leave out --walls"),
+        (
+            "full",
+            "full: this folder is not empty; name a new folder with --walls",
+        ),
+    ] {
+        let words = [
+            "export",
+            "out",
+            "--to",
+            "lammps-dump",
+            "-o",
+            "x.dump",
+            "--walls",
+            walls,
+        ];
+        let said = bad(here, &words);
+        assert!(said.contains(problem), "{said}");
+        assert!(!here.join("x.dump").exists() && !here.join("walls").exists());
+    }
 }

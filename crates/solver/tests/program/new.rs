@@ -1,7 +1,6 @@
 //! Scenes to start from, and the reference of keys.
 
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value;
 
@@ -133,20 +132,52 @@ fn keys_are_those_of_the_page() {
             output.status.code(),
         )
     };
-    let page =
-        |name: &str| fs::read_to_string(super::root().join(Path::new("doc")).join(name)).unwrap();
-    assert_eq!(keys(&[]).0, page("scene-keys.md"));
-    assert_eq!(keys(&["study"]).0, page("study-keys.md"));
+    // Every key stands at the beginning of an entry, in the order of the page.
+    for (words, page) in [(&[][..], "scene-keys.md"), (&["study"], "study-keys.md")] {
+        let page = fs::read_to_string(super::root().join("doc").join(page)).unwrap();
+        let rows = page.lines().filter_map(|line| line.strip_prefix("| `"));
+        let wanted: Vec<&str> = rows.map(|row| row.split('`').next().unwrap()).collect();
+        let (text, ..) = keys(words);
+        let missing: Vec<_> = wanted
+            .iter()
+            .filter(|key| !text.contains(&format!("\n  {key}: ")))
+            .collect();
+        assert!(missing.is_empty() && wanted.len() > 30, "{missing:?}");
+        assert!(
+            text.lines().all(|line| line.chars().count() <= 100),
+            "{text}"
+        );
+        for markdown in ["](#", "\\[", "\\|", "`", "| "] {
+            assert!(!text.contains(markdown), "{markdown}");
+        }
+    }
     let (bodies, ..) = keys(&["bodies"]);
+    assert!(bodies.starts_with("[bodies.NAME]\n"), "{bodies}");
+    assert!(bodies.contains("\n  position_of: "), "{bodies}");
     assert!(
-        bodies.starts_with("## `[bodies.NAME]`\n") && bodies.contains("| `position_of` |"),
-        "{bodies}"
-    );
-    assert!(
-        bodies.contains("## Drop\n") && !bodies.contains("[walls.NAME]`\n"),
+        bodies.contains("\nDrop\n") && !bodies.contains("[walls.NAME]\n"),
         "{bodies}"
     );
     assert_eq!(keys(&["[bodies.NAME]"]).0, bodies);
+    let (drop, ..) = keys(&["drop"]);
+    assert!(
+        drop.starts_with("Drop\n") && bodies.contains(&drop),
+        "{drop}"
+    );
+    assert!(
+        drop.contains("  height: length (m); required; more than 0 m\n      "),
+        "{drop}"
+    );
+    let (find, ..) = keys(&["find"]);
+    assert!(
+        find.starts_with("[find]\n") && find.contains("\n  tolerance: "),
+        "{find}"
+    );
+    let (run, ..) = keys(&["run"]);
+    assert!(
+        run.contains("  gravity: [x, y, z] (m/s2); default [0, 0, 0] m/s2\n"),
+        "{run}"
+    );
     let (out, said, code) = keys(&["wals"]);
     assert_eq!((out.as_str(), code), ("", Some(2)));
     assert!(

@@ -62,6 +62,7 @@ impl Contents {
             .velocities
             .ok_or_else(|| missing(frame::VELOCITY))?;
         let broken = of_frame.broken.ok_or_else(|| missing(frame::BROKEN))?;
+        let bond_radii = self.parts.bond_radii;
         Ok(StoredParticles {
             time_s: of_frame.time_s.ok_or_else(|| missing(frame::TIME))?,
             body_names: of_frame.body_names,
@@ -72,6 +73,7 @@ impl Contents {
             velocities_m_s: velocities.as_chunks().0.to_vec(),
             fragments: of_frame.clusters,
             bonds: self.parts.bonds,
+            bond_radii: bond_radii.ok_or_else(|| missing(frame::BOND_RADIUS))?,
             broken: broken.into_iter().map(|broken| broken != 0.0).collect(),
         })
     }

@@ -1,0 +1,60 @@
+//! A folder that a command fills: new or empty, and gone again if the command fails.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use dem_io::{Diagnostic, Result};
+
+/// A folder that was made, or was there and empty. Dropped before [`NewFolder::keep`], one that was
+/// made is removed if it is still empty.
+#[derive(Debug)]
+pub(super) struct NewFolder {
+    path: PathBuf,
+    is_made: bool,
+}
+
+impl NewFolder {
+    /// Makes a folder, or takes an empty one. `option`: the option that names it.
+    ///
+    /// # Errors
+    /// It is not empty, is no folder, or cannot be made.
+    pub(super) fn make(path: &Path, option: &str) -> Result<Self> {
+        let refused = |problem: &str| {
+            let place = path.display().to_string();
+            let remedy = format!("name a new folder with {option}");
+            Err(Diagnostic::input(place, problem, remedy))
+        };
+        let is_made = !path.exists();
+        if is_made {
+            fs::create_dir(path).map_err(|error| dem_io::safe_write::explain(path, &error))?;
+        } else {
+            match fs::read_dir(path).map(|mut entries| entries.next().is_none()) {
+                Ok(true) => {}
+                Ok(false) => return refused("this folder is not empty"),
+                Err(_) => return refused("this is not a folder that can be read"),
+            }
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            is_made,
+        })
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// All its files are there.
+    pub(super) fn keep(mut self) {
+        self.is_made = false;
+    }
+}
+
+impl Drop for NewFolder {
+    fn drop(&mut self) {
+        if self.is_made {
+            // The user must see the problem itself.
+            let _ = fs::remove_dir(&self.path);
+        }
+    }
+}
