@@ -34,9 +34,8 @@ pub(super) fn still_flying(
     let apart_j: f64 = pieces.values().map(|pieces| kinetic_apart_j(pieces)).sum();
     let fraction = apart_j / largest_kinetic_j;
     let breakable = breakable(state, clusters);
-    // Also true for NaN.
-    let is_slow = !(fraction > FLYING);
-    if is_slow || breakable.is_empty() {
+    let flies = fraction > FLYING;
+    if !flies || breakable.is_empty() {
         return None;
     }
     let count: usize = pieces.values().map(Vec::len).sum();
