@@ -131,10 +131,18 @@ fn quality_table() -> std::result::Result<(), Error> {
     draw(&table)
 }
 
+/// Name of the file of a plot, its title, the label of its axis, and the value.
+type Quantity = (
+    &'static str,
+    &'static str,
+    &'static str,
+    fn(&Quality) -> f64,
+);
+
 /// Draws density, isotropy and error of the sizes over run time.
 fn draw(table: &[Quality]) -> std::result::Result<(), Error> {
     let doc = concat!(env!("CARGO_MANIFEST_DIR"), "/../../doc");
-    let quantities: [(&str, &str, &str, fn(&Quality) -> f64); 3] = [
+    let quantities: [Quantity; 3] = [
         (
             "density",
             "Density of the interior",
