@@ -20,16 +20,13 @@ const COLOURS: f64 = 0.22;
 /// Units of length with their size, m.
 const LENGTHS: [(&str, f64); 4] = [("km", 1e3), ("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)];
 
-/// Units of time with their size, s.
-const TIMES: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)];
-
-/// A time as a label: `t = 0.125 s`, or `t = 0.2 ms` where frames are less than a millisecond apart,
-/// with as many decimals as needed for frames `step_s` apart. Both in s.
+/// A time as a label: `t = 0.125 s`, or `t = 0.2 ms` where frames are less than a millisecond
+/// apart, with as many decimals as needed for frames `step_s` apart. Both in s.
 pub fn time_text(time_s: f64, step_s: f64) -> String {
     let (unit, size) = match step_s.abs() {
-        step_s if step_s < 0.999e-6 => TIMES[2],
-        step_s if step_s < 0.999e-3 => TIMES[1],
-        _ => TIMES[0],
+        step_s if step_s < 0.999e-6 => ("µs", 1e-6),
+        step_s if step_s < 0.999e-3 => ("ms", 1e-3),
+        _ => ("s", 1.0),
     };
     let (time, step) = (time_s / size, step_s / size);
     let mut decimals = 0;

@@ -58,18 +58,17 @@ pub(crate) fn add_search(page: &mut Page, table: &SweepTable) {
 pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Response) {
     let averaged = table.average_over.map(|at| &table.axes[at]);
     if let Some(averaged) = averaged {
+        let (averages, scatter) = match average(table, response) {
+            Average::Mean => ("Means", "bars show one standard deviation to either side"),
+            Average::Median => (
+                "Medians",
+                "thin lines reach from the smallest to the largest value",
+            ),
+        };
         page.paragraph(&format!(
-            "{} over {} values of {}; {}.",
-            match average(table, response) {
-                Average::Mean => "Means",
-                Average::Median => "Medians",
-            },
+            "{averages} over {} values of {}; {scatter}.",
             averaged.values.len(),
-            averaged.name,
-            match average(table, response) {
-                Average::Mean => "bars show one standard deviation to either side",
-                Average::Median => "thin lines reach from the smallest to the largest value",
-            }
+            averaged.name
         ));
     }
     for plot in plots(table, response) {

@@ -146,8 +146,8 @@ fn title(table: &SweepTable, response: &Response, name: &str) -> String {
     }
 }
 
-/// The intervals that `[find]` has found, at the height of the value that it looks for: one for each
-/// case, over the parameter.
+/// The intervals that `[find]` has found, at the height of the value that it looks for: one for
+/// each case, over the parameter.
 fn found_lines(table: &SweepTable, response: &Response, over: usize) -> Vec<Line> {
     let search = table.find.as_ref();
     let Some(search) = search.filter(|search| over == 0 && search.measure == response.measure)

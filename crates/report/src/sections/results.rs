@@ -115,8 +115,8 @@ fn add_sizes(page: &mut Page, sizes: &Value) {
     page.table(&Table { columns, rows });
 }
 
-/// The table of `distribution.csv`: a row for each sieve, a column for each body. None: the file has
-/// other columns.
+/// The table of `distribution.csv`: a row for each sieve, a column for each body. None: the file
+/// has other columns.
 fn passing(csv: &str) -> Option<Table> {
     let mut lines = csv.lines();
     let head: Vec<&str> = lines.next()?.split(',').collect();

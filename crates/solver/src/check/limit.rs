@@ -153,8 +153,8 @@ fn stiffer_by_damping(state: &State) -> f64 {
     }
 }
 
-/// Makes bonds with structural damping stiffer by its gamma. Returns what they were; None: there are
-/// none.
+/// Makes bonds with structural damping stiffer by its gamma. Returns what they were; None: there
+/// are none.
 fn stiffen_by_structural_damping(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
     let gamma = |rule: &BondRule| rule.structural_damping;
     if bonds.rules.iter().all(|rule| gamma(rule) == 0.0) {

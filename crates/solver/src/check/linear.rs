@@ -113,8 +113,8 @@ fn largest_inverse_mass(clumps: &Clumps, clump: &Clump) -> f64 {
     1.0 / template.mass_kg + template.reach_m.powi(2) / least
 }
 
-/// The largest stiffness over effective mass, 1/s2, and damping over effective mass, 1/s, of any one
-/// touching contact: as [`at_impact`], at the overlaps that are there. 0 if nothing touches.
+/// The largest stiffness over effective mass, 1/s2, and damping over effective mass, 1/s, of any
+/// one touching contact: as [`at_impact`], at the overlaps that are there. 0 if nothing touches.
 pub fn stiffest_contact(state: &State) -> [f64; 2] {
     let inverse_kg = |end: u32| match state.clumps.carrier_of(end as usize) {
         Some(at) => largest_inverse_mass(&state.clumps, &state.clumps.all[at]),
@@ -124,14 +124,18 @@ pub fn stiffest_contact(state: &State) -> [f64; 2] {
     for contact in linear_contacts(state) {
         let ends = contact.ends.into_iter().flatten();
         let per_mass: f64 = ends.map(inverse_kg).sum();
-        let answer = &contact.answer;
-        let stiffest = answer.normal_n_m.max(WITH_ROTATION * answer.tangential_n_m);
-        let damping = answer.normal_damping_n_s_m;
-        let damping = damping.max(WITH_ROTATION * answer.tangential_damping_n_s_m);
-        largest[0] = largest[0].max(per_mass * stiffest);
-        largest[1] = largest[1].max(per_mass * damping);
+        let of_one = translation(&contact.answer);
+        largest = [0, 1].map(|n| largest[n].max(per_mass * of_one[n]));
     }
     largest
+}
+
+/// The largest stiffness, N/m, and damping, N s/m, against which a contact moves an end.
+fn translation(answer: &Linearised) -> [f64; 2] {
+    [
+        (answer.normal_n_m).max(WITH_ROTATION * answer.tangential_n_m),
+        (answer.normal_damping_n_s_m).max(WITH_ROTATION * answer.tangential_damping_n_s_m),
+    ]
 }
 
 /// Upper bounds of the same eigenvalues for all contacts of a state together, of particles and of
@@ -149,12 +153,9 @@ pub fn contact_rates(state: &State) -> [f64; 2] {
             let answer = &contact.answer;
             let motion = &p.motions[i];
             let turning = motion.inverse_inertia / motion.inverse_mass;
-            sum[0] += (answer.normal_n_m)
-                .max(WITH_ROTATION * answer.tangential_n_m)
-                .max(turning * answer.rolling_n_m_rad);
-            sum[1] += (answer.normal_damping_n_s_m)
-                .max(WITH_ROTATION * answer.tangential_damping_n_s_m)
-                .max(turning * answer.rolling_damping_n_m_s);
+            let [stiffness, damping] = translation(answer);
+            sum[0] += stiffness.max(turning * answer.rolling_n_m_rad);
+            sum[1] += damping.max(turning * answer.rolling_damping_n_m_s);
         }
     }
     let mut rates = clump_rates(state, &contacts);
@@ -315,11 +316,8 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
         let ends = if at_wall { 1.0 } else { 2.0 };
         let per_mass = ends * inverse_kg;
         let answer = kind.linearised(&touch);
-        let stiffest = answer.normal_n_m.max(WITH_ROTATION * answer.tangential_n_m);
-        let damping = answer
-            .normal_damping_n_s_m
-            .max(WITH_ROTATION * answer.tangential_damping_n_s_m);
-        largest[0] = largest[0].max(per_mass * stiffest);
+        let [stiffness, damping] = translation(&answer);
+        largest[0] = largest[0].max(per_mass * stiffness);
         largest[1] = largest[1].max(per_mass * damping);
         largest[2] = largest[2].max(per_mass * answer.normal_n_m);
     };

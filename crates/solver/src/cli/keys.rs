@@ -53,8 +53,8 @@ fn bare(heading: &str) -> &str {
     inner.split('.').next().unwrap_or_default()
 }
 
-/// The section of `[table]` or `[table.NAME]`, and those of the tables within it; or that of a table
-/// within another.
+/// The section of `[table]` or `[table.NAME]`, and those of the tables within it; or that of a
+/// table within another.
 fn sections(page: &str, table: &str) -> Option<String> {
     let wanted = bare(table);
     let mut text = String::new();

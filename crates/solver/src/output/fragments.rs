@@ -136,8 +136,8 @@ pub(crate) fn write_fragment_plots(
     Ok(())
 }
 
-/// Mass that has left through outlets, over time: a line for each outlet and body, the slope of which
-/// is its mass flow.
+/// Mass that has left through outlets, over time: a line for each outlet and body, the slope of
+/// which is its mass flow.
 fn discharge_plot(state: &State, end_s: f64) -> Plot {
     let discharged = &state.population.discharged;
     let outlets = &state.model.rules.outlets;

@@ -40,8 +40,8 @@ pub struct SizeSummary {
     pub d50_m: f64,
     /// The same for 80 % of the mass, m.
     pub d80_m: f64,
-    /// Mass fraction smaller than a tenth of the mean size of the bodies before they broke. None: no
-    /// sphere is as small, so that it could only be 0.
+    /// Mass fraction smaller than a tenth of the mean size of the bodies before they broke. None:
+    /// no sphere is as small, so that it could only be 0.
     pub t10: Option<f64>,
 }
 

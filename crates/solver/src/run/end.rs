@@ -35,12 +35,14 @@ impl Run<'_> {
         let is_stopped = ended.problem.is_some();
         let seen = &self.progress.seen;
         let mut warnings = std::mem::take(&mut self.planned.warnings);
-        warnings.extend(seen.warnings(&self.state, self.scene, &self.bodies, pieces, is_stopped));
-        let notes = seen.notes(&self.state, self.scene, pieces);
+        let flying = seen
+            .flying(&self.state, self.scene, pieces)
+            .filter(|_| !is_stopped);
+        let (flies, bodies) = (flying.as_ref(), &self.bodies);
+        warnings.extend(seen.warnings(&self.state, self.scene, bodies, flies, is_stopped));
         let mut summary = self.summary(&ended, fragments.as_deref(), test.transpose()?);
-        if !is_stopped {
-            summary.notes.extend(notes);
-        }
+        let note = flying.filter(|flying| !flying.touches);
+        summary.notes.extend(note.map(|flying| flying.text));
         summary.judge(warnings);
         let Some(folder) = folder else {
             return Ok(Outcome {

@@ -7,7 +7,7 @@ use dem_io::units::{show_length, significant};
 use dem_scene::{Scene, StartAs};
 use serde::{Deserialize, Serialize};
 
-use super::flying::still_flying;
+use super::flying::{Flying, still_flying};
 use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies};
 use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
 use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
@@ -215,7 +215,7 @@ impl Seen {
         state: &State,
         scene: &Scene,
         bodies: &[PlacedBody],
-        fragments: &[Fragment],
+        flying: Option<&Flying>,
         is_stopped: bool,
     ) -> Vec<String> {
         let mut warnings = self.beyond_the_laws();
@@ -224,8 +224,13 @@ impl Seen {
         }
         warnings.extend(self.untouched(state, scene, bodies));
         if scene.test.is_none() {
-            warnings.extend(self.not_over(state, scene, fragments));
+            warnings.extend(self.still_breaking(state, scene));
         }
+        warnings.extend(
+            flying
+                .filter(|flying| flying.touches)
+                .map(|flying| flying.text.clone()),
+        );
         warnings.extend(self.never_replaced(state, scene, bodies));
         warnings.extend(unused_rules(state));
         warnings
@@ -327,42 +332,31 @@ impl Seen {
         !self.came.contains(name) && inlets.any(|inlet| inlet.templates.iter().any(is_own))
     }
 
-    /// Warnings that breakage is not over.
-    fn not_over(&self, state: &State, scene: &Scene, fragments: &[Fragment]) -> Vec<String> {
-        let mut warnings = Vec::new();
-        let Some(last_s) = self.last_break_s.filter(|_| !is_fed(state)) else {
-            return warnings;
-        };
-        if last_s >= (1.0 - LATE) * state.time_s {
-            warnings.push(format!(
+    /// Warning that bonds broke until the end.
+    fn still_breaking(&self, state: &State, scene: &Scene) -> Option<String> {
+        let last_s = self.last_break_s.filter(|_| !is_fed(state))?;
+        (last_s >= (1.0 - LATE) * state.time_s).then(|| {
+            format!(
                 "bonds still broke at the end, the last at {} s of {} s: the breakage may not be over; set run.end_time later than {} s",
                 significant(last_s, 4),
                 significant(state.time_s, 4),
                 significant(scene.run.end_time_s, 4)
-            ));
-        }
-        let flying = still_flying(state, fragments, self.largest_kinetic_j);
-        warnings.extend(
-            flying
-                .filter(|flying| flying.touches)
-                .map(|flying| flying.text),
-        );
-        warnings
+            )
+        })
     }
 
-    /// What is to be known of the end of a run, a sentence each, without a doubt in its result.
-    pub(super) fn notes(
+    /// The fragments that still move apart at the end: a warning if they touch something, else a
+    /// note. Not for laboratory tests, nor while an inlet still feeds.
+    pub(super) fn flying(
         &self,
         state: &State,
         scene: &Scene,
         fragments: &[Fragment],
-    ) -> Vec<String> {
+    ) -> Option<Flying> {
         if self.last_break_s.is_none() || is_fed(state) || scene.test.is_some() {
-            return Vec::new();
+            return None;
         }
-        let flying = still_flying(state, fragments, self.largest_kinetic_j);
-        let flying = flying.filter(|flying| !flying.touches);
-        flying.map(|flying| flying.text).into_iter().collect()
+        still_flying(state, fragments, self.largest_kinetic_j)
     }
 }
 

@@ -35,7 +35,8 @@ fn closed_form(end: &End, to_contact_m: f64) -> [f64; 4] {
     ]
 }
 
-/// Utilisation of each strength of such a bond (tension, compression, shear, equivalent, Mohr-Coulomb).
+/// Utilisation of each strength of such a bond (tension, compression, shear, equivalent,
+/// Mohr-Coulomb).
 fn used(criteria: &Criteria, [axial, bending, shear, torsion]: [f64; 4]) -> [f64; 5] {
     let pulled = axial.max(0.0) + bending;
     let sheared = shear + torsion;

@@ -15,8 +15,8 @@ fn new(bench: &Bench, options: &[&str]) -> std::process::Output {
     command.output().unwrap()
 }
 
-/// A scene to start from is made and runs as it stands, by the commands that are printed; the bodies
-/// break, or the tests give a modulus.
+/// A scene to start from is made and runs as it stands, by the commands that are printed; the
+/// bodies break, or the tests give a modulus.
 fn is_made_and_runs(name: &str) {
     let bench = Bench::new();
     let output = new(&bench, &[name, name]);

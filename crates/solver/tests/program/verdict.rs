@@ -40,8 +40,8 @@ fn every_doubtful_scene_is_called_so() {
     hold_messages(scenes[0].parent().unwrap(), &messages);
 }
 
-/// Pieces in free flight are no doubt in what has been simulated: a note gives the time at which the
-/// pair that can still break reaches the plate, sqrt(2 h/g), and there is none without a plate.
+/// Pieces in free flight are no doubt in what has been simulated: a note gives the time at which
+/// the pair that can still break reaches the plate, sqrt(2 h/g), and there is none without a plate.
 #[test]
 fn pieces_in_free_flight_are_a_note() {
     let bench = Bench::new();

@@ -1,5 +1,5 @@
-//! The pin: two springs at a point, without moments (Chen et al. 2022, section 1; the linear contact
-//! bond of PFC).
+//! The pin: two springs at a point, without moments (Chen et al. 2022, section 1; the linear
+//! contact bond of PFC).
 
 use super::parallel::Parallel;
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
