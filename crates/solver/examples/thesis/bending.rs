@@ -39,7 +39,7 @@ pub(crate) fn rows() -> Vec<Row> {
         row(fine, PACKINGS, READINGS[0]),
         row(fine, PACKINGS, READINGS[1]),
         row(further, 1, READINGS[0]),
-        row(densified(fine), 1, READINGS[1]),
+        row(densified(fine), PACKINGS, READINGS[1]),
     ];
     for reading in READINGS {
         rows.push(row(coarse, PACKINGS, reading));

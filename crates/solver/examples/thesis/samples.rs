@@ -156,10 +156,10 @@ pub(crate) fn counted() -> Vec<(&'static str, Vec<Sample>)> {
         ),
         (
             "table 1, densified, bond range 1.0",
-            vec![Sample {
+            seeds(Sample {
                 bare: false,
                 ..BARE
-            }],
+            }),
         ),
         ("table 2, bare front, bond range 1.0", seeds(table_2)),
         (
