@@ -1,5 +1,6 @@
-//! Text from outside on a terminal or a page. File names and texts of scenes may contain anything:
-//! nothing in them may move a cursor, start a line, change the direction of writing or open a tag.
+//! Numbers as text; text from outside on a terminal or a page. File names and texts of scenes may
+//! contain anything: nothing in them may move a cursor, start a line, change the direction of
+//! writing or open a tag.
 
 use std::borrow::Cow;
 
@@ -23,6 +24,16 @@ pub(crate) fn visible_lines(text: &str) -> Cow<'_, str> {
     escape(text, |letter| {
         !matches!(letter, '\n' | '\t') && is_obeyed(letter)
     })
+}
+
+/// The number as tables show it: the shortest text that reads back as the same number, with an
+/// exponent if it is tiny or huge.
+pub fn exact(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e7).contains(&value.abs()) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
 }
 
 fn escape(text: &str, is_escaped: impl Fn(char) -> bool) -> Cow<'_, str> {

@@ -1,5 +1,7 @@
 //! Pictures one after the other, as an animated PNG.
 
+use std::rc::Rc;
+
 use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, EncodingError, Filter};
 
 use super::image::Image;
@@ -19,22 +21,27 @@ use super::png_file::fault;
 pub fn animation(
     count: u32,
     delay_ms: u16,
-    mut frame: impl FnMut(u32) -> dem_io::Result<Image>,
+    mut frame: impl FnMut(u32) -> dem_io::Result<Rc<Image>>,
 ) -> dem_io::Result<Vec<u8>> {
     let first = if count == 0 {
-        Image::new(0, 0, [255; 3])
+        Rc::new(Image::new(0, 0, [255; 3]))
     } else {
         frame(0)?
     };
     let mut sized = |number: u32| {
+        let given = frame(number)?;
+        if [given.width(), given.height()] == [first.width(), first.height()] {
+            return Ok(given);
+        }
         let mut image = Image::new(first.width(), first.height(), [255; 3]);
-        image.paste(&frame(number)?, 0, 0);
-        Ok(image)
+        image.paste(&given, 0, 0);
+        Ok(Rc::new(image))
     };
     let mut histogram = Histogram::new();
     histogram.add(&first);
     for number in 1..count {
-        histogram.add(&sized(number)?);
+        let image = sized(number)?;
+        histogram.add(&image);
     }
     let colours = match Palette::of(&histogram) {
         Some(palette) => Colours::Palette(palette),
@@ -49,7 +56,8 @@ pub fn animation(
     film.write_image_data(&shown)
         .map_err(|error| fault(&error))?;
     for number in 1..count {
-        let next = colours.pixels(&sized(number)?);
+        let image = sized(number)?;
+        let next = colours.pixels(&image);
         let [x, y, width, height] = difference(&shown, &next, first.width(), colours.bytes());
         let part = colours.part(&shown, &next, first.width(), [x, y, width, height]);
         film.reset_frame_position()
@@ -141,31 +149,40 @@ impl Colours {
         [x, y, width, height]: [u32; 4],
     ) -> Vec<u8> {
         let [wide, x, width] = [wide, x, width].map(|px| px as usize * self.bytes());
-        let rows = (y..y + height).map(|row| row as usize * wide + x);
-        let unchanged = match self {
-            Self::Palette(palette) => Some(palette.transparent()),
-            Self::Rgb => None,
-        };
-        let pixel = |at: usize| match unchanged {
-            Some(transparent) if shown[at] == next[at] => transparent,
-            _ => next[at],
-        };
-        rows.flat_map(|start| (start..start + width).map(pixel))
-            .collect()
+        let mut part = Vec::with_capacity(width * height as usize);
+        for row in y..y + height {
+            let start = row as usize * wide + x;
+            let [shown, next] = [shown, next].map(|pixels| &pixels[start..start + width]);
+            match self {
+                Self::Palette(palette) => {
+                    let transparent = palette.transparent();
+                    let pixel =
+                        |(old, new): (&u8, &u8)| if old == new { transparent } else { *new };
+                    part.extend(shown.iter().zip(next).map(pixel));
+                }
+                Self::Rgb => part.extend(next),
+            }
+        }
+        part
     }
 }
 
 /// The smallest rectangle that contains all pixels that differ, or one pixel: left, top, width,
 /// height. `wide`: width of both pictures, px; `bytes` of each pixel.
 fn difference(a: &[u8], b: &[u8], wide: u32, bytes: usize) -> [u32; 4] {
-    let wide = wide.max(1);
+    let row = (wide as usize * bytes).max(1);
     let mut low = [u32::MAX; 2];
     let mut high = [0; 2];
-    let pixels = a.chunks_exact(bytes).zip(b.chunks_exact(bytes));
-    for (at, _) in (0u32..).zip(pixels).filter(|(_, (a, b))| a != b) {
-        let place = [at % wide, at / wide];
-        low = [0, 1].map(|k| low[k].min(place[k]));
-        high = [0, 1].map(|k| high[k].max(place[k]));
+    for (y, (a, b)) in (0u32..).zip(a.chunks_exact(row).zip(b.chunks_exact(row))) {
+        if a == b {
+            continue;
+        }
+        let differs = |at: &usize| a[*at] != b[*at];
+        let ends = [(0..row).find(differs), (0..row).rfind(differs)];
+        for x in ends.into_iter().flatten().map(|at| (at / bytes) as u32) {
+            low = [low[0].min(x), low[1].min(y)];
+            high = [high[0].max(x), high[1].max(y)];
+        }
     }
     if low[0] > high[0] {
         return [0, 0, 1, 1];

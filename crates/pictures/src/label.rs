@@ -51,6 +51,18 @@ pub fn label(image: &mut Image, text: &str) {
     font::write(image, text, [1.1 * size, 1.0 * size], size, INK);
 }
 
+/// Writes a name at a position, px from the left and from the top: its left end and its top. It is
+/// moved into the picture.
+pub fn name_at(image: &mut Image, name: &str, at: [f64; 2]) {
+    let size = 0.8 * text_px(image);
+    let most = [
+        f64::from(image.width()) - font::width(name, size) - size,
+        f64::from(image.height()) - 2.0 * size,
+    ];
+    let at = [0, 1].map(|k| at[k].min(most[k]).max(0.5 * size));
+    font::write(image, name, at, size, INK);
+}
+
 /// Draws a bar of a round length with its label into the bottom right corner. `px_per_m`: the scale
 /// of the picture.
 ///

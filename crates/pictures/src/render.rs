@@ -8,6 +8,7 @@
 //! scene towards the viewer.
 
 mod band;
+mod depths;
 mod light;
 mod linear;
 mod scene;

@@ -6,6 +6,8 @@
     reason = "a test stops where it fails"
 )]
 
+use std::rc::Rc;
+
 use dem_io::{Bounds, Diagnostic};
 use dem_pictures::animation::animation;
 use dem_pictures::film::film_strip;
@@ -276,7 +278,7 @@ fn animation_holds_all_frames_and_plays_for_ever() {
     let frames: Vec<Image> = (0..6)
         .map(|k| render(&camera, &[ball(at(k), 0.2, RED)], &[]))
         .collect();
-    let film = animation(6, 40, |k| Ok(frames[k as usize].clone())).unwrap();
+    let film = animation(6, 40, |k| Ok(Rc::new(frames[k as usize].clone()))).unwrap();
     let (shown, has_palette) = shown(&film);
     assert!(has_palette && shown.len() == 6);
     for (shown, frame) in shown.iter().zip(&frames) {
@@ -285,8 +287,8 @@ fn animation_holds_all_frames_and_plays_for_ever() {
         assert!(largest <= Some(4), "{largest:?}");
     }
     // What does not change takes no room.
-    let once = animation(1, 40, |k| Ok(frames[k as usize].clone())).unwrap();
-    let twice = animation(2, 40, |k| Ok(frames[k as usize].clone())).unwrap();
+    let once = animation(1, 40, |k| Ok(Rc::new(frames[k as usize].clone()))).unwrap();
+    let twice = animation(2, 40, |k| Ok(Rc::new(frames[k as usize].clone()))).unwrap();
     assert!(frames[0] == frames[1] && twice.len() < once.len() + 100);
 }
 
@@ -301,19 +303,19 @@ fn animation_of_too_many_colours_keeps_them() {
         }
         image
     };
-    let film = animation(3, 40, |k| Ok(frame(k))).unwrap();
+    let film = animation(3, 40, |k| Ok(Rc::new(frame(k)))).unwrap();
     assert!(shown(&film) == ([0, 1, 2].map(frame).into(), false));
 }
 
 #[test]
 fn animation_refuses_what_has_no_pixels() {
-    assert!(animation(0, 40, |_| Ok(Image::new(5, 5, RED))).is_err());
-    assert!(animation(1, 40, |_| Ok(Image::new(0, 5, RED))).is_err());
-    assert!(animation(2, 0, |k| Ok(Image::new(5 * (1 - k), 9, RED))).is_ok());
+    assert!(animation(0, 40, |_| Ok(Rc::new(Image::new(5, 5, RED)))).is_err());
+    assert!(animation(1, 40, |_| Ok(Rc::new(Image::new(0, 5, RED)))).is_err());
+    assert!(animation(2, 0, |k| Ok(Rc::new(Image::new(5 * (1 - k), 9, RED)))).is_ok());
     let lost = || Diagnostic::failed("", "lost", "find it");
     let second = |k| {
         if k == 0 {
-            Ok(Image::new(5, 5, RED))
+            Ok(Rc::new(Image::new(5, 5, RED)))
         } else {
             Err(lost())
         }

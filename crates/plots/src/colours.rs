@@ -88,6 +88,16 @@ pub fn viridis(fraction: f64) -> [u8; 3] {
     [0, 1, 2].map(|k| ((1.0 - part) * STEPS[below][k] + part * STEPS[below + 1][k]).round() as u8)
 }
 
+/// A scale for values of both signs: blue (-1), nearly white (0), red (1). Red, green, blue.
+pub fn blue_to_red(fraction: f64) -> [u8; 3] {
+    const MIDDLE: [f64; 3] = [243.0, 241.0, 236.0];
+    const BLUE: [f64; 3] = [33.0, 102.0, 172.0];
+    const RED: [f64; 3] = [178.0, 24.0, 43.0];
+    let end = if fraction < 0.0 { BLUE } else { RED };
+    let part = fraction.abs().min(1.0);
+    [0, 1, 2].map(|k| ((1.0 - part) * MIDDLE[k] + part * end[k]).round() as u8)
+}
+
 /// A colour in the notation of SVG.
 pub(crate) fn hex([r, g, b]: [u8; 3]) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")

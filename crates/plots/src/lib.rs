@@ -17,7 +17,7 @@ mod svg;
 mod text;
 mod thin;
 
-pub use colours::{MOST_LINES, viridis};
+pub use colours::{MOST_LINES, blue_to_red, viridis};
 pub use map::{Circle, Dot, Guide, Map};
 pub use page::{Column, Page, Row, Table};
 pub use plot::{Axis, Line, Marks, Plot, Point};

@@ -104,10 +104,10 @@ impl Scale {
     fn with_ticks(axis: &Axis, low: f64, high: f64, intervals: f64, rounded: bool) -> Self {
         let step = nice_step((high - low) / intervals);
         let step = if axis.whole { step.max(1.0) } else { step };
-        // A little more than a whole step counts as one, not two.
         let (from, to, first, last);
         if rounded {
-            (first, last) = ((low / step + 1e-6).floor(), (high / step - 1e-6).ceil());
+            // No further step for a twentieth of one.
+            (first, last) = ((low / step + 0.05).floor(), (high / step - 0.05).ceil());
             (from, to) = ((first * step).min(low), (last * step).max(high));
         } else {
             (first, last) = ((low / step - 1e-6).ceil(), (high / step + 1e-6).floor());

@@ -14,7 +14,6 @@ use dem_io::{Diagnostic, Result, read_input};
 use dem_pictures::label::{colour_bar, label, scale_bar, time_text};
 use dem_pictures::png_file::{Compression, to_png};
 use dem_pictures::{Camera, Image, Surface, render};
-use dem_plots::viridis;
 use serde_json::Value;
 
 use crate::folder::{Folder, is_solid, view_from};
@@ -227,8 +226,8 @@ fn drawn(
     every_s: f64,
 ) -> Image {
     let mut image = render(camera, &seen.balls(colours), walls);
-    if let Some((name, highest)) = colours.scale() {
-        colour_bar(&mut image, name, ["0", &highest], &viridis);
+    if let Some((name, [low, high])) = colours.scale() {
+        colour_bar(&mut image, name, [&low, &high], &|at| colours.at(at));
     }
     label(&mut image, &time_text(time_s, every_s));
     scale_bar(&mut image, camera.px_per_m());

@@ -24,6 +24,7 @@ use tracks::{Ranges, Tracks};
 pub(crate) use choose::ChosenFrame;
 pub(crate) use pieces::colours as piece_colours;
 pub(crate) use spheres::Spheres;
+pub(crate) use tracks::most_of;
 pub(crate) use walls::read as read_walls;
 
 /// The program of the view.

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::growing::{GrowingTable, field};
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
-use dem_io::vtk::exact;
+use dem_io::text::exact;
 
 /// The first line of the table of what leaves. Length, width and thickness are those of the box
 /// along the principal axes, the longest first.

@@ -100,9 +100,9 @@ fn row(event: &Event<'_>) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(
         row,
-        "{},{:e},{},{},{},{},{},{},{},{},{},{}",
+        "{},{},{},{},{},{},{},{},{},{},{},{}",
         event.step,
-        event.time_s,
+        exact(Some(event.time_s)),
         field(event.kind),
         known(event.bond),
         known(event.particle_a),
@@ -122,5 +122,5 @@ fn known(value: Option<impl Display>) -> String {
 }
 
 fn exact(value: Option<f64>) -> String {
-    value.map(dem_io::vtk::exact).unwrap_or_default()
+    value.map(dem_io::text::exact).unwrap_or_default()
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 use super::growing::{GrowingTable, field};
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
-use dem_io::vtk::exact;
+use dem_io::text::exact;
 
 /// The first line of the table of moments.
 pub const COLUMNS: &str = "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,\

@@ -3,7 +3,6 @@
 //! The first line names the columns and their units: `time_s,kinetic_energy_j,...`. Every number
 //! reads back as the same bits.
 
-use std::fmt::Write;
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;
@@ -11,6 +10,7 @@ use std::path::Path;
 use super::growing::{GrowingTable, field, fields};
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::lines::{Lines, float, on_line};
+use dem_io::text::exact;
 
 /// The file of the time series.
 #[derive(Debug)]
@@ -58,10 +58,10 @@ impl SeriesFile {
                 "this is a fault of the program",
             ));
         }
-        let mut row = format!("{time_s:e}");
+        let mut row = exact(time_s);
         for value in values {
-            // Writing to a string cannot fail.
-            let _ = write!(row, ",{value:e}");
+            row.push(',');
+            row += &exact(*value);
         }
         row.push('\n');
         self.table.append(&row)

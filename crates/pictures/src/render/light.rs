@@ -6,6 +6,7 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::depths::Depths;
 use super::shapes::{Body, crossings, range};
 use crate::camera::Camera;
 
@@ -152,8 +153,8 @@ struct Map {
     texel: f32,
     wide: usize,
     high: usize,
-    balls: Vec<f32>,
-    walls: Vec<f32>,
+    balls: Depths,
+    walls: Depths,
     /// The nearest depths, of balls and of walls, in each block of texels and the blocks around it.
     blocks: Vec<[f32; 2]>,
 }
@@ -200,8 +201,8 @@ impl Map {
             texel,
             wide,
             high,
-            balls: vec![f32::NEG_INFINITY; wide * high],
-            walls: vec![f32::NEG_INFINITY; wide * high],
+            balls: Depths::new(wide * high),
+            walls: Depths::new(wide * high),
             blocks: Vec::new(),
         };
         for body in bodies {
@@ -274,17 +275,11 @@ impl Map {
 
     fn fill_blocks(&mut self) {
         let [across, down] = [self.wide, self.high].map(|side| side.div_ceil(BLOCK));
-        let mut inner = vec![[f32::NEG_INFINITY; 2]; across * down];
-        for row in 0..self.high {
-            let line = row * self.wide..(row + 1) * self.wide;
-            let nearest = |depths: &[f32]| depths.iter().fold(f32::NEG_INFINITY, |a, b| a.max(*b));
-            let balls = self.balls[line.clone()].chunks(BLOCK).map(nearest);
-            let walls = self.walls[line].chunks(BLOCK).map(nearest);
-            let blocks = &mut inner[row / BLOCK * across..];
-            for (block, (ball, wall)) in blocks.iter_mut().zip(balls.zip(walls)) {
-                *block = [block[0].max(ball), block[1].max(wall)];
-            }
-        }
+        let [balls, walls] = [&self.balls, &self.walls].map(|depths| {
+            let rows = depths.chunks(BLOCK * self.wide);
+            rows.flat_map(|rows| nearest_of_blocks(rows, self.wide))
+        });
+        let inner: Vec<[f32; 2]> = balls.zip(walls).map(|(ball, wall)| [ball, wall]).collect();
         let around = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
         for row in 0..down {
             for column in 0..across {
@@ -386,6 +381,19 @@ impl Map {
         });
         lit.count() as f32 / 5.0
     }
+}
+
+/// The nearest depth in each block of these rows of texels, from left to right.
+fn nearest_of_blocks(rows: &[f32], wide: usize) -> Vec<f32> {
+    let nearer = |a: f32, b: f32| if b > a { b } else { a };
+    let mut columns = vec![f32::NEG_INFINITY; wide];
+    for row in rows.chunks_exact(wide) {
+        for (column, depth) in columns.iter_mut().zip(row) {
+            *column = nearer(*column, *depth);
+        }
+    }
+    let nearest = |block: &[f32]| block.iter().copied().fold(f32::NEG_INFINITY, nearer);
+    columns.chunks(BLOCK).map(nearest).collect()
 }
 
 /// Rate of change of depth along a surface that faces the light to this degree.

@@ -19,7 +19,7 @@ pub enum ColourBy {
     DynamicUtilisation,
     /// Largest utilisation of the intact bonds of each sphere.
     Utilisation,
-    /// Mean normal stress of the intact bonds of each sphere; its size.
+    /// Mean normal stress of the intact bonds of each sphere; pressure is negative.
     Stress,
 }
 

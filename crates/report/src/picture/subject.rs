@@ -7,10 +7,10 @@ use dem_io::units::show_quantity;
 use dem_io::{Diagnostic, Result};
 use dem_pictures::colours::of_fragment;
 use dem_pictures::{Ball, Camera, Surface};
-use dem_plots::viridis;
+use dem_plots::{blue_to_red, viridis};
 
 use super::colour_by::ColourBy;
-use crate::view::{ChosenFrame, Spheres, piece_colours, read_walls};
+use crate::view::{ChosenFrame, Spheres, most_of, piece_colours, read_walls};
 
 /// A frame in memory.
 pub(super) struct Seen {
@@ -87,7 +87,7 @@ pub(super) struct Colours {
     by: ColourBy,
     /// By number of the fragment.
     pieces: Vec<[u8; 3]>,
-    /// Value of the lightest colour.
+    /// Value at the upper end of the scale.
     highest: f64,
 }
 
@@ -104,9 +104,12 @@ impl Colours {
             let spheres = Seen::read(frame)?.spheres;
             last = spheres.fragments.iter().copied().fold(last, u32::max);
             colours.refuse_missing(&spheres, frame)?;
-            for i in 0..spheres.centres_m.len() {
-                colours.highest = colours.highest.max(colours.value(&spheres, i));
-            }
+            let all = (0..spheres.centres_m.len()).map(|i| colours.value(&spheres, i).abs());
+            let highest = match by {
+                ColourBy::Stress => most_of(&all.collect::<Vec<f64>>()),
+                _ => all.fold(0.0, f64::max),
+            };
+            colours.highest = colours.highest.max(highest);
         }
         colours.pieces = piece_colours(folder, last);
         Ok(colours)
@@ -142,7 +145,7 @@ impl Colours {
             ColourBy::DynamicIncreaseFactor => dynamic(1),
             ColourBy::DynamicUtilisation => dynamic(2),
             ColourBy::Utilisation => spheres.utilisations[i],
-            ColourBy::Stress => spheres.stresses_pa[i].abs(),
+            ColourBy::Stress => spheres.stresses_pa[i],
         }
     }
 
@@ -153,12 +156,34 @@ impl Colours {
                 known.copied().unwrap_or_default()
             }
             ColourBy::Fragment | ColourBy::Body => of_fragment(spheres.bodies[i], 1.0),
-            _ => viridis(self.value(spheres, i) / self.highest.max(f64::MIN_POSITIVE)),
+            _ => {
+                let fraction = self.value(spheres, i) / self.highest.max(f64::MIN_POSITIVE);
+                let place = if self.is_signed() {
+                    0.5 * (1.0 + fraction)
+                } else {
+                    fraction
+                };
+                self.at(place)
+            }
         }
     }
 
-    /// Name and largest value of the scale, if colours are on one.
-    pub(super) fn scale(&self) -> Option<(&'static str, String)> {
+    /// Whether the scale begins at minus its largest value instead of 0.
+    fn is_signed(&self) -> bool {
+        self.by == ColourBy::Stress
+    }
+
+    /// The colour at a fraction of the scale, 0 to 1.
+    pub(super) fn at(&self, fraction: f64) -> [u8; 3] {
+        if self.is_signed() {
+            blue_to_red(2.0 * fraction - 1.0)
+        } else {
+            viridis(fraction)
+        }
+    }
+
+    /// Name of the scale and the values at its ends, if colours are on one.
+    pub(super) fn scale(&self) -> Option<(&'static str, [String; 2])> {
         let (name, unit) = match self.by {
             ColourBy::Fragment | ColourBy::Body => return None,
             ColourBy::Speed => ("speed", "m/s"),
@@ -169,6 +194,13 @@ impl Colours {
             ColourBy::Utilisation => ("utilisation of bonds", ""),
             ColourBy::Stress => ("normal stress of bonds", "Pa"),
         };
-        Some((name, show_quantity(self.highest, unit)))
+        let highest = show_quantity(self.highest, unit);
+        let ends = if self.is_signed() {
+            let number = highest.split(' ').next().unwrap_or_default();
+            [format!("-{number}"), format!("+{highest}")]
+        } else {
+            ["0".to_owned(), highest]
+        };
+        Some((name, ends))
     }
 }

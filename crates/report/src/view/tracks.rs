@@ -280,7 +280,7 @@ fn middle(places_m: &[[f64; 3]]) -> [[f64; 3]; 2] {
 }
 
 /// The value that one of a thousand exceeds; 0 of none.
-fn most_of(values: &[f64]) -> f64 {
+pub(crate) fn most_of(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values
         .iter()
         .copied()

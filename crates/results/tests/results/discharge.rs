@@ -30,7 +30,7 @@ fn discharge_looks_as_documented_and_goes_on_after_an_interruption() {
     file.append(std::iter::empty()).unwrap();
     let whole = fs::read_to_string(&path).unwrap();
     assert!(whole.starts_with(&format!(
-        "{COLUMNS}\n5e-1,7,\"cake, old\",stone,floor,5e-2,3.333333333333333e-1,5e-1,2.5e-1,1.25e-1\n"
+        "{COLUMNS}\n0.5,7,\"cake, old\",stone,floor,0.05,0.3333333333333333,0.5,0.25,0.125\n"
     )));
     assert_eq!(whole.lines().count(), 4);
     let mut file = DischargeFile::continue_at(&path, checkpoint).unwrap();
@@ -54,6 +54,6 @@ fn a_distribution_looks_as_documented() {
     write_distribution(&path, &[row]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        format!("{DISTRIBUTION_COLUMNS}\ncake,both,1.4e-3,5e-1,2.5e-1\n")
+        format!("{DISTRIBUTION_COLUMNS}\ncake,both,0.0014,0.5,0.25\n")
     );
 }

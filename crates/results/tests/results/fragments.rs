@@ -38,11 +38,11 @@ fn fragments_look_as_documented() {
     file.append(1.5e-3, &[]).unwrap();
     file.append(2.5e-3, &[fragment(2, [1.0 / 3.0; 15])])
         .unwrap();
-    let third = ",3.333333333333333e-1".repeat(15);
+    let third = ",0.3333333333333333".repeat(15);
     let text = format!(
         "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m,body,material\n\
-         0e0,0,,0,2.5e-1,1e0,-2e0,3e0,5e-1,0e0,1e-9,7e0,8e0,9e0,-1e0,0e0,1e3,1.25e-1,7.5e-1,\"cake, \"\"old\"\"\",stone\n\
-         2.5e-3,2,1,20{third},\"cake, \"\"old\"\"\",stone\n"
+         0,0,,0,0.25,1,-2,3,0.5,0,1e-9,7,8,9,-1,0,1000,0.125,0.75,\"cake, \"\"old\"\"\",stone\n\
+         0.0025,2,1,20{third},\"cake, \"\"old\"\"\",stone\n"
     );
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
     assert_eq!(file.length_bytes(), text.len() as u64);
@@ -71,7 +71,7 @@ fn the_tree_looks_as_documented_and_is_replaced_whole() {
     write_fragment_tree(&path, [root, child].into_iter()).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        "fragment_id,parent_id,created_s,ended_s,particles\n0,,0e0,2.5e-3,7\n1,0,2.5e-3,,4\n"
+        "fragment_id,parent_id,created_s,ended_s,particles\n0,,0,0.0025,7\n1,0,0.0025,,4\n"
     );
     assert_eq!(TREE_COLUMNS.split(',').count(), 5);
     let missing = folder.path().join("missing/tree.csv");

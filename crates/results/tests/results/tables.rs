@@ -35,8 +35,8 @@ fn a_series_looks_as_documented() {
     series.append(0.0, &[1.0 / 3.0, -0.0]).unwrap();
     series.append(5e-4, &[f64::NAN, f64::NEG_INFINITY]).unwrap();
     let text = "time_s,kinetic_energy_j,\"share of \"\"a\"\", b\"\n\
-                0e0,3.333333333333333e-1,-0e0\n\
-                5e-4,NaN,-inf\n";
+                0,0.3333333333333333,-0\n\
+                0.0005,NaN,-inf\n";
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
     assert_eq!(series.length_bytes(), text.len() as u64);
     assert_eq!(series.append(1.0, &[1.0]).unwrap_err().exit_code(), 1);
@@ -91,8 +91,8 @@ fn events_look_as_documented() {
     events.append(&[]).unwrap();
     events.append(&[event(2), planned]).unwrap();
     let text = "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail\n\
-                2,2e-6,bond_broken,3,1,2,5e-1,-1e-3,0e0,tension,1e-1,\n\
-                12,2.5e-1,plan,,,,,,,,,\"search begins, bodies are near\"\n";
+                2,2e-6,bond_broken,3,1,2,0.5,-0.001,0,tension,0.1,\n\
+                12,0.25,plan,,,,,,,,,\"search begins, bodies are near\"\n";
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
     assert_eq!(events.length_bytes(), text.len() as u64);
     events.sync().unwrap();

@@ -81,7 +81,8 @@ fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<()> {
     let output = scene.output.as_ref();
     let from = output.and_then(|output| output.view_from);
     let view = View::of(&plan.state, from, None);
-    let image = view.picture_with_regions(&plan.state, &plan.bodies, scene.run.end_time_s);
+    let (end_s, names) = (scene.run.end_time_s, scene.regions.keys());
+    let image = view.picture_with_regions(&plan.state, &plan.bodies, end_s, names);
     let bytes = to_png(&image, Compression::High)?;
     write_file(file, |out| out.write_all(&bytes))
 }

@@ -6,9 +6,11 @@ use dem_io::Result;
 use dem_io::units::significant;
 use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
+use dem_scene::Quantity;
 use serde::Serialize;
 
 use super::sizes::Fragments;
+use crate::measure::Probe;
 use crate::state::State;
 use crate::state::clusters::fragments::mass_fraction_of_largest;
 use crate::state::clusters::sizes::Discharged;
@@ -107,7 +109,7 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
 }
 
 /// Plots the discharged mass over time, if there is any; the number of fragments over time, if it
-/// changes; and the sizes of those at the end and those discharged, if there is more than one.
+/// changes and no measure has it; and the sizes of those at the end and those discharged, if there is more than one.
 ///
 /// # Errors
 /// Those of the files.
@@ -116,6 +118,7 @@ pub(crate) fn write_fragment_plots(
     state: &State,
     fragments: &Fragments,
     end_s: f64,
+    probes: &[Probe],
 ) -> Result<()> {
     if !state.population.discharged.is_empty() {
         let plot = discharge_plot(state, end_s);
@@ -125,7 +128,9 @@ pub(crate) fn write_fragment_plots(
         return Ok(());
     };
     let counts = counts_over_time(&clusters.history, end_s);
-    if counts.iter().any(|[_, count]| *count != counts[0][1]) {
+    let counts_fragments = |probe: &Probe| probe.measure.quantity == Quantity::Count;
+    let is_measured = probes.iter().any(counts_fragments);
+    if !is_measured && counts.iter().any(|[_, count]| *count != counts[0][1]) {
         let mut plot = plot("Fragments", "time (s)", "fragments", counts);
         plot.y.whole = true;
         folder.write_plot(COUNT, &plot.svg().file())?;

@@ -1,6 +1,7 @@
 //! Pictures of a state: the visible objects, and the view.
 
 pub(crate) mod reach;
+mod region_names;
 pub mod scale;
 pub(crate) mod subject;
 pub(crate) mod view;

@@ -76,12 +76,12 @@ impl Run<'_> {
             write_json(&folder.ended(), &end)?;
         }
         self.save()?;
-        match &self.files {
+        match &mut self.files {
             Some(files) => end.write(
                 files.folder,
                 &self.state,
                 &self.probes,
-                files.pictures.as_ref(),
+                files.pictures.as_mut(),
             ),
             None => Ok(()),
         }

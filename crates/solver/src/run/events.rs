@@ -1,6 +1,7 @@
 //! Entries of the table of events.
 
 use dem_io::Result;
+use dem_io::text::exact;
 use dem_results::{DischargeRow, Event};
 
 use super::files::Files;
@@ -64,6 +65,11 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
     files.events.append(&events)
 }
 
+/// A value before and after an event.
+fn before_and_after(before: f64, after: f64) -> String {
+    format!("{} -> {}", exact(before), exact(after))
+}
+
 /// Events of bodies in this step.
 pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<()> {
     let (step, time_s) = (state.scratch.events.step, state.scratch.events.time_s);
@@ -87,7 +93,10 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 place_m,
                 Some(kinetic_after - kinetic),
                 format!(
-                    "fragment {cluster} ({body}): mass {mass:e} -> {mass_after:e} kg; momentum {momentum:e} -> {momentum_after:e} N s; kinetic energy {kinetic:e} -> {kinetic_after:e} J"
+                    "fragment {cluster} ({body}): mass {} kg; momentum {} N s; kinetic energy {} J",
+                    before_and_after(*mass, *mass_after),
+                    before_and_after(*momentum, *momentum_after),
+                    before_and_after(*kinetic, *kinetic_after),
                 ),
             ),
             PopulationEvent::Restored {

@@ -51,14 +51,14 @@ impl End {
         folder: &ResultsFolder,
         state: &State,
         probes: &[Probe],
-        pictures: Option<&Pictures>,
+        pictures: Option<&mut Pictures>,
     ) -> Result<()> {
         let summary: Value = serde_json::from_str(&self.summary).unwrap_or_default();
         write_plots(folder, probes, &summary["measures"])?;
         if let Some(clusters) = &state.clusters {
             let fragments = Fragments::of(state).unwrap_or_default();
             write_tree(folder, clusters)?;
-            write_fragment_plots(folder, state, &fragments, self.simulated_s)?;
+            write_fragment_plots(folder, state, &fragments, self.simulated_s, probes)?;
             write_distribution(&folder.distribution(), &fragments.rows(&state.model))?;
         }
         if let Some(pictures) = pictures {
@@ -147,10 +147,10 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
             Some(folder),
         )?;
     }
-    let pictures = order
+    let mut pictures = order
         .map(|order| Pictures::open(folder, order, Some((&state, progress.pictures))))
         .transpose()?;
-    end.write(folder, &state, &probes, pictures.as_ref())?;
+    end.write(folder, &state, &probes, pictures.as_mut())?;
     let summary = end.summary.clone();
     Ok(Some(Finished { missing, summary }))
 }

@@ -1,5 +1,8 @@
 //! Pictures taken during a run, and the film made of them at the end.
 
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use dem_io::Result;
 use dem_pictures::Image;
 use dem_pictures::animation::animation;
@@ -16,6 +19,9 @@ use crate::output::pictures::View;
 use crate::output::pictures::scale::Scale;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
+
+/// Largest memory for pictures of which the film will be made: about 80 of the usual size.
+const MOST_KEPT_BYTES: usize = 128 << 20;
 
 /// Data of the pictures in a checkpoint.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -48,8 +54,8 @@ impl Order {
 /// The pictures of a run.
 #[derive(Debug)]
 pub(super) struct Pictures {
-    folder: ResultsFolder,
     files: PictureFiles,
+    album: Album,
     order: Order,
     taken: Taken,
 }
@@ -84,8 +90,8 @@ impl Pictures {
             count: files.count(),
         };
         Ok(Self {
-            folder: folder.clone(),
             files,
+            album: Album::new(folder),
             order,
             taken,
         })
@@ -109,6 +115,7 @@ impl Pictures {
         self.taken.next = next(state, self.order.every_s);
         let image = self.order.view.picture(state, bodies, self.order.every_s);
         self.files.append(&to_png(&image, Compression::Fast)?)?;
+        self.album.keep(self.taken.count, &Rc::new(image));
         self.taken.count = self.files.count();
         Ok(())
     }
@@ -117,10 +124,10 @@ impl Pictures {
     ///
     /// # Errors
     /// Those of the files.
-    pub(super) fn finish(&self) -> Result<()> {
-        let read = |number: usize| read_png(&self.folder.picture(number));
-        let small = |number: usize| read(number).map(|image| image.reduced(SMALLER));
+    pub(super) fn finish(&mut self) -> Result<()> {
+        let album = &mut self.album;
         let chosen = chosen_for_strip(self.taken.count);
+        let small = |number: usize| album.picture(number).map(|image| image.reduced(SMALLER));
         let frames = chosen
             .into_iter()
             .map(small)
@@ -128,8 +135,48 @@ impl Pictures {
         let strip = to_png(&film_strip(&frames, COLUMNS), Compression::High)?;
         let chosen = chosen_for_film(self.taken.count);
         let film = animation(chosen.len() as u32, delay_ms(chosen.len()), |k| {
-            read(chosen[k as usize])
+            album.picture(chosen[k as usize])
         })?;
         self.files.write_film(&strip, &film)
+    }
+}
+
+/// The pictures of a results folder, kept in memory as far as that is allowed.
+#[derive(Debug)]
+struct Album {
+    folder: ResultsFolder,
+    kept: BTreeMap<usize, Rc<Image>>,
+    kept_bytes: usize,
+}
+
+impl Album {
+    /// Of this folder, with no picture in memory.
+    fn new(folder: &ResultsFolder) -> Self {
+        Self {
+            folder: folder.clone(),
+            kept: BTreeMap::new(),
+            kept_bytes: 0,
+        }
+    }
+
+    fn keep(&mut self, number: usize, image: &Rc<Image>) {
+        let bytes = image.rgb().len();
+        if self.kept_bytes + bytes <= MOST_KEPT_BYTES {
+            self.kept_bytes += bytes;
+            self.kept.insert(number, image.clone());
+        }
+    }
+
+    /// The picture of this number, read from its file if it is not in memory.
+    ///
+    /// # Errors
+    /// Its file cannot be read.
+    fn picture(&mut self, number: usize) -> Result<Rc<Image>> {
+        if let Some(image) = self.kept.get(&number) {
+            return Ok(image.clone());
+        }
+        let image = Rc::new(read_png(&self.folder.picture(number))?);
+        self.keep(number, &image);
+        Ok(image)
     }
 }

@@ -202,7 +202,7 @@ fn what_an_inlet_feeds_bonded_is_no_replacement_and_a_sphere_no_clump() {
     assert_eq!(population["fed"], 6);
     assert_eq!(population["replaced"], 0);
     assert_eq!(population["clumps"], 0);
-    assert_eq!(population["single_spheres"], 3);
+    assert_eq!(population["single_sphere_bodies"], 3);
     let (_, rows) = super::table(&bench.path("out/events.csv"));
     let kinds = |kind: &str| {
         rows.iter()

@@ -3,11 +3,13 @@
 use dem_pictures::label::{label, scale_bar, time_text};
 use dem_pictures::{Camera, Image, Surface, render};
 
+use super::region_names::write_names;
 use super::scale::Scale;
 use super::subject::{around, balls, outlines_of_regions, points_of, surfaces};
 use crate::geometry::Bounds;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
+use crate::state::regions::Region;
 
 /// Width and height of a picture, px.
 pub(crate) const SIZE_PX: [u32; 2] = [960, 540];
@@ -50,16 +52,20 @@ impl View {
         self.drawn(state, bodies, &surfaces, every_s)
     }
 
-    /// The same, with the edges of the boxes around all regions.
-    pub fn picture_with_regions(
+    /// The same, with the edges of the boxes around all regions, and their names, in their order.
+    pub fn picture_with_regions<'a>(
         &self,
         state: &State,
         bodies: &[PlacedBody],
         every_s: f64,
+        names: impl Iterator<Item = &'a String>,
     ) -> Image {
         let mut surfaces = surfaces(&state.walls, &self.around);
         surfaces.extend(outlines_of_regions(state));
-        self.drawn(state, bodies, &surfaces, every_s)
+        let mut image = self.drawn(state, bodies, &surfaces, every_s);
+        let bounds = state.model.rules.regions.iter().map(Region::bounds);
+        write_names(&mut image, &self.camera, bounds.zip(names));
+        image
     }
 
     fn drawn(

@@ -33,8 +33,8 @@ pub struct OutletSummary {
 pub struct PopulationSummary {
     /// Rigid clumps of two or more spheres at the end.
     pub clumps: usize,
-    /// Single loose spheres of clumps and inlets at the end.
-    pub single_spheres: usize,
+    /// Bodies of one sphere at the end, from inlets and clumps; fragments are not counted.
+    pub single_sphere_bodies: usize,
     /// Clumps that became bonded clusters.
     pub replaced: u32,
     /// Clusters and fragments that became rigid clumps again.
@@ -75,7 +75,7 @@ impl PopulationSummary {
             .sum();
         Some(Self {
             clumps: several,
-            single_spheres: clumps.all.len() - several,
+            single_sphere_bodies: clumps.all.len() - several,
             replaced: population.replaced,
             restored: population.restored,
             fed: population.inlets.iter().map(|come| come.bodies).sum(),

@@ -141,7 +141,7 @@ impl Summary {
         };
         writeln!(
             f,
-            "bodies       {} fed ({} kg), {} replaced, {} restored, {} discharged ({} kg), {} clumps{} at the end",
+            "bodies       {} fed ({} kg), {} replaced, {} restored, {} discharged, fragments included ({} kg), {} clumps{} at the end",
             p.fed,
             significant(p.fed_kg, 4),
             p.replaced,
@@ -149,9 +149,10 @@ impl Summary {
             p.discharged,
             significant(p.discharged_kg, 4),
             p.clumps,
-            match p.single_spheres {
+            match p.single_sphere_bodies {
                 0 => String::new(),
-                count => format!(" and {count} single spheres"),
+                1 => " and 1 body of one sphere".to_owned(),
+                count => format!(" and {count} bodies of one sphere"),
             },
         )?;
         if p.outlets.len() > 1 {

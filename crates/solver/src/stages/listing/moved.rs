@@ -1,6 +1,8 @@
 //! Which particles have moved too far from where they were when their neighbours were last
 //! searched for, and the balls around the others.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -76,7 +78,11 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
     let step_s = state.time_step_s;
     let (loose, carried): (Vec<u32>, Vec<u32>) =
         references.due.iter().partition(|i| (**i as usize) < p.free);
-    let is_due = |i: &u32| free_left_m(p, references, *i as usize, SOON[0], step_s)[1] < 0.0;
+    let is_due = |i: &u32| {
+        let i = *i as usize;
+        let [left_m, allowance_m] = free_left_m(p, references, i);
+        particle_is_due(p, i, left_m, SOON[0] * allowance_m, step_s)
+    };
     let free = (0..p.free as u32).into_par_iter().with_min_len(CHUNK);
     let mut particles: Vec<u32> = free.filter(is_due).collect();
     particles.extend(loose);
@@ -107,9 +113,13 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
     for chunk in 0..references.chunks_left_m.len() {
         let moved_m = state.scratch.chunks_moved_m.get(chunk).copied();
         if references.chunks_left_m[chunk] < STEPS_LEFT * moved_m.unwrap_or(0.0) {
-            let [left_m, beyond_m] = chunk_left_m(p, references, chunk, state.time_step_s);
-            urgent |= beyond_m < 0.0;
-            references.chunks_left_m[chunk] = left_m;
+            let mut least_m = f64::INFINITY;
+            for i in chunk_of(p, chunk) {
+                let [left_m, allowance_m] = free_left_m(p, references, i);
+                least_m = least_m.min(left_m);
+                urgent |= particle_is_due(p, i, left_m, NOW * allowance_m, state.time_step_s);
+            }
+            references.chunks_left_m[chunk] = least_m;
         }
     }
     for (clump, reference) in state.clumps.all.iter().zip(&mut references.clumps) {
@@ -121,24 +131,27 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
     urgent
 }
 
-/// Distance that a free particle may still move, m, and what of it is left beyond the distance at
-/// which it is due: this fraction of the distance of its ball, and little for its speed.
+/// Distance that a free particle may still move, and that which it may move in all, m.
 #[inline(always)]
-fn free_left_m(
-    particles: &Particles,
-    references: &References,
-    i: usize,
-    fraction: f64,
-    step_s: f64,
-) -> [f64; 2] {
+fn free_left_m(particles: &Particles, references: &References, i: usize) -> [f64; 2] {
     let (pose, [x, y, z, radius_m]) = (&particles.poses[i], references.balls[i]);
     let allowance_m = radius_m - pose.radius_m();
     let left_m = allowance_m - (pose.place() - Vector3::new(x, y, z)).norm();
-    let moved_m = Vector3::from(particles.motions[i].velocity_m_s).norm() * step_s;
-    [
-        left_m,
-        left_m - (fraction * allowance_m).max(STEPS_LEFT * moved_m),
-    ]
+    [left_m, allowance_m]
+}
+
+/// Whether a particle with this distance left, m, is due: less than `enough_m`, or used up in a few
+/// steps at its present speed.
+#[inline(always)]
+fn particle_is_due(
+    particles: &Particles,
+    i: usize,
+    left_m: f64,
+    enough_m: f64,
+    step_s: f64,
+) -> bool {
+    let squared_speed = Vector3::from(particles.motions[i].velocity_m_s).norm_squared();
+    left_m < enough_m || left_m.powi(2) < (STEPS_LEFT * step_s).powi(2) * squared_speed
 }
 
 fn clump_is_due(clump: &Clump, reference: &ClumpReference, fraction: f64) -> bool {
@@ -148,26 +161,19 @@ fn clump_is_due(clump: &Clump, reference: &ClumpReference, fraction: f64) -> boo
 /// Finds the distances left to the chunks, after a search.
 pub(super) fn find_left(particles: &Particles, references: &mut References) {
     let chunks = 0..particles.free.div_ceil(CHUNK);
-    let left = chunks.into_par_iter().map(|chunk| {
-        let [left_m, _] = chunk_left_m(particles, references, chunk, 0.0);
-        left_m
-    });
+    let left = chunks.into_par_iter();
+    let left = left.map(|chunk| chunk_left_m(particles, references, chunk));
     references.chunks_left_m = left.collect();
 }
 
-/// The least of the distances of [`free_left_m`] of the particles of a chunk, m: those left, and
-/// those beyond where one is due now.
-fn chunk_left_m(
-    particles: &Particles,
-    references: &References,
-    chunk: usize,
-    step_s: f64,
-) -> [f64; 2] {
-    let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(particles.free);
-    own.fold([f64::INFINITY; 2], |least, i| {
-        let of_one = free_left_m(particles, references, i, NOW, step_s);
-        [0, 1].map(|k| least[k].min(of_one[k]))
-    })
+/// The least distance that the particles of a chunk may still move, m.
+fn chunk_left_m(particles: &Particles, references: &References, chunk: usize) -> f64 {
+    let left = chunk_of(particles, chunk).map(|i| free_left_m(particles, references, i)[0]);
+    left.fold(f64::INFINITY, f64::min)
+}
+
+fn chunk_of(particles: &Particles, chunk: usize) -> Range<usize> {
+    chunk * CHUNK..((chunk + 1) * CHUNK).min(particles.free)
 }
 
 /// Distance that each sphere of a clump may still move, m, at least.
