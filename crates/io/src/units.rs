@@ -235,6 +235,14 @@ pub const ENERGY_PER_MASS: Dimension = Dimension {
     example: "0.01 J/kg",
 };
 
+/// Energy over area, J/m2.
+pub const ENERGY_PER_AREA: Dimension = Dimension {
+    name: "energy per area",
+    si: "J/m2",
+    units: &[("mJ/m2", 1e-3), ("J/m2", 1.0), ("kJ/m2", 1e3), ("N/m", 1.0)],
+    example: "50 J/m2",
+};
+
 /// Mass over time, kg/s.
 pub const MASS_RATE: Dimension = Dimension {
     name: "mass rate",
@@ -278,7 +286,7 @@ pub const NUMBER: Dimension = Dimension {
 };
 
 /// All dimensions.
-pub const DIMENSIONS: [Dimension; 19] = [
+pub const DIMENSIONS: [Dimension; 20] = [
     NUMBER,
     LENGTH,
     AREA,
@@ -295,6 +303,7 @@ pub const DIMENSIONS: [Dimension; 19] = [
     STIFFNESS,
     ENERGY,
     ENERGY_PER_MASS,
+    ENERGY_PER_AREA,
     MASS_RATE,
     RATE,
     VISCOUS_DAMPING,

@@ -280,6 +280,7 @@ impl Made<'_> {
         Body {
             bond_radii: in_metres(bond_radii(spheres, bonds, settings.bond_radius_factor)),
             bond_lengths: in_metres(bond_lengths(spheres, bonds)),
+            bond_damages: Vec::new(),
             positions: spheres
                 .positions
                 .iter()

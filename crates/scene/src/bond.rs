@@ -7,7 +7,7 @@ use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::tree::Value;
 use dem_io::diagnostic::Result;
-use dem_io::units::{ANGLE, RATE, STRESS, VISCOUS_DAMPING};
+use dem_io::units::{ANGLE, ENERGY_PER_AREA, RATE, STRESS, VISCOUS_DAMPING};
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Bound::{Excluded, Included};
@@ -22,6 +22,11 @@ pub enum BondModel {
     },
     /// "pin": as "parallel", without moments.
     Pin {
+        /// Normal over shear stiffness.
+        stiffness_ratio: Option<f64>,
+    },
+    /// "rojek": as "parallel", of two segments, each as thick as its sphere.
+    Rojek {
         /// Normal over shear stiffness.
         stiffness_ratio: Option<f64>,
     },
@@ -146,6 +151,9 @@ pub struct BondFailure {
     pub rate_strengthening_from_1_s: Option<f64>,
     /// `strain_rate_measure`: the measure of that rate, the elongation unless given.
     pub strain_rate_measure: StrainRateMeasure,
+    /// `fracture_energy`: energy per area that it takes to pull the bond apart, J/m2: beyond its
+    /// strength it softens. None: it breaks at its strength.
+    pub fracture_energy_j_m2: Option<f64>,
     /// `weibull_modulus`: strengths scatter by a Weibull distribution of this modulus whose scale
     /// is the given strength. None: all bonds are equal.
     pub weibull_modulus: Option<f64>,
@@ -167,7 +175,7 @@ pub(super) static BOND: Schema = Schema {
         .or_word("timoshenko"),
         Key::number(
             "stiffness_ratio",
-            "Normal over shear stiffness of the models `parallel` and `pin`.",
+            "Normal over shear stiffness of the models `parallel`, `pin` and `rojek`.",
         )
         .positive()
         .otherwise("2 (1 + nu)"),
@@ -296,6 +304,13 @@ pub(super) static FAILURE: Schema = Schema {
         )
         .positive()
         .remedy("write true, or a strain rate such as \"4.64e-6 1/s\""),
+        Key::quantity(
+            "fracture_energy",
+            &ENERGY_PER_AREA,
+            "Energy per area that it takes to pull or shear a bond apart: beyond its strength the bond softens, by a damage \
+             that stays, until this is spent (cohesive zone). Without it a bond breaks at its strength.",
+        )
+        .positive(),
         Key::number(
             "weibull_modulus",
             "Strengths follow a Weibull distribution with this modulus; the given strength is its scale.",
@@ -333,7 +348,7 @@ impl Word for StrainRateMeasure {
 
 pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
     let table = Table::of(field, &BOND)?;
-    Ok(BondKind {
+    let kind = BondKind {
         model: model(&table)?,
         formulation: table.read("formulation")?,
         young_modulus_pa: table.read("young_modulus")?,
@@ -343,14 +358,25 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
         failure: table
             .read_by("failure", |field| failure(&field))?
             .unwrap_or_default(),
-    })
+    };
+    if let (Some(field), Formulation::Incremental) = (table.get("formulation"), kind.formulation)
+        && kind.failure.fracture_energy_j_m2.is_some()
+    {
+        let problem = format!("{} does not go with failure.fracture_energy", field.path);
+        return Err(field.refuse(
+            problem,
+            "write formulation = \"total\", or remove fracture_energy",
+        ));
+    }
+    Ok(kind)
 }
 
 /// The models and their names.
-fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 6] {
+fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 7] {
     [
         ("parallel", BondModel::Parallel { stiffness_ratio }),
         ("pin", BondModel::Pin { stiffness_ratio }),
+        ("rojek", BondModel::Rojek { stiffness_ratio }),
         ("euler-bernoulli", BondModel::EulerBernoulli),
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
@@ -370,7 +396,10 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
         (
             "stiffness_ratio",
             "parallel",
-            matches!(model, BondModel::Parallel { .. } | BondModel::Pin { .. }),
+            matches!(
+                model,
+                BondModel::Parallel { .. } | BondModel::Pin { .. } | BondModel::Rojek { .. }
+            ),
         ),
         (
             "shear_coefficient",
@@ -434,11 +463,13 @@ fn failure(field: &Field<'_>) -> Result<BondFailure> {
         equivalent_stress: table.read("equivalent_stress")?,
         rate_strengthening_from_1_s: rate_strengthening(&table)?,
         strain_rate_measure: table.read("strain_rate_measure")?,
+        fracture_energy_j_m2: table.read("fracture_energy")?,
         weibull_modulus: table.read("weibull_modulus")?,
     };
     check_strengths(field, &table, &failure)?;
     check_friction(&table)?;
     check_effects(&table, &failure)?;
+    check_fracture_energy(&table, &failure)?;
     Ok(failure)
 }
 
@@ -515,6 +546,35 @@ fn check_effects(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
     Ok(())
 }
 
+/// Whether a fracture energy has a strength beyond which the bond softens.
+fn check_fracture_energy(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
+    let Some(field) = table.get("fracture_energy") else {
+        return Ok(());
+    };
+    let strengths = [
+        ("tensile_strength", failure.tensile_strength_pa),
+        ("shear_strength", failure.shear_strength_pa),
+        ("cohesion", failure.cohesion_pa),
+        ("von_mises_strength", failure.von_mises_strength_pa),
+    ];
+    if strengths.iter().all(|(_, strength)| strength.is_none()) {
+        let problem = format!(
+            "{} has no effect without tensile_strength, shear_strength, cohesion or von_mises_strength, beyond which a bond softens",
+            field.path
+        );
+        let remedy = "add tensile_strength = \"1 MPa\", or remove fracture_energy";
+        return Err(field.refuse(problem, remedy));
+    }
+    if let Some((name, _)) = strengths
+        .iter()
+        .find(|(_, strength)| *strength == Some(0.0))
+    {
+        let problem = format!("{} has no strength to soften from: {name} is 0", field.path);
+        return Err(field.refuse(problem, "give the strength, or remove fracture_energy"));
+    }
+    Ok(())
+}
+
 /// The strain rate above which strengths rise, 1/s. None for `false`.
 fn rate_strengthening(table: &Table<'_>) -> Result<Option<f64>> {
     let Some(field) = table.get("rate_strengthening") else {
@@ -537,7 +597,9 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     let name = known.iter().find(|(_, other)| same(other));
     listing.text("model", name.map_or("", |(name, _)| *name));
     match kind.model {
-        BondModel::Parallel { stiffness_ratio } | BondModel::Pin { stiffness_ratio } => {
+        BondModel::Parallel { stiffness_ratio }
+        | BondModel::Pin { stiffness_ratio }
+        | BondModel::Rojek { stiffness_ratio } => {
             let stiffness_ratio = stiffness_ratio.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
             listing.value("stiffness_ratio", &stiffness_ratio);
         }
@@ -559,6 +621,7 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
         listing.value("von_mises_strength", &failure.von_mises_strength_pa);
         listing.value("equivalent_stress", &failure.equivalent_stress);
         listing.value("rate_strengthening", &failure.rate_strengthening_from_1_s);
+        listing.value("fracture_energy", &failure.fracture_energy_j_m2);
         listing.value("weibull_modulus", &failure.weibull_modulus);
         listing.value("strain_rate_measure", &failure.strain_rate_measure);
     });

@@ -7,6 +7,7 @@ pub(crate) mod chunks;
 pub mod clumps;
 mod cluster_bytes;
 pub mod contacts;
+pub(crate) mod damage;
 mod damped;
 pub mod damping;
 pub(crate) mod flow;

@@ -4,13 +4,14 @@ use std::sync::LazyLock;
 
 use crate::stages::bonds::{BONDS, clear_wrenches, compute_bonds};
 use crate::stages::breakage::{
-    FAILURE, FRICTION, RATES, SCATTER, break_failed_bonds, count_frictional, count_rates,
+    DAMAGE, FAILURE, FRICTION, RATES, SCATTER, break_failed_bonds, count_frictional, count_rates,
     count_scattered,
 };
 use crate::stages::clumps::{CLUMPS, drift_clumps, gather_clumps, kick_clumps};
 use crate::stages::contacts::{
     CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
 };
+use crate::stages::damage::press_damaged_bonds;
 use crate::stages::damping::{BOND_DAMPING, compute_bond_damping};
 use crate::stages::flow::{FLOW, apply_inlets_and_outlets, count_bond_steps};
 use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
@@ -46,6 +47,7 @@ const INTERACT: &[Part] = &[
     (&MOTION, clear_wrenches),
     (&BONDS, compute_bonds),
     (&HISTORIES, compute_incremental_bonds),
+    (&DAMAGE, press_damaged_bonds),
     (&CONTACTS, compute_contacts),
     (&RELAXATION, count_relaxing),
     (&ROLLING, count_rolling),

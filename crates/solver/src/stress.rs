@@ -12,6 +12,7 @@ pub mod limit_map;
 pub(crate) mod long;
 pub(crate) mod oscillator;
 pub mod prediction;
+pub(crate) mod softening;
 pub mod text;
 pub mod trial;
 pub mod verdict;

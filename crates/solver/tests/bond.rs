@@ -17,9 +17,10 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 
 /// Every bond model.
-pub(crate) const MODELS: [BondModel; 6] = [
+pub(crate) const MODELS: [BondModel; 7] = [
     BondModel::Parallel { kappa: None },
     BondModel::Pin { kappa: None },
+    BondModel::Rojek { kappa: None },
     BondModel::EulerBernoulli,
     BondModel::Timoshenko,
     BondModel::ElasticSolid,

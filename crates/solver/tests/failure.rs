@@ -3,6 +3,7 @@
 mod after;
 mod bodies;
 mod books;
+mod damage;
 mod loads;
 mod rate;
 mod scatter;

@@ -12,6 +12,7 @@ mod calibrate;
 mod check;
 mod command_line;
 mod corpus;
+mod damage;
 mod discharge;
 mod disk;
 mod dynamic;
@@ -236,6 +237,7 @@ fn row(particles: usize) -> Body {
         radii: vec![1e-3; particles],
         bond_radii: vec![5e-4; bonds.len()],
         bond_lengths: vec![2e-3; bonds.len()],
+        bond_damages: Vec::new(),
         bonds,
         about: About {
             particle_density_kg_m3: Some(2050.0),

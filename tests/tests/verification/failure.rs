@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use dem_run::stages::ledger::balance;
+use dem_run::step::{advance, interact};
 use dem_run::{State, step};
 
 use super::page::{assert_shown, filled, on_one_thread};
@@ -426,6 +428,107 @@ fn by_rate() -> [String; 2] {
     [all, from]
 }
 
+/// Work of the supports until the first bond breaks, without what is stored, moves or was damped,
+/// over the area of the section, J/m2.
+fn energy_to_break_j_m2(mut state: State, end_s: f64) -> f64 {
+    while state.time_s <= end_s {
+        interact(&mut state);
+        if state.broken_count > 0 {
+            let now = balance(&mut state);
+            let left_j = now.kinetic_j + now.elastic_j() + now.local_damping_j + now.bond_damping_j;
+            return (now.support_work_j - left_j) / area_m2();
+        }
+        advance(&mut state);
+    }
+    f64::NAN
+}
+
+/// Energy to break a bond whose end is moved along this axis, J/m2.
+fn of_one_bond(criterion: Criterion, axis: &str, energy_j_m2: f64, way_m: f64) -> f64 {
+    let more = format!(
+        r#"
+        supports.left = {{ group = "left", fixed = true }}
+        supports.right = {{ group = "right", fixed = [{}"rx", "ry", "rz"], displacement = {{ {axis} = {way_m:e} }}, ramp = 1 }}
+        "#,
+        if axis == "x" {
+            "\"y\", \"z\", "
+        } else {
+            "\"x\", \"z\", "
+        }
+    );
+    let run = format!("end_time = 1, time_step = {:e}", 1.0 / STEPS);
+    let failure = format!("{}, fracture_energy = {energy_j_m2:e}", criterion.key());
+    energy_to_break_j_m2(bond(&failure, &run, &more), 1.0)
+}
+
+/// Energy to break a bar of so many bonds, J/m2.
+fn of_a_bar(bonds: u32, energy_j_m2: f64) -> f64 {
+    const LONG_M: f64 = 16e-3;
+    let length_m = LONG_M / f64::from(bonds);
+    let radius_m = 0.5 * length_m;
+    let spheres = (0..=bonds).map(|i| {
+        let x_m = f64::from(i) * length_m;
+        format!("[{x_m:e}, 0, 0, {radius_m:e}]")
+    });
+    let pairs = (0..bonds).map(|i| format!("[{i}, {}]", i + 1));
+    let [spheres, pairs] = [spheres.collect::<Vec<_>>(), pairs.collect()].map(|l| l.join(", "));
+    let state = started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = 50e-3, safety_factor = 0.5, local_damping = 0.2, seed = 2 }}
+        materials.stone = {{ density = 2500 }}
+        bodies.rod = {{ particles = [{spheres}], bond_list = [{pairs}], material = "stone", bonds = "glue" }}
+        groups.left = {{ particles = [0] }}
+        groups.right = {{ particles = [{bonds}] }}
+        bonds.glue = {{ young_modulus = 1e9, poisson_ratio = {POISSON:e}, radius_factor = {:e}, failure = {{ {}, weibull_modulus = 10, fracture_energy = {energy_j_m2:e} }} }}
+        supports.left = {{ group = "left", fixed = true }}
+        supports.right = {{ group = "right", fixed = ["y", "z", "rx", "ry", "rz"], velocity = {{ x = 4e-3 }} }}
+        "#,
+        RADIUS_M / radius_m,
+        Criterion::Tension.key(),
+    ));
+    energy_to_break_j_m2(state, 50e-3)
+}
+
+fn by_energy() -> String {
+    const ENERGY_J_M2: f64 = 0.02;
+    let mut cases = Vec::new();
+    for (what, criterion, axis, strength_pa) in [
+        (
+            "tensile strength: tension",
+            Criterion::Tension,
+            "x",
+            TENSION_PA,
+        ),
+        (
+            "equivalent stress: tension",
+            Criterion::VonMises,
+            "x",
+            VON_MISES_PA,
+        ),
+        ("shear strength: shear", Criterion::Shear, "y", SHEAR_PA),
+        (
+            "Mohr-Coulomb: shear",
+            Criterion::MohrCoulomb,
+            "y",
+            COHESION_PA,
+        ),
+    ] {
+        let broken_m = 2.0 * ENERGY_J_M2 / strength_pa;
+        let found = of_one_bond(criterion, axis, ENERGY_J_M2, 1.01 * broken_m);
+        let strain = broken_m / LENGTH_M;
+        // Sliding by this strain stretches the bond by half its square.
+        let stretched = 0.5 * YOUNG_PA * strain * strain / strength_pa;
+        let bound = 1.0 / STEPS + strain + stretched;
+        cases.push(Case::new(what, found, ENERGY_J_M2, bound));
+    }
+    for bonds in [2, 4, 8] {
+        let what = format!("bar of {bonds} bonds");
+        cases.push(Case::new(what, of_a_bar(bonds, 40.0), 40.0, 0.02));
+    }
+    compared("bonds", "J/m2", &cases)
+}
+
 /// Gamma function, by Stirling's series.
 fn gamma(x: f64) -> f64 {
     let y = x + 12.0;
@@ -537,6 +640,7 @@ fn the_page_shows_what_the_solver_gives() {
             &[
                 ("by displacement", by_displacement()),
                 ("by load", by_load()),
+                ("by energy", by_energy()),
                 ("rates", rates),
                 ("rates from 1.1", from),
                 ("scatter", scatter()),

@@ -40,10 +40,16 @@ fn check_lengths(body: &Body) -> Result<()> {
             "split the body",
         ));
     }
+    // No damages: all bonds are intact.
+    let damages = match body.bond_damages.len() {
+        0 => bonds,
+        count => count,
+    };
     for (what, length, of, wanted) in [
         ("radii", body.radii.len(), "particles", particles),
         ("bond radii", body.bond_radii.len(), "bonds", bonds),
         ("bond lengths", body.bond_lengths.len(), "bonds", bonds),
+        ("bond damages", damages, "bonds", bonds),
     ] {
         if length != wanted {
             return Err(Diagnostic::input(
@@ -101,9 +107,21 @@ fn check_bonds(body: &Body) -> Result<()> {
         }
         check_positive(body.bond_radii[bond], "radius")
             .and_then(|()| check_positive(body.bond_lengths[bond], "initial length"))
+            .and_then(|()| check_damage(body.bond_damages.get(bond)))
             .map_err(|error| error.within(&place()))?;
     }
     Ok(())
+}
+
+fn check_damage(damage: Option<&f64>) -> Result<()> {
+    match damage {
+        Some(damage) if !(0.0..1.0).contains(damage) => Err(Diagnostic::input(
+            "",
+            format!("its damage is {damage}, but must be at least 0 and below 1"),
+            "remove this bond if it is broken",
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Checks that the ends of a bond are different particles, by their numbers in the source.
@@ -237,6 +255,7 @@ mod tests {
             bonds: vec![[0, 1], [1, 2]],
             bond_radii: vec![0.25; 2],
             bond_lengths: vec![1.0; 2],
+            bond_damages: Vec::new(),
             ..Body::default()
         }
     }
@@ -266,6 +285,14 @@ mod tests {
         assert_eq!(
             said(|b| b.bond_lengths.push(1.0)),
             "3 bond lengths for 2 bonds; there must be one each"
+        );
+        assert_eq!(
+            said(|b| b.bond_damages.push(0.5)),
+            "1 bond damages for 2 bonds; there must be one each"
+        );
+        assert_eq!(
+            said(|b| b.bond_damages = vec![0.5, 1.0]),
+            "bond 1: its damage is 1, but must be at least 0 and below 1; remove this bond if it is broken"
         );
         assert_eq!(
             said(|b| b.positions[1][2] = f64::NAN),

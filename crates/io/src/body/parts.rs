@@ -40,6 +40,9 @@ pub struct Body {
     pub bond_radii: Vec<f64>,
     /// Initial bond lengths, m. One per bond.
     pub bond_lengths: Vec<f64>,
+    /// Damage of each bond, from 0 (intact) to below 1 (broken). One per bond, or empty: all are
+    /// intact.
+    pub bond_damages: Vec<f64>,
     /// Information on its origin.
     pub about: About,
 }
@@ -52,6 +55,7 @@ pub(crate) struct Parts {
     pub(crate) bonds: Vec<[u32; 2]>,
     pub(crate) bond_radii: Option<Vec<f64>>,
     pub(crate) bond_lengths: Option<Vec<f64>>,
+    pub(crate) bond_damages: Vec<f64>,
     pub(crate) about: About,
 }
 
@@ -75,6 +79,7 @@ impl Body {
     pub fn hash(&self) -> u64 {
         let places = self.positions.iter().flatten().chain(&self.radii);
         let of_bonds = self.bond_radii.iter().chain(&self.bond_lengths);
+        let of_bonds = of_bonds.chain(&self.bond_damages);
         let mut bytes = Vec::new();
         for number in places.chain(of_bonds) {
             bytes.extend(number.to_bits().to_le_bytes());
@@ -97,6 +102,7 @@ impl Body {
             mut bonds,
             bond_radii,
             bond_lengths,
+            bond_damages,
             about,
         } = parts;
         for bond in &mut bonds {
@@ -128,6 +134,7 @@ impl Body {
             bonds,
             bond_radii,
             bond_lengths,
+            bond_damages,
             about,
         };
         body.check()?;

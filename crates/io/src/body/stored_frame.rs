@@ -23,6 +23,8 @@ pub const BOND_RADIUS: &str = "bond_radius_m";
 pub const BOND_LENGTH: &str = "initial_length_m";
 /// Bond array: 1 for a broken bond, else 0.
 pub const BROKEN: &str = "broken";
+/// Bond array: damage, from 0 (intact) to 1 (broken).
+pub const DAMAGE: &str = "damage";
 /// Field: names of the bodies of the scene.
 pub const BODY_NAMES: &str = "body_names";
 /// Field: simulated time, s.
@@ -55,6 +57,8 @@ pub struct StoredFrame {
     pub bond_lengths: Vec<f64>,
     /// For each bond, true if it is broken.
     pub broken: Vec<bool>,
+    /// Damage of each bond, or none: no bond can be damaged.
+    pub damages: Vec<f64>,
 }
 
 /// A fragment of a frame.
@@ -100,7 +104,7 @@ impl StoredFrame {
     /// A fragment as a body: its particles at their positions, in the order of the frame, and the
     /// unbroken bonds between them.
     ///
-    /// Bonds keep their stress-free lengths, so stretched or compressed bonds stay so. Their
+    /// Bonds keep their damage, and their stress-free lengths, so stretched or compressed bonds stay so. Their
     /// bending, twist and shear are lost, and so are velocities. The density is that of the
     /// particles, unless they differ.
     ///
@@ -122,6 +126,7 @@ impl StoredFrame {
             !self.broken[*bond] && ends == [id; 2]
         };
         let bonds: Vec<usize> = (0..self.bonds.len()).filter(is_whole).collect();
+        let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);
         let density = self.densities_kg_m3[first];
         let is_same = |i: &usize| (self.densities_kg_m3[*i] / density - 1.0).abs() <= SAME_DENSITY;
         Body::from_parts(Parts {
@@ -133,6 +138,11 @@ impl StoredFrame {
                 .collect(),
             bond_radii: Some(bonds.iter().map(|&bond| self.bond_radii[bond]).collect()),
             bond_lengths: Some(bonds.iter().map(|&bond| self.bond_lengths[bond]).collect()),
+            bond_damages: if bonds.iter().any(is_damaged) {
+                bonds.iter().map(|&bond| self.damages[bond]).collect()
+            } else {
+                Vec::new()
+            },
             about: About {
                 particle_density_kg_m3: members
                     .iter()

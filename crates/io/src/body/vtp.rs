@@ -1,7 +1,7 @@
 //! Bodies as VTK XML PolyData (.vtp), which ParaView and PyVista open directly.
 //!
 //! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius`,
-//! cell data `bond_radius` and `bond_initial_length` (m), field data: `body_format_version`,
+//! cell data `bond_radius_m`, `initial_length_m` and, if bonds are damaged, `damage`, field data: `body_format_version`,
 //! `length_unit` and one array for each known field of [`About`]. For the encoding see
 //! [`crate::vtk`].
 
@@ -26,6 +26,7 @@ use names::{
 };
 
 use super::parts::{About, Body};
+use super::stored_frame::DAMAGE;
 use crate::vtk::{
     Cells, NamedArray, PolyData, Values, exact, write_number, write_text, write_texts,
 };
@@ -39,6 +40,8 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
         name,
         values: Values::Scalars(value),
     };
+    // No damages: all bonds are intact.
+    let of_bonds = if body.bond_damages.is_empty() { 2 } else { 3 };
     PolyData {
         points: body.positions.len(),
         place: Values::Vectors(&|i| body.positions[i]),
@@ -47,7 +50,8 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
         cell_data: &[
             array(BOND_RADIUS, &|bond| body.bond_radii[bond]),
             array(BOND_LENGTH, &|bond| body.bond_lengths[bond]),
-        ],
+            array(DAMAGE, &|bond| body.bond_damages[bond]),
+        ][..of_bonds],
     }
     .write(out, |out| write_fields(&body.about, out))
 }

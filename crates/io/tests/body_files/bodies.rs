@@ -12,6 +12,7 @@ pub(crate) fn triangle() -> Body {
         bonds: vec![[0, 1], [0, 2]],
         bond_radii: vec![4e-4, 3e-4],
         bond_lengths: vec![1e-3, 1.1e-3],
+        bond_damages: Vec::new(),
         about: About {
             program: Some("dem-pack 0.1.0".to_owned()),
             source: Some("Käse & \"Kuchen\" <1>.stl".to_owned()),
@@ -92,6 +93,7 @@ fn body_of(
                     bonds: bonds.clone(),
                     bond_radii: sizes[..bonds.len()].to_vec(),
                     bond_lengths: sizes[bonds.len()..].to_vec(),
+                    bond_damages: Vec::new(),
                     about: about.clone(),
                 })
             },

@@ -30,6 +30,7 @@ fn stored() -> StoredFrame {
         bond_radii: vec![1e-4, 2e-4, 3e-4, 4e-4],
         bond_lengths: vec![1.9e-3, 2e-3, 2e-3, 2.1e-3],
         broken: vec![false, true, false, false],
+        damages: Vec::new(),
     }
 }
 
@@ -45,6 +46,7 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     let density = |i: usize| frame.densities_kg_m3[i];
     let bond_radius = |bond: usize| frame.bond_radii[bond];
     let bond_length = |bond: usize| frame.bond_lengths[bond];
+    let damage = |bond: usize| frame.damages[bond];
     let mut of_particles = vec![
         array("radius_m", Values::Scalars(&radius)),
         array("velocity_m_s", Values::Vectors(&velocity)),
@@ -56,6 +58,9 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
         array("initial_length_m", Values::Scalars(&bond_length)),
         array("broken", Values::Counts(&broken)),
     ];
+    if !frame.damages.is_empty() {
+        of_bonds.push(array("damage", Values::Scalars(&damage)));
+    }
     of_particles.retain(|array| array.name != without);
     of_bonds.retain(|array| array.name != without);
     let mut bytes = Vec::new();
@@ -126,6 +131,35 @@ fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
             assert_eq!(read.bond_lengths, body.bond_lengths, "{name}");
             assert_eq!(read.bond_radii, body.bond_radii, "{name}");
         }
+    }
+}
+
+#[test]
+fn damage_goes_with_the_bonds() {
+    let damaged = StoredFrame {
+        damages: vec![0.0, 1.0, 0.0, 0.75],
+        ..stored()
+    };
+    let (folder, path) = written(&damaged, "");
+    let frame = read_frame(&path).unwrap();
+    assert_eq!(frame, damaged);
+    // Where no bond is damaged, nothing is said of damage.
+    assert!(frame.body(7).unwrap().bond_damages.is_empty());
+    let body = frame.body(3).unwrap();
+    assert_eq!(body.bond_damages, [0.75]);
+    let intact = stored().body(3).unwrap();
+    assert_ne!(body.hash(), intact.hash());
+    let file = folder.path().join("body.vtp");
+    write_body(&body, &file).unwrap();
+    assert_eq!(read_body(&file).unwrap().bond_damages, [0.75]);
+    for name in ["body.csv", "body.data", "body.txt"] {
+        let error = write_body(&body, &folder.path().join(name)).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let text = error.to_string();
+        assert!(
+            text.ends_with("damaged bonds, which such a file does not hold; write a .vtp"),
+            "{text}"
+        );
     }
 }
 
@@ -206,6 +240,7 @@ proptest! {
             bond_radii: (0..bonds.len()).map(|bond| 0.1 + 0.001 * bond as f64).collect(),
             bond_lengths: (0..bonds.len()).map(|bond| 1.0 + 0.001 * bond as f64).collect(),
             broken: (0..bonds.len()).map(|bond| !whole[bond]).collect(),
+            damages: Vec::new(),
             bonds,
             clusters,
         };

@@ -294,7 +294,7 @@ fn bonds() {
             stiffness_ratio: Some(2.5)
         }
     );
-    assert_eq!(parallel.formulation, Formulation::Incremental);
+    assert_eq!(parallel.formulation, Formulation::Total);
     assert_near(parallel.young_modulus_pa, 12.05e6);
     assert_eq!(parallel.poisson_ratio, 0.3);
     assert_eq!(parallel.radius_factor, Some(0.5));
@@ -324,6 +324,7 @@ fn bonds() {
             equivalent_stress: EquivalentStress::TensileEdge,
             rate_strengthening_from_1_s: Some(1e-5),
             strain_rate_measure: StrainRateMeasure::RelativeVelocity,
+            fracture_energy_j_m2: Some(50.0),
             weibull_modulus: Some(7.0),
         }
     );

@@ -90,7 +90,7 @@ pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
     let (undamped, of_undamped) =
         largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
-    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
+    let unstiffened = stiffen(&mut state.bonds);
     let (k, iterations) = if unstiffened.is_some() {
         let (k, more) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
         (k, of_undamped + more)
@@ -131,7 +131,7 @@ pub fn limit(state: &mut State) -> Limit {
 pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
     let contacts = &linear_contacts(state);
     let both = Weights::of_step(stiffer_by_damping(state), step_s);
-    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
+    let unstiffened = stiffen(&mut state.bonds);
     let (value, _) = largest_eigenvalue(state, contacts, both, Search::Rough);
     restore_stiffness(&mut state.bonds, unstiffened);
     let is_damped = is_damped(state, contacts);
@@ -153,14 +153,21 @@ fn stiffer_by_damping(state: &State) -> f64 {
     }
 }
 
-/// Makes bonds with structural damping stiffer by its gamma. Returns what they were; None: there
-/// are none.
-fn stiffen_by_structural_damping(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
+/// Makes bonds with structural damping stiffer by its gamma, and damaged ones as stiff as before
+/// they were damaged. Returns what they were; None: there are none.
+fn stiffen(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
     let gamma = |rule: &BondRule| rule.structural_damping;
-    if bonds.rules.iter().all(|rule| gamma(rule) == 0.0) {
+    if bonds.rules.iter().all(|rule| gamma(rule) == 0.0) && bonds.damaged.is_empty() {
         return None;
     }
     let before = bonds.blocks.clone();
+    for number in 0..bonds.damaged.len() {
+        let at = bonds.damaged[number] as usize;
+        let known = bonds.undamaged_stiffness(at);
+        let (block, lane) = (&mut bonds.blocks[at / BLOCK], at % BLOCK);
+        block.normal[lane] = known.normal;
+        block.shear[lane] = known.shear;
+    }
     for (rule, run) in bonds.runs(0..bonds.len()).collect::<Vec<_>>() {
         let stiffer = 1.0 + gamma(&bonds.rules[rule]);
         for at in run {

@@ -163,7 +163,7 @@ fn culprit(state: &State) -> Option<(usize, f64)> {
         let ends = state.bonds.ends[at].map(|end| end as usize);
         let p = &state.particles;
         frequencies(
-            &state.bonds.stiffness(at),
+            &state.bonds.undamaged_stiffness(at),
             ends.map(|end| p.motions[end].inverse_mass),
             ends.map(|end| p.motions[end].inverse_inertia),
         )

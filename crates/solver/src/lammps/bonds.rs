@@ -208,6 +208,13 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
             "use damping_ratio, or run the scene with dem-run",
         );
     }
+    if rule.fracture_energy_j_m2.is_some() {
+        return refuse(
+            "fracture_energy",
+            "bonds of bpm/rotational break at their strength and do not soften",
+            "leave it out, or run the scene with dem-run",
+        );
+    }
     if rule.strengthening_from_1_s.is_some() {
         return refuse(
             "rate_strengthening",

@@ -2,7 +2,8 @@
 
 use dem_io::Result;
 use dem_io::body::stored_frame::{
-    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DENSITY, FRAGMENT_ID, PARTICLE_ID, RADIUS, VELOCITY,
+    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FRAGMENT_ID, PARTICLE_ID, RADIUS,
+    VELOCITY,
 };
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
@@ -170,6 +171,10 @@ impl FrameOrder {
             scalars("utilisation", &utilisation),
             counts(BROKEN, &broken),
         ];
+        let damage = |i: usize| bonds.damage(bond(i));
+        if !bonds.damages.is_empty() {
+            bond_arrays.push(scalars(DAMAGE, &damage));
+        }
         if strengthen {
             bond_arrays.push(scalars("strain_rate_1_s", &strain_rate));
             bond_arrays.push(scalars("dynamic_increase_factor", &increase_factor));

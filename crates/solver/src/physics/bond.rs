@@ -2,6 +2,7 @@
 
 pub(crate) mod causes;
 pub(crate) mod criteria;
+pub mod damage;
 pub mod damping;
 pub mod damping_models;
 pub mod failure;

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use dem_io::body::About;
 use dem_io::body::files::body_files;
 use dem_io::body::mass::volume_m3;
+use dem_io::units::significant;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{
     BodyEntry, BodySource, BondDamping, BondKind, BondModel as SceneModel, ClumpMass,
@@ -14,6 +15,7 @@ use dem_scene::{
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::physics::bond::damage::Damage;
 use crate::physics::bond::damping::{DampingCoefficients, DampingModel, reduced};
 use crate::physics::bond::damping_models::{Chen, ChenByMode, ModeRatios, Platzer};
 use crate::physics::bond::failure::{Criteria, EquivalentStress, has_strength};
@@ -297,6 +299,8 @@ fn place_bonds(
     placed.bonds.reserve_exact(body.bonds.len());
     let damped = bonds.rules.iter().any(|rule| rule.damped);
     let incremental = bonds.rules.iter().any(|rule| rule.incremental);
+    let softens = |rule: &BondRule| rule.fracture_energy_j_m2.is_some();
+    let any_softens = bonds.rules.iter().any(softens);
     for (ends, original) in sorted {
         placed.bonds.push(original);
         let original = original as usize;
@@ -343,11 +347,51 @@ fn place_bonds(
         } else if !bonds.strength_factors.is_empty() {
             bonds.strength_factors.push(1.0);
         }
+        if any_softens {
+            let factor = bonds.strength_factor(bonds.len() - 1);
+            bonds.damages.push(Damage::none(&answer, factor));
+        }
+        let damage = body.bond_damages.get(original).copied().unwrap_or(0.0);
+        if softens(&bonds.rules[rule]) {
+            check_fracture_energy(original, bonds, &bonds.rules[rule])?;
+        } else if damage > 0.0 {
+            return Err(Diagnostic::input(
+                format!("bond {original}"),
+                format!("it is damaged ({damage}), and its kind of bonds has no fracture_energy"),
+                "add fracture_energy to its failure table, or remove the array 'damage' from the file",
+            ));
+        }
+        if damage > 0.0 {
+            bonds.set_damage(bonds.len() - 1, damage);
+        }
     }
     if incremental {
         bonds.histories.resize(bonds.len(), History::default());
     }
     Ok(())
+}
+
+/// Whether the last bond, with this number in its file, stores less than its fracture energy when it
+/// reaches a strength, apart from scatter.
+fn check_fracture_energy(number: usize, bonds: &Bonds, rule: &BondRule) -> Result<()> {
+    let at = bonds.len() - 1;
+    let energy_j_m2 = rule.fracture_energy_j_m2.unwrap_or_default();
+    let factor = bonds.undamaged_strength_factor(at);
+    let ratios = bonds.opening_ratios(at).into_iter().flatten();
+    let least = ratios.fold(f64::INFINITY, f64::min) * factor * factor;
+    if least > 1.0 {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("bond {number}"),
+        format!(
+            "{} m long, it stores {} J/m2 when it reaches its strength, not less than its fracture_energy of {} J/m2",
+            significant(bonds.initial_length_m(at), 4),
+            significant(energy_j_m2 / least, 4),
+            significant(energy_j_m2, 4),
+        ),
+        "give more fracture energy or less strength, pack smaller spheres, or leave fracture_energy out: such bonds break at once",
+    ))
 }
 
 /// Whether a bond of a body's file has a direction, and a frequency in the range of floating-point
@@ -397,6 +441,9 @@ fn model(model: SceneModel) -> BondModel {
         SceneModel::Pin {
             stiffness_ratio: kappa,
         } => BondModel::Pin { kappa },
+        SceneModel::Rojek {
+            stiffness_ratio: kappa,
+        } => BondModel::Rojek { kappa },
         SceneModel::EulerBernoulli => BondModel::EulerBernoulli,
         SceneModel::Timoshenko => BondModel::Timoshenko,
         SceneModel::ElasticSolid => BondModel::ElasticSolid,
@@ -425,6 +472,7 @@ fn rule(kind: &BondKind) -> BondRule {
         incremental: kind.formulation == Formulation::Incremental,
         damped: kind.damping != undamped,
         structural_damping: kind.damping.structural_damping,
+        fracture_energy_j_m2: failure.fracture_energy_j_m2,
         criteria: has_strength(&criteria).then_some(criteria),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,

@@ -141,7 +141,7 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
         .as_ref()
         .and_then(|kind| scene.bonds[kind].failure.weibull_modulus);
     // Each body has its own factors.
-    bonds.strength_factors.clear();
+    bonds.forget_scatter();
     Ok(Template {
         body: name.to_owned(),
         mass_kg: properties.mass_kg,

@@ -157,6 +157,8 @@ pub struct Balance {
     pub friction_j: f64,
     /// Released by bonds that broke, J.
     pub bond_breakage_j: f64,
+    /// Energy that damaged bonds lost while they softened, J.
+    pub bond_damage_j: f64,
     /// Energy of added bodies, minus that of removed bodies, plus the gain when clumps and clusters
     /// replaced each other, minus the kinetic energy that bodies had when they fell asleep, J.
     pub flow_energy_j: f64,
@@ -325,8 +327,11 @@ pub fn balance(state: &mut State) -> Balance {
     let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
 
     let work = &ledger.work;
-    let gone =
-        work.bond_damping + work.particle_damping + contact_damping + friction + ledger.released_j;
+    let gone = work.bond_damping
+        + work.particle_damping
+        + contact_damping
+        + friction
+        + (ledger.released_j + ledger.damaged_j);
     let stored = elastic.total() + contact_elastic;
     let given = work.loads + work.supports + wall_work + ledger.brought_j;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
@@ -365,6 +370,7 @@ pub fn balance(state: &mut State) -> Balance {
         contact_damping_j: contact_damping,
         friction_j: friction,
         bond_breakage_j: ledger.released_j,
+        bond_damage_j: ledger.damaged_j,
         flow_energy_j: ledger.brought_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),

@@ -8,12 +8,14 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::physics::bond::criteria::COUNT;
+use crate::physics::bond::damage::{Damage, opening_ratios, screened_factor};
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use crate::physics::bond::tangent::{BondTangent, bond_tangent};
-use crate::physics::bond::total::BondForces;
+use crate::physics::bond::total::{BondForces, End};
 use crate::physics::bond::{incremental, total};
 use crate::physics::number::Number;
 
@@ -30,6 +32,9 @@ pub struct BondRule {
     pub structural_damping: f64,
     /// Strengths. None: the bonds never break.
     pub criteria: Option<Criteria>,
+    /// Energy per area that it takes to pull a bond apart, J/m2: beyond their strength bonds soften.
+    /// None: they break at their strength.
+    pub fracture_energy_j_m2: Option<f64>,
     /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
     pub strengthening_from_1_s: Option<f64>,
     /// The strain whose rate is used.
@@ -123,6 +128,10 @@ pub struct Bonds {
     /// Histories of incremental bonds. Empty: no bond is incremental.
     #[serde(with = "histories")]
     pub histories: Vec<History>,
+    /// Damage of each bond. Empty: no bond softens beyond its strength.
+    pub damages: Vec<Damage>,
+    /// The damaged bonds, in order; broken ones may be among them.
+    pub damaged: Vec<u32>,
     /// Rules of the model.
     #[serde(skip)]
     pub rules: Arc<[BondRule]>,
@@ -205,10 +214,11 @@ impl Bonds {
         let rule = other.rule_of(at);
         let (from, k) = (&other.blocks[at / BLOCK], at % BLOCK);
         let direction = [0, 1, 2].map(|axis| from.direction[axis][k]);
-        self.push(ends, direction, from.radii_m[k], &other.stiffness(at), rule);
+        let stiffness = other.undamaged_stiffness(at);
+        self.push(ends, direction, from.radii_m[k], &stiffness, rule);
         self.torsion_per_bending[rule] = other.torsion_per_bending[rule];
         self.bending_per_normal[rule] = other.bending_per_normal[rule];
-        let factor = factor * other.strength_factor(at);
+        let factor = factor * other.undamaged_strength_factor(at);
         if factor != 1.0 || !self.strength_factors.is_empty() {
             self.strength_factors.resize(self.len() - 1, 1.0);
             self.strength_factors.push(factor);
@@ -224,6 +234,118 @@ impl Bonds {
             self.histories.push(history);
         } else if !self.histories.is_empty() {
             self.histories.push(History::default());
+        }
+        if let Some(&damage) = other.damages.get(at) {
+            self.damages.push(Damage {
+                damage: 0.0,
+                strength_factor: factor,
+                ..damage
+            });
+            if damage.damage > 0.0 && !other.is_broken(at) {
+                self.set_damage(self.len() - 1, damage.damage);
+            }
+        }
+    }
+
+    /// Softens bond `at`, whose rule has a fracture energy, to this damage, below 1.
+    pub(crate) fn set_damage(&mut self, at: usize, damage: f64) {
+        let known = &mut self.damages[at];
+        if known.damage == 0.0 {
+            self.damaged.insert(
+                self.damaged.partition_point(|other| *other < at as u32),
+                at as u32,
+            );
+        }
+        known.damage = damage;
+        let (known, i) = (*known, at % BLOCK);
+        let block = &mut self.blocks[at / BLOCK];
+        block.normal[i] = (1.0 - damage) * known.normal;
+        block.shear[i] = (1.0 - damage) * known.shear;
+        let ratios = self.opening_ratios(at);
+        self.strength_factors.resize(self.len(), 1.0);
+        self.strength_factors[at] = known.strength_factor * screened_factor(damage, &ratios);
+    }
+
+    /// Ratios of the opening at which bond `at` breaks to that at its strength: see
+    /// [`opening_ratios`]. None of any criterion without a fracture energy.
+    pub(crate) fn opening_ratios(&self, at: usize) -> [Option<f64>; COUNT] {
+        let rule = &self.rules[self.rule_of(at)];
+        let (Some(criteria), Some(energy_j_m2)) = (&rule.criteria, rule.fracture_energy_j_m2)
+        else {
+            return [None; COUNT];
+        };
+        let stiffness = self.undamaged_stiffness(at);
+        let factor = self.undamaged_strength_factor(at);
+        opening_ratios(criteria, energy_j_m2, &stiffness, self.radius_m(at), factor)
+    }
+
+    /// Damage of bond `at`: 0 intact, 1 broken.
+    pub fn damage(&self, at: usize) -> f64 {
+        match self.damages.get(at) {
+            _ if self.is_broken(at) => 1.0,
+            Some(damage) => damage.damage,
+            None => 0.0,
+        }
+    }
+
+    /// Number of unbroken bonds that are damaged. None: no bond softens beyond its strength.
+    pub(crate) fn count_damaged(&self) -> Option<usize> {
+        let unbroken = |at: &&u32| !self.is_broken(**at as usize);
+        let count = || self.damaged.iter().filter(unbroken).count();
+        (!self.damages.is_empty()).then(count)
+    }
+
+    /// Stiffnesses of bond `at` before it was damaged.
+    pub(crate) fn undamaged_stiffness(&self, at: usize) -> Stiffness {
+        let stiffness = self.stiffness(at);
+        match self.damages.get(at) {
+            Some(known) if known.damage > 0.0 && stiffness.normal > 0.0 => {
+                let bending = bending_stiffness(
+                    known.normal,
+                    self.radius_m(at),
+                    self.bending_per_normal[self.rule_of(at)],
+                );
+                Stiffness {
+                    normal: known.normal,
+                    shear: known.shear,
+                    torsion: bending * self.torsion_per_bending[self.rule_of(at)],
+                    bending,
+                    ..stiffness
+                }
+            }
+            _ => stiffness,
+        }
+    }
+
+    /// Factor on the strengths of bond `at` before it was damaged.
+    pub(crate) fn undamaged_strength_factor(&self, at: usize) -> f64 {
+        match self.damages.get(at) {
+            Some(known) => known.strength_factor,
+            None => self.strength_factor(at),
+        }
+    }
+
+    /// Whether strengths vary from bond to bond, apart from damage.
+    pub(crate) fn strengths_scatter(&self) -> bool {
+        if self.damages.is_empty() {
+            !self.strength_factors.is_empty()
+        } else {
+            self.damages
+                .iter()
+                .any(|known| known.strength_factor != 1.0)
+        }
+    }
+
+    /// Gives all bonds the strength of their rule, damaged ones as far as they still have it.
+    pub(crate) fn forget_scatter(&mut self) {
+        self.strength_factors.clear();
+        for known in &mut self.damages {
+            known.strength_factor = 1.0;
+        }
+        for at in std::mem::take(&mut self.damaged) {
+            let known = &mut self.damages[at as usize];
+            let damage = std::mem::replace(&mut known.damage, 0.0);
+            self.set_damage(at as usize, damage);
         }
     }
 
@@ -265,15 +387,57 @@ impl Bonds {
             let apart = b.place() - a.place();
             return incremental::bond_forces(&stiffness, &self.histories[at], &apart);
         }
-        let ends = [a, b].map(Pose::end);
-        total::bond_forces(&stiffness, &self.direction(at), &ends)
+        let stiffness = Stiffness {
+            normal: self.axial_stiffness(at, poses),
+            ..stiffness
+        };
+        total::bond_forces(&stiffness, &self.direction(at), &[a, b].map(Pose::end))
+    }
+
+    /// Forces that bond `at`, which must not be broken and has the total formulation, would have
+    /// between these ends with this damage.
+    pub(crate) fn forces_if_damaged(&self, at: usize, ends: &[End; 2], damage: f64) -> BondForces {
+        let intact = self.undamaged_stiffness(at);
+        let apart_m = (ends[1].position_m - ends[0].position_m).norm();
+        let left = 1.0 - damage;
+        let stiffness = Stiffness {
+            normal: if apart_m < self.initial_length_m(at) {
+                intact.normal
+            } else {
+                left * intact.normal
+            },
+            shear: left * intact.shear,
+            torsion: left * intact.torsion,
+            bending: left * intact.bending,
+            ..intact
+        };
+        total::bond_forces(&stiffness, &self.direction(at), ends)
+    }
+
+    /// Normal stiffness of bond `at` at these poses, N/m: of a damaged bond that is pressed, that
+    /// which it had before.
+    fn axial_stiffness(&self, at: usize, poses: &[Pose]) -> f64 {
+        match self.damages.get(at) {
+            Some(known) if known.damage > 0.0 && self.stretch_m(at, poses) < 0.0 => known.normal,
+            _ => self.normal(at),
+        }
+    }
+
+    /// Change of length of bond `at` since the start, m.
+    pub(crate) fn stretch_m(&self, at: usize, poses: &[Pose]) -> f64 {
+        let [a, b] = self.ends[at].map(|end| poses[end as usize].place());
+        (b - a).norm() - self.initial_length_m(at)
     }
 
     /// Derivatives of the forces of bond `at`, which must not be broken, with respect to
     /// displacements and rotations of its ends, by the total formulation.
     pub fn tangent(&self, at: usize, poses: &[Pose]) -> BondTangent {
         let ends = self.ends[at].map(|end| poses[end as usize].end());
-        bond_tangent(&self.stiffness(at), &self.direction(at), &ends)
+        let stiffness = Stiffness {
+            normal: self.axial_stiffness(at, poses),
+            ..self.stiffness(at)
+        };
+        bond_tangent(&stiffness, &self.direction(at), &ends)
     }
 
     /// Unit vector of bond `at` from its first to its second end at the start.

@@ -289,5 +289,6 @@ impl Template {
             + size_of_val(&self.bonds.blocks[..])
             + size_of_val(&self.bonds.damping[..])
             + size_of_val(&self.bonds.histories[..])
+            + size_of_val(&self.bonds.damages[..])
     }
 }

@@ -15,6 +15,8 @@ pub struct EnergyLedger {
     pub(crate) pending: Work,
     /// Released by bonds that broke, J.
     pub(crate) released_j: f64,
+    /// Lost by bonds that were damaged, J.
+    pub(crate) damaged_j: f64,
     /// Net energy of added and removed bodies, J.
     pub(crate) brought_j: f64,
     /// Kinetic, elastic and potential energy at the start, J.

@@ -20,6 +20,8 @@ pub struct Scratch {
     /// For each chunk of free particles the distance that the fastest of them moved in the last
     /// drift, m.
     pub chunks_moved_m: Vec<f64>,
+    /// Damaged bonds that have reached their compressive strength.
+    pub(crate) crushed: Vec<u32>,
     /// Events of the last step.
     pub events: Events,
     /// Time spent in each stage.

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
-use super::{breakage, families, impact, limit_map, long};
+use super::{breakage, families, impact, limit_map, long, softening};
 
 /// A case of the suite.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 15] = [
+pub const CASES: [Case; 16] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -59,6 +59,11 @@ pub const CASES: [Case; 15] = [
         name: "shatter",
         extreme: "more than 1e5 bonds that fail in one step",
         members: |_| breakage::shatter(),
+    },
+    Case {
+        name: "softening",
+        extreme: "bonds that break at 1.5 to 1e4 times the opening at their strength",
+        members: |_| Ok(softening::softening()),
     },
     Case {
         name: "one-particle",

@@ -96,6 +96,7 @@ pub fn map() -> Result<Vec<Member>> {
     let models = [
         "parallel",
         "pin",
+        "rojek",
         "euler-bernoulli",
         "timoshenko",
         "elastic-solid",

@@ -93,6 +93,55 @@ fn a_pin_is_a_parallel_bond_without_moments() {
     }
 }
 
+/// Two rods in series, each in proportion to its sphere.
+#[test]
+fn the_bond_of_rojek_consists_of_two_segments() {
+    let of = |shape: &BondShape, kappa| stiffness(BondModel::Rojek { kappa }, shape, STEEL_PA, NU);
+    let touching = BondShape {
+        length_m: 0.5,
+        radius_m: 0.08,
+        end_radii_m: [0.1, 0.4],
+    };
+    let factor = 0.08 / 0.1;
+    let wanted = STEEL_PA * PI * factor * factor * 0.1 * 0.4 / (0.1 + 0.4);
+    for (kappa, ratio) in [(None, 2.6), (Some(3.0), 3.0)] {
+        let k = of(&touching, kappa);
+        assert_near(k.normal, wanted);
+        assert_near(k.normal / k.shear, ratio);
+        assert_near(k.bending, 0.25 * 0.08 * 0.08 * k.normal);
+        assert_near(k.torsion, 0.5 * 0.08 * 0.08 * k.shear);
+        // Where the segments meet, on whichever side the larger sphere is.
+        assert_near(k.levers_m[0], 0.1);
+        assert_eq!(k.levers_m[0] + k.levers_m[1], 0.5);
+    }
+    // Twice as far apart the segments are twice as long.
+    let apart = BondShape {
+        length_m: 1.0,
+        ..touching
+    };
+    assert_near(of(&apart, None).normal, 0.5 * wanted);
+    let turned = BondShape {
+        end_radii_m: [0.4, 0.1],
+        ..touching
+    };
+    assert_near(of(&turned, None).levers_m[1], 0.1);
+    // Equal spheres: the parallel bond.
+    let (rojek, parallel) = (
+        of(&bar_of(10), None),
+        stiffness(
+            BondModel::Parallel { kappa: None },
+            &bar_of(10),
+            STEEL_PA,
+            NU,
+        ),
+    );
+    assert_near(rojek.normal, parallel.normal);
+    assert_near(rojek.shear, parallel.shear);
+    assert_near(rojek.torsion, parallel.torsion);
+    assert_near(rojek.bending, parallel.bending);
+    assert_eq!(rojek.levers_m, parallel.levers_m);
+}
+
 /// Ends that turn against each other feel nothing; ends that move apart, or that both turn the same
 /// way, feel the springs at the point between them, in both formulations.
 #[test]

@@ -88,6 +88,17 @@ fn of_bonds() {
         &with(&FREE, &["cluster search"]),
     );
     expect(
+        "fracture energy",
+        &scene(
+            "",
+            ", failure = { tensile_strength = 1e6, fracture_energy = 1e9 }",
+            "",
+            "",
+        ),
+        &with(&FREE, &["failure"]),
+        &with(&FREE, &["cluster search", "damage of bonds"]),
+    );
+    expect(
         "strength scatter",
         &scene(
             "",

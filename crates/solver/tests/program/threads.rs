@@ -44,6 +44,7 @@ fn block(n: usize) -> Body {
         radii: vec![1e-3; positions.len()],
         bond_radii: vec![5e-4; bonds.len()],
         bond_lengths: vec![2e-3; bonds.len()],
+        bond_damages: Vec::new(),
         positions,
         bonds,
         about: About::default(),

@@ -5,6 +5,7 @@ use crate::bars::{
     with_threads,
 };
 use dem_run::check::limit::{Limit, limit};
+use dem_run::physics::bond::damage::Damage;
 use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::stages::ledger::Balance;
@@ -21,6 +22,7 @@ const BREAKING: BondRule = BondRule {
     incremental: false,
     damped: false,
     structural_damping: 0.1,
+    fracture_energy_j_m2: None,
     criteria: Some(Criteria {
         tensile_strength_pa: 0.1e6,
         compressive_strength_pa: 0.1e6,
@@ -53,6 +55,7 @@ fn scene(partitions: usize) -> State {
             .collect();
         let rule = BondRule {
             incremental,
+            fracture_energy_j_m2: (!incremental).then_some(5.0),
             ..BREAKING
         };
         add_bonds(
@@ -65,6 +68,9 @@ fn scene(partitions: usize) -> State {
     bonds.histories.resize(bonds.len(), Default::default());
     bonds.strength_factors = (0..bonds.len())
         .map(|at| 0.8 + 0.01 * (at % 50) as f64)
+        .collect();
+    bonds.damages = (0..bonds.len())
+        .map(|at| Damage::none(&bonds.stiffness(at), bonds.strength_factor(at)))
         .collect();
     let mut state = State::new(particles, bonds, 5e-7, partitions);
     damp(&mut state, BondDamping::Chen(0.05));
@@ -153,6 +159,7 @@ fn shares_and_threads_do_not_change_a_bit() {
         .collect();
     eprintln!("broken {per_body:?}, {:?}", one.balances.last().unwrap());
     assert!(per_body.iter().all(|&count| count > 10), "{per_body:?}");
+    assert!(one.balances.last().unwrap().bond_damage_j > 0.0);
     for (partitions, threads) in [(2, 2), (3, 1), (3, 4), (7, 2), (7, 4), (1, 4)] {
         assert!(
             left(partitions, threads) == one,

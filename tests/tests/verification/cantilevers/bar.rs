@@ -108,6 +108,7 @@ impl Bar {
                 incremental: self.incremental,
                 damped: false,
                 structural_damping: 0.0,
+                fracture_energy_j_m2: None,
                 criteria: None,
                 strengthening_from_1_s: None,
                 strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

@@ -75,7 +75,7 @@ impl Contents {
             }
             Role::Connectivity => counts.lines.saturating_mul(2),
             Role::Offsets => counts.lines,
-            Role::BondRadii | Role::BondLengths | Role::Broken => cells,
+            Role::BondRadii | Role::BondLengths | Role::Damages | Role::Broken => cells,
             Role::Corners => counts.cells_after.saturating_mul(3),
             Role::CornerOffsets | Role::WallNumbers => counts.cells_after,
             Role::Field(WALL_NAMES | WALL_FORCES | frame::BODY_NAMES) => OF_WALLS,
@@ -123,6 +123,9 @@ impl Contents {
             }
             Role::BondLengths => {
                 line_values(array, values, counts).map(|all| self.parts.bond_lengths = Some(all))
+            }
+            Role::Damages => {
+                line_values(array, values, counts).map(|all| self.parts.bond_damages = all)
             }
             Role::Clusters => particle_numbers(array, values, counts)
                 .map(|all| self.of_frame.clusters = Some(all)),

@@ -29,6 +29,7 @@ pub(super) enum Role {
     Offsets,
     BondRadii,
     BondLengths,
+    Damages,
     /// For the frames of a run: the fragment of each particle, its density, and the broken bonds.
     Clusters,
     Densities,
@@ -133,6 +134,7 @@ fn role_of(section: &str, name: &str) -> Role {
         ("PointData", RADIUS) => Role::Radii,
         ("CellData", BOND_RADIUS) => Role::BondRadii,
         ("CellData", BOND_LENGTH) => Role::BondLengths,
+        ("CellData", frame::DAMAGE) => Role::Damages,
         ("CellData", frame::BROKEN) => Role::Broken,
         ("FieldData", _) => FIELDS
             .into_iter()
@@ -155,6 +157,7 @@ fn role_in_frame(section: &str, name: &str) -> Role {
         ("PointData", frame::VELOCITY) => Role::Velocities,
         ("CellData", frame::BOND_RADIUS) => Role::BondRadii,
         ("CellData", frame::BOND_LENGTH) => Role::BondLengths,
+        ("CellData", frame::DAMAGE) => Role::Damages,
         ("CellData", frame::BROKEN) => Role::Broken,
         ("FieldData", frame::TIME) => Role::Field(frame::TIME),
         ("FieldData", frame::BODY_NAMES) => Role::Field(frame::BODY_NAMES),

@@ -42,12 +42,20 @@ impl fmt::Display for Summary {
             0 => String::new(),
             _ => format!(": {}", self.broken_by_cause),
         };
+        let damaged = match self.damaged_bonds {
+            Some(count) => format!("; {count} damaged"),
+            None => String::new(),
+        };
         if self.population.is_some() {
-            writeln!(f, "broken       {} bonds{causes}", self.broken_bonds)?;
+            writeln!(
+                f,
+                "broken       {} bonds{causes}{damaged}",
+                self.broken_bonds
+            )?;
         } else if self.bonds > 0 {
             writeln!(
                 f,
-                "broken       {} of {} bonds{causes}",
+                "broken       {} of {} bonds{causes}{damaged}",
                 self.broken_bonds, self.bonds
             )?;
         }

@@ -69,7 +69,7 @@ pub fn cause(criteria: &Criteria, stresses: &Stresses, factors: Factors) -> Caus
 
 /// Ratios of stress to strength, and whether the strain rate increases the strength.
 #[inline(always)]
-fn fractions(criteria: &Criteria, stresses: &Stresses) -> [(f64, bool); COUNT] {
+pub(super) fn fractions(criteria: &Criteria, stresses: &Stresses) -> [(f64, bool); COUNT] {
     let (squared, strengths) = (squared(criteria, stresses), strengths(criteria));
     std::array::from_fn(|k| {
         let (strength_pa, rises) = strengths[k];

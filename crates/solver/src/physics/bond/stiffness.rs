@@ -5,6 +5,7 @@ use super::models::elastic_solid::ElasticSolid;
 use super::models::euler_bernoulli::EulerBernoulli;
 use super::models::parallel::Parallel;
 use super::models::pin::Pin;
+use super::models::rojek::Rojek;
 use super::models::shear_coefficient::ShearCoefficient;
 use super::models::timoshenko::Timoshenko;
 pub use super::rod::{BondShape, Stiffness};
@@ -21,6 +22,11 @@ pub enum BondModel {
     },
     /// As the parallel bond, without moments.
     Pin {
+        /// Ratio of normal to shear stiffness.
+        kappa: Option<f64>,
+    },
+    /// Two segments in series, each as thick as its sphere.
+    Rojek {
         /// Ratio of normal to shear stiffness.
         kappa: Option<f64>,
     },
@@ -53,6 +59,7 @@ pub fn stiffness(
     match model {
         BondModel::Parallel { kappa } => Parallel { kappa }.stiffness(&rod),
         BondModel::Pin { kappa } => Pin { kappa }.stiffness(&rod),
+        BondModel::Rojek { kappa } => Rojek { kappa }.stiffness(&rod),
         BondModel::EulerBernoulli => EulerBernoulli.stiffness(&rod),
         BondModel::Timoshenko => Timoshenko.stiffness(&rod),
         BondModel::ElasticSolid => ElasticSolid.stiffness(&rod),

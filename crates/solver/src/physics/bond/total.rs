@@ -59,6 +59,26 @@ pub struct BondForces {
     pub load: BondLoad,
 }
 
+impl BondForces {
+    /// Of no bond.
+    pub(crate) const NONE: Self = Self {
+        force_on_b: Vector3::new(0.0, 0.0, 0.0),
+        torques: [Vector3::new(0.0, 0.0, 0.0); 2],
+        energy: BondEnergy {
+            normal: 0.0,
+            shear: 0.0,
+            torsion: 0.0,
+            bending: 0.0,
+        },
+        load: BondLoad {
+            normal_n: 0.0,
+            shear_n: 0.0,
+            torsion_n_m: 0.0,
+            bending_n_m: 0.0,
+        },
+    };
+}
+
 /// The direction of a bond, a unit vector, from the vector `apart` between its ends: by the same
 /// operations as in [`bond_forces`], so that the force of a bond at rest is 0 to the last bit.
 pub fn direction(apart: &Vector3<f64>) -> Vector3<f64> {

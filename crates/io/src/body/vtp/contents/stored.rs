@@ -46,6 +46,7 @@ impl Contents {
                 .into_iter()
                 .map(|broken| broken != 0.0)
                 .collect(),
+            damages: parts.bond_damages,
         })
     }
 
