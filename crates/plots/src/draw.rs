@@ -82,6 +82,8 @@ fn svg(plot: &Plot) -> Svg {
 fn area(plot: &Plot, reference: Option<f64>) -> Area {
     let of_lines = || {
         let points = plot.lines.iter().flat_map(|line| &line.points);
+        let chains = plot.marks.iter().flat_map(|marks| &marks.chains);
+        let points = points.chain(chains.flatten());
         points.filter(|[x, y]| is_drawn(*x, plot.x.log) && is_drawn(*y, plot.y.log))
     };
     let of_marks = || plot.marks.iter().flat_map(seen);

@@ -82,7 +82,7 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
         return Err(Diagnostic::input(
             path.display().to_string(),
             "there are no frames of a run",
-            "name the folder of results of a run whose scene has output.frames",
+            "name the folder of results of a run whose scene has output.frames and which kept them (--keep all)",
         ));
     }
     // A run that has not finished has none, but the viewer may say from where to look.

@@ -213,7 +213,9 @@ pub fn read_walls(path: &Path) -> Result<StoredWalls> {
 pub fn write_body(body: &Body, path: &Path) -> Result<()> {
     let storage = Storage::named(path)?;
     body.check()?;
-    if !body.bond_damages.is_empty() && !matches!(storage, Storage::Pipe | Storage::Vtp(_)) {
+    if body.bond_damages.iter().any(|damage| *damage > 0.0)
+        && !matches!(storage, Storage::Pipe | Storage::Vtp(_))
+    {
         return Err(Diagnostic::input(
             path.display().to_string(),
             "the body has damaged bonds, which such a file does not hold",

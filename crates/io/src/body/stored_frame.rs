@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::parts::{About, Body, Parts};
 use crate::diagnostic::{Diagnostic, Result};
+use crate::units::significant;
 
 /// Particle array: radius, m.
 pub const RADIUS: &str = "radius_m";
@@ -104,9 +105,9 @@ impl StoredFrame {
     /// A fragment as a body: its particles at their positions, in the order of the frame, and the
     /// unbroken bonds between them.
     ///
-    /// Bonds keep their damage, and their stress-free lengths, so stretched or compressed bonds stay so. Their
-    /// bending, twist and shear are lost, and so are velocities. The density is that of the
-    /// particles, unless they differ.
+    /// Bonds keep their damage and their stress-free lengths, so stretched or compressed bonds stay
+    /// so. Their bending, twist and shear are lost, and so are velocities. The density is that of
+    /// the particles, unless they differ.
     ///
     /// # Errors
     /// There is no such fragment; the frame contains no valid body of it.
@@ -166,8 +167,8 @@ impl StoredFrame {
         Diagnostic::input(
             "",
             format!(
-                "there is no fragment {id} at {:.6e} s among the {} that there are",
-                self.time_s,
+                "there is no fragment {id} at {} s among the {} that there are",
+                significant(self.time_s, 7),
                 fragments.len()
             ),
             format!("the heaviest are {}", named.join(", ")),

@@ -1,9 +1,9 @@
 //! Bodies as VTK XML PolyData (.vtp), which ParaView and PyVista open directly.
 //!
-//! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius`,
-//! cell data `bond_radius_m`, `initial_length_m` and, if bonds are damaged, `damage`, field data: `body_format_version`,
-//! `length_unit` and one array for each known field of [`About`]. For the encoding see
-//! [`crate::vtk`].
+//! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius_m`,
+//! cell data `bond_radius_m`, `initial_length_m` and, if bonds are damaged, `damage`, field data:
+//! `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
+//! encoding see [`crate::vtk`].
 
 mod contents;
 mod decode;

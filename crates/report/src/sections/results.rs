@@ -203,9 +203,17 @@ fn facts(summary: &Value) -> Vec<[String; 2]> {
     }
     let fragments = &summary["fragments"];
     if fragments.is_object() {
-        add("fragments", count(&fragments["count"]));
+        let discharged = summary["population"]["discharged"].as_u64().unwrap_or(0);
+        let [fragments_left, of_all] = match discharged {
+            0 => ["fragments", "mass of the largest over that of all"],
+            _ => [
+                "fragments left inside",
+                "mass of the largest of them over theirs",
+            ],
+        };
+        add(fragments_left, count(&fragments["count"]));
         let largest = number(&fragments["mass_fraction_of_largest"]);
-        add("mass of the largest over that of all", percent(largest));
+        add(of_all, percent(largest));
     }
     let population = &summary["population"];
     if population.is_object() {

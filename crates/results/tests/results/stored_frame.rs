@@ -179,7 +179,7 @@ fn an_unknown_fragment_is_told_with_the_heaviest() {
     assert_eq!(error.exit_code(), 2);
     assert_eq!(
         error.to_string(),
-        "there is no fragment 4 at 2.500000e-1 s among the 3 that there are; \
+        "there is no fragment 4 at 0.25 s among the 3 that there are; \
          the heaviest are 3 (2 particles), 7 (2 particles), 5 (2 particles)"
     );
     let mut dust = stored();

@@ -88,9 +88,10 @@ pub struct Bound {
 /// particle.
 pub fn limit(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
+    let damaged = undamage(&mut state.bonds);
     let (undamped, of_undamped) =
         largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
-    let unstiffened = stiffen(&mut state.bonds);
+    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
     let (k, iterations) = if unstiffened.is_some() {
         let (k, more) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
         (k, of_undamped + more)
@@ -121,6 +122,7 @@ pub fn limit(state: &mut State) -> Limit {
         ..of_particles
     };
     restore_stiffness(&mut state.bonds, unstiffened);
+    restore_stiffness(&mut state.bonds, damaged);
     clear_trial_wrenches(state);
     limit
 }
@@ -131,9 +133,11 @@ pub fn limit(state: &mut State) -> Limit {
 pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
     let contacts = &linear_contacts(state);
     let both = Weights::of_step(stiffer_by_damping(state), step_s);
-    let unstiffened = stiffen(&mut state.bonds);
+    let damaged = undamage(&mut state.bonds);
+    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
     let (value, _) = largest_eigenvalue(state, contacts, both, Search::Rough);
     restore_stiffness(&mut state.bonds, unstiffened);
+    restore_stiffness(&mut state.bonds, damaged);
     let is_damped = is_damped(state, contacts);
     let of_particles = Bound {
         step_s: not_too_long(step_s, value),
@@ -153,11 +157,10 @@ fn stiffer_by_damping(state: &State) -> f64 {
     }
 }
 
-/// Makes bonds with structural damping stiffer by its gamma, and damaged ones as stiff as before
-/// they were damaged. Returns what they were; None: there are none.
-fn stiffen(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
-    let gamma = |rule: &BondRule| rule.structural_damping;
-    if bonds.rules.iter().all(|rule| gamma(rule) == 0.0) && bonds.damaged.is_empty() {
+/// Makes damaged bonds as stiff as before they were damaged: pressed they are. Returns what they
+/// were; None: there are none.
+fn undamage(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
+    if bonds.damaged.is_empty() {
         return None;
     }
     let before = bonds.blocks.clone();
@@ -168,6 +171,17 @@ fn stiffen(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
         block.normal[lane] = known.normal;
         block.shear[lane] = known.shear;
     }
+    Some(before)
+}
+
+/// Makes bonds with structural damping stiffer by its gamma. Returns what they were; None: there
+/// are none.
+fn stiffen_by_structural_damping(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
+    let gamma = |rule: &BondRule| rule.structural_damping;
+    if bonds.rules.iter().all(|rule| gamma(rule) == 0.0) {
+        return None;
+    }
+    let before = bonds.blocks.clone();
     for (rule, run) in bonds.runs(0..bonds.len()).collect::<Vec<_>>() {
         let stiffer = 1.0 + gamma(&bonds.rules[rule]);
         for at in run {

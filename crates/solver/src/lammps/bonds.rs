@@ -279,7 +279,7 @@ fn refuse_bond(scene: &Scene, state: &State, at: usize) -> Result<()> {
     let length_m = a + b;
     if (a - b).abs() > 2.0 * MIDDLE * length_m {
         let why = format!(
-            "in the model \"parallel\" shear acts between the surfaces of the spheres; of a bond between spheres of different size that is {:.1} % of its length from the middle, where bpm/rotational has it",
+            "in this model shear does not act in the middle of a bond between spheres of different size, where bpm/rotational has it, but {:.1} % of its length away",
             50.0 * (a - b).abs() / length_m
         );
         return Err(refused(

@@ -1,6 +1,7 @@
 //! Loads of single bonds, and how near they are to failure.
 
 use crate::physics::bond::BondLoad;
+use crate::physics::bond::damage::utilisation_of_damaged;
 use crate::physics::bond::failure::{Factors, stresses, utilisation};
 use crate::stages::totals::motions_before_kick;
 use crate::state::State;
@@ -79,9 +80,23 @@ fn utilisation_at(state: &State, at: usize, load: &BondLoad, rate: f64) -> f64 {
     let bonds = &state.bonds;
     match &bonds.rules[bonds.rule_of(at)].criteria {
         Some(criteria) if !bonds.is_broken(at) => {
-            let stresses = stresses(load, bonds.radius_m(at));
-            let scatter = bonds.strength_factor(at);
-            utilisation(criteria, &stresses, Factors { scatter, rate })
+            let now = stresses(load, bonds.radius_m(at));
+            let scatter = bonds.undamaged_strength_factor(at);
+            let factors = Factors { scatter, rate };
+            if !bonds.was_damaged(at) {
+                return utilisation(criteria, &now, factors);
+            }
+            let ends = bonds.ends[at].map(|end| state.particles.poses[end as usize].end());
+            let intact = bonds.forces_if_damaged(at, &ends, 0.0).load;
+            let intact = stresses(&intact, bonds.radius_m(at));
+            let ratios = bonds.opening_ratios(at);
+            utilisation_of_damaged(
+                criteria,
+                [&intact, &now],
+                factors,
+                &ratios,
+                bonds.damage(at),
+            )
         }
         _ => 0.0,
     }

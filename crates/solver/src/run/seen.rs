@@ -57,11 +57,15 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// Records the bonds that have broken in this step, and their strains.
+    /// Records the bonds that have broken in this step, and the strains of those that broke at their
+    /// strength.
     pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
         for broken in &state.scratch.events.broken {
             self.last_break_s = Some(state.time_s);
             let at = broken.bond as usize;
+            if state.bonds.was_damaged(at) {
+                continue;
+            }
             self.note_strain(
                 edge_strain(&state.bonds, at, &state.particles.poses),
                 at,
@@ -178,7 +182,9 @@ impl Seen {
         let Some((strain, at)) = most_strained(&state.bonds, &state.particles.poses) else {
             return 0.0;
         };
-        self.note_strain(strain, at, state, bodies);
+        if !state.bonds.was_damaged(at) {
+            self.note_strain(strain, at, state, bodies);
+        }
         strain
     }
 

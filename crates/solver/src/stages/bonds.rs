@@ -228,29 +228,19 @@ pub(crate) fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize
 /// Largest strain at the edge of a bond, broken or not: of elongation and bending together, or of
 /// shear and torsion together.
 pub(crate) fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
-    let load = bonds.forces(at, poses).load;
-    let (stiffness, radius_m) = (bonds.stiffness(at), bonds.radius_m(at));
-    // Without moments nothing is bent or twisted that could strain an edge.
-    let turn = |moment_n_m: f64, stiffness: f64| {
-        if stiffness == 0.0 {
-            0.0
-        } else {
-            radius_m * moment_n_m / stiffness
-        }
-    };
-    let normal_m =
-        load.normal_n.abs() / stiffness.normal + turn(load.bending_n_m, stiffness.bending);
-    let shear_m = load.shear_n / stiffness.shear + turn(load.torsion_n_m, stiffness.torsion);
+    let (strained, radius_m) = (bonds.deformation(at, poses), bonds.radius_m(at));
+    let normal_m = strained.normal_n.abs() + radius_m * strained.bending_n_m;
+    let shear_m = strained.shear_n + radius_m * strained.torsion_n_m;
     normal_m.max(shear_m) / bonds.initial_length_m(at)
 }
 
-/// The unbroken bond with the largest [edge](edge_strain) strain, and that strain. Ten times as
-/// costly as [`most_strained`].
+/// The intact bond with the largest [edge](edge_strain) strain, and that strain: what a damaged bond
+/// is opened by is no strain. Ten times as costly as [`most_strained`].
 pub(crate) fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
     (0..bonds.len())
         .into_par_iter()
         .with_min_len(CHUNK)
-        .filter(|&at| !bonds.is_broken(at))
+        .filter(|&at| bonds.damage(at) == 0.0)
         .map(|at| (edge_strain(bonds, at, poses), at))
         .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }

@@ -173,9 +173,9 @@ fn leave_out_broken(state: &mut State) {
     }
 }
 
-/// Breaks these bonds, in their order, if they fail, or damages them if they have a fracture energy.
-/// Adds breaks to the events, with the number of bonds checked whose strength depends on the strain
-/// rate. Returns the energy that bonds lost by their damage, J.
+/// Breaks these bonds, in their order, if they fail, or damages them if they have a fracture
+/// energy. Adds breaks to the events, with the number of bonds checked whose strength depends on
+/// the strain rate. Returns the energy that bonds lost by their damage, J.
 ///
 /// A bond that breaks at its strength acts until this moment: its ends get their half of the kick,
 /// after the drift of `drift_s`, and its force is subtracted from the wrenches that move them on.
@@ -261,8 +261,8 @@ fn loss(bonds: &Bonds, at: usize, particles: &Particles, drift_s: f64) -> Option
         .then(|| at_once(cause(&criteria, &stresses, factors)))
 }
 
-/// Takes what a bond loses away from its ends, after so much of the kick, s. Returns the forces that
-/// acted in that part of it.
+/// Takes what a bond loses away from its ends, after so much of the kick, s. Returns the forces
+/// that acted in that part of it.
 fn take_away(
     bonds: &Bonds,
     particles: &mut Particles,

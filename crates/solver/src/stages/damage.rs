@@ -25,8 +25,8 @@ pub(super) struct Loss {
     pub(super) spent_j: f64,
 }
 
-/// Adds the axial force that damaged bonds carry under pressure beyond that of their remaining
-/// stiffness, and lists those that are crushed. Returns the number of damaged bonds.
+/// Adds the forces of damaged bonds that are pressed: see [`press`]. Returns the number of damaged
+/// bonds.
 pub(crate) fn press_damaged_bonds(state: &mut State) -> usize {
     let State {
         bonds,
@@ -34,7 +34,14 @@ pub(crate) fn press_damaged_bonds(state: &mut State) -> usize {
         scratch,
         ..
     } = state;
-    scratch.crushed.clear();
+    press(bonds, particles, &mut scratch.crushed);
+    bonds.damaged.len()
+}
+
+/// Adds the axial force that damaged bonds carry under pressure beyond that of their remaining
+/// stiffness to the wrenches, and lists those that are crushed.
+pub(crate) fn press(bonds: &Bonds, particles: &mut Particles, crushed: &mut Vec<u32>) {
+    crushed.clear();
     for &at in &bonds.damaged {
         let at = at as usize;
         let ends = bonds.ends[at].map(|end| end as usize);
@@ -51,10 +58,9 @@ pub(crate) fn press_damaged_bonds(state: &mut State) -> usize {
         particles.wrenches[ends[0]].add(&-on_b, &Default::default());
         particles.wrenches[ends[1]].add(&on_b, &Default::default());
         if is_crushed(bonds, at, &particles.poses) {
-            scratch.crushed.push(at as u32);
+            crushed.push(at as u32);
         }
     }
-    bonds.damaged.len()
 }
 
 /// Whether a bond has reached its compressive strength.

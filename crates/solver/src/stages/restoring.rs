@@ -183,7 +183,9 @@ fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
     }
     let whole = Arc::clone(&state.clumps.templates[base]);
     let bonds: Vec<usize> = own_bonds(members, state);
-    let is_whole = members.len() == whole.spheres.len() && bonds.len() == whole.bonds.len();
+    let is_damaged = bonds.iter().any(|&at| state.bonds.was_damaged(at));
+    let is_whole =
+        members.len() == whole.spheres.len() && bonds.len() == whole.bonds.len() && !is_damaged;
     let first_id = match members.first() {
         Some(&first) if is_whole => p.id(of(&first)) - whole.file_number[0],
         _ => 0,

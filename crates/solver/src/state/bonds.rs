@@ -16,7 +16,7 @@ use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use crate::physics::bond::tangent::{BondTangent, bond_tangent};
 use crate::physics::bond::total::{BondForces, End};
-use crate::physics::bond::{incremental, total};
+use crate::physics::bond::{BondLoad, incremental, total};
 use crate::physics::number::Number;
 
 use super::particles::{Motion, Pose};
@@ -32,8 +32,8 @@ pub struct BondRule {
     pub structural_damping: f64,
     /// Strengths. None: the bonds never break.
     pub criteria: Option<Criteria>,
-    /// Energy per area that it takes to pull a bond apart, J/m2: beyond their strength bonds soften.
-    /// None: they break at their strength.
+    /// Energy per area that it takes to pull a bond apart, J/m2: beyond their strength bonds
+    /// soften. None: they break at their strength.
     pub fracture_energy_j_m2: Option<f64>,
     /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
     pub strengthening_from_1_s: Option<f64>,
@@ -120,7 +120,8 @@ pub struct Bonds {
     pub ends: Vec<[u32; 2]>,
     /// Data for the force loop; the last block may have room left.
     pub blocks: Vec<BondBlock>,
-    /// Factor on the strengths. Empty: 1 for all.
+    /// Factor on the strengths; of a damaged bond the least of its criteria, to find those that may
+    /// have reached one. Empty: 1 for all.
     pub strength_factors: Vec<f64>,
     /// Damping coefficients of normal, shear, torsion and bending: N s/m, N s/m, N m s/rad, N m
     /// s/rad. Empty: no bond is damped.
@@ -288,6 +289,11 @@ impl Bonds {
         }
     }
 
+    /// Whether bond `at`, broken or not, softened before: its opening is no strain.
+    pub(crate) fn was_damaged(&self, at: usize) -> bool {
+        self.damages.get(at).is_some_and(|known| known.damage > 0.0)
+    }
+
     /// Number of unbroken bonds that are damaged. None: no bond softens beyond its strength.
     pub(crate) fn count_damaged(&self) -> Option<usize> {
         let unbroken = |at: &&u32| !self.is_broken(**at as usize);
@@ -412,6 +418,22 @@ impl Bonds {
             ..intact
         };
         total::bond_forces(&stiffness, &self.direction(at), ends)
+    }
+
+    /// Deformation of bond `at`, broken or not, in place of its load: change of length and sliding,
+    /// m, twist and bending, rad; the latter are 0 in a model without moments.
+    pub(crate) fn deformation(&self, at: usize, poses: &[Pose]) -> BondLoad {
+        let ends = self.ends[at].map(|end| poses[end as usize].end());
+        let has_moments = self.bending_per_normal[self.rule_of(at)] > 0.0;
+        let turning = if has_moments { 1.0 } else { 0.0 };
+        let unit = Stiffness {
+            normal: 1.0,
+            shear: 1.0,
+            torsion: turning,
+            bending: turning,
+            levers_m: self.levers_m(at),
+        };
+        total::bond_forces(&unit, &self.direction(at), &ends).load
     }
 
     /// Normal stiffness of bond `at` at these poses, N/m: of a damaged bond that is pressed, that

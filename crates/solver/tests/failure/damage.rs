@@ -264,7 +264,6 @@ fn books_stay_closed_through_damage() {
             assert!(last.bond_damage_j > 0.1 * last.energy_scale_j, "{last:?}");
             error
         });
-        println!("{errors:?}");
         let falls = errors[0] / errors[2];
         assert!(
             (12.0..20.0).contains(&falls),

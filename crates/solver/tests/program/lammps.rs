@@ -383,7 +383,17 @@ fn everything_else_is_refused_by_name() {
         (
             "model = \"timoshenko\"",
             "model = \"parallel\"",
-            "bonds.grain.model: LAMMPS has no word for it: in the model \"parallel\"",
+            "bonds.grain.model: LAMMPS has no word for it: in this model shear does not act in the middle",
+        ),
+        (
+            "model = \"timoshenko\"",
+            "model = \"rojek\"",
+            "bonds.grain.model: LAMMPS has no word for it: in this model shear does not act in the middle",
+        ),
+        (
+            "tensile_strength = \"1 MPa\"",
+            "tensile_strength = \"1 MPa\", fracture_energy = \"1 kJ/m2\"",
+            "bonds.grain.fracture_energy: LAMMPS has no word for it: bonds of bpm/rotational break",
         ),
         (
             "[0.0091, 0, 0.02",

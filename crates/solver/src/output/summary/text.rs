@@ -79,9 +79,14 @@ impl fmt::Display for Summary {
             writeln!(f, "deformed     {} at most", strained.join("   "))?;
         }
         if let Some(fragments) = &self.fragments {
+            let discharged = self.population.as_ref().map_or(0, |p| p.discharged);
+            let (inside, mass) = match discharged {
+                0 => ("", "the mass"),
+                _ => (" left inside", "their mass"),
+            };
             writeln!(
                 f,
-                "fragments    {}, the largest {} of the mass",
+                "fragments    {}{inside}, the largest {} of {mass}",
                 fragments.count,
                 significant(fragments.mass_fraction_of_largest, 3)
             )?;

@@ -1,5 +1,5 @@
-//! Damage of bonds: a cohesive zone. A bond that has reached its strength softens until its fracture
-//! energy is spent, and then breaks.
+//! Damage of bonds: a cohesive zone. A bond that has reached its strength softens until its
+//! fracture energy is spent, and then breaks.
 //!
 //! Source: Platzer 2022, 2.2.1.1 and fig. 7 (linear up to the strength, then linear down to 0); the
 //! law with one number of history is that of the text books. The equivalent opening of a criterion
@@ -7,9 +7,9 @@
 //!
 //! w_e = s A/k, w_c = 2 G_f/s, D = w_c (w_max - w_e)/(w_max (w_c - w_e)).
 //!
-//! The ratio w_c/w_e is 2 G_f k/(s^2 A), so that a bond pulled or sheared apart takes G_f A whatever
-//! its length. Force and moments are those of the intact bond times 1 - D, except the axial force
-//! of a pressed bond: a crack that closes carries pressure as before.
+//! The ratio w_c/w_e is 2 G_f k/(s^2 A), so that a bond pulled or sheared apart takes G_f A
+//! whatever its length. Force and moments are those of the intact bond times 1 - D, except the
+//! axial force of a pressed bond: a crack that closes carries pressure as before.
 
 use std::f64::consts::PI;
 
@@ -138,4 +138,25 @@ pub(crate) fn growth(
         }
     }
     most
+}
+
+/// Utilisation of a damaged bond: of each criterion the opening now over the largest one so far,
+/// and of the compressive strength the stress now. Its damage grows at 1.
+pub(crate) fn utilisation_of_damaged(
+    criteria: &Criteria,
+    [intact, now]: [&Stresses; 2],
+    factors: Factors,
+    ratios: &[Option<f64>; COUNT],
+    damage: f64,
+) -> f64 {
+    let opened = fractions(criteria, intact).into_iter().zip(ratios);
+    let used = opened.zip(fractions(criteria, now));
+    used.map(|(((opening, rises), ratio), (pressed, _))| {
+        let by_rate = if rises { factors.rate } else { 1.0 };
+        match ratio {
+            Some(ratio) => opening / (factors.scatter * by_rate * opening_of(damage, *ratio)),
+            None => pressed / factors.scatter,
+        }
+    })
+    .fold(0.0, f64::max)
 }

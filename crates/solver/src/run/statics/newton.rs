@@ -18,6 +18,7 @@
 //! U, and stability is checked at the end.
 
 use crate::stages::bonds::bond_wrenches;
+use crate::stages::damage::press;
 use crate::stages::loads::add_loads;
 use crate::state::State;
 use crate::state::particles::{Motion, Pose, Wrench};
@@ -343,6 +344,7 @@ pub(super) fn set_bond_wrenches(state: &mut State) {
     } = state;
     let partitions = &mut scratch.partitions;
     bond_wrenches(bonds, &particles.poses, partitions, &mut particles.wrenches);
+    press(bonds, particles, &mut scratch.crushed);
 }
 
 /// The largest of net forces on the unknowns, N, and of net torques over the radii of their

@@ -1,5 +1,5 @@
-//! The bond of two segments, each as thick as its sphere (Rojek et al. 2012, as described by Chen et
-//! al. 2022, section 2.1).
+//! The bond of two segments, each as thick as its sphere (Rojek et al. 2012, as described by Chen
+//! et al. 2022, section 2.1).
 
 use std::f64::consts::PI;
 
@@ -7,7 +7,8 @@ use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
 /// Two rods in series whose radii and lengths are in proportion to those of their spheres. f is the
 /// radius of the bond over that of the smaller sphere: the segments have the areas pi (f R_a)^2 and
-/// pi (f R_b)^2. The bond of equal spheres is the [parallel bond](super::parallel::Parallel); touching spheres have
+/// pi (f R_b)^2. The bond of equal spheres is the
+/// [parallel bond](super::parallel::Parallel); touching spheres have
 /// k_n = E pi f^2 R_a R_b/(R_a + R_b).
 ///
 /// The source gives the normal stiffness. As for the parallel bond, shear is this divided by
