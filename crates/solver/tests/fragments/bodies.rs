@@ -154,7 +154,7 @@ fn what_cannot_be_written_is_told() {
     let here = parent.path();
     let said = bad(here, &["--id", "999", "-o", "piece.vtp"]);
     assert!(
-        said.contains("frame_000005.vtp: there is no fragment 999 at 0.005"),
+        said.contains("frame_000005.vtp: there is no fragment 999 at 0.0005 s"),
         "{said}"
     );
     assert!(said.contains("; the heaviest are "), "{said}");
