@@ -165,6 +165,22 @@ impl State {
         scratch.particle_resistance = vec![Wrench::default(); resistances];
     }
 
+    /// Leaves out of the lists of walls what they do not touch, and requests a search before the
+    /// next step: which particles were near depends on when the last search was, and so on
+    /// interruptions. Not with sleep, where being near wakes.
+    pub(crate) fn forget_what_is_near(&mut self) {
+        let Some(contacts) = self.contacts.as_mut().filter(|_| self.sleep.is_none()) else {
+            return;
+        };
+        for wall in &mut self.walls {
+            wall.near.clear();
+            wall.near
+                .extend(wall.touching.iter().map(|touch| touch.particle));
+            wall.near.dedup();
+        }
+        contacts.search_all();
+    }
+
     /// The state from a checkpoint, with the model planned for it and everything that can be
     /// rebuilt, for this number of threads. None: the two do not belong together.
     pub fn rebuilt(mut self, model: Model, threads: usize) -> Option<Self> {

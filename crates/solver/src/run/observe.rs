@@ -302,6 +302,7 @@ impl Run<'_> {
         let Some(files) = &mut self.files else {
             return Ok(());
         };
+        self.state.forget_what_is_near();
         let (state, bodies, probes) = (&self.state, &self.bodies, &self.probes);
         save(state, bodies, self.scene, probes, &mut self.progress, files)
     }
