@@ -1,13 +1,11 @@
 //! Numbers as shown in the listing of a scene.
 
+use dem_io::text::exact;
+
 /// A number with at most 12 digits, which hides the rounding of units.
 pub(super) fn number(number: f64) -> String {
     let rounded: f64 = format!("{number:.11e}").parse().unwrap_or(number);
-    if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
-        format!("{rounded}")
-    } else {
-        format!("{rounded:e}")
-    }
+    exact(rounded)
 }
 
 /// `text` and the unit, if there is one.

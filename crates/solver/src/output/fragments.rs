@@ -109,7 +109,8 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
 }
 
 /// Plots the discharged mass over time, if there is any; the number of fragments over time, if it
-/// changes and no measure has it; and the sizes of those at the end and those discharged, if there is more than one.
+/// changes and no measure has it; and the sizes of those at the end and those discharged, if there
+/// is more than one.
 ///
 /// # Errors
 /// Those of the files.

@@ -371,8 +371,8 @@ fn place_bonds(
     Ok(())
 }
 
-/// Whether the last bond, with this number in its file, stores less than its fracture energy when it
-/// reaches a strength, apart from scatter.
+/// Whether the last bond, with this number in its file, stores less than its fracture energy when
+/// it reaches a strength, apart from scatter.
 fn check_fracture_energy(number: usize, bonds: &Bonds, rule: &BondRule) -> Result<()> {
     let at = bonds.len() - 1;
     let energy_j_m2 = rule.fracture_energy_j_m2.unwrap_or_default();

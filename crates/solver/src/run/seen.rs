@@ -57,8 +57,8 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// Records the bonds that have broken in this step, and the strains of those that broke at their
-    /// strength.
+    /// Records the bonds that have broken in this step, and the strains of those that broke at
+    /// their strength.
     pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
         for broken in &state.scratch.events.broken {
             self.last_break_s = Some(state.time_s);

@@ -234,8 +234,8 @@ pub(crate) fn edge_strain(bonds: &Bonds, at: usize, poses: &[Pose]) -> f64 {
     normal_m.max(shear_m) / bonds.initial_length_m(at)
 }
 
-/// The intact bond with the largest [edge](edge_strain) strain, and that strain: what a damaged bond
-/// is opened by is no strain. Ten times as costly as [`most_strained`].
+/// The intact bond with the largest [edge](edge_strain) strain, and that strain: what a damaged
+/// bond is opened by is no strain. Ten times as costly as [`most_strained`].
 pub(crate) fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
     (0..bonds.len())
         .into_par_iter()

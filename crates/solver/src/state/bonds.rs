@@ -303,23 +303,11 @@ impl Bonds {
 
     /// Stiffnesses of bond `at` before it was damaged.
     pub(crate) fn undamaged_stiffness(&self, at: usize) -> Stiffness {
-        let stiffness = self.stiffness(at);
         match self.damages.get(at) {
-            Some(known) if known.damage > 0.0 && stiffness.normal > 0.0 => {
-                let bending = bending_stiffness(
-                    known.normal,
-                    self.radius_m(at),
-                    self.bending_per_normal[self.rule_of(at)],
-                );
-                Stiffness {
-                    normal: known.normal,
-                    shear: known.shear,
-                    torsion: bending * self.torsion_per_bending[self.rule_of(at)],
-                    bending,
-                    ..stiffness
-                }
+            Some(known) if known.damage > 0.0 && !self.is_broken(at) => {
+                self.stiffness_from(at, known.normal, known.shear)
             }
-            _ => stiffness,
+            _ => self.stiffness(at),
         }
     }
 
@@ -373,12 +361,18 @@ impl Bonds {
 
     /// Stiffnesses of bond `at`.
     pub fn stiffness(&self, at: usize) -> Stiffness {
-        let (normal, radius_m) = (self.normal(at), self.radius_m(at));
+        let shear = self.blocks[at / BLOCK].shear[at % BLOCK];
+        self.stiffness_from(at, self.normal(at), shear)
+    }
+
+    /// Stiffnesses of bond `at` with these along and across it, N/m.
+    fn stiffness_from(&self, at: usize, normal: f64, shear: f64) -> Stiffness {
         let rule = self.rule_of(at);
-        let bending = bending_stiffness(normal, radius_m, self.bending_per_normal[rule]);
+        let per_normal = self.bending_per_normal[rule];
+        let bending = bending_stiffness(normal, self.radius_m(at), per_normal);
         Stiffness {
             normal,
-            shear: self.blocks[at / BLOCK].shear[at % BLOCK],
+            shear,
             torsion: bending * self.torsion_per_bending[rule],
             bending,
             levers_m: self.levers_m(at),

@@ -181,8 +181,8 @@ measures.used = {{ quantity = \"largest_utilisation\" }}
     [measure("moved"), measure("used")]
 }
 
-/// Pulled, a damaged bond gives way by the stiffness that is left, pressed by that which it had; its
-/// utilisation is that of its remaining strength, and of its full compressive one.
+/// Pulled, a damaged bond gives way by the stiffness that is left, pressed by that which it had;
+/// its utilisation is that of its remaining strength, and of its full compressive one.
 #[test]
 fn a_damaged_bond_is_soft_in_tension_only() {
     let bench = Bench::new();

@@ -41,8 +41,8 @@ pub(super) fn write_names<'a>(
 fn places(bounds: &Bounds, camera: &Camera) -> Vec<[f64; 2]> {
     let corners = bounds.corners();
     let mut places = Vec::new();
-    for a in corners {
-        for b in corners {
+    for (number, a) in corners.iter().enumerate() {
+        for b in &corners[number + 1..] {
             if (0..3).filter(|&k| a[k] != b[k]).count() != 1 {
                 continue;
             }

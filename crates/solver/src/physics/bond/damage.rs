@@ -125,8 +125,7 @@ pub(crate) fn growth(
         let Some(ratio) = *ratio else {
             continue;
         };
-        let by_rate = if rises { factors.rate } else { 1.0 };
-        let damage = damage_at(used / (factors.scatter * by_rate), ratio);
+        let damage = damage_at(used / factors.on(rises), ratio);
         if damage > largest {
             largest = damage;
             let at_once = ratio <= 1.0;
@@ -151,12 +150,9 @@ pub(crate) fn utilisation_of_damaged(
 ) -> f64 {
     let opened = fractions(criteria, intact).into_iter().zip(ratios);
     let used = opened.zip(fractions(criteria, now));
-    used.map(|(((opening, rises), ratio), (pressed, _))| {
-        let by_rate = if rises { factors.rate } else { 1.0 };
-        match ratio {
-            Some(ratio) => opening / (factors.scatter * by_rate * opening_of(damage, *ratio)),
-            None => pressed / factors.scatter,
-        }
+    used.map(|(((opening, rises), ratio), (pressed, _))| match ratio {
+        Some(ratio) => opening / (factors.on(rises) * opening_of(damage, *ratio)),
+        None => pressed / factors.on(rises),
     })
     .fold(0.0, f64::max)
 }

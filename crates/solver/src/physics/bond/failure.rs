@@ -32,6 +32,12 @@ impl Factors {
     pub fn scattered(scatter: f64) -> Self {
         Self { scatter, rate: 1.0 }
     }
+
+    /// The factor on a strength that rises with the strain rate, or does not.
+    #[inline(always)]
+    pub(super) fn on(self, rises: bool) -> f64 {
+        self.scatter * if rises { self.rate } else { 1.0 }
+    }
 }
 
 /// Whether any criterion has a strength that a stress can reach.
@@ -47,10 +53,7 @@ pub(crate) fn has_strength(criteria: &Criteria) -> bool {
 #[inline(always)]
 pub fn utilisation(criteria: &Criteria, stresses: &Stresses, factors: Factors) -> f64 {
     let used = fractions(criteria, stresses);
-    let used = used.map(|(used, rises)| {
-        let by_rate = if rises { factors.rate } else { 1.0 };
-        fraction(used, factors.scatter * by_rate)
-    });
+    let used = used.map(|(used, rises)| fraction(used, factors.on(rises)));
     used.into_iter().fold(0.0, f64::max)
 }
 

@@ -61,6 +61,23 @@ impl Rod {
         self.young_modulus_pa * self.area_m2() / self.shape.length_m
     }
 
+    /// Levers of which the longer one, of this length, m, is at the larger sphere. The other is what
+    /// remains, so that their sum is the length to the last bit.
+    pub(crate) fn levers_m(&self, longer_m: f64) -> [f64; 2] {
+        let shorter_m = self.shape.length_m - longer_m;
+        let [radius_a, radius_b] = self.shape.end_radii_m;
+        if radius_a >= radius_b {
+            [longer_m, shorter_m]
+        } else {
+            [shorter_m, longer_m]
+        }
+    }
+
+    /// Ratio of normal to shear stiffness: 2 (1 + nu) unless given.
+    pub(crate) fn kappa(&self, given: Option<f64>) -> f64 {
+        given.unwrap_or(2.0 * (1.0 + self.poisson_ratio))
+    }
+
     /// 12 E I/L^3, N/m: transverse stiffness of a slender beam whose ends do not rotate.
     pub(crate) fn beam_n_m(&self) -> f64 {
         12.0 * self.young_modulus_pa * self.second_moment_m4() / self.shape.length_m.powi(3)

@@ -26,20 +26,13 @@ impl RodModel for Rojek {
         let radii = rod.shape.end_radii_m;
         let factor = radius / radii[0].min(radii[1]);
         let per_radius = length / (radii[0] + radii[1]);
-        // The longer lever first: the remaining length for the other is then exact.
-        let longer = per_radius * radii[0].max(radii[1]);
-        let shorter = length - longer;
-        let levers_m = if radii[0] >= radii[1] {
-            [longer, shorter]
-        } else {
-            [shorter, longer]
-        };
+        let levers_m = rod.levers_m(per_radius * radii[0].max(radii[1]));
         let soft = |end: usize| {
             let area = PI * (factor * radii[end]).powi(2);
             levers_m[end] / (rod.young_modulus_pa * area)
         };
         let normal = 1.0 / (soft(0) + soft(1));
-        let kappa = self.kappa.unwrap_or(2.0 * (1.0 + rod.poisson_ratio));
+        let kappa = rod.kappa(self.kappa);
         Stiffness {
             normal,
             shear: normal / kappa,
