@@ -68,29 +68,61 @@ pub fn refuse_renamed(
 /// An argument has been renamed, or is wrong: the message of clap on one line.
 pub fn parsed<P: Parser>(name: &str, given: &[OsString], renamed: &[(&str, &str)]) -> Result<P> {
     refuse_renamed(given.iter().cloned(), renamed)?;
-    P::try_parse_from(given).map_err(|error| {
-        if !error.use_stderr() || error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
-            error.exit();
-        }
-        let command = P::command();
-        let word = given.get(1).and_then(|word| word.to_str());
-        let sub = word.filter(|word| command.find_subcommand(word).is_some());
-        let sub = sub.map_or(String::new(), |word| format!(" {word}"));
-        Diagnostic::input(
-            "",
-            on_one_line(&error.to_string()),
-            format!("see {name}{sub} --help"),
-        )
-    })
+    let matches = taking_negative_numbers(P::command()).try_get_matches_from(given);
+    matches
+        .and_then(|matches| P::from_arg_matches(&matches))
+        .map_err(|error| {
+            if !error.use_stderr() || error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
+                error.exit();
+            }
+            let command = P::command();
+            let word = given.get(1).and_then(|word| word.to_str());
+            let sub = word.filter(|word| command.find_subcommand(word).is_some());
+            let sub = sub.map_or(String::new(), |word| format!(" {word}"));
+            Diagnostic::input(
+                "",
+                on_one_line(&error.to_string()),
+                format!("see {name}{sub} --help"),
+            )
+        })
 }
 
-/// The message of clap, without its `error:`, the usage and the hint to the help, which are
-/// paragraphs of their own.
+/// The command, with values of options that may begin with a minus sign, so that a negative number
+/// is refused by its limits and not taken for an option.
+fn taking_negative_numbers(command: Command) -> Command {
+    let options = command.mut_args(|option| {
+        let takes_a_value = option.get_long().is_some() && option.get_action().takes_values();
+        option.allow_negative_numbers(takes_a_value)
+    });
+    options.mut_subcommands(taking_negative_numbers)
+}
+
+/// What the standard library says of numbers that it cannot read, and what that means.
+const NUMBERS: [(&str, &str); 4] = [
+    (
+        "invalid digit found in string",
+        "it is not a whole number of 0 or more",
+    ),
+    ("number too large to fit in target type", "it is too large"),
+    ("cannot parse integer from empty string", "it is empty"),
+    ("invalid float literal", "it is not a number"),
+];
+
+/// The message of clap, without its `error:`, the usage, the hint to the help and that to `--`, which
+/// are paragraphs of their own.
 pub fn on_one_line(said: &str) -> String {
     let paragraphs = said.trim_start_matches("error:").split("\n\n");
-    let kept = paragraphs.filter(|p| !p.starts_with("Usage:") && !p.starts_with("For more"));
+    let left_out = ["Usage:", "For more", "tip: to pass"];
+    let kept = paragraphs.filter(|p| {
+        !left_out
+            .iter()
+            .any(|start| p.trim_start().starts_with(start))
+    });
     let lines = kept.map(|p| p.split_whitespace().collect::<Vec<_>>().join(" "));
-    lines.collect::<Vec<_>>().join("; ")
+    let line = lines.collect::<Vec<_>>().join("; ");
+    NUMBERS
+        .iter()
+        .fold(line, |line, (said, meant)| line.replace(said, meant))
 }
 
 /// Prints a script for completing the options of a program in a shell.

@@ -17,6 +17,9 @@ const BOTTOM: f64 = 0.12;
 /// above.
 const THREE_QUARTER: Vector3<f64> = Vector3::new(-0.42, 0.80, -0.43);
 
+/// A side runs across the picture if it is longer than the other by this factor.
+const LONGER: f64 = 1.01;
+
 /// Points farther away than this are taken to be invalid, m.
 const FARTHEST_M: f64 = 1e12;
 
@@ -83,10 +86,14 @@ impl Camera {
     /// The default view around points, m, shape n x 3: from the front, the right and above, the
     /// longer horizontal axis across the picture.
     pub fn three_quarter(points_m: &[[f64; 3]], size_px: [u32; 2]) -> Self {
-        let bounds = Bounds::of(sane(points_m));
-        let [x, y] = [0, 1].map(|k| bounds.high[k] - bounds.low[k]);
-        let direction = three_quarter(y > x).into();
+        let direction = Self::three_quarter_direction(&Bounds::of(sane(points_m)));
         Self::around(direction, [0.0, 0.0, 1.0], points_m, size_px)
+    }
+
+    /// Its direction for what is in a box. Rounding does not decide between sides of one length.
+    pub fn three_quarter_direction(bounds: &Bounds) -> [f64; 3] {
+        let [x, y] = [0, 1].map(|k| bounds.high[k] - bounds.low[k]);
+        three_quarter(y > LONGER * x).into()
     }
 
     /// Width and height of the picture, px.

@@ -6,6 +6,7 @@
 //! The page is made from the folder of the results alone, so that it can be written again at any time.
 
 mod folder;
+mod home;
 pub mod picture;
 mod sections;
 mod view;

@@ -10,13 +10,15 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use dem_io::units::show_quantity;
-use dem_io::{Diagnostic, Result, read_input};
+use dem_io::{Bounds, Diagnostic, Result, read_input};
 use dem_pictures::label::{colour_bar, label, scale_bar, time_text};
 use dem_pictures::png_file::{Compression, to_png};
 use dem_pictures::{Camera, Image, Surface, render};
 use serde_json::Value;
 
 use crate::folder::{Folder, is_solid, view_from};
+use crate::home::Home;
+use crate::view::{ChosenFrame, home};
 use gif_film::film;
 use subject::{Colours, Seen};
 
@@ -43,6 +45,9 @@ pub struct Drawn {
     pub bytes: Vec<u8>,
     /// True if no sphere of any frame shown is within the picture.
     pub is_empty: bool,
+    /// Number of spheres, in the frame with the most, so far from the walls that the picture was
+    /// not made to show them; 0 with a target or a zoom.
+    pub far_away: usize,
 }
 
 /// What a picture shows, and from where.
@@ -94,7 +99,8 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
     let frames = folder.frames();
     let chosen = chosen(frames, order, kind)?;
     let colours = Colours::of(order.colour_by, path, &chosen)?;
-    let camera = camera(order, from, &chosen)?;
+    let home = home(&ChosenFrame::from(&frames[0]))?;
+    let (camera, far_away) = camera(order, from, &chosen, &home)?;
     let every_s = match frames {
         [(_, first), .., (_, last)] => (last - first) / (frames.len() - 1) as f64,
         _ => 0.0,
@@ -115,6 +121,7 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
     Ok(Drawn {
         bytes,
         is_empty: is_empty.get(),
+        far_away,
     })
 }
 
@@ -184,23 +191,23 @@ fn summary(path: &Path) -> Result<Value> {
     })
 }
 
-/// The camera of all pictures: everything in the chosen frames, or a part of it. Without a
-/// direction it looks as in pictures that are made during a run.
+/// The camera of all pictures: everything in the chosen frames that is not far from the walls, or a
+/// part of it, and the largest number of spheres in a frame that are. Without a direction it looks
+/// as in pictures that are made during a run.
 fn camera(
     order: &PictureOrder,
     from: Option<[f64; 3]>,
     frames: &[(PathBuf, f64)],
-) -> Result<Camera> {
-    let mut ends = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    home: &Home,
+) -> Result<(Camera, usize)> {
+    let mut shown = Bounds::EMPTY;
+    let mut far_away = 0;
     for frame in frames {
-        for point in Seen::read(frame)?.points_m() {
-            for k in 0..3 {
-                ends[0][k] = ends[0][k].min(point[k]);
-                ends[1][k] = ends[1][k].max(point[k]);
-            }
-        }
+        let seen = Seen::read(frame)?;
+        shown = shown.with(&Bounds::of(seen.points_m(home)));
+        far_away = far_away.max(seen.far_away(home));
     }
-    let [low, high] = ends;
+    let Bounds { low, high } = shown;
     let middle_m = order
         .target_m
         .unwrap_or([0, 1, 2].map(|k| 0.5 * (low[k] + high[k])));
@@ -211,10 +218,13 @@ fn camera(
             [0, 1, 2].map(|k| middle_m[k] + sign(k) * half[k])
         })
         .collect();
-    Ok(match from {
-        Some(from) => Camera::around(from.map(|part| -part), UP, &corners, order.size_px),
-        None => Camera::three_quarter(&corners, order.size_px),
-    })
+    let direction = match from {
+        Some(from) => from.map(|part| -part),
+        None => Camera::three_quarter_direction(&home.start),
+    };
+    let camera = Camera::around(direction, UP, &corners, order.size_px);
+    let is_chosen = order.target_m.is_some() || order.zoom != 1.0;
+    Ok((camera, if is_chosen { 0 } else { far_away }))
 }
 
 fn drawn(

@@ -19,6 +19,7 @@ use serde_json::json;
 use choose::{Chosen, choose};
 use encode::encoded;
 
+use crate::home::Home;
 use tracks::{Ranges, Tracks};
 
 pub(crate) use choose::ChosenFrame;
@@ -53,8 +54,10 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
         return Ok(None);
     };
     let mut ranges = Ranges::default();
+    let home = home(&chosen.frames[0])?;
     for frame in &chosen.frames {
-        ranges.include(&Spheres::read(frame, chosen.every, chosen.with_bonds)?);
+        let spheres = Spheres::read(frame, chosen.every, chosen.with_bonds)?;
+        ranges.include(&spheres, &home);
         if let Some(walls) = walls::read(frame)? {
             ranges.include_walls(&walls.points_m);
         }
@@ -78,6 +81,16 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
     let data = encoded(tracks.all())
         .map_err(|error| dem_io::Diagnostic::failed("report.html", error.to_string(), ""))?;
     Ok(Some(markup(&head.to_string(), &data, &chosen)))
+}
+
+/// Where a run with this first frame takes place.
+///
+/// # Errors
+/// The frame is missing or damaged (exit code 2).
+pub(crate) fn home(first: &ChosenFrame) -> Result<Home> {
+    let walls = walls::read(first)?.unwrap_or_default();
+    let spheres = Spheres::read(first, 1, false)?;
+    Ok(Home::of(&walls.points_m, &spheres.centres_m))
 }
 
 /// What the frames contain.

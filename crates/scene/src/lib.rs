@@ -5,6 +5,7 @@
 //! their table. The reader of the file refuses scenes that cannot be simulated.
 
 mod as_run;
+mod blame;
 mod bodies;
 mod body;
 mod bond;

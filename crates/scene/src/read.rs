@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::include::{document_of, folder_of};
+use super::blame::guilty;
+use super::include::{INCLUDE, document_of, folder_of};
 use super::paths::text_of;
 use super::presence::Presence;
 use super::root::SCENE;
@@ -11,6 +12,7 @@ use super::root::{SCENE_VERSION, Scene};
 use super::run::Integrator;
 use super::table::Table;
 use super::targets::Targets;
+use super::tree::option_place;
 use super::{
     body, bond, clusters, contact, fall_check, group, initial, inlet, load, material, measure,
     outlet, output, region, relaxation, replacement, run, search, sleep, statics, support, test,
@@ -25,10 +27,22 @@ use dem_io::diagnostic::Result;
 ///
 /// # Errors
 /// The file cannot be read, is not TOML, or cannot be simulated. The place is file and line, or the
-/// option.
+/// option; both if the scene is refused at a line of the file because of an option.
 pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
     let text = text_of(path, "a scene")?;
-    scene_from_text(&text, &path.display().to_string(), overrides)
+    let name = path.display().to_string();
+    let read = |overrides: &[String]| scene_from_text(&text, &name, overrides);
+    read(overrides).map_err(|error| {
+        let said = |count: usize| read(&overrides[..count]).err();
+        let names_an_option = error.place.starts_with("--");
+        match guilty(&error, overrides.len(), &said).filter(|_| !names_an_option) {
+            // Files of materials are not given as --set.
+            Some(at) if !overrides[at].starts_with(INCLUDE) => {
+                error.within(&option_place(&overrides[at]))
+            }
+            _ => error,
+        }
+    })
 }
 
 /// Reads a scene from the text of a file named `source`, as [`read_scene`] does.

@@ -5,6 +5,7 @@ mod json;
 mod markdown;
 
 use super::root::SCENE;
+use super::schema::Kind;
 use super::study::STUDY;
 
 /// Names of files in `doc/`, and their texts.
@@ -21,6 +22,17 @@ pub fn files() -> [(&'static str, String); 4] {
             json::text("A study of Crumble", &STUDY),
         ),
     ]
+}
+
+/// The table of a scene, such as `output`, that has this key. None: there is no such key, or only in
+/// tables that have names.
+pub fn table_of(key: &str) -> Option<&'static str> {
+    let tables = SCENE.keys.iter();
+    let mut having = tables.filter(|table| match &table.kind {
+        Kind::Table(schema) => schema.key(key).is_some(),
+        _ => false,
+    });
+    having.next().map(|table| table.name)
 }
 
 #[cfg(test)]

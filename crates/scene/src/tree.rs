@@ -80,10 +80,15 @@ impl Document {
             }
             Origin::Option(number) => {
                 let text = self.options.get(number).map_or("", String::as_str);
-                format!("--set {}", shortened(text, SHOWN_OPTION))
+                option_place(text)
             }
         }
     }
+}
+
+/// The place of a `--set` text in messages.
+pub(super) fn option_place(text: &str) -> String {
+    format!("--set {}", shortened(text, SHOWN_OPTION))
 }
 
 /// The tables of the text of a file `name`; `origin` is that of a line.

@@ -28,6 +28,7 @@ mod scene_arguments;
 mod statics;
 mod stress;
 mod sweep;
+mod trial;
 
 use std::ffi::OsString;
 use std::sync::Arc;

@@ -151,6 +151,7 @@ pub fn plan(
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     refuse_valueless(scene, &groups, &state)?;
     let mut warnings = masses::warnings(scene, &about);
+    warnings.extend(masses::light(scene));
     warnings.extend(doubts(scene, &state));
     state.ledger = opened(&state);
     let step = first_step(scene, &bodies, &mut state, allow_any_step)?;

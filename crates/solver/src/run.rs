@@ -10,6 +10,7 @@ mod fragments;
 mod limits;
 mod observe;
 mod outcome;
+mod past_outlets;
 mod pictures;
 mod progress;
 mod schedule;

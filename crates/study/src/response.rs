@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use dem_io::units::significant;
 use dem_scene::study::{Average, Reference, Study};
 use serde::Serialize;
 
@@ -71,6 +72,19 @@ impl ResponsePoint {
         self.values.iter().fold(ends, wider)
     }
 
+    /// How the values scatter around this average, for a text after it: ` ± 0.3`, the standard
+    /// deviation, or ` (1.2 to 1.9)`, the smallest and the largest. Empty for a single value.
+    pub(crate) fn scatter_text(&self, average: Average) -> String {
+        match (average, self.standard_deviation) {
+            (_, None) => String::new(),
+            (Average::Mean, Some(deviation)) => format!(" ± {}", significant(deviation, 2)),
+            (Average::Median, Some(_)) => {
+                let [low, high] = self.range().map(|end| significant(end, 3));
+                format!(" ({low} to {high})")
+            }
+        }
+    }
+
     /// Standard deviation of the mean. None for a single value.
     pub fn standard_error(&self) -> Option<f64> {
         let count = self.values.len() as f64;
@@ -132,6 +146,8 @@ mod tests {
     #[test]
     fn means_and_scatter() {
         let point = ResponsePoint::new(Vec::new(), Vec::new(), vec![2.0, 4.0, 4.0, 6.0]);
+        assert_eq!(point.scatter_text(Average::Mean), " ± 1.6");
+        assert_eq!(point.scatter_text(Average::Median), " (2 to 6)");
         assert_eq!(point.mean, 4.0);
         // Squares 4 + 0 + 0 + 4 over 3.
         let deviation = (8.0_f64 / 3.0).sqrt();

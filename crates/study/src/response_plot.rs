@@ -224,21 +224,19 @@ fn mark(table: &SweepTable, over: usize, point: &ResponsePoint, average: Average
         // Its range is drawn instead.
         Average::Median => 0.0,
     };
-    let scatter = point.standard_deviation.map_or(String::new(), |deviation| {
-        format!(
-            " ± {} ({} runs)",
-            significant(deviation, 2),
-            point.values.len()
-        )
-    });
+    let runs = match point.values.len() {
+        1 => String::new(),
+        runs => format!(", {runs} runs"),
+    };
     Point {
         at: place(&table.axes[over], over, point, average),
         y_spread: 2.0 * deviation,
         filled: true,
         title: format!(
-            "{}: {}{scatter}",
+            "{}: {}{}{runs}",
             named(table, point),
-            significant(point.average(average), 4)
+            significant(point.average(average), 4),
+            point.scatter_text(average)
         ),
         ..Point::default()
     }

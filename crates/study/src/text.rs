@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use dem_io::text::visible;
+use dem_io::text::{exact, visible};
 use dem_io::units::significant;
+use dem_scene::study::Average;
 
 use super::response::Response;
 use super::response_plot::{average, named, shown_axes};
@@ -153,7 +154,7 @@ fn cell(table: &SweepTable, axis: usize, at: usize) -> String {
 }
 
 fn number(value: Option<f64>) -> String {
-    value.map_or(String::new(), |value| format!("{value:e}"))
+    value.map_or(String::new(), exact)
 }
 
 fn line(cells: &[String]) -> String {
@@ -200,18 +201,20 @@ fn write_response(
     let measure = &table.measures[response.measure];
     let average = average(table, response);
     let averaged = table.average_over.map_or(String::new(), |at| {
-        let average = average.word();
+        let scatter = match average {
+            Average::Mean => "standard deviation",
+            Average::Median => "range",
+        };
         format!(
-            ", {average} and standard deviation over {}",
+            ", {} and {scatter} over {}",
+            average.word(),
             table.axes[at].name
         )
     });
     let name = with_unit(&measure.name, &measure.unit);
     writeln!(f, "response     {name}{}", visible(&averaged))?;
     let lines = response.points.iter().map(|point| {
-        let scatter = (point.standard_deviation).map_or(String::new(), |deviation| {
-            format!(" ± {}", significant(deviation, 2))
-        });
+        let scatter = point.scatter_text(average);
         let value = significant(point.average(average), 4);
         let value = format!("{value}{scatter}");
         format!("  {value:<20} {}", visible(&named(table, point)))

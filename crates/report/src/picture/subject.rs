@@ -10,6 +10,7 @@ use dem_pictures::{Ball, Camera, Surface};
 use dem_plots::{blue_to_red, viridis};
 
 use super::colour_by::ColourBy;
+use crate::home::Home;
 use crate::view::{ChosenFrame, Spheres, most_of, piece_colours, read_walls};
 
 /// A frame in memory.
@@ -20,11 +21,8 @@ pub(super) struct Seen {
 
 impl Seen {
     /// Reads a frame of this time, s.
-    pub(super) fn read((path, time_s): &(PathBuf, f64)) -> Result<Self> {
-        let frame = ChosenFrame {
-            path: path.clone(),
-            time_s: *time_s,
-        };
+    pub(super) fn read(frame: &(PathBuf, f64)) -> Result<Self> {
+        let frame = ChosenFrame::from(frame);
         Ok(Self {
             spheres: Spheres::read(&frame, 1, false)?,
             walls: read_walls(&frame)?,
@@ -44,14 +42,23 @@ impl Seen {
         })
     }
 
-    /// Points between which everything lies, m.
-    pub(super) fn points_m(&self) -> impl Iterator<Item = [f64; 3]> {
+    /// Points between which everything at home lies, m.
+    pub(super) fn points_m(&self, home: &Home) -> impl Iterator<Item = [f64; 3]> {
         let spheres = self.spheres.centres_m.iter().zip(&self.spheres.radii_m);
+        let spheres = spheres.filter(|(centre_m, _)| home.contains(centre_m));
         let ends = |(centre, radius_m): (&[f64; 3], &f64)| {
             [-radius_m, *radius_m].map(|more| centre.map(|x| x + more))
         };
         let walls = self.walls.iter().flat_map(|walls| walls.points_m.clone());
         spheres.flat_map(ends).chain(walls)
+    }
+
+    /// Number of spheres that are not at home.
+    pub(super) fn far_away(&self, home: &Home) -> usize {
+        let centres_m = self.spheres.centres_m.iter();
+        centres_m
+            .filter(|centre_m| !home.contains(centre_m))
+            .count()
     }
 
     pub(super) fn balls(&self, colours: &Colours) -> Vec<Ball> {

@@ -36,6 +36,16 @@ pub(crate) struct ChosenFrame {
     pub(crate) time_s: f64,
 }
 
+impl From<&(PathBuf, f64)> for ChosenFrame {
+    /// A frame of this file and time, s.
+    fn from((path, time_s): &(PathBuf, f64)) -> Self {
+        Self {
+            path: path.clone(),
+            time_s: *time_s,
+        }
+    }
+}
+
 impl Chosen {
     /// What was left out, in sentences.
     pub(crate) fn notes(&self) -> Vec<String> {
@@ -77,10 +87,7 @@ pub(crate) fn choose(frames: &[(PathBuf, f64)]) -> Result<Option<Chosen>> {
     let numbers = (0..amount.frames).map(|k| k * last / (amount.frames - 1).max(1));
     Ok(Some(Chosen {
         frames: numbers
-            .map(|number| {
-                let (path, time_s) = frames[number].clone();
-                ChosenFrame { path, time_s }
-            })
+            .map(|number| ChosenFrame::from(&frames[number]))
             .collect(),
         of_frames: frames.len(),
         every: amount.every,

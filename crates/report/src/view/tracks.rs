@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::encode::{Track, level};
 use super::spheres::{Bond, Spheres};
+use crate::home::Home;
 
 /// Steps along the longest edge of the scene: floating point numbers of 32 bits hold them exactly.
 const STEPS: f64 = 16_777_215.0;
@@ -45,14 +46,16 @@ pub(crate) struct Scales {
 }
 
 impl Ranges {
-    /// Extends the ranges to the spheres of a frame.
-    pub(crate) fn include(&mut self, spheres: &Spheres) {
+    /// Extends the ranges to the spheres of a frame. The first view shows those at `home`.
+    pub(crate) fn include(&mut self, spheres: &Spheres, home: &Home) {
         for (centre, radius_m) in spheres.centres_m.iter().zip(&spheres.radii_m) {
             self.all_m = joined(self.all_m, [0, 1].map(|_| *centre));
             self.radius_m = self.radius_m.max(*radius_m);
         }
-        if !spheres.centres_m.is_empty() {
-            self.middle_m = joined(self.middle_m, middle(&spheres.centres_m));
+        let at_home = spheres.centres_m.iter().filter(|at| home.contains(at));
+        let at_home: Vec<[f64; 3]> = at_home.copied().collect();
+        if !at_home.is_empty() {
+            self.middle_m = joined(self.middle_m, middle(&at_home));
         }
         self.speed_m_s = self.speed_m_s.max(most_of(&spheres.speeds_m_s));
         self.mass_kg = spheres
@@ -77,7 +80,7 @@ impl Ranges {
     /// The scales of these ranges. None: there is nothing.
     pub(crate) fn scales(&self) -> Option<Scales> {
         let [low_m, high_m] = self.all_m?;
-        let middle_m = self.middle_m?;
+        let middle_m = self.middle_m.unwrap_or([low_m, high_m]);
         let longest_m = (0..3).map(|k| high_m[k] - low_m[k]).fold(0.0, f64::max);
         let half = [0, 1, 2].map(|k| 0.5 * (middle_m[1][k] - middle_m[0][k]));
         let reach_m = half.iter().map(|half| half * half).sum::<f64>().sqrt();

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::contents::{BODY, MeasureOf, Pieces, Reference, Setting, Study};
 use super::values::in_si;
+use crate::blame::guilty;
 use crate::body::BodySource;
 use crate::measure::Measure;
 use crate::names::suggestion;
@@ -42,14 +43,10 @@ pub fn scene_with<'a>(
     }
     let read = |overrides: &[String]| scene_from_text(text, &name, overrides);
     let mut scene = read(&overrides).map_err(|error| {
-        // Of several, the first one without which there is no error, or another one.
         let said = |count: usize| read(&overrides[..count]).err();
-        let guilty = (0..overrides.len()).find(|&at| {
-            said(at + 1).is_some_and(|now| now == error) && said(at).is_none_or(|was| was != error)
-        });
-        match guilty {
-            Some(at) if said(0) != Some(error.clone()) => error.within(places[at]),
-            _ => error.within(&study.source),
+        match guilty(&error, overrides.len(), &said) {
+            Some(at) => error.within(places[at]),
+            None => error.within(&study.source),
         }
     })?;
     for (body, setting) in files {

@@ -143,3 +143,30 @@ fn long_options_are_shortened() {
     let message = with(&[&text]).unwrap_err();
     assert!(message.len() < 300 && !message.contains('\n'), "{message}");
 }
+
+/// A value that makes a line of the file wrong is named with that line.
+#[test]
+fn an_option_that_makes_a_line_wrong_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("bar.toml");
+    let rigid = format!("{SCENE}start_as = \"clump\"\n");
+    std::fs::write(&file, &rigid).unwrap();
+    let refused = |options: &[&str]| {
+        let options: Vec<String> = options.iter().map(|text| (*text).to_owned()).collect();
+        let said = dem_scene::read_scene(&file, &options)
+            .unwrap_err()
+            .to_string();
+        said.replace(&file.display().to_string(), "bar.toml")
+    };
+    let said = refused(&["run.end_time=2", "run.integrator=static"]);
+    assert!(
+        said.starts_with("--set run.integrator=static: bar.toml:"),
+        "{said}"
+    );
+    let said = refused(&["run.end_time=2", "run.end_time=-1"]);
+    assert!(said.starts_with("--set run.end_time=-1: "), "{said}");
+    let wrong = rigid.replace("density = 2000", "density = -1");
+    std::fs::write(&file, wrong).unwrap();
+    let said = refused(&["run.end_time=2"]);
+    assert!(said.starts_with("bar.toml:5: "), "{said}");
+}

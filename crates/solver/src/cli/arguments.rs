@@ -60,7 +60,28 @@ impl Arguments {
             given.remove(1);
         }
         refuse_no_command(&given)?;
-        parsed("dem-run", &given, &RENAMED)
+        parsed("dem-run", &given, &RENAMED).map_err(|error| naming_set(error, &given))
+    }
+}
+
+/// The error, with the way to set a key of a scene if an unknown option has the name of one.
+fn naming_set(error: Diagnostic, given: &[OsString]) -> Diagnostic {
+    let options = given.iter().filter_map(|argument| argument.to_str());
+    let unknown = options
+        .filter(|option| {
+            error
+                .problem
+                .contains(&format!("unexpected argument '{option}'"))
+        })
+        .filter_map(|option| option.strip_prefix("--"));
+    let keys = unknown.map(|name| name.replace('-', "_"));
+    let mut settings = keys.filter_map(|key| Some((dem_scene::reference::table_of(&key)?, key)));
+    match settings.next() {
+        Some((table, key)) => Diagnostic {
+            remedy: format!("it is a value of the scene: --set {table}.{key}=VALUE"),
+            ..error
+        },
+        None => error,
     }
 }
 

@@ -1,7 +1,6 @@
 //! `dem-run check`: dry run of a scene.
 
 use std::path::Path;
-use std::time::Instant;
 
 use dem_io::safe_write::write_file;
 use dem_io::standard_output::{write_json_text, write_standard_output};
@@ -16,19 +15,13 @@ use super::memory::{memory_bytes, size_text};
 use super::pool::in_pool;
 use super::scene_arguments::SceneArguments;
 use super::statics;
-use crate::clock::StageClock;
+use super::trial::Trial;
 use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
 use crate::output::pictures::View;
 use crate::plan::masses;
 use crate::plan::{Plan, PlannedStage, plan};
-use crate::stages::ledger::CHECKS;
 use crate::state::State;
-use crate::step::{number_of, step};
 
-/// The run time is predicted from this many samples of the first steps of a copy.
-const SAMPLES: usize = 8;
-/// Number of steps of a sample, and their time limit, s.
-const SAMPLE: (u32, f64) = (250, 0.07);
 /// Samples that differ by less than this factor are told as one.
 const ALIKE: f64 = 1.2;
 
@@ -80,7 +73,7 @@ fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<()> {
     need_folder_of(file)?;
     let output = scene.output.as_ref();
     let from = output.and_then(|output| output.view_from);
-    let view = View::of(&plan.state, from, None);
+    let view = View::with_regions(&plan.state, from);
     let (end_s, names) = (scene.run.end_time_s, scene.regions.keys());
     let image = view.picture_with_regions(&plan.state, &plan.bodies, end_s, names);
     let bytes = to_png(&image, Compression::High)?;
@@ -95,8 +88,9 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
     let steps = steps(scene, plan);
     let bytes = memory_bytes(&plan.state);
     // The time of the first steps predicts nothing if bodies are added, removed or replaced.
-    let trial = (plan.state.model.rules.are_none()).then(|| Trial::of(&plan.state));
-    let per_step_s = trial.as_ref().map(|trial| trial.per_step_s);
+    let trial = (plan.state.model.rules.are_none())
+        .then(|| Trial::of(scene, plan))
+        .transpose()?;
     let of_stages = |needed: bool| -> Vec<Value> {
         let of_stage = |stage: &PlannedStage| {
             let cost_ns = trial.as_ref().and_then(|trial| trial.cost_ns(stage));
@@ -136,7 +130,8 @@ fn check(scene: &Scene, plan: &Plan, as_json: bool) -> Result<()> {
                 "stages": of_stages(true),
                 "inactive": of_stages(false),
                 "memory_bytes": bytes,
-                "predicted_run_time_s": per_step_s.map(|s| steps.first * s),
+                "predicted_run_time_s": trial.as_ref().map(|trial| trial.range_s(steps.first)[0]),
+                "predicted_time_of_pictures_s": trial.as_ref().map(|trial| trial.pictures_s),
                 "predicted_run_time_range_s": trial.as_ref().map(|trial| trial.range_s(steps.first)),
             });
             write_json_text(out, &value)
@@ -213,7 +208,7 @@ fn text(plan: &Plan, steps: Steps, bytes: usize, trial: Option<&Trial>) -> Strin
         "run time",
         trial.map_or(
             "not predicted: bodies are fed, discharged or replaced".to_owned(),
-            |trial| run_time_text(trial.range_s(steps.first)),
+            |trial| run_time_text(trial.range_s(steps.first)) + &trial.pictures_text(),
         ),
     );
     text
@@ -398,46 +393,5 @@ fn time_text(ns: f64) -> String {
         few if few < 1e3 => format!("{few:.0} ns per step"),
         some if some < 1e6 => format!("{} us per step", significant(some * 1e-3, 2)),
         many => format!("{} ms per step", significant(many * 1e-6, 2)),
-    }
-}
-
-/// Cost of the first steps, tried on a copy in several samples.
-struct Trial {
-    /// Of the fastest sample, which other programs have disturbed least.
-    per_step_s: f64,
-    /// Of the slowest sample.
-    most_per_step_s: f64,
-    clock: StageClock,
-}
-
-impl Trial {
-    fn of(state: &State) -> Self {
-        let mut copy = state.clone();
-        let mut sample_s = || {
-            let clock = Instant::now();
-            let mut done = 0;
-            while done < SAMPLE.0 && (done < 1 || clock.elapsed().as_secs_f64() < SAMPLE.1) {
-                step(&mut copy);
-                done += 1;
-            }
-            clock.elapsed().as_secs_f64() / f64::from(done)
-        };
-        let samples_s: Vec<f64> = (0..SAMPLES).map(|_| sample_s()).collect();
-        Self {
-            per_step_s: samples_s.iter().copied().fold(f64::INFINITY, f64::min),
-            most_per_step_s: samples_s.iter().copied().fold(0.0, f64::max),
-            clock: copy.scratch.clock,
-        }
-    }
-
-    /// The run time by the fastest and by the slowest sample, s.
-    fn range_s(&self, steps: f64) -> [f64; 2] {
-        [self.per_step_s, self.most_per_step_s].map(|s| steps * s)
-    }
-
-    /// Cost of a stage that has its own time and is active in steps, ns per step.
-    fn cost_ns(&self, stage: &PlannedStage) -> Option<f64> {
-        let has_own = stage.stage.within.is_none() && *stage.stage != CHECKS;
-        has_own.then(|| 1e9 * self.per_step_s * self.clock.fraction(number_of(stage.stage)))
     }
 }

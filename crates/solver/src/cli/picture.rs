@@ -85,18 +85,23 @@ pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
     need_folder_of(target)?;
     let drawn = picture(&arguments.folder, &order, kind)?;
     write_file(target, |out| out.write_all(&drawn.bytes))?;
-    if drawn.is_empty {
+    let warn = |text: &str| {
         let word = on_standard_error("warning:", Colour::Yellow);
         // A closed output is not a reason to fail: the picture is written.
-        let _ = writeln!(
-            std::io::stderr(),
-            "{word} {}: no particle is within the picture; {}",
-            visible(&name),
-            match (&arguments.target, arguments.zoom > 1.0) {
-                (None, false) => "show another frame, with --frame or --time",
-                _ => "leave out --target and --zoom to see everything",
-            }
-        );
+        let _ = writeln!(std::io::stderr(), "{word} {}: {text}", visible(&name));
+    };
+    if drawn.is_empty {
+        let remedy = match (&arguments.target, arguments.zoom > 1.0) {
+            (None, false) => "show another frame, with --frame or --time",
+            _ => "leave out --target and --zoom to see everything",
+        };
+        warn(&format!("no particle is within the picture; {remedy}"));
+    }
+    if drawn.far_away > 0 {
+        warn(&format!(
+            "{} spheres are far from the walls, and the picture is not scaled to show them; --zoom 0.5 shows more",
+            drawn.far_away
+        ));
     }
     write_standard_output(|out| writeln!(out, "{}", visible(&name)))
 }

@@ -1,6 +1,7 @@
-//! Progress of a run on standard error: a bar on a terminal, lines in a log.
+//! Progress of a run or a study on standard error: a bar on a terminal, lines in a log.
 
 use std::cell::RefCell;
+use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::time::Instant;
 
@@ -20,9 +21,9 @@ pub(super) struct ShownProgress {
 }
 
 /// The lines in a log.
-struct Log {
+pub(super) struct Log {
     begun: Instant,
-    /// The run, "at twice the rate " for a second one.
+    /// At the begin of each line, such as "run " or "run at twice the rate ".
     prefix: String,
     tenths: Tenths,
 }
@@ -61,7 +62,7 @@ impl ShownProgress {
     /// Shows nothing if `quiet`.
     pub(super) fn new(quiet: bool) -> Self {
         let is_terminal = std::io::stderr().is_terminal();
-        let log = (!quiet && !is_terminal).then(|| RefCell::new(Log::new("")));
+        let log = (!quiet && !is_terminal).then(|| RefCell::new(Log::new("run ")));
         let bar = if quiet || !is_terminal {
             ProgressBar::hidden()
         } else {
@@ -74,7 +75,7 @@ impl ShownProgress {
     pub(super) fn begin(&self, prefix: &'static str) {
         self.bar.set_prefix(prefix);
         if let Some(log) = &self.log {
-            *log.borrow_mut() = Log::new(prefix);
+            *log.borrow_mut() = Log::new(&format!("run {prefix}"));
         }
     }
 
@@ -82,20 +83,8 @@ impl ShownProgress {
     pub(super) fn tell(&self, so_far: &SoFar) {
         self.bar.set_position((1000.0 * so_far.fraction) as u64);
         self.bar.set_message(format!("{so_far}  "));
-        let Some(log) = &self.log else {
-            return;
-        };
-        let mut log = log.borrow_mut();
-        let elapsed_s = log.begun.elapsed().as_secs_f64();
-        if let Some(left_s) = log.tenths.due(so_far.fraction, elapsed_s) {
-            // A closed output is not a reason to stop.
-            let _ = writeln!(
-                std::io::stderr(),
-                "run {}{:.0} %: {so_far}, about {} s left",
-                log.prefix,
-                100.0 * so_far.fraction,
-                significant(left_s, 2)
-            );
+        if let Some(log) = &self.log {
+            log.borrow_mut().tell(so_far.fraction, so_far);
         }
     }
 
@@ -106,11 +95,27 @@ impl ShownProgress {
 }
 
 impl Log {
-    fn new(prefix: &str) -> Self {
+    /// Begins now.
+    pub(super) fn new(prefix: &str) -> Self {
         Self {
             begun: Instant::now(),
             prefix: prefix.to_owned(),
             tenths: Tenths::default(),
+        }
+    }
+
+    /// Writes a line if one is due at this fraction of the whole.
+    pub(super) fn tell(&mut self, fraction: f64, what: &dyn Display) {
+        let elapsed_s = self.begun.elapsed().as_secs_f64();
+        if let Some(left_s) = self.tenths.due(fraction, elapsed_s) {
+            // A closed output is not a reason to stop.
+            let _ = writeln!(
+                std::io::stderr(),
+                "{}{:.0} %: {what}, about {} s left",
+                self.prefix,
+                100.0 * fraction,
+                significant(left_s, 2)
+            );
         }
     }
 }

@@ -3,6 +3,7 @@
 
 mod results;
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -19,6 +20,7 @@ use dem_scene::text_of;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use self::results::{list, say, write_files};
+use super::progress::Log;
 use crate::interrupt::Interrupt;
 use dem_study::collect::outcome;
 use dem_study::expand::{MOST_UNASKED, Run, runs};
@@ -382,7 +384,17 @@ fn do_what_is_left(
         .filter(|job| !job.is_done(&runs))
         .collect();
     let bar = progress_bar(options, todo.len());
-    let tell = |done: usize| bar.set_position(done as u64);
+    let is_logged = !options.quiet && !std::io::stderr().is_terminal();
+    let log = RefCell::new(Log::new("sweep "));
+    let tell = |done: usize| {
+        bar.set_position(done as u64);
+        if is_logged && !todo.is_empty() {
+            let fraction = done as f64 / todo.len() as f64;
+            let what = format!("{done} of {} runs done", todo.len());
+            log.borrow_mut().tell(fraction, &what);
+        }
+    };
+    tell(0);
     let worked = interrupt.run_interruptible(|interrupted| {
         work(study, all, &todo, &runs, options.jobs, interrupted, &tell)
     });

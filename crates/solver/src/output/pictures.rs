@@ -6,4 +6,5 @@ pub mod scale;
 pub(crate) mod subject;
 pub(crate) mod view;
 
+pub(crate) use subject::around_walls;
 pub use view::View;

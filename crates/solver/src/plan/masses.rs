@@ -20,6 +20,8 @@ use crate::state::particles::Particles;
 
 /// Smallest difference that is reported, percent.
 const WORTH_A_NOTE: f64 = 5.0;
+/// Foams aside, no solid is lighter, kg/m3.
+const LIGHTEST_KG_M3: f64 = 20.0;
 /// Largest number of bodies that are listed.
 const LISTED: usize = 8;
 
@@ -122,6 +124,31 @@ pub(crate) fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<St
         warnings.extend(said.map(|text| format!("body '{name}'{file}: {by} warned: {text}")));
     }
     warnings
+}
+
+/// Densities that are hardly those of a solid in kg/m3: a sentence each.
+pub(crate) fn light(scene: &Scene) -> Vec<String> {
+    let of_materials = scene.materials.iter().filter_map(|(name, material)| {
+        Some((format!("materials.{name}.density"), material.density_kg_m3?))
+    });
+    let of_bodies = scene
+        .bodies
+        .iter()
+        .filter_map(|(name, body)| match body.whole_mass {
+            Some(WholeMass::Density(density)) => {
+                Some((format!("bodies.{name}.body_density"), density))
+            }
+            _ => None,
+        });
+    let all = of_materials.chain(of_bodies);
+    let light = all.filter(|(_, density)| *density < LIGHTEST_KG_M3);
+    let sentence = |(key, density): (String, f64)| {
+        let density = significant(density, 4);
+        format!(
+            "{key} is {density} kg/m3, less than that of any solid but foam: 1.3 g/cm3 are 1300 kg/m3"
+        )
+    };
+    light.map(sentence).collect()
 }
 
 /// Human-readable lines, the first preceded by a label: two for each body.

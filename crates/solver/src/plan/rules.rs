@@ -180,6 +180,17 @@ fn replacement_doubts(scene: &Scene, state: &State) -> Vec<String> {
                 "replacement of '{body}': its region lies away from all bodies, inlets and walls"
             ));
         }
+        let outlets = state.model.rules.outlets.iter();
+        let outlet = trigger.enters.and_then(|region| {
+            let mut taking = outlets.filter(|outlet| is_in_outlet(region, outlet, state));
+            taking.next()
+        });
+        if let Some(outlet) = outlet {
+            doubts.push(format!(
+                "replacement of '{body}': the outlet '{}' removes everything in its region at once; choose another region for one of them",
+                outlet.name
+            ));
+        }
         let needs_contact = trigger.force_n.is_some() || trigger.impact_energy_j.is_some();
         if needs_contact && state.contacts.is_none() {
             doubts.push(format!(
@@ -188,6 +199,19 @@ fn replacement_doubts(scene: &Scene, state: &State) -> Vec<String> {
         }
     }
     doubts
+}
+
+/// Whether an outlet removes everything in a region: its own region is the same or, of a shape
+/// without hollows, contains the corners of the other.
+fn is_in_outlet(region: usize, outlet: &Outlet, state: &State) -> bool {
+    let regions = &state.model.rules.regions;
+    let taken = &regions[outlet.region];
+    let is_convex = !matches!(taken, Region::Inside(..));
+    let contains_all = || {
+        let corners = regions[region].bounds().corners();
+        corners.iter().all(|corner| taken.contains(*corner))
+    };
+    !outlet.removes_outside && (outlet.region == region || is_convex && contains_all())
 }
 
 /// Bodies that fall asleep in flight.

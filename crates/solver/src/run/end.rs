@@ -8,6 +8,7 @@ use super::events::write_sleep;
 use super::finish::End;
 use super::observe::Ended;
 use super::outcome::Outcome;
+use super::past_outlets::past_outlets;
 use crate::laboratory::evaluate::TestResult;
 use crate::machine::{machine, processor_time_s};
 use crate::measure::Probe;
@@ -40,9 +41,18 @@ impl Run<'_> {
             .filter(|_| !is_stopped);
         let (flies, bodies) = (flying.as_ref(), &self.bodies);
         warnings.extend(seen.warnings(&self.state, self.scene, bodies, flies, is_stopped));
+        if !is_stopped {
+            warnings.extend(past_outlets(&self.state, pieces));
+        }
         let mut summary = self.summary(&ended, fragments.as_deref(), test.transpose()?);
         let note = flying.filter(|flying| !flying.touches);
         summary.notes.extend(note.map(|flying| flying.text));
+        let pictures = self
+            .files
+            .as_ref()
+            .and_then(|files| files.pictures.as_ref());
+        let note = pictures.and_then(|pictures| pictures.note(&self.state));
+        summary.notes.extend(note);
         summary.judge(warnings);
         let Some(folder) = folder else {
             return Ok(Outcome {

@@ -31,6 +31,9 @@ pub(super) struct Taken {
     count: usize,
 }
 
+/// Fraction of the particles outside the pictures of which a note tells.
+const MUCH: f64 = 0.05;
+
 /// View and interval of the pictures of a run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Order {
@@ -118,6 +121,17 @@ impl Pictures {
         self.album.keep(self.taken.count, &Rc::new(image));
         self.taken.count = self.files.count();
         Ok(())
+    }
+
+    /// A note if much of this state, the last of the run, is outside of them.
+    pub(super) fn note(&self, state: &State) -> Option<String> {
+        let (outside, all) = (self.order.view.outside(state), state.particles.len());
+        let is_much = outside as f64 > MUCH * all as f64;
+        is_much.then(|| {
+            format!(
+                "{outside} of {all} particles are outside the pictures at the end: dem-run picture FOLDER --output film.gif makes a film that shows more"
+            )
+        })
     }
 
     /// Writes a sheet of some of them side by side, and a film of all or many.

@@ -108,6 +108,22 @@ fn arguments_are_refused_on_one_line() {
     assert!(said.ends_with("; see dem-run --help"), "{said}");
     let said = refusal(&["new"]);
     assert!(said.ends_with("; see dem-run new --help"), "{said}");
+    assert_eq!(
+        refusal(&["scene.toml", "--pictures", "1ms"]),
+        "error: unexpected argument '--pictures' found; it is a value of the scene: --set output.pictures=VALUE"
+    );
+    for (arguments, said) in [
+        (
+            &["scene.toml", "--threads", "-1"][..],
+            "error: invalid value '-1' for '--threads <N>': it is not a whole number of 0 or more; see dem-run --help",
+        ),
+        (
+            &["picture", "out", "-o", "x.png", "--zoom", "-2"],
+            "error: --zoom: -2 is not above 0 and at most 10000; 2 shows half of the width",
+        ),
+    ] {
+        assert_eq!(refusal(arguments), said);
+    }
 }
 
 #[test]

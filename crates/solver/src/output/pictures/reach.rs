@@ -105,7 +105,7 @@ impl Reach {
 }
 
 /// The part of a box within another, or else its side towards that.
-fn nearest(region: &Bounds, scene: &Bounds) -> Bounds {
+pub(crate) fn nearest(region: &Bounds, scene: &Bounds) -> Bounds {
     let side = |end: f64, k: usize| {
         let within = end.max(scene.low[k]).min(scene.high[k]);
         within.max(region.low[k]).min(region.high[k])

@@ -5,12 +5,13 @@ use dem_pictures::colours::{Piece, SINGLE, of_piece, of_pieces};
 use dem_pictures::surface::HalfSpace;
 use dem_pictures::{Ball, Surface};
 
-use super::reach::Reach;
+use super::reach::{Reach, nearest};
 use super::scale::Scale;
 use crate::geometry::{Bounds, Shape};
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clusters::Cluster;
+use crate::state::regions::Region;
 use crate::state::walls::Wall;
 
 /// Distance to which planes are drawn beyond the particles, as a fraction of the width of these.
@@ -55,6 +56,11 @@ pub(crate) fn points_of(state: &State) -> Vec<[f64; 3]> {
     points_m
 }
 
+/// The box around the walls that are no planes.
+pub(crate) fn around_walls(state: &State) -> Bounds {
+    with_walls(Bounds::EMPTY, state)
+}
+
 /// A box, and the walls that are no planes.
 fn with_walls(bounds: Bounds, state: &State) -> Bounds {
     state.walls.iter().fold(bounds, |bounds, wall| {
@@ -63,6 +69,16 @@ fn with_walls(bounds: Bounds, state: &State) -> Bounds {
         let in_space = in_space.map(|corner| wall.frame.to_space(corner));
         bounds.with(&Bounds::of(in_space))
     })
+}
+
+/// The corners of all regions, of large ones only near a scene with these points, m. Shape n x 3.
+pub(crate) fn regions_near(state: &State, points_m: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let scene = with_walls(Bounds::of(points_m.iter().copied()), state);
+    let sides = [0, 1, 2].map(|k| scene.high[k] - scene.low[k]);
+    let near = scene.grown(0.5 * sides.into_iter().fold(0.0, f64::max));
+    let regions = state.model.rules.regions.iter().map(Region::bounds);
+    let nearest = regions.map(|region| nearest(&region, &near));
+    nearest.flat_map(|region| region.corners()).collect()
 }
 
 /// The edges of the boxes around all regions.

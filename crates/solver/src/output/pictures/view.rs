@@ -5,10 +5,11 @@ use dem_pictures::{Camera, Image, Surface, render};
 
 use super::region_names::write_names;
 use super::scale::Scale;
-use super::subject::{around, balls, outlines_of_regions, points_of, surfaces};
+use super::subject::{around, balls, outlines_of_regions, points_of, regions_near, surfaces};
 use crate::geometry::Bounds;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
+use crate::state::particles::Pose;
 use crate::state::regions::Region;
 
 /// Width and height of a picture, px.
@@ -31,7 +32,22 @@ impl View {
     /// the rest. `from`: direction of the viewer, of any length; None: from the front, the right
     /// and above. `scale`: colours of particles; None: by fragment.
     pub fn of(state: &State, from: Option<[f64; 3]>, scale: Option<Scale>) -> Self {
+        Self::around(state, from, scale, points_of(state))
+    }
+
+    /// The same, with all regions near the scene.
+    pub fn with_regions(state: &State, from: Option<[f64; 3]>) -> Self {
         let mut points_m = points_of(state);
+        points_m.extend(regions_near(state, &points_m));
+        Self::around(state, from, None, points_m)
+    }
+
+    fn around(
+        state: &State,
+        from: Option<[f64; 3]>,
+        scale: Option<Scale>,
+        mut points_m: Vec<[f64; 3]>,
+    ) -> Self {
         let around = around(state, &points_m);
         let surfaces = surfaces(&state.walls, &around);
         points_m.extend(surfaces.iter().flat_map(Surface::points_m));
@@ -66,6 +82,17 @@ impl View {
         let bounds = state.model.rules.regions.iter().map(Region::bounds);
         write_names(&mut image, &self.camera, bounds.zip(names));
         image
+    }
+
+    /// Number of particles whose centres are outside the picture.
+    pub fn outside(&self, state: &State) -> usize {
+        let [wide, high] = SIZE_PX.map(f64::from);
+        let poses = state.particles.poses.iter();
+        let is_outside = |pose: &&Pose| {
+            let [x, y, _] = self.camera.project(pose.place().into());
+            !(0.0..=wide).contains(&x) || !(0.0..=high).contains(&y)
+        };
+        poses.filter(is_outside).count()
     }
 
     fn drawn(

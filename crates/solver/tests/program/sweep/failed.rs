@@ -51,7 +51,7 @@ reference = { value = 1 }
     }
     let rows = csv(&bench.path("study-sweep/sweep.csv"));
     assert_eq!(rows[0]["breaks"], "a,b");
-    assert_eq!(rows[0]["pieces_error"], "0e0");
+    assert_eq!(rows[0]["pieces_error"], "0");
     assert!(rows[0]["failed"].is_empty() && !rows[2]["failed"].is_empty());
     let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
     assert!(html.contains("<h2>Failed</h2>") && html.contains("the largest stable"));

@@ -1,0 +1,100 @@
+//! The run time of a scene, predicted from its first steps and its first picture.
+
+use std::time::Instant;
+
+use dem_io::Result;
+use dem_io::units::significant;
+use dem_pictures::film::chosen_for_film;
+use dem_pictures::png_file::{Compression, to_png};
+use dem_scene::Scene;
+
+use crate::clock::StageClock;
+use crate::output::pictures::View;
+use crate::plan::{Plan, PlannedStage};
+use crate::stages::ledger::CHECKS;
+use crate::step::{number_of, step};
+
+/// The run time is predicted from this many samples of the first steps of a copy.
+const SAMPLES: usize = 8;
+/// Number of steps of a sample, and their time limit, s.
+const SAMPLE: (u32, f64) = (250, 0.07);
+/// Cost of the first steps, tried on a copy in several samples.
+pub(super) struct Trial {
+    /// Of the fastest sample, which other programs have disturbed least.
+    per_step_s: f64,
+    /// Of the slowest sample.
+    most_per_step_s: f64,
+    clock: StageClock,
+    /// Number of pictures, and the time for all of them and their film, s.
+    pictures: usize,
+    pub(super) pictures_s: f64,
+}
+
+impl Trial {
+    pub(super) fn of(scene: &Scene, plan: &Plan) -> Result<Self> {
+        let (pictures, pictures_s) = time_of_pictures(scene, plan)?;
+        let mut copy = plan.state.clone();
+        let mut sample_s = || {
+            let clock = Instant::now();
+            let mut done = 0;
+            while done < SAMPLE.0 && (done < 1 || clock.elapsed().as_secs_f64() < SAMPLE.1) {
+                step(&mut copy);
+                done += 1;
+            }
+            clock.elapsed().as_secs_f64() / f64::from(done)
+        };
+        let samples_s: Vec<f64> = (0..SAMPLES).map(|_| sample_s()).collect();
+        Ok(Self {
+            per_step_s: samples_s.iter().copied().fold(f64::INFINITY, f64::min),
+            most_per_step_s: samples_s.iter().copied().fold(0.0, f64::max),
+            clock: copy.scratch.clock,
+            pictures,
+            pictures_s,
+        })
+    }
+
+    /// The run time with pictures by the fastest and by the slowest sample, s.
+    pub(super) fn range_s(&self, steps: f64) -> [f64; 2] {
+        [self.per_step_s, self.most_per_step_s].map(|s| steps * s + self.pictures_s)
+    }
+
+    /// What pictures take, after the run time.
+    pub(super) fn pictures_text(&self) -> String {
+        match self.pictures {
+            0 => String::new(),
+            pictures => format!(
+                ", of it {} s for {pictures} pictures",
+                significant(self.pictures_s, 2)
+            ),
+        }
+    }
+
+    /// Cost of a stage that has its own time and is active in steps, ns per step.
+    pub(super) fn cost_ns(&self, stage: &PlannedStage) -> Option<f64> {
+        let has_own = stage.stage.within.is_none() && *stage.stage != CHECKS;
+        has_own.then(|| 1e9 * self.per_step_s * self.clock.fraction(number_of(stage.stage)))
+    }
+}
+
+/// Number of pictures of a run, and the time for them and their film, s: that of the first one for
+/// each.
+///
+/// # Errors
+/// Those of the encoder.
+fn time_of_pictures(scene: &Scene, plan: &Plan) -> Result<(usize, f64)> {
+    let Some(every_s) = scene.output.as_ref().and_then(|output| output.pictures_s) else {
+        return Ok((0, 0.0));
+    };
+    let count = (scene.run.end_time_s / every_s).floor() + 1.0;
+    let of_film = chosen_for_film(count.min(1e6) as usize).len() as f64;
+    let clock = Instant::now();
+    let from = scene.output.as_ref().and_then(|output| output.view_from);
+    let image = View::of(&plan.state, from, None).picture(&plan.state, &plan.bodies, every_s);
+    let drawn_s = clock.elapsed().as_secs_f64();
+    to_png(&image, Compression::Fast)?;
+    let encoded_s = clock.elapsed().as_secs_f64() - drawn_s;
+    Ok((
+        count as usize,
+        count * (drawn_s + encoded_s) + of_film * encoded_s,
+    ))
+}
