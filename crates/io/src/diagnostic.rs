@@ -17,8 +17,9 @@ pub enum Kind {
     Unstable,
 }
 
-/// One message: place, problem and remedy.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// One message: place, problem and remedy. Its debug form is the same sentence, so that a `main` that
+/// returns it prints what a user can read.
+#[derive(Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Origin of the error.
     pub kind: Kind,
@@ -120,6 +121,12 @@ impl fmt::Display for Diagnostic {
             write!(f, "; {}", visible(&self.remedy))?;
         }
         Ok(())
+    }
+}
+
+impl fmt::Debug for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
     }
 }
 

@@ -78,6 +78,22 @@ impl DischargeFile {
         self.table.append(&text)
     }
 
+    /// Removes the rows after the first `length_bytes` bytes and returns their lines.
+    ///
+    /// # Errors
+    /// The file cannot be read or written to (exit code 1).
+    pub fn take_back(&mut self, length_bytes: u64) -> Result<String> {
+        self.table.take_back(length_bytes)
+    }
+
+    /// Appends lines that [`DischargeFile::take_back`] has returned.
+    ///
+    /// # Errors
+    /// Full disk (exit code 1): earlier rows are kept.
+    pub fn put_back(&mut self, lines: &str) -> Result<()> {
+        self.table.append(lines)
+    }
+
     /// Length of the file, stored in a checkpoint for [`DischargeFile::continue_at`].
     pub fn length_bytes(&self) -> u64 {
         self.table.length_bytes()

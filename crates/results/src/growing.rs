@@ -102,6 +102,18 @@ impl GrowingTable {
         }
     }
 
+    /// Removes the rows after the first `length_bytes` bytes and returns them.
+    pub(super) fn take_back(&mut self, length_bytes: u64) -> Result<String> {
+        let mut rows = String::new();
+        let read = self.file.seek(SeekFrom::Start(length_bytes));
+        let read = read.and_then(|_| self.file.read_to_string(&mut rows));
+        let cut = read.and_then(|_| self.file.set_len(length_bytes));
+        cut.and_then(|()| self.file.seek(SeekFrom::End(0)))
+            .map_err(|error| explain(&self.path, &error))?;
+        self.length_bytes = length_bytes;
+        Ok(rows)
+    }
+
     /// Length of the file, at which to continue.
     pub(super) fn length_bytes(&self) -> u64 {
         self.length_bytes

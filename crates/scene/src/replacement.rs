@@ -10,7 +10,7 @@ use super::region::Region;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, TIME, VELOCITY};
+use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, STRESS, TIME, VELOCITY};
 
 /// Words for `require`; true if all conditions of `when` must hold.
 const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
@@ -50,6 +50,20 @@ pub(super) static WHEN: Schema = Schema {
             "force",
             &FORCE,
             "The resultant contact force on the clump reaches this value.",
+        )
+        .positive()
+        .otherwise("not used"),
+        Key::quantity(
+            "contact_force",
+            &FORCE,
+            "A single contact presses on the clump with this force. Unlike `force`, it sees a squeeze between two jaws, whose forces cancel.",
+        )
+        .positive()
+        .otherwise("not used"),
+        Key::quantity(
+            "principal_stress",
+            &STRESS,
+            "The mean stress that contacts exert on the clump (Love and Weber: the sum of the dyadic products of contact force and way from the centre, over the volume) has a principal value of this magnitude.",
         )
         .positive()
         .otherwise("not used"),
@@ -109,6 +123,11 @@ pub struct Replacement {
     pub enters: Option<String>,
     /// `when.force`: the resultant contact force on it reaches this, N; more than 0.
     pub force_n: Option<f64>,
+    /// `when.contact_force`: a single contact force on it reaches this, N; more than 0.
+    pub contact_force_n: Option<f64>,
+    /// `when.principal_stress`: a principal value of the mean stress of its contacts reaches this,
+    /// by magnitude, Pa; more than 0.
+    pub principal_stress_pa: Option<f64>,
     /// `when.impact_energy`: the kinetic energy that contacts have taken from it so far reaches
     /// this, J; more than 0.
     pub impact_energy_j: Option<f64>,
@@ -202,12 +221,14 @@ fn read(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Replace
     let when = Table::of(&table.need("when")?, &WHEN)?;
     if when.entries.is_empty() {
         let problem = format!("{} is an empty table", when.path);
-        let remedy = "add enters = \"NAME\", force = \"100 N\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
+        let remedy = "add enters = \"NAME\", force = \"100 N\", contact_force = \"100 N\", principal_stress = \"0.1 MPa\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
         return Err(when.refuse(problem, remedy));
     }
     Ok(Replacement {
         enters: when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?,
         force_n: when.read("force")?,
+        contact_force_n: when.read("contact_force")?,
+        principal_stress_pa: when.read("principal_stress")?,
         impact_energy_j: when.read("impact_energy")?,
         time_s: when.read("time")?,
         requires_all: table
@@ -234,6 +255,8 @@ pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
             replacement.enters.as_deref().unwrap_or("not used"),
         );
         listing.value("force", &replacement.force_n);
+        listing.value("contact_force", &replacement.contact_force_n);
+        listing.value("principal_stress", &replacement.principal_stress_pa);
         listing.value("impact_energy", &replacement.impact_energy_j);
         listing.value("time", &replacement.time_s);
     });

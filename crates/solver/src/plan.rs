@@ -141,7 +141,7 @@ pub fn plan(
     start(scene, &groups, &bodies, &mut state)?;
     state.loads = loads(scene, &groups, &state.supports)?;
     let mut notes = masses::notes(scene, &masses);
-    state.model.rules = rules(scene, &templates)?;
+    state.model.rules = rules(scene, &templates, &about)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
     state.population.outlets = vec![OutletTotals::default(); state.model.rules.outlets.len()];
     state.model.templates.clone_from(&templates);

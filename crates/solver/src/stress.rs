@@ -13,6 +13,7 @@ pub(crate) mod long;
 pub(crate) mod oscillator;
 pub mod prediction;
 pub(crate) mod softening;
+pub(crate) mod swap;
 pub mod text;
 pub mod trial;
 pub mod verdict;

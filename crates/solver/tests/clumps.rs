@@ -14,6 +14,7 @@ mod regions;
 mod rest;
 mod restored;
 mod rigid;
+mod squeezed;
 mod step_limit;
 mod swap;
 mod triggers;

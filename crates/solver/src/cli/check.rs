@@ -48,7 +48,8 @@ pub(super) fn check_scene(
             Some(lowest_hz) => arrange(&scene, lowest_hz, 1.0)?,
             None => scene,
         };
-        let mut plan = plan(&scene, bodies, threads, arguments.force_step)?;
+        let mut plan = plan(&scene, bodies, threads, arguments.force_step)
+            .map_err(|error| arguments.naming_set(error))?;
         plan.inputs.set = arguments.all_overrides();
         if let Some(file) = picture {
             write_picture(&scene, &plan, file)?;

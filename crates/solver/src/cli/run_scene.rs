@@ -95,7 +95,8 @@ pub(super) fn run_scene(
     let path = folder_to_open(arguments, &scene)?;
     let (scene, test, twice) = arranged(scene, &bodies, threads)?;
     let force_step = arguments.scene.force_step;
-    let mut prepared = plan(&scene, bodies, threads, force_step)?;
+    let mut prepared = plan(&scene, bodies, threads, force_step)
+        .map_err(|error| arguments.scene.naming_set(error))?;
     prepared.inputs.set = arguments.scene.all_overrides();
     let inputs = prepared.inputs.clone();
     if !arguments.quiet {

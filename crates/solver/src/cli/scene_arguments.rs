@@ -56,6 +56,18 @@ impl SceneArguments {
         overrides
     }
 
+    /// The error with the `--set` whose key it is about, if it names none.
+    pub(super) fn naming_set(&self, error: Diagnostic) -> Diagnostic {
+        let about = |text: &&String| {
+            let key = text.split_once('=').map(|(key, _)| key.trim());
+            key.is_some_and(|key| error.place.ends_with(key))
+        };
+        match self.overrides.iter().rfind(about) {
+            Some(text) if !error.place.starts_with("--") => error.within(&format!("--set {text}")),
+            _ => error,
+        }
+    }
+
     /// The scene and all its bodies.
     pub(super) fn read(&self) -> Result<(Scene, BTreeMap<String, Body>)> {
         let file = self.file.as_deref().unwrap_or(Path::new(""));

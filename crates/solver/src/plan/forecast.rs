@@ -13,6 +13,8 @@ use crate::step::all_bytes;
 
 /// Largest number of bodies whose first contacts are predicted.
 const MOST_BODIES: usize = 8;
+/// Part of a body that rounding of times may add.
+const ROUNDING: f64 = 1e-9;
 /// Number of times at which a flying body is tested for being in a region.
 const MOMENTS: usize = 10_000;
 
@@ -153,11 +155,8 @@ fn to_come(scene: &Scene, state: &State, arriving: Option<&State>) -> Vec<InletF
             };
             let [start_s, end_s] = inlet.between_s;
             let for_s = end_s.min(scene.run.end_time_s) - start_s;
-            let bodies = if for_s < 0.0 {
-                0.0
-            } else {
-                (for_s * per_s).floor() + 1.0
-            };
+            // None comes at the very end.
+            let bodies = (for_s * per_s - ROUNDING).ceil().max(0.0);
             let bodies = bodies.min(f64::from(inlet.count));
             let spheres = bodies * mean(&|template| template.spheres.len() as f64);
             let bonds = bodies * mean(&|template| template.bonds.len() as f64);

@@ -1,7 +1,9 @@
 //! Regions, replacement, inlets and outlets of a scene.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use dem_io::body::About;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{FeedRate, Region as SceneRegion, Scene, StartAs};
@@ -10,17 +12,23 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::walls::surface_of;
 use crate::geometry::{Bounds, Mesh};
 use crate::physics::rotation::numbers;
+use crate::shape::inertia::of_union;
 use crate::state::State;
 use crate::state::clumps::Template;
 use crate::state::particles::Pose;
 use crate::state::regions::Region;
-use crate::state::rules::{Feed, Inlet, Outlet, Restore, Rules, Start, Trigger};
+use crate::state::rules::{Feed, Inlet, Outlet, PrincipalStress, Restore, Rules, Start, Trigger};
 
-/// The rules of the scene for adding, removing and replacing bodies.
+/// The rules of the scene for adding, removing and replacing bodies. `about`: information on the
+/// bodies.
 ///
 /// # Errors
 /// A region's file that is not a closed surface.
-pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules> {
+pub(super) fn rules(
+    scene: &Scene,
+    templates: &[Arc<Template>],
+    about: &BTreeMap<String, About>,
+) -> Result<Rules> {
     let mut regions = Vec::new();
     for (name, entry) in &scene.regions {
         let place = format!("{}: [regions.{name}]", scene.source);
@@ -33,6 +41,17 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
         Some(Trigger {
             enters: rule.enters.as_ref().and_then(number),
             force_n: rule.force_n,
+            contact_force_n: rule.contact_force_n,
+            principal_stress: rule.principal_stress_pa.map(|limit_pa| {
+                let of_shape = about
+                    .get(&template.body)
+                    .and_then(|about| about.shape_volume_m3);
+                let volume_m3 = of_shape.unwrap_or_else(|| union_m3(template));
+                PrincipalStress {
+                    limit_pa,
+                    volume_m3_kg: volume_m3 / template.mass_kg,
+                }
+            }),
             impact_energy_j: rule.impact_energy_j,
             time_s: rule.time_s,
             needs_all: rule.requires_all,
@@ -89,6 +108,15 @@ pub(super) fn rules(scene: &Scene, templates: &[Arc<Template>]) -> Result<Rules>
         seed: scene.run.seed,
         regions,
     })
+}
+
+/// Volume of the union of the spheres of a body, m3.
+fn union_m3(template: &Template) -> f64 {
+    let spheres = template.spheres.iter();
+    let (centres, radii): (Vec<[f64; 3]>, Vec<f64>) = spheres
+        .map(|sphere| (sphere.place_m, sphere.radius_m))
+        .unzip();
+    of_union(&centres, &radii, 1.0).mass_kg
 }
 
 fn region(entry: &SceneRegion) -> Result<Region> {
@@ -191,10 +219,9 @@ fn replacement_doubts(scene: &Scene, state: &State) -> Vec<String> {
                 outlet.name
             ));
         }
-        let needs_contact = trigger.force_n.is_some() || trigger.impact_energy_j.is_some();
-        if needs_contact && state.contacts.is_none() {
+        if trigger.needs_contact() && state.contacts.is_none() {
             doubts.push(format!(
-                "replacement of '{body}': nothing can touch it, so force and impact energy stay 0"
+                "replacement of '{body}': nothing can touch it, so forces, stress and impact energy stay 0"
             ));
         }
     }
@@ -239,6 +266,14 @@ fn inlet_doubts(scene: &Scene, state: &State, inlet: &Inlet) -> Vec<String> {
             significant(inlet.between_s[0], 6),
             significant(scene.run.end_time_s, 6)
         ));
+    }
+    for outlet in &state.model.rules.outlets {
+        if is_in_outlet(inlet.region, outlet, state) {
+            doubts.push(format!(
+                "outlet '{}': the region of inlet '{}' lies inside its own, so what is fed is removed immediately",
+                outlet.name, inlet.name
+            ));
+        }
     }
     let gate = state.model.rules.regions[inlet.region].bounds();
     for outlet in state

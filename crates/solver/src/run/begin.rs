@@ -121,6 +121,7 @@ impl<'a> Run<'a> {
             let continued = is_continued.then_some(&progress);
             let orders = (order, walls, of_pictures);
             let mut open = open_files(folder, fingerprint, orders, &columns, &state, continued)?;
+            progress.after_end = Default::default();
             if let Some(detail) = &changed_step {
                 open.events.append(&[new_step(&state, "resumed", detail)])?;
             }
@@ -189,6 +190,13 @@ fn open_files<'a>(
         continued,
     )?;
     files.discharge = open_discharge(folder, state, continued)?;
+    if let Some(before) = continued {
+        let [events, discharge] = &before.after_end;
+        files.events.put_back(events)?;
+        if let Some((file, _)) = &mut files.discharge {
+            file.put_back(discharge)?;
+        }
+    }
     if let Some(order) = pictures {
         let continued = continued.map(|at| (state, at.pictures));
         files.pictures = Some(Pictures::open(folder, order, continued)?);

@@ -76,25 +76,44 @@ impl Run<'_> {
     /// The last checkpoint, from which the run can be continued to a later end time; plots, film
     /// and summary.
     fn write_end(&mut self, summary: &Summary) -> Result<()> {
-        advance(&mut self.state);
-        self.follow_population()?;
-        if let Some(files) = &mut self.files {
-            write_sleep(&self.state, files)?;
-        }
         let end = End::of(summary)?;
+        if let Some(folder) = self.settings.folder {
+            end.write_tables(folder, &self.state, &self.probes)?;
+        }
+        self.finish_last_step()?;
         if let Some(folder) = self.settings.folder {
             write_json(&folder.ended(), &end)?;
         }
         self.save()?;
         match &mut self.files {
-            Some(files) => end.write(
-                files.folder,
-                &self.state,
-                &self.probes,
-                files.pictures.as_mut(),
-            ),
+            Some(files) => end.write(files.folder, &self.probes, files.pictures.as_mut()),
             None => Ok(()),
         }
+    }
+
+    /// The second half of the last step, which a continued run begins with. Bodies that it adds,
+    /// removes or replaces are not in the results.
+    fn finish_last_step(&mut self) -> Result<()> {
+        let Some(files) = &self.files else {
+            return Ok(());
+        };
+        let discharge = files.discharge.as_ref();
+        let lengths = [
+            files.events.length_bytes(),
+            discharge.map_or(0, |(file, _)| file.length_bytes()),
+        ];
+        advance(&mut self.state);
+        self.follow_population()?;
+        if let Some(files) = &mut self.files {
+            write_sleep(&self.state, files)?;
+            let events = files.events.take_back(lengths[0])?;
+            let discharge = match &mut files.discharge {
+                Some((file, _)) => file.take_back(lengths[1])?,
+                None => String::new(),
+            };
+            self.progress.after_end = [events, discharge];
+        }
+        Ok(())
     }
 
     fn summary(

@@ -41,26 +41,38 @@ impl End {
         })
     }
 
-    /// Writes plots, fragments, film and page of a run that ends in this state, and its summary last: if
-    /// the summary exists, all files do.
+    /// Writes the tables and plots of the fragments of a run that ends in this state.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn write_tables(
+        &self,
+        folder: &ResultsFolder,
+        state: &State,
+        probes: &[Probe],
+    ) -> Result<()> {
+        let Some(clusters) = &state.clusters else {
+            return Ok(());
+        };
+        let fragments = Fragments::of(state).unwrap_or_default();
+        write_tree(folder, clusters)?;
+        write_fragment_plots(folder, state, &fragments, self.simulated_s, probes)?;
+        write_distribution(&folder.distribution(), &fragments.rows(&state.model))
+    }
+
+    /// Writes plots, film and page of a run whose tables are written, and its summary last: if the
+    /// summary exists, all files do.
     ///
     /// # Errors
     /// Those of the files.
     pub(super) fn write(
         &self,
         folder: &ResultsFolder,
-        state: &State,
         probes: &[Probe],
         pictures: Option<&mut Pictures>,
     ) -> Result<()> {
         let summary: Value = serde_json::from_str(&self.summary).unwrap_or_default();
         write_plots(folder, probes, &summary["measures"])?;
-        if let Some(clusters) = &state.clusters {
-            let fragments = Fragments::of(state).unwrap_or_default();
-            write_tree(folder, clusters)?;
-            write_fragment_plots(folder, state, &fragments, self.simulated_s, probes)?;
-            write_distribution(&folder.distribution(), &fragments.rows(&state.model))?;
-        }
         if let Some(pictures) = pictures {
             pictures.finish()?;
         }
@@ -150,7 +162,13 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
     let mut pictures = order
         .map(|order| Pictures::open(folder, order, Some((&state, progress.pictures))))
         .transpose()?;
-    end.write(folder, &state, &probes, pictures.as_mut())?;
+    // The state is that of the checkpoint: a body that was added in the second half of the last step
+    // is in it, but not in tables that the run itself has written.
+    let tables = [folder.fragment_tree(), folder.distribution()];
+    if tables.iter().any(|path| !path.is_file()) {
+        end.write_tables(folder, &state, &probes)?;
+    }
+    end.write(folder, &probes, pictures.as_mut())?;
     let summary = end.summary.clone();
     Ok(Some(Finished { missing, summary }))
 }

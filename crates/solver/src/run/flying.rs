@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use dem_io::units::significant;
 
 use crate::check::flight::{Meeting, free_clusters};
+use crate::stages::touching::touching;
 use crate::state::State;
 use crate::state::clusters::Clusters;
 use crate::state::clusters::fragments::Fragment;
@@ -71,19 +72,6 @@ fn breakable(state: &State, clusters: &Clusters) -> BTreeSet<u32> {
     intact
         .map(|at| clusters.of_particle[bonds.ends[at][0] as usize])
         .collect()
-}
-
-/// The particles that touch a wall or a particle of another cluster.
-fn touching(state: &State) -> BTreeSet<u32> {
-    let of_walls = state.walls.iter().flat_map(|wall| &wall.touching);
-    let of_walls = of_walls.filter(|touch| touch.history.overlap_m() > 0.0);
-    let mut touching: BTreeSet<u32> = of_walls.map(|touch| touch.particle).collect();
-    if let Some(contacts) = &state.contacts {
-        let pairs = contacts.pairs.iter().zip(&contacts.histories);
-        let pressed = pairs.filter(|(_, history)| history.overlap_m() > 0.0);
-        touching.extend(pressed.flat_map(|(pair, _)| pair));
-    }
-    touching
 }
 
 /// When clusters will meet a wall in free flight, as the end of a sentence. None: they never meet

@@ -60,6 +60,9 @@ pub struct Progress {
     pub(super) test: Record,
     /// Whether it has ended because the body broke.
     pub(super) broke: bool,
+    /// Lines of `events.csv` and `discharge.csv` of what happened between the last output of the run
+    /// and its checkpoint: only a run that is continued shows them.
+    pub(super) after_end: [String; 2],
     /// Quantities monitored besides the measures.
     pub(super) seen: Seen,
 }

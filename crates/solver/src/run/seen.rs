@@ -257,6 +257,11 @@ impl Seen {
                     .map(|region| format!("it enters '{region}'")),
                 rule.force_n
                     .map(|force| format!("a force above {} N", significant(force, 4))),
+                rule.contact_force_n
+                    .map(|force| format!("a contact force above {} N", significant(force, 4))),
+                rule.principal_stress_pa.map(|stress| {
+                    format!("a principal stress above {} Pa", significant(stress, 4))
+                }),
                 rule.impact_energy_j
                     .map(|energy| format!("an impact energy above {} J", significant(energy, 4))),
                 rule.time_s

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::population::apply_topology_change;
+use super::squeeze::{Squeeze, squeezes};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
 use crate::state::clumps::Clump;
@@ -34,7 +35,9 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
         return 0;
     }
     let clumps = state.clumps.all.len();
-    let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) = triggered(state).unzip();
+    let squeezes = squeezes(state);
+    let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) =
+        triggered(state, &squeezes).unzip();
     if !to_clusters.is_empty() {
         swap(state, to_clusters, &causes);
     }
@@ -43,18 +46,19 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
 }
 
 /// Clumps that become clusters: their numbers and the causes.
-fn triggered(state: &State) -> impl Iterator<Item = (usize, &'static str)> {
+fn triggered(state: &State, squeezes: &[Squeeze]) -> impl Iterator<Item = (usize, &'static str)> {
     let rules = &state.model.rules;
     (state.clumps.all.iter().enumerate()).filter_map(move |(n, clump)| {
         let template = clump.template as usize;
         if rules.starts.get(template).is_some_and(|start| start.bonded) {
             return Some((n, STARTS_BONDED));
         }
+        let squeeze = squeezes.get(n);
         let cause = match rules.triggers.get(template) {
-            Some(trigger) => met(trigger.as_ref()?, clump, state)?,
+            Some(trigger) => met(trigger.as_ref()?, clump, squeeze, state)?,
             None => {
                 let base = state.base_of(clump.template) as usize;
-                met(&rules.trigger_of_fragment(base)?, clump, state)?
+                met(&rules.trigger_of_fragment(base)?, clump, squeeze, state)?
             }
         };
         Some((n, cause))
@@ -62,7 +66,13 @@ fn triggered(state: &State) -> impl Iterator<Item = (usize, &'static str)> {
 }
 
 /// The condition of a trigger that a clump meets, or the first one if it needs all and meets all.
-fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> {
+/// `squeeze`: None if no trigger needs it, or nothing can touch.
+fn met(
+    trigger: &Trigger,
+    clump: &Clump,
+    squeeze: Option<&Squeeze>,
+    state: &State,
+) -> Option<&'static str> {
     let enters = trigger
         .enters
         .map(|region| state.model.rules.regions[region].contains(clump.place_m));
@@ -72,6 +82,13 @@ fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> 
     let energy = trigger
         .impact_energy_j
         .map(|limit| clump.impact_energy_j > limit);
+    let contact_force = trigger
+        .contact_force_n
+        .map(|limit| squeeze.is_some_and(|squeeze| squeeze.largest_n > limit));
+    let principal_stress = trigger.principal_stress.map(|stress| {
+        let volume_m3 = stress.volume_m3_kg * state.clumps.template(clump).mass_kg;
+        squeeze.is_some_and(|squeeze| squeeze.principal_stress_pa(volume_m3) > stress.limit_pa)
+    });
     // A trigger time has passed for good: a restored clump needs another condition.
     let is_again = state
         .population
@@ -82,6 +99,8 @@ fn met(trigger: &Trigger, clump: &Clump, state: &State) -> Option<&'static str> 
     let all = [
         ("enters", enters),
         ("force", force),
+        ("contact_force", contact_force),
+        ("principal_stress", principal_stress),
         ("impact_energy", energy),
         ("time", time),
     ];

@@ -1,9 +1,10 @@
 //! Clusters that become rigid clumps again: complete bodies and fragments that have left a region
 //! and come to rest internally. Not in Platzer 2022.
 //!
-//! Relative motion of the particles is lost. The strain of a fragment is kept in its template and
-//! returns if the fragment becomes a cluster again; that of a complete body is lost, as the body
-//! takes the shape of its file. All of it is recorded.
+//! Relative motion of the particles is lost. The strain of a fragment, and of a complete body that
+//! touches something, is kept in its template and returns if it becomes a cluster again. The strain
+//! of a complete body that touches nothing is lost, as the body takes the shape of its file: with
+//! contacts that would change their overlaps, and so their energy. All of it is recorded.
 
 use std::sync::Arc;
 
@@ -14,6 +15,7 @@ use crate::shape::fit::best_rotation;
 use crate::shape::inertia::{MassProperties, of_spheres};
 use crate::shape::outer_layer::{HIDDEN, outer_layer};
 use crate::stages::totals::synchronous_motions;
+use crate::stages::touching::touching;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Template, reach_m, sub_spheres};
@@ -90,6 +92,7 @@ fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
     if to_clumps.is_empty() {
         return None;
     }
+    let touched = touching(state);
     let to_clumps = to_clumps
         .into_iter()
         .map(|(id, base, instance)| {
@@ -97,7 +100,8 @@ fn restore(state: &mut State) -> Option<(Renumbering, Vec<PopulationEvent>)> {
                 .clusters
                 .as_ref()
                 .map_or(Vec::new(), |c| c.members(id).to_vec());
-            let clump = as_clump(id, base, &members, state);
+            let is_free = !members.iter().any(|i| touched.contains(i));
+            let clump = as_clump(id, base, (&members, is_free), state);
             (id, Clump { instance, ..clump })
         })
         .collect();
@@ -152,8 +156,9 @@ fn inner_kinetic_j(fragment: &Fragment, members: &[u32], motions: &[Motion], sta
     all - 0.5 * (fragment.mass_kg * velocity.norm_squared() + turning)
 }
 
-/// The clump that replaces a cluster; adds its template unless it is that of the complete body.
-fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
+/// The clump that replaces a cluster with these members, which are free if they touch nothing; adds
+/// its template unless it is that of the complete body.
+fn as_clump(id: u32, base: usize, (members, is_free): (&[u32], bool), state: &mut State) -> Clump {
     let p = &state.particles;
     let of = |i: &u32| *i as usize;
     let centres: Vec<[f64; 3]> = members
@@ -184,8 +189,10 @@ fn as_clump(id: u32, base: usize, members: &[u32], state: &mut State) -> Clump {
     let whole = Arc::clone(&state.clumps.templates[base]);
     let bonds: Vec<usize> = own_bonds(members, state);
     let is_damaged = bonds.iter().any(|&at| state.bonds.was_damaged(at));
-    let is_whole =
-        members.len() == whole.spheres.len() && bonds.len() == whole.bonds.len() && !is_damaged;
+    let is_whole = is_free
+        && members.len() == whole.spheres.len()
+        && bonds.len() == whole.bonds.len()
+        && !is_damaged;
     let first_id = match members.first() {
         Some(&first) if is_whole => p.id(of(&first)) - whole.file_number[0],
         _ => 0,

@@ -13,12 +13,37 @@ pub struct Trigger {
     pub enters: Option<usize>,
     /// The resultant contact force exceeds this, N.
     pub force_n: Option<f64>,
+    /// A single contact force on it exceeds this, N.
+    pub contact_force_n: Option<f64>,
+    /// The mean stress of its contacts exceeds a limit.
+    pub principal_stress: Option<PrincipalStress>,
     /// Contacts have taken more than this from its motion so far, J.
     pub impact_energy_j: Option<f64>,
     /// From this time on, s.
     pub time_s: Option<f64>,
     /// All of these must hold at once; otherwise one is enough.
     pub needs_all: bool,
+}
+
+/// A limit of the mean stress of the contacts of a clump.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PrincipalStress {
+    /// Largest principal value, by magnitude, Pa.
+    pub limit_pa: f64,
+    /// Volume of the body over its mass, also for its fragments, m3/kg.
+    pub volume_m3_kg: f64,
+}
+
+impl Trigger {
+    /// Whether it depends on single contacts.
+    pub(crate) fn needs_squeeze(&self) -> bool {
+        self.contact_force_n.is_some() || self.principal_stress.is_some()
+    }
+
+    /// Whether it depends on contacts.
+    pub(crate) fn needs_contact(&self) -> bool {
+        self.force_n.is_some() || self.impact_energy_j.is_some() || self.needs_squeeze()
+    }
 }
 
 /// Conditions under which a cluster becomes a clump again.
@@ -136,9 +161,7 @@ impl Rules {
     /// the same as for the body, but without the time, which has passed. None: never.
     pub(crate) fn trigger_of_fragment(&self, base: usize) -> Option<Trigger> {
         let trigger = self.triggers.get(base)?.clone()?;
-        let asks = trigger.enters.is_some()
-            || trigger.force_n.is_some()
-            || trigger.impact_energy_j.is_some();
+        let asks = trigger.enters.is_some() || trigger.needs_contact();
         asks.then_some(Trigger {
             time_s: None,
             ..trigger
