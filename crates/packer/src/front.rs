@@ -153,7 +153,7 @@ impl<'a> Front<'a> {
 
     /// Processes spheres of the front, colour by colour.
     fn work_off(&mut self, front: Vec<FrontSphere>, work: Work, shells: &mut Shells) {
-        for blocks in by_colour(&self.assembly.grid.lattice, front) {
+        for blocks in by_colour(self.assembly.grid.lattice(), front) {
             let mut tasks = self.tasks(blocks, work).into_iter();
             while tasks.len() > 0 {
                 let at_once = self.fillers.as_ref().map(Fillers::blocks_at_once);
@@ -238,7 +238,7 @@ impl<'a> Front<'a> {
     }
 
     fn shell_thickness(&self) -> f64 {
-        0.5 * self.assembly.grid.lattice.cell
+        0.5 * self.assembly.grid.lattice().cell
     }
 }
 

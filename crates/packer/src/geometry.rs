@@ -5,6 +5,8 @@
 pub(crate) mod boundary;
 pub(crate) mod depth_map;
 pub(crate) mod inside;
+mod plane;
 mod tree;
 pub(crate) mod union;
+pub(crate) mod wall_cells;
 mod winding;

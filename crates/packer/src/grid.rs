@@ -1,7 +1,12 @@
-//! A dense grid of cells over a box, to find the spheres near a point.
+//! Dense grids of cells over a box, one for each size class, to find the spheres near a point.
 
 use crate::spheres::{ReducedSphere, Vector3};
 use std::ops::Range;
+
+/// Ratio of sizes from which on the smaller ones have cells of their own.
+pub(crate) const WIDEST_CLASS: f64 = 5.0;
+/// Edge of a cell, in largest radii of its size class.
+const CELL: f64 = 4.0;
 
 /// Equal cubic cells over a box, numbered along x first.
 pub(crate) struct Lattice {
@@ -51,23 +56,29 @@ impl Lattice {
     }
 }
 
-/// Spheres sorted into cubic cells.
-pub(crate) struct Grid {
-    /// The cells.
-    pub lattice: Lattice,
+/// Spheres sorted into cubic cells: in a lattice for each size class, so that the cells of small
+/// spheres are small. Lengths in local units.
+pub struct Grid {
+    /// Largest spheres first.
+    classes: Vec<SizeClass>,
+}
+
+/// Spheres larger than half the largest, or all smaller ones as well.
+struct SizeClass {
+    largest: f64,
+    lattice: Lattice,
     cells: Vec<Vec<ReducedSphere>>,
 }
 
-impl Grid {
-    /// An empty grid over the box from `low` to `high` with cells of at least `cell` (local units).
-    /// Cells grow where the box would need more than `most_cells` of them.
-    pub(crate) fn new(low: &Vector3, high: &Vector3, cell: f64, most_cells: usize) -> Self {
-        let mut cell = cell;
+impl SizeClass {
+    fn new(low: &Vector3, high: &Vector3, largest: f64, most_cells: usize) -> Self {
+        let mut cell = CELL * largest;
         loop {
             let counts = [0, 1, 2].map(|k| (((high[k] - low[k]) / cell).floor() as usize) + 1);
             if counts.iter().map(|c| *c as f64).product::<f64>() <= most_cells as f64 {
                 let low = (*low).into();
                 return Self {
+                    largest,
                     lattice: Lattice { low, cell, counts },
                     cells: vec![Vec::new(); counts.iter().product()],
                 };
@@ -75,29 +86,51 @@ impl Grid {
             cell *= 1.26;
         }
     }
+}
 
-    /// Adds a sphere.
-    pub(crate) fn insert(&mut self, ball: ReducedSphere) {
-        let at = self
-            .lattice
-            .index(self.lattice.cell_of(ball[0], ball[1], ball[2]));
-        self.cells[at].push(ball);
+impl Grid {
+    /// An empty grid over the box from `low` to `high` for spheres of radii from `smallest` to
+    /// `largest`. Cells grow where the box would need more than `most_cells` of them.
+    pub fn new(
+        low: &Vector3,
+        high: &Vector3,
+        [smallest, largest]: [f64; 2],
+        most_cells: usize,
+    ) -> Self {
+        let mut class = largest;
+        let mut classes = vec![SizeClass::new(low, high, class, most_cells)];
+        while class > WIDEST_CLASS * smallest {
+            class *= 0.5;
+            classes.push(SizeClass::new(low, high, class, most_cells));
+        }
+        Self { classes }
     }
 
-    /// Calls `visit` with the spheres of each cell that a cube of half edge `reach` around the
-    /// point touches.
-    pub(crate) fn near(
-        &self,
-        x: f64,
-        y: f64,
-        z: f64,
-        reach: f64,
-        mut visit: impl FnMut(&[ReducedSphere]),
-    ) {
-        self.lattice.rows_near([x, y, z], reach, |row| {
-            for cell in &self.cells[row] {
-                visit(cell);
-            }
-        });
+    /// The cells of the largest spheres.
+    pub(crate) fn lattice(&self) -> &Lattice {
+        &self.classes[0].lattice
+    }
+
+    /// Adds a sphere.
+    pub fn insert(&mut self, ball: ReducedSphere) {
+        let class = self
+            .classes
+            .iter()
+            .rposition(|class| ball[3] <= class.largest);
+        let class = &mut self.classes[class.unwrap_or(0)];
+        let cell = class.lattice.cell_of(ball[0], ball[1], ball[2]);
+        class.cells[class.lattice.index(cell)].push(ball);
+    }
+
+    /// Calls `visit` with the spheres of each cell that may hold one whose surface is within `gap`
+    /// of the point.
+    pub fn near(&self, point: [f64; 3], gap: f64, mut visit: impl FnMut(&[ReducedSphere])) {
+        for class in &self.classes {
+            class.lattice.rows_near(point, gap + class.largest, |row| {
+                for cell in &class.cells[row] {
+                    visit(cell);
+                }
+            });
+        }
     }
 }

@@ -10,14 +10,13 @@ use super::places::Workspace;
 /// when all spheres have come to rest. Of all candidate points the one nearest to the seed is
 /// taken.
 pub(super) fn fill(assembly: &Assembly, block: &mut Block, workspace: &mut Workspace) {
-    let largest = assembly.settings.radius_range[1];
     // while frontSpheresQueue.size() != 0 do
     //   initialParticle <- frontSpheresQueue[1]
     while let Some(initial) = block.take() {
         let (sphere, seed) = initial;
-        // neighbouringParticles <- getNeighbours(initialParticle, rnew, grid)
-        assembly.find_neighbours(workspace, &sphere, &block.assembled, largest);
+        workspace.gathered = 0.0;
         // rnew <- getNewParticle(PSD)
+        // neighbouringParticles <- getNeighbours(initialParticle, rnew, grid)
         // for i, j over neighbouringParticles do
         //   intersectionCurve <- getHaloIntersection(initialParticle, neighbouringParticles[i])
         //   candidatePoints <- getCandidatePoint(intersectionCurve, neighbouringParticles[j])
@@ -28,7 +27,7 @@ pub(super) fn fill(assembly: &Assembly, block: &mut Block, workspace: &mut Works
             let new = assembly.sphere(&point.centre, assembly.radius(point.quantile));
             // add newParticle to frontSpheresQueue, assemblyList, neighbouringParticles and grid
             block.place(assembly, (new, seed), point.quantile);
-            workspace.add_neighbour(&sphere, &new, assembly.reduced(largest));
+            workspace.add_neighbour(&sphere, &new, assembly.reduced(workspace.gathered));
         }
         // remove initialParticle from frontSpheresQueue
         block.retire(initial);

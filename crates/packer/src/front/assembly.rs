@@ -43,9 +43,9 @@ impl<'a> Assembly<'a> {
         extent: &Vector3,
     ) -> Self {
         let largest = settings.radius_range[1];
-        let reduced = largest / (1.0 + settings.overlap);
+        let reduced = settings.radius_range.map(|r| r / (1.0 + settings.overlap));
         let origin = Vector3::zeros();
-        let grid = Grid::new(&origin, extent, 4.0 * reduced, settings.most_cells);
+        let grid = Grid::new(&origin, extent, reduced, settings.most_cells);
         let near_wall = cells_near_wall(&grid, boundary, largest * settings.wall_factor);
         Self {
             settings,
@@ -80,15 +80,21 @@ impl<'a> Assembly<'a> {
     /// Distance from a point to the nearest sphere's surface (reduced radius), at most `cut_off`,
     /// local units.
     pub(crate) fn gap(&self, point: &Vector3, cut_off: f64) -> f64 {
-        let largest = self.reduced(self.settings.radius_range[1]);
-        let mut gap = cut_off;
-        self.grid
-            .near(point.x, point.y, point.z, cut_off + largest, |cell| {
+        // Wider and wider, since most points are close to a sphere.
+        let mut searched = 2.0 * self.reduced(self.settings.radius_range[0]);
+        loop {
+            searched = searched.min(cut_off);
+            let mut gap = searched;
+            self.grid.near((*point).into(), searched, |cell| {
                 for sphere in cell {
                     gap = gap.min(distance(sphere, point) - sphere[3]);
                 }
             });
-        gap
+            if gap < searched || searched == cut_off {
+                return gap;
+            }
+            searched *= 2.0;
+        }
     }
 
     /// True if a sphere of this (not reduced) radius with its centre here, known to be inside the
@@ -124,7 +130,7 @@ impl<'a> Assembly<'a> {
 
     /// The number of the cell that contains the sphere's centre.
     pub(super) fn cell_of(&self, sphere: &ReducedSphere) -> usize {
-        let lattice = &self.grid.lattice;
+        let lattice = self.grid.lattice();
         lattice.index(lattice.cell_of(sphere[0], sphere[1], sphere[2]))
     }
 
@@ -140,15 +146,16 @@ impl<'a> Assembly<'a> {
 
 /// For each cell of a grid, true if one of its points may be closer than `distance` to the wall.
 pub(super) fn cells_near_wall(grid: &Grid, boundary: &Boundary, distance: f64) -> Vec<bool> {
-    let half_diagonal = 0.5 * 3.0_f64.sqrt() * grid.lattice.cell;
-    let [nx, ny, nz] = grid.lattice.counts;
+    let lattice = grid.lattice();
+    let half_diagonal = 0.5 * 3.0_f64.sqrt() * lattice.cell;
+    let [nx, ny, nz] = lattice.counts;
     let is_near = |at: usize| {
         let cell = [at % nx, at / nx % ny, at / (nx * ny)];
         let is_outermost = cell
             .iter()
-            .zip(grid.lattice.counts)
+            .zip(lattice.counts)
             .any(|(c, n)| *c == 0 || *c + 1 == n);
-        is_outermost || !boundary.clears(&grid.lattice.centre(cell), half_diagonal + distance)
+        is_outermost || !boundary.clears(&lattice.centre(cell), half_diagonal + distance)
     };
     (0..nx * ny * nz).into_par_iter().map(is_near).collect()
 }

@@ -102,8 +102,10 @@ impl<'a> Block<'a> {
         (initial, number): &FrontSphere,
     ) -> Option<Place> {
         let seed = &self.rules.seeds[*number as usize];
+        let assembled = &self.assembled;
         if let Some(fillers) = &mut self.fillers {
-            let assembled = &self.assembled;
+            let largest = assembly.settings.radius_range[1];
+            assembly.need_neighbours(workspace, initial, assembled, largest);
             return fillers.candidate(
                 assembly,
                 workspace,
@@ -115,6 +117,7 @@ impl<'a> Block<'a> {
         }
         let quantile = self.draws.current(any_size);
         let radius = assembly.radius(quantile);
+        assembly.need_neighbours(workspace, initial, assembled, radius);
         let centre = assembly.best_place(workspace, initial, radius, seed)?;
         self.draws.placed();
         Some(Place { centre, quantile })
@@ -124,7 +127,7 @@ impl<'a> Block<'a> {
     pub(super) fn place(&mut self, assembly: &Assembly, new: FrontSphere, quantile: f64) {
         let (sphere, number) = new;
         self.assembled.push(sphere);
-        let is_next = block_of(&assembly.grid.lattice, &sphere).1 == self.number
+        let is_next = block_of(assembly.grid.lattice(), &sphere).1 == self.number
             && match self.rules.work {
                 Work::Draws { within } => {
                     distance(&sphere, &self.rules.seeds[number as usize]) < within

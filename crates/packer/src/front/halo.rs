@@ -87,6 +87,17 @@ impl Neighbours {
         }
     }
 
+    /// Adds one sphere to sorted neighbours, as `gather` and `sort` would.
+    pub(crate) fn insert(&mut self, ball: &ReducedSphere, other: &ReducedSphere, largest: f64) {
+        let before = self.order.len();
+        self.gather(ball, std::slice::from_ref(other), largest);
+        if let Some(entry) = self.order.get(before).copied() {
+            self.order.truncate(before);
+            let place = self.order.partition_point(|earlier| *earlier < entry);
+            self.order.insert(place, entry);
+        }
+    }
+
     /// Sorts the nearest neighbours first: their caps are the largest.
     pub(crate) fn sort(&mut self) {
         self.order.sort_unstable();

@@ -11,8 +11,31 @@ use crate::spheres::{ReducedSphere, Vector3, centre_of};
 const WALL_PREFERENCE: f64 = 0.5;
 
 impl Assembly<'_> {
-    /// Collects the spheres and walls that a new sphere of (not reduced) radius up to `largest`
-    /// next to `initial` could touch. `assembled` are the spheres not yet in the grid.
+    /// Collects what a new sphere of (not reduced) `radius` next to `initial` could touch, unless
+    /// the workspace holds it already: for its size class, since others of that class may follow.
+    pub(super) fn need_neighbours(
+        &self,
+        workspace: &mut Workspace,
+        initial: &ReducedSphere,
+        assembled: &[ReducedSphere],
+        radius: f64,
+    ) {
+        if workspace.gathered >= radius {
+            return;
+        }
+        let mut largest = self.settings.radius_range[1];
+        if workspace.gathered == 0.0 {
+            self.find_walls(workspace, initial, largest);
+        }
+        while 0.5 * largest >= radius {
+            largest *= 0.5;
+        }
+        self.find_neighbours(workspace, initial, assembled, largest);
+        workspace.gathered = largest;
+    }
+
+    /// Collects the spheres that a new sphere of (not reduced) radius up to `largest` next to
+    /// `initial` could touch. `assembled` are the spheres not yet in the grid.
     pub(super) fn find_neighbours(
         &self,
         workspace: &mut Workspace,
@@ -21,19 +44,29 @@ impl Assembly<'_> {
         largest: f64,
     ) {
         let reduced = self.reduced(largest);
-        let reach = initial[3] + 2.0 * reduced + self.reduced(self.settings.radius_range[1]);
+        let gap = initial[3] + 2.0 * reduced;
         let neighbours = &mut workspace.neighbours;
         neighbours.clear();
         self.grid
-            .near(initial[0], initial[1], initial[2], reach, |cell| {
+            .near([initial[0], initial[1], initial[2]], gap, |cell| {
                 neighbours.gather(initial, cell, reduced)
             });
         neighbours.gather(initial, assembled, reduced);
         neighbours.sort();
+    }
+
+    /// Collects the walls that a new sphere of (not reduced) radius up to `largest` next to
+    /// `initial` could touch.
+    pub(super) fn find_walls(
+        &self,
+        workspace: &mut Workspace,
+        initial: &ReducedSphere,
+        largest: f64,
+    ) {
         workspace.walls.clear();
         if self.is_near_wall(initial) {
             let centre = centre_of(initial);
-            let reach = initial[3] + reduced + self.wall_clearance(largest);
+            let reach = initial[3] + self.reduced(largest) + self.wall_clearance(largest);
             self.boundary.walls(
                 self.boundary.triangles_near(&centre, reach),
                 &centre,
@@ -132,6 +165,8 @@ pub(super) struct Place {
 #[derive(Default)]
 pub(super) struct Workspace {
     pub(super) neighbours: Neighbours,
+    /// Largest (not reduced) radius of a new sphere whose neighbours these are; 0 if none.
+    pub(super) gathered: f64,
     pub(super) halo: Halo,
     pub(super) walls: Vec<Nearest>,
     /// Direction and distance of flat walls.
@@ -147,7 +182,6 @@ impl Workspace {
         new: &ReducedSphere,
         largest: f64,
     ) {
-        self.neighbours.gather(initial, &[*new], largest);
-        self.neighbours.sort();
+        self.neighbours.insert(initial, new, largest);
     }
 }

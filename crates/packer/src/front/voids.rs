@@ -85,6 +85,7 @@ impl Assembly<'_> {
             .map_init(Workspace::default, |workspace, i| {
                 let sphere = self.spheres[*i as usize];
                 self.find_neighbours(workspace, &sphere, &[], smallest);
+                self.find_walls(workspace, &sphere, smallest);
                 self.best_place(workspace, &sphere, smallest, &centre_of(&sphere))
             })
             .flatten_iter()

@@ -1,6 +1,7 @@
 //! The wall of the solid: its distance from a point, the side on which a point lies, and the parts
 //! that a ball would meet.
 
+use super::plane::Plane;
 use super::tree::{Corners, TriangleTree};
 use super::union::outer_pieces;
 use crate::spheres::Vector3;
@@ -24,54 +25,6 @@ pub struct Boundary {
     union: Option<TriangleTree>,
     /// The triangles of the wall, prepared for `nearest_on`.
     planes: Vec<Plane>,
-}
-
-/// A triangle as the plane in which it lies: p is above it where u = (p - corner) . along_u >= 0,
-/// v >= 0 and u + v <= 1.
-struct Plane {
-    corner: Vector3,
-    normal: Vector3,
-    along_u: Vector3,
-    along_v: Vector3,
-}
-
-/// Triangles whose height is a smaller fraction of their longest edge have no plane: its normal
-/// would have an error of more than 1e-10.
-const THINNEST: f64 = 1e-6;
-
-impl Plane {
-    fn new(corners: Corners) -> Self {
-        let [a, b, c] = corners.map(Vector3::from);
-        let (edge_u, edge_v) = (b - a, c - a);
-        let normal = edge_u.cross(&edge_v);
-        let longest = edge_u.norm().max(edge_v.norm()).max((c - b).norm());
-        // The normal of a thin triangle is inaccurate, and hardly any points are above the
-        // triangle. With NaN every comparison fails.
-        let squared = if normal.norm() < THINNEST * longest * longest {
-            f64::NAN
-        } else {
-            normal.norm_squared()
-        };
-        Self {
-            corner: a,
-            normal: normal / squared.sqrt(),
-            along_u: edge_v.cross(&normal) / squared,
-            along_v: normal.cross(&edge_u) / squared,
-        }
-    }
-
-    /// u and v of a point given relative to the corner.
-    fn along_triangle(&self, from_corner: &Vector3) -> [f64; 2] {
-        [&self.along_u, &self.along_v].map(|along| from_corner.dot(along))
-    }
-
-    /// Distance of a point from the plane, positive on the side of the normal, if it is above or
-    /// below the triangle.
-    fn height_over_triangle(&self, point: &Vector3) -> Option<f64> {
-        let from_corner = point - self.corner;
-        let [u, v] = self.along_triangle(&from_corner);
-        (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| from_corner.dot(&self.normal))
-    }
 }
 
 impl Boundary {
@@ -236,6 +189,9 @@ impl Boundary {
         found.clear();
         let toward = |near: &Nearest| (near.point - centre) / near.distance;
         for triangle in triangles {
+            if self.least_distance(triangle, centre) >= radius {
+                continue;
+            }
             let near = self.nearest_on(triangle, centre);
             if near.distance >= radius || near.distance <= 0.0 {
                 continue;
@@ -265,8 +221,27 @@ impl Boundary {
         found.truncate(kept.min(MOST));
     }
 
+    /// A lower bound of the distance of a triangle of the wall from a point, at little cost.
+    #[inline]
+    pub(crate) fn least_distance(&self, triangle: u32, point: &Vector3) -> f64 {
+        self.planes[triangle as usize].least_distance(point)
+    }
+
+    /// True if a triangle of the wall is closer to a point than `reach` (local units).
+    pub(crate) fn is_nearer(&self, triangle: u32, point: &Vector3, reach: f64) -> bool {
+        let plane = &self.planes[triangle as usize];
+        plane.least_distance(point) < reach
+            && (plane.is_around_middle(point, reach)
+                || self.nearest_on(triangle, point).distance < reach)
+    }
+
+    /// Smallest and largest corner of the box around the wall.
+    pub(crate) fn bounds(&self) -> [[f64; 3]; 2] {
+        self.wall().bounds()
+    }
+
     /// The nearest point of one triangle of the wall.
-    pub(crate) fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
+    pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
         let plane = &self.planes[triangle as usize];
         if let Some(height) = plane.height_over_triangle(point) {
             return Nearest {

@@ -12,10 +12,12 @@
 //! overlap: the radii are meanwhile larger by `MARGIN`, so that at their true size the spheres do
 //! not overlap at all.
 
+mod cells;
 mod forces;
 mod minimiser;
 mod neighbours;
 
+pub use self::cells::SizeClasses;
 pub use self::minimiser::{Settled, WhenJammed, minimise_overlaps};
 use super::job::Job;
 use super::settings::Progress;

@@ -4,6 +4,7 @@ mod depth_map;
 mod front;
 mod halo;
 mod inside;
+mod near;
 mod pack;
 mod seed;
 mod settle;

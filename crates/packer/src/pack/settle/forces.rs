@@ -1,6 +1,6 @@
 //! Forces of overlaps, and the largest overlap: settling spends most of its time in this loop.
 
-use super::neighbours::NeighbourLists;
+use super::neighbours::{NearTriangle, NeighbourLists, squared_distance};
 use crate::geometry::boundary::Boundary;
 use crate::spheres::{ReducedSphere, Vector3};
 use pulp::NullaryFnOnce;
@@ -38,6 +38,8 @@ pub(super) struct ForcesOn<'a> {
     pub(super) first: usize,
     pub(super) boundary: &'a Boundary,
     pub(super) balls: &'a [ReducedSphere],
+    /// The spheres when neighbours were listed last.
+    pub(super) listed_at: &'a [ReducedSphere],
     pub(super) near: &'a NeighbourLists,
     pub(super) enlarge: f64,
 }
@@ -53,6 +55,7 @@ impl NullaryFnOnce for ForcesOn<'_> {
             first,
             boundary,
             balls,
+            listed_at,
             near,
             enlarge,
         } = self;
@@ -78,13 +81,16 @@ impl NullaryFnOnce for ForcesOn<'_> {
             let walls = near.walls.of(first + k);
             if !walls.is_empty() {
                 let (centre, radius) = (Vector3::new(ball[0], ball[1], ball[2]), ball[3] * enlarge);
-                boundary.walls(walls.iter().copied(), &centre, radius, &mut touched);
+                let moved = squared_distance(&ball, &listed_at[first + k]).sqrt();
+                let in_reach =
+                    |near: &&NearTriangle| f64::from(near.least_distance) < radius + moved;
+                let numbers = || walls.iter().filter(in_reach).map(|near| near.number);
+                boundary.walls(numbers(), &centre, radius, &mut touched);
                 // A centre that was pushed through the wall is pulled back.
                 let side = match touched.first() {
                     Some(wall)
                         if wall.distance < BEYOND * radius
-                            && boundary.is_behind_nearest(walls.iter().copied(), &centre)
-                                == Some(false) =>
+                            && boundary.is_behind_nearest(numbers(), &centre) == Some(false) =>
                     {
                         -1.0
                     }

@@ -1,9 +1,10 @@
 //! The minimiser of the overlaps' energy: damped dynamics.
 
 use super::forces::{ForcesOn, MARGIN, wall_overlap};
-use super::neighbours::{CHUNK, NeighbourLists, squared_distance};
+use super::neighbours::{CHUNK, NeighbourLists, sort_wall, squared_distance};
 use crate::geometry::boundary::Boundary;
 use crate::geometry::inside::is_inside;
+use crate::geometry::wall_cells::WallCells;
 use crate::spheres::{ReducedSphere, centre_of};
 use dem_io::{Diagnostic, Result};
 use pulp::Arch;
@@ -54,6 +55,7 @@ pub struct Settled {
 /// Spheres with the variables of the minimiser.
 struct State<'a> {
     boundary: &'a Boundary,
+    wall: WallCells<'a>,
     balls: Vec<ReducedSphere>,
     /// Radius over reduced radius: 1 + overlap.
     enlarge: f64,
@@ -154,8 +156,10 @@ impl<'a> State<'a> {
     fn new(boundary: &'a Boundary, balls: Vec<ReducedSphere>, enlarge: f64) -> Self {
         let n = balls.len();
         let mean = balls.iter().map(|b| b[3]).sum::<f64>() / n as f64;
+        let skin = SKIN * mean;
         let mut state = Self {
             boundary,
+            wall: sort_wall(boundary, &balls, enlarge, skin),
             balls,
             enlarge,
             velocity: vec![[0.0; 4]; n],
@@ -163,7 +167,7 @@ impl<'a> State<'a> {
             response: Vec::new(),
             near: NeighbourLists::default(),
             listed_at: Vec::new(),
-            skin: SKIN * mean,
+            skin,
             largest_move: LARGEST_MOVE * mean,
         };
         state.list_neighbours();
@@ -213,7 +217,7 @@ impl<'a> State<'a> {
         let balls = &self.balls;
         // Frees the old lists before the new ones are allocated.
         self.near = NeighbourLists::default();
-        self.near = NeighbourLists::new(self.boundary, balls, self.enlarge, self.skin);
+        self.near = NeighbourLists::new(&self.wall, balls, self.enlarge, self.skin);
         self.listed_at.clone_from(balls);
         self.response = (0..balls.len())
             .map(|i| {
@@ -225,8 +229,8 @@ impl<'a> State<'a> {
 
     /// Forces at the present positions. Returns the largest overlap, in radii.
     fn forces(&mut self) -> f64 {
-        let (boundary, balls, near, enlarge) =
-            (self.boundary, &self.balls, &self.near, self.enlarge);
+        let (boundary, near, enlarge) = (self.boundary, &self.near, self.enlarge);
+        let (balls, listed_at) = (&self.balls, &self.listed_at);
         self.force
             .par_chunks_mut(CHUNK)
             .enumerate()
@@ -236,6 +240,7 @@ impl<'a> State<'a> {
                     first: chunk * CHUNK,
                     boundary,
                     balls,
+                    listed_at,
                     near,
                     enlarge,
                 })

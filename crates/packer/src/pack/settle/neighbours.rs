@@ -1,13 +1,14 @@
 //! Neighbour lists (Verlet lists): the other spheres and triangles of the wall that each sphere
 //! could touch, listed from a grid of cells and from the tree of the facets.
 
+use super::cells::SizeClasses;
 use crate::geometry::boundary::Boundary;
-use crate::grid::Lattice;
-use crate::spheres::{ReducedSphere, Vector3};
+use crate::geometry::wall_cells::WallCells;
+use crate::spheres::{ReducedSphere, centre_of};
 use rayon::prelude::*;
 
-/// Largest number of cells of a search per sphere.
-const MOST_CELLS_PER_SPHERE: f64 = 8.0;
+/// Number of cells of the wall in addition to one per sphere.
+const MOST_WALL_CELLS: usize = 100_000;
 /// Number of spheres processed by one task.
 pub(super) const CHUNK: usize = 1024;
 
@@ -15,27 +16,26 @@ pub(super) const CHUNK: usize = 1024;
 /// are rebuilt.
 #[derive(Default)]
 pub(super) struct NeighbourLists {
-    pub(super) spheres: Lists,
-    pub(super) walls: Lists,
+    pub(super) spheres: Lists<u32>,
+    pub(super) walls: Lists<NearTriangle>,
+}
+
+/// A triangle of the wall near a sphere.
+#[derive(Clone, Copy)]
+pub(super) struct NearTriangle {
+    pub(super) number: u32,
+    /// Lower bound of its distance from the centre of the sphere when it was listed.
+    pub(super) least_distance: f32,
 }
 
 impl NeighbourLists {
     /// Lists, for each of `balls`, the spheres less than `skin` (local units) away from it and the
     /// triangles less than half that away from its radius times `enlarge`: nothing else can touch
     /// it before one sphere has moved by half the skin.
-    pub(super) fn new(
-        boundary: &Boundary,
-        balls: &[ReducedSphere],
-        enlarge: f64,
-        skin: f64,
-    ) -> Self {
-        let largest = balls.iter().map(|b| b[3]).fold(0.0, f64::max);
-        // Cells of half the largest reach: closer to the shape of a ball than 3 x 3 x 3 cells of
-        // the full reach.
-        let cells = Cells::new(balls, largest + 0.5 * skin);
+    pub(super) fn new(wall: &WallCells, balls: &[ReducedSphere], enlarge: f64, skin: f64) -> Self {
+        let classes = SizeClasses::new(balls, skin);
         let spheres = lists_of(balls, |i, ball, list| {
-            let reach = ball[3] + largest + skin;
-            cells.near(ball, reach, |others, numbers| {
+            classes.near(ball, |others, numbers| {
                 for (other, j) in others.iter().zip(numbers) {
                     let reach = ball[3] + other[3] + skin;
                     if squared_distance(ball, other) < reach * reach && *j as usize != i {
@@ -45,38 +45,63 @@ impl NeighbourLists {
             });
         });
         let walls = lists_of(balls, |_, ball, list| {
-            let centre = Vector3::new(ball[0], ball[1], ball[2]);
-            let reach = ball[3] * enlarge + 0.5 * skin;
-            list.extend(
-                boundary
-                    .triangles_near(&centre, reach)
-                    .filter(|t| boundary.nearest_on(*t, &centre).distance < reach),
-            );
+            let centre = centre_of(ball);
+            let reach = wall_reach(ball[3], enlarge, skin);
+            list.extend(wall.near(&centre, reach).map(|number| NearTriangle {
+                number,
+                least_distance: (wall.boundary.least_distance(number, &centre) as f32).next_down(),
+            }));
         });
         Self { spheres, walls }
     }
 }
 
-/// A list of numbers for each sphere, one after the other.
-#[derive(Default)]
-pub(super) struct Lists {
-    all: Vec<u32>,
+/// The wall sorted for the lists of these spheres.
+pub(super) fn sort_wall<'a>(
+    boundary: &'a Boundary,
+    balls: &[ReducedSphere],
+    enlarge: f64,
+    skin: f64,
+) -> WallCells<'a> {
+    let reaches = || balls.iter().map(|ball| wall_reach(ball[3], enlarge, skin));
+    let largest = reaches().fold(0.0, f64::max);
+    let range = [reaches().fold(largest, f64::min), largest];
+    WallCells::new(boundary, range, MOST_WALL_CELLS + balls.len())
+}
+
+/// Distance up to which the wall is listed.
+fn wall_reach(radius: f64, enlarge: f64, skin: f64) -> f64 {
+    radius * enlarge + 0.5 * skin
+}
+
+/// A list for each sphere, one after the other.
+pub(super) struct Lists<T> {
+    all: Vec<T>,
     /// Begin of each list, and end of the last. Spheres + 1.
     first: Vec<u32>,
 }
 
-impl Lists {
-    pub(super) fn of(&self, sphere: usize) -> &[u32] {
+impl<T> Default for Lists<T> {
+    fn default() -> Self {
+        Self {
+            all: Vec::new(),
+            first: Vec::new(),
+        }
+    }
+}
+
+impl<T> Lists<T> {
+    pub(super) fn of(&self, sphere: usize) -> &[T] {
         &self.all[self.first[sphere] as usize..self.first[sphere + 1] as usize]
     }
 }
 
 /// For each sphere the list that `fill` makes.
-fn lists_of(
+fn lists_of<T: Copy + Send + Sync>(
     balls: &[ReducedSphere],
-    fill: impl Fn(usize, &ReducedSphere, &mut Vec<u32>) + Sync,
-) -> Lists {
-    let parts: Vec<(Vec<u32>, Vec<u32>)> = balls
+    fill: impl Fn(usize, &ReducedSphere, &mut Vec<T>) + Sync,
+) -> Lists<T> {
+    let parts: Vec<(Vec<T>, Vec<u32>)> = balls
         .par_chunks(CHUNK)
         .enumerate()
         .map(|(chunk, part)| {
@@ -105,77 +130,4 @@ fn lists_of(
 
 pub(super) fn squared_distance(a: &ReducedSphere, b: &ReducedSphere) -> f64 {
     (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2) + (a[2] - b[2]).powi(2)
-}
-
-fn bounds(balls: &[ReducedSphere]) -> ([f64; 3], [f64; 3]) {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for ball in balls {
-        for k in 0..3 {
-            low[k] = low[k].min(ball[k]);
-            high[k] = high[k].max(ball[k]);
-        }
-    }
-    (low, high)
-}
-
-/// Spheres sorted by cell (counting sort), for one search.
-struct Cells {
-    lattice: Lattice,
-    /// Index of the first sphere of each cell, and the end of the last.
-    first: Vec<u32>,
-    balls: Vec<ReducedSphere>,
-    numbers: Vec<u32>,
-}
-
-impl Cells {
-    fn new(balls: &[ReducedSphere], cell: f64) -> Self {
-        let (low, high) = bounds(balls);
-        // Spheres that fill little of their box would need too many cells: fewer, larger ones are
-        // used instead.
-        let most = MOST_CELLS_PER_SPHERE * (balls.len() as f64 + 1.0);
-        let volume: f64 = (0..3).map(|k| (high[k] - low[k]).max(cell)).product();
-        let cell = cell.max((volume / most).cbrt());
-        let counts = [0, 1, 2].map(|k| ((high[k] - low[k]) / cell) as usize + 1);
-        let mut cells = Self {
-            lattice: Lattice { low, cell, counts },
-            first: vec![0; counts.iter().product::<usize>() + 1],
-            balls: vec![[0.0; 4]; balls.len()],
-            numbers: vec![0; balls.len()],
-        };
-        let at: Vec<u32> = balls
-            .iter()
-            .map(|b| cells.lattice.cell_of(b[0], b[1], b[2]))
-            .map(|cell| cells.lattice.index(cell) as u32)
-            .collect();
-        for a in &at {
-            cells.first[*a as usize + 1] += 1;
-        }
-        for k in 1..cells.first.len() {
-            cells.first[k] += cells.first[k - 1];
-        }
-        let mut next = cells.first.clone();
-        for (i, a) in at.iter().enumerate() {
-            let slot = &mut next[*a as usize];
-            cells.balls[*slot as usize] = balls[i];
-            cells.numbers[*slot as usize] = i as u32;
-            *slot += 1;
-        }
-        cells
-    }
-
-    /// Calls `visit` with the spheres of rows of cells that come within `reach` of the centre of
-    /// `ball`, and their numbers.
-    fn near(
-        &self,
-        ball: &ReducedSphere,
-        reach: f64,
-        mut visit: impl FnMut(&[ReducedSphere], &[u32]),
-    ) {
-        self.lattice
-            .rows_near([ball[0], ball[1], ball[2]], reach, |row| {
-                let spheres = self.first[row.start] as usize..self.first[row.end] as usize;
-                visit(&self.balls[spheres.clone()], &self.numbers[spheres]);
-            });
-    }
 }
