@@ -1,7 +1,7 @@
 //! The wall of the solid: its distance from a point, the side on which a point lies, and the parts
 //! that a ball would meet.
 
-use super::plane::Plane;
+use super::plane::{Plane, Surroundings};
 use super::tree::{Corners, TriangleTree};
 use super::union::outer_pieces;
 use crate::spheres::Vector3;
@@ -25,6 +25,8 @@ pub struct Boundary {
     union: Option<TriangleTree>,
     /// The triangles of the wall, prepared for `nearest_on`.
     planes: Vec<Plane>,
+    /// The balls around these triangles.
+    surroundings: Vec<Surroundings>,
 }
 
 impl Boundary {
@@ -51,9 +53,10 @@ impl Boundary {
             let corners = pieces.into_iter().flatten();
             union = Some(TriangleTree::new(corners, triangles).map_err(refused)?);
         }
-        let planes = union.as_ref().unwrap_or(&facets).all().map(Plane::new);
+        let wall = union.as_ref().unwrap_or(&facets);
         Ok(Self {
-            planes: planes.collect(),
+            planes: wall.all().map(Plane::new).collect(),
+            surroundings: wall.all().map(Surroundings::new).collect(),
             facets,
             union,
         })
@@ -184,55 +187,31 @@ impl Boundary {
         radius: f64,
         found: &mut Vec<Nearest>,
     ) {
-        const SAME_DIRECTION: f64 = 0.97;
-        const MOST: usize = 8;
-        found.clear();
-        let toward = |near: &Nearest| (near.point - centre) / near.distance;
-        for triangle in triangles {
-            if self.least_distance(triangle, centre) >= radius {
-                continue;
-            }
-            let near = self.nearest_on(triangle, centre);
-            if near.distance >= radius || near.distance <= 0.0 {
-                continue;
-            }
-            let direction = toward(&near);
-            match found
-                .iter()
-                .position(|other| toward(other).dot(&direction) > SAME_DIRECTION)
-            {
-                Some(k) if near.distance < found[k].distance => found[k] = near,
-                None => found.push(near),
-                _ => {}
-            }
-        }
-        found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let mut kept = 0;
-        for k in 0..found.len() {
-            let near = found[k];
-            let hidden = found[..kept]
-                .iter()
-                .any(|nearer| (near.point - nearer.point).dot(&toward(nearer)) > -1e-6 * radius);
-            if !hidden {
-                found[kept] = near;
-                kept += 1;
-            }
-        }
-        found.truncate(kept.min(MOST));
+        let in_reach = triangles.filter(|t| self.may_be_nearer(*t, centre, radius));
+        let near = in_reach.map(|triangle| self.nearest_on(triangle, centre));
+        walls_among(near, centre, radius, found);
+    }
+    /// False if a triangle of the wall is certainly farther from a point than `reach` (local
+    /// units).
+    pub(crate) fn may_be_nearer(&self, triangle: u32, point: &Vector3, reach: f64) -> bool {
+        !self.surroundings[triangle as usize].is_beyond(point, reach)
+            && self.least_distance(triangle, point) < reach
     }
 
     /// A lower bound of the distance of a triangle of the wall from a point, at little cost.
     #[inline]
     pub(crate) fn least_distance(&self, triangle: u32, point: &Vector3) -> f64 {
-        self.planes[triangle as usize].least_distance(point)
+        let triangle = triangle as usize;
+        self.surroundings[triangle].least_distance(&self.planes[triangle], point)
     }
 
     /// True if a triangle of the wall is closer to a point than `reach` (local units).
     pub(crate) fn is_nearer(&self, triangle: u32, point: &Vector3, reach: f64) -> bool {
-        let plane = &self.planes[triangle as usize];
-        plane.least_distance(point) < reach
-            && (plane.is_around_middle(point, reach)
-                || self.nearest_on(triangle, point).distance < reach)
+        let surroundings = &self.surroundings[triangle as usize];
+        !surroundings.is_beyond(point, reach)
+            && (surroundings.is_around_middle(point, reach)
+                || self.least_distance(triangle, point) < reach
+                    && self.nearest_on(triangle, point).distance < reach)
     }
 
     /// Smallest and largest corner of the box around the wall.
@@ -280,4 +259,44 @@ impl Boundary {
         let (_, first) = *near.first()?;
         near.iter().all(|n| n.1 == first).then_some(first)?
     }
+}
+
+/// The walls of [`Boundary::walls`] among the nearest points of triangles.
+pub(crate) fn walls_among(
+    near: impl Iterator<Item = Nearest>,
+    centre: &Vector3,
+    radius: f64,
+    found: &mut Vec<Nearest>,
+) {
+    const SAME_DIRECTION: f64 = 0.97;
+    const MOST: usize = 8;
+    found.clear();
+    let toward = |near: &Nearest| (near.point - centre) / near.distance;
+    for near in near {
+        if near.distance >= radius || near.distance <= 0.0 {
+            continue;
+        }
+        let direction = toward(&near);
+        match found
+            .iter()
+            .position(|other| toward(other).dot(&direction) > SAME_DIRECTION)
+        {
+            Some(k) if near.distance < found[k].distance => found[k] = near,
+            None => found.push(near),
+            _ => {}
+        }
+    }
+    found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let mut kept = 0;
+    for k in 0..found.len() {
+        let near = found[k];
+        let hidden = found[..kept]
+            .iter()
+            .any(|nearer| (near.point - nearer.point).dot(&toward(nearer)) > -1e-6 * radius);
+        if !hidden {
+            found[kept] = near;
+            kept += 1;
+        }
+    }
+    found.truncate(kept.min(MOST));
 }

@@ -10,9 +10,6 @@ pub(super) struct Plane {
     pub(super) normal: Vector3,
     along_u: Vector3,
     along_v: Vector3,
-    /// A circle in the plane that contains the triangle.
-    middle: Vector3,
-    radius: f64,
 }
 
 /// Triangles whose height is a smaller fraction of their longest edge have no plane: its normal
@@ -34,11 +31,7 @@ impl Plane {
         } else {
             normal.norm_squared()
         };
-        let middle = (a + b + c) / 3.0;
-        let to_corners = [a, b, c].map(|corner| (corner - middle).norm());
         Self {
-            middle,
-            radius: to_corners.into_iter().fold(0.0, f64::max),
             corner: a,
             normal: normal / squared.sqrt(),
             along_u: edge_v.cross(&normal) / squared,
@@ -58,18 +51,43 @@ impl Plane {
         let [u, v] = self.along_triangle(&from_corner);
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| from_corner.dot(&self.normal))
     }
+}
+
+/// The ball around a triangle: by far the smallest part of what is known about it, so that many are
+/// excluded without reading the rest.
+pub(super) struct Surroundings {
+    middle: Vector3,
+    radius: f64,
+}
+
+impl Surroundings {
+    pub(super) fn new(corners: Corners) -> Self {
+        let [a, b, c] = corners.map(Vector3::from);
+        let middle = (a + b + c) / 3.0;
+        let to_corners = [a, b, c].map(|corner| (corner - middle).norm());
+        Self {
+            middle,
+            radius: to_corners.into_iter().fold(0.0, f64::max),
+        }
+    }
+
+    /// True if the triangle is certainly farther from a point than `reach`.
+    pub(super) fn is_beyond(&self, point: &Vector3, reach: f64) -> bool {
+        let reach = reach + self.radius;
+        (point - self.middle).norm_squared() > (1.0 + MARGIN) * reach * reach
+    }
 
     /// True if the middle of the triangle is certainly closer to a point than `reach`.
     pub(super) fn is_around_middle(&self, point: &Vector3, reach: f64) -> bool {
         (point - self.middle).norm_squared() < (1.0 - MARGIN) * reach * reach
     }
 
-    /// A lower bound of the distance of the triangle from a point: that of the circle around it.
-    #[inline]
-    pub(super) fn least_distance(&self, point: &Vector3) -> f64 {
+    /// A lower bound of the distance of the triangle from a point: that of the circle around it in
+    /// its plane.
+    pub(super) fn least_distance(&self, plane: &Plane, point: &Vector3) -> f64 {
         let from_middle = point - self.middle;
         let squared = from_middle.norm_squared();
-        let height_squared = from_middle.dot(&self.normal).powi(2);
+        let height_squared = from_middle.dot(&plane.normal).powi(2);
         let along = (squared - height_squared).max(0.0).sqrt();
         let aside = (along - self.radius).max(0.0);
         let distance = (height_squared + aside * aside).sqrt();

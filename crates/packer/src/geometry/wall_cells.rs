@@ -80,7 +80,7 @@ impl ReachClass {
             ];
             let centre = lattice.centre(cell);
             let triangles = boundary.triangles_near(&centre, reach_of_cell);
-            let is_near = |t: &u32| boundary.least_distance(*t, &centre) < reach_of_cell;
+            let is_near = |t: &u32| boundary.may_be_nearer(*t, &centre, reach_of_cell);
             triangles.filter(is_near).collect()
         };
         let cells = counts.iter().product::<usize>();

@@ -1,8 +1,8 @@
 //! Forces of overlaps, and the largest overlap: settling spends most of its time in this loop.
 
-use super::neighbours::{NearTriangle, NeighbourLists, squared_distance};
-use crate::geometry::boundary::Boundary;
-use crate::spheres::{ReducedSphere, Vector3};
+use super::neighbours::{ChunkOfLists, NearTriangle, free_until};
+use crate::geometry::boundary::{Boundary, walls_among};
+use crate::spheres::{ReducedSphere, centre_of};
 use pulp::NullaryFnOnce;
 
 /// Relative surplus of the radii while settling.
@@ -38,9 +38,10 @@ pub(super) struct ForcesOn<'a> {
     pub(super) first: usize,
     pub(super) boundary: &'a Boundary,
     pub(super) balls: &'a [ReducedSphere],
-    /// The spheres when neighbours were listed last.
-    pub(super) listed_at: &'a [ReducedSphere],
-    pub(super) near: &'a NeighbourLists,
+    /// Lengths of the paths of these spheres since neighbours were listed.
+    pub(super) path: &'a [f64],
+    pub(super) spheres: &'a ChunkOfLists<u32>,
+    pub(super) walls: &'a mut ChunkOfLists<NearTriangle>,
     pub(super) enlarge: f64,
 }
 
@@ -55,16 +56,17 @@ impl NullaryFnOnce for ForcesOn<'_> {
             first,
             boundary,
             balls,
-            listed_at,
-            near,
+            path,
+            spheres,
+            walls,
             enlarge,
         } = self;
         let mut worst = 0.0_f64;
-        let mut touched = Vec::new();
+        let (mut reached, mut touched) = (Vec::new(), Vec::new());
         for (k, f) in force.iter_mut().enumerate() {
             let ball = balls[first + k];
             let mut push = ForceLanes::default();
-            let (groups, rest) = near.spheres.of(first + k).as_chunks::<LANES>();
+            let (groups, rest) = spheres.of(k).as_chunks::<LANES>();
             for group in groups {
                 push.add(&ball, group.map(|j| balls[j as usize]));
             }
@@ -78,19 +80,28 @@ impl NullaryFnOnce for ForcesOn<'_> {
             }
             let (mut total, worst_overlap) = push.sum();
             worst = worst.max(worst_overlap / ball[3]);
-            let walls = near.walls.of(first + k);
+            let walls = walls.of_mut(k);
             if !walls.is_empty() {
-                let (centre, radius) = (Vector3::new(ball[0], ball[1], ball[2]), ball[3] * enlarge);
-                let moved = squared_distance(&ball, &listed_at[first + k]).sqrt();
-                let in_reach =
-                    |near: &&NearTriangle| f64::from(near.least_distance) < radius + moved;
-                let numbers = || walls.iter().filter(in_reach).map(|near| near.number);
-                boundary.walls(numbers(), &centre, radius, &mut touched);
+                let (centre, radius) = (centre_of(&ball), ball[3] * enlarge);
+                reached.clear();
+                for wall in walls
+                    .iter_mut()
+                    .filter(|w| f64::from(w.free_until) <= path[k])
+                {
+                    let near = boundary.nearest_on(wall.number, &centre);
+                    wall.free_until = free_until(path[k], near.distance, radius);
+                    if near.distance < radius {
+                        reached.push((wall.number, near));
+                    }
+                }
+                let nearest = reached.iter().map(|(_, near)| *near);
+                walls_among(nearest, &centre, radius, &mut touched);
                 // A centre that was pushed through the wall is pulled back.
                 let side = match touched.first() {
                     Some(wall)
                         if wall.distance < BEYOND * radius
-                            && boundary.is_behind_nearest(numbers(), &centre) == Some(false) =>
+                            && boundary.is_behind_nearest(reached.iter().map(|r| r.0), &centre)
+                                == Some(false) =>
                     {
                         -1.0
                     }

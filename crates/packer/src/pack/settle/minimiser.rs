@@ -68,6 +68,8 @@ struct State<'a> {
     near: NeighbourLists,
     /// The spheres when neighbours were listed last.
     listed_at: Vec<ReducedSphere>,
+    /// Length of the path of each sphere since then.
+    path: Vec<f64>,
     skin: f64,
     largest_move: f64,
 }
@@ -167,6 +169,7 @@ impl<'a> State<'a> {
             response: Vec::new(),
             near: NeighbourLists::default(),
             listed_at: Vec::new(),
+            path: Vec::new(),
             skin,
             largest_move: LARGEST_MOVE * mean,
         };
@@ -219,6 +222,8 @@ impl<'a> State<'a> {
         self.near = NeighbourLists::default();
         self.near = NeighbourLists::new(&self.wall, balls, self.enlarge, self.skin);
         self.listed_at.clone_from(balls);
+        self.path.clear();
+        self.path.resize(balls.len(), 0.0);
         self.response = (0..balls.len())
             .map(|i| {
                 let neighbours = self.near.spheres.of(i).len() + self.near.walls.of(i).len();
@@ -229,19 +234,23 @@ impl<'a> State<'a> {
 
     /// Forces at the present positions. Returns the largest overlap, in radii.
     fn forces(&mut self) -> f64 {
-        let (boundary, near, enlarge) = (self.boundary, &self.near, self.enlarge);
-        let (balls, listed_at) = (&self.balls, &self.listed_at);
-        self.force
-            .par_chunks_mut(CHUNK)
+        let (boundary, balls, enlarge) = (self.boundary, &self.balls, self.enlarge);
+        let force = self.force.par_chunks_mut(CHUNK);
+        let path = self.path.par_chunks(CHUNK);
+        let spheres = self.near.spheres.chunks.par_iter();
+        let walls = self.near.walls.chunks.par_iter_mut();
+        (force, path, spheres, walls)
+            .into_par_iter()
             .enumerate()
-            .map(|(chunk, part)| {
+            .map(|(chunk, (force, path, spheres, walls))| {
                 Arch::new().dispatch(ForcesOn {
-                    force: part,
+                    force,
                     first: chunk * CHUNK,
                     boundary,
                     balls,
-                    listed_at,
-                    near,
+                    path,
+                    spheres,
+                    walls,
                     enlarge,
                 })
             })
@@ -258,9 +267,10 @@ impl<'a> State<'a> {
         let force = self.force.par_chunks(CHUNK);
         let response = self.response.par_chunks(CHUNK);
         let listed_at = self.listed_at.par_chunks(CHUNK);
-        let farthest = (balls, velocity, force, response, listed_at)
+        let path = self.path.par_chunks_mut(CHUNK);
+        let farthest = (balls, velocity, force, response, listed_at, path)
             .into_par_iter()
-            .map(|(balls, velocity, force, response, listed_at)| {
+            .map(|(balls, velocity, force, response, listed_at, path)| {
                 let mut farthest = 0.0;
                 for k in 0..balls.len() {
                     let v = &mut velocity[k];
@@ -271,6 +281,7 @@ impl<'a> State<'a> {
                     if speed_squared > most * most {
                         *v = v.map(|v| v * most / speed_squared.sqrt());
                     }
+                    path[k] += speed_squared.sqrt().min(most);
                     let mut moved = [0.0; 4];
                     for axis in 0..4 {
                         balls[k][axis] += v[axis];

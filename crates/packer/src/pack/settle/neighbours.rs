@@ -6,6 +6,7 @@ use crate::geometry::boundary::Boundary;
 use crate::geometry::wall_cells::WallCells;
 use crate::spheres::{ReducedSphere, centre_of};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Number of cells of the wall in addition to one per sphere.
 const MOST_WALL_CELLS: usize = 100_000;
@@ -24,8 +25,15 @@ pub(super) struct NeighbourLists {
 #[derive(Clone, Copy)]
 pub(super) struct NearTriangle {
     pub(super) number: u32,
-    /// Lower bound of its distance from the centre of the sphere when it was listed.
-    pub(super) least_distance: f32,
+    /// Length of the sphere's path since it was listed up to which it cannot touch the triangle.
+    pub(super) free_until: f32,
+}
+
+/// Length of a path, now `path`, up to which a sphere at this distance from a triangle cannot touch
+/// it: rounded down.
+pub(super) fn free_until(path: f64, distance: f64, radius: f64) -> f32 {
+    const MARGIN: f64 = 1e-9;
+    ((path + distance - (1.0 + MARGIN) * radius) as f32).next_down()
 }
 
 impl NeighbourLists {
@@ -36,20 +44,27 @@ impl NeighbourLists {
         let classes = SizeClasses::new(balls, skin);
         let spheres = lists_of(balls, |i, ball, list| {
             classes.near(ball, |others, numbers| {
+                // Written in any case and kept if near, since a branch would be mispredicted.
+                let mut end = list.len();
+                list.resize(end + others.len(), 0);
                 for (other, j) in others.iter().zip(numbers) {
                     let reach = ball[3] + other[3] + skin;
-                    if squared_distance(ball, other) < reach * reach && *j as usize != i {
-                        list.push(*j);
-                    }
+                    let is_near = squared_distance(ball, other) < reach * reach;
+                    list[end] = *j;
+                    end += usize::from(is_near & (*j as usize != i));
                 }
+                list.truncate(end);
             });
         });
         let walls = lists_of(balls, |_, ball, list| {
             let centre = centre_of(ball);
             let reach = wall_reach(ball[3], enlarge, skin);
-            list.extend(wall.near(&centre, reach).map(|number| NearTriangle {
-                number,
-                least_distance: (wall.boundary.least_distance(number, &centre) as f32).next_down(),
+            list.extend(wall.near(&centre, reach).map(|number| {
+                let distance = wall.boundary.least_distance(number, &centre);
+                NearTriangle {
+                    number,
+                    free_until: free_until(0.0, distance, ball[3] * enlarge),
+                }
             }));
         });
         Self { spheres, walls }
@@ -74,58 +89,66 @@ fn wall_reach(radius: f64, enlarge: f64, skin: f64) -> f64 {
     radius * enlarge + 0.5 * skin
 }
 
-/// A list for each sphere, one after the other.
+/// A list for each sphere.
 pub(super) struct Lists<T> {
+    /// Those of each `CHUNK` spheres.
+    pub(super) chunks: Vec<ChunkOfLists<T>>,
+}
+
+/// The lists of up to `CHUNK` spheres, one after the other.
+pub(super) struct ChunkOfLists<T> {
     all: Vec<T>,
-    /// Begin of each list, and end of the last. Spheres + 1.
-    first: Vec<u32>,
+    /// End of each list. One per sphere.
+    ends: Vec<u32>,
 }
 
 impl<T> Default for Lists<T> {
     fn default() -> Self {
-        Self {
-            all: Vec::new(),
-            first: Vec::new(),
-        }
+        Self { chunks: Vec::new() }
     }
 }
 
 impl<T> Lists<T> {
     pub(super) fn of(&self, sphere: usize) -> &[T] {
-        &self.all[self.first[sphere] as usize..self.first[sphere + 1] as usize]
+        self.chunks[sphere / CHUNK].of(sphere % CHUNK)
+    }
+}
+
+impl<T> ChunkOfLists<T> {
+    fn range(&self, sphere: usize) -> Range<usize> {
+        let begin = sphere.checked_sub(1).map_or(0, |last| self.ends[last]);
+        begin as usize..self.ends[sphere] as usize
+    }
+
+    /// The list of a sphere, numbered within the chunk.
+    pub(super) fn of(&self, sphere: usize) -> &[T] {
+        &self.all[self.range(sphere)]
+    }
+
+    pub(super) fn of_mut(&mut self, sphere: usize) -> &mut [T] {
+        let range = self.range(sphere);
+        &mut self.all[range]
     }
 }
 
 /// For each sphere the list that `fill` makes.
-fn lists_of<T: Copy + Send + Sync>(
+fn lists_of<T: Send>(
     balls: &[ReducedSphere],
     fill: impl Fn(usize, &ReducedSphere, &mut Vec<T>) + Sync,
 ) -> Lists<T> {
-    let parts: Vec<(Vec<T>, Vec<u32>)> = balls
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(chunk, part)| {
-            let (mut list, mut ends) = (
-                Vec::with_capacity(part.len() * 16),
-                Vec::with_capacity(part.len()),
-            );
-            for (k, ball) in part.iter().enumerate() {
-                fill(chunk * CHUNK + k, ball, &mut list);
-                ends.push(list.len() as u32);
-            }
-            list.shrink_to_fit();
-            (list, ends)
-        })
-        .collect();
-    let mut all = Vec::with_capacity(parts.iter().map(|(list, _)| list.len()).sum());
-    let mut first = Vec::with_capacity(balls.len() + 1);
-    first.push(0);
-    for (list, ends) in parts {
-        let before = all.len() as u32;
-        all.extend(list);
-        first.extend(ends.into_iter().map(|e| e + before));
+    let of_chunk = |(chunk, part): (usize, &[ReducedSphere])| {
+        let mut all = Vec::with_capacity(part.len() * 16);
+        let mut ends = Vec::with_capacity(part.len());
+        for (k, ball) in part.iter().enumerate() {
+            fill(chunk * CHUNK + k, ball, &mut all);
+            ends.push(all.len() as u32);
+        }
+        all.shrink_to_fit();
+        ChunkOfLists { all, ends }
+    };
+    Lists {
+        chunks: balls.par_chunks(CHUNK).enumerate().map(of_chunk).collect(),
     }
-    Lists { all, first }
 }
 
 pub(super) fn squared_distance(a: &ReducedSphere, b: &ReducedSphere) -> f64 {
