@@ -5,6 +5,7 @@
 //! cargo run --release -p dem-pack --example quality_table           # quality, each --densify
 //! cargo run --release -p dem-pack --example quality_table -- growth # time and memory
 //! cargo run --release -p dem-pack --example quality_table -- growth 5000000
+//! cargo run --release -p dem-pack --example quality_table -- ratios # scans and wide sizes
 //! ```
 //!
 //! Each packing of the second table is made in a process of its own, to measure its memory
@@ -35,9 +36,12 @@ fn main() -> std::result::Result<(), Error> {
     match words[..] {
         [] => quality_table(),
         ["growth"] => growth_table(&[10_000, 30_000, 100_000, 300_000, 1_000_000]),
+        ["ratios"] => ratios(),
         ["growth", spheres] => growth_table(&[number(spheres)?]),
         ["one", spheres, threads] => one_size(number(spheres)?, number(threads)?),
-        _ => Err(Error::other("write nothing, growth, or growth SPHERES")),
+        _ => Err(Error::other(
+            "write nothing, growth, growth SPHERES, or ratios",
+        )),
     }
 }
 
@@ -209,6 +213,109 @@ fn growth_table(counts: &[usize]) -> std::result::Result<(), Error> {
     Ok(())
 }
 
+/// Time per sphere of a job: the medians of three, on one thread.
+struct Timed {
+    spheres: f64,
+    all_us: f64,
+    densifying_us: f64,
+    interior: f64,
+}
+
+impl Timed {
+    fn of(surface: &Surface, diameter: &str, basis: Basis) -> Result<Self> {
+        let settings = BodySettings::new(PackSettings::new(Sizes::parse(diameter, basis)?));
+        let mut all = Vec::new();
+        let mut densifying = Vec::new();
+        let mut last = None;
+        for _ in 0..3 {
+            let made = on_threads(1, || make_body(surface, &settings, &|_, _| Ok(())))?.1;
+            let seconds = &made.seconds;
+            all.push(seconds.packing + seconds.bonds + seconds.report);
+            densifying.push(made.history.densify_seconds);
+            last = Some(made.quality);
+        }
+        let spheres = last
+            .as_ref()
+            .map_or(0.0, |quality| quality.particles as f64);
+        let interior = last.and_then(|quality| quality.interior_generating_density);
+        let median_us = |mut seconds: Vec<f64>| {
+            seconds.sort_by(f64::total_cmp);
+            1e6 * seconds[1] / spheres
+        };
+        Ok(Self {
+            spheres,
+            all_us: median_us(all),
+            densifying_us: median_us(densifying),
+            interior: interior.map_or(f64::NAN, |fraction| fraction.value),
+        })
+    }
+}
+
+/// Spheres per second in the bar, the time of a scan over that of a box, and the time of wide sizes
+/// over that of narrow ones: defaults of the program.
+fn ratios() -> std::result::Result<(), Error> {
+    let bar = |scale| shape("bar.stl", scale);
+    let scan = cut_into_four(&shape("rock.stl", 1.0)?)?;
+    let cases = [
+        ("bar", bar(1.0)?, "1.2mm..1.5mm", Basis::Number),
+        (
+            "box of 24,000 spheres",
+            bar(0.665)?,
+            "1mm..1.25mm",
+            Basis::Number,
+        ),
+        ("scan of 81,920 facets", scan, "1mm..1.25mm", Basis::Number),
+        ("narrow sizes", bar(2.13)?, "2mm..3mm", Basis::Number),
+        ("wide sizes, by mass", bar(0.56)?, "0.2mm..4mm", Basis::Mass),
+    ];
+    let mut out = std::io::stdout();
+    writeln!(
+        out,
+        "| case | diameters | spheres | all, us/sphere | densifying, us/sphere | spheres/s | interior |\n\
+         |---|---|---|---|---|---|---|"
+    )?;
+    let mut timed = Vec::new();
+    for (name, surface, diameter, basis) in cases {
+        let row = Timed::of(&surface, diameter, basis).map_err(Error::other)?;
+        writeln!(
+            out,
+            "| {name} | {diameter} | {} | {:.1} | {:.1} | {:.0} | {:.4} |",
+            row.spheres,
+            row.all_us,
+            row.densifying_us,
+            1e6 / row.all_us,
+            row.interior
+        )?;
+        timed.push(row);
+    }
+    writeln!(
+        out,
+        "\ndensifying, scan over box: {:.2}; wide over narrow sizes: {:.2}",
+        timed[2].densifying_us / timed[1].densifying_us,
+        timed[4].all_us / timed[3].all_us
+    )
+}
+
+/// The surface with each facet cut into four.
+fn cut_into_four(surface: &Surface) -> std::result::Result<Surface, Error> {
+    let facets = surface.triangles.len();
+    let mut stl = vec![0; 80];
+    stl.extend((4 * facets as u32).to_le_bytes());
+    let middle = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| 0.5 * (p[k] + q[k]));
+    for facet in 0..facets {
+        let [a, b, c] = surface.corners(facet);
+        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+        for corners in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            stl.extend([0; 12]);
+            for x in corners.as_flattened() {
+                stl.extend(((x * surface.unit_m / 1e-3) as f32).to_le_bytes());
+            }
+            stl.extend([0; 2]);
+        }
+    }
+    surface_of(&stl, "scan", 1.0)
+}
+
 /// Prints one line of the second table.
 fn one_size(spheres: usize, threads: usize) -> std::result::Result<(), Error> {
     let surface = bending_sample()?;
@@ -244,16 +351,22 @@ fn one_size(spheres: usize, threads: usize) -> std::result::Result<(), Error> {
 }
 
 fn bending_sample() -> std::result::Result<Surface, Error> {
-    let path = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../data/shapes/bending-sample.stl"
-    );
+    shape("bending-sample.stl", 1.0)
+}
+
+/// A shape of `data/shapes`.
+fn shape(name: &str, scale: f64) -> std::result::Result<Surface, Error> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/shapes");
+    surface_of(&std::fs::read(format!("{folder}/{name}"))?, name, scale)
+}
+
+fn surface_of(stl: &[u8], name: &str, scale: f64) -> std::result::Result<Surface, Error> {
     let settings = ReadSettings {
         unit_m: 1e-3,
-        scale: 1.0,
+        scale,
         fill_holes: false,
     };
-    surface_from_stl(&std::fs::read(path)?, "bending-sample.stl", settings).map_err(Error::other)
+    surface_from_stl(stl, name, settings).map_err(Error::other)
 }
 
 fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {

@@ -13,7 +13,7 @@ use super::attempt::{Attempt, can_fill_voids};
 use super::grow::Grown;
 use super::job::Job;
 use super::settle::{Settled, WhenJammed};
-use super::shrink::{FillTarget, rounded};
+use super::shrink::{FillTarget, is_wide, rounded};
 use crate::sizes::Sizes;
 
 /// Surplus of small spheres in a bare front up to which voids are filled, in square roots of the
@@ -34,8 +34,10 @@ const STRICT_ATTEMPTS: usize = 4;
 const HOPELESS_IMBALANCE: f64 = 1.36;
 const SLOWEST_FALL: f64 = 0.6;
 
-/// Largest number of fronts until one leaves the room that settling needs.
+/// Largest number of fronts until one leaves the room that settling needs, and of sizes that are
+/// wide.
 const MOST_FRONTS: usize = 4;
+const MOST_WIDE_FRONTS: usize = 2;
 /// Factor on the reduction of the radii after the spheres of the previous front have jammed, and
 /// the number of times that it is applied before some spheres are taken out.
 const AFTER_JAM: f64 = 0.93;
@@ -45,6 +47,8 @@ const MOST_JAMS: usize = 3;
 pub(super) struct Retry {
     /// The target volume, if the reduction is chosen here.
     target: Option<FillTarget>,
+    /// Largest number of fronts until one leaves the room that settling needs.
+    most_fronts: usize,
     /// Number of fronts run.
     pub(super) fronts: usize,
     /// Number of times that the spheres have jammed.
@@ -61,6 +65,11 @@ impl Retry {
         let target = || FillTarget::new(job.solid.surface, &settings.sizes, settings.overlap);
         Self {
             target: settings.densify.is_none().then(target),
+            most_fronts: if is_wide(&settings.sizes) {
+                MOST_WIDE_FRONTS
+            } else {
+                MOST_FRONTS
+            },
             fronts: 0,
             jams: 0,
             is_last: false,
@@ -85,7 +94,7 @@ impl Retry {
         if attempt.fills_voids {
             return self.with_truer_sizes(attempt, grown);
         }
-        if self.jams > 0 || self.fronts >= MOST_FRONTS {
+        if self.jams > 0 || self.fronts >= self.most_fronts {
             return None;
         }
         let shrink = self.target?.better_shrink(attempt.shrink, grown.volume())?;

@@ -7,7 +7,8 @@
 //! one size this settling does not quite reach. Walls reduce it by 0.080 times mean diameter times
 //! surface over volume. This was fitted to bars, balls, discs, rocks and tori, 6 to 40 diameters
 //! thick, of one size, uniform and lognormal diameters: it separates jamming bodies from others
-//! within 0.5 %.
+//! within 0.5 %. Of wider distributions a few large spheres fill most of the volume: they jam at
+//! about 0.69, and walls count by the mean diameter by mass.
 
 use super::settings::PackSettings;
 use crate::sizes::Sizes;
@@ -18,6 +19,11 @@ use dem_io::Surface;
 const JAMMED: [f64; 3] = [0.6304, 0.0658, 0.0857];
 /// Reduction of the volume fraction by walls, per mean diameter times surface over volume.
 const WALL: f64 = 0.080;
+/// Spread above which a distribution is wide, and the volume fraction at which it jams.
+const WIDE: f64 = 0.4;
+const WIDE_JAMMED: f64 = 0.69;
+/// Reduction of the front's radii to begin with for a wide distribution.
+const WIDE_SHRINK: f64 = 0.0435;
 /// Target distance below jamming, as a fraction of the jamming density, and the accepted deviation
 /// from it. Nearer, settling takes two to three times the steps.
 const BELOW_JAMMING: f64 = 0.006;
@@ -47,8 +53,13 @@ impl FillTarget {
         // The region that reduced spheres can reach ends half the overlap below the surface.
         let reached = (volume - 0.5 * overlap * diameter * area).max(0.0);
         let [spread, skewness] = sizes.spread_and_skewness();
-        let far = JAMMED[0] + JAMMED[1] * spread + JAMMED[2] * skewness * spread * spread;
-        let jammed = far * reached - WALL * diameter * area;
+        let (far, at_wall) = if spread > WIDE {
+            (WIDE_JAMMED, sizes.mean_by_mass_m() / sizes.mean_m())
+        } else {
+            let far = JAMMED[0] + JAMMED[1] * spread + JAMMED[2] * skewness * spread * spread;
+            (far, 1.0)
+        };
+        let jammed = far * reached - WALL * at_wall * diameter * area;
         Self {
             volume: (1.0 - BELOW_JAMMING) * jammed.max(0.0),
         }
@@ -68,11 +79,20 @@ impl FillTarget {
     }
 }
 
+/// True if a few large spheres fill most of the volume, so that fronts of the same settings differ
+/// by more than what will do.
+pub(super) fn is_wide(sizes: &Sizes) -> bool {
+    sizes.spread_and_skewness()[0] > WIDE
+}
+
 /// The reduction to begin with: the user's, or else one from which most bodies need only a slightly
-/// different one. Wide size distributions fill better from the start, and need less.
+/// different one.
 pub(super) fn choose_shrink(settings: &PackSettings) -> f64 {
     let usual = || {
         let [spread, _] = settings.sizes.spread_and_skewness();
+        if spread > WIDE {
+            return WIDE_SHRINK;
+        }
         (0.044 - 0.05 * spread).max(SHRINK_RANGE[0])
     };
     rounded(settings.densify.unwrap_or_else(usual))

@@ -75,6 +75,18 @@ impl Sizes {
         [spread, moment(3) / spread.powi(3)]
     }
 
+    /// Mean diameter by mass, m.
+    pub(crate) fn mean_by_mass_m(&self) -> f64 {
+        const PARTS: u32 = 1000;
+        let quantiles = || (0..PARTS).map(|k| (f64::from(k) + 0.5) / f64::from(PARTS));
+        let moment = |n: i32| -> f64 {
+            quantiles()
+                .map(|u| self.quantile_by_number(u).powi(n))
+                .sum()
+        };
+        moment(4) / moment(3)
+    }
+
     /// Mean volume of a particle, by number, m3.
     pub fn mean_volume_m3(&self) -> f64 {
         self.mean_volume_m3

@@ -183,6 +183,8 @@ fn no_size_is_favoured() {
     let bench = Bench::new();
     let file = bench.stl("box.stl", &cuboid([15.0, 12.0, 11.0]));
     (laws(bench.folder.path()).into_par_iter()).for_each(|(diameter, law)| {
+        // A folder of its own: all bodies have the same name.
+        let bench = Bench::new();
         let [mean, deviation] = law.mean_and_deviation(0);
         let in_sigma = |seed: usize| {
             let body = bench.pack_only(&file, &["-d", &diameter, "--seed", &seed.to_string()]);
