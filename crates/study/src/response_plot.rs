@@ -183,11 +183,11 @@ fn wanted(table: &SweepTable, response: &Response) -> Option<(f64, String)> {
 }
 
 /// What is shown of the values along the averaged axis: that in which `[find]` looks for a value,
-/// if it does so in this response, else the mean.
+/// if it does so in this response, else that of the study.
 pub(crate) fn average(table: &SweepTable, response: &Response) -> Average {
     let search = table.find.as_ref();
     let search = search.filter(|search| search.measure == response.measure);
-    search.map_or(Average::Mean, |search| search.statistic)
+    search.map_or(table.statistic, |search| search.statistic)
 }
 
 /// The axis shown by colours: that of the page, or the first other one.

@@ -1,5 +1,6 @@
 //! The contents of the table of a sweep.
 
+use dem_scene::study::Average;
 use serde::Serialize;
 
 use super::response::Response;
@@ -29,6 +30,8 @@ pub struct SweepTable {
     pub series: Option<usize>,
     /// The axis over which responses are averaged.
     pub average_over: Option<usize>,
+    /// What responses show of the values along it, unless `[find]` says otherwise.
+    pub statistic: Average,
     /// Measures.
     pub measures: Vec<MeasureColumn>,
     /// All runs, in the order of their numbers.

@@ -100,6 +100,7 @@ impl SweepTable {
             axes: study.axes.iter().map(column).collect(),
             series: study.series,
             average_over: study.average_over,
+            statistic: study.statistic,
             measures: (0..study.measures.len())
                 .map(|at| MeasureColumn {
                     name: study.measures[at].name.clone(),
@@ -238,9 +239,9 @@ fn mark_front(rows: &mut [Row], measure: usize) {
     }
 }
 
-/// A sentence on the runs whose verdict is doubtful, if there are any: each kind of warning once,
-/// with the number of its runs.
-fn doubtful(runs: &[Run], of_runs: &[Option<&Done>]) -> Option<String> {
+/// Sentences on the runs whose verdict is doubtful, if there are any: their number, and each kind of
+/// warning once, with the number of its runs.
+fn doubtful(runs: &[Run], of_runs: &[Option<&Done>]) -> Vec<String> {
     let done = runs.iter().zip(of_runs);
     let done = done.filter_map(|(run, done)| Some((run.number, done.as_ref()?)));
     let (mut all, mut doubtful) = (0, 0);
@@ -257,16 +258,14 @@ fn doubtful(runs: &[Run], of_runs: &[Option<&Done>]) -> Option<String> {
             }
         }
     }
+    if doubtful == 0 {
+        return Vec::new();
+    }
     let told = kinds.iter().map(|(_, count, number, warning)| {
-        format!("{count} of them, run {number} first: {warning}")
+        format!("in {count} of them, first in run {number}: {warning}")
     });
-    let told: Vec<String> = told.collect();
-    (doubtful > 0).then(|| {
-        format!(
-            "{doubtful} of {all} runs are doubtful (verdict in their summary.json); {}",
-            told.join("; ")
-        )
-    })
+    let first = format!("{doubtful} of {all} runs are doubtful (verdict in their summary.json)");
+    std::iter::once(first).chain(told).collect()
 }
 
 /// The first words of a warning that contain no digit: the same for all runs with such a warning.

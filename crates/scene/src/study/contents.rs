@@ -41,6 +41,8 @@ pub struct Study {
     /// `average_over`: the axis over whose values responses are averaged; `run.seed` unless given,
     /// if that varies in a grid.
     pub average_over: Option<usize>,
+    /// `statistic`: what responses show of the values along that axis; the mean unless given.
+    pub statistic: Average,
     /// `[find]`
     pub find: Option<Find>,
     /// `series` of `[page]`: the axis whose values are distinguished by colour; the first without

@@ -117,9 +117,7 @@ pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure], cases: usize)
             Value::Text(text) => text.clone(),
             _ => return Err(value.wrong("a number", "write it with its unit, such as \"2 mm\"")),
         },
-        statistic: table
-            .read_by("statistic", |field| field.choice(&AVERAGES))?
-            .unwrap_or(Average::Mean),
+        statistic: statistic(table)?,
         ends,
         tolerance,
         unit,
@@ -176,4 +174,10 @@ impl Find {
     pub fn middle(low: f64, high: f64) -> f64 {
         rounded(f64::midpoint(low, high))
     }
+}
+
+/// `statistic` of a study or of its `[find]`.
+pub(super) fn statistic(table: &Table<'_>) -> Result<Average> {
+    let given = table.read_by("statistic", |field| field.choice(&AVERAGES))?;
+    Ok(given.unwrap_or(Average::Mean))
 }

@@ -90,6 +90,12 @@ pub(crate) static STUDY: Schema = Schema {
             "Axis over which the responses of measures without a reference are averaged; their scatter is shown.",
         )
         .otherwise("`run.seed` if that varies"),
+        Key::new(
+            "statistic",
+            Kind::Word(|| words_of(&AVERAGES)),
+            "What the responses show of the values along the axis of `average_over`: their mean with the standard deviation, or their median with the range. `[find]` has its own.",
+        )
+        .or_word("mean"),
         Key::table("find", &FIND, FIND.doc),
         Key::table("page", &PAGE, PAGE.doc),
     ],

@@ -112,6 +112,7 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         time: root.read("time")?,
         combine,
         average_over,
+        statistic: find::statistic(&root)?,
         find,
         series: series.or_else(|| axes.iter().position(|axis| axis.sizes().is_none())),
         fixed,

@@ -107,6 +107,22 @@ fn a_response_is_the_mean_with_its_scatter() {
     );
 }
 
+/// With `statistic = "median"` text and page show the median, with the range of the values.
+#[test]
+fn a_response_may_be_the_median_with_its_range() {
+    let bench = bench(&format!("statistic = \"median\"\n{REST}[measures.tip]\n"));
+    let said = good(&bench, &[]);
+    assert!(
+        said.contains("response     tip (m), median and range over loads.tip.force"),
+        "{said}"
+    );
+    let [low, middle, high] = [900.0, 1000.0, 1100.0].map(|force| elongation_m(force, 200e9));
+    let line = format!("  {middle:.3e} ({low:.2e} to {high:.2e})");
+    assert!(said.contains(&line), "{said} {line}");
+    let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
+    assert!(html.contains("Medians over 2 values"), "{html}");
+}
+
 /// Values without numbers have names at the axis; a second parameter has a plot of its own.
 #[test]
 fn each_varied_parameter_has_a_plot() {
