@@ -21,6 +21,8 @@ use crate::state::model::Model;
 pub(super) const COUNT: &str = "fragments";
 pub(super) const SIZES: &str = "fragment_sizes";
 pub(super) const DISCHARGE: &str = "discharged_mass";
+/// The plots of [`write_fragment_plots`].
+pub(crate) const FRAGMENT_PLOTS: [&str; 3] = [COUNT, SIZES, DISCHARGE];
 
 /// Largest number of fragments named in the text of a split.
 const NAMED: usize = 8;

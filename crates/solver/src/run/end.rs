@@ -76,9 +76,10 @@ impl Run<'_> {
     /// The last checkpoint, from which the run can be continued to a later end time; plots, film
     /// and summary.
     fn write_end(&mut self, summary: &Summary) -> Result<()> {
-        let end = End::of(summary)?;
+        let mut end = End::of(summary)?;
         if let Some(folder) = self.settings.folder {
-            end.write_tables(folder, &self.state, &self.probes)?;
+            let at_end = (&self.state, summary.simulated_s);
+            end.write_tables(folder, at_end, &self.probes)?;
         }
         self.finish_last_step()?;
         if let Some(folder) = self.settings.folder {

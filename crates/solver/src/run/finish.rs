@@ -2,7 +2,7 @@
 //! writing them.
 
 use dem_io::safe_write::write_file;
-use dem_io::{Diagnostic, Result};
+use dem_io::{Diagnostic, Result, read_input};
 use dem_report::report;
 use dem_results::{ResultsFolder, write_distribution};
 use dem_scene::Scene;
@@ -15,7 +15,7 @@ use super::settings::RunSettings;
 use super::snapshot::fingerprint;
 use crate::laboratory::watch::Watch;
 use crate::measure::{Probe, probes};
-use crate::output::fragments::{write_fragment_plots, write_tree};
+use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use crate::output::plots::{plots_of_every_run, write_plots};
 use crate::output::sizes::Fragments;
 use crate::output::summary::Summary;
@@ -28,7 +28,9 @@ use crate::state::State;
 pub(super) struct End {
     /// `summary.json`.
     summary: String,
-    simulated_s: f64,
+    /// Tables and plots of the fragments, which the state of the checkpoint, half a step later,
+    /// would change: path in the folder and text of each file.
+    tables: Vec<(String, String)>,
 }
 
 impl End {
@@ -37,18 +39,19 @@ impl End {
             .map_err(|error| Diagnostic::failed("summary.json", error.to_string(), ""))?;
         Ok(Self {
             summary: format!("{json}\n"),
-            simulated_s: summary.simulated_s,
+            tables: Vec::new(),
         })
     }
 
-    /// Writes the tables and plots of the fragments of a run that ends in this state.
+    /// Writes the tables and plots of the fragments of a run that ends in this state after
+    /// `end_s`, s, and keeps them.
     ///
     /// # Errors
     /// Those of the files.
     pub(super) fn write_tables(
-        &self,
+        &mut self,
         folder: &ResultsFolder,
-        state: &State,
+        (state, end_s): (&State, f64),
         probes: &[Probe],
     ) -> Result<()> {
         let Some(clusters) = &state.clusters else {
@@ -56,12 +59,21 @@ impl End {
         };
         let fragments = Fragments::of(state).unwrap_or_default();
         write_tree(folder, clusters)?;
-        write_fragment_plots(folder, state, &fragments, self.simulated_s, probes)?;
-        write_distribution(&folder.distribution(), &fragments.rows(&state.model))
+        write_fragment_plots(folder, state, &fragments, end_s, probes)?;
+        write_distribution(&folder.distribution(), &fragments.rows(&state.model))?;
+        let plots = FRAGMENT_PLOTS.iter().map(|name| folder.plot(name));
+        let paths = plots.chain([folder.fragment_tree(), folder.distribution()]);
+        for path in paths.filter(|path| path.is_file()) {
+            let text = read_input(&path, "a file of results")?;
+            let name = path.strip_prefix(folder.path()).unwrap_or(&path);
+            let text = String::from_utf8_lossy(&text).into_owned();
+            self.tables.push((name.display().to_string(), text));
+        }
+        Ok(())
     }
 
-    /// Writes plots, film and page of a run whose tables are written, and its summary last: if the
-    /// summary exists, all files do.
+    /// Writes tables, plots, film and page of a run, and its summary last: if the summary exists,
+    /// all files do.
     ///
     /// # Errors
     /// Those of the files.
@@ -73,6 +85,11 @@ impl End {
     ) -> Result<()> {
         let summary: Value = serde_json::from_str(&self.summary).unwrap_or_default();
         write_plots(folder, probes, &summary["measures"])?;
+        for (name, text) in &self.tables {
+            write_file(&folder.path().join(name), |out| {
+                out.write_all(text.as_bytes())
+            })?;
+        }
         if let Some(pictures) = pictures {
             pictures.finish()?;
         }
@@ -162,12 +179,6 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
     let mut pictures = order
         .map(|order| Pictures::open(folder, order, Some((&state, progress.pictures))))
         .transpose()?;
-    // The state is that of the checkpoint: a body that was added in the second half of the last step
-    // is in it, but not in tables that the run itself has written.
-    let tables = [folder.fragment_tree(), folder.distribution()];
-    if tables.iter().any(|path| !path.is_file()) {
-        end.write_tables(folder, &state, &probes)?;
-    }
     end.write(folder, &probes, pictures.as_mut())?;
     let summary = end.summary.clone();
     Ok(Some(Finished { missing, summary }))
