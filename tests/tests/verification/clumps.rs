@@ -318,6 +318,56 @@ fn replaced() -> [String; 2] {
     [compared("sum", "", &sums), compared("place", "mm", &places)]
 }
 
+/// Speed of each of two plates that close on the pair, m/s.
+const CLOSING_M_S: f64 = 0.05;
+
+/// Overlap of the contacts with two plates at which the pair is replaced, m. `when`: its trigger.
+fn overlap_at_replacement_m(when: &str) -> f64 {
+    let mut state = started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = "1 s", time_step = "1 us" }}
+        materials.stone = {{ density = {DENSITY_KG_M3:e}, young_modulus = "10 MPa", poisson_ratio = 0.25 }}
+        bonds.glue = {{ young_modulus = "10 MPa", poisson_ratio = 0.3 }}
+        contacts.stone-stone = {{ restitution = 1 }}
+        bodies.pair = {{ particles = [[-6e-3, 0, 0, {RADIUS_M:e}], [6e-3, 0, 0, {RADIUS_M:e}]], bond_list = [[0, 1]], material = "stone", bonds = "glue", start_as = "clump" }}
+        walls.below = {{ plane = {{ point = [0, 0, {:e}], normal = [0, 0, 1] }}, material = "stone", velocity = [0, 0, {CLOSING_M_S:e}] }}
+        walls.above = {{ plane = {{ point = [0, 0, {RADIUS_M:e}], normal = [0, 0, -1] }}, material = "stone", velocity = [0, 0, {:e}] }}
+        replacement.pair.when = {{ {when} }}
+        "#,
+        -RADIUS_M, -CLOSING_M_S
+    ));
+    let mut now_s = state.time_s;
+    while !state.clumps.all.is_empty() {
+        now_s = state.time_s;
+        step(&mut state);
+    }
+    CLOSING_M_S * now_s
+}
+
+/// The two triggers that see a squeeze, at the value that Hertz's law gives for an overlap.
+fn squeezed() -> String {
+    let modulus_pa = 1e7 / (2.0 * (1.0 - 0.25 * 0.25));
+    let volume_m3 = 8.0 / 3.0 * PI * RADIUS_M.powi(3);
+    let mut cases = Vec::new();
+    // Reached in the middle of a step.
+    for overlap_m in [2.0025e-5, 2.00025e-4] {
+        let force_n = 4.0 / 3.0 * modulus_pa * RADIUS_M.sqrt() * f64::powf(overlap_m, 1.5);
+        let stress_pa = 4.0 * force_n * (RADIUS_M - overlap_m) / volume_m3;
+        // One step.
+        let bound = 1.01e-6 * CLOSING_M_S / overlap_m;
+        for (name, limit, unit) in [
+            ("contact_force", force_n, "N"),
+            ("principal_stress", stress_pa, "Pa"),
+        ] {
+            let found_m = overlap_at_replacement_m(&format!("{name} = {limit:e}"));
+            let what = format!("{name} = {limit:.4e} {unit}");
+            cases.push(Case::new(what, 1e3 * found_m, 1e3 * overlap_m, bound));
+        }
+    }
+    compared("trigger", "mm", &cases)
+}
+
 /// The page of clumps equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
@@ -328,6 +378,7 @@ fn the_page_shows_what_the_solver_gives() {
             &[
                 ("angles", symmetric()),
                 ("periods", asymmetric()),
+                ("squeezes", squeezed()),
                 ("sums", sums),
                 ("places", places),
             ],
