@@ -12,7 +12,7 @@ use super::material::Material;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::STIFFNESS;
+use dem_io::units::{ENERGY_PER_AREA, STIFFNESS};
 
 /// Smallest coefficient of restitution: dampers below it need arbitrarily small steps.
 const LEAST_RESTITUTION: f64 = 1e-3;
@@ -21,11 +21,13 @@ const LEAST_RESTITUTION: f64 = 1e-3;
 #[derive(Clone, Copy)]
 enum LawName {
     HertzMindlin,
+    Dmt,
     Linear,
 }
 
-const LAWS: [(&str, LawName); 2] = [
+const LAWS: [(&str, LawName); 3] = [
     ("hertz-mindlin", LawName::HertzMindlin),
+    ("dmt", LawName::Dmt),
     ("linear", LawName::Linear),
 ];
 
@@ -39,9 +41,16 @@ pub(super) static CONTACT: Schema = Schema {
         Key::new(
             "law",
             Kind::Word(|| words_of(&LAWS)),
-            "Hertz-Mindlin, or a linear spring and dashpot.",
+            "Hertz-Mindlin, the same with the adhesion of Derjaguin, Muller and Toporov, or a linear spring and dashpot.",
         )
         .or_word("hertz-mindlin"),
+        Key::quantity(
+            "work_of_adhesion",
+            &ENERGY_PER_AREA,
+            "Work that separates two surfaces, of the law `dmt`, which requires it: the pull-off force is 2 pi times it and the effective radius. Twice the surface energy for a material with itself.",
+        )
+        .positive()
+        .sometimes_required("\"50 mJ/m2\""),
         Key::quantity(
             "normal_stiffness",
             &STIFFNESS,
@@ -109,6 +118,11 @@ pub enum ContactLaw {
     /// "hertz-mindlin", unless given: elastic spheres. Both materials have a `young_modulus`, or
     /// one of them is rigid.
     HertzMindlin,
+    /// "dmt": the same with adhesion.
+    Dmt {
+        /// `work_of_adhesion`, J/m2; more than 0.
+        work_of_adhesion_j_m2: f64,
+    },
     /// "linear": a spring and a dashpot.
     Linear {
         /// `normal_stiffness`, N/m.
@@ -176,7 +190,7 @@ fn read(
         ));
     }
     let law = law(&table)?;
-    if law == ContactLaw::HertzMindlin {
+    if !matches!(law, ContactLaw::Linear { .. }) {
         need_moduli(&table, &pair, materials)?;
     }
     let restitution = table.read("restitution")?;
@@ -190,24 +204,53 @@ fn read(
     })
 }
 
+/// Keys that only one law has, with the name of the law.
+type Own = (&'static str, &'static [&'static str]);
+const OF_LINEAR: Own = (
+    "linear",
+    &["normal_stiffness", "tangential_stiffness_ratio"],
+);
+const OF_DMT: Own = ("dmt", &["work_of_adhesion"]);
+
+/// Refuses keys that belong to another law than `law`.
+fn refuse_of(table: &Table<'_>, (other, keys): &Own, law: &str, why: &str) -> Result<()> {
+    match keys.iter().find_map(|key| table.get(key)) {
+        Some(field) => {
+            let problem = format!("{} does not apply to the law \"{law}\", {why}", field.path);
+            let remedy = format!("remove it, or write law = \"{other}\"");
+            Err(field.refuse(problem, remedy))
+        }
+        None => Ok(()),
+    }
+}
+
 fn law(table: &Table<'_>) -> Result<ContactLaw> {
     let name = table.read_by("law", |field| field.choice(&LAWS))?;
     match name.unwrap_or(LawName::HertzMindlin) {
+        LawName::Dmt => {
+            refuse_of(
+                table,
+                &OF_LINEAR,
+                "dmt",
+                "whose stiffness is that of the materials",
+            )?;
+            Ok(ContactLaw::Dmt {
+                work_of_adhesion_j_m2: table.read("work_of_adhesion")?,
+            })
+        }
         LawName::HertzMindlin => {
-            let mut of_linear = table.given(&["normal_stiffness", "tangential_stiffness_ratio"]);
-            if let Some((_, field)) = of_linear.next() {
-                let problem = format!(
-                    "{} does not apply to the law \"hertz-mindlin\", whose stiffness is that of the materials",
-                    field.path
-                );
-                return Err(field.refuse(problem, "remove it, or write law = \"linear\""));
-            }
+            refuse_of(table, &OF_DMT, "hertz-mindlin", "which has no adhesion")?;
+            let why = "whose stiffness is that of the materials";
+            refuse_of(table, &OF_LINEAR, "hertz-mindlin", why)?;
             Ok(ContactLaw::HertzMindlin)
         }
-        LawName::Linear => Ok(ContactLaw::Linear {
-            normal_n_m: table.read("normal_stiffness")?,
-            tangential_stiffness_ratio: table.read("tangential_stiffness_ratio")?,
-        }),
+        LawName::Linear => {
+            refuse_of(table, &OF_DMT, "linear", "which has no adhesion")?;
+            Ok(ContactLaw::Linear {
+                normal_n_m: table.read("normal_stiffness")?,
+                tangential_stiffness_ratio: table.read("tangential_stiffness_ratio")?,
+            })
+        }
     }
 }
 
@@ -226,7 +269,7 @@ fn need_moduli(
         return Ok(());
     };
     let problem = format!(
-        "{} follows the law \"hertz-mindlin\", but [materials.{name}] has no young_modulus",
+        "{} follows Hertz's law, but [materials.{name}] has no young_modulus",
         table.path
     );
     let remedy = format!(
@@ -276,6 +319,12 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
 pub(super) fn list(contact: &Contact, listing: &mut Listing) {
     match contact.law {
         ContactLaw::HertzMindlin => listing.text("law", "hertz-mindlin"),
+        ContactLaw::Dmt {
+            work_of_adhesion_j_m2,
+        } => {
+            listing.text("law", "dmt");
+            listing.value("work_of_adhesion", &work_of_adhesion_j_m2);
+        }
         ContactLaw::Linear {
             normal_n_m,
             tangential_stiffness_ratio,

@@ -1,6 +1,7 @@
 //! Contact laws compared with an independent implementation and closed forms, and their invariants.
 
 mod books;
+mod dmt;
 mod documented;
 mod hertz;
 mod impact;

@@ -569,6 +569,63 @@ fn held() -> String {
     compared("incline", "m/s", &cases)
 }
 
+/// A fine sphere that sticks to a plate, without gravity. `overlap_m`: at the start; `more`: what
+/// else the scene has; `motion`: of the plate.
+fn sticking(work_j_m2: f64, overlap_m: f64, [motion, more]: [&str; 2]) -> State {
+    started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = "1 s", time_step = "0.1 us", initial_overlap = "keep" }}
+        materials.powder = {{ density = {DENSITY_KG_M3:e}, young_modulus = {FINE_PA:e}, poisson_ratio = {POISSON} }}
+        contacts.powder-powder = {{ law = "dmt", work_of_adhesion = {work_j_m2:e}, restitution = 0.1 }}
+        bodies.ball = {{ particles = [[0, 0, {:e}, {FINE_M:e}]], material = "powder" }}
+        walls.plate = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = "powder"{motion} }}
+        {more}
+        "#,
+        FINE_M - overlap_m,
+    ))
+}
+
+/// Radius, m, and Young's modulus, Pa, of a sphere that sticks.
+const FINE_M: f64 = 1e-4;
+const FINE_PA: f64 = 1e8;
+
+/// The sphere comes to rest at the overlap at which Hertz's force is the attraction. Held there, it
+/// is pulled with at most 2 pi w R by a plate that retreats.
+fn adhesion() -> String {
+    let hertz = 4.0 / 3.0 * FINE_PA / (2.0 * (1.0 - POISSON * POISSON)) * FINE_M.sqrt();
+    let overlap_m = |state: &State| FINE_M - place(state, 0).z;
+    let mut cases = Vec::new();
+    for work_j_m2 in [5e-3, 0.05] {
+        let force_n = 2.0 * PI * work_j_m2 * FINE_M;
+        let wanted_m = (force_n / hertz).powf(2.0 / 3.0);
+        let mut state = sticking(work_j_m2, 1e-9, ["", ""]);
+        while state.time_s < 2e-3 {
+            step(&mut state);
+        }
+        let name = format!("{} mJ/m2", 1e3 * work_j_m2);
+        let rest = [overlap_m(&state), wanted_m].map(|x| 1e6 * x);
+        let what = format!("{name}: overlap at rest, um");
+        cases.push(Case::new(what, rest[0], rest[1], 1e-6));
+
+        let motion = ", velocity = [0, 0, -1e-3]";
+        let held = "supports.ball = { group = \"ball\", velocity.z = 0 }";
+        let mut state = sticking(work_j_m2, wanted_m, [motion, held]);
+        let mut largest_n = 0.0_f64;
+        while state.time_s < 2.0 * wanted_m / 1e-3 {
+            dem_run::step::interact(&mut state);
+            largest_n = largest_n.max(-state.walls[0].total_load()[0][2]);
+            dem_run::step::advance(&mut state);
+        }
+        // Hertz's force one step before the separation.
+        let bound = hertz * 1e-10_f64.powf(1.5) / force_n;
+        let pull = [largest_n, force_n].map(|x| 1e6 * x);
+        let what = format!("{name}: pull-off force, uN");
+        cases.push(Case::new(what, pull[0], pull[1], bound));
+    }
+    compared("work of adhesion", "", &cases)
+}
+
 /// The page of contacts equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
@@ -592,6 +649,7 @@ fn the_page_shows_what_the_solver_gives() {
                 ("incline spins", turn),
                 ("rolling friction", rolling_friction()),
                 ("held", held()),
+                ("adhesion", adhesion()),
             ],
         )
     });

@@ -98,6 +98,14 @@ pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Re
                 &law.parameters,
             )
         }
+        Law::DerjaguinMullerToporov(_) => {
+            return Err(refused(
+                scene,
+                format!("contacts.{names}.law"),
+                "the friction of its dmt has another limit than the force that presses",
+                "write law = \"hertz-mindlin\" without work_of_adhesion",
+            ));
+        }
         Law::Linear(law) => {
             let (n, t) = (law.normal_n_m, law.tangential_n_m);
             let ratio = (t / n).sqrt() * tangential_ratio(&law.parameters);

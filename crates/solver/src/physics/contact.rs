@@ -24,6 +24,7 @@
 //! to that.
 
 pub(crate) mod assembly;
+pub mod dmt;
 pub mod hertz_mindlin;
 pub mod kinematics;
 pub mod law;
@@ -191,8 +192,8 @@ fn of_lagging_velocity<T: Number>(damping_n_s_m: T, mass_kg: T, dt: f64) -> T {
 /// Meant for the inside of a loop over contacts: it has no branches, and results that the caller
 /// does not use are not computed.
 #[inline(always)]
-pub fn response<T: Number>(
-    law: &impl NormalLaw<T>,
+pub fn response<T: Number, L: NormalLaw<T>>(
+    law: &L,
     rolling: &impl RollingFriction<T>,
     touch: &ContactKinematics<T>,
     springs: &ContactSprings<T>,
@@ -209,9 +210,16 @@ pub fn response<T: Number>(
         dt,
     );
     let damped = normal_response.elastic_n - damping * apart;
-    let held = damped.maximum(parameters.least_n);
-    let normal = touch.overlap_m.if_positive(held);
-    let pressed = normal.if_positive(normal);
+    let [normal, pressed] = if L::ATTRACTS {
+        let attraction = law.attraction_n(touch);
+        let held = (damped + attraction).maximum(parameters.least_n);
+        let normal = touch.overlap_m.if_positive(held - attraction);
+        [normal, touch.overlap_m.if_positive(held.if_positive(held))]
+    } else {
+        let held = damped.maximum(parameters.least_n);
+        let normal = touch.overlap_m.if_positive(held);
+        [normal, normal.if_positive(normal)]
+    };
 
     let across = touch.velocity_m_s - touch.middle * apart;
     let friction_step = coulomb_return_map(

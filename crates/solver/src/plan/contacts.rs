@@ -6,6 +6,7 @@ use std::sync::Arc;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Contact, ContactLaw, InitialOverlap, Material, Rolling as SceneRolling, Scene};
 
+use crate::physics::contact::dmt::DerjaguinMullerToporov;
 use crate::physics::contact::hertz_mindlin::HertzMindlin;
 use crate::physics::contact::law::ContactKind;
 use crate::physics::contact::law::Law;
@@ -118,6 +119,12 @@ fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
             ContactLaw::HertzMindlin => {
                 Law::HertzMindlin(HertzMindlin::new([elastic(a), elastic(b)], &pair_input))
             }
+            ContactLaw::Dmt {
+                work_of_adhesion_j_m2,
+            } => Law::DerjaguinMullerToporov(DerjaguinMullerToporov {
+                hertz_mindlin: HertzMindlin::new([elastic(a), elastic(b)], &pair_input),
+                work_of_adhesion_j_m2,
+            }),
             ContactLaw::Linear {
                 normal_n_m,
                 tangential_stiffness_ratio: tangential_ratio,

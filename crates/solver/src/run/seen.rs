@@ -18,6 +18,7 @@ use crate::state::clusters::fragments::Fragment;
 use crate::state::events::PopulationEvent;
 use crate::state::events::REMOVED;
 use crate::state::events::STARTS_BONDED;
+use crate::state::rules::Outlet;
 
 /// Fraction of the run at its end in which a breaking bond shows that breakage is not over.
 const LATE: f64 = 0.05;
@@ -270,7 +271,8 @@ impl Seen {
             let trigger: Vec<String> = trigger.into_iter().flatten().collect();
             let joined = trigger.join(if rule.requires_all { " and " } else { " or " });
             warnings.push(format!(
-                "no clump of '{name}' was replaced: its trigger ({joined}) was not met, so it could not break"
+                "no clump of '{name}' was replaced: its trigger ({joined}) was not met, so it could not break{}",
+                discharged_before(state, name)
             ));
         }
         warnings
@@ -419,6 +421,36 @@ fn outlook(flyer: &FreeBody, state: &State, flying: &[FreeBody]) -> String {
                 "at the end {is} has met nothing yet; check its position, or set run.end_time later"
             )
         }
+    }
+}
+
+/// The outlets that removed clumps of a body, as the end of a sentence; empty if none did.
+fn discharged_before(state: &State, name: &str) -> String {
+    let rules = &state.model.rules;
+    let is_own = |body: u32| {
+        state
+            .model
+            .bodies
+            .get(body as usize)
+            .is_some_and(|own| own.name == *name)
+    };
+    let gone = &state.population.discharged;
+    let of_outlet = |(number, outlet): (usize, &Outlet)| {
+        let own = gone
+            .iter()
+            .filter(|one| one.outlet as usize == number && is_own(one.size.body));
+        let count = own.count();
+        (count > 0).then(|| format!("{count} by the outlet '{}'", outlet.name))
+    };
+    let told: Vec<String> = rules
+        .outlets
+        .iter()
+        .enumerate()
+        .filter_map(of_outlet)
+        .collect();
+    match told.is_empty() {
+        true => String::new(),
+        false => format!("; removed before: {}", told.join(", ")),
     }
 }
 

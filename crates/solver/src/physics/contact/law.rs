@@ -2,6 +2,7 @@
 //! that lists them. See `doc/adding-a-model.md` for how to add another.
 
 use super::assembly::{Assembled, StoredContact, assemble};
+use super::dmt::DerjaguinMullerToporov;
 use super::hertz_mindlin::HertzMindlin;
 use super::kinematics::ContactKinematics;
 use super::linear::Linear;
@@ -16,6 +17,8 @@ use serde::Serialize;
 pub enum Law {
     /// Hertz and Mindlin.
     HertzMindlin(HertzMindlin),
+    /// Hertz and Mindlin with adhesion.
+    DerjaguinMullerToporov(DerjaguinMullerToporov),
     /// Springs and dashpots.
     Linear(Linear),
 }
@@ -45,6 +48,7 @@ impl Law {
     pub fn at_impact(&self) -> &dyn ImpactLaw {
         match self {
             Self::HertzMindlin(law) => law,
+            Self::DerjaguinMullerToporov(law) => law,
             Self::Linear(law) => law,
         }
     }
@@ -70,6 +74,7 @@ impl ContactKind {
     ) -> W::Output {
         match &self.law {
             Law::HertzMindlin(law) => self.with_law(&law.in_lanes(all), all, work),
+            Law::DerjaguinMullerToporov(law) => self.with_law(&law.in_lanes(all), all, work),
             Law::Linear(law) => self.with_law(&law.in_lanes(all), all, work),
         }
     }

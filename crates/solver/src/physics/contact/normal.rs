@@ -7,7 +7,7 @@ use crate::physics::number::Number;
 /// Result of a normal law for a contact at its overlap, now and a step before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalResponse<T = f64> {
-    /// Elastic force, N.
+    /// Elastic force with [attraction](NormalLaw::attraction_n), N.
     pub elastic_n: T,
     /// Elastic energy, J.
     pub energy_j: T,
@@ -25,6 +25,9 @@ pub struct NormalResponse<T = f64> {
 
 /// A law for the normal force, and the quantities that friction needs from it.
 pub trait NormalLaw<T: Number> {
+    /// Whether it attracts: other laws pay nothing for it.
+    const ATTRACTS: bool = false;
+
     /// The contact now and, at the overlap of its history, a step of `dt`, s, before.
     fn evaluate(
         &self,
@@ -33,12 +36,19 @@ pub trait NormalLaw<T: Number> {
         dt: f64,
     ) -> NormalResponse<T>;
 
+    /// Force with which the ends attract each other while they touch, N: part of the elastic force,
+    /// but it does not press them.
+    #[inline(always)]
+    fn attraction_n(&self, touch: &ContactKinematics<T>) -> T {
+        touch.overlap_m.zero()
+    }
+
     /// Damping and friction of the pair.
     fn parameters(&self) -> &PairParameters<T>;
 }
 
 /// Quantities that the choice of the time step needs from a law besides forces.
-pub trait ImpactLaw: NormalLaw<f64> {
+pub trait ImpactLaw {
     /// Largest fraction of its own limit at which an impact is resolved with the default safety
     /// factor: it keeps the energy error of a single impact small.
     fn impact_fraction(&self) -> f64;
