@@ -79,27 +79,34 @@ pub(crate) fn add_response(page: &mut Page, table: &SweepTable, response: &Respo
     let mut columns: Vec<Column> = (axes.iter())
         .map(|at| Column::text(&table.axes[*at].name))
         .collect();
+    let shown = average(table, response);
     if averaged.is_some() {
-        columns.push(Column::number(&with_unit("mean", &measure.unit)));
-        let scatter = [
-            "standard deviation",
-            "smallest",
-            "median",
-            "largest",
-            "runs",
-        ];
+        columns.push(Column::number(&with_unit(shown.word(), &measure.unit)));
+        let scatter = match shown {
+            Average::Mean => [
+                "standard deviation",
+                "smallest",
+                "median",
+                "largest",
+                "runs",
+            ],
+            Average::Median => ["smallest", "largest", "mean", "standard deviation", "runs"],
+        };
         columns.extend(scatter.map(Column::number));
     } else {
         columns.push(Column::number(&with_unit(&measure.name, &measure.unit)));
     }
     let rows = response.points.iter().take(MOST_POINTS).map(|point| {
         let mut cells: Vec<String> = axes.iter().map(|at| point.settings[*at].clone()).collect();
-        cells.push(number(Some(point.mean), 4));
+        cells.push(number(Some(point.average(shown)), 4));
         if averaged.is_some() {
-            let [smallest, largest] = point.range();
-            cells.push(number(point.standard_deviation, 2));
-            let ends = [smallest, point.median, largest];
-            cells.extend(ends.map(|value| number(Some(value), 4)));
+            let deviation = number(point.standard_deviation, 2);
+            let [smallest, largest] = point.range().map(|end| number(Some(end), 4));
+            let other = |average| number(Some(point.average(average)), 4);
+            cells.extend(match shown {
+                Average::Mean => [deviation, smallest, other(Average::Median), largest],
+                Average::Median => [smallest, largest, other(Average::Mean), deviation],
+            });
             cells.push(point.values.len().to_string());
         }
         Row::from(cells)
