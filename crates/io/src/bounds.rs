@@ -111,6 +111,12 @@ impl Bounds {
         })
     }
 
+    /// Length of its longest side, m; 0 of no point at all.
+    pub fn longest_side_m(&self) -> f64 {
+        let sides = (0..3).map(|k| self.high[k] - self.low[k]);
+        sides.fold(0.0, f64::max)
+    }
+
     /// Length of the diagonal, m.
     pub fn diagonal_m(&self) -> f64 {
         (Vector3::from(self.high) - Vector3::from(self.low)).norm()

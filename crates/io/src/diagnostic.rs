@@ -17,8 +17,8 @@ pub enum Kind {
     Unstable,
 }
 
-/// One message: place, problem and remedy. Its debug form is the same sentence, so that a `main` that
-/// returns it prints what a user can read.
+/// One message: place, problem and remedy. Its debug form is the same sentence, so that a `main`
+/// that returns it prints what a user can read.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Origin of the error.

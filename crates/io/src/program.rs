@@ -108,8 +108,8 @@ const NUMBERS: [(&str, &str); 4] = [
     ("invalid float literal", "it is not a number"),
 ];
 
-/// The message of clap, without its `error:`, the usage, the hint to the help and that to `--`, which
-/// are paragraphs of their own.
+/// The message of clap, without its `error:`, the usage, the hint to the help and that to `--`,
+/// which are paragraphs of their own.
 pub fn on_one_line(said: &str) -> String {
     let paragraphs = said.trim_start_matches("error:").split("\n\n");
     let left_out = ["Usage:", "For more", "tip: to pass"];

@@ -18,11 +18,9 @@ impl Home {
     /// n x 3 each.
     pub(crate) fn of(corners_m: &[[f64; 3]], centres_m: &[[f64; 3]]) -> Self {
         let start = Bounds::of(corners_m.iter().chain(centres_m).copied());
-        let sides = [0, 1, 2].map(|k| start.high[k] - start.low[k]);
-        let longest_m = sides.into_iter().fold(0.0, f64::max);
         let reach_m = match corners_m.is_empty() {
             true => f64::INFINITY,
-            false => 0.25 * longest_m,
+            false => 0.25 * start.longest_side_m(),
         };
         Self { start, reach_m }
     }

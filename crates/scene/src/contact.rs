@@ -212,6 +212,9 @@ const OF_LINEAR: Own = (
 );
 const OF_DMT: Own = ("dmt", &["work_of_adhesion"]);
 
+/// Why laws of Hertz have no keys of stiffness.
+const STIFF_BY_MATERIALS: &str = "whose stiffness is that of the materials";
+
 /// Refuses keys that belong to another law than `law`.
 fn refuse_of(table: &Table<'_>, (other, keys): &Own, law: &str, why: &str) -> Result<()> {
     match keys.iter().find_map(|key| table.get(key)) {
@@ -228,20 +231,14 @@ fn law(table: &Table<'_>) -> Result<ContactLaw> {
     let name = table.read_by("law", |field| field.choice(&LAWS))?;
     match name.unwrap_or(LawName::HertzMindlin) {
         LawName::Dmt => {
-            refuse_of(
-                table,
-                &OF_LINEAR,
-                "dmt",
-                "whose stiffness is that of the materials",
-            )?;
+            refuse_of(table, &OF_LINEAR, "dmt", STIFF_BY_MATERIALS)?;
             Ok(ContactLaw::Dmt {
                 work_of_adhesion_j_m2: table.read("work_of_adhesion")?,
             })
         }
         LawName::HertzMindlin => {
             refuse_of(table, &OF_DMT, "hertz-mindlin", "which has no adhesion")?;
-            let why = "whose stiffness is that of the materials";
-            refuse_of(table, &OF_LINEAR, "hertz-mindlin", why)?;
+            refuse_of(table, &OF_LINEAR, "hertz-mindlin", STIFF_BY_MATERIALS)?;
             Ok(ContactLaw::HertzMindlin)
         }
         LawName::Linear => {

@@ -89,10 +89,10 @@ pub(super) fn is_wide(sizes: &Sizes) -> bool {
 /// different one.
 pub(super) fn choose_shrink(settings: &PackSettings) -> f64 {
     let usual = || {
-        let [spread, _] = settings.sizes.spread_and_skewness();
-        if spread > WIDE {
+        if is_wide(&settings.sizes) {
             return WIDE_SHRINK;
         }
+        let [spread, _] = settings.sizes.spread_and_skewness();
         (0.044 - 0.05 * spread).max(SHRINK_RANGE[0])
     };
     rounded(settings.densify.unwrap_or_else(usual))

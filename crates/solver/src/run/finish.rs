@@ -1,7 +1,7 @@
 //! Files that a run writes once it has ended, and their recovery if the run was killed while
 //! writing them.
 
-use dem_io::safe_write::write_file;
+use dem_io::safe_write::{explain, write_file};
 use dem_io::{Diagnostic, Result, read_input};
 use dem_report::report;
 use dem_results::{ResultsFolder, write_distribution};
@@ -72,8 +72,23 @@ impl End {
         Ok(())
     }
 
-    /// Writes tables, plots, film and page of a run, and its summary last: if the summary exists,
-    /// all files do.
+    /// Writes the tables that [`Self::write_tables`] has kept.
+    ///
+    /// # Errors
+    /// Those of the files.
+    fn write_kept(&self, folder: &ResultsFolder) -> Result<()> {
+        for (name, text) in &self.tables {
+            let path = folder.path().join(name);
+            if let Some(parent) = path.parent() {
+                std::fs::create_dir_all(parent).map_err(|error| explain(parent, &error))?;
+            }
+            write_file(&path, |out| out.write_all(text.as_bytes()))?;
+        }
+        Ok(())
+    }
+
+    /// Writes plots, film and page of a run whose tables are written, and its summary last: if the
+    /// summary exists, all files do.
     ///
     /// # Errors
     /// Those of the files.
@@ -85,11 +100,6 @@ impl End {
     ) -> Result<()> {
         let summary: Value = serde_json::from_str(&self.summary).unwrap_or_default();
         write_plots(folder, probes, &summary["measures"])?;
-        for (name, text) in &self.tables {
-            write_file(&folder.path().join(name), |out| {
-                out.write_all(text.as_bytes())
-            })?;
-        }
         if let Some(pictures) = pictures {
             pictures.finish()?;
         }
@@ -179,6 +189,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
     let mut pictures = order
         .map(|order| Pictures::open(folder, order, Some((&state, progress.pictures))))
         .transpose()?;
+    end.write_kept(folder)?;
     end.write(folder, &probes, pictures.as_mut())?;
     let summary = end.summary.clone();
     Ok(Some(Finished { missing, summary }))

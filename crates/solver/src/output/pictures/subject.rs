@@ -74,8 +74,7 @@ fn with_walls(bounds: Bounds, state: &State) -> Bounds {
 /// The corners of all regions, of large ones only near a scene with these points, m. Shape n x 3.
 pub(crate) fn regions_near(state: &State, points_m: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let scene = with_walls(Bounds::of(points_m.iter().copied()), state);
-    let sides = [0, 1, 2].map(|k| scene.high[k] - scene.low[k]);
-    let near = scene.grown(0.5 * sides.into_iter().fold(0.0, f64::max));
+    let near = scene.grown(0.5 * scene.longest_side_m());
     let regions = state.model.rules.regions.iter().map(Region::bounds);
     let nearest = regions.map(|region| nearest(&region, &near));
     nearest.flat_map(|region| region.corners()).collect()
