@@ -19,7 +19,7 @@ use self::order::sort_along_curve;
 use self::retry::Retry;
 pub use self::settings::{PackHistory, PackSettings, Packing, Progress};
 use self::settle::settle;
-use self::shrink::choose_shrink;
+use self::shrink::{choose_shrink, thin_out};
 pub(crate) use self::solid::Solid;
 use crate::spheres::{ReducedSphere, Spheres};
 use dem_io::units::show_length;
@@ -69,17 +69,20 @@ pub(crate) fn pack_if(
     let mut attempt = Retry::first(choose_shrink(settings), &settings.sizes);
     let mut retry = Retry::new(&job);
     let mut densify_seconds = 0.0;
-    let (mut spheres, grown, settled) = loop {
+    let (mut spheres, grown, thinned, settled) = loop {
         let front = grow(&job, &attempt, progress)?;
         if let Some(better) = retry.after_front(&attempt, &front) {
             attempt = better;
             continue;
         }
-        if retry.has_not_jammed() && !is_wanted(front.filled_fraction(&job)) {
+        let too_many = retry.too_many(&front);
+        let filled = (1.0 - too_many) * front.filled_fraction(&job);
+        if retry.has_not_jammed() && !is_wanted(filled) {
             return Ok(None);
         }
         let (mut spheres, grown) = front.finish();
         sort_along_curve(&mut spheres, job.radius_range()[1]);
+        let thinned = thin_out(&mut spheres, too_many);
         let settling = Instant::now();
         let settled = settle(
             &job,
@@ -91,7 +94,7 @@ pub(crate) fn pack_if(
         densify_seconds += settling.elapsed().as_secs_f64();
         match retry.after_settling(&attempt, &settled) {
             Some(better) => attempt = better,
-            None => break (spheres, grown, settled),
+            None => break (spheres, grown, thinned, settled),
         }
     };
     let front_seconds = started.elapsed().as_secs_f64() - densify_seconds;
@@ -104,6 +107,7 @@ pub(crate) fn pack_if(
         densify: attempt.shrink,
         fronts: grown.fronts,
         densify_steps: settled.steps,
+        thinned,
         removed: settled.taken_out,
         attempts: retry.fronts,
         void_fillers: grown.fillers + filled.fillers,

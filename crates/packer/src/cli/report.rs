@@ -87,9 +87,10 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
     text += &mass_text(made);
     let history = &made.history;
     text += &format!(
-        "packed by        an advancing front at radii reduced by {} from {} seeds; {} relaxation steps, {} removed (jammed), {} added in voids, {} voids still fit the smallest size\n",
+        "packed by        an advancing front at radii reduced by {} from {} seeds; {} left out (too many), {} relaxation steps, {} removed (jammed), {} added in voids, {} voids still fit the smallest size\n",
         significant(history.densify, 3),
         history.fronts,
+        history.thinned,
         history.densify_steps,
         history.removed,
         history.void_fillers,

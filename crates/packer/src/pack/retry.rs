@@ -3,9 +3,10 @@
 //!
 //! - A bare front that fills voids may distort the sizes: the next one holds back the sizes in
 //!   surplus.
-//! - A front before settling may leave too much room or too little, since small bodies vary by
-//!   chance. The next one runs at other radii.
-//! - Its spheres may still jam: the next front reduces the radii by less.
+//! - A front before settling may leave too much room, or far too little, since small bodies vary by
+//!   chance. The next one runs at other radii. If it leaves a little too little, spheres are taken
+//!   out evenly.
+//! - Its spheres may still jam: the next front reduces the radii by less, for a lower target.
 //!
 //! If the reduction of the radii was given by the user, only the sizes of a bare front are retried.
 
@@ -38,9 +39,10 @@ const SLOWEST_FALL: f64 = 0.6;
 /// wide.
 const MOST_FRONTS: usize = 4;
 const MOST_WIDE_FRONTS: usize = 2;
-/// Factor on the reduction of the radii after the spheres of the previous front have jammed, and
-/// the number of times that it is applied before some spheres are taken out.
+/// Factors on the reduction of the radii and on the target after the spheres of the previous front
+/// have jammed, and the number of times that they are applied before jammed spheres are taken out.
 const AFTER_JAM: f64 = 0.93;
+const TARGET_AFTER_JAM: f64 = 0.991;
 const MOST_JAMS: usize = 3;
 
 /// The attempts made, and those still allowed.
@@ -104,6 +106,11 @@ impl Retry {
         })
     }
 
+    /// The part of the spheres of a front that is too many for settling, 0 to 1.
+    pub(super) fn too_many(&self, grown: &Grown) -> f64 {
+        (self.target.as_ref()).map_or(0.0, |target| target.too_many(grown.volume()))
+    }
+
     /// True if the next settling is the first one.
     pub(super) fn has_not_jammed(&self) -> bool {
         self.jams == 0
@@ -128,6 +135,9 @@ impl Retry {
             return None;
         }
         self.jams += 1;
+        if let Some(target) = &mut self.target {
+            target.volume *= TARGET_AFTER_JAM;
+        }
         Some(Attempt {
             shrink: rounded(AFTER_JAM * attempt.shrink),
             ..attempt.clone()

@@ -48,11 +48,13 @@ pub struct PackHistory {
     pub fronts: usize,
     /// Number of steps of the settling minimiser.
     pub densify_steps: usize,
+    /// Number of spheres of the front that were too many for settling, and left out before it.
+    pub thinned: usize,
     /// Number of spheres removed because they were jammed.
     pub removed: usize,
     /// Number of fronts run. More than one: with some sizes held back because filling the voids had
-    /// distorted the distribution, or at other radii because there was too much or too little room
-    /// for settling.
+    /// distorted the distribution, or at other radii because there was too much or far too little
+    /// room for settling.
     pub attempts: usize,
     /// Number of spheres put into voids, of sizes that fit there: by the bare front as it advances,
     /// or at the end after settling.

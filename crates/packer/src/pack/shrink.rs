@@ -12,7 +12,7 @@
 
 use super::settings::PackSettings;
 use crate::sizes::Sizes;
-use crate::spheres::Vector3;
+use crate::spheres::{ReducedSphere, Vector3};
 use dem_io::Surface;
 
 /// Volume fraction at which a single size jams, and the contributions of spread and skewness.
@@ -24,10 +24,14 @@ const WIDE: f64 = 0.4;
 const WIDE_JAMMED: f64 = 0.69;
 /// Reduction of the front's radii to begin with for a wide distribution.
 const WIDE_SHRINK: f64 = 0.0435;
-/// Target distance below jamming, as a fraction of the jamming density, and the accepted deviation
-/// from it. Nearer, settling takes two to three times the steps.
+/// Target distance below jamming, as a fraction of the jamming density. Nearer, settling takes two
+/// to three times the steps.
 const BELOW_JAMMING: f64 = 0.006;
-const WILL_DO: [f64; 2] = [0.003, 0.005];
+/// Accepted deviations of a front from the target: the surplus, which is taken out, and what may be
+/// missing. Another front aims at a surplus.
+const MOST_SURPLUS: f64 = 0.03;
+const MOST_MISSING: f64 = 0.005;
+const AIM: f64 = 0.006;
 /// Smallest and largest reduction of the front's radii that is chosen automatically.
 pub(crate) const SHRINK_RANGE: [f64; 2] = [0.02, 0.08];
 
@@ -69,14 +73,36 @@ impl FillTarget {
     /// spheres will have the volume `filled` at their reduced radii, in local units; none if that
     /// is good enough.
     pub fn better_shrink(&self, shrink: f64, filled: f64) -> Option<f64> {
-        let [more, less] = WILL_DO;
-        if filled <= (1.0 + more) * self.volume && filled >= (1.0 - less) * self.volume {
+        let surplus = filled / self.volume - 1.0;
+        if (-MOST_MISSING..=MOST_SURPLUS).contains(&surplus) {
             return None;
         }
-        let better = 1.0 - (1.0 - shrink) * (filled / self.volume).cbrt();
+        let better = 1.0 - (1.0 - shrink) * ((1.0 + surplus) / (1.0 + AIM)).cbrt();
         let better = better.clamp(SHRINK_RANGE[0], SHRINK_RANGE[1]);
         (better != shrink).then_some(better)
     }
+
+    /// The part of the spheres of a front that is too many, 0 to 1, for the volume that they will
+    /// have at their reduced radii, local units.
+    pub fn too_many(&self, filled: f64) -> f64 {
+        (1.0 - self.volume / filled).max(0.0)
+    }
+}
+
+/// Takes out this part of the spheres, at equal distances along the list: evenly in space if the
+/// list follows a curve through it, and without regard to size. Returns the number taken out.
+pub(super) fn thin_out(spheres: &mut Vec<ReducedSphere>, part: f64) -> usize {
+    let before = spheres.len();
+    let mut owed = 0.5;
+    spheres.retain(|_| {
+        owed += part;
+        let is_kept = owed < 1.0;
+        if !is_kept {
+            owed -= 1.0;
+        }
+        is_kept
+    });
+    before - spheres.len()
 }
 
 /// True if a few large spheres fill most of the volume, so that fronts of the same settings differ
@@ -85,15 +111,14 @@ pub(super) fn is_wide(sizes: &Sizes) -> bool {
     sizes.spread_and_skewness()[0] > WIDE
 }
 
-/// The reduction to begin with: the user's, or else one from which most bodies need only a slightly
-/// different one.
+/// The reduction to begin with: the user's, or else one that leaves most bodies a small surplus.
 pub(super) fn choose_shrink(settings: &PackSettings) -> f64 {
     let usual = || {
         if is_wide(&settings.sizes) {
             return WIDE_SHRINK;
         }
         let [spread, _] = settings.sizes.spread_and_skewness();
-        (0.044 - 0.05 * spread).max(SHRINK_RANGE[0])
+        (0.045 - 0.05 * spread).max(SHRINK_RANGE[0])
     };
     rounded(settings.densify.unwrap_or_else(usual))
 }

@@ -70,12 +70,20 @@ fn walls_and_overlaps_take_room() {
 }
 
 #[test]
-fn a_front_that_leaves_too_little_room_runs_at_less_small_radii() {
+fn a_front_that_leaves_too_little_room_is_thinned_out() {
     let target = FillTarget { volume: 100.0 };
-    assert_eq!(target.better_shrink(0.04, 100.2), None);
+    assert_eq!(target.better_shrink(0.04, 102.0), None);
+    assert!((102.0 * (1.0 - target.too_many(102.0)) - 100.0).abs() < 1e-12);
     assert_eq!(target.better_shrink(0.04, 99.6), None);
-    let better = target.better_shrink(0.04, 103.0).unwrap();
-    assert!((103.0 * (0.96 / (1.0 - better)).powi(3) - 100.0).abs() < 1e-9);
+    assert_eq!(target.too_many(99.6), 0.0);
+}
+
+/// The next front is aimed at a small surplus.
+#[test]
+fn a_front_far_from_the_target_runs_at_other_radii() {
+    let target = FillTarget { volume: 100.0 };
+    let better = target.better_shrink(0.04, 106.0).unwrap();
+    assert!((106.0 * (0.96 / (1.0 - better)).powi(3) - 100.6).abs() < 1e-9);
     assert!(better < 0.04 && target.better_shrink(0.04, 97.0).unwrap() > 0.04);
     // Nothing to gain outside the limits.
     assert_eq!(target.better_shrink(0.08, 50.0), None);

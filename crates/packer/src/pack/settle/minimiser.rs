@@ -15,6 +15,10 @@ const SKIN: f64 = 0.8;
 /// Fraction of the velocity that damping removes in step n: `DAMPING` / n, between the two limits.
 const DAMPING: f64 = 9.0;
 const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
+/// The damping once no two spheres overlap by more than `NEARLY_DONE` of a radius: they have found
+/// their places, and what is left only has to decay.
+const LAST_DAMPING: f64 = 0.1;
+const NEARLY_DONE: f64 = 0.03;
 /// Velocity that a unit of force gives per step to a sphere of few neighbours; 1.5 times this value
 /// makes the dynamics unstable.
 const LARGEST_RESPONSE: f64 = 0.75;
@@ -22,8 +26,9 @@ const LARGEST_RESPONSE: f64 = 0.75;
 /// decreases in proportion.
 const FEW_NEIGHBOURS: f64 = 10.0;
 /// Largest move of a sphere in a step, in mean radii: centres that begin almost at the same place
-/// are not shot through a wall.
-const LARGEST_MOVE: f64 = 0.2;
+/// are not shot through a wall, and the few fastest spheres do not set how often neighbours are
+/// listed. With half of it spheres are not shaken past each other.
+const LARGEST_MOVE: f64 = 0.1;
 
 /// Number of steps before spheres are taken out: the first time, and between later times.
 const PATIENCE: [usize; 2] = [1500, 200];
@@ -124,9 +129,7 @@ pub fn minimise_overlaps(
             fraction = TAKEN_OUT[1].min(2.0 * fraction);
         } else {
             settled.steps += 1;
-            let damping =
-                (DAMPING / settled.steps as f64).clamp(DAMPING_LIMITS[0], DAMPING_LIMITS[1]);
-            if state.accelerate_and_move(damping) {
+            if state.accelerate_and_move(damping(settled.steps, worst)) {
                 state.list_neighbours();
             }
         }
@@ -140,6 +143,15 @@ pub fn minimise_overlaps(
         ball[3] /= 1.0 + MARGIN;
     }
     Ok(settled)
+}
+
+/// The fraction of the velocity that is removed in a step, for the largest overlap in radii.
+fn damping(step: usize, largest_overlap: f64) -> f64 {
+    if largest_overlap < NEARLY_DONE {
+        LAST_DAMPING
+    } else {
+        (DAMPING / step as f64).clamp(DAMPING_LIMITS[0], DAMPING_LIMITS[1])
+    }
 }
 
 /// Removes spheres that began almost on the wall and were pushed through it. Returns their number.
