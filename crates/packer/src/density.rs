@@ -76,11 +76,18 @@ pub struct Begun {
     pub filled: Option<f64>,
 }
 
-/// Expected ratio of the final fraction to that of the front: the mean over the completed packings.
+/// Expected ratio of the final fraction to that of the front: the median of the completed packings.
 fn gain(begun: &[Begun]) -> f64 {
     let gains = begun.iter().filter_map(|b| Some(b.filled? / b.front));
-    let (sum, count) = gains.fold((0.0, 0.0), |(sum, count), gain| (sum + gain, count + 1.0));
-    if count == 0.0 { 1.0 } else { sum / count }
+    median(gains).unwrap_or(1.0)
+}
+
+/// The median: of packings that jammed, and were begun again with more room, and of the others,
+/// which are denser, the mean may be the density of none.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
 }
 
 /// The packings begun, each with the fraction that it fills or is expected to.
@@ -174,7 +181,7 @@ impl Search {
 
 /// Packs with the overlap that gives `wanted_kg_m3` for particles of `particle_kg_m3`, and sets it
 /// in `settings`. Two packings of nearly the same overlap differ by chance, so the search continues
-/// around the root of their mean until one is near enough, and keeps the nearest of all. The front
+/// around the root of their median until one is near enough, and keeps the nearest of all. The front
 /// predicts the density well, so most tries end after it. The times in the history of the packing
 /// are the sums over all tries.
 ///
@@ -237,18 +244,15 @@ pub(crate) fn pack_to_density(
     Ok((packing, found))
 }
 
-/// The next overlap to try: a Newton step on the mean of the tries near the target, so that chance
-/// averages out, or else on the nearest one. The fraction filled in r_gen hardly changes, so the
+/// The next overlap to try: a Newton step on the median of the tries near the target, so that chance
+/// counts less, or else on the nearest one. The fraction filled in r_gen hardly changes, so the
 /// density is proportional to (1 + overlap)^3.
 pub fn next_overlap(tries: &[Try], target: f64) -> f64 {
     let off = |t: &Try| (t.filled / target - 1.0).abs();
     let least = tries.iter().map(off).fold(f64::INFINITY, f64::min);
-    let (mut sum, mut count) = (0.0, 0.0);
-    for t in tries.iter().filter(|t| off(t) <= least.max(NEAR)) {
-        sum += t.filled / (1.0 + t.overlap).powi(3);
-        count += 1.0;
-    }
-    let mut next = overlap_for(target, sum / count);
+    let near = tries.iter().filter(|t| off(t) <= least.max(NEAR));
+    let reduced = median(near.map(|t| t.filled / (1.0 + t.overlap).powi(3)));
+    let mut next = overlap_for(target, reduced.unwrap_or(USUAL_FRACTION));
     // The same overlap would give the same packing.
     let is_tried = |o: f64| tries.iter().any(|t| (t.overlap - o).abs() < FINEST_STEP);
     let mut step = FINEST_STEP;
