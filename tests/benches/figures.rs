@@ -9,6 +9,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
@@ -17,7 +18,9 @@ use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::state::State;
+use dem_run::state::bonds::BLOCK;
 use dem_run::step::{stages, step};
+use rayon::prelude::*;
 
 /// Number of rounds, of which the median is taken.
 const ROUNDS: usize = 7;
@@ -164,8 +167,12 @@ impl Case {
                 Counted::Particles => "million particle-steps/s",
                 Counted::Steps => "steps/s",
             };
+            let reading = match self.counted {
+                Counted::Bonds => format!("{:.0}", reading_rate(&state)),
+                Counted::Particles | Counted::Steps => String::new(),
+            };
             format!(
-                "| {} | {} | {} | {threads} | {:.1} | {unit} | {:.0} % |",
+                "| {} | {} | {} | {threads} | {:.1} | {unit} | {reading} | {:.0} % |",
                 self.name,
                 state.particles.len(),
                 state.bonds.len(),
@@ -186,6 +193,55 @@ impl Case {
         };
         items * (state.steps - before) as f64 / clock.elapsed().as_secs_f64()
     }
+}
+
+/// Million bonds per second of a loop that only reads what a step of bonds reads: each bond's block
+/// and the poses of its ends, then poses, motions and wrenches of all particles, once each. A step
+/// writes the last three as well.
+fn reading_rate(state: &State) -> f64 {
+    const CHUNK: usize = 1024;
+    let bonds = &state.bonds;
+    let poses = &state.particles.poses;
+    let of_bonds = |(blocks, ends): (&[_], &[[u32; 2]])| {
+        let block_sum = |block: &dem_run::state::bonds::BondBlock| {
+            let columns = block.direction.iter().chain(&block.levers_m);
+            let others = [&block.normal, &block.shear, &block.radii_m];
+            columns.chain(others).flatten().sum::<f64>()
+        };
+        let end_sum = |end: u32| {
+            let pose = &poses[end as usize];
+            pose.position_m.iter().chain(&pose.turned).sum::<f64>()
+        };
+        let blocks: f64 = blocks.iter().map(block_sum).sum();
+        let ends: f64 = (ends.iter().flatten()).map(|end| end_sum(*end)).sum();
+        blocks + ends
+    };
+    let pass = || {
+        let sums: f64 = (bonds.blocks.par_chunks(CHUNK / BLOCK))
+            .zip(bonds.ends.par_chunks(CHUNK))
+            .map(of_bonds)
+            .sum();
+        let motions = state.particles.motions.par_chunks(CHUNK);
+        let others: f64 = motions
+            .zip(state.particles.wrenches.par_chunks(CHUNK))
+            .map(|(motions, wrenches)| {
+                let velocities: f64 = motions.iter().flat_map(|m| m.velocity_m_s).sum();
+                velocities + wrenches.iter().flat_map(|w| w.force_n).sum::<f64>()
+            })
+            .sum();
+        black_box(sums + others)
+    };
+    let mut rates: Vec<f64> = (0..ROUNDS)
+        .map(|_| {
+            let clock = Instant::now();
+            for _ in 0..10 {
+                pass();
+            }
+            10.0 * 1e-6 * bonds.len() as f64 / clock.elapsed().as_secs_f64()
+        })
+        .collect();
+    rates.sort_by(f64::total_cmp);
+    rates[ROUNDS / 2]
 }
 
 /// The scene with the body alone that is written in it.
@@ -268,8 +324,8 @@ fn main() {
         .filter(|w| !w.starts_with('-'))
         .collect();
     let wanted = |name: &str| words.is_empty() || words.iter().any(|word| word == name);
-    println!("| case | particles | bonds | threads | rate | | neighbour search |");
-    println!("|---|---|---|---|---|---|---|");
+    println!("| case | particles | bonds | threads | rate | | reading alone | neighbour search |");
+    println!("|---|---|---|---|---|---|---|---|");
     for case in cases(wanted) {
         for threads in [1, 2] {
             println!("{}", case.row(threads));

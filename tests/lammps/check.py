@@ -477,4 +477,5 @@ def main():
     sys.exit(any(most is not None and difference > most for *_, difference, most in rows))
 
 
-main()
+if __name__ == "__main__":
+    main()

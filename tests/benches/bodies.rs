@@ -1,0 +1,198 @@
+//! The table of doc/performance.md on many bodies: the time of a step over the number of bodies
+//! that wait in an inlet, fly bonded or rigid, are broken, or sleep; alone, and beside ten bonded
+//! bodies that fly. `cargo bench -p dem-tests --bench bodies`, then the largest number of bodies or
+//! nothing (10,000). On one thread, some minutes.
+#![allow(
+    clippy::expect_used,
+    clippy::print_stdout,
+    reason = "a benchmark stops where it fails, and prints a table"
+)]
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use dem_run::plan::plan;
+use dem_run::state::State;
+use dem_run::step::step;
+
+/// Numbers of bodies.
+const COUNTS: [usize; 4] = [10, 100, 1_000, 10_000];
+/// Number of moving bonded bodies beside the others.
+const FLYING: usize = 10;
+/// Number of rounds, of which the median is taken, and the least time of a round, s.
+const ROUNDS: usize = 5;
+const ROUND_S: f64 = 0.1;
+/// Radius of the spheres of a body, 3 x 3 x 3 of them that touch, m.
+const RADIUS_M: f64 = 1e-3;
+/// Edge of the square in which each body stands, m.
+const SPACING_M: f64 = 8e-3;
+
+/// What bodies do in a case.
+#[derive(Clone, Copy, PartialEq)]
+enum Doing {
+    /// They are still to be fed.
+    Waiting,
+    /// They lie on the floor, asleep.
+    Asleep,
+    /// They lie on the floor as rigid clumps.
+    LyingAsClumps,
+    /// They fly as rigid clumps.
+    FlyingAsClumps,
+    /// They fly bonded.
+    Bonded,
+    /// They have broken into single spheres.
+    Broken,
+}
+
+const CASES: [(Doing, &str); 6] = [
+    (Doing::Waiting, "wait in an inlet"),
+    (Doing::Asleep, "lie on a floor, asleep"),
+    (Doing::LyingAsClumps, "lie on a floor, as clumps"),
+    (Doing::FlyingAsClumps, "fly as clumps"),
+    (Doing::Bonded, "fly, bonded"),
+    (Doing::Broken, "fly, broken into spheres"),
+];
+
+/// The scene: bodies of one kind, and `flying` bonded ones above them.
+fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
+    let lies = matches!(doing, Doing::Asleep | Doing::LyingAsClumps);
+    let gravity = if lies { "-9.81" } else { "0" };
+    // Bodies above a floor fall less than a tenth of their size in the rounds.
+    let mut text = format!(
+        "version = 1\n\
+         [run]\nend_time = \"10 s\"\ngravity = [0, 0, {gravity}]\ninitial_overlap = \"keep\"\n\
+         [materials.stuff]\ndensity = \"2000 kg/m3\"\nyoung_modulus = \"20 MPa\"\n\
+         [contacts]\nstuff-stuff = {{ restitution = 0.1, friction = 0.5 }}\n\
+         [bonds.firm]\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.3\n\
+         failure = {{ tensile_strength = \"1 GPa\" }}\n\
+         [bonds.weak]\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.3\n\
+         failure = {{ tensile_strength = \"1 mPa\" }}\n\
+         [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n"
+    );
+    if doing == Doing::Asleep {
+        text += "[sleep]\nspeed = \"1 mm/s\"\nafter = \"20 ms\"\n";
+    }
+    let bonds = if doing == Doing::Broken {
+        "weak"
+    } else {
+        "firm"
+    };
+    let motion = match doing {
+        Doing::Asleep => "",
+        Doing::LyingAsClumps => "start_as = \"clump\"\n",
+        Doing::FlyingAsClumps => "start_as = \"clump\"\nangular_velocity = [1, 0, 0]\n",
+        Doing::Broken => "angular_velocity = [20, 0, 0]\n",
+        Doing::Waiting | Doing::Bonded => "angular_velocity = [1, 0, 0]\n",
+    };
+    let height_m = if lies { 0.9999 * RADIUS_M } else { 0.1 };
+    if doing == Doing::Waiting {
+        body(&mut text, "waiting", bonds, [0.0, 0.0, 2.0], motion);
+        write!(
+            text,
+            "[regions.gate]\nbox = {{ min = [0, 0, 3], max = [1, 1, 4] }}\n\
+             [inlets.feed]\nbodies = [\"waiting\"]\nregion = \"gate\"\nrate = 1e-3\nstart = \"5 s\"\ncount = {bodies}\n"
+        )
+        .expect("text grows");
+    } else {
+        for number in 0..bodies {
+            let position = place(number, bodies, height_m);
+            body(&mut text, &format!("a{number}"), bonds, position, motion);
+        }
+    }
+    for number in 0..flying {
+        let motion = "angular_velocity = [1, 0, 0]\nvelocity = [0, 0, 1]\n";
+        let position = place(number, flying, 1.0);
+        body(&mut text, &format!("b{number}"), "firm", position, motion);
+    }
+    text
+}
+
+/// The place of a body in a square of bodies.
+fn place(number: usize, bodies: usize, height_m: f64) -> [f64; 3] {
+    let side = (bodies as f64).sqrt().ceil() as usize;
+    let [x, y] = [number % side, number / side].map(|n| n as f64 * SPACING_M);
+    [x, y, height_m]
+}
+
+fn body(text: &mut String, name: &str, bonds: &str, position: [f64; 3], motion: &str) {
+    let at = |n: usize| [n % 3, n / 3 % 3, n / 9];
+    let sphere = |n: usize| {
+        let [x, y, z] = at(n).map(|k| 2.0 * RADIUS_M * k as f64);
+        format!("[{x:?}, {y:?}, {z:?}, {RADIUS_M:?}]")
+    };
+    let spheres: Vec<String> = (0..27).map(sphere).collect();
+    let mut pairs = Vec::new();
+    for a in 0..27 {
+        for (axis, stride) in [(0, 1), (1, 3), (2, 9)] {
+            if at(a)[axis] < 2 {
+                pairs.push(format!("[{a}, {}]", a + stride));
+            }
+        }
+    }
+    write!(
+        text,
+        "[bodies.{name}]\nmaterial = \"stuff\"\nbonds = \"{bonds}\"\nparticles = [{}]\nbond_list = [{}]\nposition = {position:?}\n{motion}",
+        spheres.join(", "),
+        pairs.join(", ")
+    )
+    .expect("text grows");
+}
+
+/// The state once the bodies do what they are to do.
+fn state(doing: Doing, bodies: usize, flying: usize) -> State {
+    let text = scene(doing, bodies, flying);
+    let scene = dem_scene::scene_from_text(&text, "bench.toml", &[]).expect("a scene");
+    let written = dem_scene::read_bodies(&scene).expect("bodies");
+    let mut state = plan(&scene, written, 1, false).expect("plans").state;
+    let is_ready = |state: &State| match doing {
+        Doing::Asleep => (state.sleep.as_ref()).is_some_and(|sleep| sleep.particles >= 27 * bodies),
+        Doing::Broken => state.broken_count as usize == 54 * bodies,
+        _ => state.steps >= 200,
+    };
+    while !is_ready(&state) {
+        assert!(state.time_s < 1.0, "bodies never do what they are to do");
+        step(&mut state);
+    }
+    state
+}
+
+/// Time of a step, us: the median of rounds.
+fn step_us(state: &mut State) -> f64 {
+    let mut rounds: Vec<f64> = (0..ROUNDS)
+        .map(|_| {
+            let (clock, before) = (Instant::now(), state.steps);
+            while clock.elapsed().as_secs_f64() < ROUND_S {
+                step(state);
+            }
+            1e6 * clock.elapsed().as_secs_f64() / (state.steps - before) as f64
+        })
+        .collect();
+    rounds.sort_by(f64::total_cmp);
+    rounds[ROUNDS / 2]
+}
+
+fn main() {
+    let most = std::env::args()
+        .skip(1)
+        .find(|word| !word.starts_with('-'))
+        .map_or(COUNTS[3], |word| word.parse().expect("a number of bodies"));
+    let counts: Vec<usize> = COUNTS.into_iter().filter(|count| *count <= most).collect();
+    let head: Vec<String> = counts.iter().map(|count| format!(" {count} |")).collect();
+    println!("| bodies | beside them |{} |", head.concat());
+    println!("|---|---|{}---|", "---|".repeat(counts.len()));
+    for (doing, name) in CASES {
+        for flying in [0, FLYING] {
+            let times: Vec<f64> = counts
+                .iter()
+                .map(|count| step_us(&mut state(doing, *count, flying)))
+                .collect();
+            let row: Vec<String> = times.iter().map(|us| format!(" {us:.1} |")).collect();
+            let beside = if flying == 0 {
+                "none"
+            } else {
+                "ten bonded ones"
+            };
+            println!("| {name} | {beside} |{} us per step |", row.concat());
+        }
+    }
+}
