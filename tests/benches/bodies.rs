@@ -66,11 +66,11 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
          [bonds.firm]\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.3\n\
          failure = {{ tensile_strength = \"1 GPa\" }}\n\
          [bonds.weak]\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.3\n\
-         failure = {{ tensile_strength = \"1 mPa\" }}\n\
+         failure = {{ tensile_strength = \"0.001 Pa\" }}\n\
          [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n"
     );
     if doing == Doing::Asleep {
-        text += "[sleep]\nspeed = \"1 mm/s\"\nafter = \"20 ms\"\n";
+        text += "[sleep]\nspeed = \"1 mm/s\"\nafter = \"0.5 ms\"\n";
     }
     let bonds = if doing == Doing::Broken {
         "weak"
@@ -78,15 +78,15 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
         "firm"
     };
     let motion = match doing {
-        Doing::Asleep => "",
         Doing::LyingAsClumps => "start_as = \"clump\"\n",
         Doing::FlyingAsClumps => "start_as = \"clump\"\nangular_velocity = [1, 0, 0]\n",
-        Doing::Broken => "angular_velocity = [20, 0, 0]\n",
-        Doing::Waiting | Doing::Bonded => "angular_velocity = [1, 0, 0]\n",
+        Doing::Broken => "angular_velocity = [20, 15, 10]\n",
+        Doing::Waiting | Doing::Asleep => "",
+        Doing::Bonded => "angular_velocity = [1, 0, 0]\n",
     };
     let height_m = if lies { 0.9999 * RADIUS_M } else { 0.1 };
     if doing == Doing::Waiting {
-        body(&mut text, "waiting", bonds, [0.0, 0.0, 2.0], motion);
+        body(&mut text, "waiting", bonds, "");
         write!(
             text,
             "[regions.gate]\nbox = {{ min = [0, 0, 3], max = [1, 1, 4] }}\n\
@@ -96,13 +96,16 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
     } else {
         for number in 0..bodies {
             let position = place(number, bodies, height_m);
-            body(&mut text, &format!("a{number}"), bonds, position, motion);
+            let at = format!("position = {position:?}\n{motion}");
+            body(&mut text, &format!("a{number}"), bonds, &at);
         }
     }
     for number in 0..flying {
-        let motion = "angular_velocity = [1, 0, 0]\nvelocity = [0, 0, 1]\n";
         let position = place(number, flying, 1.0);
-        body(&mut text, &format!("b{number}"), "firm", position, motion);
+        let at = format!(
+            "position = {position:?}\nangular_velocity = [1, 0, 0]\nvelocity = [0, 0, 1]\n"
+        );
+        body(&mut text, &format!("b{number}"), "firm", &at);
     }
     text
 }
@@ -114,7 +117,8 @@ fn place(number: usize, bodies: usize, height_m: f64) -> [f64; 3] {
     [x, y, height_m]
 }
 
-fn body(text: &mut String, name: &str, bonds: &str, position: [f64; 3], motion: &str) {
+/// Adds a body, with what places and moves it.
+fn body(text: &mut String, name: &str, bonds: &str, more: &str) {
     let at = |n: usize| [n % 3, n / 3 % 3, n / 9];
     let sphere = |n: usize| {
         let [x, y, z] = at(n).map(|k| 2.0 * RADIUS_M * k as f64);
@@ -131,7 +135,7 @@ fn body(text: &mut String, name: &str, bonds: &str, position: [f64; 3], motion: 
     }
     write!(
         text,
-        "[bodies.{name}]\nmaterial = \"stuff\"\nbonds = \"{bonds}\"\nparticles = [{}]\nbond_list = [{}]\nposition = {position:?}\n{motion}",
+        "[bodies.{name}]\nmaterial = \"stuff\"\nbonds = \"{bonds}\"\nparticles = [{}]\nbond_list = [{}]\n{more}",
         spheres.join(", "),
         pairs.join(", ")
     )
@@ -172,6 +176,11 @@ fn step_us(state: &mut State) -> f64 {
 }
 
 fn main() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    pool.expect("a thread starts").install(table);
+}
+
+fn table() {
     let most = std::env::args()
         .skip(1)
         .find(|word| !word.starts_with('-'))

@@ -3,6 +3,8 @@
 //! Velocities are those halfway between two steps (leapfrog). This is kick-drift-kick with the
 //! second kick of a step merged with the first of the next.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::clumps::awake;
@@ -128,6 +130,9 @@ pub fn kick(
         .enumerate()
         .for_each(|(chunk, motions)| {
             let first = chunk * CHUNK;
+            if all_sleep(asleep, first..first + motions.len()) {
+                return;
+            }
             for (i, motion) in (first..).zip(motions) {
                 if asleep.get(i).is_some_and(|asleep| *asleep) {
                     continue;
@@ -149,6 +154,12 @@ pub fn kick(
         });
 }
 
+/// Whether all of these particles sleep.
+fn all_sleep(asleep: &[bool], particles: Range<usize>) -> bool {
+    let some = asleep.get(particles);
+    some.is_some_and(|asleep| !asleep.contains(&false))
+}
+
 /// Updates positions and orientations of the free particles over `time_step_s`. Returns the largest
 /// speed of a particle, m/s, and sets for each chunk how far its fastest particle moved, m.
 pub fn drift(particles: &mut Particles, time_step_s: f64, chunks_moved_m: &mut Vec<f64>) -> f64 {
@@ -165,6 +176,10 @@ pub fn drift(particles: &mut Particles, time_step_s: f64, chunks_moved_m: &mut V
         .enumerate()
         .map(|(chunk, (poses, moved_m))| {
             let own = chunk * CHUNK..chunk * CHUNK + poses.len();
+            if all_sleep(asleep, own.clone()) {
+                *moved_m = 0.0;
+                return 0.0;
+            }
             let mut fastest = 0.0;
             with_lanes(DriftWork {
                 poses,
