@@ -69,7 +69,10 @@ pub(crate) fn refuse_parts(scene: &Scene) -> Result<()> {
             run_it,
         ),
         (
-            scene.bodies.values().any(|body| body.bonded_within.is_some()),
+            scene
+                .bodies
+                .values()
+                .any(|body| body.bonded_within.is_some()),
             "bonded_within".to_owned(),
             "bodies of which a part is rigid",
             run_it,

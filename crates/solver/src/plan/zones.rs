@@ -33,7 +33,10 @@ pub(super) fn place_zones(scene: &Scene, bodies: &[PlacedBody], state: &mut Stat
                 "make it with bonds: dem-pack --bond-range 1.1",
             ));
         }
-        let ids = body.particles.iter().map(|&i| state.particles.id(i as usize));
+        let ids = body
+            .particles
+            .iter()
+            .map(|&i| state.particles.id(i as usize));
         let (first, last) = ids.fold((u32::MAX, 0), |(low, high), id| (low.min(id), high.max(id)));
         let region = scene.regions.keys().position(|name| *name == asked.region);
         let wall = asked.moves_with.as_ref();

@@ -194,12 +194,7 @@ pub(crate) fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
     first_bond
 }
 
-fn add_batches(
-    bonds: &Bonds,
-    partitions: &mut [Partition],
-    first_bond: &[usize],
-    idle: Idle<'_>,
-) {
+fn add_batches(bonds: &Bonds, partitions: &mut [Partition], first_bond: &[usize], idle: Idle<'_>) {
     add_borders(bonds, partitions, idle);
     for partition in partitions {
         let own = first_bond[partition.particles.start]..first_bond[partition.particles.end];

@@ -170,8 +170,9 @@ impl RigidParts {
                 self.of_particle[i as usize] = n;
             }
         }
-        let is_within =
-            |at: &usize| !bonds.is_broken(*at) && is_within_part(&self.of_particle, bonds.ends[*at]);
+        let is_within = |at: &usize| {
+            !bonds.is_broken(*at) && is_within_part(&self.of_particle, bonds.ends[*at])
+        };
         self.bonds = (0..bonds.len()).filter(is_within).count() as u64;
     }
 

@@ -1,0 +1,155 @@
+//! Momenta, kinetic energy and the balance as the zone moves.
+
+use dem_run::check::limit::limit;
+use dem_run::stages::ledger::balance;
+use dem_run::state::State;
+use dem_run::step::{advance, drift, exchange, interact};
+use nalgebra::Vector3;
+
+use super::{HALF, NOWHERE, flying, flying_text, rigid};
+use crate::clumps::{Whole, planned};
+
+fn whole(state: &State) -> Whole {
+    Whole::of(&state.particles, 0..state.particles.free, &Vector3::zeros())
+}
+
+/// Goes on for some steps, and compares the momenta before and after each change of the parts.
+/// Returns the number of changes, and the kinetic energy that they took, J.
+fn changes(state: &mut State, steps: usize) -> (usize, f64) {
+    let (mut count, mut lost_j) = (0, 0.0);
+    for _ in 0..steps {
+        interact(state);
+        let (before, counted) = (whole(state), state.rigid_parts.clone());
+        exchange(state);
+        let parts = &state.rigid_parts;
+        if [parts.released, parts.rejoined] != [counted.released, counted.rejoined] {
+            count += 1;
+            let after = whole(state);
+            let size = before.momentum.norm();
+            assert!((after.momentum - before.momentum).norm() < 1e-12 * size);
+            let off = after.angular_momentum - before.angular_momentum;
+            assert!(off.norm() < 1e-12 * size * 0.4, "{off:?}");
+            let gained_j = after.kinetic_j - before.kinetic_j;
+            if parts.rejoined == counted.rejoined {
+                assert!(gained_j.abs() < 1e-12 * before.kinetic_j, "{gained_j}");
+            }
+            lost_j -= gained_j;
+        }
+        drift(state);
+    }
+    (count, lost_j)
+}
+
+#[test]
+fn a_release_keeps_momenta_and_kinetic_energy() {
+    let mut state = flying(HALF, "").state;
+    let rigid_at_start = rigid(&state);
+    assert!((20..40).contains(&rigid_at_start), "{rigid_at_start}");
+    // Gravity turns the lump's way round: it falls out of the zone again.
+    state.model.gravity_m_s2 = [0.0, 0.0, 30.0];
+    let (count, lost_j) = changes(&mut state, 3000);
+    assert!(count >= 2, "{count}");
+    assert!(lost_j.abs() < 1e-12);
+    let released = state.rigid_parts.released as usize;
+    assert!(rigid(&state) < rigid_at_start && released > 0);
+}
+
+#[test]
+fn spheres_join_again_and_what_they_lose_is_booked() {
+    // The wall carries the zone off the lump.
+    let rejoin =
+        ", moves_with = \"blade\", rejoin = { strain_energy = 10, fluctuation_velocity = 0.5 }";
+    let mut state = flying(HALF, rejoin).state;
+    let start = rigid(&state);
+    let (count, lost_j) = changes(&mut state, 6000);
+    assert!(count > 2 && state.rigid_parts.rejoined > 10, "{count}");
+    assert!(rigid(&state) > start);
+    interact(&mut state);
+    let balance = balance(&mut state);
+    let booked_j = -balance.flow_energy_j;
+    eprintln!(
+        "{count} changes, {} rejoined, lost {lost_j:e} J, booked {booked_j:e} J, error {:e}, momenta {:e} {:e}",
+        state.rigid_parts.rejoined,
+        balance.energy_error,
+        balance.momentum_error,
+        balance.angular_momentum_error
+    );
+    assert!(booked_j > 0.0 && booked_j < 1e-3 * balance.kinetic_j);
+    // The velocities of the books are those of the positions.
+    assert!((lost_j / booked_j - 1.0).abs() < 0.2);
+    assert!(
+        balance.energy_error.abs() < 1e-8,
+        "{}",
+        balance.energy_error
+    );
+    assert!(balance.momentum_error < 1e-12 && balance.angular_momentum_error < 1e-11);
+}
+
+#[test]
+fn a_sphere_that_is_not_quiet_stays_bonded() {
+    let far = ", rejoin = { strain_energy = 1e-12, fluctuation_velocity = 1e-12 }";
+    let mut state = flying(HALF, far).state;
+    // Beyond the zone at once.
+    state
+        .model
+        .rules
+        .clone_from(&flying(NOWHERE, far).state.model.rules);
+    let start = rigid(&state);
+    changes(&mut state, 1000);
+    assert_eq!((rigid(&state), state.rigid_parts.rejoined), (start, 0));
+}
+
+#[test]
+fn the_energy_of_a_part_that_is_torn_at_its_border_balances() {
+    // The bonds across the border, pulled by a load on a sphere of the bonded half, break.
+    let elastic = "young_modulus = 1e9, poisson_ratio = 0.25";
+    let weak = format!("{elastic}, failure = {{ tensile_strength = 1e4 }}");
+    let mut state = planned(&flying_text(HALF, "").replacen(elastic, &weak, 1)).state;
+    let free = (0..state.particles.free as u32).rev();
+    let loaded: Vec<u32> = free
+        .filter(|&i| !state.rigid_parts.all[0].members.contains(&i))
+        .take(1)
+        .collect();
+    state.loads = vec![dem_run::state::loads::GroupLoad {
+        end_s: f64::INFINITY,
+        particles: loaded,
+        force_n: [0.0, 0.0, 2.0],
+        torque_n_m: [0.0; 3],
+        factor: dem_scene::Factor::One,
+    }];
+    let mut worst = 0.0_f64;
+    for _ in 0..4000 {
+        interact(&mut state);
+        worst = worst.max(balance(&mut state).energy_error.abs());
+        advance(&mut state);
+    }
+    let balance = balance(&mut state);
+    eprintln!("{} broken, {worst:e}", state.broken_count);
+    assert!(state.broken_count > 0);
+    assert!(worst < 1e-6, "{worst}");
+    assert!(balance.momentum_error < 1e-11 && balance.angular_momentum_error < 1e-11);
+}
+
+#[test]
+fn the_limit_is_that_of_the_bonded_body_and_stable() {
+    let whole_s = limit(&mut flying(super::EVERYWHERE, "").state).step_s;
+    let mut state = flying(HALF, "").state;
+    assert_eq!(limit(&mut state).step_s, whole_s);
+    // The fastest motions: every free sphere against its neighbours.
+    state.time_step_s = 0.99 * whole_s;
+    for i in 0..state.particles.free {
+        let sign = if i % 2 == 0 { 1e-3 } else { -1e-3 };
+        if !state.rigid_parts.all[0].members.contains(&(i as u32)) {
+            let motion = &mut state.particles.motions[i];
+            motion.velocity_m_s = motion.velocity_m_s.map(|v| v + sign);
+        }
+    }
+    let mut worst = 0.0_f64;
+    for _ in 0..20_000 {
+        interact(&mut state);
+        worst = worst.max(balance(&mut state).energy_error.abs());
+        advance(&mut state);
+    }
+    eprintln!("{worst:e}");
+    assert!(worst < 1e-3, "{worst}");
+}
