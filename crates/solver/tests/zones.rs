@@ -7,6 +7,7 @@ mod same_bits;
 
 use dem_run::plan::Plan;
 use dem_run::state::State;
+use dem_run::state::rigid_parts::RigidPart;
 
 use crate::clumps::{HEAD, MEETS, block, planned};
 
@@ -36,12 +37,26 @@ fn flying_text([min, max]: [[f64; 3]; 2], more: &str) -> String {
     )
 }
 
-/// Everywhere, nowhere, and the upper half of the lump at the start.
+/// Everywhere, nowhere, and the upper layer of the lump at the start.
 const EVERYWHERE: [[f64; 3]; 2] = [[-9.0; 3], [9.0; 3]];
 const NOWHERE: [[f64; 3]; 2] = [[-9.0; 3], [-8.0; 3]];
-const HALF: [[f64; 3]; 2] = [[-9.0, -9.0, 0.3011], [9.0; 3]];
+const TOP: [[f64; 3]; 2] = [[-9.0, -9.0, 0.3031], [9.0; 3]];
+/// The upper two layers.
+const UPPER: [[f64; 3]; 2] = [[-9.0, -9.0, 0.3011], [9.0; 3]];
 
-/// Numbers of spheres in rigid parts.
+/// Gives the bonded spheres velocities of this size to and fro, m/s.
+fn disturb(state: &mut State, by_m_s: f64) {
+    for i in 0..state.particles.free {
+        let sign = if i % 2 == 0 { by_m_s } else { -by_m_s };
+        let is_rigid = |part: &RigidPart| part.members.contains(&(i as u32));
+        if !state.rigid_parts.all.iter().any(is_rigid) {
+            let motion = &mut state.particles.motions[i];
+            motion.velocity_m_s = motion.velocity_m_s.map(|v| v + sign);
+        }
+    }
+}
+
+/// Number of spheres in rigid parts.
 fn rigid(state: &State) -> usize {
     let parts = state.rigid_parts.all.iter();
     parts.map(|part| part.members.len()).sum()

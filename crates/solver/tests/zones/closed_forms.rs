@@ -22,8 +22,10 @@ fn bar(bonded_m: f64) -> State {
     .state
 }
 
-/// Brings everything to rest at each largest kinetic energy.
+/// Brings everything to rest at each largest kinetic energy. A step after rest is a full one, not a
+/// half: it must be well below the limit.
 fn settle(state: &mut State) {
+    state.time_step_s *= 0.3;
     let kinetic = |state: &State| {
         let free = 0..state.particles.free;
         free.map(|i| state.particles.kinetic_j(i, &state.particles.motions[i]))

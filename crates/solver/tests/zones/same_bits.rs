@@ -9,7 +9,7 @@ use dem_run::state::State;
 use dem_run::step::{interact, step};
 use nalgebra::Vector3;
 
-use super::{EVERYWHERE, FLIES, HALF, NOWHERE, flying, lump, rigid};
+use super::{EVERYWHERE, FLIES, NOWHERE, TOP, disturb, flying, lump, rigid};
 use crate::clumps::{HEAD, MEETS, planned};
 
 const FLOOR: &str =
@@ -85,8 +85,9 @@ const MOVES: &str =
 #[test]
 fn threads_and_interruptions_do_not_change_a_bit() {
     let with = |threads: usize| {
-        let mut plan = flying(HALF, MOVES);
+        let mut plan = flying(TOP, MOVES);
         let state = &mut plan.state;
+        disturb(state, 0.05);
         state.scratch.threads = threads;
         state.divide();
         let count = state.particles.len();
@@ -145,9 +146,9 @@ fn bonds_within_rigid_parts_are_not_computed() {
         )
     };
     let ([all, none], _) = run(EVERYWHERE);
-    let ([done, skipped], error) = run(HALF);
+    let ([done, skipped], error) = run(TOP);
     let ([nothing, every], _) = run(NOWHERE);
-    eprintln!("bonded {all}, half {done} and {skipped}, error {error:e}");
+    eprintln!("bonded {all}, layer {done} and {skipped}, error {error:e}");
     assert_eq!((none, done + skipped), (0, all));
     assert_eq!((nothing, every), (0, all));
     assert!(3 * skipped > all && error.abs() < 1e-9);
