@@ -374,10 +374,9 @@ pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
     }
     listing.value("angular_velocity", &body.angular_velocity_rad_s);
     clump::list_start(body.start_as, listing);
-    match &body.bonded_within {
-        Some(zone) => listing.table("bonded_within", &zone::ZONE, |listing| {
+    if let Some(zone) = &body.bonded_within {
+        listing.table("bonded_within", &zone::ZONE, |listing| {
             zone::list(zone, listing);
-        }),
-        None => listing.text("bonded_within", "all of it is bonded"),
+        });
     }
 }
