@@ -63,8 +63,10 @@ fn spheres_join_again_and_what_they_lose_is_booked() {
     let mut state = flying(UPPER, rejoin).state;
     disturb(&mut state, 0.05);
     reopen(&mut state);
+    // The fastest motions have the error of leapfrog, (w dt)^2/4 of their energy.
+    state.time_step_s *= 0.05;
     let start = rigid(&state);
-    let (count, lost_j) = changes(&mut state, 6000);
+    let (count, lost_j) = changes(&mut state, 80_000);
     assert!(count > 1 && state.rigid_parts.rejoined > 10, "{count}");
     assert!(rigid(&state) > start);
     interact(&mut state);
