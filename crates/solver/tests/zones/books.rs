@@ -82,7 +82,10 @@ fn spheres_join_again_and_what_they_lose_is_booked() {
     // The books are of the velocities at the time of the positions; `lost_j` is half a step later.
     assert!(lost_j > 0.0 && booked_j > 0.0);
     assert!(balance.energy_error_j.abs() < 0.01 * booked_j);
-    assert!(balance.momentum_error < 1e-12 && balance.angular_momentum_error < 1e-11);
+    // The centre of the part is rounded in each of 80,000 steps, by up to 3e-17 m of 0.3 m, mostly
+    // to the same side; the momenta refer to a few mm. A clump has the same error.
+    let rounding = 80_000.0 * 3e-17 / 5e-3;
+    assert!(balance.momentum_error < 1e-12 && balance.angular_momentum_error < rounding);
 }
 
 #[test]
