@@ -13,8 +13,10 @@ use super::listing::Listing;
 use super::material::Material;
 use super::names::meaning;
 use super::paths::named_path;
+use super::region::Region;
 use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
+use super::zone::{self, Zone};
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGULAR_VELOCITY, DENSITY, LENGTH, MASS, VELOCITY};
 
@@ -59,6 +61,8 @@ pub struct BodyEntry {
     pub angular_velocity_rad_s: [f64; 3],
     /// `start_as`, "bonded" unless given, and `clump`.
     pub start_as: StartAs,
+    /// `bonded_within`. None: all of it is bonded.
+    pub bonded_within: Option<Zone>,
     /// `body_density` or `mass`. None: its spheres have the density of the material.
     pub whole_mass: Option<WholeMass>,
 }
@@ -155,6 +159,12 @@ pub(super) static BODY: Schema = Schema {
         ),
         clump::START_AS,
         Key::table("clump", &clump::CLUMP, "Settings of the clump; only with `start_as = \"clump\"`."),
+        Key::table(
+            "bonded_within",
+            &zone::ZONE,
+            "Region in which the body is bonded; the rest of it is rigid.",
+        )
+        .otherwise("all of it is bonded"),
     ],
 };
 
@@ -162,6 +172,7 @@ pub(super) fn read_all(
     root: &Table<'_>,
     materials: &BTreeMap<String, Material>,
     bonds: &BTreeMap<String, BondKind>,
+    regions: &BTreeMap<String, Region>,
     folder: &Path,
 ) -> Result<BTreeMap<String, BodyEntry>> {
     let tables = root.named("bodies")?;
@@ -176,7 +187,7 @@ pub(super) fn read_all(
             let problem = format!("{} is named like {of}", field.path);
             return Err(field.refuse(problem, "give it another name"));
         }
-        let body = read(&field, materials, bonds, folder)?;
+        let body = read(&field, materials, bonds, regions, folder)?;
         if matches!(&body.source, BodySource::File(file) if file.as_os_str() == "-")
             && let Some(first) = piped.replace(name.clone())
         {
@@ -196,6 +207,7 @@ fn read(
     field: &Field<'_>,
     materials: &BTreeMap<String, Material>,
     bonds: &BTreeMap<String, BondKind>,
+    regions: &BTreeMap<String, Region>,
     folder: &Path,
 ) -> Result<BodyEntry> {
     let table = Table::of(field, &BODY)?;
@@ -241,6 +253,7 @@ fn read(
         fall: fall::read(&table)?,
         angular_velocity_rad_s: table.read("angular_velocity")?,
         start_as,
+        bonded_within: table.read_by("bonded_within", |field| zone::read(&field, regions))?,
         whole_mass,
     })
 }
@@ -361,4 +374,9 @@ pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
     }
     listing.value("angular_velocity", &body.angular_velocity_rad_s);
     clump::list_start(body.start_as, listing);
+    if let Some(zone) = &body.bonded_within {
+        listing.table("bonded_within", &zone::ZONE, |listing| {
+            zone::list(zone, listing);
+        });
+    }
 }

@@ -56,6 +56,7 @@ mod toml_text;
 mod tree;
 mod values;
 mod wall;
+mod zone;
 
 pub use as_run::{piped_bodies, scene_as_run};
 pub use bodies::read_bodies;
@@ -89,3 +90,4 @@ pub use sleep::Sleep;
 pub use support::{Hold, Support};
 pub use test::{MeasuredReference, Test};
 pub use wall::{Wall, WallMotion, WallShape};
+pub use zone::{Rejoin, Zone};

@@ -16,7 +16,7 @@ use super::tree::option_place;
 use super::{
     body, bond, clusters, contact, fall_check, group, initial, inlet, load, material, measure,
     outlet, output, region, relaxation, replacement, run, search, sleep, statics, support, test,
-    wall,
+    wall, zone,
 };
 use crate::field::Field;
 use dem_io::diagnostic::Result;
@@ -59,9 +59,9 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let run = run::read(&root)?;
     let materials = each(&root, "materials", material::read)?;
     let bonds = each(&root, "bonds", bond::read)?;
-    let bodies = body::read_all(&root, &materials, &bonds, folder)?;
-    let contacts = contact::read_all(&root, &materials)?;
     let regions = each(&root, "regions", |field| region::read(field, folder))?;
+    let bodies = body::read_all(&root, &materials, &bonds, &regions, folder)?;
+    let contacts = contact::read_all(&root, &materials)?;
     let replacement = replacement::read_all(&root, &bodies, &regions)?;
     let inlets = inlet::read_all(&root, &bodies, &regions)?;
     let outlets = each(&root, "outlets", |field| {
@@ -73,6 +73,13 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     };
     let groups = group::read_all(&root, &presence)?;
     let walls = wall::read_all(&root, &materials, &bodies, &groups, folder)?;
+    let of_zones = zone::Known {
+        bodies: &bodies,
+        bonds: &bonds,
+        inlets: &inlets,
+        walls: &walls,
+    };
+    zone::check(&root, &of_zones)?;
     fall_check::refuse_falls(&root, &run, &bodies, &walls, &inlets)?;
     let targets = Targets {
         groups: &groups,

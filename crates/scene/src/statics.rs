@@ -51,6 +51,16 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
         let remedy = "write formulation = \"total\", or run.integrator = \"leapfrog\"";
         return Err(field.refuse(problem, remedy));
     }
+    for (_, body) in root.named("bodies")? {
+        if let Some(field) = Table::any(&body)?.get("bonded_within") {
+            let problem = format!(
+                "{} is not available with run.integrator = \"static\", which bonds all of a body",
+                field.path
+            );
+            let remedy = "remove it, or write run.integrator = \"leapfrog\"";
+            return Err(field.refuse(problem, remedy));
+        }
+    }
     if let Some(field) = written(root, "bodies", "start_as", "clump")? {
         let problem = format!(
             "{} is \"clump\", and run.integrator = \"static\" has nothing to do for a rigid body",

@@ -19,6 +19,7 @@ mod stages;
 pub mod test_setup;
 pub mod time_step;
 mod walls;
+mod zones;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -63,6 +64,7 @@ pub use self::stages::PlannedStage;
 use self::stages::{leave_out, planned_stages};
 use self::test_setup::{Setup, setup};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
+use self::zones::place_zones;
 use crate::state::bodies::PlacedBody;
 
 /// Number of particles and bonds that justify a thread of their own.
@@ -149,6 +151,7 @@ pub fn plan(
     state.model.ball_m = ball_m;
     refuse_damped_clumps(scene, &state)?;
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
+    place_zones(scene, &bodies, &mut state)?;
     refuse_valueless(scene, &groups, &state)?;
     let mut warnings = masses::warnings(scene, &about);
     warnings.extend(masses::light(scene));

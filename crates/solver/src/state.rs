@@ -16,6 +16,7 @@ pub mod partitions;
 pub(crate) mod population;
 pub mod references;
 pub mod regions;
+pub mod rigid_parts;
 pub(crate) mod rules;
 pub(crate) mod scratch;
 pub mod sleep;
@@ -37,8 +38,9 @@ use self::ledger::EnergyLedger;
 use self::loads::GroupLoad;
 use self::model::Model;
 use self::particles::{Particles, Wrench};
-use self::partitions::divide_awake;
+use self::partitions::{Idle, divide_busy};
 use self::population::Population;
+use self::rigid_parts::RigidParts;
 use self::scratch::Scratch;
 use self::sleep::Sleep;
 use self::supports::GroupSupport;
@@ -61,6 +63,8 @@ pub struct State {
     pub clumps: Clumps,
     /// Bonds between particles.
     pub bonds: Bonds,
+    /// Rigid parts of bonded bodies.
+    pub rigid_parts: RigidParts,
     /// Particles grouped into connected pieces. None: nothing can break, and nothing can touch.
     pub clusters: Option<Clusters>,
     /// Bonds that broke since the last search for fragments.
@@ -121,6 +125,7 @@ impl State {
             particles,
             clumps: Clumps::default(),
             bonds,
+            rigid_parts: RigidParts::default(),
             clusters: None,
             unsearched: Vec::new(),
             contacts: None,
@@ -154,15 +159,28 @@ impl State {
     /// Divides the work on particles and bonds again, and makes room for damping forces.
     pub fn divide(&mut self) {
         let free = self.particles.free;
+        self.divide_bonds();
         let scratch = &mut self.scratch;
-        let asleep = &self.particles.asleep;
-        scratch.partitions = divide_awake(&self.bonds, free, scratch.threads, asleep);
         let damped = self.bonds.rules.iter().any(BondRule::resists);
         let resistances = if damped { free } else { 0 };
         scratch.bond_resistance = vec![Wrench::default(); resistances];
         let is_damped = self.model.particle_damping > 0.0;
         let resistances = if is_damped { self.particles.len() } else { 0 };
         scratch.particle_resistance = vec![Wrench::default(); resistances];
+    }
+
+    /// Divides the work on particles and bonds again.
+    pub(crate) fn divide_bonds(&mut self) {
+        let (free, threads) = (self.particles.free, self.scratch.threads);
+        self.scratch.partitions = divide_busy(&self.bonds, free, threads, self.idle());
+    }
+
+    /// What is not computed.
+    pub(crate) fn idle(&self) -> Idle<'_> {
+        Idle {
+            asleep: &self.particles.asleep,
+            part_of: &self.rigid_parts.of_particle,
+        }
     }
 
     /// Leaves out of the lists of walls what they do not touch, and requests a search before the
@@ -204,6 +222,7 @@ impl State {
         }
         self.model = model;
         self.scratch.threads = threads;
+        self.rigid_parts.number(self.particles.free, &self.bonds);
         self.divide();
         self.particles.wrenches = vec![Wrench::default(); self.particles.len()];
         if let Some(clusters) = &mut self.clusters {

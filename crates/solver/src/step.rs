@@ -27,12 +27,16 @@ use crate::stages::motion::{
 use crate::stages::pieces::{CLUSTERS, find_pieces};
 use crate::stages::replacement::{REPLACEMENT, replace_clumps};
 use crate::stages::restoring::restore_clumps;
+use crate::stages::rigid_parts::{
+    RIGID_PARTS, drift_rigid_parts, gather_rigid_parts, kick_rigid_parts,
+};
 use crate::stages::sleep::{SLEEP, update_sleep};
 use crate::stages::stage::Stage;
 use crate::stages::structural::{STRUCTURAL_DAMPING, add_structural_damping};
 use crate::stages::supports::{SUPPORTS, hold_supports, remember_held};
 use crate::stages::walls::{WALLS, compute_wall_contacts, drift_walls, plan_wall_motions};
 use crate::stages::watching::{OUTPUT, watch};
+use crate::stages::zones::{ZONES, follow_zones};
 use crate::state::State;
 use crate::state::events::Events;
 
@@ -63,10 +67,12 @@ const INTERACT: &[Part] = &[
     (&BOND_DAMPING, compute_bond_damping),
     (&STRUCTURAL_DAMPING, add_structural_damping),
     (&PARTICLE_DAMPING, compute_particle_damping),
+    (&RIGID_PARTS, gather_rigid_parts),
     (&LEDGER, book_before_kick),
     (&MOTION, kick_particles),
     (&GRAVITY, count_falling),
     (&CLUMPS, kick_clumps),
+    (&RIGID_PARTS, kick_rigid_parts),
     (&SUPPORTS, hold_supports),
     (&WALLS, plan_wall_motions),
     (&LEDGER, book_after_kick),
@@ -80,12 +86,14 @@ const EXCHANGE: &[Part] = &[
     (&FLOW, apply_inlets_and_outlets),
     (&REPLACEMENT, restore_clumps),
     (&REPLACEMENT, replace_clumps),
+    (&ZONES, follow_zones),
 ];
 
 /// Everything moves on.
 const DRIFT: &[Part] = &[
     (&SLEEP, update_sleep),
     (&MOTION, drift_particles),
+    (&RIGID_PARTS, drift_rigid_parts),
     (&CLUMPS, drift_clumps),
     (&WALLS, drift_walls),
     (&SEARCH, use_up_skin),

@@ -4,6 +4,7 @@
 //! scene is read, planned and run like any other -> [`verdict`]. No scene may go wrong silently: it
 //! ends with the right result, is refused before it starts, or is stopped with the cause.
 
+pub(crate) mod adhesion;
 pub(crate) mod breakage;
 pub mod cases;
 pub(crate) mod families;

@@ -34,3 +34,4 @@ mod statics;
 mod step;
 mod stress;
 mod walls;
+mod zones;

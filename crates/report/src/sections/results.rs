@@ -225,10 +225,18 @@ fn facts(summary: &Value) -> Vec<[String; 2]> {
         if some("fed") {
             add("bodies fed", bodies("fed"));
         }
-        add(
-            "clumps replaced by clusters",
-            count(&population["replaced"]),
-        );
+        if some("replaced") || !some("released") {
+            add(
+                "clumps replaced by clusters",
+                count(&population["replaced"]),
+            );
+        }
+        if some("released") {
+            add(
+                "spheres released from rigid parts",
+                count(&population["released"]),
+            );
+        }
         if some("restored") {
             add("restored to clumps", count(&population["restored"]));
         }

@@ -196,6 +196,7 @@ fn values_in_words() {
                 about.iter().any(|table| line.starts_with(table))
                     || line.contains(".start_as ")
                     || line.contains(".clump.")
+                    || line.contains(".bonded_within.")
             })
             .collect()
     };
@@ -213,6 +214,11 @@ fn values_in_words() {
             "bodies.rock.start_as clump",
             "bodies.rock.clump.scale 1.5",
             "bodies.rock.clump.mass union",
+            "bodies.stalk.start_as bonded",
+            "bodies.stalk.bonded_within.region gate",
+            "bodies.stalk.bonded_within.moves_with blade",
+            "bodies.stalk.bonded_within.rejoin.strain_energy 0.005 J/kg",
+            "bodies.stalk.bonded_within.rejoin.fluctuation_velocity 0.002 m/s",
             "regions.all.cylinder.from [0, 0, -3] m",
             "regions.all.cylinder.to [0, 0, 3] m",
             "regions.all.cylinder.radius 2 m",

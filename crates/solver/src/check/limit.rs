@@ -86,7 +86,27 @@ pub struct Bound {
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the
 /// same. Contacts count at the overlap that they have, stuck. Afterwards no wrench acts on any
 /// particle.
+/// Rigid parts are taken as bonded. They only restrict the motion of the bonded body, and its mass
+/// and stiffness for the motions that are left are the same: so the largest eigenvalue is not above
+/// that of the whole bonded body (Rayleigh), and the limit is safe wherever the bonded zone is.
 pub fn limit(state: &mut State) -> Limit {
+    with_all_bonds(state, limit_of_bonded)
+}
+
+/// Takes rigid parts as bonded for a while.
+fn with_all_bonds<T>(state: &mut State, found: impl FnOnce(&mut State) -> T) -> T {
+    if state.rigid_parts.is_empty() {
+        return found(state);
+    }
+    let parts = std::mem::take(&mut state.rigid_parts);
+    state.divide_bonds();
+    let result = found(state);
+    state.rigid_parts = parts;
+    state.divide_bonds();
+    result
+}
+
+fn limit_of_bonded(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
     let damaged = undamage(&mut state.bonds);
     let (undamped, of_undamped) =
@@ -131,6 +151,10 @@ pub fn limit(state: &mut State) -> Limit {
 /// unless the limit is: found in a fraction of the time that the limit takes. What counts is said
 /// at [`limit`].
 pub fn bound_near(state: &mut State, step_s: f64) -> Bound {
+    with_all_bonds(state, |state| bound_near_of_bonded(state, step_s))
+}
+
+fn bound_near_of_bonded(state: &mut State, step_s: f64) -> Bound {
     let contacts = &linear_contacts(state);
     let both = Weights::of_step(stiffer_by_damping(state), step_s);
     let damaged = undamage(&mut state.bonds);

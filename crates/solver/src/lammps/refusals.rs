@@ -69,6 +69,15 @@ pub(crate) fn refuse_parts(scene: &Scene) -> Result<()> {
             run_it,
         ),
         (
+            scene
+                .bodies
+                .values()
+                .any(|body| body.bonded_within.is_some()),
+            "bonded_within".to_owned(),
+            "bodies of which a part is rigid",
+            run_it,
+        ),
+        (
             !scene.inlets.is_empty(),
             format!("[inlets.{}]", first(scene.inlets.keys().next())),
             "bodies that come at places and times which both programs would draw alike",

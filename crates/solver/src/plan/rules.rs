@@ -105,6 +105,7 @@ pub(super) fn rules(
         starts: starts.collect(),
         inlets: inlets.collect(),
         outlets: outlets.collect(),
+        zones: Vec::new(),
         seed: scene.run.seed,
         regions,
     })

@@ -10,7 +10,7 @@ use crate::state::bonds::Bonds;
 use crate::state::events::{Break, Events};
 use crate::state::particles::Particles;
 use crate::state::partitions::Partition;
-use crate::state::partitions::divide_anew;
+use crate::state::partitions::{Idle, divide_anew};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const FAILURE_NS: f64 = 2.1;
@@ -163,13 +163,13 @@ fn leave_out_broken(state: &mut State) {
         .sum();
     let broken = state.broken_count - state.broken_removed;
     let asleep = state.sleep.as_ref().map_or(0, |sleep| sleep.bonds);
-    let whole = state.bonds.len() as u64 - broken - asleep;
+    let whole = state.bonds.len() as u64 - broken - asleep - state.rigid_parts.bonds;
     if (computed as u64 - whole) * STALE >= computed as u64 {
-        divide_anew(
-            &state.bonds,
-            &mut state.scratch.partitions,
-            &state.particles.asleep,
-        );
+        let idle = Idle {
+            asleep: &state.particles.asleep,
+            part_of: &state.rigid_parts.of_particle,
+        };
+        divide_anew(&state.bonds, &mut state.scratch.partitions, idle);
     }
 }
 

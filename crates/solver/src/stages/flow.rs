@@ -43,13 +43,16 @@ pub(crate) fn apply_inlets_and_outlets(state: &mut State) -> usize {
     state.model.rules.inlets.len() + state.model.rules.outlets.len()
 }
 
-/// Counts the existing bonds, and those skipped because their bodies are clumps.
+/// Counts the existing bonds, and those skipped because their bodies are clumps or they are within
+/// rigid parts.
 pub(crate) fn count_bond_steps(state: &mut State) -> usize {
-    if !state.model.rules.are_none() {
+    let rules = &state.model.rules;
+    if !(rules.are_none() && rules.zones.is_empty()) {
         let clumps = state.clumps.all.iter();
         let left_out = clumps.map(|clump| state.clumps.template(clump).bonds.len() as u64);
-        state.population.bond_steps[1] += left_out.sum::<u64>();
-        state.population.bond_steps[0] += state.bonds.len() as u64;
+        let rigid = state.rigid_parts.bonds;
+        state.population.bond_steps[1] += left_out.sum::<u64>() + rigid;
+        state.population.bond_steps[0] += state.bonds.len() as u64 - rigid;
     }
     0
 }

@@ -339,6 +339,9 @@ fn count_anew(
     for load in &mut state.loads {
         renumber(&mut load.particles, particles);
     }
+    state.rigid_parts.renumber(particles, REMOVED);
+    let free = state.particles.free;
+    state.rigid_parts.number(free, &state.bonds);
     // The next step computes damping forces before it needs them.
     state.divide();
     for wall in &mut state.walls {

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 
 use super::population::apply_topology_change;
 use crate::shape::fit::best_rotation;
-use crate::shape::inertia::{MassProperties, of_spheres};
+use crate::shape::inertia::MassProperties;
 use crate::shape::outer_layer::{HIDDEN, outer_layer};
 use crate::stages::totals::synchronous_motions;
 use crate::stages::touching::touching;
@@ -25,6 +25,7 @@ use crate::state::events::Renumbering;
 use crate::state::events::TopologyChange;
 use crate::state::particles::Motion;
 use crate::state::population::FragmentTemplate;
+use crate::state::rigid_parts::as_rigid;
 
 /// Interval between checks of the clusters, in steps.
 const EVERY: u64 = 200;
@@ -160,32 +161,7 @@ fn inner_kinetic_j(fragment: &Fragment, members: &[u32], motions: &[Motion], sta
 /// its template unless it is that of the complete body.
 fn as_clump(id: u32, base: usize, (members, is_free): (&[u32], bool), state: &mut State) -> Clump {
     let p = &state.particles;
-    let of = |i: &u32| *i as usize;
-    let centres: Vec<[f64; 3]> = members
-        .iter()
-        .map(|i| p.poses[of(i)].place().into())
-        .collect();
-    let masses: Vec<f64> = members
-        .iter()
-        .map(|i| 1.0 / p.motions[of(i)].inverse_mass)
-        .collect();
-    let inertias: Vec<f64> = members
-        .iter()
-        .map(|i| 1.0 / p.motions[of(i)].inverse_inertia)
-        .collect();
-    let properties = of_spheres(&centres, &masses, &inertias);
-    let centre = Vector3::from(properties.centre_m);
-    let velocity_of = |i: &u32| Vector3::from(p.motions[of(i)].velocity_m_s);
-    let momentum: Vector3<f64> = (members.iter().zip(&masses))
-        .map(|(i, mass)| *mass * velocity_of(i))
-        .sum();
-    let velocity = momentum / properties.mass_kg;
-    let mut angular = Vector3::zeros();
-    for (n, i) in members.iter().enumerate() {
-        let arm = Vector3::from(centres[n]) - centre;
-        angular += masses[n] * arm.cross(&(velocity_of(i) - velocity))
-            + inertias[n] * Vector3::from(p.motions[of(i)].spin_rad_s);
-    }
+    let (properties, [velocity, angular]) = as_rigid(members, &p.poses, &p.motions);
     let whole = Arc::clone(&state.clumps.templates[base]);
     let bonds: Vec<usize> = own_bonds(members, state);
     let is_damaged = bonds.iter().any(|&at| state.bonds.was_damaged(at));
@@ -194,14 +170,15 @@ fn as_clump(id: u32, base: usize, (members, is_free): (&[u32], bool), state: &mu
         && bonds.len() == whole.bonds.len()
         && !is_damaged;
     let first_id = match members.first() {
-        Some(&first) if is_whole => p.id(of(&first)) - whole.file_number[0],
+        Some(&first) if is_whole => p.id(first as usize) - whole.file_number[0],
         _ => 0,
     };
     let (template, turned) = if is_whole {
-        let arms: Vec<[f64; 3]> = centres
-            .iter()
-            .map(|place| (Vector3::from(*place) - centre).into())
-            .collect();
+        let centre = Vector3::from(properties.centre_m);
+        let places = members.iter().map(|&i| p.poses[i as usize].place());
+        let arms: Vec<[f64; 3]> = places.map(|place| (place - centre).into()).collect();
+        let inverse = members.iter().map(|&i| p.motions[i as usize].inverse_mass);
+        let masses: Vec<f64> = inverse.map(|inverse| 1.0 / inverse).collect();
         let from: Vec<[f64; 3]> = whole.spheres.iter().map(|s| s.place_m).collect();
         (base as u32, best_rotation(&from, &arms, &masses))
     } else {

@@ -17,7 +17,7 @@ use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::events::SleepEvent;
 use crate::state::events::TopologyChange;
 use crate::state::particles::Wrench;
-use crate::state::partitions::divide_awake;
+use crate::state::partitions::{Idle, divide_busy};
 use crate::state::sleep::{ClusterSleep, FrozenContact, FrozenWallContact, Sleep};
 use crate::state::walls::{Wall, WallLoad};
 use dem_io::disjoint::{find, join};
@@ -468,7 +468,11 @@ pub(crate) fn count_sleepers(state: &mut State) {
         0 => 0,
         _ => (0..bonds.len()).filter(rests).count() as u64,
     };
-    state.scratch.partitions = divide_awake(bonds, p.free, state.scratch.threads, &p.asleep);
+    let idle = Idle {
+        asleep: &p.asleep,
+        part_of: &state.rigid_parts.of_particle,
+    };
+    state.scratch.partitions = divide_busy(bonds, p.free, state.scratch.threads, idle);
     for clump in &mut state.clumps.all {
         clump.asleep = sleep.is_asleep(clump.cluster);
     }

@@ -2,12 +2,36 @@
 //!
 //! A partition is a range of particles. It computes every bond that has an end in its range, in the
 //! order of the bonds; bonds across the border of two partitions are computed by both. Broken bonds
-//! and bonds of sleeping bodies belong to no partition. So no two threads write to the same place,
+//! and bonds of sleeping bodies and within rigid parts belong to no partition. So no two threads write to the same place,
 //! and the order of every sum is the same for any number of partitions.
 
 use std::ops::Range;
 
 use super::bonds::Bonds;
+use super::rigid_parts::{FREE, is_within_part};
+
+/// What is not computed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Idle<'a> {
+    /// For each particle whether it sleeps. Empty: none does.
+    pub(crate) asleep: &'a [bool],
+    /// For each particle the number of its rigid part: see
+    /// [`super::rigid_parts::RigidParts::of_particle`].
+    pub(crate) part_of: &'a [u32],
+}
+
+impl Idle<'_> {
+    fn sleeps(&self, i: usize) -> bool {
+        self.asleep.get(i).is_some_and(|asleep| *asleep)
+    }
+
+    /// Whether a bond is skipped: it is broken, its body sleeps, or both ends are in one rigid
+    /// part.
+    fn leaves_out(&self, bonds: &Bonds, at: usize) -> bool {
+        let ends = bonds.ends[at];
+        bonds.is_broken(at) || self.sleeps(ends[0] as usize) || is_within_part(self.part_of, ends)
+    }
+}
 
 /// Bonds of one rule that a partition computes.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,22 +114,24 @@ impl Partition {
 /// Divides particles and bonds into `count` partitions with about the same number of bonds each;
 /// fewer if there are not enough particles.
 pub fn divide(bonds: &Bonds, particles: usize, count: usize) -> Vec<Partition> {
-    divide_awake(bonds, particles, count, &[])
+    divide_busy(bonds, particles, count, Idle::default())
 }
 
-/// Divides the particles and bonds that are not `asleep` (one for each particle; empty: none is).
-pub(crate) fn divide_awake(
+/// Divides the particles and bonds that are not idle.
+pub(crate) fn divide_busy(
     bonds: &Bonds,
     particles: usize,
     count: usize,
-    asleep: &[bool],
+    idle: Idle<'_>,
 ) -> Vec<Partition> {
     let first_bond = first_bonds(bonds, particles);
     // A particle costs about a third of a bond.
     let mut done = 0;
     let mut work = vec![0];
     for i in 0..particles {
-        if !sleeps(asleep, i) {
+        if idle.part_of.get(i).is_some_and(|part| *part != FREE) {
+            done += 1;
+        } else if !idle.sleeps(i) {
             done += 3 * (first_bond[i + 1] - first_bond[i]) + 1;
         }
         work.push(done);
@@ -120,24 +146,20 @@ pub(crate) fn divide_awake(
         .windows(2)
         .map(|w| Partition {
             particles: w[0]..w[1],
-            awake: awake_ranges(w[0]..w[1], asleep),
+            awake: awake_ranges(w[0]..w[1], idle),
             batches: Vec::new(),
             failing: Vec::new(),
             computed: Computed::default(),
         })
         .collect();
-    add_batches(bonds, &mut partitions, &first_bond, asleep);
+    add_batches(bonds, &mut partitions, &first_bond, idle);
     partitions
 }
 
-fn sleeps(asleep: &[bool], i: usize) -> bool {
-    asleep.get(i).is_some_and(|asleep| *asleep)
-}
-
 /// The awake particles of a partition, as numbers within it.
-fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
+fn awake_ranges(particles: Range<usize>, idle: Idle<'_>) -> Vec<Range<usize>> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
-    for i in particles.clone().filter(|&i| !sleeps(asleep, i)) {
+    for i in particles.clone().filter(|&i| !idle.sleeps(i)) {
         let at = i - particles.start;
         match ranges.last_mut() {
             Some(last) if last.end == at => last.end += 1,
@@ -147,9 +169,8 @@ fn awake_ranges(particles: Range<usize>, asleep: &[bool]) -> Vec<Range<usize>> {
     ranges
 }
 
-/// Reassigns the bonds to the partitions, without those that have broken since and those of
-/// sleeping bodies.
-pub(crate) fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
+/// Reassigns the bonds to the partitions, without those that have broken since and idle ones.
+pub(crate) fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], idle: Idle<'_>) {
     let particles = partitions
         .last()
         .map_or(0, |partition| partition.particles.end);
@@ -157,7 +178,7 @@ pub(crate) fn divide_anew(bonds: &Bonds, partitions: &mut [Partition], asleep: &
     for partition in partitions.iter_mut() {
         partition.batches.clear();
     }
-    add_batches(bonds, partitions, &first_bond, asleep);
+    add_batches(bonds, partitions, &first_bond, idle);
 }
 
 /// For each particle the first of the bonds whose first end it is, followed by the number of bonds.
@@ -173,14 +194,14 @@ pub(crate) fn first_bonds(bonds: &Bonds, particles: usize) -> Vec<usize> {
     first_bond
 }
 
-fn add_batches(bonds: &Bonds, partitions: &mut [Partition], first_bond: &[usize], asleep: &[bool]) {
-    add_borders(bonds, partitions, asleep);
+fn add_batches(bonds: &Bonds, partitions: &mut [Partition], first_bond: &[usize], idle: Idle<'_>) {
+    add_borders(bonds, partitions, idle);
     for partition in partitions {
         let own = first_bond[partition.particles.start]..first_bond[partition.particles.end];
         for (rule, range) in bonds.runs(own) {
             let whole: Vec<u32> = range
                 .clone()
-                .filter(|&at| !is_left_out(bonds, at, asleep))
+                .filter(|&at| !idle.leaves_out(bonds, at))
                 .map(|at| at as u32)
                 .collect();
             if whole.is_empty() {
@@ -196,19 +217,14 @@ fn add_batches(bonds: &Bonds, partitions: &mut [Partition], first_bond: &[usize]
     }
 }
 
-/// Whether a bond is skipped: it is broken, or its body sleeps.
-fn is_left_out(bonds: &Bonds, at: usize, asleep: &[bool]) -> bool {
-    bonds.is_broken(at) || sleeps(asleep, bonds.ends[at][0] as usize)
-}
-
 /// Assigns each bond whose ends lie in two partitions to the partition of its second end as well.
-fn add_borders(bonds: &Bonds, partitions: &mut [Partition], asleep: &[bool]) {
+fn add_borders(bonds: &Bonds, partitions: &mut [Partition], idle: Idle<'_>) {
     let mut of_first = 0;
     for (at, &[a, b]) in bonds.ends.iter().enumerate() {
         while partitions[of_first].particles.end <= a as usize {
             of_first += 1;
         }
-        if (b as usize) < partitions[of_first].particles.end || is_left_out(bonds, at, asleep) {
+        if (b as usize) < partitions[of_first].particles.end || idle.leaves_out(bonds, at) {
             continue;
         }
         let of_second = partitions.partition_point(|s| s.particles.end <= b as usize);

@@ -30,7 +30,7 @@ pub struct Population {
     pub replaced: u32,
     /// Clusters that became clumps again.
     pub restored: u32,
-    /// Bond updates done, and those skipped because their bodies were clumps.
+    /// Bond updates done, and those skipped because bodies were rigid.
     pub bond_steps: [u64; 2],
 }
 

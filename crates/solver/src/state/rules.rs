@@ -1,10 +1,14 @@
 //! Rules for adding, removing and replacing bodies: regions, replacement, inlets and outlets of the
 //! scene.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use super::population::InletProgress;
 use super::regions::Region;
+use super::walls::Wall;
+use crate::geometry::Frame;
 
 /// Condition under which a clump becomes a bonded cluster (BPRM: Platzer 2022, section 4.5.4).
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -126,6 +130,37 @@ pub struct Outlet {
     pub removes_outside: bool,
 }
 
+/// The bonded part of a body, the rest of which is rigid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Zone {
+    /// [Ids](super::particles::Particles::id) of the spheres of the body.
+    pub ids: Range<u32>,
+    /// Number in [`Rules::regions`].
+    pub region: usize,
+    /// The wall that the region moves with. None: it does not move.
+    pub carrier: Option<Carrier>,
+    /// Conditions under which spheres join rigid parts again. None: they never do.
+    pub rejoin: Option<Rejoin>,
+}
+
+/// A wall that a region moves with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Carrier {
+    /// Number of the wall.
+    pub wall: usize,
+    /// Position of the wall at the start.
+    pub start: Frame,
+}
+
+/// Conditions under which a sphere joins a rigid part again.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Rejoin {
+    /// The elastic energy of its bonds per mass is below this, J/kg.
+    pub strain_energy_j_kg: f64,
+    /// Its velocity relative to the part is below this, m/s.
+    pub speed_m_s: f64,
+}
+
 /// All rules of a scene.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Rules {
@@ -142,6 +177,8 @@ pub struct Rules {
     pub inlets: Vec<Inlet>,
     /// Outlets, in the order of their names.
     pub outlets: Vec<Outlet>,
+    /// Bodies that are bonded in a region only.
+    pub zones: Vec<Zone>,
     /// Seed of the scene.
     pub seed: u64,
 }
@@ -168,7 +205,16 @@ impl Rules {
         })
     }
 
-    /// Whether there are no rules.
+    /// Whether the bonded zone of a body contains a place, m, while the walls are where they are.
+    pub(crate) fn zone_contains(&self, zone: &Zone, place_m: [f64; 3], walls: &[Wall]) -> bool {
+        let at_start = zone.carrier.map_or(place_m, |carrier| {
+            let of_wall = walls[carrier.wall].frame.to_wall(place_m);
+            carrier.start.to_space(of_wall)
+        });
+        self.regions[zone.region].contains(at_start)
+    }
+
+    /// Whether there are no rules by which bodies come, go or are replaced.
     pub(crate) fn are_none(&self) -> bool {
         self.inlets.is_empty()
             && self.outlets.is_empty()

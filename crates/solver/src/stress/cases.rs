@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
-use super::{breakage, families, impact, limit_map, long, softening, swap};
+use super::{adhesion, breakage, families, impact, limit_map, long, softening, swap};
 
 /// A case of the suite.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 17] = [
+pub const CASES: [Case; 18] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -84,6 +84,11 @@ pub const CASES: [Case; 17] = [
         name: "impact",
         extreme: "impacts at 300 m/s, on what is hard and on what is soft",
         members: |_| Ok(impact::impacts()),
+    },
+    Case {
+        name: "adhesion",
+        extreme: "spheres of 1e-6 m to 1e-2 m that adhesion holds on a wall",
+        members: |_| Ok(adhesion::grains()),
     },
     Case {
         name: "mesh-wall",

@@ -253,6 +253,12 @@ fn of_rigid_bodies() {
     );
     let region = "[regions.part]\nbox = { min = [5, 5, 5], max = [6, 6, 6] }\n";
     expect(
+        "a body that is bonded nowhere",
+        &scene("", "", "bonded_within = { region = \"part\" }", region),
+        &["motion", "rigid parts", "bonded zones"],
+        &with(&FREE, &["rigid parts"]),
+    );
+    expect(
         "an outlet",
         &scene(
             "",

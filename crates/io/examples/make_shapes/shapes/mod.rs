@@ -29,6 +29,7 @@ pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
             Mesh::cuboid([0.0, 0.0, 0.0], [200.0, 30.0, 35.0]),
         ),
         ("rock", rock::rock()),
+        ("stalk", round::stalk()),
         ("tablet", round::tablet()),
         ("torus", round::torus()),
     ]

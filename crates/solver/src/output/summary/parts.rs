@@ -53,18 +53,34 @@ pub struct PopulationSummary {
     pub discharged_kg: f64,
     /// The same for each outlet, by name.
     pub outlets: BTreeMap<String, OutletSummary>,
-    /// Fraction of bond updates that was skipped because bodies were clumps.
+    /// Rigid parts of bonded bodies at the end.
+    pub rigid_parts: usize,
+    /// Spheres that were released from rigid parts.
+    pub released: u64,
+    /// Spheres that joined rigid parts again.
+    pub rejoined: u64,
+    /// Fraction of bond updates that was skipped because bodies or parts of them were rigid.
     pub bond_updates_skipped: f64,
     /// Fraction of the spheres of a clump that nothing can touch, the mean of all templates.
     pub inner_sphere_fraction: f64,
 }
 
 impl PopulationSummary {
-    /// From a state at its end. None: no body can be added, removed or replaced.
+    /// Whether there are clumps, or bodies were added, removed or replaced; or whether nothing else
+    /// was asked for.
+    pub(super) fn has_changed(&self) -> bool {
+        let counts = [self.fed, self.replaced, self.restored, self.discharged];
+        counts.iter().any(|count| *count > 0)
+            || self.clumps + self.single_sphere_bodies > 0
+            || (self.rigid_parts == 0 && self.released == 0)
+    }
+
+    /// From a state at its end. None: no body can be added, removed or replaced, or is rigid in
+    /// part.
     pub fn of(state: &State) -> Option<Self> {
         let (rules, clumps) = (&state.model.rules, &state.clumps);
         let population = &state.population;
-        if !state.bodies_change() {
+        if !state.bodies_change() && rules.zones.is_empty() {
             return None;
         }
         let several = clumps.of_several_spheres();
@@ -93,6 +109,9 @@ impl PopulationSummary {
                     (outlet.name.clone(), OutletSummary { bodies, mass_kg })
                 })
                 .collect(),
+            rigid_parts: state.rigid_parts.all.len(),
+            released: state.rigid_parts.released,
+            rejoined: state.rigid_parts.rejoined,
             bond_updates_skipped: over(left_out, done + left_out),
             inner_sphere_fraction: over(inner, clumps.templates.len() as f64),
         })

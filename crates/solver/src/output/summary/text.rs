@@ -152,22 +152,24 @@ impl Summary {
         let Some(p) = &self.population else {
             return Ok(());
         };
-        writeln!(
-            f,
-            "bodies       {} fed ({} kg), {} replaced, {} restored, {} discharged, fragments included ({} kg), {} clumps{} at the end",
-            p.fed,
-            significant(p.fed_kg, 4),
-            p.replaced,
-            p.restored,
-            p.discharged,
-            significant(p.discharged_kg, 4),
-            p.clumps,
-            match p.single_sphere_bodies {
-                0 => String::new(),
-                1 => " and 1 body of one sphere".to_owned(),
-                count => format!(" and {count} bodies of one sphere"),
-            },
-        )?;
+        if p.has_changed() {
+            writeln!(
+                f,
+                "bodies       {} fed ({} kg), {} replaced, {} restored, {} discharged, fragments included ({} kg), {} clumps{} at the end",
+                p.fed,
+                significant(p.fed_kg, 4),
+                p.replaced,
+                p.restored,
+                p.discharged,
+                significant(p.discharged_kg, 4),
+                p.clumps,
+                match p.single_sphere_bodies {
+                    0 => String::new(),
+                    1 => " and 1 body of one sphere".to_owned(),
+                    count => format!(" and {count} bodies of one sphere"),
+                },
+            )?;
+        }
         if p.outlets.len() > 1 {
             let outlets = p.outlets.iter().map(|(name, outlet)| {
                 format!(
@@ -185,6 +187,13 @@ impl Summary {
             }
             _ => String::new(),
         };
+        if p.rigid_parts > 0 || p.released > 0 {
+            writeln!(
+                f,
+                "rigid parts  {} at the end; {} spheres released, {} joined again",
+                p.rigid_parts, p.released, p.rejoined
+            )?;
+        }
         writeln!(
             f,
             "skipped      {:.0} % of bond updates, as their bodies were rigid{hidden}",

@@ -1,0 +1,180 @@
+//! Rigid parts of bonded bodies in the time step: forces on their spheres act on the parts, and the
+//! spheres move with them.
+
+use nalgebra::Vector3;
+
+use super::chunks::CHUNK;
+use super::stage::{NO_SAVING, Need, Stage};
+use crate::physics::rigid::rotation_vector;
+use crate::physics::rotation;
+use crate::physics::rotation::numbers;
+use crate::physics::rotation::rotation as rotation_of;
+use crate::state::State;
+use crate::state::particles::{Particles, Wrench};
+use crate::state::rigid_parts::{RigidPart, RigidParts};
+
+/// Rigid parts of bonded bodies.
+pub(crate) const RIGID_PARTS: Stage = Stage {
+    name: "rigid parts",
+    within: None,
+    need: |state, _| {
+        let (zones, parts) = (state.model.rules.zones.len(), &state.rigid_parts);
+        let spheres: usize = parts.all.iter().map(|part| part.members.len()).sum();
+        Need::of(
+            zones > 0,
+            || {
+                format!(
+                    "{} at the start, of {spheres} spheres; {} bonds within them are not computed",
+                    parts.all.len(),
+                    parts.bonds
+                )
+            },
+            "no body is bonded in a region only",
+        )
+    },
+    bytes: |state| state.rigid_parts.bytes(),
+    saving: NO_SAVING,
+};
+
+/// Sums the forces on the spheres of rigid parts, and replaces them by those with which the spheres
+/// move as the parts do. Returns the number of their spheres.
+pub(crate) fn gather_rigid_parts(state: &mut State) -> usize {
+    take_broken_impulses(state);
+    let resisting = &state.scratch.bond_resistance;
+    let particles = &mut state.particles;
+    for part in &mut state.rigid_parts.all {
+        gather(part, particles, resisting);
+    }
+    spheres(&state.rigid_parts)
+}
+
+/// Gives the part the impulse that a bond which broke in this kick had on one of its spheres: see
+/// [`super::breakage`].
+fn take_broken_impulses(state: &mut State) {
+    let half_s = 0.5 * state.previous_time_step_s;
+    for (end, on_end) in state.scratch.events.broken.iter().flat_map(|b| b.ends) {
+        let number = state.rigid_parts.of(end) as usize;
+        let Some(part) = state.rigid_parts.all.get_mut(number) else {
+            continue;
+        };
+        let [fx, fy, fz, tx, ty, tz] = on_end;
+        let force = Vector3::new(fx, fy, fz);
+        let arm = state.particles.poses[end as usize].place() - Vector3::from(part.place_m);
+        let torque = Vector3::new(tx, ty, tz) + arm.cross(&force);
+        for k in 0..3 {
+            part.velocity_m_s[k] += half_s * force[k] / part.mass_kg;
+            part.angular_momentum[k] += half_s * torque[k];
+        }
+    }
+}
+
+/// Sums the forces on a part, `resisting` ones included. Each sphere gets the motion of the part,
+/// and a wrench that accelerates it, together with its resisting one, as the part is accelerated.
+fn gather(part: &mut RigidPart, particles: &mut Particles, resisting: &[Wrench]) {
+    let centre = Vector3::from(part.place_m);
+    let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
+    for &i in &part.members {
+        let i = i as usize;
+        let arm = particles.poses[i].place() - centre;
+        for wrench in [particles.wrenches.get(i), resisting.get(i)]
+            .into_iter()
+            .flatten()
+        {
+            let on_sphere = vector(wrench.force_n);
+            force += on_sphere;
+            torque += vector(wrench.torque_n_m) + arm.cross(&on_sphere);
+        }
+    }
+    part.set_motions(particles);
+    let (faster, spun) = (force / part.mass_kg, part.spun_by(&torque));
+    for (&i, sphere) in part.members.iter().zip(&part.spheres) {
+        let i = i as usize;
+        let arm = particles.poses[i].place() - centre;
+        let mut wrench = Wrench::default();
+        wrench.add(
+            &(sphere.mass_kg * (faster + spun.cross(&arm))),
+            &(sphere.inertia_kg_m2 * spun),
+        );
+        if let Some(resists) = resisting.get(i) {
+            wrench.add(&-vector(resists.force_n), &-vector(resists.torque_n_m));
+        }
+        particles.wrenches[i] = wrench;
+    }
+    part.force_n = force.into();
+    part.torque_n_m = torque.into();
+}
+
+/// Updates the velocities of rigid parts. Returns the number of their spheres.
+pub(crate) fn kick_rigid_parts(state: &mut State) -> usize {
+    let kick_s = state.kick_s();
+    for part in &mut state.rigid_parts.all {
+        for (k, gravity) in state.model.gravity_m_s2.iter().enumerate() {
+            part.velocity_m_s[k] += kick_s * (part.force_n[k] / part.mass_kg + gravity);
+            part.angular_momentum[k] += kick_s * part.torque_n_m[k];
+        }
+    }
+    0
+}
+
+/// Moves rigid parts, and puts their spheres in place, which have moved on as free ones.
+pub(crate) fn drift_rigid_parts(state: &mut State) -> usize {
+    let dt_s = state.time_step_s;
+    let moved_m = &mut state.scratch.chunks_moved_m;
+    for part in &mut state.rigid_parts.all {
+        let fastest_m_s = drift(part, &mut state.particles, dt_s, moved_m);
+        state.fastest_m_s = state.fastest_m_s.max(fastest_m_s);
+    }
+    0
+}
+
+/// Moves a part and its spheres over `dt_s`. Returns the largest speed of a sphere, m/s.
+fn drift(
+    part: &mut RigidPart,
+    particles: &mut Particles,
+    dt_s: f64,
+    chunks_moved_m: &mut [f64],
+) -> f64 {
+    let (centre_before, before) = (Vector3::from(part.place_m), rotation_of(part.turned));
+    for k in 0..3 {
+        part.place_m[k] += dt_s * part.velocity_m_s[k];
+    }
+    rotation::drift(
+        &mut part.turned,
+        part.angular_momentum,
+        part.moments_kg_m2,
+        dt_s,
+    );
+    let now = rotation_of(part.turned);
+    let turn = rotation_vector(numbers(&(now * before.inverse())));
+    let spin_rad_s = turn.map(|angle| angle / dt_s);
+    let centre = Vector3::from(part.place_m);
+    let [from_own, to_space] = [before, now].map(|turned| turned.to_rotation_matrix());
+    let mut fastest_m_s = 0.0_f64;
+    for (&i, sphere) in part.members.iter().zip(&part.spheres) {
+        let own = Vector3::from(sphere.place_m);
+        let place = centre + to_space * own;
+        // Contacts and bonds use the displacement in the step.
+        let velocity = (place - (centre_before + from_own * own)) / dt_s;
+        let speed_m_s = velocity.norm();
+        fastest_m_s = fastest_m_s.max(speed_m_s);
+        let chunk = &mut chunks_moved_m[i as usize / CHUNK];
+        *chunk = chunk.max(speed_m_s * dt_s);
+        let (pose, motion) = (
+            &mut particles.poses[i as usize],
+            &mut particles.motions[i as usize],
+        );
+        pose.put_at(place.into());
+        pose.turned = numbers(&(now * rotation_of(sphere.turned)));
+        motion.velocity_m_s = velocity.into();
+        motion.spin_rad_s = spin_rad_s;
+    }
+    fastest_m_s
+}
+
+fn spheres(parts: &RigidParts) -> usize {
+    parts.all.iter().map(|part| part.members.len()).sum()
+}
+
+fn vector([x, y, z, _]: [f64; 4]) -> Vector3<f64> {
+    Vector3::new(x, y, z)
+}
