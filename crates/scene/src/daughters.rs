@@ -145,7 +145,10 @@ pub(super) fn read(
         check_body(&named, &body, parent, root, bodies)?;
         let from_j_kg = class.read("from")?;
         if let Some(before) = classes.last().filter(|class| class.from_j_kg >= from_j_kg) {
-            let limit = format!("more than {} J/kg, that of the class before", before.from_j_kg);
+            let limit = format!(
+                "more than {} J/kg, that of the class before",
+                before.from_j_kg
+            );
             let remedy = "list the classes by ascending energy";
             return Err(class.need("from")?.wrong(&limit, remedy));
         }
@@ -183,7 +186,15 @@ fn check_body(
         let remedy = format!("write material = \"{of_parent}\" in [bodies.{body}]");
         return Err(named.refuse(problem, remedy));
     }
-    for key in ["position", "rotation", "velocity", "drop", "angular_velocity", "mass", "body_density"] {
+    for key in [
+        "position",
+        "rotation",
+        "velocity",
+        "drop",
+        "angular_velocity",
+        "mass",
+        "body_density",
+    ] {
         if let Some(field) = root.find(&["bodies", body, key]) {
             let problem = format!(
                 "{} has no effect: daughters of '{parent}' take over its place, motion and mass",
@@ -196,7 +207,8 @@ fn check_body(
 }
 
 pub(super) fn list(daughters: &Daughters, listing: &mut Listing) {
-    let class = |class: &SizeClass| format!("from {}: {}", quantity(class.from_j_kg, "J/kg"), class.body);
+    let class =
+        |class: &SizeClass| format!("from {}: {}", quantity(class.from_j_kg, "J/kg"), class.body);
     let classes: Vec<String> = daughters.classes.iter().map(class).collect();
     listing.text("classes", classes.join(", "));
     listing.value("energy", &daughters.energy);

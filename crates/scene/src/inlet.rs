@@ -111,7 +111,10 @@ pub(super) fn read_all(
         let inlet = read(&field, bodies, regions)?;
         for (body, _) in &inlet.bodies {
             if let Some(parent) = parent_of(body, replacement) {
-                let problem = format!("{}.bodies names '{body}', daughters of '{parent}'", field.path);
+                let problem = format!(
+                    "{}.bodies names '{body}', daughters of '{parent}'",
+                    field.path
+                );
                 let remedy = "name another body: daughters come when their parent is replaced";
                 return Err(field.refuse(problem, remedy));
             }

@@ -20,10 +20,18 @@ pub(super) static REPLACEMENT: Schema = Schema {
     title: "[replacement.NAME]",
     doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when the cluster becomes rigid again; or the `daughters` that replace a clump or a single sphere.",
     keys: &[
-        Key::table("when", &WHEN, "Conditions for replacement; at least one. Not with `daughters`.")
-            .sometimes_required("{ enters = \"NAME\" }, a name in [regions]"),
-        Key::table("daughters", &DAUGHTERS, "Pieces that replace the clump or sphere once it has taken in enough energy.")
-            .otherwise("its own bonded cluster replaces it"),
+        Key::table(
+            "when",
+            &WHEN,
+            "Conditions for replacement; at least one. Not with `daughters`.",
+        )
+        .sometimes_required("{ enters = \"NAME\" }, a name in [regions]"),
+        Key::table(
+            "daughters",
+            &DAUGHTERS,
+            "Pieces that replace the clump or sphere once it has taken in enough energy.",
+        )
+        .otherwise("its own bonded cluster replaces it"),
         Key::new(
             "require",
             Kind::Word(|| words_of(&REQUIRE)),
@@ -189,7 +197,10 @@ pub(super) fn parent_of<'a>(
     replacement: &'a BTreeMap<String, Replacement>,
 ) -> Option<&'a String> {
     let has = |(_, rule): &(&String, &Replacement)| {
-        let mut classes = rule.daughters.iter().flat_map(|daughters| &daughters.classes);
+        let mut classes = rule
+            .daughters
+            .iter()
+            .flat_map(|daughters| &daughters.classes);
         classes.any(|class| class.body == body)
     };
     replacement.iter().find(has).map(|(parent, _)| parent)
@@ -253,8 +264,12 @@ fn refuse_others_daughters(
     for class in &daughters.classes {
         if let Some(parent) = parent_of(&class.body, known) {
             let body = &class.body;
-            let problem = format!("{} names '{body}', daughters of '{parent}' already", field.path);
-            let remedy = format!("copy [bodies.{body}] under another name: daughters have one parent");
+            let problem = format!(
+                "{} names '{body}', daughters of '{parent}' already",
+                field.path
+            );
+            let remedy =
+                format!("copy [bodies.{body}] under another name: daughters have one parent");
             return Err(field.refuse(problem, remedy));
         }
     }
@@ -266,7 +281,8 @@ fn with_daughters(table: &Table<'_>, daughters: Daughters) -> Result<Replacement
     for key in ["when", "require", "restore"] {
         if let Some(field) = table.get(key) {
             let problem = format!("{} cannot be combined with daughters", field.path);
-            let remedy = "remove one of them: daughters have conditions of their own, and stay as they are";
+            let remedy =
+                "remove one of them: daughters have conditions of their own, and stay as they are";
             return Err(field.refuse(problem, remedy));
         }
     }

@@ -84,6 +84,9 @@ impl Seen {
             {
                 self.replaced.insert(body.clone());
             }
+            if let PopulationEvent::Broken { body, .. } = one {
+                self.replaced.insert(body.clone());
+            }
             if let PopulationEvent::Came { body, .. } = one {
                 self.came.insert(body.clone());
             }
@@ -250,6 +253,14 @@ impl Seen {
             let starts_rigid = scene.bodies[name].start_as != StartAs::Bonded;
             let was_there = is_present(state, bodies, name) || self.came.contains(name);
             if self.replaced.contains(name) || !starts_rigid || !was_there {
+                continue;
+            }
+            if let Some(class) = rule.daughters.as_ref().and_then(|of| of.classes.first()) {
+                warnings.push(format!(
+                    "no particle of '{name}' was replaced by daughters: none took in {} J/kg{}",
+                    significant(class.from_j_kg, 4),
+                    discharged_before(state, name)
+                ));
                 continue;
             }
             let trigger = [
@@ -471,6 +482,15 @@ fn unused_rules(state: &State) -> Vec<String> {
             inlet.name,
             significant(state.time_s, 4)
         ));
+    }
+    let made = state.clumps.templates.iter().zip(&rules.daughters);
+    for ((template, rule), done) in made.zip(&state.population.by_daughters) {
+        if rule.as_ref().is_some_and(|rule| *done >= rule.limit) {
+            warnings.push(format!(
+                "daughters replaced {done} particles of '{}', as many as replacement.{0}.daughters.limit allows: the others stayed whole",
+                template.body
+            ));
+        }
     }
     for (outlet, removed) in rules.outlets.iter().zip(&state.population.outlets) {
         if removed.bodies == 0 && !outlet.removes_outside {
