@@ -17,8 +17,24 @@ use crate::helpers::Random;
 const RADIUS_M: f64 = 5e-3;
 const DENSITY_KG_M3: f64 = 2500.0;
 
-/// Materials and bodies: a sphere, two packings of loose daughters, and one with bonds.
+/// Two packings of loose daughters, and a body with bonds.
+const DAUGHTERS: [(&str, &str); 3] = [
+    ("halves", "particles = [[0, 0, 0, 1], [2, 0.1, 0, 0.8]]"),
+    (
+        "pieces",
+        "particles = [[0, 0, 0, 1], [2, 0.1, 0, 0.8], [0.9, 1.4, 0.2, 0.6], [1, 0.3, 1.5, 0.7], [0.8, -1.2, -0.4, 0.5]]",
+    ),
+    (
+        "rod",
+        "particles = [[0, 0, 0, 1], [1.5, 0.1, 0, 1], [0.8, 1.4, 0.2, 0.9]]\nbond_list = [[0, 1], [1, 2], [0, 2]]\nbonds = \"glue\"",
+    ),
+];
+
+/// Materials, a sphere, and those daughters that the rest of the scene names.
 fn bodies(restitution: f64, more: &str) -> String {
+    let named = DAUGHTERS.iter().filter(|(name, _)| more.contains(name));
+    let named = named.map(|(name, body)| format!("[bodies.{name}]\nmaterial = \"ore\"\n{body}\n"));
+    let named: String = named.collect();
     format!(
         "version = 1
 run.end_time = 0.1
@@ -33,18 +49,7 @@ bonds.glue = {{ young_modulus = 1e8, poisson_ratio = 0.25 }}
 particles = [[0, 0, 0, {RADIUS_M}]]
 material = \"ore\"
 start_as = \"clump\"
-[bodies.halves]
-material = \"ore\"
-particles = [[0, 0, 0, 1], [2, 0.1, 0, 0.8]]
-[bodies.pieces]
-material = \"ore\"
-particles = [[0, 0, 0, 1], [2, 0.1, 0, 0.8], [0.9, 1.4, 0.2, 0.6], [1, 0.3, 1.5, 0.7], [0.8, -1.2, -0.4, 0.5]]
-[bodies.rod]
-material = \"ore\"
-particles = [[0, 0, 0, 1], [1.5, 0.1, 0, 1], [0.8, 1.4, 0.2, 0.9]]
-bond_list = [[0, 1], [1, 2], [0, 2]]
-bonds = \"glue\"
-{more}\n"
+{named}{more}\n"
     )
 }
 
@@ -179,8 +184,8 @@ proptest! {
 }
 
 /// What balls that start with these velocities along z, above the plate or apart from each other,
-/// take in during their first impact, J, at this multiple of the planned step.
-fn taken_in(scene: &str, step: f64) -> Vec<f64> {
+/// take in during their first impact, J, at this multiple of the planned step; and the step, s.
+fn taken_in(scene: &str, step: f64) -> (Vec<f64>, f64) {
     let mut state = planned(scene).state;
     state.time_step_s *= step;
     let mut largest = vec![0.0_f64; state.clumps.all.len()];
@@ -190,7 +195,7 @@ fn taken_in(scene: &str, step: f64) -> Vec<f64> {
             *largest = largest.max(clump.intake.impact_j);
         }
     }
-    largest
+    (largest, state.time_step_s)
 }
 
 #[test]
@@ -207,10 +212,17 @@ fn a_normal_impact_gives_the_kinetic_energy_of_the_relative_motion() {
         for (wall, share) in [("anvil", 1.0), ("steel", 0.9375 / (0.9375 + 0.91 / 3.0))] {
             let wall = format!("{PLATE}material = \"{wall}\"\n");
             let text = bodies(restitution, &format!("{wall}{never}")).replace(&falls, &start);
-            let errors = [1.0, 0.5].map(|step| taken_in(&text, step)[0] / (share * energy_j) - 1.0);
-            eprintln!("restitution {restitution}, share {share}: {errors:?}");
-            assert!(errors.iter().all(|error| error.abs() < 2e-3), "{errors:?}");
-            assert!(errors[1].abs() < 5e-4, "{errors:?}");
+            // The last step before the turn may end half a step away from it, with a speed of half
+            // of a step at the largest force, which Hertz's contact gives.
+            let modulus_pa = 1e8 / (0.9375 / share);
+            let deep_m = (0.9375 * ball_kg() * 9.0 / (modulus_pa * RADIUS_M.sqrt())).powf(0.4);
+            for step in [1.0, 0.5, 0.25] {
+                let (found, step_s) = taken_in(&text, step);
+                let error = found[0] / (share * energy_j) - 1.0;
+                let most = (0.625 * step_s * 3.0 / deep_m).powi(2);
+                eprintln!("restitution {restitution}, share {share}: {error} of {most}");
+                assert!((-1.5 * most..1e-4).contains(&error), "{error} {most}");
+            }
         }
         // Two balls, each of which moves at half of the speed, share alike: together they take in
         // m/2 v^2/2.
@@ -220,7 +232,7 @@ fn a_normal_impact_gives_the_kinetic_energy_of_the_relative_motion() {
         );
         let start = start.replace("-3]", "-1.5]").replace("0.5, 0", "0, 0");
         let text = bodies(restitution, &format!("{other}{never}")).replace(&falls, &start);
-        let both = taken_in(&text, 0.5);
+        let (both, _) = taken_in(&text, 0.5);
         for one in both {
             assert!((one / (0.25 * energy_j) - 1.0).abs() < 1e-3, "{one}");
         }
