@@ -6,6 +6,7 @@
 
 pub(crate) mod breakage;
 pub mod cases;
+pub(crate) mod daughters;
 pub(crate) mod families;
 pub mod impact;
 pub mod limit_map;

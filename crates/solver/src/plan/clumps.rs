@@ -18,23 +18,20 @@ use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Scatter, Template, reach_m, sub_spheres};
 use crate::state::particles::Particles;
 
-/// Names of the bodies that are daughters of others.
-fn daughters(scene: &Scene) -> impl Iterator<Item = &String> {
-    let rules = scene.replacement.values();
-    let daughters = rules.filter_map(|rule| rule.daughters.as_ref());
-    daughters.flat_map(|daughters| daughters.classes.iter().map(|class| &class.body))
-}
-
 /// Names of the bodies that are templates: those that start as clumps, come through inlets, or are
 /// daughters.
 pub(super) fn templates_of(scene: &Scene) -> BTreeSet<String> {
     let clumps = scene.bodies.iter();
     let clumps = clumps.filter(|(_, entry)| matches!(entry.start_as, StartAs::Clump(_)));
     let by_inlets = scene.inlets.values().flat_map(|inlet| &inlet.bodies);
+    let daughters = scene
+        .bodies
+        .keys()
+        .filter(|name| scene.parent_of(name).is_some());
     clumps
         .map(|(name, _)| name.clone())
         .chain(by_inlets.map(|(name, _)| name.clone()))
-        .chain(daughters(scene).cloned())
+        .chain(daughters.cloned())
         .collect()
 }
 
@@ -182,10 +179,11 @@ pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Templat
 pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump> {
     let by_inlets = scene.inlets.values();
     let by_inlets = by_inlets.flat_map(|inlet| inlet.bodies.iter().map(|(name, _)| name));
-    let come_later: BTreeSet<&String> = by_inlets.chain(daughters(scene)).collect();
+    let by_inlets: BTreeSet<&String> = by_inlets.collect();
+    let comes_later = |name: &String| by_inlets.contains(name) || scene.parent_of(name).is_some();
     (0..)
         .zip(templates)
-        .filter(|(_, template)| !come_later.contains(&template.body))
+        .filter(|(_, template)| !comes_later(&template.body))
         .map(|(number, template)| {
             let entry = &scene.bodies[&template.body];
             let as_file = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));

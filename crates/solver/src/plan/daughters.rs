@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use dem_io::body::About;
 use dem_io::units::show_length;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{CountedEnergy, Daughters, Material, Scene, WholeMass};
@@ -65,7 +66,8 @@ fn refuse_too_small(scene: &Scene, parent: &Template, daughters: &Daughters) -> 
     }
 }
 
-/// Scales a body of daughters to a parent, about its centre of mass.
+/// Scales a body of daughters to a parent, about its centre of mass. What is known of a packing is
+/// about a shape that loose daughters do not fill.
 fn scale(body: &mut Body, parent: &Template) {
     let cubes: Vec<f64> = body.radii.iter().map(|radius| radius.powi(3)).collect();
     let sum: f64 = cubes.iter().sum();
@@ -82,6 +84,11 @@ fn scale(body: &mut Body, parent: &Template) {
         let reaches = reaches.map(|(arm, radius)| Vector3::from(*arm).norm() + radius);
         [parent.reach_m / reaches.fold(0.0, f64::max); 2]
     };
+    if body.bonds.is_empty() {
+        body.about = About::default();
+    } else if let Some(volume_m3) = &mut body.about.shape_volume_m3 {
+        *volume_m3 *= of_radii.powi(3);
+    }
     for (place, arm) in body.positions.iter_mut().zip(&arms_m) {
         *place = arm.map(|x| of_centres * x);
     }

@@ -328,7 +328,7 @@ impl Seen {
             let is_there = own.is_some() || !is_present(state, bodies, name);
             // A held or loaded body is not meant to touch anything; one that no inlet has fed did
             // not exist.
-            if !is_there || self.never_came(state, name) {
+            if !is_there || self.never_came(state, name) || scene.parent_of(name).is_some() {
                 continue;
             }
             if warnings.len() == NAMED {

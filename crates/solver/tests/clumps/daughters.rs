@@ -439,3 +439,39 @@ fn what_cannot_be_is_refused() {
     let refused = try_plan(&bodies(0.5, &rule)).unwrap_err();
     assert!(refused.to_string().contains("the body itself"), "{refused}");
 }
+
+/// The scene `impact-crusher` of the repository, for as long as a test may take: its whole run
+/// replaces 100,000 particles (doc/replacement.md).
+#[test]
+fn thousands_of_replacements_create_no_energy_and_lose_no_mass() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../data/scenes/impact-crusher.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut state = planned(&text).state;
+    let broken = |state: &State| state.population.by_daughters.iter().sum::<u32>();
+    let (mut largest, mut steps) = (0.0_f64, 0);
+    while broken(&state) < 3000 {
+        if steps % 50 == 0 {
+            largest = largest.max(step_and_balance(&mut state).energy_error.abs());
+        } else {
+            dem_run::step::step(&mut state);
+        }
+        steps += 1;
+    }
+    let now = step_and_balance(&mut state);
+    eprintln!(
+        "{} replaced in {steps} steps, {} spheres left; energy error {largest:.2e} at most, momentum {:.1e}",
+        broken(&state),
+        state.clumps.all.len(),
+        now.momentum_error
+    );
+    assert!(largest < 1e-3, "{largest}");
+    assert!(
+        now.particle_breakage_j > 0.0 && now.momentum_error < 1e-10,
+        "{now:?}"
+    );
+    let population = &state.population;
+    let fed_kg: f64 = population.inlets.iter().map(|inlet| inlet.mass_kg).sum();
+    let gone_kg: f64 = population.outlets.iter().map(|outlet| outlet.mass_kg).sum();
+    assert!(((gone_kg + state.clumps.mass_kg()) / fed_kg - 1.0).abs() < 1e-12);
+}

@@ -47,6 +47,7 @@ fn nothing_is_missing() {
         ("shatter", [1, 0, 0]),
         ("softening", [7, 0, 0]),
         ("swap", [10, 0, 0]),
+        ("daughters", [7, 0, 0]),
         ("one-particle", [5, 0, 0]),
         ("spin", [2, 0, 0]),
         ("impact", [42, 0, 3]),
