@@ -4,7 +4,7 @@ use dem_scene::{
     ClumpMass, ClumpSettings, CountedEnergy, Daughters, FeedRate, Inlet, Outlet, Region,
     Replacement, Restore, SizeClass, StartAs,
 };
-use dem_scene::{CountedEnergy, Daughters, SizeClass, read_scene, scene_from_text};
+use dem_scene::{read_scene, scene_from_text};
 
 use super::good::{assert_near, folder, good};
 

@@ -29,7 +29,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 17] = [
+pub const CASES: [Case; 18] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
