@@ -328,12 +328,19 @@ fn end_contacts(state: &mut State, due: &[Due]) -> f64 {
     let mut gained_j = 0.0;
     let pairs = contacts.pairs.iter().zip(&contacts.histories);
     for (&[a, b], history) in pairs.filter(|(_, history)| history.overlap_m() > 0.0) {
-        let on_b_n = || pair_force_n(contacts, p, [a, b], history);
-        gained_j += match (goes(a).is_some(), goes(b).is_some()) {
-            (true, false) => kept_back_j(state, b, &on_b_n(), half_s),
-            (false, true) => kept_back_j(state, a, &-on_b_n(), half_s),
-            _ => 0.0,
+        let kept = match (goes(a).is_some(), goes(b).is_some()) {
+            (true, false) => (b, 1.0),
+            (false, true) => (a, -1.0),
+            _ => continue,
         };
+        let (kept, sign) = kept;
+        let force_n = sign * pair_force_n(contacts, p, [a, b], history);
+        let [one, other] = [a, b].map(|i| &p.poses[i as usize]);
+        let apart = other.place() - one.place();
+        let distance_m = apart.norm();
+        let lever_m = 0.5 * (distance_m + one.radius_m() - other.radius_m());
+        let point = one.place() + lever_m / distance_m * apart;
+        gained_j += kept_back_j(state, kept, &force_n, &point, half_s);
     }
     for wall in &mut state.walls {
         let touching = wall.touching.iter();
@@ -349,9 +356,15 @@ fn end_contacts(state: &mut State, due: &[Due]) -> f64 {
     gained_j
 }
 
-/// Gain of kinetic energy of a particle if a force, N, does not act for half a step that it has
-/// been reckoned with, J.
-fn kept_back_j(state: &State, i: u32, force_n: &Vector3<f64>, half_s: f64) -> f64 {
+/// Gain of kinetic energy of a particle if a force, N, at a point, m, does not act for half a step
+/// that it has been reckoned with, J.
+fn kept_back_j(
+    state: &State,
+    i: u32,
+    force_n: &Vector3<f64>,
+    point: &Vector3<f64>,
+    half_s: f64,
+) -> f64 {
     let p = &state.particles;
     let gravity = state.model.gravity_m_s2;
     let (velocity, inverse_kg) = match state.clumps.carrier_of(i as usize) {
@@ -359,17 +372,17 @@ fn kept_back_j(state: &State, i: u32, force_n: &Vector3<f64>, half_s: f64) -> f6
             let clump = &state.clumps.all[n];
             let template = state.clumps.template(clump);
             let now = at_positions(clump, template, gravity, half_s);
-            let motion = now.motion_at(template, &p.poses[i as usize].place());
+            let motion = now.motion_at(template, point);
             (Vector3::from(motion.velocity_m_s), motion.inverse_mass)
         }
         None => {
             let motion = &p.motions[i as usize];
             let [x, y, z, _] = p.wrenches[i as usize].force_n;
             let push = motion.inverse_mass * Vector3::new(x, y, z) + Vector3::from(gravity);
-            (
-                Vector3::from(motion.velocity_m_s) - half_s * push,
-                motion.inverse_mass,
-            )
+            let arm = point - p.poses[i as usize].place();
+            let turning = Vector3::from(motion.spin_rad_s).cross(&arm);
+            let velocity = Vector3::from(motion.velocity_m_s) - half_s * push;
+            (velocity + turning, motion.inverse_mass)
         }
     };
     let impulse = half_s * force_n;

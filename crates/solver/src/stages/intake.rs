@@ -36,6 +36,9 @@ pub(crate) const DAUGHTERS: Stage = Stage {
 /// Adds the work of the contacts over the coming kick to what the clumps have taken in. Returns
 /// the number of clumps that something touches.
 pub(crate) fn take_in_energy(state: &mut State) -> usize {
+    if !state.model.rules.make_daughters() {
+        return 0;
+    }
     let powers_w = powers_w(state);
     let kick_s = state.kick_s();
     let mut touched = 0;
