@@ -43,12 +43,31 @@ pub(super) fn fitted(mut scene: Scene, read: &mut BTreeMap<String, Body>) -> Res
                 ));
             }
             scale(body, &parent);
+            refuse_same_place(&scene, &parent, &class.body, body)?;
             if let Some(entry) = scene.bodies.get_mut(&class.body) {
                 entry.whole_mass = Some(WholeMass::Mass(parent.mass_kg));
             }
         }
     }
     Ok(scene)
+}
+
+/// Refuses loose daughters with the same centre, which no contact can part.
+fn refuse_same_place(scene: &Scene, parent: &Template, name: &str, body: &Body) -> Result<()> {
+    let near_m = 1e-6 * parent.reach_m;
+    let apart_m = |a: &[f64; 3], b: &[f64; 3]| (Vector3::from(*a) - Vector3::from(*b)).norm();
+    let places = || body.positions.iter().enumerate();
+    let same = places().find(|(n, a)| places().skip(n + 1).any(|(_, b)| apart_m(a, b) < near_m));
+    match same {
+        Some((n, _)) if body.bonds.is_empty() => Err(Diagnostic::input(
+            format!("{}: [replacement.{}.daughters]", scene.source, parent.body),
+            format!(
+                "sphere {n} of the daughters '{name}' has another one at its centre within the parent"
+            ),
+            "move the spheres apart, or name daughters that fill the parent more evenly",
+        )),
+        _ => Ok(()),
+    }
 }
 
 fn refuse_too_small(scene: &Scene, parent: &Template, daughters: &Daughters) -> Result<()> {
