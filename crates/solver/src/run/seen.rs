@@ -487,7 +487,7 @@ fn unused_rules(state: &State) -> Vec<String> {
     for ((template, rule), done) in made.zip(&state.population.by_daughters) {
         if rule.as_ref().is_some_and(|rule| *done >= rule.limit) {
             warnings.push(format!(
-                "daughters replaced {done} particles of '{}', as many as replacement.{0}.daughters.limit allows: the others stayed whole",
+                "daughters replaced no more particles of '{}' after the first {done}, the limit in replacement.{0}.daughters: the others stayed whole",
                 template.body
             ));
         }
