@@ -7,6 +7,7 @@ use super::field::Field;
 use super::listing::Listing;
 use super::numbers::number;
 use super::region::Region;
+use super::replacement::{Replacement, parent_of};
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use super::tree::Value;
@@ -103,11 +104,20 @@ pub(super) fn read_all(
     root: &Table<'_>,
     bodies: &BTreeMap<String, BodyEntry>,
     regions: &BTreeMap<String, Region>,
+    replacement: &BTreeMap<String, Replacement>,
 ) -> Result<BTreeMap<String, Inlet>> {
     let mut inlets = BTreeMap::new();
     for (name, field) in root.named("inlets")? {
         let inlet = read(&field, bodies, regions)?;
         for (body, _) in &inlet.bodies {
+            if let Some(parent) = parent_of(body, replacement) {
+                let problem = format!(
+                    "{}.bodies names '{body}', daughters of '{parent}'",
+                    field.path
+                );
+                let remedy = "name another body: daughters come when their parent is replaced";
+                return Err(field.refuse(problem, remedy));
+            }
             refuse_own_start(root, &name, body, bodies)?;
         }
         inlets.insert(name, inlet);

@@ -12,6 +12,7 @@ mod bond;
 mod clump;
 mod clusters;
 mod contact;
+mod daughters;
 mod describe;
 mod direction;
 mod factor;
@@ -67,6 +68,7 @@ pub use bond::{
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;
 pub use contact::{Contact, ContactLaw, Rolling};
+pub use daughters::{CountedEnergy, Daughters, SizeClass};
 pub use factor::Factor;
 pub use fall::Fall;
 pub use group::{ParticleGroup, Pick};

@@ -7,14 +7,17 @@ use super::clump::StartAs;
 use super::field::Field;
 use super::inlet::Inlet;
 use super::names::ALL;
+use super::replacement::{Replacement, parent_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// Bodies, and the inlets that feed some of them. A body that is fed is not in the scene at the
-/// start; the particles of a rigid clump cannot be held or moved individually.
+/// Bodies, the inlets that feed some of them, and the replacements that make daughters of others.
+/// Neither is in the scene at the start; the particles of a rigid clump cannot be held or moved
+/// individually.
 pub(super) struct Presence<'a> {
     pub(super) bodies: &'a BTreeMap<String, BodyEntry>,
     pub(super) inlets: &'a BTreeMap<String, Inlet>,
+    pub(super) replacement: &'a BTreeMap<String, Replacement>,
 }
 
 /// The reason why a body has no particles of its own at the start.
@@ -74,8 +77,8 @@ impl Presence<'_> {
                 None => self.refuse_only(&table, name),
             };
         }
-        // Bodies that are fed are not yet where a group could select their particles.
-        for name in self.bodies.keys().filter(|name| self.fed(name).is_none()) {
+        // Bodies that come later are not yet where a group could select their particles.
+        for name in self.bodies.keys().filter(|name| self.later(name).is_none()) {
             if let Some(Absence { why, .. }) = self.clump(name) {
                 let problem = format!(
                     "{} picks from all bodies, with \"{name}\", {why}",
@@ -87,12 +90,12 @@ impl Presence<'_> {
         Ok(())
     }
 
-    /// Refuses the quantity given by `field`, which refers to the start, if an inlet feeds `of` or
-    /// a part of it.
+    /// Refuses the quantity given by `field`, which refers to the start, if `of` or a part of it
+    /// comes later.
     pub(super) fn refuse_without_start(&self, field: &Field<'_>, of: &str) -> Result<()> {
         let mut meant = self.bodies.keys().filter(|name| of == ALL || *name == of);
         let Some((name, absence)) =
-            meant.find_map(|name| self.fed(name).map(|absence| (name, absence)))
+            meant.find_map(|name| self.later(name).map(|absence| (name, absence)))
         else {
             return Ok(());
         };
@@ -106,11 +109,17 @@ impl Presence<'_> {
     }
 
     fn absence(&self, name: &str) -> Option<Absence> {
-        self.fed(name).or_else(|| self.clump(name))
+        self.later(name).or_else(|| self.clump(name))
     }
 
-    fn fed(&self, name: &str) -> Option<Absence> {
+    fn later(&self, name: &str) -> Option<Absence> {
         let feeds = |(_, inlet): &(&String, &Inlet)| inlet.bodies.iter().any(|(of, _)| of == name);
+        if let Some(parent) = parent_of(name, self.replacement) {
+            return Some(Absence {
+                why: format!("daughters of '{parent}': it is not there at the start"),
+                remedy: format!("take it out of replacement.{parent}.daughters"),
+            });
+        }
         let (inlet, _) = self.inlets.iter().find(feeds)?;
         Some(Absence {
             why: format!("which [inlets.{inlet}] feeds: it is not there at the start"),

@@ -63,13 +63,14 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let bodies = body::read_all(&root, &materials, &bonds, &regions, folder)?;
     let contacts = contact::read_all(&root, &materials)?;
     let replacement = replacement::read_all(&root, &bodies, &regions)?;
-    let inlets = inlet::read_all(&root, &bodies, &regions)?;
+    let inlets = inlet::read_all(&root, &bodies, &regions, &replacement)?;
     let outlets = each(&root, "outlets", |field| {
         outlet::read(field, &regions, &inlets)
     })?;
     let presence = Presence {
         bodies: &bodies,
         inlets: &inlets,
+        replacement: &replacement,
     };
     let groups = group::read_all(&root, &presence)?;
     let walls = wall::read_all(&root, &materials, &bodies, &groups, folder)?;

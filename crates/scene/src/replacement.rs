@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::body::{BodyEntry, BodySource};
 use super::clump::{ClumpMass, StartAs};
+use super::daughters::{self, DAUGHTERS, Daughters};
 use super::field::Field;
 use super::listing::Listing;
 use super::region::Region;
@@ -17,10 +18,20 @@ const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
 
 pub(super) static REPLACEMENT: Schema = Schema {
     title: "[replacement.NAME]",
-    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when the cluster becomes rigid again.",
+    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when the cluster becomes rigid again; or the `daughters` that replace a clump or a single sphere.",
     keys: &[
-        Key::table("when", &WHEN, "Conditions for replacement; at least one.")
-            .required("{ enters = \"NAME\" }, a name in [regions]"),
+        Key::table(
+            "when",
+            &WHEN,
+            "Conditions for replacement; at least one. Not with `daughters`.",
+        )
+        .sometimes_required("{ enters = \"NAME\" }, a name in [regions]"),
+        Key::table(
+            "daughters",
+            &DAUGHTERS,
+            "Pieces that replace the clump or sphere once it has taken in enough energy.",
+        )
+        .otherwise("its own bonded cluster replaces it"),
         Key::new(
             "require",
             Kind::Word(|| words_of(&REQUIRE)),
@@ -138,6 +149,9 @@ pub struct Replacement {
     pub requires_all: bool,
     /// `restore`. None: replaced bodies stay bonded.
     pub restore: Option<Restore>,
+    /// `daughters`, which exclude all of the above. None: its own bonded cluster replaces the
+    /// clump.
+    pub daughters: Option<Daughters>,
 }
 
 /// `restore = { ... }`: conditions under which a fragment becomes rigid again. All must hold.
@@ -162,10 +176,34 @@ pub(super) fn read_all(
 ) -> Result<BTreeMap<String, Replacement>> {
     let mut replacements = BTreeMap::new();
     for (name, field) in root.named("replacement")? {
-        check_body(root, &name, &field, bodies)?;
-        replacements.insert(name, read(&field, regions)?);
+        let table = Table::of(&field, &REPLACEMENT)?;
+        let replacement = match table.get("daughters") {
+            Some(given) => {
+                let daughters = daughters::read(&given, &name, root, bodies)?;
+                refuse_others_daughters(&given, &daughters, &replacements)?;
+                with_daughters(&table, daughters)?
+            }
+            None => read(&table, regions)?,
+        };
+        check_body(root, &name, &field, bodies, &replacement)?;
+        replacements.insert(name, replacement);
     }
     Ok(replacements)
+}
+
+/// The body whose daughters a body is. None: it is none.
+pub(super) fn parent_of<'a>(
+    body: &str,
+    replacement: &'a BTreeMap<String, Replacement>,
+) -> Option<&'a String> {
+    let has = |(_, rule): &(&String, &Replacement)| {
+        let mut classes = rule
+            .daughters
+            .iter()
+            .flat_map(|daughters| &daughters.classes);
+        classes.any(|class| class.body == body)
+    };
+    replacement.iter().find(has).map(|(parent, _)| parent)
 }
 
 /// Refuses a body that is not a clump, cannot break, or would change its mass.
@@ -174,6 +212,7 @@ fn check_body(
     name: &str,
     field: &Field<'_>,
     bodies: &BTreeMap<String, BodyEntry>,
+    replacement: &Replacement,
 ) -> Result<()> {
     let Some(body) = bodies.get(name) else {
         return field.key_reference(name, bodies.keys(), "bodies");
@@ -192,7 +231,7 @@ fn check_body(
         // The reader of the file finds whether it has bonds.
         _ => body.bond_kind.is_some(),
     };
-    if !has_bonds {
+    if !has_bonds && replacement.daughters.is_none() {
         let problem = format!(
             "{}: body '{name}' has no bonds: it cannot break",
             field.path
@@ -216,8 +255,51 @@ fn check_body(
     Ok(())
 }
 
-fn read(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Replacement> {
-    let table = Table::of(field, &REPLACEMENT)?;
+/// Refuses daughters that another body has as well: their size is that of one parent.
+fn refuse_others_daughters(
+    field: &Field<'_>,
+    daughters: &Daughters,
+    known: &BTreeMap<String, Replacement>,
+) -> Result<()> {
+    for class in &daughters.classes {
+        if let Some(parent) = parent_of(&class.body, known) {
+            let body = &class.body;
+            let problem = format!(
+                "{} names '{body}', daughters of '{parent}' already",
+                field.path
+            );
+            let remedy =
+                format!("copy [bodies.{body}] under another name: daughters have one parent");
+            return Err(field.refuse(problem, remedy));
+        }
+    }
+    Ok(())
+}
+
+/// A replacement by daughters, which the keys of the bonded cluster do not concern.
+fn with_daughters(table: &Table<'_>, daughters: Daughters) -> Result<Replacement> {
+    for key in ["when", "require", "restore"] {
+        if let Some(field) = table.get(key) {
+            let problem = format!("{} cannot be combined with daughters", field.path);
+            let remedy =
+                "remove one of them: daughters have conditions of their own, and stay as they are";
+            return Err(field.refuse(problem, remedy));
+        }
+    }
+    Ok(Replacement {
+        enters: None,
+        force_n: None,
+        contact_force_n: None,
+        principal_stress_pa: None,
+        impact_energy_j: None,
+        time_s: None,
+        requires_all: false,
+        restore: None,
+        daughters: Some(daughters),
+    })
+}
+
+fn read(table: &Table<'_>, regions: &BTreeMap<String, Region>) -> Result<Replacement> {
     let when = Table::of(&table.need("when")?, &WHEN)?;
     if when.entries.is_empty() {
         let problem = format!("{} is an empty table", when.path);
@@ -235,6 +317,7 @@ fn read(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Replace
             .read_by("require", |field| field.choice(&REQUIRE))?
             .unwrap_or(false),
         restore: table.read_by("restore", |field| restore(&field, regions))?,
+        daughters: None,
     })
 }
 
@@ -249,6 +332,11 @@ fn restore(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Rest
 }
 
 pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
+    if let Some(daughters) = &replacement.daughters {
+        return listing.table("daughters", &DAUGHTERS, |listing| {
+            daughters::list(daughters, listing);
+        });
+    }
     listing.table("when", &WHEN, |listing| {
         listing.text(
             "enters",

@@ -64,7 +64,7 @@ pub struct Scene {
     pub loads: BTreeMap<String, Load>,
     /// `[regions.NAME]`, of any names.
     pub regions: BTreeMap<String, Region>,
-    /// `[replacement.NAME]`, by the name of the body: a clump that has bonds.
+    /// `[replacement.NAME]`, by the name of the body: a clump that has bonds or daughters.
     pub replacement: BTreeMap<String, Replacement>,
     /// `[inlets.NAME]`. The bodies that they name are not in the scene at the start.
     pub inlets: BTreeMap<String, Inlet>,
@@ -84,6 +84,13 @@ pub struct Scene {
     pub output: Option<Output>,
     /// `[test]`. None: no laboratory test.
     pub test: Option<Test>,
+}
+
+impl Scene {
+    /// The body whose daughters a body is: see [`Replacement::daughters`]. None: it is none.
+    pub fn parent_of(&self, body: &str) -> Option<&String> {
+        replacement::parent_of(body, &self.replacement)
+    }
 }
 
 pub(super) static SCENE: Schema = Schema {

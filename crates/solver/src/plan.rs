@@ -4,6 +4,7 @@
 pub(crate) mod bodies;
 mod clumps;
 pub(crate) mod contacts;
+mod daughters;
 mod falls;
 mod forecast;
 pub(crate) mod groups;
@@ -50,6 +51,7 @@ use self::clumps::{
     ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of, unused_bonds,
 };
 use self::contacts::{Kinds, are_needed, choose_skin, place_contacts};
+use self::daughters::fitted;
 use self::forecast::forecast;
 pub use self::forecast::{Forecast, InletForecast};
 use self::groups::{held_degrees_of_freedom, particles_of, resolve_groups};
@@ -117,7 +119,7 @@ pub fn plan(
     allow_any_step: bool,
 ) -> Result<Plan> {
     let inputs = Inputs::of(scene, &read);
-    let scene = &placed(scene, &read)?;
+    let scene = &fitted(placed(scene, &read)?, &mut read)?;
     let about: BTreeMap<String, About> = (read.iter())
         .map(|(name, body)| (name.clone(), body.about.clone()))
         .collect();
@@ -145,6 +147,7 @@ pub fn plan(
     let mut notes = masses::notes(scene, &masses);
     state.model.rules = rules(scene, &templates, &about)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
+    state.population.by_daughters = vec![0; templates.len()];
     state.population.outlets = vec![OutletTotals::default(); state.model.rules.outlets.len()];
     state.model.templates.clone_from(&templates);
     state.clumps.templates = templates;

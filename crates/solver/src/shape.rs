@@ -6,4 +6,5 @@ pub mod fit;
 pub mod hull;
 pub mod inertia;
 pub mod outer_layer;
+pub mod packing_fit;
 pub(crate) mod union;

@@ -271,7 +271,11 @@ impl State {
     pub(crate) fn smallest_radius_m(&self) -> f64 {
         let templates = self.clumps.templates.iter();
         let of_clumps = templates.flat_map(|t| t.spheres.iter().map(|sphere| sphere.radius_m));
-        of_clumps.fold(self.particles.smallest_radius_m(), f64::min)
+        let of_daughters = self.model.rules.smallest_daughter_m();
+        of_clumps.fold(
+            self.particles.smallest_radius_m().min(of_daughters),
+            f64::min,
+        )
     }
 
     /// Length of the kick of this step: half of the previous step and half of the next, s.

@@ -13,8 +13,10 @@ use crate::stages::contacts::{
 };
 use crate::stages::damage::press_damaged_bonds;
 use crate::stages::damping::{BOND_DAMPING, compute_bond_damping};
+use crate::stages::daughters::replace_by_daughters;
 use crate::stages::flow::{FLOW, apply_inlets_and_outlets, count_bond_steps};
 use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
+use crate::stages::intake::{DAUGHTERS, take_in_energy};
 use crate::stages::ledger::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
 };
@@ -57,6 +59,7 @@ const INTERACT: &[Part] = &[
     (&ROLLING, count_rolling),
     (&WALLS, compute_wall_contacts),
     (&CLUMPS, gather_clumps),
+    (&DAUGHTERS, take_in_energy),
     (&SUPPORTS, remember_held),
     (&FAILURE, break_failed_bonds),
     (&RATES, count_rates),
@@ -84,6 +87,7 @@ const INTERACT: &[Part] = &[
 const EXCHANGE: &[Part] = &[
     (&LEDGER, count_bond_steps),
     (&FLOW, apply_inlets_and_outlets),
+    (&DAUGHTERS, replace_by_daughters),
     (&REPLACEMENT, restore_clumps),
     (&REPLACEMENT, replace_clumps),
     (&ZONES, follow_zones),

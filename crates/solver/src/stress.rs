@@ -7,6 +7,7 @@
 pub(crate) mod adhesion;
 pub(crate) mod breakage;
 pub mod cases;
+pub(crate) mod daughters;
 pub(crate) mod families;
 pub mod impact;
 pub mod limit_map;

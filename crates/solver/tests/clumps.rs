@@ -4,6 +4,7 @@
 mod again;
 mod books;
 mod carried;
+mod daughters;
 mod ids;
 mod inlets;
 mod lists;

@@ -368,6 +368,66 @@ fn squeezed() -> String {
     compared("trigger", "mm", &cases)
 }
 
+/// Energy over mass that a sphere takes in during its first impact, at 3 m/s relative to what it
+/// hits, J/kg, with this step.
+fn taken_in_j_kg(target: &str, restitution: f64, step_s: f64) -> f64 {
+    let mut state = started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = "1 s", time_step = {step_s:e} }}
+        materials.stone = {{ density = {DENSITY_KG_M3:e}, young_modulus = "100 MPa", poisson_ratio = 0.25 }}
+        materials.steel = {{ young_modulus = "300 MPa", poisson_ratio = 0.3 }}
+        materials.anvil.rigid = true
+        contacts.stone-stone = {{ restitution = {restitution} }}
+        contacts.stone-steel = {{ restitution = {restitution} }}
+        contacts.stone-anvil = {{ restitution = {restitution} }}
+        bodies.ball = {{ particles = [[0, 0, 5.001e-3, {RADIUS_M:e}]], material = "stone", start_as = "clump", velocity = [0, 0, -3] }}
+        bodies.halves = {{ particles = [[0, 0, 0, 1], [1, 0, 0, 1]], material = "stone" }}
+        replacement.ball.daughters.classes = [{{ from = "1 MJ/kg", body = "halves" }}]
+        {target}
+        "#
+    ));
+    let mut largest_j: f64 = 0.0;
+    while state.time_s < 1e-3 {
+        step(&mut state);
+        largest_j = largest_j.max(state.clumps.all[0].intake.impact_j);
+    }
+    largest_j / sphere_kg()
+}
+
+/// The energy of a single normal impact: that of the relative motion, and the sphere's share of it.
+fn impacts() -> String {
+    let plate = |material: &str| {
+        format!(
+            "walls.plate = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"{material}\" }}"
+        )
+    };
+    let other = format!(
+        "bodies.other = {{ particles = [[0, 0, -5.001e-3, {RADIUS_M:e}]], material = \"stone\", start_as = \"clump\" }}"
+    );
+    let steel = 0.9375 / (0.9375 + 0.91 / 3.0);
+    let mut cases = Vec::new();
+    for restitution in [1.0, 0.5] {
+        for (what, target, share, reduced) in [
+            ("rigid plate", plate("anvil"), 1.0, 1.0),
+            ("plate of 300 MPa", plate("steel"), steel, 1.0),
+            ("equal sphere", other.clone(), 0.5, 0.5),
+        ] {
+            let wanted = share * reduced * 0.5 * 9.0;
+            // The last step before the turn ends at most half a step away from it: (a dt/2v)^2
+            // with Hertz's largest deceleration.
+            let step_s = 1e-6;
+            let modulus_pa = share * 1e8 / 0.9375;
+            let deep_m = (0.9375 * sphere_kg() * 9.0 / (modulus_pa * RADIUS_M.sqrt())).powf(0.4);
+            let bound = 2.0 * (0.625 * step_s * 3.0 / (reduced * deep_m)).powi(2);
+            let found = taken_in_j_kg(&target, restitution, step_s);
+            let what = format!("{what}, restitution {restitution}");
+            cases.push(Case::new(what, found, wanted, bound));
+        }
+    }
+    compared("impact on", "J/kg", &cases)
+}
+
 /// The page of clumps equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
@@ -379,6 +439,7 @@ fn the_page_shows_what_the_solver_gives() {
                 ("angles", symmetric()),
                 ("periods", asymmetric()),
                 ("squeezes", squeezed()),
+                ("impacts", impacts()),
                 ("sums", sums),
                 ("places", places),
             ],

@@ -1,7 +1,8 @@
 //! Clumps, regions, replacement, inlets and outlets.
 
 use dem_scene::{
-    ClumpMass, ClumpSettings, FeedRate, Inlet, Outlet, Region, Replacement, Restore, StartAs,
+    ClumpMass, ClumpSettings, CountedEnergy, Daughters, FeedRate, Inlet, Outlet, Region,
+    Replacement, Restore, SizeClass, StartAs,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -109,6 +110,7 @@ fn replacement() {
                 strain_energy_j_kg: 0.02,
                 fluctuation_velocity_m_s: 0.001,
             }),
+            daughters: None,
         }
     );
     assert_eq!(
@@ -127,8 +129,31 @@ fn replacement() {
                 strain_energy_j_kg: 0.01,
                 fluctuation_velocity_m_s: 0.005,
             }),
+            daughters: None,
         }
     );
+}
+
+#[test]
+fn daughters() {
+    let scene = good("daughters.toml");
+    let daughters = scene.replacement["ore"].daughters.as_ref().unwrap();
+    let class = |from_j_kg, body: &str| SizeClass {
+        from_j_kg,
+        body: body.to_owned(),
+    };
+    assert_eq!(
+        *daughters,
+        Daughters {
+            classes: vec![class(20.0, "coarse"), class(108.0, "fine")],
+            energy: CountedEnergy::AllImpacts,
+            weibull_modulus: Some(5.0),
+            smallest_size_m: Some(2e-3),
+            limit: 1000,
+        }
+    );
+    assert_eq!(scene.parent_of("fine").unwrap(), "ore");
+    assert_eq!(scene.parent_of("ore"), None);
 }
 
 #[test]

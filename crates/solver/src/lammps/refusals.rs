@@ -65,7 +65,7 @@ pub(crate) fn refuse_parts(scene: &Scene) -> Result<()> {
         (
             !scene.replacement.is_empty(),
             format!("[replacement.{}]", first(scene.replacement.keys().next())),
-            "clumps that become bonded bodies",
+            "clumps that become bonded bodies, and particles that daughters replace",
             run_it,
         ),
         (

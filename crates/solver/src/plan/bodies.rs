@@ -11,7 +11,7 @@ use dem_io::units::significant;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{
     BodyEntry, BodySource, BondDamping, BondKind, BondModel as SceneModel, ClumpMass,
-    ClumpSettings, Formulation, Scene, StartAs, WholeMass,
+    ClumpSettings, Formulation, Replacement, Scene, StartAs, WholeMass,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -102,7 +102,9 @@ pub(super) fn place_body(
 /// Whether a body always stays a rigid clump, so that its bonds are unused.
 pub(super) fn stays_rigid(scene: &Scene, name: &str) -> bool {
     let start = scene.bodies.get(name).map(|entry| entry.start_as);
-    matches!(start, Some(StartAs::Clump(_))) && !scene.replacement.contains_key(name)
+    let becomes_cluster = |rule: &Replacement| rule.daughters.is_none();
+    matches!(start, Some(StartAs::Clump(_)))
+        && !scene.replacement.get(name).is_some_and(becomes_cluster)
 }
 
 /// The same message for a body of the scene and, if it comes from a file, for that one of its

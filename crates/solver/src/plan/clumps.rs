@@ -18,14 +18,20 @@ use crate::state::bonds::Bonds;
 use crate::state::clumps::{Clump, Scatter, Template, reach_m, sub_spheres};
 use crate::state::particles::Particles;
 
-/// Names of the bodies that are templates: those that start as clumps or come through inlets.
+/// Names of the bodies that are templates: those that start as clumps, come through inlets, or are
+/// daughters.
 pub(super) fn templates_of(scene: &Scene) -> BTreeSet<String> {
     let clumps = scene.bodies.iter();
     let clumps = clumps.filter(|(_, entry)| matches!(entry.start_as, StartAs::Clump(_)));
     let by_inlets = scene.inlets.values().flat_map(|inlet| &inlet.bodies);
+    let daughters = scene
+        .bodies
+        .keys()
+        .filter(|name| scene.parent_of(name).is_some());
     clumps
         .map(|(name, _)| name.clone())
         .chain(by_inlets.map(|(name, _)| name.clone()))
+        .chain(daughters.cloned())
         .collect()
 }
 
@@ -99,7 +105,7 @@ fn outer(template: &Template, ball_m: f64) -> Vec<u32> {
 }
 
 /// A template without its outer spheres.
-fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
+pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
     let entry = &scene.bodies[name];
     // In the axes of its file: each clump has its own position and orientation.
     let in_file = BodyEntry {
@@ -168,16 +174,16 @@ fn template(scene: &Scene, name: &str, body: &Body) -> Result<Template> {
     })
 }
 
-/// Clumps that exist at the start: bodies that start as clumps and do not come through an inlet.
+/// Clumps that exist at the start: bodies that start as clumps, do not come through an inlet, and
+/// are no daughters.
 pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump> {
-    let by_inlets: BTreeSet<&String> = scene
-        .inlets
-        .values()
-        .flat_map(|inlet| inlet.bodies.iter().map(|(name, _)| name))
-        .collect();
+    let by_inlets = scene.inlets.values();
+    let by_inlets = by_inlets.flat_map(|inlet| inlet.bodies.iter().map(|(name, _)| name));
+    let by_inlets: BTreeSet<&String> = by_inlets.collect();
+    let comes_later = |name: &String| by_inlets.contains(name) || scene.parent_of(name).is_some();
     (0..)
         .zip(templates)
-        .filter(|(_, template)| !by_inlets.contains(&template.body))
+        .filter(|(_, template)| !comes_later(&template.body))
         .map(|(number, template)| {
             let entry = &scene.bodies[&template.body];
             let as_file = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
@@ -232,7 +238,9 @@ pub(super) fn need_pairs(
 /// Names the body.
 pub(super) fn refuse_unbreakable(scene: &Scene, templates: &[Arc<Template>]) -> Result<()> {
     for template in templates {
-        if scene.replacement.contains_key(&template.body) && template.bonds.is_empty() {
+        let rule = scene.replacement.get(&template.body);
+        let becomes_cluster = rule.is_some_and(|rule| rule.daughters.is_none());
+        if becomes_cluster && template.bonds.is_empty() {
             return Err(Diagnostic::input(
                 format!("{}: [replacement.{}]", scene.source, template.body),
                 "the body has no bonds, so it cannot break",

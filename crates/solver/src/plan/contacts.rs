@@ -227,7 +227,9 @@ fn is_alone(state: &State, clusters: &Clusters) -> bool {
     let of_clumps = state.clumps.templates.iter().any(|t| !t.bonds.is_empty());
     let has_bonds = of_clumps || !state.bonds.is_empty();
     let breaks = has_bonds && state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
-    clusters.living().count() <= 1 && !breaks && state.model.rules.inlets.is_empty()
+    let rules = &state.model.rules;
+    let others_come = rules.make_daughters() || !rules.inlets.is_empty();
+    clusters.living().count() <= 1 && !breaks && !others_come
 }
 
 /// Chooses the skin of the pair list for impacts at this speed, m/s: the distance that both

@@ -9,6 +9,7 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::{FeedRate, Region as SceneRegion, Scene, StartAs};
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::daughters::{compliances, daughter_rules};
 use super::walls::surface_of;
 use crate::geometry::{Bounds, Mesh};
 use crate::physics::rotation::numbers;
@@ -38,7 +39,8 @@ pub(super) fn rules(
     let template_of = |name: &str| templates.iter().position(|t| t.body == name);
     let triggers = templates.iter().map(|template| {
         let rule = scene.replacement.get(&template.body)?;
-        Some(Trigger {
+        let becomes_cluster = rule.daughters.is_none();
+        becomes_cluster.then(|| Trigger {
             enters: rule.enters.as_ref().and_then(number),
             force_n: rule.force_n,
             contact_force_n: rule.contact_force_n,
@@ -99,7 +101,11 @@ pub(super) fn rules(
         region: number(&outlet.region).unwrap_or(0),
         removes_outside: outlet.removes_outside,
     });
+    let [compliances, wall_compliances] = compliances(scene);
     Ok(Rules {
+        daughters: daughter_rules(scene, templates),
+        compliances,
+        wall_compliances,
         triggers: triggers.collect(),
         restores: restores.collect(),
         starts: starts.collect(),
@@ -191,10 +197,19 @@ fn replacement_doubts(scene: &Scene, state: &State) -> Vec<String> {
         .iter()
         .zip(&state.model.rules.triggers)
     {
+        let body = &template.body;
+        let by_daughters = scene
+            .replacement
+            .get(body)
+            .is_some_and(|rule| rule.daughters.is_some());
+        if by_daughters && state.contacts.is_none() {
+            doubts.push(format!(
+                "replacement of '{body}': nothing can touch it, so it takes in no energy"
+            ));
+        }
         let Some(trigger) = trigger else {
             continue;
         };
-        let body = &template.body;
         if let Some(time_s) = trigger.time_s.filter(|t| *t > scene.run.end_time_s) {
             doubts.push(format!(
                 "replacement of '{body}': its time {time_s} s comes after the end of the run, {} s",

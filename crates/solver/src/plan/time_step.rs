@@ -15,7 +15,7 @@ use crate::stages::population::apply_topology_change;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
-use crate::state::clumps::Clump;
+use crate::state::clumps::{Clump, Template};
 use crate::state::clusters::Clusters;
 use crate::state::contacts::{ContactModel, Contacts};
 use crate::state::events::TopologyChange;
@@ -262,7 +262,7 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
             .is_some_and(Option::is_some);
         starts || (replaced && triggers)
     };
-    let templates = &state.clumps.templates;
+    let templates = &with_smallest_daughters(state);
     // There may be many bodies from one file.
     let same = |a: usize, b: usize| {
         let [one, other] = [a, b].map(|n| &templates[n]);
@@ -322,6 +322,27 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
     apply_topology_change(&mut bonded, come);
     apply_topology_change(&mut bonded, swap);
     Some(bonded)
+}
+
+/// The shapes, and for each that daughters can replace the smallest sphere that can come of it.
+fn with_smallest_daughters(state: &State) -> Vec<Arc<Template>> {
+    let mut templates = state.clumps.templates.clone();
+    for (parent, rule) in state
+        .clumps
+        .templates
+        .iter()
+        .zip(&state.model.rules.daughters)
+    {
+        let radius_m = rule
+            .as_ref()
+            .map_or(f64::INFINITY, |rule| rule.smallest_radius_m);
+        if radius_m.is_finite() {
+            let volume_m3 = 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
+            let mass_kg = parent.sphere_density_kg_m3() * volume_m3;
+            templates.push(Arc::new(Template::sphere(parent, mass_kg, radius_m)));
+        }
+    }
+    templates
 }
 
 /// pi R sqrt(rho/G) / (0.1631 nu + 0.8766), the smallest value of all particles that exist or may

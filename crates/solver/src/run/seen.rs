@@ -84,6 +84,9 @@ impl Seen {
             {
                 self.replaced.insert(body.clone());
             }
+            if let PopulationEvent::Broken { body, .. } = one {
+                self.replaced.insert(body.clone());
+            }
             if let PopulationEvent::Came { body, .. } = one {
                 self.came.insert(body.clone());
             }
@@ -252,6 +255,14 @@ impl Seen {
             if self.replaced.contains(name) || !starts_rigid || !was_there {
                 continue;
             }
+            if let Some(class) = rule.daughters.as_ref().and_then(|of| of.classes.first()) {
+                warnings.push(format!(
+                    "no particle of '{name}' was replaced by daughters: none took in {} J/kg{}",
+                    significant(class.from_j_kg, 4),
+                    discharged_before(state, name)
+                ));
+                continue;
+            }
             let trigger = [
                 rule.enters
                     .as_ref()
@@ -317,7 +328,7 @@ impl Seen {
             let is_there = own.is_some() || !is_present(state, bodies, name);
             // A held or loaded body is not meant to touch anything; one that no inlet has fed did
             // not exist.
-            if !is_there || self.never_came(state, name) {
+            if !is_there || self.never_came(state, name) || scene.parent_of(name).is_some() {
                 continue;
             }
             if warnings.len() == NAMED {
@@ -471,6 +482,15 @@ fn unused_rules(state: &State) -> Vec<String> {
             inlet.name,
             significant(state.time_s, 4)
         ));
+    }
+    let made = state.clumps.templates.iter().zip(&rules.daughters);
+    for ((template, rule), done) in made.zip(&state.population.by_daughters) {
+        if rule.as_ref().is_some_and(|rule| *done >= rule.limit) {
+            warnings.push(format!(
+                "daughters replaced no more particles of '{}' after the first {done}, the limit in replacement.{0}.daughters: the others stayed whole",
+                template.body
+            ));
+        }
     }
     for (outlet, removed) in rules.outlets.iter().zip(&state.population.outlets) {
         if removed.bodies == 0 && !outlet.removes_outside {

@@ -110,7 +110,7 @@ fn can_meet(state: &State) -> bool {
 }
 
 fn can_break(state: &State) -> bool {
-    any_bond(state, |rule| rule.criteria.is_some())
+    state.model.rules.make_daughters() || any_bond(state, |rule| rule.criteria.is_some())
 }
 
 /// Adds the contact forces between particles to the wrenches. Returns the number of pairs in

@@ -33,14 +33,15 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     let old = std::mem::take(&mut state.particles);
     let mut near = std::mem::take(&mut state.clumps.near);
     let mut rebuilt = Rebuilt::of(&old);
-    let clusters = state.clusters.take();
+    let mut clusters = state.clusters.take();
     let stiffens = |id: u32| to_clumps.binary_search_by_key(&id, |(id, _)| *id).is_ok();
     let goes = |id: u32| leaving.binary_search(&id).is_ok() || stiffens(id);
     rebuilt.keep_free(clusters.as_ref(), goes);
     let mut created = rebuilt.replace_clumps(&to_clusters, &state.clumps);
     rebuilt.keep_clumps(&mut state.clumps, &to_clusters, &leaving);
     rebuilt.stiffen(&mut state.clumps, to_clumps, clusters.as_ref());
-    let mut history = clusters.as_ref().map_or(Vec::new(), |c| c.history.clone());
+    let clusters_now = clusters.as_mut();
+    let mut history = clusters_now.map_or(Vec::new(), |c| std::mem::take(&mut c.history));
     rebuilt.receive(state, coming, &mut history);
     state.clusters = clusters;
     for created in &created {

@@ -452,6 +452,55 @@ pub(crate) fn touch_force_n(
     kind.with(|number| number, StoredForce { touch, history })
 }
 
+/// Velocity of the surface of a wall where a particle touches it, half the overlap below the
+/// particle's surface, in the step just made (0) or in the next (1), m/s.
+pub(crate) fn surface_velocity_m_s(
+    wall: &Wall,
+    particles: &Particles,
+    touch: &WallContact,
+    step: usize,
+) -> Vector3<f64> {
+    let pose = &particles.poses[touch.particle as usize];
+    let normal = Vector3::from(touch.normal);
+    let overlap_m = touch.history.overlap_m() + touch.history.origin_m();
+    let point = pose.place() - (pose.radius_m() - 0.5 * overlap_m) * normal;
+    let arm = point - Vector3::from(wall.frame.position_m);
+    let belt = Vector3::from(wall.model.surface_velocity_m_s);
+    let [velocity, spin] =
+        [&wall.velocities_m_s, &wall.spins_rad_s].map(|of| Vector3::from(of[step]));
+    velocity + spin.cross(&arm) + belt - normal * belt.dot(&normal)
+}
+
+/// Makes the overlaps of some particles, ascending, with a wall the origins of their laws.
+pub(crate) fn relax_touches(wall: &mut Wall, particles: &Particles, some: &[u32]) {
+    let is_near = nearness(wall, 0.0);
+    let mut found = Vec::new();
+    let mut touches = Vec::new();
+    for &particle in some {
+        let pose = &particles.poses[particle as usize];
+        if !is_near(pose) {
+            continue;
+        }
+        touches.clear();
+        let centre = wall.frame.to_wall(pose.place().into());
+        wall.model
+            .shape
+            .touches(centre, pose.radius_m(), &mut touches);
+        found.extend(touches.iter().map(|touch| {
+            let there = wall.frame.touch_to_space(touch);
+            WallContact {
+                particle,
+                feature: there.feature,
+                normal: there.normal.map(|x| -x),
+                history: ContactHistory::separated_at(pose.radius_m() - there.distance_m),
+            }
+        }));
+    }
+    drop(is_near);
+    wall.touching.extend(found);
+    wall.touching.sort_by_key(|touch| touch.particle);
+}
+
 /// Distance of a sphere from a wall, m; infinite if it exceeds the radius of the sphere.
 pub(crate) fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
     let centre = wall.frame.to_wall(pose.place().into());

@@ -50,6 +50,12 @@ pub fn reach_m(spheres: &[SubSphere]) -> f64 {
     spheres.iter().map(reach).fold(0.0, f64::max)
 }
 
+/// Volume of some spheres, overlaps counted twice, m3.
+pub(crate) fn sphere_volume_m3(spheres: &[SubSphere]) -> f64 {
+    let cubes = spheres.iter().map(|sphere| sphere.radius_m.powi(3));
+    4.0 / 3.0 * std::f64::consts::PI * cubes.sum::<f64>()
+}
+
 /// Strengths that vary from bond to bond.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scatter {
@@ -127,11 +133,25 @@ pub struct Clump {
     /// Energy that contacts have taken from its motion so far, J: the sum over all times at which
     /// they slowed it down.
     pub impact_energy_j: f64,
+    /// Energy that it has taken in, if daughters can replace it.
+    pub intake: Intake,
     /// Distance that the fastest of its points moved in the last drift, m, at most.
     #[serde(skip)]
     pub moved_m: f64,
     /// Whether it sleeps: then it is skipped, and nothing is near it.
     pub asleep: bool,
+}
+
+/// Energy that a particle has taken in from its contacts: their normal forces, times the speed at
+/// which both sides approach, over time; its share of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Intake {
+    /// In the present impact, which began when something touched the particle, J.
+    pub now_j: f64,
+    /// Its largest value in this impact, J.
+    pub impact_j: f64,
+    /// Sum of the largest values in the impacts before, J.
+    pub before_j: f64,
 }
 
 /// All clumps. Their spheres are the last of the particles, in the same order.
@@ -278,6 +298,48 @@ impl Clumps {
 }
 
 impl Template {
+    /// A single sphere of this mass, kg, and radius, m, that is otherwise like a body.
+    pub(crate) fn sphere(like: &Self, mass_kg: f64, radius_m: f64) -> Self {
+        let inertia_kg_m2 = 0.4 * mass_kg * radius_m * radius_m;
+        Self {
+            body: like.body.clone(),
+            mass_kg,
+            moments_kg_m2: [inertia_kg_m2; 3],
+            axes: [0.0, 0.0, 0.0, 1.0],
+            centre_m: [0.0; 3],
+            reach_m: radius_m,
+            spheres: vec![SubSphere {
+                place_m: [0.0; 3],
+                turned: [0.0, 0.0, 0.0, 1.0],
+                radius_m,
+                mass_kg,
+                inertia_kg_m2,
+            }],
+            outer: vec![0],
+            scale: 1.0,
+            material: like.material,
+            bonds: Bonds {
+                rules: like.bonds.rules.clone(),
+                ..Bonds::default()
+            },
+            file_number: vec![0],
+            ids: Vec::new(),
+            scatter: None,
+            bonds_of_file: Vec::new(),
+        }
+    }
+
+    /// Mass over the volume of its spheres, overlaps counted twice, kg/m3.
+    pub(crate) fn sphere_density_kg_m3(&self) -> f64 {
+        self.mass_kg / sphere_volume_m3(&self.spheres)
+    }
+
+    /// Diameter of the sphere with the volume of its spheres, overlaps counted twice, m.
+    pub(crate) fn size_m(&self) -> f64 {
+        let cubes = self.spheres.iter().map(|sphere| sphere.radius_m.powi(3));
+        2.0 * cubes.sum::<f64>().cbrt()
+    }
+
     /// Bytes of its arrays.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.spheres[..])

@@ -86,6 +86,27 @@ pub enum PopulationEvent {
         /// Centre of mass, m. Length 3.
         place_m: [f64; 3],
     },
+    /// Daughters have replaced a particle.
+    Broken {
+        /// Its number among the clusters.
+        cluster: u32,
+        /// Name of its body.
+        body: String,
+        /// Number of the size class, from 0.
+        class: usize,
+        /// Name of the body of the daughters, and their number.
+        daughters: (String, usize),
+        /// Energy over mass that it had taken in, J/kg.
+        specific_j_kg: f64,
+        /// Mass before and after, kg.
+        mass_kg: [f64; 2],
+        /// Magnitude of the momentum before and after, N s.
+        momentum_n_s: [f64; 2],
+        /// Kinetic energy before and after, J.
+        kinetic_j: [f64; 2],
+        /// Centre of mass, m. Length 3.
+        place_m: [f64; 3],
+    },
     /// A cluster has become a clump again.
     Restored {
         /// Its number among the clusters.

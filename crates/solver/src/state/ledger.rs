@@ -17,6 +17,8 @@ pub struct EnergyLedger {
     pub(crate) released_j: f64,
     /// Lost by bonds that were damaged, J.
     pub(crate) damaged_j: f64,
+    /// Lost by particles that daughters replaced, J.
+    pub(crate) particles_broken_j: f64,
     /// Net energy of added and removed bodies, J.
     pub(crate) brought_j: f64,
     /// Kinetic, elastic and potential energy at the start, J.
@@ -106,6 +108,12 @@ impl EnergyLedger {
     /// Records a gain of energy without an entry of its own, J.
     pub fn gain(&mut self, energy_j: f64) {
         self.brought_j += energy_j;
+    }
+
+    /// Turns the gain since `brought_j` was this, J, into a loss of particles that broke.
+    pub(crate) fn book_broken_particles(&mut self, before_j: f64) {
+        self.particles_broken_j -= self.brought_j - before_j;
+        self.brought_j = before_j;
     }
 
     /// Records a body that stops at its place, between a kick and the drift after it: its mass, kg,

@@ -17,6 +17,11 @@ pub struct Population {
     pub outlets: Vec<OutletTotals>,
     /// Shapes of fragments that became clumps. Their numbers follow those of the model's templates.
     pub fragments: Vec<FragmentTemplate>,
+    /// Numbers of the templates of single spheres that came as daughters, by the template of the
+    /// scene that they come from and the bits of their radius.
+    pub daughter_spheres: BTreeMap<(u32, u64), u32>,
+    /// For each template of the scene, its particles that daughters replaced.
+    pub by_daughters: Vec<u32>,
     /// For each cluster that was a clump, the template of the scene that it comes from, and its
     /// [instance](super::clumps::Clump::instance).
     pub base_of_cluster: BTreeMap<u32, (u32, u32)>,

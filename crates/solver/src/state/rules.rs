@@ -63,6 +63,36 @@ pub struct Restore {
     pub inner_speed_m_s: f64,
 }
 
+/// Daughters that replace a particle once it has taken in enough energy (PRM: Platzer 2022, section
+/// 2.1.1).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DaughterRule {
+    /// By ascending energy. At least one.
+    pub classes: Vec<SizeClass>,
+    /// The energies of all impacts count together; otherwise each for itself.
+    pub sums_impacts: bool,
+    /// Modulus of the Weibull distribution of the energies of the classes. None: no scatter.
+    pub weibull_modulus: Option<f64>,
+    /// Smallest diameter of a daughter that is replaced in turn, m; infinite: none is.
+    pub smallest_size_m: f64,
+    /// Largest number of particles of the body that are replaced.
+    pub limit: u32,
+    /// Radius of the smallest sphere that it can make, m; infinite: all daughters have bonds.
+    pub smallest_radius_m: f64,
+}
+
+/// A size class of daughters.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SizeClass {
+    /// Least energy over the mass of the particle, J/kg.
+    pub from_j_kg: f64,
+    /// Their template.
+    pub template: u32,
+    /// The spheres of the template are a packing of loose daughters; otherwise it is one body with
+    /// bonds.
+    pub loose: bool,
+}
+
 /// Feed rate of an inlet.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub enum Feed {
@@ -171,6 +201,12 @@ pub struct Rules {
     /// For each template, the conditions under which clusters made from it become clumps again.
     /// None: never.
     pub restores: Vec<Option<Restore>>,
+    /// For each template, the daughters that replace its particles. None: none.
+    pub daughters: Vec<Option<DaughterRule>>,
+    /// Compliance (1 - nu^2)/E of each material, 1/Pa: 0 is rigid, infinite is unknown.
+    pub compliances: Vec<f64>,
+    /// The same for each wall; a wall of unknown compliance is rigid.
+    pub wall_compliances: Vec<f64>,
     /// For each template, whether its bodies start as bonded clusters, and their orientation.
     pub starts: Vec<Start>,
     /// Inlets, in the order of their names.
@@ -219,5 +255,19 @@ impl Rules {
         self.inlets.is_empty()
             && self.outlets.is_empty()
             && self.triggers.iter().all(Option::is_none)
+            && !self.make_daughters()
+    }
+
+    /// Whether daughters can replace any particle.
+    pub(crate) fn make_daughters(&self) -> bool {
+        self.daughters.iter().any(Option::is_some)
+    }
+
+    /// Radius of the smallest sphere that can come as a daughter, m; infinite if none can.
+    pub(crate) fn smallest_daughter_m(&self) -> f64 {
+        let rules = self.daughters.iter().flatten();
+        rules
+            .map(|rule| rule.smallest_radius_m)
+            .fold(f64::INFINITY, f64::min)
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
-use super::{adhesion, breakage, families, impact, limit_map, long, softening, swap};
+use super::{adhesion, breakage, daughters, families, impact, limit_map, long, softening, swap};
 
 /// A case of the suite.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 18] = [
+pub const CASES: [Case; 19] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -69,6 +69,11 @@ pub const CASES: [Case; 18] = [
         name: "swap",
         extreme: "clumps replaced and restored while plates squeeze them",
         members: |_| Ok(swap::swaps()),
+    },
+    Case {
+        name: "daughters",
+        extreme: "spheres that daughters replace while plates squeeze them",
+        members: |_| Ok(daughters::daughters()),
     },
     Case {
         name: "one-particle",

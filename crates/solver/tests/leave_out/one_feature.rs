@@ -251,6 +251,14 @@ fn of_rigid_bodies() {
         &["rigid clumps", "replacement"],
         &RIGID,
     );
+    let bits = "[bodies.bits]\nparticles = [[0, 0, 0, 1], [1, 0, 0, 1]]\nmaterial = \"stuff\"\n\
+                [replacement.row.daughters]\nclasses = [{ from = 1e9, body = \"bits\" }]\n";
+    expect(
+        "a clump that daughters can replace",
+        &clump(bits),
+        &["rigid clumps", "daughters"],
+        &RIGID,
+    );
     let region = "[regions.part]\nbox = { min = [5, 5, 5], max = [6, 6, 6] }\n";
     expect(
         "a body that is bonded nowhere",

@@ -8,7 +8,7 @@ use super::interrupted::{interrupt, kill_after_checkpoint};
 use super::{Bench, assert_same, good, numbers, refused, table};
 
 /// Scenes that cover all features, with the signals and threads for each.
-const SCENES: [(&str, &str, &str); 8] = [
+const SCENES: [(&str, &str, &str); 9] = [
     ("breaking.toml", "-INT", "2"),
     ("incremental.toml", "-TERM", "1"),
     ("bodies.toml", "-INT", "3"),
@@ -17,6 +17,7 @@ const SCENES: [(&str, &str, &str); 8] = [
     ("meeting.toml", "-INT", "2"),
     ("following.toml", "-TERM", "2"),
     ("softening.toml", "-INT", "2"),
+    ("crushing.toml", "-TERM", "2"),
 ];
 
 /// Makes a scene take longer, so that a signal arrives half-way.
@@ -27,7 +28,7 @@ fn slow(name: &str) -> &'static str {
         "bodies.toml" => "run.safety_factor=0.02",
         "rest.toml" => "run.safety_factor=0.01",
         "meeting.toml" => "run.safety_factor=0.05",
-        "following.toml" => "run.safety_factor=0.1",
+        "following.toml" | "crushing.toml" => "run.safety_factor=0.1",
         _ => "run.seed=0",
     }
 }

@@ -13,6 +13,7 @@ use std::path::Path;
 /// Every shape with the stem of its file name.
 pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
     vec![
+        ("ball", rock::ball([0.0, 0.0, 0.0], 10.0, 3)),
         ("bar", Mesh::cuboid([-15.0, -15.0, 0.0], [15.0, 15.0, 60.0])),
         (
             "bending-sample",

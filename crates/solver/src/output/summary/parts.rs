@@ -37,6 +37,8 @@ pub struct PopulationSummary {
     pub single_sphere_bodies: usize,
     /// Clumps that became bonded clusters.
     pub replaced: u32,
+    /// Particles that daughters replaced.
+    pub replaced_by_daughters: u32,
     /// Clusters and fragments that became rigid clumps again.
     pub restored: u32,
     /// Bodies fed by inlets.
@@ -93,6 +95,7 @@ impl PopulationSummary {
             clumps: several,
             single_sphere_bodies: clumps.all.len() - several,
             replaced: population.replaced,
+            replaced_by_daughters: population.by_daughters.iter().sum(),
             restored: population.restored,
             fed: population.inlets.iter().map(|come| come.bodies).sum(),
             fed_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),

@@ -155,10 +155,14 @@ impl Summary {
         if p.has_changed() {
             writeln!(
                 f,
-                "bodies       {} fed ({} kg), {} replaced, {} restored, {} discharged, fragments included ({} kg), {} clumps{} at the end",
+                "bodies       {} fed ({} kg), {} replaced{}, {} restored, {} discharged, fragments included ({} kg), {} clumps{} at the end",
                 p.fed,
                 significant(p.fed_kg, 4),
                 p.replaced,
+                match p.replaced_by_daughters {
+                    0 => String::new(),
+                    count => format!(", {count} by daughters"),
+                },
                 p.restored,
                 p.discharged,
                 significant(p.discharged_kg, 4),

@@ -1,0 +1,218 @@
+//! `daughters` of `[replacement.NAME]`: the pieces that replace a particle, by the energy that it
+//! takes in.
+
+use std::collections::BTreeMap;
+
+use super::body::BodyEntry;
+use super::field::Field;
+use super::listing::Listing;
+use super::numbers::quantity;
+use super::schema::{Key, Kind, Schema, Word};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+use dem_io::units::{ENERGY_PER_MASS, LENGTH};
+
+/// Largest number of replacements of a body unless given.
+const LIMIT: f64 = 1e6;
+
+static SIZE_CLASS: Schema = Schema {
+    title: "Size class",
+    doc: "The daughters of particles that have taken in at least this energy.",
+    keys: &[
+        Key::quantity(
+            "from",
+            &ENERGY_PER_MASS,
+            "Least energy over the mass of the particle.",
+        )
+        .positive()
+        .required("\"20 J/kg\""),
+        Key::text(
+            "body",
+            "a name in [bodies]",
+            "The daughters: a packing of loose spheres, or a body with bonds. It is not in the scene at the start.",
+        )
+        .required("\"NAME\", a name in [bodies]"),
+    ],
+};
+
+pub(super) static DAUGHTERS: Schema = Schema {
+    title: "Daughters",
+    doc: "Pieces that replace a particle once it has taken in enough energy.",
+    keys: &[
+        Key::new(
+            "classes",
+            Kind::List(&Kind::Table(&SIZE_CLASS)),
+            "Size classes, by ascending energy: `[{ from = \"20 J/kg\", body = \"NAME\" }, ...]`. The first energy is the strength of the particle.",
+        )
+        .required("[{ from = \"20 J/kg\", body = \"NAME\" }]"),
+        Key::word::<CountedEnergy>(
+            "energy",
+            "one-impact",
+            "The energy that counts: that of `one-impact`, or the sum of `all-impacts` so far.",
+        ),
+        Key::number(
+            "weibull_modulus",
+            "The energies of the classes follow a Weibull distribution with this modulus, with one factor for each particle; the given energies are its scale.",
+        )
+        .positive()
+        .otherwise("all particles are equal"),
+        Key::quantity(
+            "smallest_size",
+            &LENGTH,
+            "Daughters of this diameter and larger ones are replaced in turn, smaller ones never.",
+        )
+        .positive()
+        .otherwise("daughters are not replaced"),
+        Key::new(
+            "limit",
+            Kind::Whole {
+                least: 1,
+                most: Some(u32::MAX as u64),
+                of: "",
+            },
+            "Largest number of particles of this body that are replaced; then the others stay whole.",
+        )
+        .remedy("a usual value is 100000")
+        .or(LIMIT),
+    ],
+};
+
+/// `daughters = { ... }`: the pieces that replace a particle once it has taken in enough energy
+/// (PRM: Platzer 2022, section 2.1.1).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Daughters {
+    /// `classes`, by ascending energy. At least one.
+    pub classes: Vec<SizeClass>,
+    /// `energy`, that of one impact unless given.
+    pub energy: CountedEnergy,
+    /// `weibull_modulus` of the energies of the classes; more than 0. None: all particles are
+    /// equal.
+    pub weibull_modulus: Option<f64>,
+    /// `smallest_size`: smallest diameter of a daughter that is replaced in turn, m; more than 0.
+    /// None: daughters are not replaced.
+    pub smallest_size_m: Option<f64>,
+    /// `limit`: largest number of particles that are replaced, 1,000,000 unless given. At least 1.
+    pub limit: u32,
+}
+
+/// A size class of daughters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SizeClass {
+    /// `from`: least energy over the mass of the particle, J/kg; more than 0.
+    pub from_j_kg: f64,
+    /// `body`: a name of `[bodies]`.
+    pub body: String,
+}
+
+/// The energy that decides on the replacement of a particle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CountedEnergy {
+    /// "one-impact": from the first touch until the particle touches nothing.
+    OneImpact,
+    /// "all-impacts": the sum over all impacts so far.
+    AllImpacts,
+}
+
+impl Word for CountedEnergy {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("one-impact", Self::OneImpact),
+        ("all-impacts", Self::AllImpacts),
+    ];
+}
+
+/// From the table in `field`, of the body `parent`.
+pub(super) fn read(
+    field: &Field<'_>,
+    parent: &str,
+    root: &Table<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+) -> Result<Daughters> {
+    let table = Table::of(field, &DAUGHTERS)?;
+    if let Some(relaxation) = root.find(&["relaxation", "enabled"])
+        && !relaxation.boolean()?
+    {
+        let problem = format!(
+            "{} is false, but {} makes daughters that overlap: without relaxation they fly apart",
+            relaxation.path, field.path
+        );
+        return Err(relaxation.refuse(problem, "remove it"));
+    }
+    let mut classes: Vec<SizeClass> = Vec::new();
+    for item in table.need("classes")?.items()? {
+        let class = Table::of(&item, &SIZE_CLASS)?;
+        let named = class.need("body")?;
+        let body = named.reference(bodies.keys(), "bodies")?;
+        check_body(&named, &body, parent, root, bodies)?;
+        let from_j_kg = class.read("from")?;
+        if let Some(before) = classes.last().filter(|class| class.from_j_kg >= from_j_kg) {
+            let limit = format!(
+                "more than {} J/kg, that of the class before",
+                before.from_j_kg
+            );
+            let remedy = "list the classes by ascending energy";
+            return Err(class.need("from")?.wrong(&limit, remedy));
+        }
+        classes.push(SizeClass { from_j_kg, body });
+    }
+    Ok(Daughters {
+        classes,
+        energy: table.read("energy")?,
+        weibull_modulus: table.read("weibull_modulus")?,
+        smallest_size_m: table.read("smallest_size")?,
+        limit: table.read("limit")?,
+    })
+}
+
+/// Refuses daughters that are the particle itself, of another material, or have a place, a motion or
+/// a mass of their own: these are the parent's.
+fn check_body(
+    named: &Field<'_>,
+    body: &str,
+    parent: &str,
+    root: &Table<'_>,
+    bodies: &BTreeMap<String, BodyEntry>,
+) -> Result<()> {
+    if body == parent {
+        let problem = format!("{} is the body that is replaced", named.path);
+        let remedy = "name a body of several spheres, its daughters";
+        return Err(named.refuse(problem, remedy));
+    }
+    let materials = [body, parent].map(|name| bodies.get(name).map(|entry| &entry.material));
+    if let ([Some(own), Some(of_parent)], true) = (materials, materials[0] != materials[1]) {
+        let problem = format!(
+            "{} is \"{body}\" of material '{own}', but the particle '{parent}' is of '{of_parent}'",
+            named.path
+        );
+        let remedy = format!("write material = \"{of_parent}\" in [bodies.{body}]");
+        return Err(named.refuse(problem, remedy));
+    }
+    for key in [
+        "position",
+        "rotation",
+        "velocity",
+        "drop",
+        "angular_velocity",
+        "mass",
+        "body_density",
+    ] {
+        if let Some(field) = root.find(&["bodies", body, key]) {
+            let problem = format!(
+                "{} has no effect: daughters of '{parent}' take over its place, motion and mass",
+                field.path
+            );
+            return Err(field.refuse(problem, "remove it"));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn list(daughters: &Daughters, listing: &mut Listing) {
+    let class =
+        |class: &SizeClass| format!("from {}: {}", quantity(class.from_j_kg, "J/kg"), class.body);
+    let classes: Vec<String> = daughters.classes.iter().map(class).collect();
+    listing.text("classes", classes.join(", "));
+    listing.value("energy", &daughters.energy);
+    listing.value("weibull_modulus", &daughters.weibull_modulus);
+    listing.value("smallest_size", &daughters.smallest_size_m);
+    listing.value("limit", &daughters.limit);
+}
