@@ -8,6 +8,7 @@ mod damping;
 mod failure;
 mod packing;
 mod page;
+mod plasticity;
 mod relaxation;
 mod scene;
 mod table;

@@ -70,6 +70,8 @@ pub struct BondKind {
     pub damping: BondDamping,
     /// `failure = { ... }`
     pub failure: BondFailure,
+    /// `plasticity = { ... }`. None: elastic until it breaks.
+    pub plasticity: Option<BondPlasticity>,
 }
 
 /// Viscous and structural damping at the bond. All may act together.
@@ -96,6 +98,21 @@ pub struct BondDamping {
     /// `structural_damping`: gamma, the fraction of the load of each mode that resists its motion,
     /// in [0, 1). 0: none.
     pub structural_damping: f64,
+}
+
+/// Yield strengths of a bond, mode by mode. None: the mode stays elastic.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BondPlasticity {
+    /// `normal_yield_strength`: of |F_n|/A, Pa.
+    pub normal_yield_strength_pa: Option<f64>,
+    /// `shear_yield_strength`: of F_s/A, Pa.
+    pub shear_yield_strength_pa: Option<f64>,
+    /// `torsion_yield_strength`: of M_tor r/J, Pa.
+    pub torsion_yield_strength_pa: Option<f64>,
+    /// `bending_yield_strength`: of M_ben r/I, Pa.
+    pub bending_yield_strength_pa: Option<f64>,
+    /// `hardening_ratio`: stiffness beyond yield over elastic stiffness, in [0, 1).
+    pub hardening_ratio: f64,
 }
 
 /// The quantity whose rate strengthens bonds.
@@ -207,6 +224,46 @@ pub(super) static BOND: Schema = Schema {
             &FAILURE,
             "Failure criteria; without them no bond breaks.",
         ),
+        Key::table(
+            "plasticity",
+            &PLASTICITY,
+            "Yield strengths; without them bonds are elastic until they break.",
+        ),
+    ],
+};
+
+pub(super) static PLASTICITY: Schema = Schema {
+    title: "Plasticity",
+    doc: "Yield strengths of a bond, each for one mode, which is elastic up to it and then flows. At least one is required; modes \
+          without one stay elastic.",
+    keys: &[
+        Key::quantity(
+            "normal_yield_strength",
+            &STRESS,
+            "Axial stress, of tension and of compression, at which the bond yields.",
+        )
+        .positive(),
+        Key::quantity("shear_yield_strength", &STRESS, "Stress of the shear force at which it yields.").positive(),
+        Key::quantity(
+            "torsion_yield_strength",
+            &STRESS,
+            "Stress of torsion, at the edge, at which it yields.",
+        )
+        .positive(),
+        Key::quantity(
+            "bending_yield_strength",
+            &STRESS,
+            "Stress of bending, at the edge, at which it yields; for the fully plastic moment of a solid section write 1.698 \
+             times the yield strength of the material.",
+        )
+        .positive(),
+        Key::number(
+            "hardening_ratio",
+            "Stiffness beyond yield over elastic stiffness (linear kinematic hardening); 0: perfectly plastic.",
+        )
+        .within(Included(0.0), Excluded(1.0))
+        .remedy("write 0 for none")
+        .or(0.0),
     ],
 };
 
@@ -358,7 +415,11 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
         failure: table
             .read_by("failure", |field| failure(&field))?
             .unwrap_or_default(),
+        plasticity: table.read_by("plasticity", |field| plasticity(&field))?,
     };
+    if let Some(field) = table.get("plasticity") {
+        check_plasticity(&field, &kind)?;
+    }
     if let (Some(field), Formulation::Incremental) = (table.get("formulation"), kind.formulation)
         && kind.failure.fracture_energy_j_m2.is_some()
     {
@@ -441,6 +502,55 @@ fn damping(table: &Table<'_>) -> Result<BondDamping> {
         return Err(field.refuse(problem, "add damping_ratio = 0.1, or remove per_mode"));
     }
     Ok(damping)
+}
+
+fn plasticity(field: &Field<'_>) -> Result<BondPlasticity> {
+    let table = Table::of(field, &PLASTICITY)?;
+    let plasticity = BondPlasticity {
+        normal_yield_strength_pa: table.read("normal_yield_strength")?,
+        shear_yield_strength_pa: table.read("shear_yield_strength")?,
+        torsion_yield_strength_pa: table.read("torsion_yield_strength")?,
+        bending_yield_strength_pa: table.read("bending_yield_strength")?,
+        hardening_ratio: table.read("hardening_ratio")?,
+    };
+    let none = BondPlasticity {
+        hardening_ratio: plasticity.hardening_ratio,
+        ..BondPlasticity::default()
+    };
+    if plasticity == none {
+        let problem = format!("{} has no strength at which a bond yields", field.path);
+        let remedy = "add normal_yield_strength, shear_yield_strength, torsion_yield_strength or bending_yield_strength, such as normal_yield_strength = \"1 MPa\"";
+        return Err(field.refuse(problem, remedy));
+    }
+    Ok(plasticity)
+}
+
+/// Whether the bonds that are to yield have a formulation, moments and a failure with which they
+/// can.
+fn check_plasticity(field: &Field<'_>, kind: &BondKind) -> Result<()> {
+    let has_moments = !matches!(kind.model, BondModel::Pin { .. });
+    let of_moments = kind.plasticity.is_some_and(|p| {
+        p.torsion_yield_strength_pa.is_some() || p.bending_yield_strength_pa.is_some()
+    });
+    let (problem, remedy) = if kind.formulation == Formulation::Incremental {
+        (
+            "does not go with formulation = \"incremental\"",
+            "write formulation = \"total\", or remove plasticity",
+        )
+    } else if kind.failure.fracture_energy_j_m2.is_some() {
+        (
+            "does not go with failure.fracture_energy: a bond softens or flows",
+            "remove fracture_energy or plasticity",
+        )
+    } else if of_moments && !has_moments {
+        (
+            "has a strength of a moment, and the model \"pin\" has no moments",
+            "remove torsion_yield_strength and bending_yield_strength, or take another model",
+        )
+    } else {
+        return Ok(());
+    };
+    Err(field.refuse(format!("{} {problem}", field.path), remedy))
 }
 
 fn failure(field: &Field<'_>) -> Result<BondFailure> {
@@ -625,4 +735,22 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
         listing.value("weibull_modulus", &failure.weibull_modulus);
         listing.value("strain_rate_measure", &failure.strain_rate_measure);
     });
+    if let Some(plasticity) = &kind.plasticity {
+        listing.table("plasticity", &PLASTICITY, |listing| {
+            listing.value(
+                "normal_yield_strength",
+                &plasticity.normal_yield_strength_pa,
+            );
+            listing.value("shear_yield_strength", &plasticity.shear_yield_strength_pa);
+            listing.value(
+                "torsion_yield_strength",
+                &plasticity.torsion_yield_strength_pa,
+            );
+            listing.value(
+                "bending_yield_strength",
+                &plasticity.bending_yield_strength_pa,
+            );
+            listing.value("hardening_ratio", &plasticity.hardening_ratio);
+        });
+    }
 }

@@ -25,6 +25,7 @@ use crate::stages::motion::{
     kick_particles,
 };
 use crate::stages::pieces::{CLUSTERS, find_pieces};
+use crate::stages::plasticity::{PLASTICITY, compute_plastic_bonds};
 use crate::stages::replacement::{REPLACEMENT, replace_clumps};
 use crate::stages::restoring::restore_clumps;
 use crate::stages::sleep::{SLEEP, update_sleep};
@@ -47,6 +48,7 @@ const INTERACT: &[Part] = &[
     (&MOTION, clear_wrenches),
     (&BONDS, compute_bonds),
     (&HISTORIES, compute_incremental_bonds),
+    (&PLASTICITY, compute_plastic_bonds),
     (&DAMAGE, press_damaged_bonds),
     (&CONTACTS, compute_contacts),
     (&RELAXATION, count_relaxing),

@@ -17,3 +17,4 @@ pub(crate) mod swap;
 pub mod text;
 pub mod trial;
 pub mod verdict;
+pub(crate) mod yielding;

@@ -5,6 +5,7 @@ mod failure;
 mod incremental;
 mod lanes;
 mod pair;
+mod plasticity;
 mod scatter;
 mod stiffness;
 mod strain_rate;

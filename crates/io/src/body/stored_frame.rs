@@ -26,6 +26,8 @@ pub const BOND_LENGTH: &str = "initial_length_m";
 pub const BROKEN: &str = "broken";
 /// Bond array: damage, from 0 (intact) to 1 (broken).
 pub const DAMAGE: &str = "damage";
+/// Bond array: 1 for a bond that has hardened by plastic flow, else 0.
+pub const HARDENED: &str = "hardened";
 /// Field: names of the bodies of the scene.
 pub const BODY_NAMES: &str = "body_names";
 /// Field: simulated time, s.
@@ -60,6 +62,8 @@ pub struct StoredFrame {
     pub broken: Vec<bool>,
     /// Damage of each bond, or none: no bond can be damaged.
     pub damages: Vec<f64>,
+    /// For each bond, true if it has hardened by plastic flow. Empty: no bond hardens.
+    pub hardened: Vec<bool>,
 }
 
 /// A fragment of a frame.
@@ -110,7 +114,7 @@ impl StoredFrame {
     /// the particles, unless they differ.
     ///
     /// # Errors
-    /// There is no such fragment; the frame contains no valid body of it.
+    /// There is no such fragment; a bond of it has hardened; the frame contains no valid body of it.
     pub fn body(&self, id: u32) -> Result<Body> {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)
@@ -127,6 +131,18 @@ impl StoredFrame {
             !self.broken[*bond] && ends == [id; 2]
         };
         let bonds: Vec<usize> = (0..self.bonds.len()).filter(is_whole).collect();
+        let is_hardened = |bond: &&usize| self.hardened.get(**bond) == Some(&true);
+        let hardened = bonds.iter().filter(is_hardened).count();
+        if hardened > 0 {
+            return Err(Diagnostic::input(
+                format!("fragment {id}"),
+                format!(
+                    "{hardened} of its {} bonds have hardened, which a body does not hold",
+                    bonds.len()
+                ),
+                "run the scene on with --resume, or with hardening_ratio = 0, which leaves nothing to hold",
+            ));
+        }
         let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);
         let density = self.densities_kg_m3[first];
         let is_same = |i: &usize| (self.densities_kg_m3[*i] / density - 1.0).abs() <= SAME_DENSITY;

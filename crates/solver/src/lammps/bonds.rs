@@ -208,6 +208,13 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
             "use damping_ratio, or run the scene with dem-run",
         );
     }
+    if rule.plasticity.is_some() {
+        return refuse(
+            "plasticity",
+            "bonds of bpm/rotational are elastic until they break",
+            "leave it out, or run the scene with dem-run",
+        );
+    }
     if rule.fracture_energy_j_m2.is_some() {
         return refuse(
             "fracture_energy",

@@ -6,7 +6,7 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 
 /// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 13] = [
+pub(super) const ENERGIES: [&str; 14] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
@@ -19,6 +19,7 @@ pub(super) const ENERGIES: [&str; 13] = [
     "friction_j",
     "bond_breakage_j",
     "bond_damage_j",
+    "bond_plastic_j",
     "flow_energy_j",
 ];
 /// Names of the columns after those.
@@ -80,6 +81,7 @@ pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64
         balance.friction_j,
         balance.bond_breakage_j,
         balance.bond_damage_j,
+        balance.bond_plastic_j,
         balance.flow_energy_j,
         balance.energy_error,
         balance.momentum_error,

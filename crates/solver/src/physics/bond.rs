@@ -9,6 +9,7 @@ pub mod failure;
 pub mod incremental;
 pub(crate) mod models;
 pub mod pair;
+pub mod plasticity;
 pub mod rod;
 pub mod scatter;
 pub mod stiffness;

@@ -21,6 +21,7 @@ use crate::physics::bond::damping_models::{Chen, ChenByMode, ModeRatios, Platzer
 use crate::physics::bond::failure::{Criteria, EquivalentStress, has_strength};
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::pair::frequencies;
+use crate::physics::bond::plasticity::{PlasticDeformation, Plasticity};
 use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
@@ -368,6 +369,9 @@ fn place_bonds(
     if incremental {
         bonds.histories.resize(bonds.len(), History::default());
     }
+    if bonds.rules.iter().any(|rule| rule.plasticity.is_some()) {
+        bonds.plastics.resize(bonds.len(), PlasticDeformation::NONE);
+    }
     Ok(())
 }
 
@@ -473,6 +477,16 @@ fn rule(kind: &BondKind) -> BondRule {
         damped: kind.damping != undamped,
         structural_damping: kind.damping.structural_damping,
         fracture_energy_j_m2: failure.fracture_energy_j_m2,
+        plasticity: kind.plasticity.map(|plasticity| Plasticity {
+            yield_strengths_pa: [
+                plasticity.normal_yield_strength_pa,
+                plasticity.shear_yield_strength_pa,
+                plasticity.torsion_yield_strength_pa,
+                plasticity.bending_yield_strength_pa,
+            ]
+            .map(strength_pa),
+            hardening_ratio: plasticity.hardening_ratio,
+        }),
         criteria: has_strength(&criteria).then_some(criteria),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,

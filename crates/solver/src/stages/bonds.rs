@@ -306,7 +306,7 @@ impl PartitionWork<'_> {
         let batches = std::mem::take(&mut self.partition.batches);
         for batch in &batches {
             let rule = &self.bonds.rules[batch.rule];
-            let total = self.elastic && !rule.incremental;
+            let total = self.elastic && !rule.is_single();
             let damped = rule.damped && self.damping.is_some();
             let frictional = rule
                 .criteria

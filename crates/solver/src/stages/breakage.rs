@@ -108,7 +108,7 @@ pub(crate) fn break_failed_bonds(state: &mut State) -> usize {
         .map(|partition| partition.computed.compared)
         .sum();
     let scratch = &mut state.scratch;
-    // A partition lists its bonds of the total formulation before those of the incremental one.
+    // A partition lists its bonds of the total formulation before those with a history.
     let listed = scratch.partitions.iter().flat_map(|s| &s.failing);
     let mut failing: Vec<u32> = listed.chain(&scratch.crushed).copied().collect();
     failing.sort_unstable();

@@ -159,6 +159,8 @@ pub struct Balance {
     pub bond_breakage_j: f64,
     /// Energy that damaged bonds lost while they softened, J.
     pub bond_damage_j: f64,
+    /// Plastic work of bonds, J: what hardening stores is part of it.
+    pub bond_plastic_j: f64,
     /// Energy of added bodies, minus that of removed bodies, plus the gain when clumps and clusters
     /// replaced each other, minus the kinetic energy that bodies had when they fell asleep, J.
     pub flow_energy_j: f64,
@@ -331,7 +333,7 @@ pub fn balance(state: &mut State) -> Balance {
         + work.particle_damping
         + contact_damping
         + friction
-        + (ledger.released_j + ledger.damaged_j);
+        + (ledger.released_j + ledger.damaged_j + ledger.plastic_j);
     let stored = elastic.total() + contact_elastic;
     let given = work.loads + work.supports + wall_work + ledger.brought_j;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
@@ -371,6 +373,7 @@ pub fn balance(state: &mut State) -> Balance {
         friction_j: friction,
         bond_breakage_j: ledger.released_j,
         bond_damage_j: ledger.damaged_j,
+        bond_plastic_j: ledger.plastic_j,
         flow_energy_j: ledger.brought_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),

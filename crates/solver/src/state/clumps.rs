@@ -290,5 +290,6 @@ impl Template {
             + size_of_val(&self.bonds.damping[..])
             + size_of_val(&self.bonds.histories[..])
             + size_of_val(&self.bonds.damages[..])
+            + size_of_val(&self.bonds.plastics[..])
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
-use super::{breakage, families, impact, limit_map, long, softening, swap};
+use super::{breakage, families, impact, limit_map, long, softening, swap, yielding};
 
 /// A case of the suite.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +29,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 17] = [
+pub const CASES: [Case; 18] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -64,6 +64,11 @@ pub const CASES: [Case; 17] = [
         name: "softening",
         extreme: "bonds that break at 1.5 to 1e4 times the opening at their strength",
         members: |_| Ok(softening::softening()),
+    },
+    Case {
+        name: "yielding",
+        extreme: "bonds that flow under up to 1e4 times the energy at which they yield",
+        members: |_| Ok(yielding::yielding()),
     },
     Case {
         name: "swap",

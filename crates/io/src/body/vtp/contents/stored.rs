@@ -25,6 +25,7 @@ impl Contents {
             clusters,
             densities,
             broken,
+            hardened,
             ..
         } = self.of_frame;
         let parts = self.parts;
@@ -47,6 +48,7 @@ impl Contents {
                 .map(|broken| broken != 0.0)
                 .collect(),
             damages: parts.bond_damages,
+            hardened: hardened.iter().map(|hardened| *hardened != 0.0).collect(),
         })
     }
 
