@@ -16,7 +16,7 @@ const ENERGY_ERROR: f64 = 0.01;
 /// Steps of a flight.
 const STEPS: f64 = 4000.0;
 /// Permitted relative error.
-const PERMITTED: f64 = 0.01;
+const PERMITTED: f64 = 1e-3;
 
 /// Two spheres fly apart with up to ten thousand times the energy at which their bond yields, and
 /// come to rest where its work has used that up. A row that rattles and flows in all modes creates
