@@ -6,6 +6,7 @@ mod clumps;
 mod contacts;
 mod damping;
 mod failure;
+mod flat_joint;
 mod packing;
 mod page;
 mod plasticity;

@@ -41,6 +41,34 @@ pub enum BondModel {
         /// Shear coefficient of the section.
         alpha: f64,
     },
+    /// "flat-joint": as "parallel", with a section of elements that fail one by one.
+    FlatJoint {
+        /// Normal over shear stiffness.
+        stiffness_ratio: Option<f64>,
+        /// Its elements.
+        elements: JointElements,
+    },
+}
+
+/// Elements of the section of a flat joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointElements {
+    /// `radial_elements`: rings of equal width, 3 unless given.
+    pub radial: u32,
+    /// `circumferential_elements`: sectors of each ring, 12 unless given.
+    pub circumferential: u32,
+    /// `joint_friction`: friction coefficient of failed elements, 0 unless given.
+    pub friction: f64,
+}
+
+impl Default for JointElements {
+    fn default() -> Self {
+        Self {
+            radial: 3,
+            circumferential: 12,
+            friction: 0.0,
+        }
+    }
 }
 
 /// How forces are computed from motion.
@@ -186,13 +214,14 @@ pub(super) static BOND: Schema = Schema {
     keys: &[
         Key::new(
             "model",
-            Kind::Word(|| words_of(&models(None, 0.0))),
-            "Model of the bond: a beam, or `pin`, which resists neither torsion nor bending.",
+            Kind::Word(|| words_of(&models(None, 0.0, JointElements::default()))),
+            "Model of the bond: a beam; `pin`, which resists neither torsion nor bending; or `flat-joint`, whose section consists \
+             of elements that fail one by one.",
         )
         .or_word("timoshenko"),
         Key::number(
             "stiffness_ratio",
-            "Normal over shear stiffness of the models `parallel`, `pin` and `rojek`.",
+            "Normal over shear stiffness of the models `parallel`, `pin`, `rojek` and `flat-joint`.",
         )
         .positive()
         .otherwise("2 (1 + nu)"),
@@ -202,6 +231,24 @@ pub(super) static BOND: Schema = Schema {
         )
         .positive()
         .or(0.9),
+        Key::new(
+            "radial_elements",
+            Kind::Whole { least: 1, most: Some(100), of: "" },
+            "Rings of elements in the section, for the model `flat-joint`.",
+        )
+        .or(3.0),
+        Key::new(
+            "circumferential_elements",
+            Kind::Whole { least: 3, most: Some(100), of: "" },
+            "Elements of each ring, for the model `flat-joint`.",
+        )
+        .or(12.0),
+        Key::number(
+            "joint_friction",
+            "Friction coefficient of failed elements under pressure, for the model `flat-joint` with `failure`.",
+        )
+        .not_negative()
+        .or(0.0),
         Key::word::<Formulation>(
             "formulation",
             "total",
@@ -420,6 +467,9 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
     if let Some(field) = table.get("plasticity") {
         check_plasticity(&field, &kind)?;
     }
+    if let BondModel::FlatJoint { .. } = kind.model {
+        check_flat_joint(&table, &kind)?;
+    }
     if let (Some(field), Formulation::Incremental) = (table.get("formulation"), kind.formulation)
         && kind.failure.fracture_energy_j_m2.is_some()
     {
@@ -433,7 +483,11 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
 }
 
 /// The models and their names.
-fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 7] {
+fn models(
+    stiffness_ratio: Option<f64>,
+    alpha: f64,
+    elements: JointElements,
+) -> [(&'static str, BondModel); 8] {
     [
         ("parallel", BondModel::Parallel { stiffness_ratio }),
         ("pin", BondModel::Pin { stiffness_ratio }),
@@ -442,6 +496,13 @@ fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
         ("shear-coefficient", BondModel::ShearCoefficient { alpha }),
+        (
+            "flat-joint",
+            BondModel::FlatJoint {
+                stiffness_ratio,
+                elements,
+            },
+        ),
     ]
 }
 
@@ -449,19 +510,31 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
     let known = models(
         table.read("stiffness_ratio")?,
         table.read("shear_coefficient")?,
+        JointElements {
+            radial: table.read("radial_elements")?,
+            circumferential: table.read("circumferential_elements")?,
+            friction: table.read("joint_friction")?,
+        },
     );
     let model = table
         .read_by("model", |field| field.choice(&known))?
         .unwrap_or(BondModel::Timoshenko);
+    let is_flat_joint = matches!(model, BondModel::FlatJoint { .. });
     for (key, of, belongs) in [
         (
             "stiffness_ratio",
             "parallel",
             matches!(
                 model,
-                BondModel::Parallel { .. } | BondModel::Pin { .. } | BondModel::Rojek { .. }
+                BondModel::Parallel { .. }
+                    | BondModel::Pin { .. }
+                    | BondModel::Rojek { .. }
+                    | BondModel::FlatJoint { .. }
             ),
         ),
+        ("radial_elements", "flat-joint", is_flat_joint),
+        ("circumferential_elements", "flat-joint", is_flat_joint),
+        ("joint_friction", "flat-joint", is_flat_joint),
         (
             "shear_coefficient",
             "shear-coefficient",
@@ -551,6 +624,59 @@ fn check_plasticity(field: &Field<'_>, kind: &BondKind) -> Result<()> {
         return Ok(());
     };
     Err(field.refuse(format!("{} {problem}", field.path), remedy))
+}
+
+/// Whether a flat joint has none of the keys that act on a section as a whole, and friction only
+/// with elements that can fail.
+fn check_flat_joint(table: &Table<'_>, kind: &BondKind) -> Result<()> {
+    let failure = &kind.failure;
+    let unknown = [
+        ("shear_strength", failure.shear_strength_pa.is_some()),
+        (
+            "compressive_strength",
+            failure.compressive_strength_pa.is_some(),
+        ),
+        (
+            "von_mises_strength",
+            failure.von_mises_strength_pa.is_some(),
+        ),
+        (
+            "rate_strengthening",
+            failure.rate_strengthening_from_1_s.is_some(),
+        ),
+        ("fracture_energy", failure.fracture_energy_j_m2.is_some()),
+    ];
+    let unknown = unknown.into_iter().find(|(_, is_given)| *is_given);
+    if let (Some(field), Some((name, _))) = (table.get("failure"), unknown) {
+        let problem = format!(
+            "{}.{name} does not apply to the elements of a flat joint",
+            field.path
+        );
+        let remedy =
+            "write tensile_strength, or cohesion with friction_angle (0 for a shear strength)";
+        return Err(field.refuse(problem, remedy));
+    }
+    let of_whole = if kind.formulation == Formulation::Incremental {
+        ("formulation", "", "write formulation = \"total\"")
+    } else if kind.damping.structural_damping > 0.0 {
+        ("damping", ".structural_damping", "use damping_ratio")
+    } else {
+        ("plasticity", "", "remove it")
+    };
+    let (key, part, remedy) = of_whole;
+    if let Some(field) = table.get(key) {
+        let problem = format!(
+            "{}{part} does not go with the model \"flat-joint\"",
+            field.path
+        );
+        return Err(field.refuse(problem, format!("{remedy}, or take another model")));
+    }
+    if let (Some(field), None) = (table.get("joint_friction"), table.get("failure")) {
+        let problem = format!("{} has no effect without failure", field.path);
+        let remedy = "add failure = { tensile_strength = \"1 MPa\" }, or remove joint_friction";
+        return Err(field.refuse(problem, remedy));
+    }
+    Ok(())
 }
 
 fn failure(field: &Field<'_>) -> Result<BondFailure> {
@@ -701,7 +827,7 @@ fn rate_strengthening(table: &Table<'_>) -> Result<Option<f64>> {
 }
 
 pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
-    let known = models(None, 0.0);
+    let known = models(None, 0.0, JointElements::default());
     let same =
         |other: &BondModel| std::mem::discriminant(other) == std::mem::discriminant(&kind.model);
     let name = known.iter().find(|(_, other)| same(other));
@@ -709,12 +835,20 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     match kind.model {
         BondModel::Parallel { stiffness_ratio }
         | BondModel::Pin { stiffness_ratio }
-        | BondModel::Rojek { stiffness_ratio } => {
+        | BondModel::Rojek { stiffness_ratio }
+        | BondModel::FlatJoint {
+            stiffness_ratio, ..
+        } => {
             let stiffness_ratio = stiffness_ratio.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
             listing.value("stiffness_ratio", &stiffness_ratio);
         }
         BondModel::ShearCoefficient { alpha } => listing.value("shear_coefficient", &alpha),
         BondModel::EulerBernoulli | BondModel::Timoshenko | BondModel::ElasticSolid => {}
+    }
+    if let BondModel::FlatJoint { elements, .. } = &kind.model {
+        listing.value("radial_elements", &elements.radial);
+        listing.value("circumferential_elements", &elements.circumferential);
+        listing.value("joint_friction", &elements.friction);
     }
     listing.value("formulation", &kind.formulation);
     listing.value("young_modulus", &kind.young_modulus_pa);

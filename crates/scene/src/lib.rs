@@ -62,7 +62,7 @@ pub use bodies::read_bodies;
 pub use body::{BodyEntry, BodySource, PositionOf, WholeMass};
 pub use bond::{
     BondDamping, BondFailure, BondKind, BondModel, BondPlasticity, EquivalentStress, Formulation,
-    StrainRateMeasure,
+    JointElements, StrainRateMeasure,
 };
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;

@@ -10,6 +10,7 @@ pub mod contacts;
 pub(crate) mod damage;
 mod damped;
 pub mod damping;
+pub(crate) mod flat_joints;
 pub(crate) mod flow;
 pub mod incremental;
 pub(crate) mod inlets;

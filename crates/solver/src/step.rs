@@ -13,6 +13,7 @@ use crate::stages::contacts::{
 };
 use crate::stages::damage::press_damaged_bonds;
 use crate::stages::damping::{BOND_DAMPING, compute_bond_damping};
+use crate::stages::flat_joints::{FLAT_JOINTS, compute_flat_joints};
 use crate::stages::flow::{FLOW, apply_inlets_and_outlets, count_bond_steps};
 use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
 use crate::stages::ledger::{
@@ -49,6 +50,7 @@ const INTERACT: &[Part] = &[
     (&BONDS, compute_bonds),
     (&HISTORIES, compute_incremental_bonds),
     (&PLASTICITY, compute_plastic_bonds),
+    (&FLAT_JOINTS, compute_flat_joints),
     (&DAMAGE, press_damaged_bonds),
     (&CONTACTS, compute_contacts),
     (&RELAXATION, count_relaxing),

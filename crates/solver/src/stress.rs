@@ -8,6 +8,7 @@ pub(crate) mod breakage;
 pub mod cases;
 pub(crate) mod families;
 pub mod impact;
+pub(crate) mod joints;
 pub mod limit_map;
 pub(crate) mod long;
 pub(crate) mod oscillator;

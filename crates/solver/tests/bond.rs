@@ -2,6 +2,7 @@
 
 mod damping;
 mod failure;
+mod flat_joint;
 mod incremental;
 mod lanes;
 mod pair;

@@ -26,6 +26,8 @@ pub const BOND_LENGTH: &str = "initial_length_m";
 pub const BROKEN: &str = "broken";
 /// Bond array: damage, from 0 (intact) to 1 (broken).
 pub const DAMAGE: &str = "damage";
+/// Bond array: failed part of the area of a flat joint.
+pub const FAILED: &str = "failed_fraction";
 /// Bond array: 1 for a bond that has hardened by plastic flow, else 0.
 pub const HARDENED: &str = "hardened";
 /// Field: names of the bodies of the scene.
@@ -64,6 +66,8 @@ pub struct StoredFrame {
     pub damages: Vec<f64>,
     /// For each bond, true if it has hardened by plastic flow. Empty: no bond hardens.
     pub hardened: Vec<bool>,
+    /// For each bond, failed part of its area. Empty: no bond is a flat joint.
+    pub failed: Vec<f64>,
 }
 
 /// A fragment of a frame.
@@ -114,7 +118,7 @@ impl StoredFrame {
     /// the particles, unless they differ.
     ///
     /// # Errors
-    /// There is no such fragment; a bond of it has hardened; the frame contains no valid body of it.
+    /// There is no such fragment; a bond of it has hardened or failed in part; the frame contains no valid body of it.
     pub fn body(&self, id: u32) -> Result<Body> {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)
@@ -141,6 +145,18 @@ impl StoredFrame {
                     bonds.len()
                 ),
                 "run the scene on with --resume, or with hardening_ratio = 0, which leaves nothing to hold",
+            ));
+        }
+        let is_partly_failed = |bond: &&usize| self.failed.get(**bond).is_some_and(|f| *f > 0.0);
+        let failed = bonds.iter().filter(is_partly_failed).count();
+        if failed > 0 {
+            return Err(Diagnostic::input(
+                format!("fragment {id}"),
+                format!(
+                    "{failed} of its {} bonds have failed elements, which a body does not hold",
+                    bonds.len()
+                ),
+                "run the scene on with --resume, or take another model of bonds",
             ));
         }
         let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);

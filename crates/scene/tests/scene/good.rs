@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use dem_io::units::DIMENSIONS;
 use dem_scene::{
     BodySource, BondDamping, BondFailure, BondModel, BondPlasticity, Clusters, ColourBy, Contact,
-    ContactLaw, EquivalentStress, Factor, Formulation, Hold, InitialOverlap, Integrator, Pick,
-    Quantity, Relaxation, Rolling, Scene, Search, Statistic, StrainRateMeasure, Wall, WallMotion,
-    WallShape,
+    ContactLaw, EquivalentStress, Factor, Formulation, Hold, InitialOverlap, Integrator,
+    JointElements, Pick, Quantity, Relaxation, Rolling, Scene, Search, Statistic,
+    StrainRateMeasure, Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -333,6 +333,17 @@ fn bonds() {
     assert_eq!(
         scene.bonds["pinned"].model,
         BondModel::Pin { stiffness_ratio }
+    );
+    assert_eq!(
+        scene.bonds["joined"].model,
+        BondModel::FlatJoint {
+            stiffness_ratio: None,
+            elements: JointElements {
+                radial: 2,
+                circumferential: 8,
+                friction: 0.4,
+            },
+        }
     );
     let sheared = &scene.bonds["sheared"];
     assert_eq!(sheared.model, BondModel::ShearCoefficient { alpha: 0.85 });

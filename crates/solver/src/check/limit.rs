@@ -518,6 +518,7 @@ pub(super) fn add_stiffness_times(
 fn bonds_as_total(state: &mut State, poses: &[Pose]) {
     let as_total = |rule: &BondRule| BondRule {
         incremental: false,
+        flat_joint: None,
         criteria: None,
         ..*rule
     };

@@ -2,8 +2,8 @@
 
 use dem_io::Result;
 use dem_io::body::stored_frame::{
-    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FRAGMENT_ID, HARDENED, PARTICLE_ID,
-    RADIUS, VELOCITY,
+    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FAILED, FRAGMENT_ID, HARDENED,
+    PARTICLE_ID, RADIUS, VELOCITY,
 };
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
@@ -178,6 +178,13 @@ impl FrameOrder {
         let plastic_work = |i: usize| bonds.plastics[bond(i)].work_j;
         if !bonds.plastics.is_empty() {
             bond_arrays.push(scalars("plastic_work_j", &plastic_work));
+        }
+        let failed = |i: usize| match bonds.is_broken(bond(i)) {
+            true => 1.0,
+            false => bonds.failed_fraction(bond(i)),
+        };
+        if !bonds.joints.is_empty() {
+            bond_arrays.push(scalars(FAILED, &failed));
         }
         let hardened = |i: usize| u32::from(bonds.has_hardened(bond(i)));
         if bonds.can_harden() {

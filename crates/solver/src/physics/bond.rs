@@ -6,6 +6,7 @@ pub mod damage;
 pub mod damping;
 pub mod damping_models;
 pub mod failure;
+pub mod flat_joint;
 pub mod incremental;
 pub(crate) mod models;
 pub mod pair;

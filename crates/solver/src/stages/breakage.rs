@@ -246,6 +246,12 @@ fn loss(bonds: &Bonds, at: usize, particles: &Particles, drift_s: f64) -> Option
         released_j: forces.energy.total(),
         spent_j: 0.0,
     };
+    if let Some(joint) = bonds.joints.get(at).filter(|_| rule.flat_joint.is_some()) {
+        return joint
+            .last_failure
+            .filter(|_| joint.has_failed())
+            .map(at_once);
+    }
     if rule.fracture_energy_j_m2.is_some() {
         if is_crushed(bonds, at, &particles.poses) {
             return Some(at_once(Cause::Compression));

@@ -153,9 +153,10 @@ pub struct Balance {
     pub contact_elastic_j: f64,
     /// Dissipated by contact damping, J.
     pub contact_damping_j: f64,
-    /// Dissipated by contact friction, sliding and rolling, J.
+    /// Dissipated by friction of contacts, sliding and rolling, and of failed elements of flat
+    /// joints, J.
     pub friction_j: f64,
-    /// Released by bonds that broke, J.
+    /// Released by bonds that broke, and by elements of flat joints that failed, J.
     pub bond_breakage_j: f64,
     /// Energy that damaged bonds lost while they softened, J.
     pub bond_damage_j: f64,
@@ -323,6 +324,7 @@ pub fn balance(state: &mut State) -> Balance {
         contact_damping += wall.damping_j;
     }
     contact_elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
+    friction += state.ledger.joint_friction_j;
     let (present, scales) = momenta(p, &state.clumps, state.ledger.about_m);
     let g = state.model.gravity_m_s2;
     let ledger = &mut state.ledger;

@@ -60,7 +60,11 @@ fn of_partition(
             let forces = bonds.forces(at, poses);
             if own.contains(&a) {
                 wrenches[a - own.start].add(&-forces.force_on_b, &forces.torques[0]);
-                if let Some(criteria) = &rule.criteria {
+                if rule.flat_joint.is_some() {
+                    if bonds.joints[at].has_failed() {
+                        failing.push(at as u32);
+                    }
+                } else if let Some(criteria) = &rule.criteria {
                     let stresses = stresses(&forces.load, bonds.radius_m(at));
                     let factors = Factors::scattered(bonds.strength_factor(at));
                     if utilisation(criteria, &stresses, factors) >= 1.0 {

@@ -1,5 +1,6 @@
 //! Bonds: one entry per bond in every array; the data for the force loop are stored in blocks.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use dem_scene::StrainRateMeasure;
@@ -11,6 +12,9 @@ use serde::{Deserialize, Serialize};
 use crate::physics::bond::criteria::COUNT;
 use crate::physics::bond::damage::{Damage, opening_ratios, screened_factor};
 use crate::physics::bond::failure::Criteria;
+use crate::physics::bond::flat_joint::{
+    self, ElementStrengths, FlatJoint, FlatJointLaw, JointStiffness,
+};
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::plasticity::{PlasticDeformation, Plasticity, StressFree};
 use crate::physics::bond::stiffness::Stiffness;
@@ -38,6 +42,8 @@ pub struct BondRule {
     pub fracture_energy_j_m2: Option<f64>,
     /// Yield strengths and hardening. None: the bonds are elastic.
     pub plasticity: Option<Plasticity>,
+    /// Elements of flat joints. None: the bonds are of another model.
+    pub flat_joint: Option<FlatJointLaw>,
     /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
     pub strengthening_from_1_s: Option<f64>,
     /// The strain whose rate is used.
@@ -53,7 +59,7 @@ impl BondRule {
 
     /// Whether bonds have a history and are computed one at a time.
     pub(crate) fn is_single(&self) -> bool {
-        self.incremental || self.plasticity.is_some()
+        self.incremental || self.plasticity.is_some() || self.flat_joint.is_some()
     }
 
     /// Whether bonds have damping forces of any kind.
@@ -151,6 +157,8 @@ pub struct Bonds {
     pub damaged: Vec<u32>,
     /// Plastic deformation of each bond. Empty: no bond yields.
     pub plastics: Vec<PlasticDeformation>,
+    /// Elements of flat joints, none for bonds of other models. Empty: there are no flat joints.
+    pub joints: Vec<FlatJoint>,
     /// Rules of the model.
     #[serde(skip)]
     pub rules: Arc<[BondRule]>,
@@ -218,7 +226,12 @@ impl Bonds {
             self.bending_per_normal[rule] = 0.0;
         } else {
             self.torsion_per_bending[rule] = stiffness.torsion / stiffness.bending;
-            self.bending_per_normal[rule] = BENDING_OF_ROUND_BOND;
+            let of_round = stiffness.normal * radius_m * radius_m * BENDING_OF_ROUND_BOND;
+            let ratio = stiffness.bending / of_round;
+            // That of a solid section is not to depend on rounding.
+            let is_solid = (ratio - 1.0).abs() < 1e-9;
+            self.bending_per_normal[rule] =
+                BENDING_OF_ROUND_BOND * if is_solid { 1.0 } else { ratio };
         }
         let end = self.len();
         match self.rule_runs.last_mut() {
@@ -260,6 +273,12 @@ impl Bonds {
             self.plastics.push(plastic);
         } else if !self.plastics.is_empty() {
             self.plastics.push(PlasticDeformation::NONE);
+        }
+        if let Some(joint) = other.joints.get(at) {
+            self.joints.resize(self.len() - 1, FlatJoint::default());
+            self.joints.push(joint.clone());
+        } else if !self.joints.is_empty() {
+            self.joints.push(FlatJoint::default());
         }
         if let Some(&damage) = other.damages.get(at) {
             self.damages.push(Damage {
@@ -314,15 +333,79 @@ impl Bonds {
         }
     }
 
-    /// Whether bond `at`, broken or not, softened before: its opening is no strain.
+    /// Whether bond `at`, broken or not, softened or failed in part before: its opening is no strain.
     pub(crate) fn was_damaged(&self, at: usize) -> bool {
-        self.damages.get(at).is_some_and(|known| known.damage > 0.0)
+        let softened = self.damages.get(at).is_some_and(|known| known.damage > 0.0);
+        softened || self.failed_fraction(at) > 0.0
     }
 
     /// Whether bond `at`, broken or not, has yielded.
     pub(crate) fn has_yielded(&self, at: usize) -> bool {
         let plastic = self.plastics.get(at);
         plastic.is_some_and(|plastic| *plastic != PlasticDeformation::NONE)
+    }
+
+    /// Bytes of the elements of all flat joints.
+    pub(crate) fn joint_bytes(&self) -> usize {
+        let of_elements = self
+            .joints
+            .iter()
+            .map(|joint| size_of_val(&joint.elements[..]));
+        size_of_val(&self.joints[..]) + of_elements.sum::<usize>()
+    }
+
+    /// Failed part of the area of bond `at`, unless it is broken: 0 if it is no flat joint.
+    pub(crate) fn failed_fraction(&self, at: usize) -> f64 {
+        let joint = self.joints.get(at);
+        joint.map_or(0.0, FlatJoint::failed_fraction)
+    }
+
+    /// Stiffness per area of bond `at`.
+    pub(crate) fn joint_stiffness(&self, at: usize) -> JointStiffness {
+        let (stiffness, radius_m) = (self.stiffness(at), self.radius_m(at));
+        let per_area = 1.0 / (PI * radius_m * radius_m);
+        JointStiffness {
+            normal_pa_m: per_area * stiffness.normal,
+            shear_pa_m: per_area * stiffness.shear,
+        }
+    }
+
+    /// Strengths of the elements of flat joint `at`. None: they do not fail.
+    pub(crate) fn element_strengths(&self, at: usize) -> Option<ElementStrengths> {
+        let criteria = self.rules[self.rule_of(at)].criteria?;
+        let factor = self.strength_factor(at);
+        Some(ElementStrengths {
+            tensile_pa: factor * criteria.tensile_strength_pa,
+            cohesion_pa: factor * criteria.cohesion_pa,
+            friction_tangent: criteria.friction_tangent,
+        })
+    }
+
+    /// Largest utilisation of the bonded elements of flat joint `at`, which must not be broken.
+    pub(crate) fn element_utilisation(&self, at: usize, poses: &[Pose]) -> f64 {
+        let Some(strengths) = self.element_strengths(at) else {
+            return 0.0;
+        };
+        flat_joint::utilisation(
+            &self.joints[at].elements,
+            &self.joint_stiffness(at),
+            &strengths,
+            &self.direction(at),
+            self.initial_length_m(at),
+            &self.ends_of(at, poses),
+        )
+    }
+
+    /// Forces of flat joint `at` with these elements between these ends.
+    pub(crate) fn joint_forces(
+        &self,
+        at: usize,
+        elements: &[flat_joint::Element],
+        ends: &[End; 2],
+    ) -> BondForces {
+        let stiffness = self.joint_stiffness(at);
+        let length_m = self.initial_length_m(at);
+        flat_joint::forces(elements, &stiffness, &self.direction(at), length_m, ends)
     }
 
     /// Whether bond `at` has yielded and hardens.
@@ -460,6 +543,13 @@ impl Bonds {
     /// Forces of bond `at`, which must not be broken, on its ends.
     pub fn forces(&self, at: usize, poses: &[Pose]) -> BondForces {
         let stiffness = self.stiffness(at);
+        if let Some(joint) = self
+            .joints
+            .get(at)
+            .filter(|joint| !joint.elements.is_empty())
+        {
+            return self.joint_forces(at, &joint.elements, &self.ends_of(at, poses));
+        }
         if self.rules[self.rule_of(at)].incremental {
             let [a, b] = self.ends[at].map(|end| poses[end as usize].place());
             let apart = b - a;
@@ -535,7 +625,7 @@ impl Bonds {
     }
 
     /// Unit vector of bond `at` from its first to its second end without load.
-    fn direction(&self, at: usize) -> Vector3<f64> {
+    pub(crate) fn direction(&self, at: usize) -> Vector3<f64> {
         let [x, y, z] = &self.blocks[at / BLOCK].direction;
         Vector3::new(x[at % BLOCK], y[at % BLOCK], z[at % BLOCK])
     }

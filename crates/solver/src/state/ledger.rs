@@ -17,6 +17,8 @@ pub struct EnergyLedger {
     pub(crate) released_j: f64,
     /// Lost by bonds that were damaged, J.
     pub(crate) damaged_j: f64,
+    /// Friction of failed elements of flat joints, J.
+    pub(crate) joint_friction_j: f64,
     /// Plastic work of bonds, J.
     pub(crate) plastic_j: f64,
     /// Net energy of added and removed bodies, J.

@@ -105,6 +105,12 @@ fn of_bonds() {
         &with(&FREE, &["elasto-plastic bonds"]),
     );
     expect(
+        "flat joints",
+        &scene("", ", model = \"flat-joint\"", "", ""),
+        &["flat joints", "motion"],
+        &with(&FREE, &["flat joints"]),
+    );
+    expect(
         "strength scatter",
         &scene(
             "",

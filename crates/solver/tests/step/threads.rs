@@ -24,6 +24,7 @@ const BREAKING: BondRule = BondRule {
     structural_damping: 0.1,
     fracture_energy_j_m2: None,
     plasticity: None,
+    flat_joint: None,
     criteria: Some(Criteria {
         tensile_strength_pa: 0.1e6,
         compressive_strength_pa: 0.1e6,

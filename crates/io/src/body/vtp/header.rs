@@ -35,6 +35,7 @@ pub(super) enum Role {
     Densities,
     Broken,
     Hardened,
+    Failed,
     /// The id and the body of each particle, and its velocity.
     Ids,
     Bodies,
@@ -160,6 +161,7 @@ fn role_in_frame(section: &str, name: &str) -> Role {
         ("CellData", frame::BOND_LENGTH) => Role::BondLengths,
         ("CellData", frame::DAMAGE) => Role::Damages,
         ("CellData", frame::HARDENED) => Role::Hardened,
+        ("CellData", frame::FAILED) => Role::Failed,
         ("CellData", frame::BROKEN) => Role::Broken,
         ("FieldData", frame::TIME) => Role::Field(frame::TIME),
         ("FieldData", frame::BODY_NAMES) => Role::Field(frame::BODY_NAMES),

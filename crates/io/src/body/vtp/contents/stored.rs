@@ -26,6 +26,7 @@ impl Contents {
             densities,
             broken,
             hardened,
+            failed,
             ..
         } = self.of_frame;
         let parts = self.parts;
@@ -48,6 +49,7 @@ impl Contents {
                 .map(|broken| broken != 0.0)
                 .collect(),
             damages: parts.bond_damages,
+            failed,
             hardened: hardened.iter().map(|hardened| *hardened != 0.0).collect(),
         })
     }
