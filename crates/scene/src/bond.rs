@@ -41,6 +41,34 @@ pub enum BondModel {
         /// Shear coefficient of the section.
         alpha: f64,
     },
+    /// "flat-joint": as "parallel", with a section of elements that fail one by one.
+    FlatJoint {
+        /// Normal over shear stiffness.
+        stiffness_ratio: Option<f64>,
+        /// Its elements.
+        elements: JointElements,
+    },
+}
+
+/// Elements of the section of a flat joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointElements {
+    /// `radial_elements`: rings of equal width, 3 unless given.
+    pub radial: u32,
+    /// `circumferential_elements`: sectors of each ring, 12 unless given.
+    pub circumferential: u32,
+    /// `joint_friction`: friction coefficient of failed elements, 0 unless given.
+    pub friction: f64,
+}
+
+impl Default for JointElements {
+    fn default() -> Self {
+        Self {
+            radial: 3,
+            circumferential: 12,
+            friction: 0.0,
+        }
+    }
 }
 
 /// How forces are computed from motion.
@@ -70,6 +98,8 @@ pub struct BondKind {
     pub damping: BondDamping,
     /// `failure = { ... }`
     pub failure: BondFailure,
+    /// `plasticity = { ... }`. None: elastic until it breaks.
+    pub plasticity: Option<BondPlasticity>,
 }
 
 /// Viscous and structural damping at the bond. All may act together.
@@ -96,6 +126,21 @@ pub struct BondDamping {
     /// `structural_damping`: gamma, the fraction of the load of each mode that resists its motion,
     /// in [0, 1). 0: none.
     pub structural_damping: f64,
+}
+
+/// Yield strengths of a bond, mode by mode. None: the mode stays elastic.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct BondPlasticity {
+    /// `normal_yield_strength`: of |F_n|/A, Pa.
+    pub normal_yield_strength_pa: Option<f64>,
+    /// `shear_yield_strength`: of F_s/A, Pa.
+    pub shear_yield_strength_pa: Option<f64>,
+    /// `torsion_yield_strength`: of M_tor r/J, Pa.
+    pub torsion_yield_strength_pa: Option<f64>,
+    /// `bending_yield_strength`: of M_ben r/I, Pa.
+    pub bending_yield_strength_pa: Option<f64>,
+    /// `hardening_ratio`: stiffness beyond yield over elastic stiffness, in [0, 1).
+    pub hardening_ratio: f64,
 }
 
 /// The quantity whose rate strengthens bonds.
@@ -169,13 +214,14 @@ pub(super) static BOND: Schema = Schema {
     keys: &[
         Key::new(
             "model",
-            Kind::Word(|| words_of(&models(None, 0.0))),
-            "Model of the bond: a beam, or `pin`, which resists neither torsion nor bending.",
+            Kind::Word(|| words_of(&models(None, 0.0, JointElements::default()))),
+            "Model of the bond: a beam; `pin`, which resists neither torsion nor bending; or `flat-joint`, whose section consists \
+             of elements that fail one by one.",
         )
         .or_word("timoshenko"),
         Key::number(
             "stiffness_ratio",
-            "Normal over shear stiffness of the models `parallel`, `pin` and `rojek`.",
+            "Normal over shear stiffness of the models `parallel`, `pin`, `rojek` and `flat-joint`.",
         )
         .positive()
         .otherwise("2 (1 + nu)"),
@@ -185,6 +231,24 @@ pub(super) static BOND: Schema = Schema {
         )
         .positive()
         .or(0.9),
+        Key::new(
+            "radial_elements",
+            Kind::Whole { least: 1, most: Some(100), of: "" },
+            "Rings of elements in the section, for the model `flat-joint`.",
+        )
+        .or(3.0),
+        Key::new(
+            "circumferential_elements",
+            Kind::Whole { least: 3, most: Some(100), of: "" },
+            "Elements of each ring, for the model `flat-joint`.",
+        )
+        .or(12.0),
+        Key::number(
+            "joint_friction",
+            "Friction coefficient of failed elements under pressure, for the model `flat-joint` with `failure`.",
+        )
+        .not_negative()
+        .or(0.0),
         Key::word::<Formulation>(
             "formulation",
             "total",
@@ -207,6 +271,46 @@ pub(super) static BOND: Schema = Schema {
             &FAILURE,
             "Failure criteria; without them no bond breaks.",
         ),
+        Key::table(
+            "plasticity",
+            &PLASTICITY,
+            "Yield strengths; without them bonds are elastic until they break.",
+        ),
+    ],
+};
+
+pub(super) static PLASTICITY: Schema = Schema {
+    title: "Plasticity",
+    doc: "Yield strengths of a bond, each for one mode, which is elastic up to it and then flows. At least one is required; modes \
+          without one stay elastic.",
+    keys: &[
+        Key::quantity(
+            "normal_yield_strength",
+            &STRESS,
+            "Axial stress, of tension and of compression, at which the bond yields.",
+        )
+        .positive(),
+        Key::quantity("shear_yield_strength", &STRESS, "Stress of the shear force at which it yields.").positive(),
+        Key::quantity(
+            "torsion_yield_strength",
+            &STRESS,
+            "Stress of torsion, at the edge, at which it yields.",
+        )
+        .positive(),
+        Key::quantity(
+            "bending_yield_strength",
+            &STRESS,
+            "Stress of bending, at the edge, at which it yields; for the fully plastic moment of a solid section write 1.698 \
+             times the yield strength of the material.",
+        )
+        .positive(),
+        Key::number(
+            "hardening_ratio",
+            "Stiffness beyond yield over elastic stiffness (linear kinematic hardening); 0: perfectly plastic.",
+        )
+        .within(Included(0.0), Excluded(1.0))
+        .remedy("write 0 for none")
+        .or(0.0),
     ],
 };
 
@@ -358,7 +462,14 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
         failure: table
             .read_by("failure", |field| failure(&field))?
             .unwrap_or_default(),
+        plasticity: table.read_by("plasticity", |field| plasticity(&field))?,
     };
+    if let Some(field) = table.get("plasticity") {
+        check_plasticity(&field, &kind)?;
+    }
+    if let BondModel::FlatJoint { .. } = kind.model {
+        check_flat_joint(&table, &kind)?;
+    }
     if let (Some(field), Formulation::Incremental) = (table.get("formulation"), kind.formulation)
         && kind.failure.fracture_energy_j_m2.is_some()
     {
@@ -372,7 +483,11 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
 }
 
 /// The models and their names.
-fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel); 7] {
+fn models(
+    stiffness_ratio: Option<f64>,
+    alpha: f64,
+    elements: JointElements,
+) -> [(&'static str, BondModel); 8] {
     [
         ("parallel", BondModel::Parallel { stiffness_ratio }),
         ("pin", BondModel::Pin { stiffness_ratio }),
@@ -381,6 +496,13 @@ fn models(stiffness_ratio: Option<f64>, alpha: f64) -> [(&'static str, BondModel
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
         ("shear-coefficient", BondModel::ShearCoefficient { alpha }),
+        (
+            "flat-joint",
+            BondModel::FlatJoint {
+                stiffness_ratio,
+                elements,
+            },
+        ),
     ]
 }
 
@@ -388,19 +510,31 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
     let known = models(
         table.read("stiffness_ratio")?,
         table.read("shear_coefficient")?,
+        JointElements {
+            radial: table.read("radial_elements")?,
+            circumferential: table.read("circumferential_elements")?,
+            friction: table.read("joint_friction")?,
+        },
     );
     let model = table
         .read_by("model", |field| field.choice(&known))?
         .unwrap_or(BondModel::Timoshenko);
+    let is_flat_joint = matches!(model, BondModel::FlatJoint { .. });
     for (key, of, belongs) in [
         (
             "stiffness_ratio",
             "parallel",
             matches!(
                 model,
-                BondModel::Parallel { .. } | BondModel::Pin { .. } | BondModel::Rojek { .. }
+                BondModel::Parallel { .. }
+                    | BondModel::Pin { .. }
+                    | BondModel::Rojek { .. }
+                    | BondModel::FlatJoint { .. }
             ),
         ),
+        ("radial_elements", "flat-joint", is_flat_joint),
+        ("circumferential_elements", "flat-joint", is_flat_joint),
+        ("joint_friction", "flat-joint", is_flat_joint),
         (
             "shear_coefficient",
             "shear-coefficient",
@@ -441,6 +575,108 @@ fn damping(table: &Table<'_>) -> Result<BondDamping> {
         return Err(field.refuse(problem, "add damping_ratio = 0.1, or remove per_mode"));
     }
     Ok(damping)
+}
+
+fn plasticity(field: &Field<'_>) -> Result<BondPlasticity> {
+    let table = Table::of(field, &PLASTICITY)?;
+    let plasticity = BondPlasticity {
+        normal_yield_strength_pa: table.read("normal_yield_strength")?,
+        shear_yield_strength_pa: table.read("shear_yield_strength")?,
+        torsion_yield_strength_pa: table.read("torsion_yield_strength")?,
+        bending_yield_strength_pa: table.read("bending_yield_strength")?,
+        hardening_ratio: table.read("hardening_ratio")?,
+    };
+    let none = BondPlasticity {
+        hardening_ratio: plasticity.hardening_ratio,
+        ..BondPlasticity::default()
+    };
+    if plasticity == none {
+        let problem = format!("{} has no strength at which a bond yields", field.path);
+        let remedy = "add normal_yield_strength, shear_yield_strength, torsion_yield_strength or bending_yield_strength, such as normal_yield_strength = \"1 MPa\"";
+        return Err(field.refuse(problem, remedy));
+    }
+    Ok(plasticity)
+}
+
+/// Whether the bonds that are to yield have a formulation, moments and a failure with which they
+/// can.
+fn check_plasticity(field: &Field<'_>, kind: &BondKind) -> Result<()> {
+    let has_moments = !matches!(kind.model, BondModel::Pin { .. });
+    let of_moments = kind.plasticity.is_some_and(|p| {
+        p.torsion_yield_strength_pa.is_some() || p.bending_yield_strength_pa.is_some()
+    });
+    let (problem, remedy) = if kind.formulation == Formulation::Incremental {
+        (
+            "does not go with formulation = \"incremental\"",
+            "write formulation = \"total\", or remove plasticity",
+        )
+    } else if kind.failure.fracture_energy_j_m2.is_some() {
+        (
+            "does not go with failure.fracture_energy: a bond softens or flows",
+            "remove fracture_energy or plasticity",
+        )
+    } else if of_moments && !has_moments {
+        (
+            "has a strength of a moment, and the model \"pin\" has no moments",
+            "remove torsion_yield_strength and bending_yield_strength, or take another model",
+        )
+    } else {
+        return Ok(());
+    };
+    Err(field.refuse(format!("{} {problem}", field.path), remedy))
+}
+
+/// Whether a flat joint has none of the keys that act on a section as a whole, and friction only
+/// with elements that can fail.
+fn check_flat_joint(table: &Table<'_>, kind: &BondKind) -> Result<()> {
+    let failure = &kind.failure;
+    let unknown = [
+        ("shear_strength", failure.shear_strength_pa.is_some()),
+        (
+            "compressive_strength",
+            failure.compressive_strength_pa.is_some(),
+        ),
+        (
+            "von_mises_strength",
+            failure.von_mises_strength_pa.is_some(),
+        ),
+        (
+            "rate_strengthening",
+            failure.rate_strengthening_from_1_s.is_some(),
+        ),
+        ("fracture_energy", failure.fracture_energy_j_m2.is_some()),
+    ];
+    let unknown = unknown.into_iter().find(|(_, is_given)| *is_given);
+    if let (Some(field), Some((name, _))) = (table.get("failure"), unknown) {
+        let problem = format!(
+            "{}.{name} does not apply to the elements of a flat joint",
+            field.path
+        );
+        let remedy =
+            "write tensile_strength, or cohesion with friction_angle (0 for a shear strength)";
+        return Err(field.refuse(problem, remedy));
+    }
+    let of_whole = if kind.formulation == Formulation::Incremental {
+        ("formulation", "", "write formulation = \"total\"")
+    } else if kind.damping.structural_damping > 0.0 {
+        ("damping", ".structural_damping", "use damping_ratio")
+    } else {
+        ("plasticity", "", "remove it")
+    };
+    let (key, part, remedy) = of_whole;
+    if let Some(field) = table.get(key) {
+        let problem = format!(
+            "{}{part} does not go with the model \"flat-joint\"",
+            field.path
+        );
+        return Err(field.refuse(problem, format!("{remedy}, or take another model")));
+    }
+    if let (Some(field), None) = (table.get("joint_friction"), table.get("failure")) {
+        let problem = format!("{} has no effect without failure", field.path);
+        let remedy = "add failure = { tensile_strength = \"1 MPa\" }, or remove joint_friction";
+        return Err(field.refuse(problem, remedy));
+    }
+    Ok(())
 }
 
 fn failure(field: &Field<'_>) -> Result<BondFailure> {
@@ -591,7 +827,7 @@ fn rate_strengthening(table: &Table<'_>) -> Result<Option<f64>> {
 }
 
 pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
-    let known = models(None, 0.0);
+    let known = models(None, 0.0, JointElements::default());
     let same =
         |other: &BondModel| std::mem::discriminant(other) == std::mem::discriminant(&kind.model);
     let name = known.iter().find(|(_, other)| same(other));
@@ -599,12 +835,20 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
     match kind.model {
         BondModel::Parallel { stiffness_ratio }
         | BondModel::Pin { stiffness_ratio }
-        | BondModel::Rojek { stiffness_ratio } => {
+        | BondModel::Rojek { stiffness_ratio }
+        | BondModel::FlatJoint {
+            stiffness_ratio, ..
+        } => {
             let stiffness_ratio = stiffness_ratio.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
             listing.value("stiffness_ratio", &stiffness_ratio);
         }
         BondModel::ShearCoefficient { alpha } => listing.value("shear_coefficient", &alpha),
         BondModel::EulerBernoulli | BondModel::Timoshenko | BondModel::ElasticSolid => {}
+    }
+    if let BondModel::FlatJoint { elements, .. } = &kind.model {
+        listing.value("radial_elements", &elements.radial);
+        listing.value("circumferential_elements", &elements.circumferential);
+        listing.value("joint_friction", &elements.friction);
     }
     listing.value("formulation", &kind.formulation);
     listing.value("young_modulus", &kind.young_modulus_pa);
@@ -625,4 +869,22 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
         listing.value("weibull_modulus", &failure.weibull_modulus);
         listing.value("strain_rate_measure", &failure.strain_rate_measure);
     });
+    if let Some(plasticity) = &kind.plasticity {
+        listing.table("plasticity", &PLASTICITY, |listing| {
+            listing.value(
+                "normal_yield_strength",
+                &plasticity.normal_yield_strength_pa,
+            );
+            listing.value("shear_yield_strength", &plasticity.shear_yield_strength_pa);
+            listing.value(
+                "torsion_yield_strength",
+                &plasticity.torsion_yield_strength_pa,
+            );
+            listing.value(
+                "bending_yield_strength",
+                &plasticity.bending_yield_strength_pa,
+            );
+            listing.value("hardening_ratio", &plasticity.hardening_ratio);
+        });
+    }
 }

@@ -63,7 +63,8 @@ pub use as_run::{piped_bodies, scene_as_run};
 pub use bodies::read_bodies;
 pub use body::{BodyEntry, BodySource, PositionOf, WholeMass};
 pub use bond::{
-    BondDamping, BondFailure, BondKind, BondModel, EquivalentStress, Formulation, StrainRateMeasure,
+    BondDamping, BondFailure, BondKind, BondModel, BondPlasticity, EquivalentStress, Formulation,
+    JointElements, StrainRateMeasure,
 };
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;

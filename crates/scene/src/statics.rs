@@ -61,6 +61,24 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
             return Err(field.refuse(problem, remedy));
         }
     }
+    for (_, bond) in root.named("bonds")? {
+        if let Some(field) = Table::any(&bond)?.get("plasticity") {
+            let problem = format!(
+                "{} needs the way to a load, and run.integrator = \"static\" goes straight to its equilibrium",
+                field.path
+            );
+            let remedy = "remove it, or write run.integrator = \"leapfrog\"";
+            return Err(field.refuse(problem, remedy));
+        }
+    }
+    if let Some(field) = written(root, "bonds", "model", "flat-joint")? {
+        let problem = format!(
+            "{} is \"flat-joint\": elements fail on the way to a load, and run.integrator = \"static\" goes straight to its equilibrium",
+            field.path
+        );
+        let remedy = "take another model, or write run.integrator = \"leapfrog\"";
+        return Err(field.refuse(problem, remedy));
+    }
     if let Some(field) = written(root, "bodies", "start_as", "clump")? {
         let problem = format!(
             "{} is \"clump\", and run.integrator = \"static\" has nothing to do for a rigid body",

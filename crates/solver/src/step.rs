@@ -14,6 +14,7 @@ use crate::stages::contacts::{
 use crate::stages::damage::press_damaged_bonds;
 use crate::stages::damping::{BOND_DAMPING, compute_bond_damping};
 use crate::stages::daughters::replace_by_daughters;
+use crate::stages::flat_joints::{FLAT_JOINTS, compute_flat_joints};
 use crate::stages::flow::{FLOW, apply_inlets_and_outlets, count_bond_steps};
 use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
 use crate::stages::intake::{DAUGHTERS, take_in_energy};
@@ -27,6 +28,7 @@ use crate::stages::motion::{
     kick_particles,
 };
 use crate::stages::pieces::{CLUSTERS, find_pieces};
+use crate::stages::plasticity::{PLASTICITY, compute_plastic_bonds};
 use crate::stages::replacement::{REPLACEMENT, replace_clumps};
 use crate::stages::restoring::restore_clumps;
 use crate::stages::rigid_parts::{
@@ -53,6 +55,8 @@ const INTERACT: &[Part] = &[
     (&MOTION, clear_wrenches),
     (&BONDS, compute_bonds),
     (&HISTORIES, compute_incremental_bonds),
+    (&PLASTICITY, compute_plastic_bonds),
+    (&FLAT_JOINTS, compute_flat_joints),
     (&DAMAGE, press_damaged_bonds),
     (&CONTACTS, compute_contacts),
     (&RELAXATION, count_relaxing),

@@ -2,9 +2,11 @@
 
 mod damping;
 mod failure;
+mod flat_joint;
 mod incremental;
 mod lanes;
 mod pair;
+mod plasticity;
 mod scatter;
 mod stiffness;
 mod strain_rate;

@@ -24,6 +24,8 @@ pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
             damped: false,
             structural_damping: 0.0,
             fracture_energy_j_m2: None,
+            plasticity: None,
+            flat_joint: None,
             criteria: None,
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

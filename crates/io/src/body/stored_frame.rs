@@ -26,6 +26,10 @@ pub const BOND_LENGTH: &str = "initial_length_m";
 pub const BROKEN: &str = "broken";
 /// Bond array: damage, from 0 (intact) to 1 (broken).
 pub const DAMAGE: &str = "damage";
+/// Bond array: failed part of the area of a flat joint.
+pub const FAILED: &str = "failed_fraction";
+/// Bond array: 1 for a bond that has hardened by plastic flow, else 0.
+pub const HARDENED: &str = "hardened";
 /// Field: names of the bodies of the scene.
 pub const BODY_NAMES: &str = "body_names";
 /// Field: simulated time, s.
@@ -60,6 +64,10 @@ pub struct StoredFrame {
     pub broken: Vec<bool>,
     /// Damage of each bond, or none: no bond can be damaged.
     pub damages: Vec<f64>,
+    /// For each bond, true if it has hardened by plastic flow. Empty: no bond hardens.
+    pub hardened: Vec<bool>,
+    /// For each bond, failed part of its area. Empty: no bond is a flat joint.
+    pub failed: Vec<f64>,
 }
 
 /// A fragment of a frame.
@@ -110,7 +118,7 @@ impl StoredFrame {
     /// the particles, unless they differ.
     ///
     /// # Errors
-    /// There is no such fragment; the frame contains no valid body of it.
+    /// There is no such fragment; a bond of it has hardened or failed in part; the frame contains no valid body of it.
     pub fn body(&self, id: u32) -> Result<Body> {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)
@@ -127,6 +135,30 @@ impl StoredFrame {
             !self.broken[*bond] && ends == [id; 2]
         };
         let bonds: Vec<usize> = (0..self.bonds.len()).filter(is_whole).collect();
+        let is_hardened = |bond: &&usize| self.hardened.get(**bond) == Some(&true);
+        let hardened = bonds.iter().filter(is_hardened).count();
+        if hardened > 0 {
+            return Err(Diagnostic::input(
+                format!("fragment {id}"),
+                format!(
+                    "{hardened} of its {} bonds have hardened, which a body does not hold",
+                    bonds.len()
+                ),
+                "run the scene on with --resume, or with hardening_ratio = 0, which leaves nothing to hold",
+            ));
+        }
+        let is_partly_failed = |bond: &&usize| self.failed.get(**bond).is_some_and(|f| *f > 0.0);
+        let failed = bonds.iter().filter(is_partly_failed).count();
+        if failed > 0 {
+            return Err(Diagnostic::input(
+                format!("fragment {id}"),
+                format!(
+                    "{failed} of its {} bonds have failed elements, which a body does not hold",
+                    bonds.len()
+                ),
+                "run the scene on with --resume, or take another model of bonds",
+            ));
+        }
         let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);
         let density = self.densities_kg_m3[first];
         let is_same = |i: &usize| (self.densities_kg_m3[*i] / density - 1.0).abs() <= SAME_DENSITY;

@@ -31,6 +31,8 @@ fn stored() -> StoredFrame {
         bond_lengths: vec![1.9e-3, 2e-3, 2e-3, 2.1e-3],
         broken: vec![false, true, false, false],
         damages: Vec::new(),
+        hardened: Vec::new(),
+        failed: Vec::new(),
     }
 }
 
@@ -47,6 +49,8 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     let bond_radius = |bond: usize| frame.bond_radii[bond];
     let bond_length = |bond: usize| frame.bond_lengths[bond];
     let damage = |bond: usize| frame.damages[bond];
+    let failed = |bond: usize| frame.failed[bond];
+    let hardened = |bond: usize| u32::from(frame.hardened[bond]);
     let mut of_particles = vec![
         array("radius_m", Values::Scalars(&radius)),
         array("velocity_m_s", Values::Vectors(&velocity)),
@@ -60,6 +64,12 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     ];
     if !frame.damages.is_empty() {
         of_bonds.push(array("damage", Values::Scalars(&damage)));
+    }
+    if !frame.failed.is_empty() {
+        of_bonds.push(array("failed_fraction", Values::Scalars(&failed)));
+    }
+    if !frame.hardened.is_empty() {
+        of_bonds.push(array("hardened", Values::Counts(&hardened)));
     }
     of_particles.retain(|array| array.name != without);
     of_bonds.retain(|array| array.name != without);
@@ -132,6 +142,42 @@ fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
             assert_eq!(read.bond_radii, body.bond_radii, "{name}");
         }
     }
+}
+
+#[test]
+fn a_fragment_whose_bonds_have_hardened_is_no_body() {
+    let hardened = StoredFrame {
+        hardened: vec![true, true, false, false],
+        ..stored()
+    };
+    let (_folder, path) = written(&hardened, "");
+    let frame = read_frame(&path).unwrap();
+    assert_eq!(frame, hardened);
+    let error = frame.body(7).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert_eq!(
+        error.to_string(),
+        "fragment 7: 1 of its 1 bonds have hardened, which a body does not hold; run the scene on with --resume, or with hardening_ratio = 0, which leaves nothing to hold"
+    );
+    assert_eq!(frame.body(3).unwrap(), stored().body(3).unwrap());
+}
+
+#[test]
+fn a_fragment_whose_bonds_have_failed_elements_is_no_body() {
+    let failed = StoredFrame {
+        failed: vec![0.25, 1.0, 0.0, 0.0],
+        ..stored()
+    };
+    let (_folder, path) = written(&failed, "");
+    let frame = read_frame(&path).unwrap();
+    assert_eq!(frame, failed);
+    let error = frame.body(7).unwrap_err();
+    assert_eq!(error.exit_code(), 2);
+    assert_eq!(
+        error.to_string(),
+        "fragment 7: 1 of its 1 bonds have failed elements, which a body does not hold; run the scene on with --resume, or take another model of bonds"
+    );
+    assert_eq!(frame.body(3).unwrap(), stored().body(3).unwrap());
 }
 
 #[test]
@@ -241,6 +287,8 @@ proptest! {
             bond_lengths: (0..bonds.len()).map(|bond| 1.0 + 0.001 * bond as f64).collect(),
             broken: (0..bonds.len()).map(|bond| !whole[bond]).collect(),
             damages: Vec::new(),
+            hardened: Vec::new(),
+            failed: Vec::new(),
             bonds,
             clusters,
         };

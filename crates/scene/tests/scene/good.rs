@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use dem_io::units::DIMENSIONS;
 use dem_scene::{
-    BodySource, BondDamping, BondFailure, BondModel, Clusters, ColourBy, Contact, ContactLaw,
-    EquivalentStress, Factor, Formulation, Hold, InitialOverlap, Integrator, Pick, Quantity,
-    Relaxation, Rolling, Scene, Search, Statistic, StrainRateMeasure, Wall, WallMotion, WallShape,
+    BodySource, BondDamping, BondFailure, BondModel, BondPlasticity, Clusters, ColourBy, Contact,
+    ContactLaw, EquivalentStress, Factor, Formulation, Hold, InitialOverlap, Integrator,
+    JointElements, Pick, Quantity, Relaxation, Rolling, Scene, Search, Statistic,
+    StrainRateMeasure, Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -333,6 +334,17 @@ fn bonds() {
         scene.bonds["pinned"].model,
         BondModel::Pin { stiffness_ratio }
     );
+    assert_eq!(
+        scene.bonds["joined"].model,
+        BondModel::FlatJoint {
+            stiffness_ratio: None,
+            elements: JointElements {
+                radial: 2,
+                circumferential: 8,
+                friction: 0.4,
+            },
+        }
+    );
     let sheared = &scene.bonds["sheared"];
     assert_eq!(sheared.model, BondModel::ShearCoefficient { alpha: 0.85 });
     assert_eq!(sheared.formulation, Formulation::Total);
@@ -340,6 +352,17 @@ fn bonds() {
     assert_eq!(sheared.damping, BondDamping::default());
     assert_eq!(sheared.failure.rate_strengthening_from_1_s, Some(4.64e-6));
     assert_eq!(sheared.failure.compressive_strength_pa, None);
+    assert_eq!(
+        sheared.plasticity,
+        Some(BondPlasticity {
+            normal_yield_strength_pa: Some(0.1e6),
+            shear_yield_strength_pa: Some(60e3),
+            torsion_yield_strength_pa: Some(70e3),
+            bending_yield_strength_pa: Some(0.17e6),
+            hardening_ratio: 0.05,
+        })
+    );
+    assert_eq!(parallel.plasticity, None);
 }
 
 #[test]

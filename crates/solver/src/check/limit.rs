@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
 use crate::stages::bonds::{bond_wrenches, damping_wrenches};
+use crate::stages::plasticity::add_elasto_plastic_wrenches;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
@@ -536,17 +537,23 @@ pub(super) fn add_stiffness_times(
     }
 }
 
-/// Forces of all bonds at these poses by the total formulation, without looking for failing ones.
+/// Forces of all bonds at these poses by the total formulation, without plastic flow and without
+/// looking for failing ones.
 fn bonds_as_total(state: &mut State, poses: &[Pose]) {
     let as_total = |rule: &BondRule| BondRule {
         incremental: false,
+        flat_joint: None,
         criteria: None,
         ..*rule
     };
     let as_total = state.bonds.rules.iter().map(as_total).collect();
     let rules = std::mem::replace(&mut state.bonds.rules, as_total);
     let wrenches = &mut state.particles.wrenches;
-    bond_wrenches(&state.bonds, poses, &mut state.scratch.partitions, wrenches);
+    let partitions = &mut state.scratch.partitions;
+    bond_wrenches(&state.bonds, poses, partitions, wrenches);
+    if !state.bonds.plastics.is_empty() {
+        add_elasto_plastic_wrenches(&state.bonds, poses, partitions, wrenches);
+    }
     state.bonds.rules = rules;
 }
 

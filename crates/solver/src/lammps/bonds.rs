@@ -208,6 +208,20 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
             "use damping_ratio, or run the scene with dem-run",
         );
     }
+    if rule.flat_joint.is_some() {
+        return refuse(
+            "model",
+            "bonds of bpm/rotational break as a whole",
+            "use another model, such as \"timoshenko\"",
+        );
+    }
+    if rule.plasticity.is_some() {
+        return refuse(
+            "plasticity",
+            "bonds of bpm/rotational are elastic until they break",
+            "leave it out, or run the scene with dem-run",
+        );
+    }
     if rule.fracture_energy_j_m2.is_some() {
         return refuse(
             "fracture_energy",

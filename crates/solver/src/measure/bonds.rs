@@ -78,6 +78,9 @@ pub(crate) fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f6
 /// The same with this factor on the strengths that rise with the strain rate.
 fn utilisation_at(state: &State, at: usize, load: &BondLoad, rate: f64) -> f64 {
     let bonds = &state.bonds;
+    if bonds.rules[bonds.rule_of(at)].flat_joint.is_some() && !bonds.is_broken(at) {
+        return bonds.element_utilisation(at, &state.particles.poses);
+    }
     match &bonds.rules[bonds.rule_of(at)].criteria {
         Some(criteria) if !bonds.is_broken(at) => {
             let now = stresses(load, bonds.radius_m(at));

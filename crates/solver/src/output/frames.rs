@@ -2,8 +2,8 @@
 
 use dem_io::Result;
 use dem_io::body::stored_frame::{
-    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FRAGMENT_ID, PARTICLE_ID, RADIUS,
-    VELOCITY,
+    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FAILED, FRAGMENT_ID, HARDENED,
+    PARTICLE_ID, RADIUS, VELOCITY,
 };
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
@@ -143,7 +143,7 @@ impl FrameOrder {
             stresses.shear_pa + stresses.torsion_pa
         };
         let bond_radius = |i: usize| bonds.radius_m(bond(i));
-        let initial_length = |i: usize| bonds.initial_length_m(bond(i));
+        let length = |i: usize| bonds.stress_free_length_m(bond(i));
         let normal_force = |i: usize| loads[i].normal_n;
         let shear_force = |i: usize| loads[i].shear_n;
         let torsion = |i: usize| loads[i].torsion_n_m;
@@ -175,13 +175,28 @@ impl FrameOrder {
         if !bonds.damages.is_empty() {
             bond_arrays.push(scalars(DAMAGE, &damage));
         }
+        let plastic_work = |i: usize| bonds.plastics[bond(i)].work_j;
+        if !bonds.plastics.is_empty() {
+            bond_arrays.push(scalars("plastic_work_j", &plastic_work));
+        }
+        let failed = |i: usize| match bonds.is_broken(bond(i)) {
+            true => 1.0,
+            false => bonds.failed_fraction(bond(i)),
+        };
+        if !bonds.joints.is_empty() {
+            bond_arrays.push(scalars(FAILED, &failed));
+        }
+        let hardened = |i: usize| u32::from(bonds.has_hardened(bond(i)));
+        if bonds.can_harden() {
+            bond_arrays.push(counts(HARDENED, &hardened));
+        }
         if strengthen {
             bond_arrays.push(scalars("strain_rate_1_s", &strain_rate));
             bond_arrays.push(scalars("dynamic_increase_factor", &increase_factor));
             bond_arrays.push(scalars("dynamic_utilisation", &dynamic_utilisation));
         }
         if state.clusters.is_some() {
-            bond_arrays.push(scalars(BOND_LENGTH, &initial_length));
+            bond_arrays.push(scalars(BOND_LENGTH, &length));
         }
         let poses = &state.particles.poses;
         let body_names: Vec<&str> = state.model.bodies.iter().map(|b| b.name.as_str()).collect();

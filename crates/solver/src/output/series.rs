@@ -6,7 +6,7 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 
 /// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 14] = [
+pub(super) const ENERGIES: [&str; 15] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
@@ -20,6 +20,7 @@ pub(super) const ENERGIES: [&str; 14] = [
     "bond_breakage_j",
     "bond_damage_j",
     "particle_breakage_j",
+    "bond_plastic_j",
     "flow_energy_j",
 ];
 /// Names of the columns after those.
@@ -82,6 +83,7 @@ pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64
         balance.bond_breakage_j,
         balance.bond_damage_j,
         balance.particle_breakage_j,
+        balance.bond_plastic_j,
         balance.flow_energy_j,
         balance.energy_error,
         balance.momentum_error,

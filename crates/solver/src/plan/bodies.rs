@@ -11,7 +11,7 @@ use dem_io::units::significant;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{
     BodyEntry, BodySource, BondDamping, BondKind, BondModel as SceneModel, ClumpMass,
-    ClumpSettings, Formulation, Replacement, Scene, StartAs, WholeMass,
+    ClumpSettings, Formulation, JointElements, Replacement, Scene, StartAs, WholeMass,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -19,8 +19,10 @@ use crate::physics::bond::damage::Damage;
 use crate::physics::bond::damping::{DampingCoefficients, DampingModel, reduced};
 use crate::physics::bond::damping_models::{Chen, ChenByMode, ModeRatios, Platzer};
 use crate::physics::bond::failure::{Criteria, EquivalentStress, has_strength};
+use crate::physics::bond::flat_joint::{FlatJoint, FlatJointLaw, elements, moment_ratio};
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::pair::frequencies;
+use crate::physics::bond::plasticity::{PlasticDeformation, Plasticity};
 use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
@@ -299,6 +301,7 @@ fn place_bonds(
     sorted.sort_unstable();
     bonds.reserve_exact(body.bonds.len());
     placed.bonds.reserve_exact(body.bonds.len());
+    let first = bonds.len();
     let damped = bonds.rules.iter().any(|rule| rule.damped);
     let incremental = bonds.rules.iter().any(|rule| rule.incremental);
     let softens = |rule: &BondRule| rule.fracture_energy_j_m2.is_some();
@@ -370,7 +373,25 @@ fn place_bonds(
     if incremental {
         bonds.histories.resize(bonds.len(), History::default());
     }
+    add_joints(bonds, first, rule);
+    if bonds.rules.iter().any(|rule| rule.plasticity.is_some()) {
+        bonds.plastics.resize(bonds.len(), PlasticDeformation::NONE);
+    }
     Ok(())
+}
+
+/// Adds the elements of the bonds from `first` on, which follow this rule, if there are flat joints.
+fn add_joints(bonds: &mut Bonds, first: usize, rule: usize) {
+    if bonds.rules.iter().all(|rule| rule.flat_joint.is_none()) {
+        return;
+    }
+    bonds.joints.resize(bonds.len(), FlatJoint::default());
+    if let Some(law) = bonds.rules[rule].flat_joint {
+        for at in first..bonds.len() {
+            let elements = elements(&law, bonds.radius_m(at), &bonds.direction(at));
+            bonds.joints[at].elements = elements;
+        }
+    }
 }
 
 /// Whether the last bond, with this number in its file, stores less than its fracture energy when
@@ -450,6 +471,21 @@ fn model(model: SceneModel) -> BondModel {
         SceneModel::Timoshenko => BondModel::Timoshenko,
         SceneModel::ElasticSolid => BondModel::ElasticSolid,
         SceneModel::ShearCoefficient { alpha } => BondModel::ShearCoefficient { alpha },
+        SceneModel::FlatJoint {
+            stiffness_ratio: kappa,
+            elements,
+        } => BondModel::FlatJoint {
+            kappa,
+            moment_ratio: moment_ratio(&joint_law(elements)),
+        },
+    }
+}
+
+fn joint_law(elements: JointElements) -> FlatJointLaw {
+    FlatJointLaw {
+        radial_elements: elements.radial,
+        circumferential_elements: elements.circumferential,
+        friction: elements.friction,
     }
 }
 
@@ -475,6 +511,20 @@ fn rule(kind: &BondKind) -> BondRule {
         damped: kind.damping != undamped,
         structural_damping: kind.damping.structural_damping,
         fracture_energy_j_m2: failure.fracture_energy_j_m2,
+        flat_joint: match kind.model {
+            SceneModel::FlatJoint { elements, .. } => Some(joint_law(elements)),
+            _ => None,
+        },
+        plasticity: kind.plasticity.map(|plasticity| Plasticity {
+            yield_strengths_pa: [
+                plasticity.normal_yield_strength_pa,
+                plasticity.shear_yield_strength_pa,
+                plasticity.torsion_yield_strength_pa,
+                plasticity.bending_yield_strength_pa,
+            ]
+            .map(strength_pa),
+            hardening_ratio: plasticity.hardening_ratio,
+        }),
         criteria: has_strength(&criteria).then_some(criteria),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,

@@ -158,6 +158,7 @@ impl Run<'_> {
             largest_overlap: progress.seen.overlap.largest,
             broken_by_cause: state.broken_by_cause,
             damaged_bonds: state.bonds.count_damaged(),
+            yielded_bonds: state.bonds.count_yielded(),
             sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
             fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
             population: PopulationSummary::of(state),

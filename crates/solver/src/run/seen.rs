@@ -186,7 +186,7 @@ impl Seen {
         let Some((strain, at)) = most_strained(&state.bonds, &state.particles.poses) else {
             return 0.0;
         };
-        if !state.bonds.was_damaged(at) {
+        if !state.bonds.was_damaged(at) && !state.bonds.has_yielded(at) {
             self.note_strain(strain, at, state, bodies);
         }
         strain

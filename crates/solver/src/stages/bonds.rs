@@ -240,7 +240,7 @@ pub(crate) fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, 
     (0..bonds.len())
         .into_par_iter()
         .with_min_len(CHUNK)
-        .filter(|&at| bonds.damage(at) == 0.0)
+        .filter(|&at| !bonds.is_broken(at) && !bonds.was_damaged(at))
         .map(|at| (edge_strain(bonds, at, poses), at))
         .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }
@@ -306,7 +306,7 @@ impl PartitionWork<'_> {
         let batches = std::mem::take(&mut self.partition.batches);
         for batch in &batches {
             let rule = &self.bonds.rules[batch.rule];
-            let total = self.elastic && !rule.incremental;
+            let total = self.elastic && !rule.is_single();
             let damped = rule.damped && self.damping.is_some();
             let frictional = rule
                 .criteria

@@ -108,7 +108,7 @@ pub(crate) fn break_failed_bonds(state: &mut State) -> usize {
         .map(|partition| partition.computed.compared)
         .sum();
     let scratch = &mut state.scratch;
-    // A partition lists its bonds of the total formulation before those of the incremental one.
+    // A partition lists its bonds of the total formulation before those with a history.
     let listed = scratch.partitions.iter().flat_map(|s| &s.failing);
     let mut failing: Vec<u32> = listed.chain(&scratch.crushed).copied().collect();
     failing.sort_unstable();
@@ -246,6 +246,12 @@ fn loss(bonds: &Bonds, at: usize, particles: &Particles, drift_s: f64) -> Option
         released_j: forces.energy.total(),
         spent_j: 0.0,
     };
+    if let Some(joint) = bonds.joints.get(at).filter(|_| rule.flat_joint.is_some()) {
+        return joint
+            .last_failure
+            .filter(|_| joint.has_failed())
+            .map(at_once);
+    }
     if rule.fracture_energy_j_m2.is_some() {
         if is_crushed(bonds, at, &particles.poses) {
             return Some(at_once(Cause::Compression));

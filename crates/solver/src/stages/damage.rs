@@ -127,7 +127,7 @@ pub(super) fn softened(
 }
 
 /// An end before a drift with this motion.
-fn earlier(now: &End, motion: &Motion, drift_s: f64) -> End {
+pub(super) fn earlier(now: &End, motion: &Motion, drift_s: f64) -> End {
     let turn = -drift_s * Vector3::from(motion.spin_rad_s);
     End {
         position_m: now.position_m - drift_s * Vector3::from(motion.velocity_m_s),
@@ -136,7 +136,7 @@ fn earlier(now: &End, motion: &Motion, drift_s: f64) -> End {
 }
 
 /// Power of the forces of a bond on its ends, W.
-fn power_w(forces: &BondForces, motions: [&Motion; 2]) -> f64 {
+pub(super) fn power_w(forces: &BondForces, motions: [&Motion; 2]) -> f64 {
     let on_ends = [-forces.force_on_b, forces.force_on_b];
     let of_end = |end: usize| {
         let (v, w) = (motions[end].velocity_m_s, motions[end].spin_rad_s);

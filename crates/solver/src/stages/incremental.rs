@@ -5,13 +5,11 @@ use rayon::prelude::*;
 
 use super::bonds::any_bond;
 use super::stage::{Need, Saving, Stage};
-use crate::physics::bond::failure::{Factors, stresses, utilisation};
-use crate::physics::bond::incremental::{Step, advance, bond_forces};
-use crate::stages::blocks::for_each_partition;
+use crate::physics::bond::incremental::{Step, advance};
+use crate::stages::single_bonds::add_single_wrenches;
 use crate::state::State;
 use crate::state::bonds::Bonds;
-use crate::state::particles::{Particles, Pose, Wrench};
-use crate::state::partitions::{Batch, BondSelection, Partition};
+use crate::state::particles::Particles;
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const HISTORY_NS: f64 = 37.6;
@@ -45,19 +43,15 @@ pub(crate) fn compute_incremental_bonds(state: &mut State) -> usize {
         if before_s > 0.0 {
             advance_histories(&mut state.bonds, p, before_s);
         }
-        add_incremental_wrenches(
+        return add_single_wrenches(
             &state.bonds,
             &p.poses,
             &mut state.scratch.partitions,
             &mut p.wrenches,
+            |rule| rule.incremental,
         );
     }
-    state
-        .scratch
-        .partitions
-        .iter()
-        .map(|partition| partition.computed.incremental)
-        .sum()
+    0
 }
 
 /// Updates the histories to the present positions, after a drift of `time_step_s` with these
@@ -86,67 +80,4 @@ pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_s
             *history = advance(&known.stiffness(at), history, &step);
         });
     bonds.histories = histories;
-}
-
-/// Adds the forces of incremental bonds to the wrenches, and the bonds that have reached their
-/// strength to the partitions' lists.
-pub(crate) fn add_incremental_wrenches(
-    bonds: &Bonds,
-    poses: &[Pose],
-    partitions: &mut [Partition],
-    wrenches: &mut [Wrench],
-) {
-    for_each_partition(partitions, wrenches, &|partition, wrenches| {
-        of_partition(bonds, poses, partition, wrenches);
-    });
-}
-
-fn of_partition(bonds: &Bonds, poses: &[Pose], partition: &mut Partition, wrenches: &mut [Wrench]) {
-    let Partition {
-        particles: own,
-        batches,
-        failing,
-        computed,
-        ..
-    } = partition;
-    for Batch { rule, which } in batches.iter() {
-        let rule = &bonds.rules[*rule];
-        if !rule.incremental {
-            continue;
-        }
-        computed.incremental += which.count();
-        if let Some(criteria) = &rule.criteria {
-            computed.compared += which.count();
-            if criteria.is_frictional() {
-                computed.frictional += which.count();
-            }
-        }
-        let mut add = |at: usize| {
-            if bonds.is_broken(at) {
-                return;
-            }
-            let [a, b] = bonds.ends[at].map(|end| end as usize);
-            let apart = poses[b].place() - poses[a].place();
-            let forces = bond_forces(&bonds.stiffness(at), &bonds.histories[at], &apart);
-            if own.contains(&a) {
-                wrenches[a - own.start].add(&-forces.force_on_b, &forces.torques[0]);
-                if let Some(criteria) = &rule.criteria {
-                    let stresses = stresses(&forces.load, bonds.radius_m(at));
-                    let factors = Factors::scattered(bonds.strength_factor(at));
-                    if utilisation(criteria, &stresses, factors) >= 1.0 {
-                        failing.push(at as u32);
-                    }
-                }
-            }
-            if own.contains(&b) {
-                wrenches[b - own.start].add(&forces.force_on_b, &forces.torques[1]);
-            }
-        };
-        match which {
-            BondSelection::Own(list) | BondSelection::Border(list) => {
-                list.iter().for_each(|&at| add(at as usize))
-            }
-            BondSelection::Run(range) => range.clone().for_each(&mut add),
-        }
-    }
 }

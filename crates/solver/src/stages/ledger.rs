@@ -153,14 +153,17 @@ pub struct Balance {
     pub contact_elastic_j: f64,
     /// Dissipated by contact damping, J.
     pub contact_damping_j: f64,
-    /// Dissipated by contact friction, sliding and rolling, J.
+    /// Dissipated by friction of contacts, sliding and rolling, and of failed elements of flat
+    /// joints, J.
     pub friction_j: f64,
-    /// Released by bonds that broke, J.
+    /// Released by bonds that broke, and by elements of flat joints that failed, J.
     pub bond_breakage_j: f64,
     /// Energy that damaged bonds lost while they softened, J.
     pub bond_damage_j: f64,
     /// Energy that particles lost as daughters replaced them, J.
     pub particle_breakage_j: f64,
+    /// Plastic work of bonds, J: what hardening stores is part of it.
+    pub bond_plastic_j: f64,
     /// Energy of added bodies, minus that of removed bodies, plus the gain when clumps and clusters
     /// replaced each other, minus the kinetic energy that bodies had when they fell asleep, J.
     pub flow_energy_j: f64,
@@ -323,6 +326,7 @@ pub fn balance(state: &mut State) -> Balance {
         contact_damping += wall.damping_j;
     }
     contact_elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
+    friction += state.ledger.joint_friction_j;
     let (present, scales) = momenta(p, &state.clumps, state.ledger.about_m);
     let g = state.model.gravity_m_s2;
     let ledger = &mut state.ledger;
@@ -333,7 +337,7 @@ pub fn balance(state: &mut State) -> Balance {
         + work.particle_damping
         + contact_damping
         + friction
-        + (ledger.released_j + ledger.damaged_j)
+        + (ledger.released_j + ledger.damaged_j + ledger.plastic_j)
         + ledger.particles_broken_j;
     let stored = elastic.total() + contact_elastic;
     let given = work.loads + work.supports + wall_work + ledger.brought_j;
@@ -375,6 +379,7 @@ pub fn balance(state: &mut State) -> Balance {
         bond_breakage_j: ledger.released_j,
         bond_damage_j: ledger.damaged_j,
         particle_breakage_j: ledger.particles_broken_j,
+        bond_plastic_j: ledger.plastic_j,
         flow_energy_j: ledger.brought_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),

@@ -164,11 +164,12 @@ fn as_clump(id: u32, base: usize, (members, is_free): (&[u32], bool), state: &mu
     let (properties, [velocity, angular]) = as_rigid(members, &p.poses, &p.motions);
     let whole = Arc::clone(&state.clumps.templates[base]);
     let bonds: Vec<usize> = own_bonds(members, state);
-    let is_damaged = bonds.iter().any(|&at| state.bonds.was_damaged(at));
+    let known = &state.bonds;
+    let is_deformed = |&at: &usize| known.was_damaged(at) || known.has_yielded(at);
     let is_whole = is_free
         && members.len() == whole.spheres.len()
         && bonds.len() == whole.bonds.len()
-        && !is_damaged;
+        && !bonds.iter().any(is_deformed);
     let first_id = match members.first() {
         Some(&first) if is_whole => p.id(first as usize) - whole.file_number[0],
         _ => 0,

@@ -1,5 +1,6 @@
 //! Bonds: one entry per bond in every array; the data for the force loop are stored in blocks.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use dem_scene::StrainRateMeasure;
@@ -11,7 +12,11 @@ use serde::{Deserialize, Serialize};
 use crate::physics::bond::criteria::COUNT;
 use crate::physics::bond::damage::{Damage, opening_ratios, screened_factor};
 use crate::physics::bond::failure::Criteria;
+use crate::physics::bond::flat_joint::{
+    self, ElementStrengths, FlatJoint, FlatJointLaw, JointStiffness,
+};
 use crate::physics::bond::incremental::History;
+use crate::physics::bond::plasticity::{PlasticDeformation, Plasticity, StressFree};
 use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use crate::physics::bond::tangent::{BondTangent, bond_tangent};
@@ -35,6 +40,10 @@ pub struct BondRule {
     /// Energy per area that it takes to pull a bond apart, J/m2: beyond their strength bonds
     /// soften. None: they break at their strength.
     pub fracture_energy_j_m2: Option<f64>,
+    /// Yield strengths and hardening. None: the bonds are elastic.
+    pub plasticity: Option<Plasticity>,
+    /// Elements of flat joints. None: the bonds are of another model.
+    pub flat_joint: Option<FlatJointLaw>,
     /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
     pub strengthening_from_1_s: Option<f64>,
     /// The strain whose rate is used.
@@ -42,6 +51,17 @@ pub struct BondRule {
 }
 
 impl BondRule {
+    /// Whether plastic flow hardens bonds.
+    pub(crate) fn hardens(&self) -> bool {
+        let plasticity = self.plasticity;
+        plasticity.is_some_and(|plasticity| plasticity.hardening_ratio > 0.0)
+    }
+
+    /// Whether bonds have a history and are computed one at a time.
+    pub(crate) fn is_single(&self) -> bool {
+        self.incremental || self.plasticity.is_some() || self.flat_joint.is_some()
+    }
+
     /// Whether bonds have damping forces of any kind.
     pub fn resists(&self) -> bool {
         self.damped || self.structural_damping > 0.0
@@ -59,9 +79,11 @@ pub type Column = [f64; BLOCK];
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[repr(align(64))]
 pub struct BondBlock {
-    /// Unit vectors from the first to the second end at the start, x, y, z.
+    /// Unit vectors from the first to the second end at the start, x, y, z; of a bond that has
+    /// yielded, its stress-free direction.
     pub direction: [Column; 3],
-    /// Initial distances of the contact point from the two ends, m.
+    /// Stress-free distances of the contact point from the two ends, m: the initial ones until a
+    /// bond yields.
     pub levers_m: [Column; 2],
     /// Along the bond, N/m. A broken bond has no stiffness.
     pub normal: Column,
@@ -133,6 +155,10 @@ pub struct Bonds {
     pub damages: Vec<Damage>,
     /// The damaged bonds, in order; broken ones may be among them.
     pub damaged: Vec<u32>,
+    /// Plastic deformation of each bond. Empty: no bond yields.
+    pub plastics: Vec<PlasticDeformation>,
+    /// Elements of flat joints, none for bonds of other models. Empty: there are no flat joints.
+    pub joints: Vec<FlatJoint>,
     /// Rules of the model.
     #[serde(skip)]
     pub rules: Arc<[BondRule]>,
@@ -200,7 +226,12 @@ impl Bonds {
             self.bending_per_normal[rule] = 0.0;
         } else {
             self.torsion_per_bending[rule] = stiffness.torsion / stiffness.bending;
-            self.bending_per_normal[rule] = BENDING_OF_ROUND_BOND;
+            let of_round = stiffness.normal * radius_m * radius_m * BENDING_OF_ROUND_BOND;
+            let ratio = stiffness.bending / of_round;
+            // That of a solid section is not to depend on rounding.
+            let is_solid = (ratio - 1.0).abs() < 1e-9;
+            self.bending_per_normal[rule] =
+                BENDING_OF_ROUND_BOND * if is_solid { 1.0 } else { ratio };
         }
         let end = self.len();
         match self.rule_runs.last_mut() {
@@ -235,6 +266,19 @@ impl Bonds {
             self.histories.push(history);
         } else if !self.histories.is_empty() {
             self.histories.push(History::default());
+        }
+        if let Some(&plastic) = other.plastics.get(at) {
+            self.plastics
+                .resize(self.len() - 1, PlasticDeformation::NONE);
+            self.plastics.push(plastic);
+        } else if !self.plastics.is_empty() {
+            self.plastics.push(PlasticDeformation::NONE);
+        }
+        if let Some(joint) = other.joints.get(at) {
+            self.joints.resize(self.len() - 1, FlatJoint::default());
+            self.joints.push(joint.clone());
+        } else if !self.joints.is_empty() {
+            self.joints.push(FlatJoint::default());
         }
         if let Some(&damage) = other.damages.get(at) {
             self.damages.push(Damage {
@@ -289,9 +333,126 @@ impl Bonds {
         }
     }
 
-    /// Whether bond `at`, broken or not, softened before: its opening is no strain.
+    /// Whether bond `at`, broken or not, softened or failed in part before: its opening is no strain.
     pub(crate) fn was_damaged(&self, at: usize) -> bool {
-        self.damages.get(at).is_some_and(|known| known.damage > 0.0)
+        let softened = self.damages.get(at).is_some_and(|known| known.damage > 0.0);
+        softened || self.failed_fraction(at) > 0.0
+    }
+
+    /// Whether bond `at`, broken or not, has yielded.
+    pub(crate) fn has_yielded(&self, at: usize) -> bool {
+        let plastic = self.plastics.get(at);
+        plastic.is_some_and(|plastic| *plastic != PlasticDeformation::NONE)
+    }
+
+    /// Bytes of the elements of all flat joints.
+    pub(crate) fn joint_bytes(&self) -> usize {
+        let of_elements = self
+            .joints
+            .iter()
+            .map(|joint| size_of_val(&joint.elements[..]));
+        size_of_val(&self.joints[..]) + of_elements.sum::<usize>()
+    }
+
+    /// Failed part of the area of bond `at`, unless it is broken: 0 if it is no flat joint.
+    pub(crate) fn failed_fraction(&self, at: usize) -> f64 {
+        let joint = self.joints.get(at);
+        joint.map_or(0.0, FlatJoint::failed_fraction)
+    }
+
+    /// Stiffness per area of bond `at`.
+    pub(crate) fn joint_stiffness(&self, at: usize) -> JointStiffness {
+        let (stiffness, radius_m) = (self.stiffness(at), self.radius_m(at));
+        let per_area = 1.0 / (PI * radius_m * radius_m);
+        JointStiffness {
+            normal_pa_m: per_area * stiffness.normal,
+            shear_pa_m: per_area * stiffness.shear,
+        }
+    }
+
+    /// Strengths of the elements of flat joint `at`. None: they do not fail.
+    pub(crate) fn element_strengths(&self, at: usize) -> Option<ElementStrengths> {
+        let criteria = self.rules[self.rule_of(at)].criteria?;
+        let factor = self.strength_factor(at);
+        Some(ElementStrengths {
+            tensile_pa: factor * criteria.tensile_strength_pa,
+            cohesion_pa: factor * criteria.cohesion_pa,
+            friction_tangent: criteria.friction_tangent,
+        })
+    }
+
+    /// Largest utilisation of the bonded elements of flat joint `at`, which must not be broken.
+    pub(crate) fn element_utilisation(&self, at: usize, poses: &[Pose]) -> f64 {
+        let Some(strengths) = self.element_strengths(at) else {
+            return 0.0;
+        };
+        flat_joint::utilisation(
+            &self.joints[at].elements,
+            &self.joint_stiffness(at),
+            &strengths,
+            &self.direction(at),
+            self.initial_length_m(at),
+            &self.ends_of(at, poses),
+        )
+    }
+
+    /// Forces of flat joint `at` with these elements between these ends.
+    pub(crate) fn joint_forces(
+        &self,
+        at: usize,
+        elements: &[flat_joint::Element],
+        ends: &[End; 2],
+    ) -> BondForces {
+        let stiffness = self.joint_stiffness(at);
+        let length_m = self.initial_length_m(at);
+        flat_joint::forces(elements, &stiffness, &self.direction(at), length_m, ends)
+    }
+
+    /// Whether bond `at` has yielded and hardens.
+    pub(crate) fn has_hardened(&self, at: usize) -> bool {
+        self.has_yielded(at) && self.rules[self.rule_of(at)].hardens()
+    }
+
+    /// Whether any bond hardens once it yields.
+    pub(crate) fn can_harden(&self) -> bool {
+        self.rules.iter().any(BondRule::hardens)
+    }
+
+    /// Number of unbroken bonds that have yielded. None: no bond yields.
+    pub(crate) fn count_yielded(&self) -> Option<usize> {
+        let is_one = |at: &usize| self.has_yielded(*at) && !self.is_broken(*at);
+        let count = || (0..self.len()).filter(is_one).count();
+        (!self.plastics.is_empty()).then(count)
+    }
+
+    /// Bond `at`, whose rule has a plasticity, without load.
+    pub(crate) fn stress_free(&self, at: usize) -> StressFree {
+        StressFree {
+            levers_m: self.levers_m(at),
+            direction: self.direction(at),
+            plastic: self.plastics[at],
+        }
+    }
+
+    /// Gives bond `at`, whose rule has a plasticity, this form without load.
+    pub(crate) fn set_stress_free(&mut self, at: usize, bond: &StressFree) {
+        let (block, i) = (&mut self.blocks[at / BLOCK], at % BLOCK);
+        for axis in 0..3 {
+            block.direction[axis][i] = bond.direction[axis];
+        }
+        for end in 0..2 {
+            block.levers_m[end][i] = bond.levers_m[end];
+        }
+        self.plastics[at] = bond.plastic;
+    }
+
+    /// The ends of bond `at`: those of its particles, which plastic deformation has turned.
+    fn ends_of(&self, at: usize, poses: &[Pose]) -> [End; 2] {
+        let ends = self.ends[at].map(|end| poses[end as usize].end());
+        match self.plastics.get(at) {
+            Some(plastic) => plastic.ends(&ends),
+            None => ends,
+        }
     }
 
     /// Number of unbroken bonds that are damaged. None: no bond softens beyond its strength.
@@ -353,7 +514,7 @@ impl Bonds {
         self.blocks[at / BLOCK].radii_m[at % BLOCK]
     }
 
-    /// Initial distances of the contact point of bond `at` from its two ends, m.
+    /// Stress-free distances of the contact point of bond `at` from its two ends, m.
     pub fn levers_m(&self, at: usize) -> [f64; 2] {
         let [a, b] = &self.blocks[at / BLOCK].levers_m;
         [a[at % BLOCK], b[at % BLOCK]]
@@ -381,17 +542,24 @@ impl Bonds {
 
     /// Forces of bond `at`, which must not be broken, on its ends.
     pub fn forces(&self, at: usize, poses: &[Pose]) -> BondForces {
-        let [a, b] = self.ends[at].map(|end| &poses[end as usize]);
         let stiffness = self.stiffness(at);
+        if let Some(joint) = self
+            .joints
+            .get(at)
+            .filter(|joint| !joint.elements.is_empty())
+        {
+            return self.joint_forces(at, &joint.elements, &self.ends_of(at, poses));
+        }
         if self.rules[self.rule_of(at)].incremental {
-            let apart = b.place() - a.place();
+            let [a, b] = self.ends[at].map(|end| poses[end as usize].place());
+            let apart = b - a;
             return incremental::bond_forces(&stiffness, &self.histories[at], &apart);
         }
         let stiffness = Stiffness {
             normal: self.axial_stiffness(at, poses),
             ..stiffness
         };
-        total::bond_forces(&stiffness, &self.direction(at), &[a, b].map(Pose::end))
+        total::bond_forces(&stiffness, &self.direction(at), &self.ends_of(at, poses))
     }
 
     /// Forces that bond `at`, which must not be broken and has the total formulation, would have
@@ -417,7 +585,7 @@ impl Bonds {
     /// Deformation of bond `at`, broken or not, in place of its load: change of length and sliding,
     /// m, twist and bending, rad; the latter are 0 in a model without moments.
     pub(crate) fn deformation(&self, at: usize, poses: &[Pose]) -> BondLoad {
-        let ends = self.ends[at].map(|end| poses[end as usize].end());
+        let ends = self.ends_of(at, poses);
         let has_moments = self.bending_per_normal[self.rule_of(at)] > 0.0;
         let turning = if has_moments { 1.0 } else { 0.0 };
         let unit = Stiffness {
@@ -439,16 +607,16 @@ impl Bonds {
         }
     }
 
-    /// Change of length of bond `at` since the start, m.
+    /// Length of bond `at` beyond that without load, m.
     pub(crate) fn stretch_m(&self, at: usize, poses: &[Pose]) -> f64 {
         let [a, b] = self.ends[at].map(|end| poses[end as usize].place());
-        (b - a).norm() - self.initial_length_m(at)
+        (b - a).norm() - self.stress_free_length_m(at)
     }
 
     /// Derivatives of the forces of bond `at`, which must not be broken, with respect to
     /// displacements and rotations of its ends, by the total formulation.
     pub fn tangent(&self, at: usize, poses: &[Pose]) -> BondTangent {
-        let ends = self.ends[at].map(|end| poses[end as usize].end());
+        let ends = self.ends_of(at, poses);
         let stiffness = Stiffness {
             normal: self.axial_stiffness(at, poses),
             ..self.stiffness(at)
@@ -456,14 +624,20 @@ impl Bonds {
         bond_tangent(&stiffness, &self.direction(at), &ends)
     }
 
-    /// Unit vector of bond `at` from its first to its second end at the start.
-    fn direction(&self, at: usize) -> Vector3<f64> {
+    /// Unit vector of bond `at` from its first to its second end without load.
+    pub(crate) fn direction(&self, at: usize) -> Vector3<f64> {
         let [x, y, z] = &self.blocks[at / BLOCK].direction;
         Vector3::new(x[at % BLOCK], y[at % BLOCK], z[at % BLOCK])
     }
 
     /// Initial length of bond `at`, m.
     pub fn initial_length_m(&self, at: usize) -> f64 {
+        let plastic = self.plastics.get(at);
+        self.stress_free_length_m(at) - plastic.map_or(0.0, |plastic| plastic.elongation_m)
+    }
+
+    /// Length of bond `at` without load, m: the initial one until it yields.
+    pub fn stress_free_length_m(&self, at: usize) -> f64 {
         let [a, b] = self.levers_m(at);
         a + b
     }

@@ -352,5 +352,7 @@ impl Template {
             + size_of_val(&self.bonds.damping[..])
             + size_of_val(&self.bonds.histories[..])
             + size_of_val(&self.bonds.damages[..])
+            + size_of_val(&self.bonds.plastics[..])
+            + self.bonds.joint_bytes()
     }
 }

@@ -19,6 +19,10 @@ pub struct EnergyLedger {
     pub(crate) damaged_j: f64,
     /// Lost by particles that daughters replaced, J.
     pub(crate) particles_broken_j: f64,
+    /// Friction of failed elements of flat joints, J.
+    pub(crate) joint_friction_j: f64,
+    /// Plastic work of bonds, J.
+    pub(crate) plastic_j: f64,
     /// Net energy of added and removed bodies, J.
     pub(crate) brought_j: f64,
     /// Kinetic, elastic and potential energy at the start, J.

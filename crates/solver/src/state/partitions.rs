@@ -73,8 +73,6 @@ pub struct Partition {
 pub struct Computed {
     /// Forces, by the total formulation.
     pub total: usize,
-    /// Forces, by the incremental one.
-    pub incremental: usize,
     /// Comparisons with the strength.
     pub compared: usize,
     /// Those of them with a cohesion.

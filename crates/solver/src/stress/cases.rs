@@ -5,7 +5,10 @@ use std::sync::atomic::AtomicBool;
 use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
-use super::{adhesion, breakage, daughters, families, impact, limit_map, long, softening, swap};
+use super::{
+    adhesion, breakage, daughters, families, impact, joints, limit_map, long, softening, swap,
+    yielding,
+};
 
 /// A case of the suite.
 #[derive(Debug, Clone, Copy)]
@@ -29,7 +32,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 19] = [
+pub const CASES: [Case; 21] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -64,6 +67,16 @@ pub const CASES: [Case; 19] = [
         name: "softening",
         extreme: "bonds that break at 1.5 to 1e4 times the opening at their strength",
         members: |_| Ok(softening::softening()),
+    },
+    Case {
+        name: "yielding",
+        extreme: "bonds that flow under up to 1e4 times the energy at which they yield",
+        members: |_| Ok(yielding::yielding()),
+    },
+    Case {
+        name: "joints",
+        extreme: "flat joints of 3 to 2500 elements that fail, rub, open and close",
+        members: |_| Ok(joints::joints()),
     },
     Case {
         name: "swap",

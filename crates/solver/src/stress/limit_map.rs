@@ -127,6 +127,14 @@ pub fn map() -> Result<Vec<Member>> {
     ] {
         members.push(of("timoshenko", "total", damping, "0")?);
     }
+    for eta in ["0", "0.3"] {
+        members.push(of(
+            "flat-joint",
+            "total",
+            &format!("damping_ratio = {eta}"),
+            "0",
+        )?);
+    }
     for local_damping in ["0.1", "0.5", "0.9"] {
         members.push(of(
             "timoshenko",

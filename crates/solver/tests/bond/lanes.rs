@@ -38,6 +38,8 @@ fn chain(criteria: Criteria, is_scattered: bool) -> (Particles, Bonds) {
             damped: false,
             structural_damping: 0.0,
             fracture_energy_j_m2: None,
+            plasticity: None,
+            flat_joint: None,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

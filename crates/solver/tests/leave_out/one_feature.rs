@@ -99,6 +99,18 @@ fn of_bonds() {
         &with(&FREE, &["cluster search", "damage of bonds"]),
     );
     expect(
+        "plasticity",
+        &scene("", ", plasticity = { normal_yield_strength = 1e3 }", "", ""),
+        &["elasto-plastic bonds", "motion"],
+        &with(&FREE, &["elasto-plastic bonds"]),
+    );
+    expect(
+        "flat joints",
+        &scene("", ", model = \"flat-joint\"", "", ""),
+        &["flat joints", "motion"],
+        &with(&FREE, &["flat joints"]),
+    );
+    expect(
         "strength scatter",
         &scene(
             "",

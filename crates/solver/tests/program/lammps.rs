@@ -391,6 +391,16 @@ fn everything_else_is_refused_by_name() {
             "bonds.grain.model: LAMMPS has no word for it: in this model shear does not act in the middle",
         ),
         (
+            "model = \"timoshenko\"",
+            "model = \"flat-joint\"",
+            "bonds.grain.model: LAMMPS has no word for it: bonds of bpm/rotational break as a whole",
+        ),
+        (
+            "failure = { tensile",
+            "plasticity = { normal_yield_strength = \"0.1 MPa\" }\nfailure = { tensile",
+            "bonds.grain.plasticity: LAMMPS has no word for it: bonds of bpm/rotational are elastic",
+        ),
+        (
             "tensile_strength = \"1 MPa\"",
             "tensile_strength = \"1 MPa\", fracture_energy = \"1 kJ/m2\"",
             "bonds.grain.fracture_energy: LAMMPS has no word for it: bonds of bpm/rotational break",

@@ -8,7 +8,7 @@ use super::interrupted::{interrupt, kill_after_checkpoint};
 use super::{Bench, assert_same, good, numbers, refused, table};
 
 /// Scenes that cover all features, with the signals and threads for each.
-const SCENES: [(&str, &str, &str); 9] = [
+const SCENES: [(&str, &str, &str); 11] = [
     ("breaking.toml", "-INT", "2"),
     ("incremental.toml", "-TERM", "1"),
     ("bodies.toml", "-INT", "3"),
@@ -18,12 +18,16 @@ const SCENES: [(&str, &str, &str); 9] = [
     ("following.toml", "-TERM", "2"),
     ("softening.toml", "-INT", "2"),
     ("crushing.toml", "-TERM", "2"),
+    ("yielding.toml", "-TERM", "2"),
+    ("joints.toml", "-INT", "2"),
 ];
 
 /// Makes a scene take longer, so that a signal arrives half-way.
 fn slow(name: &str) -> &'static str {
     match name {
-        "breaking.toml" | "softening.toml" => "run.safety_factor=0.02",
+        "breaking.toml" | "softening.toml" | "yielding.toml" | "joints.toml" => {
+            "run.safety_factor=0.02"
+        }
         "incremental.toml" => "run.safety_factor=0.03",
         "bodies.toml" => "run.safety_factor=0.02",
         "rest.toml" => "run.safety_factor=0.01",

@@ -23,6 +23,8 @@ const BREAKING: BondRule = BondRule {
     damped: false,
     structural_damping: 0.1,
     fracture_energy_j_m2: None,
+    plasticity: None,
+    flat_joint: None,
     criteria: Some(Criteria {
         tensile_strength_pa: 0.1e6,
         compressive_strength_pa: 0.1e6,

@@ -38,6 +38,8 @@ struct OfFrame {
     clusters: Option<Vec<u32>>,
     densities: Option<Vec<f64>>,
     broken: Option<Vec<f64>>,
+    hardened: Vec<f64>,
+    failed: Vec<f64>,
     ids: Option<Vec<u32>>,
     bodies: Option<Vec<u32>>,
     velocities: Option<Vec<f64>>,
@@ -75,7 +77,12 @@ impl Contents {
             }
             Role::Connectivity => counts.lines.saturating_mul(2),
             Role::Offsets => counts.lines,
-            Role::BondRadii | Role::BondLengths | Role::Damages | Role::Broken => cells,
+            Role::BondRadii
+            | Role::BondLengths
+            | Role::Damages
+            | Role::Broken
+            | Role::Hardened
+            | Role::Failed => cells,
             Role::Corners => counts.cells_after.saturating_mul(3),
             Role::CornerOffsets | Role::WallNumbers => counts.cells_after,
             Role::Field(WALL_NAMES | WALL_FORCES | frame::BODY_NAMES) => OF_WALLS,
@@ -141,6 +148,12 @@ impl Contents {
                 .map(|all| self.of_frame.densities = Some(all)),
             Role::Broken => {
                 line_values(array, values, counts).map(|all| self.of_frame.broken = Some(all))
+            }
+            Role::Failed => {
+                line_values(array, values, counts).map(|all| self.of_frame.failed = all)
+            }
+            Role::Hardened => {
+                line_values(array, values, counts).map(|all| self.of_frame.hardened = all)
             }
             Role::Corners | Role::CornerOffsets | Role::WallNumbers => {
                 walls::fill(&mut self.walls, counts, array, values)

@@ -34,6 +34,8 @@ pub(super) enum Role {
     Clusters,
     Densities,
     Broken,
+    Hardened,
+    Failed,
     /// The id and the body of each particle, and its velocity.
     Ids,
     Bodies,
@@ -158,6 +160,8 @@ fn role_in_frame(section: &str, name: &str) -> Role {
         ("CellData", frame::BOND_RADIUS) => Role::BondRadii,
         ("CellData", frame::BOND_LENGTH) => Role::BondLengths,
         ("CellData", frame::DAMAGE) => Role::Damages,
+        ("CellData", frame::HARDENED) => Role::Hardened,
+        ("CellData", frame::FAILED) => Role::Failed,
         ("CellData", frame::BROKEN) => Role::Broken,
         ("FieldData", frame::TIME) => Role::Field(frame::TIME),
         ("FieldData", frame::BODY_NAMES) => Role::Field(frame::BODY_NAMES),

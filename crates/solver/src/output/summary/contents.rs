@@ -65,6 +65,9 @@ pub struct Summary {
     /// Unbroken bonds that are damaged. None: no bond softens beyond its strength.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damaged_bonds: Option<usize>,
+    /// Unbroken bonds that have yielded. None: no bond has a yield strength.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yielded_bonds: Option<usize>,
     /// Largest strain at the edge of a bond, by elongation and bending or by shear and torsion.
     pub largest_bond_strain: f64,
     /// Largest ratio of contact overlap to the radius of the smaller sphere.

@@ -42,20 +42,21 @@ impl fmt::Display for Summary {
             0 => String::new(),
             _ => format!(": {}", self.broken_by_cause),
         };
-        let damaged = match self.damaged_bonds {
-            Some(count) => format!("; {count} damaged"),
-            None => String::new(),
+        let counted = |count: Option<usize>, how: &str| {
+            count.map_or(String::new(), |count| format!("; {count} {how}"))
         };
+        let damaged = counted(self.damaged_bonds, "damaged");
+        let yielded = counted(self.yielded_bonds, "yielded");
         if self.population.is_some() {
             writeln!(
                 f,
-                "broken       {} bonds{causes}{damaged}",
+                "broken       {} bonds{causes}{damaged}{yielded}",
                 self.broken_bonds
             )?;
         } else if self.bonds > 0 {
             writeln!(
                 f,
-                "broken       {} of {} bonds{causes}{damaged}",
+                "broken       {} of {} bonds{causes}{damaged}{yielded}",
                 self.broken_bonds, self.bonds
             )?;
         }

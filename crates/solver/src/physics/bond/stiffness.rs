@@ -3,6 +3,7 @@
 
 use super::models::elastic_solid::ElasticSolid;
 use super::models::euler_bernoulli::EulerBernoulli;
+use super::models::flat_joint::FlatJoint;
 use super::models::parallel::Parallel;
 use super::models::pin::Pin;
 use super::models::rojek::Rojek;
@@ -42,6 +43,13 @@ pub enum BondModel {
         /// Shear coefficient, 0.9 for a circular section.
         alpha: f64,
     },
+    /// Flat joint: see [`flat_joint`](super::flat_joint).
+    FlatJoint {
+        /// Ratio of normal to shear stiffness.
+        kappa: Option<f64>,
+        /// Second moment of the elements over that of the disc.
+        moment_ratio: f64,
+    },
 }
 
 /// Stiffness of a bond with Young's modulus `young_modulus_pa` and Poisson's ratio `poisson_ratio`.
@@ -63,6 +71,14 @@ pub fn stiffness(
         BondModel::EulerBernoulli => EulerBernoulli.stiffness(&rod),
         BondModel::Timoshenko => Timoshenko.stiffness(&rod),
         BondModel::ElasticSolid => ElasticSolid.stiffness(&rod),
+        BondModel::FlatJoint {
+            kappa,
+            moment_ratio,
+        } => FlatJoint {
+            kappa,
+            moment_ratio,
+        }
+        .stiffness(&rod),
         BondModel::ShearCoefficient { alpha } => ShearCoefficient { alpha }.stiffness(&rod),
     }
 }

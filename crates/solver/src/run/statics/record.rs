@@ -84,6 +84,7 @@ impl AtRest<'_> {
             bodies: self.masses.clone(),
             broken_bonds: 0,
             damaged_bonds: state.bonds.count_damaged(),
+            yielded_bonds: state.bonds.count_yielded(),
             largest_bond_strain: most_strained_edge(&state.bonds, &state.particles.poses)
                 .map_or(0.0, |(strain, _)| strain),
             largest_overlap: 0.0,

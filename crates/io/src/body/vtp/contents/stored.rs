@@ -25,6 +25,8 @@ impl Contents {
             clusters,
             densities,
             broken,
+            hardened,
+            failed,
             ..
         } = self.of_frame;
         let parts = self.parts;
@@ -47,6 +49,8 @@ impl Contents {
                 .map(|broken| broken != 0.0)
                 .collect(),
             damages: parts.bond_damages,
+            failed,
+            hardened: hardened.iter().map(|hardened| *hardened != 0.0).collect(),
         })
     }
 
