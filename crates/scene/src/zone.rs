@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::body::{BodyEntry, BodySource};
-use super::bond::{BondKind, Formulation};
+use super::bond::{BondKind, BondModel, Formulation};
 use super::clump::StartAs;
 use super::field::Field;
 use super::inlet::Inlet;
@@ -158,6 +158,14 @@ fn check_body(field: &Field<'_>, name: &str, body: &BodyEntry, known: &Known<'_>
             "{path}: the bonds of body '{name}' are incremental, and forget how a rigid part turns"
         );
         return Err(field.refuse(problem, "write formulation = \"total\" in its [bonds]"));
+    }
+    let is_joint = matches!(kind.model, BondModel::FlatJoint { .. });
+    if kind.plasticity.is_some() || is_joint {
+        let problem = format!(
+            "{path}: the bonds of body '{name}' keep a history, which a rigid part does not follow"
+        );
+        let remedy = "take a model other than flat-joint, without plasticity, in its [bonds]";
+        return Err(field.refuse(problem, remedy));
     }
     let fed = known
         .inlets
