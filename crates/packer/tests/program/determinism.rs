@@ -160,7 +160,7 @@ fn bodies_of_data_can_be_made_again() {
     let volume = |body: &dem_io::Body| body.radii.iter().map(|r| r.powi(3)).sum::<f64>();
     for command in commands {
         let mut words: Vec<&str> = command.split(' ').skip(1).collect();
-        let kept = dem_io::read_body(&root().join(words.pop().unwrap())).unwrap();
+        let kept = dem_io::body::read_body(&root().join(words.pop().unwrap())).unwrap();
         let made = bench.path("made.vtp");
         let done = dem_pack()
             .current_dir(root())
@@ -169,7 +169,7 @@ fn bodies_of_data_can_be_made_again() {
             .arg("--quiet")
             .status();
         assert!(done.unwrap().success(), "{command}");
-        let made = dem_io::read_body(&made).unwrap();
+        let made = dem_io::body::read_body(&made).unwrap();
         let near =
             |a: f64, b: f64, most: f64| assert!((a / b - 1.0).abs() < most, "{command}: {a}, {b}");
         near(made.radii.len() as f64, kept.radii.len() as f64, 0.01);
