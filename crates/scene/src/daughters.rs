@@ -203,6 +203,25 @@ fn check_body(
             return Err(field.refuse(problem, "remove it"));
         }
     }
+    for key in ["start_as", "clump"] {
+        if let Some(field) = root.find(&["bodies", body, key]) {
+            let problem = format!(
+                "{} has no effect: daughters of '{parent}' are loose spheres, or bonded if their file has bonds",
+                field.path
+            );
+            return Err(field.refuse(problem, "remove it"));
+        }
+    }
+    if let Some(field) = root.find(&["replacement", body, "daughters"]) {
+        let problem = format!(
+            "{} belongs to a body that is daughters of '{parent}' itself",
+            field.path
+        );
+        let remedy = format!(
+            "write smallest_size in [replacement.{parent}.daughters], whose loose daughters are then replaced in turn"
+        );
+        return Err(field.refuse(problem, remedy));
+    }
     Ok(())
 }
 

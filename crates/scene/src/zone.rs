@@ -130,6 +130,15 @@ pub(super) fn check(root: &Table<'_>, known: &Known<'_>) -> Result<()> {
                 return Err(field.refuse(problem, format!("remove it, or [{key}]")));
             }
         }
+        for (replaced, _) in root.named("replacement")? {
+            if root.find(&["replacement", &replaced, "daughters"]).is_some() {
+                let problem = format!(
+                    "{} cannot be combined with [replacement.{replaced}.daughters]: what a particle takes in from a rigid part is not counted",
+                    field.path
+                );
+                return Err(field.refuse(problem, "remove one of the two"));
+            }
+        }
     }
     Ok(())
 }

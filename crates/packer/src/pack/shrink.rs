@@ -82,10 +82,12 @@ impl FillTarget {
         (better != shrink).then_some(better)
     }
 
-    /// The part of the spheres of a front that is too many, 0 to 1, for the volume that they will
-    /// have at their reduced radii, local units.
+    /// The part of the spheres of a front that is left out, since they are too many for the volume
+    /// that they will have at their reduced radii, local units: at most the accepted surplus. In
+    /// shapes so thin that the target means little, more would take the body apart.
     pub fn too_many(&self, filled: f64) -> f64 {
-        (1.0 - self.volume / filled).max(0.0)
+        let most = MOST_SURPLUS / (1.0 + MOST_SURPLUS);
+        (1.0 - self.volume / filled).clamp(0.0, most)
     }
 }
 

@@ -76,6 +76,9 @@ fn a_front_that_leaves_too_little_room_is_thinned_out() {
     assert!((102.0 * (1.0 - target.too_many(102.0)) - 100.0).abs() < 1e-12);
     assert_eq!(target.better_shrink(0.04, 99.6), None);
     assert_eq!(target.too_many(99.6), 0.0);
+    // Never more than the accepted surplus.
+    let nothing = FillTarget { volume: 0.0 };
+    assert!((nothing.too_many(100.0) - 0.03 / 1.03).abs() < 1e-12);
 }
 
 /// The next front is aimed at a small surplus.

@@ -225,7 +225,12 @@ fn facts(summary: &Value) -> Vec<[String; 2]> {
         if some("fed") {
             add("bodies fed", bodies("fed"));
         }
-        if some("replaced") || !some("released") {
+        if some("replaced_by_daughters") {
+            add(
+                "particles replaced by daughters",
+                count(&population["replaced_by_daughters"]),
+            );
+        } else if some("replaced") || !some("released") {
             add(
                 "clumps replaced by clusters",
                 count(&population["replaced"]),

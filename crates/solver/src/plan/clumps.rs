@@ -79,6 +79,7 @@ pub(super) fn templates(
 pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
     let radii = read.values().flat_map(|body| &body.radii).copied();
     let smallest_m = radii.fold(f64::INFINITY, f64::min);
+    let smallest_m = smallest_m.min(smallest_daughter_m(scene, read));
     let skin_left_m = scene.walls.values().map(|wall| match &wall.shape {
         WallShape::Plane { .. } => f64::INFINITY,
         WallShape::Box { min, max } => {
@@ -93,6 +94,23 @@ pub(super) fn ball_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
         WallShape::Stl { .. } => 0.0,
     });
     skin_left_m.fold(FRACTION_OF_SMALLEST * smallest_m, f64::min)
+}
+
+/// Radius of the smallest daughter of a daughter that is replaced in turn, m: volumes of daughters
+/// add up to that of what they replace.
+fn smallest_daughter_m(scene: &Scene, read: &BTreeMap<String, Body>) -> f64 {
+    let rules = scene.replacement.values();
+    let daughters = rules.filter_map(|rule| rule.daughters.as_ref());
+    let radii = daughters.flat_map(|daughters| {
+        let classes = daughters.classes.iter();
+        let bodies = classes.filter_map(|class| read.get(&class.body));
+        bodies.filter_map(|body| {
+            let volume: f64 = body.radii.iter().map(|radius| radius.powi(3)).sum();
+            let smallest_m = body.radii.iter().copied().fold(f64::INFINITY, f64::min);
+            Some(smallest_m * daughters.smallest_size_m? / (2.0 * volume.cbrt()))
+        })
+    });
+    radii.fold(f64::INFINITY, f64::min)
 }
 
 /// The spheres of a template that something in the scene can touch.

@@ -155,8 +155,8 @@ fn is_quiet(
     let [velocity, spin] = [motion.velocity_m_s, motion.spin_rad_s].map(nalgebra::Vector3::from);
     let passing_m_s = (velocity - part.velocity_at(&pose.place())).norm();
     let turning_m_s = pose.radius_m() * (spin - part.spin_rad_s()).norm();
-    strain_j * motion.inverse_mass < rule.strain_energy_j_kg
-        && passing_m_s.max(turning_m_s) < rule.speed_m_s
+    strain_j * motion.inverse_mass <= rule.strain_energy_j_kg
+        && passing_m_s.max(turning_m_s) <= rule.speed_m_s
 }
 
 /// Forms the rigid parts again whose spheres have changed. `joins`: spheres have joined some.

@@ -71,7 +71,13 @@ impl PopulationSummary {
     /// Whether there are clumps, or bodies were added, removed or replaced; or whether nothing else
     /// was asked for.
     pub(super) fn has_changed(&self) -> bool {
-        let counts = [self.fed, self.replaced, self.restored, self.discharged];
+        let counts = [
+            self.fed,
+            self.replaced,
+            self.replaced_by_daughters,
+            self.restored,
+            self.discharged,
+        ];
         counts.iter().any(|count| *count > 0)
             || self.clumps + self.single_sphere_bodies > 0
             || (self.rigid_parts == 0 && self.released == 0)
