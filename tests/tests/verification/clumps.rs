@@ -383,7 +383,7 @@ fn taken_in_j_kg(target: &str, restitution: f64, step_s: f64) -> f64 {
         contacts.stone-anvil = {{ restitution = {restitution} }}
         bodies.ball = {{ particles = [[0, 0, 5.001e-3, {RADIUS_M:e}]], material = "stone", start_as = "clump", velocity = [0, 0, -3] }}
         bodies.halves = {{ particles = [[0, 0, 0, 1], [1, 0, 0, 1]], material = "stone" }}
-        replacement.ball.daughters.classes = [{{ from = "1 MJ/kg", body = "halves" }}]
+        replacement.ball.daughters.classes = [{{ from = "1000 kJ/kg", body = "halves" }}]
         {target}
         "#
     ));

@@ -65,9 +65,15 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
     files.events.append(&events)
 }
 
-/// A value before and after an event.
-fn before_and_after(before: f64, after: f64) -> String {
-    format!("{} -> {}", exact(before), exact(after))
+/// Mass, kg, momentum, N s, and kinetic energy, J, before and after an event.
+fn kept(mass_kg: &[f64; 2], momentum_n_s: &[f64; 2], kinetic_j: &[f64; 2]) -> String {
+    let both = |[before, after]: &[f64; 2]| format!("{} -> {}", exact(*before), exact(*after));
+    format!(
+        "mass {} kg; momentum {} N s; kinetic energy {} J",
+        both(mass_kg),
+        both(momentum_n_s),
+        both(kinetic_j)
+    )
 }
 
 /// Events of bodies in this step.
@@ -79,9 +85,9 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 cluster,
                 body,
                 cause,
-                mass_kg: [mass, mass_after],
-                momentum_n_s: [momentum, momentum_after],
-                kinetic_j: [kinetic, kinetic_after],
+                mass_kg,
+                momentum_n_s,
+                kinetic_j,
                 place_m,
             } => (
                 if *cause == STARTS_BONDED {
@@ -91,12 +97,10 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 },
                 *cause,
                 place_m,
-                Some(kinetic_after - kinetic),
+                Some(kinetic_j[1] - kinetic_j[0]),
                 format!(
-                    "fragment {cluster} ({body}): mass {} kg; momentum {} N s; kinetic energy {} J",
-                    before_and_after(*mass, *mass_after),
-                    before_and_after(*momentum, *momentum_after),
-                    before_and_after(*kinetic, *kinetic_after),
+                    "fragment {cluster} ({body}): {}",
+                    kept(mass_kg, momentum_n_s, kinetic_j)
                 ),
             ),
             PopulationEvent::Broken {
@@ -105,22 +109,20 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 class,
                 daughters: (class_body, count),
                 specific_j_kg,
-                mass_kg: [mass, mass_after],
-                momentum_n_s: [momentum, momentum_after],
-                kinetic_j: [kinetic, kinetic_after],
+                mass_kg,
+                momentum_n_s,
+                kinetic_j,
                 place_m,
             } => (
                 "replaced",
                 "specific_energy",
                 place_m,
-                Some(kinetic_after - kinetic),
+                Some(kinetic_j[1] - kinetic_j[0]),
                 format!(
-                    "fragment {cluster} ({body}): {} J/kg; class {} ({class_body}); {count} daughters; mass {} kg; momentum {} N s; kinetic energy {} J",
+                    "fragment {cluster} ({body}): {} J/kg; class {} ({class_body}); {count} daughters; {}",
                     exact(*specific_j_kg),
                     class + 1,
-                    before_and_after(*mass, *mass_after),
-                    before_and_after(*momentum, *momentum_after),
-                    before_and_after(*kinetic, *kinetic_after),
+                    kept(mass_kg, momentum_n_s, kinetic_j)
                 ),
             ),
             PopulationEvent::Restored {

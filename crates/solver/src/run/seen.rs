@@ -85,6 +85,8 @@ impl Seen {
                 self.replaced.insert(body.clone());
             }
             if let PopulationEvent::Broken { body, .. } = one {
+                // Something pressed it, maybe for a few steps only.
+                self.touched.insert(body.clone());
                 self.replaced.insert(body.clone());
             }
             if let PopulationEvent::Came { body, .. } = one {
