@@ -131,7 +131,10 @@ pub(super) fn check(root: &Table<'_>, known: &Known<'_>) -> Result<()> {
             }
         }
         for (replaced, _) in root.named("replacement")? {
-            if root.find(&["replacement", &replaced, "daughters"]).is_some() {
+            if root
+                .find(&["replacement", &replaced, "daughters"])
+                .is_some()
+            {
                 let problem = format!(
                     "{} cannot be combined with [replacement.{replaced}.daughters]: what a particle takes in from a rigid part is not counted",
                     field.path
