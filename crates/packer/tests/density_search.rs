@@ -47,11 +47,15 @@ fn fronts_are_judged_by_what_settling_and_filling_did_before() {
     assert_eq!(judged(&begun)[0].filled, 0.80);
     begun.push(one(0.2, 0.90, Some(0.90 * 1.01)));
     begun.push(one(0.3, 1.00, Some(1.03)));
+    begun.push(one(0.4, 1.10, Some(1.10 * 1.02)));
     let filled: Vec<f64> = judged(&begun).iter().map(|t| t.filled).collect();
-    for (got, wanted) in filled.iter().zip([0.80 * 1.02, 0.90 * 1.01, 1.03]) {
+    for (got, wanted) in filled
+        .iter()
+        .zip([0.80 * 1.02, 0.90 * 1.01, 1.03, 1.10 * 1.02])
+    {
         assert!((got - wanted).abs() < 1e-12, "{filled:?}");
     }
-    assert_eq!(filled.len(), 3);
+    assert_eq!(filled.len(), 4);
 }
 
 #[test]

@@ -58,6 +58,7 @@ mod tree;
 mod values;
 mod wall;
 mod zone;
+mod zone_check;
 
 pub use as_run::{piped_bodies, scene_as_run};
 pub use bodies::read_bodies;

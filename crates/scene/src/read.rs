@@ -16,7 +16,7 @@ use super::tree::option_place;
 use super::{
     body, bond, clusters, contact, fall_check, group, initial, inlet, load, material, measure,
     outlet, output, region, relaxation, replacement, run, search, sleep, statics, support, test,
-    wall, zone,
+    wall, zone_check,
 };
 use crate::field::Field;
 use dem_io::diagnostic::Result;
@@ -74,13 +74,13 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     };
     let groups = group::read_all(&root, &presence)?;
     let walls = wall::read_all(&root, &materials, &bodies, &groups, folder)?;
-    let of_zones = zone::Known {
+    let of_zones = zone_check::Known {
         bodies: &bodies,
         bonds: &bonds,
         inlets: &inlets,
         walls: &walls,
     };
-    zone::check(&root, &of_zones)?;
+    zone_check::check(&root, &of_zones)?;
     fall_check::refuse_falls(&root, &run, &bodies, &walls, &inlets)?;
     let targets = Targets {
         groups: &groups,

@@ -32,6 +32,8 @@ struct Shape {
     volume_m3: f64,
     /// Relative deficit of the volume due to the facets.
     facets: f64,
+    /// Largest distance of a facet outside the surface, m: chords of hollow curves.
+    facets_outside_m: f64,
     /// Distance from the surface, positive inside, m.
     depth_m: fn(&Vector3<f64>) -> f64,
 }
@@ -61,6 +63,7 @@ fn shapes() -> [Shape; 3] {
             ],
             volume_m3: across * across * height,
             facets: ROUNDING,
+            facets_outside_m: 0.0,
             depth_m: |p| {
                 let [across, _, height] = BAR_M;
                 let side = 0.5 * across - p.x.abs().max(p.y.abs());
@@ -76,6 +79,7 @@ fn shapes() -> [Shape; 3] {
             ],
             volume_m3: 0.5 * sides * radius * radius * (2.0 * PI / sides).sin() * thickness,
             facets: ROUNDING,
+            facets_outside_m: 0.0,
             depth_m: |p| {
                 let [radius, thickness] = DISC_M;
                 (radius - p.x.hypot(p.z)).min(0.5 * thickness - p.y.abs())
@@ -94,6 +98,8 @@ fn shapes() -> [Shape; 3] {
                 .map(|n| (2.0 * PI / n).powi(2) / 6.0)
                 .iter()
                 .sum(),
+            // Around the hole, polygons are inside their circles.
+            facets_outside_m: (ring - tube) * (1.0 - (PI / of_ring).cos()),
             depth_m: |p| {
                 let [ring, tube] = TORUS_M;
                 tube - (p.x.hypot(p.y) - ring).hypot(p.z)
@@ -197,11 +203,13 @@ impl Packed {
         (near, largest)
     }
 
-    /// Largest protrusion of a sphere from the shape, as a fraction of its radius; 0 if there is
-    /// none.
+    /// Largest protrusion of a sphere from the shape and its facets, as a fraction of its radius; 0
+    /// if there is none.
     fn stands_out(&self) -> f64 {
-        let out =
-            |(place, radius): (Vector3<f64>, f64)| (radius - (self.shape.depth_m)(&place)) / radius;
+        let out = |(place, radius): (Vector3<f64>, f64)| {
+            let depth_m = (self.shape.depth_m)(&place) + self.shape.facets_outside_m;
+            (radius - depth_m) / radius
+        };
         self.spheres().map(out).fold(0.0, f64::max)
     }
 }

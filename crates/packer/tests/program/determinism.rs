@@ -171,7 +171,7 @@ fn bodies_of_data_can_be_made_again() {
         assert!(done.unwrap().success(), "{command}");
         let made = dem_io::body::read_body(&made).unwrap();
         let near =
-            |a: f64, b: f64, most: f64| assert!((a / b - 1.0).abs() < most, "{command}: {a}, {b}");
+            |a: f64, b: f64, most: f64| assert!((a - b).abs() <= most * b, "{command}: {a}, {b}");
         near(made.radii.len() as f64, kept.radii.len() as f64, 0.01);
         near(made.bonds.len() as f64, kept.bonds.len() as f64, 0.03);
         near(volume(&made), volume(&kept), 0.01);

@@ -86,33 +86,35 @@ pub(crate) fn infinity_knot() -> Mesh {
 /// The disc of the Brazilian test: 50 mm across and 25 mm thick, with its axis along y and 96
 /// sides, around the origin.
 pub(crate) fn disc() -> Mesh {
-    round_bar(25.0, 12.5, 96)
+    round_bar(25.0, 12.5, 96, 1)
 }
 
 /// A stalk: 12 mm across and 200 mm long, with its axis along z and 48 sides, upright on z = 0.
 pub(crate) fn stalk() -> Mesh {
-    let mut stalk = round_bar(6.0, 100.0, 48);
+    let mut stalk = round_bar(6.0, 100.0, 48, 8);
     for [x, y, z] in &mut stalk.vertices {
         [*x, *y, *z] = [*z, *x, *y + 100.0];
     }
     stalk
 }
 
-/// A round bar around the origin, with its axis along y.
-fn round_bar(radius: f64, half_length: f64, sides: u32) -> Mesh {
+/// A round bar around the origin, with its axis along y, divided into segments along it.
+fn round_bar(radius: f64, half_length: f64, sides: u32, segments: u32) -> Mesh {
     let mut mesh = Mesh::default();
-    let rings = [half_length, -half_length].map(|y| -> Vec<u32> {
+    let mut ring = |n: u32| -> Vec<u32> {
+        let y = half_length * (1.0 - 2.0 * f64::from(n) / f64::from(segments));
         (0..sides)
             .map(|j| {
                 let (sin, cos) = (TAU * f64::from(j) / f64::from(sides)).sin_cos();
                 mesh.vertex([radius * cos, y, radius * sin])
             })
             .collect()
-    });
+    };
+    let rings: Vec<Vec<u32>> = (0..=segments).map(&mut ring).collect();
     join_rings(&mut mesh, &rings, false);
     for (ring, y, from, to) in [
         (&rings[0], half_length, 1, 0),
-        (&rings[1], -half_length, 0, 1),
+        (&rings[segments as usize], -half_length, 0, 1),
     ] {
         let centre = mesh.vertex([0.0, y, 0.0]);
         for j in 0..ring.len() {
