@@ -13,7 +13,7 @@ use crate::physics::rotation::{kinetic_j, rotation, spin_rad_s};
 use crate::shape::inertia::{MassProperties, of_spheres};
 
 /// The part of a sphere that belongs to none.
-pub(crate) const FREE: u32 = u32::MAX;
+pub const FREE: u32 = u32::MAX;
 
 /// A rigid part. Velocity and angular momentum are half a step before or after its position.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
