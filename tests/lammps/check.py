@@ -424,13 +424,23 @@ def table(rows):
     return "\n".join(lines)
 
 
-def write_page(path, text):
+def write_page(path, text, begin=BEGIN):
+    """Writes a table into a page, between its marks."""
     with open(path) as file:
         page = file.read()
-    before, rest = page.split(BEGIN)
-    after = rest.split(END)[1]
+    before, rest = page.split(begin)
     with open(path, "w") as file:
-        file.write(f"{before}{BEGIN}\n{text}\n{END}{after}")
+        file.write(f"{before}{begin}\n{text}\n{END}{rest.split(END, 1)[1]}")
+
+
+def option(arguments, name, default):
+    """Takes an option and its value out of the arguments. Returns the value."""
+    if name not in arguments:
+        return default
+    at = arguments.index(name)
+    value = arguments[at + 1]
+    del arguments[at : at + 2]
+    return value
 
 
 def version():
@@ -448,11 +458,7 @@ LMP, MPIEXEC = find("lmp"), find("mpiexec")
 
 def main():
     arguments = sys.argv[1:]
-    page = None
-    if "--page" in arguments:
-        at = arguments.index("--page")
-        page = arguments[at + 1]
-        del arguments[at : at + 2]
+    page = option(arguments, "--page", None)
     if not arguments:
         sys.exit(__doc__)
     for name, found in [("lmp", LMP), ("mpiexec", MPIEXEC)]:

@@ -17,10 +17,10 @@ import subprocess
 import sys
 import tempfile
 
-from check import LMP, MPIEXEC, fail, run, version
+from check import LMP, MPIEXEC, fail, option, run, version, write_page
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../..")
-BEGIN, END = "<!-- table: tests/lammps/speed.py -->", "<!-- end of table -->"
+BEGIN = "<!-- table: tests/lammps/speed.py -->"
 HEAD = """version = 1
 [run]
 end_time = "{end}"
@@ -159,23 +159,6 @@ class Case:
             )
 
 
-def write_page(path, text):
-    with open(path) as file:
-        page = file.read()
-    before, rest = page.split(BEGIN)
-    with open(path, "w") as file:
-        file.write(f"{before}{BEGIN}\n{text}\n{END}{rest.split(END, 1)[1]}")
-
-
-def option(arguments, name, default):
-    if name not in arguments:
-        return default
-    at = arguments.index(name)
-    value = arguments[at + 1]
-    del arguments[at : at + 2]
-    return value
-
-
 def main():
     arguments = sys.argv[1:]
     page = option(arguments, "--page", None)
@@ -194,7 +177,7 @@ def main():
                 lines.append(row)
                 print(row, flush=True)
     if page:
-        write_page(page, "\n".join(lines) + f"\n\nLAMMPS: {version()}.")
+        write_page(page, "\n".join(lines) + f"\n\nLAMMPS: {version()}.", BEGIN)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ mod blame;
 mod bodies;
 mod body;
 mod bond;
+mod bond_failure;
 mod clump;
 mod clusters;
 mod contact;
@@ -63,10 +64,8 @@ mod zone_check;
 pub use as_run::{piped_bodies, scene_as_run};
 pub use bodies::read_bodies;
 pub use body::{BodyEntry, BodySource, PositionOf, WholeMass};
-pub use bond::{
-    BondDamping, BondFailure, BondKind, BondModel, BondPlasticity, EquivalentStress, Formulation,
-    JointElements, StrainRateMeasure,
-};
+pub use bond::{BondDamping, BondKind, BondModel, BondPlasticity, Formulation, JointElements};
+pub use bond_failure::{BondFailure, EquivalentStress, StrainRateMeasure};
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;
 pub use contact::{Contact, ContactLaw, Rolling};

@@ -51,24 +51,24 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
         let remedy = "write formulation = \"total\", or run.integrator = \"leapfrog\"";
         return Err(field.refuse(problem, remedy));
     }
-    for (_, body) in root.named("bodies")? {
-        if let Some(field) = Table::any(&body)?.get("bonded_within") {
-            let problem = format!(
-                "{} is not available with run.integrator = \"static\", which bonds all of a body",
-                field.path
-            );
-            let remedy = "remove it, or write run.integrator = \"leapfrog\"";
-            return Err(field.refuse(problem, remedy));
-        }
-    }
-    for (_, bond) in root.named("bonds")? {
-        if let Some(field) = Table::any(&bond)?.get("plasticity") {
-            let problem = format!(
-                "{} needs the way to a load, and run.integrator = \"static\" goes straight to its equilibrium",
-                field.path
-            );
-            let remedy = "remove it, or write run.integrator = \"leapfrog\"";
-            return Err(field.refuse(problem, remedy));
+    for (tables, key, why) in [
+        (
+            "bodies",
+            "bonded_within",
+            "is not available with run.integrator = \"static\", which bonds all of a body",
+        ),
+        (
+            "bonds",
+            "plasticity",
+            "needs the way to a load, and run.integrator = \"static\" goes straight to its equilibrium",
+        ),
+    ] {
+        for (_, table) in root.named(tables)? {
+            if let Some(field) = Table::any(&table)?.get(key) {
+                let problem = format!("{} {why}", field.path);
+                let remedy = "remove it, or write run.integrator = \"leapfrog\"";
+                return Err(field.refuse(problem, remedy));
+            }
         }
     }
     if let Some(field) = written(root, "bonds", "model", "flat-joint")? {

@@ -118,7 +118,8 @@ impl StoredFrame {
     /// the particles, unless they differ.
     ///
     /// # Errors
-    /// There is no such fragment; a bond of it has hardened or failed in part; the frame contains no valid body of it.
+    /// There is no such fragment; a bond of it has hardened or failed in part; the frame contains
+    /// no valid body of it.
     pub fn body(&self, id: u32) -> Result<Body> {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)

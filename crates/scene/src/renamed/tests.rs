@@ -7,7 +7,8 @@ use crate::table::Table;
 use crate::tree::Document;
 use crate::wall::motion::SERVO;
 use crate::{
-    bond, clusters, contact, initial, load, measure, replacement, root, run, support, test, wall,
+    bond, bond_failure, clusters, contact, initial, load, measure, replacement, root, run, support,
+    test, wall,
 };
 
 static SCHEMAS: [&Schema; 17] = [
@@ -16,7 +17,7 @@ static SCHEMAS: [&Schema; 17] = [
     &contact::CONTACT,
     &bond::BOND,
     &bond::DAMPING,
-    &bond::FAILURE,
+    &bond_failure::FAILURE,
     &wall::WALL,
     &SERVO,
     &initial::INITIAL,

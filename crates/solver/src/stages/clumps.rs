@@ -185,11 +185,26 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
 pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     let Clumps { templates, all, .. } = clumps;
     for clump in all.iter_mut().filter(|clump| !clump.asleep) {
-        let per_mass = kick_s / templates[clump.template as usize].mass_kg;
-        for (k, gravity) in gravity_m_s2.iter().enumerate() {
-            clump.velocity_m_s[k] += per_mass * clump.force_n[k] + kick_s * gravity;
-            clump.angular_momentum[k] += kick_s * clump.torque_n_m[k];
-        }
+        kick_one(
+            clump,
+            &templates[clump.template as usize],
+            gravity_m_s2,
+            kick_s,
+        );
+    }
+}
+
+/// The same for one clump, awake or not.
+pub(super) fn kick_one(
+    clump: &mut Clump,
+    template: &Template,
+    gravity_m_s2: [f64; 3],
+    kick_s: f64,
+) {
+    let per_mass = kick_s / template.mass_kg;
+    for (k, gravity) in gravity_m_s2.iter().enumerate() {
+        clump.velocity_m_s[k] += per_mass * clump.force_n[k] + kick_s * gravity;
+        clump.angular_momentum[k] += kick_s * clump.torque_n_m[k];
     }
 }
 

@@ -8,6 +8,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::clumps::kick_one;
 use super::contacts::pair_force_n;
 use super::population::apply_topology_change;
 use super::walls::{relax_touches, surface_velocity_m_s, touch_force_n};
@@ -195,14 +196,9 @@ fn record(state: &mut State, one: &Due, daughters: &[Clump], kinetic_j: [f64; 2]
 
 /// A clump with the velocity and the spin at the time of the positions.
 fn at_positions(clump: &Clump, template: &Template, gravity: [f64; 3], half_s: f64) -> Clump {
-    let push = half_s / template.mass_kg * Vector3::from(clump.force_n);
-    let fall = half_s * Vector3::from(gravity);
-    let turn = half_s * Vector3::from(clump.torque_n_m);
-    Clump {
-        velocity_m_s: (Vector3::from(clump.velocity_m_s) - push - fall).into(),
-        angular_momentum: (Vector3::from(clump.angular_momentum) - turn).into(),
-        ..*clump
-    }
+    let mut now = *clump;
+    kick_one(&mut now, template, gravity, -half_s);
+    now
 }
 
 /// The daughters of a particle in this size class.

@@ -11,11 +11,12 @@
 
 use nalgebra::Vector3;
 
+use super::clumps::kick_one;
 use super::contacts::pair_force_n;
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{surface_velocity_m_s, touch_force_n};
 use crate::state::State;
-use crate::state::clumps::{Clump, Intake};
+use crate::state::clumps::Intake;
 use crate::state::contacts::Contacts;
 
 /// Particles that daughters replace.
@@ -145,19 +146,13 @@ fn share(own: f64, other: f64) -> f64 {
 /// supports and damping of bonds are not in it.
 fn velocity_m_s(state: &State, i: usize) -> Vector3<f64> {
     let half_s = 0.5 * state.previous_time_step_s;
-    let falls = half_s * Vector3::from(state.model.gravity_m_s2);
+    let gravity = state.model.gravity_m_s2;
     let p = &state.particles;
     match state.clumps.carrier_of(i) {
         Some(clump) => {
-            let clump = &state.clumps.all[clump];
-            let template = state.clumps.template(clump);
-            let push = half_s / template.mass_kg * Vector3::from(clump.force_n);
-            let turn = half_s * Vector3::from(clump.torque_n_m);
-            let now = Clump {
-                velocity_m_s: (Vector3::from(clump.velocity_m_s) + push + falls).into(),
-                angular_momentum: (Vector3::from(clump.angular_momentum) + turn).into(),
-                ..*clump
-            };
+            let mut now = state.clumps.all[clump];
+            let template = state.clumps.template(&now);
+            kick_one(&mut now, template, gravity, half_s);
             now.motion_at(template, &p.poses[i].place())
                 .velocity_m_s
                 .into()
@@ -165,7 +160,7 @@ fn velocity_m_s(state: &State, i: usize) -> Vector3<f64> {
         None => {
             let [x, y, z, _] = p.wrenches[i].force_n;
             let push = half_s * p.motions[i].inverse_mass * Vector3::new(x, y, z);
-            Vector3::from(p.motions[i].velocity_m_s) + push + falls
+            Vector3::from(p.motions[i].velocity_m_s) + push + half_s * Vector3::from(gravity)
         }
     }
 }

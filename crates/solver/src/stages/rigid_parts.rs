@@ -19,13 +19,13 @@ pub(crate) const RIGID_PARTS: Stage = Stage {
     within: None,
     need: |state, _| {
         let (zones, parts) = (state.model.rules.zones.len(), &state.rigid_parts);
-        let spheres: usize = parts.all.iter().map(|part| part.members.len()).sum();
         Need::of(
             zones > 0,
             || {
                 format!(
-                    "{} at the start, of {spheres} spheres; {} bonds within them are not computed",
+                    "{} at the start, of {} spheres; {} bonds within them are not computed",
                     parts.all.len(),
+                    spheres(parts),
                     parts.bonds
                 )
             },
