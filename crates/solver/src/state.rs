@@ -7,6 +7,7 @@ pub mod clumps;
 pub mod clusters;
 pub mod contacts;
 pub mod events;
+pub mod groups;
 pub(crate) mod ledger;
 pub mod loads;
 pub mod model;

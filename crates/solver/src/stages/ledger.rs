@@ -12,7 +12,7 @@ use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::power_w;
 use crate::stages::supports::reactions_work_j;
-use crate::stages::totals::{elastic_energy, kinetic_energy, momenta, synchronous_motions};
+use crate::stages::totals::{elastic_energy, kinetic_energy, momenta, synchronous_motions_of_free};
 use crate::state::State;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
@@ -306,7 +306,7 @@ fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3
 /// The ledger between the two halves of a step, `interact` and `advance`. Records the largest
 /// energies and momenta.
 pub fn balance(state: &mut State) -> Balance {
-    let motions = synchronous_motions(state);
+    let motions = synchronous_motions_of_free(state);
     let p = &state.particles;
     let clumps = synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s);
     let of_clumps = clumps.iter();

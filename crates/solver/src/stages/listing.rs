@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use self::moved::{Due, due, find_left, may_be_due, refer_clump, refer_particle, use_up};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
-use super::contacts::{list_contacts, relist};
+use super::contacts::{find_mean_radius, list_contacts, relist};
 use super::neighbours::overlapping_pairs;
 use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
@@ -17,7 +17,7 @@ use super::walls::{list_near, reached, reaches};
 use crate::state::State;
 use crate::state::clumps::Clumps;
 use crate::state::contacts::Contacts;
-use crate::state::references::ClumpReference;
+use crate::state::references::{ClumpReference, References};
 use crate::state::walls::Wall;
 
 /// The neighbour search.
@@ -107,6 +107,7 @@ fn search_for_moved(state: &mut State) -> usize {
 
 /// Searches for the neighbours of all particles.
 fn search_for_all(state: &mut State, contacts: &mut Contacts) -> usize {
+    find_mean_radius(contacts, &state.particles);
     let references = &mut contacts.scratch.references;
     references.balls = vec![[0.0; 4]; state.particles.len()];
     references.clumps = vec![ClumpReference::default(); state.clumps.all.len()];
@@ -147,12 +148,17 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     }
     let pairs = match &state.clusters {
         Some(clusters) if !contacts.model.alone => {
-            let balls = &contacts.scratch.references.balls;
-            if seeks.contains(&false) {
-                let found = overlapping_pairs(balls, &clusters.of_particle, Some(&seeks));
+            let References {
+                balls,
+                clusters: known,
+                ..
+            } = &mut contacts.scratch.references;
+            let some = seeks.contains(&false).then_some(&seeks[..]);
+            let found = overlapping_pairs(balls, &clusters.of_particle, some, known);
+            if some.is_some() {
                 with_others(&contacts.pairs, found, &seeks)
             } else {
-                overlapping_pairs(balls, &clusters.of_particle, None)
+                found
             }
         }
         _ => Vec::new(),

@@ -10,15 +10,14 @@
 //! and large ones where they may meet small ones, are put into grids.
 
 mod grid;
-mod groups;
 mod meetings;
 
 use rayon::prelude::*;
 
 use self::grid::{Grids, Seeker};
-use self::groups::Groups;
-use self::meetings::{Large, Meetings};
+use self::meetings::Meetings;
 use super::chunks::CHUNK;
+use crate::state::groups::{KnownClusters, LargeCluster, around, box_of};
 use crate::state::particles::Pose;
 use crate::state::references::Ball;
 
@@ -33,27 +32,29 @@ pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]
         [x, y, z, radius_m + 0.5 * skin_m]
     };
     let balls: Vec<Ball> = poses.iter().map(ball).collect();
-    overlapping_pairs(&balls, clusters, None)
+    overlapping_pairs(&balls, clusters, None, &mut KnownClusters::default())
 }
 
 /// Pairs of overlapping balls of different clusters, the smaller index first, sorted; with `seeks`
 /// (one for each ball) only those with at least one ball that seeks. `clusters`: one for each ball.
+/// `known`: of the last search; since then only balls that seek have changed.
 pub(crate) fn overlapping_pairs(
     balls: &[Ball],
     clusters: &[u32],
     seeks: Option<&[bool]>,
+    known: &mut KnownClusters,
 ) -> Vec<[u32; 2]> {
+    known.update(balls, clusters, seeks);
     let search = Search {
         balls,
         clusters,
         seeks,
+        known,
     };
-    let groups = Groups::new(clusters);
-    let meetings = Meetings::new(balls, &groups, seeks);
-    let mut pairs = search.among_small(&groups, &meetings);
-    let of_large: Vec<Vec<[u32; 2]>> = (0..meetings.large.len())
+    let mut pairs = search.among_small();
+    let of_large: Vec<Vec<[u32; 2]>> = (0..known.large.len())
         .into_par_iter()
-        .map(|n| search.of_large(&groups, &meetings, n))
+        .map(|n| search.of_large(n))
         .collect();
     pairs.extend(of_large.into_iter().flatten());
     if !pairs.is_sorted() {
@@ -67,6 +68,7 @@ struct Search<'a> {
     balls: &'a [Ball],
     clusters: &'a [u32],
     seeks: Option<&'a [bool]>,
+    known: &'a KnownClusters,
 }
 
 impl Search<'_> {
@@ -83,22 +85,33 @@ impl Search<'_> {
     }
 
     /// Pairs of the large cluster of this place in the list with those that come after it.
-    fn of_large(&self, groups: &Groups, meetings: &Meetings, n: usize) -> Vec<[u32; 2]> {
-        let a = &meetings.large[n];
+    fn of_large(&self, n: usize) -> Vec<[u32; 2]> {
+        let a = &self.known.large[n];
         let mut pairs = Vec::new();
-        let reaches = |b: &&Large| b.bounds.low[0] <= a.bounds.high[0];
-        for b in meetings.large[n + 1..].iter().take_while(reaches) {
-            if !(a.seeks || b.seeks) || !a.bounds.overlaps(&b.bounds) {
-                continue;
-            }
-            let common = a.bounds.common(&b.bounds);
-            let of_a: Vec<u32> = a.within(&common, self.balls, groups).collect();
-            if !of_a.is_empty() {
-                let of_b: Vec<u32> = b.within(&common, self.balls, groups).collect();
+        let reaches = |b: &&LargeCluster| b.bounds.low[0] <= a.bounds.high[0];
+        for b in self.known.large[n + 1..].iter().take_while(reaches) {
+            if (a.seeks || b.seeks) && a.bounds.overlaps(&b.bounds) {
+                let [of_a, of_b] = self.meeting_place(a, b);
                 self.between(&of_a, &of_b, &mut pairs);
             }
         }
         pairs
+    }
+
+    /// The balls of each of two clusters that may overlap one of the other.
+    fn meeting_place(&self, a: &LargeCluster, b: &LargeCluster) -> [Vec<u32>; 2] {
+        let groups = &self.known.groups;
+        let mut room = a.bounds.common(&b.bounds);
+        // What one of them has there narrows down where the other can meet it.
+        for large in [a, b, a, b] {
+            room = room.common(&large.blocks_within(&room));
+        }
+        let mut of_a: Vec<u32> = a.within(&room, self.balls, groups).collect();
+        room = room.common(&box_of(&of_a, self.balls));
+        let of_b: Vec<u32> = b.within(&room, self.balls, groups).collect();
+        room = box_of(&of_b, self.balls);
+        of_a.retain(|&i| around(&self.balls[i as usize]).overlaps(&room));
+        [of_a, of_b]
     }
 
     /// Pairs between two lists of balls, of two clusters.
@@ -125,14 +138,15 @@ impl Search<'_> {
     }
 
     /// Pairs of which at least one is of a small cluster.
-    fn among_small(&self, groups: &Groups, meetings: &Meetings) -> Vec<[u32; 2]> {
-        let active = meetings.with_small(self.balls, groups);
+    fn among_small(&self) -> Vec<[u32; 2]> {
+        let groups = &self.known.groups;
+        let active = Meetings::new(self.balls, self.known, self.seeks).with_small(self.balls);
         if active.len() < 2 {
             return Vec::new();
         }
         let grids = Grids::new(self.balls, self.clusters, &active);
         let is_large = |i: u32| groups.is_large(self.clusters[i as usize]);
-        let any_large = !meetings.large.is_empty();
+        let any_large = !self.known.large.is_empty();
         let of_chunk = |some: &[u32]| {
             let mut pairs = Vec::new();
             for &i in some.iter().filter(|i| self.seeks(**i)) {

@@ -260,9 +260,10 @@ fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
 /// All spheres of a clump, as particles that move with it (Platzer 2022, section 4.5.4.1): x = c +
 /// R s, v = v_c + w x (R s).
 fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
+    let motion_at = clump.motion(template);
     for (sphere, sub) in template.spheres.iter().enumerate() {
         let pose = template.pose(sphere, clump);
-        let motion = clump.motion_at(template, &pose.place());
+        let motion = motion_at(&pose.place());
         new.poses.push(pose);
         new.motions.push(Motion {
             inverse_mass: 1.0 / sub.mass_kg,

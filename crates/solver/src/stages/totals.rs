@@ -17,6 +17,18 @@ use rayon::prelude::*;
 /// particle.
 pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     let p = &state.particles;
+    let mut motions = synchronous_motions_of_free(state);
+    for clump in synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s) {
+        let motion_at = clump.motion(state.clumps.template(&clump));
+        let spheres = &p.poses[state.clumps.spheres_of(&clump)];
+        motions.extend(spheres.iter().map(|pose| motion_at(&pose.place())));
+    }
+    motions
+}
+
+/// The same for free particles only.
+pub fn synchronous_motions_of_free(state: &State) -> Vec<Motion> {
+    let p = &state.particles;
     let half_s = 0.5 * state.time_step_s;
     let resistances = state.scratch.resistances();
     let back = |i: usize| {
@@ -47,15 +59,6 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
         .with_min_len(CHUNK)
         .map(back)
         .collect();
-    for clump in synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s) {
-        let template = state.clumps.template(&clump);
-        let spheres = &p.poses[state.clumps.spheres_of(&clump)];
-        motions.extend(
-            spheres
-                .iter()
-                .map(|pose| clump.motion_at(template, &pose.place())),
-        );
-    }
     let steps_s = state.steps_s();
     let holds =
         |support: &&GroupSupport| support.phase(state.time_s, steps_s) == SupportPhase::Holds;

@@ -1,5 +1,7 @@
 //! Where particles were when their neighbours were last searched for.
 
+use super::groups::KnownClusters;
+
 /// Centre x, y, z and radius, m.
 pub type Ball = [f64; 4];
 
@@ -16,6 +18,8 @@ pub struct References {
     pub clumps: Vec<ClumpReference>,
     /// Particles to be searched for again, wherever they are: those of new fragments.
     pub due: Vec<u32>,
+    /// The clusters.
+    pub clusters: KnownClusters,
 }
 
 /// A clump at the last search for its neighbours.

@@ -1,7 +1,6 @@
 //! The contact laws and rolling friction models available to a pair of materials: the one place
 //! that lists them. See `doc/adding-a-model.md` for how to add another.
 
-use super::assembly::{Assembled, StoredContact, assemble};
 use super::dmt::DerjaguinMullerToporov;
 use super::hertz_mindlin::HertzMindlin;
 use super::kinematics::ContactKinematics;
@@ -129,28 +128,5 @@ impl ContactKind {
             }
         }
         self.with(|number| number, Linearise(touch))
-    }
-
-    /// Result for a contact after a step of `dt`, s: see [`assemble`].
-    pub(crate) fn assemble(
-        &self,
-        touch: &ContactKinematics,
-        before: &StoredContact,
-        least_overlap: f64,
-        dt: f64,
-    ) -> Assembled {
-        struct Assemble<'a>(&'a ContactKinematics, &'a StoredContact, f64, f64);
-        impl ContactWork<f64> for Assemble<'_> {
-            type Output = Assembled;
-
-            fn with(
-                self,
-                law: &impl NormalLaw<f64>,
-                rolling: &impl RollingFriction<f64>,
-            ) -> Assembled {
-                assemble(law, rolling, self.0, self.1, self.2, self.3)
-            }
-        }
-        self.with(|number| number, Assemble(touch, before, least_overlap, dt))
     }
 }
