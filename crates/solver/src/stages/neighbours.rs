@@ -17,12 +17,15 @@ use rayon::prelude::*;
 use self::grid::{Grids, Seeker};
 use self::meetings::Meetings;
 use super::chunks::CHUNK;
+use super::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
+use crate::geometry::Bounds;
+use crate::physics::number::Vec3;
 use crate::state::groups::{KnownClusters, LargeCluster, around, box_of};
 use crate::state::particles::Pose;
 use crate::state::references::Ball;
 
-/// Up to this number of tests, two lists of balls are compared one by one.
-const FEW_TESTS: usize = 4096;
+/// Up to this number of tests, two lists of balls are compared without a grid.
+const FEW_TESTS: usize = 1 << 20;
 
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the
 /// smaller index first, sorted. `clusters`: one for each particle.
@@ -114,7 +117,7 @@ impl Search<'_> {
         [of_a, of_b]
     }
 
-    /// Pairs between two lists of balls, of two clusters.
+    /// Adds the pairs between two lists of balls, of two clusters.
     fn between(&self, of_a: &[u32], of_b: &[u32], pairs: &mut Vec<[u32; 2]>) {
         if of_a.len() * of_b.len() > FEW_TESTS {
             let grids = Grids::new(self.balls, self.clusters, of_b);
@@ -124,17 +127,21 @@ impl Search<'_> {
             }
             return;
         }
-        for &i in of_a {
-            let [px, py, pz, radius_m] = self.balls[i as usize];
-            for &j in of_b {
-                let [ox, oy, oz, other_m] = self.balls[j as usize];
-                let (apart, near) = ([ox - px, oy - py, oz - pz], radius_m + other_m);
-                let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                if square < near * near && (self.seeks(i) || self.seeks(j)) {
-                    pairs.push([i.min(j), i.max(j)]);
-                }
-            }
+        let mut columns = [0, 1, 2, 3].map(|k| {
+            let column = of_b.iter().map(|&j| self.balls[j as usize][k]);
+            column.collect::<Vec<f64>>()
+        });
+        for column in &mut columns {
+            // So far away that nothing overlaps it.
+            column.resize(of_b.len().next_multiple_of(MOST), f64::INFINITY);
         }
+        with_most_lanes(AllTests {
+            search: self,
+            of_a,
+            of_b,
+            columns: &columns,
+            pairs,
+        });
     }
 
     /// Pairs of which at least one is of a small cluster.
@@ -164,5 +171,54 @@ impl Search<'_> {
         };
         let chunks: Vec<Vec<[u32; 2]>> = active.par_chunks(CHUNK).map(of_chunk).collect();
         chunks.concat()
+    }
+}
+
+/// Tests of all balls of a list against all of another: in groups of which the boxes overlap.
+struct AllTests<'a> {
+    search: &'a Search<'a>,
+    of_a: &'a [u32],
+    of_b: &'a [u32],
+    /// Centres x, y, z and radii of the second list, m, padded to whole lanes.
+    columns: &'a [Vec<f64>; 4],
+    pairs: &'a mut Vec<[u32; 2]>,
+}
+
+impl LaneWork for AllTests<'_> {
+    #[inline(always)]
+    fn with<T: Lanes>(mut self, proof: T::Proof) {
+        let search = self.search;
+        let box_of = |some: &[u32]| box_of(some, search.balls);
+        let boxes: Vec<Bounds> = self.of_b.chunks(MOST).map(box_of).collect();
+        for some in self.of_a.chunks(MOST) {
+            let room = box_of(some);
+            for (n, _) in boxes.iter().enumerate().filter(|(_, b)| b.overlaps(&room)) {
+                for first in (n * MOST..(n + 1) * MOST).step_by(T::COUNT) {
+                    self.test::<T>(proof, some, first);
+                }
+            }
+        }
+    }
+}
+
+impl AllTests<'_> {
+    /// Tests some balls against those in the lanes of the second list from `first` on.
+    #[inline(always)]
+    fn test<T: Lanes>(&mut self, proof: T::Proof, some: &[u32], first: usize) {
+        let search = self.search;
+        let [ox, oy, oz, other_m] = [0, 1, 2, 3].map(|k| T::load(proof, &self.columns[k], first));
+        for &i in some {
+            let [x, y, z, radius_m] = search.balls[i as usize].map(|c| T::all(proof, c));
+            let apart = Vec3(ox - x, oy - y, oz - z);
+            let near = radius_m + other_m;
+            let mut bits = (near * near).above(apart.square());
+            while bits != 0 {
+                let j = self.of_b[first + bits.trailing_zeros() as usize];
+                bits &= bits - 1;
+                if search.seeks(i) || search.seeks(j) {
+                    self.pairs.push([i.min(j), i.max(j)]);
+                }
+            }
+        }
     }
 }
