@@ -20,12 +20,9 @@ use super::chunks::CHUNK;
 use super::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
-use crate::state::groups::{KnownClusters, LargeCluster, around, box_of};
+use crate::state::groups::{KnownClusters, LargeCluster};
 use crate::state::particles::Pose;
 use crate::state::references::Ball;
-
-/// Up to this number of tests, two lists of balls are compared without a grid.
-const FEW_TESTS: usize = 1 << 20;
 
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the
 /// smaller index first, sorted. `clusters`: one for each particle.
@@ -89,59 +86,13 @@ impl Search<'_> {
 
     /// Pairs of the large cluster of this place in the list with those that come after it.
     fn of_large(&self, n: usize) -> Vec<[u32; 2]> {
-        let a = &self.known.large[n];
         let mut pairs = Vec::new();
-        let reaches = |b: &&LargeCluster| b.bounds.low[0] <= a.bounds.high[0];
-        for b in self.known.large[n + 1..].iter().take_while(reaches) {
-            if (a.seeks || b.seeks) && a.bounds.overlaps(&b.bounds) {
-                let [of_a, of_b] = self.meeting_place(a, b);
-                self.between(&of_a, &of_b, &mut pairs);
-            }
-        }
-        pairs
-    }
-
-    /// The balls of each of two clusters that may overlap one of the other.
-    fn meeting_place(&self, a: &LargeCluster, b: &LargeCluster) -> [Vec<u32>; 2] {
-        let groups = &self.known.groups;
-        let mut room = a.bounds.common(&b.bounds);
-        // What one of them has there narrows down where the other can meet it.
-        for large in [a, b, a, b] {
-            room = room.common(&large.blocks_within(&room));
-        }
-        let mut of_a: Vec<u32> = a.within(&room, self.balls, groups).collect();
-        room = room.common(&box_of(&of_a, self.balls));
-        let of_b: Vec<u32> = b.within(&room, self.balls, groups).collect();
-        room = box_of(&of_b, self.balls);
-        of_a.retain(|&i| around(&self.balls[i as usize]).overlaps(&room));
-        [of_a, of_b]
-    }
-
-    /// Adds the pairs between two lists of balls, of two clusters.
-    fn between(&self, of_a: &[u32], of_b: &[u32], pairs: &mut Vec<[u32; 2]>) {
-        if of_a.len() * of_b.len() > FEW_TESTS {
-            let grids = Grids::new(self.balls, self.clusters, of_b);
-            for &i in of_a {
-                let counts = |j: u32| self.seeks(i) || self.seeks(j);
-                grids.add_all_pairs(&self.seeker(i), counts, pairs);
-            }
-            return;
-        }
-        let mut columns = [0, 1, 2, 3].map(|k| {
-            let column = of_b.iter().map(|&j| self.balls[j as usize][k]);
-            column.collect::<Vec<f64>>()
-        });
-        for column in &mut columns {
-            // So far away that nothing overlaps it.
-            column.resize(of_b.len().next_multiple_of(MOST), f64::INFINITY);
-        }
-        with_most_lanes(AllTests {
+        with_most_lanes(LargeMeetings {
             search: self,
-            of_a,
-            of_b,
-            columns: &columns,
-            pairs,
+            of: n,
+            pairs: &mut pairs,
         });
+        pairs
     }
 
     /// Pairs of which at least one is of a small cluster.
@@ -174,46 +125,60 @@ impl Search<'_> {
     }
 }
 
-/// Tests of all balls of a list against all of another: in groups of which the boxes overlap.
-struct AllTests<'a> {
+/// Meetings of a large cluster with those that come after it in the list.
+struct LargeMeetings<'a> {
     search: &'a Search<'a>,
-    of_a: &'a [u32],
-    of_b: &'a [u32],
-    /// Centres x, y, z and radii of the second list, m, padded to whole lanes.
-    columns: &'a [Vec<f64>; 4],
+    of: usize,
     pairs: &'a mut Vec<[u32; 2]>,
 }
 
-impl LaneWork for AllTests<'_> {
+impl LaneWork for LargeMeetings<'_> {
     #[inline(always)]
     fn with<T: Lanes>(mut self, proof: T::Proof) {
-        let search = self.search;
-        let box_of = |some: &[u32]| box_of(some, search.balls);
-        let boxes: Vec<Bounds> = self.of_b.chunks(MOST).map(box_of).collect();
-        for some in self.of_a.chunks(MOST) {
-            let room = box_of(some);
-            for (n, _) in boxes.iter().enumerate().filter(|(_, b)| b.overlaps(&room)) {
-                for first in (n * MOST..(n + 1) * MOST).step_by(T::COUNT) {
-                    self.test::<T>(proof, some, first);
-                }
+        let large = &self.search.known.large;
+        let a = &large[self.of];
+        let reaches = |b: &&LargeCluster| b.bounds.low[0] <= a.bounds.high[0];
+        for b in large[self.of + 1..].iter().take_while(reaches) {
+            if (a.seeks || b.seeks) && a.bounds.overlaps(&b.bounds) {
+                self.meet::<T>(proof, a, b);
             }
         }
     }
 }
 
-impl AllTests<'_> {
-    /// Tests some balls against those in the lanes of the second list from `first` on.
+impl LargeMeetings<'_> {
+    /// Adds the pairs of two clusters: those of their blocks that overlap.
     #[inline(always)]
-    fn test<T: Lanes>(&mut self, proof: T::Proof, some: &[u32], first: usize) {
+    fn meet<T: Lanes>(&mut self, proof: T::Proof, a: &LargeCluster, b: &LargeCluster) {
+        let groups = &self.search.known.groups;
+        let mut room = a.bounds.common(&b.bounds);
+        // What one of them has there narrows down where the other can meet it.
+        for large in [a, b, a, b] {
+            let blocks = large.blocks_within(&room, groups).map(|(_, bounds)| bounds);
+            room = room.common(&blocks.fold(Bounds::EMPTY, |all, one| all.with(one)));
+        }
+        for (of_a, around_a) in a.blocks_within(&room, groups) {
+            for (of_b, _) in b.blocks_within(&room.common(around_a), groups) {
+                for some in of_b.chunks(T::COUNT) {
+                    self.test::<T>(proof, of_a, some);
+                }
+            }
+        }
+    }
+
+    /// Tests some balls against others, one for each lane.
+    #[inline(always)]
+    fn test<T: Lanes>(&mut self, proof: T::Proof, some: &[u32], others: &[u32]) {
         let search = self.search;
-        let [ox, oy, oz, other_m] = [0, 1, 2, 3].map(|k| T::load(proof, &self.columns[k], first));
+        let other = |lane: usize| others[lane.min(others.len() - 1)];
+        let [ox, oy, oz, other_m] = T::columns(proof, |lane| search.balls[other(lane) as usize]);
         for &i in some {
             let [x, y, z, radius_m] = search.balls[i as usize].map(|c| T::all(proof, c));
             let apart = Vec3(ox - x, oy - y, oz - z);
             let near = radius_m + other_m;
-            let mut bits = (near * near).above(apart.square());
+            let mut bits = (near * near).above(apart.square()) & (0xff >> (MOST - others.len()));
             while bits != 0 {
-                let j = self.of_b[first + bits.trailing_zeros() as usize];
+                let j = other(bits.trailing_zeros() as usize);
                 bits &= bits - 1;
                 if search.seeks(i) || search.seeks(j) {
                     self.pairs.push([i.min(j), i.max(j)]);

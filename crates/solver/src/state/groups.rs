@@ -81,10 +81,14 @@ impl LargeCluster {
         self.bounds = blocks.fold(Bounds::EMPTY, |all, one| all.with(one));
     }
 
-    /// Box around those of its blocks that reach into a box.
-    pub(crate) fn blocks_within(&self, room: &Bounds) -> Bounds {
-        let blocks = self.blocks.iter().filter(|block| block.overlaps(room));
-        blocks.fold(Bounds::EMPTY, |all, one| all.with(one))
+    /// The members and the boxes of its blocks that reach into a box.
+    pub(crate) fn blocks_within<'a>(
+        &'a self,
+        room: &'a Bounds,
+        groups: &'a Groups,
+    ) -> impl Iterator<Item = (&'a [u32], &'a Bounds)> {
+        let blocks = groups.members(self.group).chunks(BLOCK).zip(&self.blocks);
+        blocks.filter(|(_, bounds)| bounds.overlaps(room))
     }
 
     /// Its balls that reach into a box.
@@ -94,9 +98,8 @@ impl LargeCluster {
         balls: &'a [Ball],
         groups: &'a Groups,
     ) -> impl Iterator<Item = u32> + 'a {
-        let blocks = groups.members(self.group).chunks(BLOCK).zip(&self.blocks);
+        let blocks = self.blocks_within(room, groups);
         blocks
-            .filter(|(_, bounds)| bounds.overlaps(room))
             .flat_map(|(members, _)| members)
             .copied()
             .filter(|&i| around(&balls[i as usize]).overlaps(room))

@@ -16,10 +16,10 @@ use crate::state::references::{ClumpReference, References};
 /// Number of steps that a particle may go on at its present speed until its next search.
 const STEPS: f64 = 30.0;
 /// The same for a clump: its spheres are many, but few of them are near something.
-const STEPS_OF_CLUMP: f64 = 60.0;
+const STEPS_OF_CLUMP: f64 = 40.0;
 /// Largest distance that a clump may move between two searches, as a multiple of the radius of its
 /// largest sphere.
-const FARTHEST_OF_CLUMP: f64 = 2.0;
+const FARTHEST_OF_CLUMP: f64 = 1.0;
 /// A search is due when something has less than this fraction of its distance left.
 const NOW: f64 = 0.1;
 /// Then everything is searched for that has less than this fraction left: a free particle, and a
