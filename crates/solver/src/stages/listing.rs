@@ -2,9 +2,12 @@
 //! either.
 
 mod moved;
+mod renumbered;
 
 use dem_scene::WallMotion;
 use nalgebra::Vector3;
+
+pub(super) use self::renumbered::renumber_lists;
 
 use self::moved::{Due, due, find_left, may_be_due, refer_clump, refer_particle, use_up};
 use super::clumps;

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
+use crate::stages::listing::renumber_lists;
 use crate::stages::sleep::{count_sleepers, prepare_change};
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
@@ -31,6 +32,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         leaving,
     } = changes;
     let old = std::mem::take(&mut state.particles);
+    let old_firsts: Vec<u32> = state.clumps.all.iter().map(|clump| clump.first).collect();
     let mut near = std::mem::take(&mut state.clumps.near);
     let mut rebuilt = Rebuilt::of(&old);
     let mut clusters = state.clusters.take();
@@ -77,6 +79,8 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         // They belong together by construction.
         let _ = clusters.rebuild(&state.bonds);
     }
+    let is_new = |i: u32| materials_of_new[i as usize].is_some();
+    renumber_lists(state, &particles, is_new, &old_firsts);
     for created in &created {
         state.ledger.gain(strain_of(created, state));
     }
@@ -347,7 +351,6 @@ fn count_anew(
     // The next step computes damping forces before it needs them.
     state.divide();
     for wall in &mut state.walls {
-        wall.near.clear();
         wall.touching.retain_mut(|touch| {
             let before = touch.particle as usize;
             touch.particle = particles[before];
@@ -406,6 +409,4 @@ fn count_anew(
     remembered.sort_unstable_by_key(|(pair, _)| *pair);
     (contacts.pairs, contacts.histories) = remembered.into_iter().unzip();
     contacts.divide(count, state.scratch.threads);
-    // The next step searches for near pairs again.
-    contacts.search_all();
 }
