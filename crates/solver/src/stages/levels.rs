@@ -1,0 +1,544 @@
+//! Steps by body: which bodies may take longer steps, and the work on one group of them at a time.
+//!
+//! Leapfrog with a step of its own for each group. The kick at a common time at which the step of a
+//! body changes from h to H covers (h + H)/2, so that positions keep their second order.
+
+use nalgebra::Vector3;
+
+use super::stage::{NO_SAVING, Need, Stage};
+use crate::check::limit::{Bound, safe_step};
+use crate::check::linear::particle_contact_rates;
+use crate::stages::bonds::bond_strain;
+use crate::stages::contacts::overlap_m;
+use crate::state::State;
+use crate::state::events::Break;
+use crate::state::ledger::Work;
+use crate::state::levels::{CYCLE, Group, HIGHEST, Levels, Share, length};
+use crate::state::partitions::{Idle, Partition, STALE, divide_busy};
+use crate::state::walls::{Wall, WallContact, WallLoad};
+use dem_io::disjoint::{find, join};
+
+/// Steps by body.
+pub(crate) const LEVELS: Stage = Stage {
+    name: "steps by body",
+    within: None,
+    need: |state, scene| match (&state.levels, scene.run.steps_by_body) {
+        (Some(_), _) => Need::Needed(format!("steps of up to {CYCLE} times the time step")),
+        (None, true) => Need::LeftOut("no body can take twice the time step"),
+        (None, false) => Need::LeftOut("not asked for"),
+    },
+    bytes: |state| {
+        let Some(Levels { scratch, .. }) = &state.levels else {
+            return 0;
+        };
+        let of_group = |group: &Group| {
+            let listed = group.partitions.iter().flat_map(|one| &one.batches);
+            group.others.len() + listed.map(|batch| 4 * batch.which.listed()).sum::<usize>()
+        };
+        // Own step, block and level of each particle.
+        let of_particles = 13 * state.particles.len();
+        of_particles + scratch.groups.iter().map(of_group).sum::<usize>()
+    },
+    saving: NO_SAVING,
+};
+
+/// Interval between looks for bodies that may take longer steps, in time steps.
+const LOOK_EVERY: u64 = 64;
+/// A body gets a longer step only if that is below its limit by this factor: a step that changes
+/// all the time conserves energy less well.
+const ROOM: f64 = 1.05;
+/// Two particles are near each other if they could touch after so many cycles at their present
+/// speeds. Less than two, so that no pair is near that is not listed.
+const AHEAD: f64 = 1.5;
+/// They are also near if the gap between them is below this fraction of the sum of their radii.
+const NEAR: f64 = 1e-3;
+/// Number of particles and bonds of a group that justify a thread of their own.
+const WORTH_A_THREAD: usize = 5000;
+/// Largest fraction of the smallest radius of a body that its particles may move in a step.
+const FARTHEST: f64 = 0.5;
+
+/// Sets the levels of the bodies at a common time, and groups the particles. Returns the number of
+/// bodies whose level was looked for.
+pub(crate) fn set_levels(state: &mut State) -> usize {
+    let Some(levels) = &state.levels else {
+        return 0;
+    };
+    let is_new = levels.shares.is_empty();
+    let looks = is_new || state.steps.is_multiple_of(LOOK_EVERY) || have_met(state, levels);
+    let wanted = looks.then(|| wanted_levels(state, is_new));
+    let Some(levels) = &mut state.levels else {
+        return 0;
+    };
+    let changed = wanted.filter(|wanted| *wanted != levels.of_particle);
+    let is_changed = changed.is_some();
+    if let Some(now) = changed {
+        levels.scratch.before = std::mem::replace(&mut levels.of_particle, now);
+    }
+    if is_new || is_changed {
+        group(state);
+        share_out(state);
+    } else if levels.scratch.groups.is_empty() || is_stale(levels, state.broken_count) {
+        group(state);
+    } else if levels.scratch.is_relisted {
+        list_in_groups(state);
+    }
+    usize::from(looks)
+}
+
+/// Whether so many of the bonds that are computed have broken that it is worth to group again.
+fn is_stale(levels: &Levels, broken_count: u64) -> bool {
+    let computed = levels
+        .scratch
+        .groups
+        .iter()
+        .flat_map(|group| &group.partitions);
+    let computed: usize = computed.map(Partition::own_bonds).sum();
+    (broken_count - levels.scratch.broken_count) * STALE >= computed.max(1) as u64
+}
+
+/// Whether two particles of different levels are near each other.
+fn have_met(state: &State, levels: &Levels) -> bool {
+    let pairs = state.contacts.iter().flat_map(|contacts| &contacts.pairs);
+    let mut pairs = pairs.filter(|pair| {
+        let [a, b] = pair.map(|i| levels.of_particle[i as usize]);
+        a != b
+    });
+    pairs.any(|&pair| is_near(state, pair))
+}
+
+/// Whether two particles may touch in the coming cycle. It depends on places and motions only, not
+/// on when neighbours were searched for.
+fn is_near(state: &State, pair: [u32; 2]) -> bool {
+    let p = &state.particles;
+    let ends = pair.map(|i| i as usize);
+    let speeds = ends.map(|i| Vector3::from(p.motions[i].velocity_m_s).norm());
+    let radii = ends.map(|i| p.poses[i].radius_m());
+    let cycle_s = CYCLE as f64 * state.time_step_s;
+    let reach_m = AHEAD * cycle_s * (speeds[0] + speeds[1]) + NEAR * (radii[0] + radii[1]);
+    -overlap_m(&p.poses, pair) < reach_m
+}
+
+/// For each particle the level of its body: the highest that the limit of the body allows, and no
+/// higher than that of any body that it is near.
+pub(crate) fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
+    let (Some(rule), Some(levels)) = (&state.model.levels, &state.levels) else {
+        return Vec::new();
+    };
+    let ids = match &state.clusters {
+        Some(clusters) => &clusters.of_particle,
+        None => &rule.block_of,
+    };
+    let steps_s = largest_steps_s(state, ids);
+    let mut present = vec![0; steps_s.len()];
+    for (&id, &level) in ids.iter().zip(&levels.of_particle) {
+        present[id as usize] = if is_new { HIGHEST } else { level };
+    }
+    let allowed = |(step_s, present): (&f64, &u8)| {
+        let ratio = step_s / state.time_step_s;
+        level_of(ratio).min(level_of(ratio / ROOM).max(*present))
+    };
+    let mut of_body: Vec<u8> = steps_s.iter().zip(&present).map(allowed).collect();
+    let mut names: Vec<u32> = (0..of_body.len() as u32).collect();
+    for &pair in state.contacts.iter().flat_map(|contacts| &contacts.pairs) {
+        let [a, b] = pair.map(|i| ids[i as usize]);
+        if find(&mut names, a) != find(&mut names, b) && is_near(state, pair) {
+            join(&mut names, a, b);
+        }
+    }
+    let mut of_group = vec![HIGHEST; of_body.len()];
+    for (id, level) in of_body.iter().enumerate() {
+        let group = find(&mut names, id as u32) as usize;
+        of_group[group] = of_group[group].min(*level);
+    }
+    for (id, level) in of_body.iter_mut().enumerate() {
+        *level = of_group[find(&mut names, id as u32) as usize];
+    }
+    ids.iter().map(|&id| of_body[id as usize]).collect()
+}
+
+/// The highest level with steps of at most so many time steps.
+fn level_of(ratio: f64) -> u8 {
+    let fits = (1..=HIGHEST).filter(|&level| length(level) <= ratio);
+    fits.last().unwrap_or(0)
+}
+
+/// For each body, by the numbers of the bodies of its particles, a step that is stable as its bonds
+/// and contacts are now and in the first impacts, times the safety, s. Infinite for those that have
+/// ended.
+fn largest_steps_s(state: &State, ids: &[u32]) -> Vec<f64> {
+    let Some(rule) = &state.model.levels else {
+        return Vec::new();
+    };
+    let p = &state.particles;
+    let count = ids.iter().map(|&id| id as usize + 1).max().unwrap_or(0);
+    let mut members = vec![0_usize; count];
+    let mut own_s = vec![f64::INFINITY; count];
+    let mut rates = vec![[0.0_f64; 2]; count];
+    let mut impacts = vec![[0.0_f64; 2]; count];
+    let mut fastest_m_s = vec![0.0_f64; count];
+    let mut radii_m = vec![f64::INFINITY; count];
+    let materials = state.contacts.as_ref().map(|contacts| &contacts.materials);
+    let of_contacts = particle_contact_rates(state);
+    for (i, &id) in ids.iter().enumerate() {
+        let id = id as usize;
+        members[id] += 1;
+        own_s[id] = own_s[id].min(rule.own_step_s[i]);
+        radii_m[id] = radii_m[id].min(p.poses[i].radius_m());
+        let speed_m_s = Vector3::from(p.motions[i].velocity_m_s).norm();
+        fastest_m_s[id] = fastest_m_s[id].max(speed_m_s);
+        let impact = materials.and_then(|of| rule.impact_rates.get(usize::from(of[i])));
+        for n in 0..2 {
+            let of_contacts = of_contacts.get(i).map_or(0.0, |rates| rates[n]);
+            rates[id][n] = rates[id][n].max(of_contacts);
+            impacts[id][n] = impacts[id][n].max(impact.map_or(0.0, |rates| rates[n]));
+        }
+    }
+    let mut strains = vec![0.0_f64; count];
+    for at in (0..state.bonds.len()).filter(|&at| !state.bonds.is_broken(at)) {
+        let id = ids[state.bonds.ends[at][0] as usize] as usize;
+        strains[id] = strains[id].max(bond_strain(&state.bonds, &p.poses, at));
+    }
+    let step_s = |id: usize| {
+        let own_s = if members[id] == 1 {
+            f64::INFINITY
+        } else {
+            own_s[id]
+        };
+        // Transverse stiffness of a bond grows with the square of its levers.
+        let bound = Bound {
+            step_s: own_s / (1.0 + strains[id]).powi(2),
+            is_damped: rule.is_damped,
+        };
+        let ([k, c], [impact_k, impact_c]) = (rates[id], impacts[id]);
+        let [safety, share] = rule.safety;
+        let stable_s = safety * bound.with_more([k.max(impact_k), c.max(impact_c)]);
+        let resolved_s = share * safe_step(impact_k, impact_c);
+        let way_s = FARTHEST * radii_m[id] / fastest_m_s[id];
+        stable_s.min(resolved_s).min(way_s)
+    };
+    (0..count).map(step_s).collect()
+}
+
+/// Puts the particles that make the same steps, now and just before, into groups.
+fn group(state: &mut State) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    let before = &levels.scratch.before;
+    let both = |i: usize| {
+        let now = levels.of_particle[i];
+        [before.get(i).copied().unwrap_or(now), now]
+    };
+    let mut kinds: Vec<[u8; 2]> = (0..levels.of_particle.len()).map(both).collect();
+    let all = kinds.clone();
+    kinds.sort_unstable_by_key(|[before, now]| (*now, *before));
+    kinds.dedup();
+    let (bonds, free) = (&state.bonds, state.particles.free);
+    let of_kind = |levels: [u8; 2]| {
+        let others: Vec<bool> = all.iter().map(|other| *other != levels).collect();
+        let idle = Idle {
+            asleep: &others,
+            part_of: &[],
+        };
+        let particles = others.iter().filter(|other| !**other).count();
+        let own = bonds.ends.iter().filter(|ends| !others[ends[0] as usize]);
+        let worth = 1 + (particles + own.count()) / WORTH_A_THREAD;
+        let threads = state.scratch.threads.min(worth);
+        Group {
+            levels,
+            partitions: divide_busy(bonds, free, threads, idle),
+            others,
+            ..Group::default()
+        }
+    };
+    levels.scratch.groups = kinds.into_iter().map(of_kind).collect();
+    levels.scratch.broken_count = state.broken_count;
+    list_in_groups(state);
+}
+
+/// Divides the contacts of each group, and lists what is near walls and what touches them.
+fn list_in_groups(state: &mut State) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    levels.scratch.is_relisted = false;
+    let count = state.particles.len();
+    for group in &mut levels.scratch.groups {
+        if let Some(contacts) = &mut state.contacts {
+            contacts.divide(count, group.partitions.len());
+            group.contacts = std::mem::take(&mut contacts.scratch.partitions);
+            group.close_skin_left_m = 0.0;
+        }
+        let is_own = |i: u32| !group.others[i as usize];
+        let of_wall = |wall: &Wall| {
+            let near = wall.near.iter().copied().filter(|&i| is_own(i));
+            let touching = wall.touching.iter();
+            let touching = touching.filter(|touch| is_own(touch.particle)).copied();
+            (near.collect(), touching.collect())
+        };
+        group.walls = state.walls.iter().map(of_wall).collect();
+    }
+}
+
+/// Gives each group its part of the expected motion. Their sums stay what they are.
+fn share_out(state: &mut State) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    let (p, ledger) = (&state.particles, &state.ledger);
+    let share = |group: &Group| {
+        let mut share = Share::default();
+        for i in (0..p.free).filter(|&i| !group.others[i]) {
+            let mass_kg = 1.0 / p.motions[i].inverse_mass;
+            share.mass_kg += mass_kg;
+            for k in 0..3 {
+                let from_m = p.poses[i].position_m[k] - ledger.about_m[k];
+                share.first_moment[k] += mass_kg * from_m;
+                share.momentum[k] += mass_kg * p.motions[i].velocity_m_s[k];
+            }
+        }
+        share
+    };
+    let mut shares: Vec<Share> = levels.scratch.groups.iter().map(share).collect();
+    let sum = sum_of(&shares);
+    if let Some(first) = shares.first_mut() {
+        first.mass_kg += ledger.mass_kg - sum.mass_kg;
+        for k in 0..3 {
+            first.first_moment[k] += ledger.first_moment[k] - sum.first_moment[k];
+            first.momentum[k] += ledger.momentum[k] - sum.momentum[k];
+        }
+    }
+    levels.shares = shares;
+}
+
+fn sum_of(shares: &[Share]) -> Share {
+    shares.iter().fold(Share::default(), |mut sum, share| {
+        sum.mass_kg += share.mass_kg;
+        for k in 0..3 {
+            sum.first_moment[k] += share.first_moment[k];
+            sum.momentum[k] += share.momentum[k];
+        }
+        sum
+    })
+}
+
+/// Works on the groups one after the other at a common time, with the velocities before the kick.
+/// Afterwards the state holds what all of them have in common: loads of walls, contacts, breaks.
+pub(crate) fn in_all_groups(state: &mut State, work: impl Fn(&mut State)) {
+    let mut broken: Vec<Break> = Vec::new();
+    let mut pending = Work::default();
+    let mut walls = vec![OfWall::default(); state.walls.len()];
+    let mut pressed = None;
+    for n in 0..groups(state) {
+        in_group(state, n, &work);
+        broken.append(&mut state.scratch.events.broken);
+        // What comes after this time is not to be recorded by the groups that follow.
+        pending.add(&std::mem::take(&mut state.ledger.pending), 1.0);
+        for (sum, wall) in walls.iter_mut().zip(&mut state.walls) {
+            sum.add(wall);
+        }
+        let contacts = state.contacts.as_mut();
+        let found = contacts.and_then(|contacts| contacts.scratch.excessive_overlap.take());
+        pressed = pressed.or(found);
+    }
+    state.scratch.events.broken = broken;
+    state.ledger.pending = pending;
+    for (sum, wall) in walls.into_iter().zip(&mut state.walls) {
+        wall.push = sum.push;
+        wall.scratch.damping = sum.damping;
+        wall.scratch.elastic_j = sum.elastic_j;
+        wall.stiffness_n_m = sum.stiffness_n_m;
+        wall.pending_j = sum.pending_j;
+    }
+    if let Some(contacts) = &mut state.contacts {
+        contacts.scratch.excessive_overlap = pressed;
+    }
+    gather(state);
+}
+
+/// What the groups add to a wall.
+#[derive(Debug, Clone, Copy, Default)]
+struct OfWall {
+    push: WallLoad,
+    damping: WallLoad,
+    elastic_j: f64,
+    stiffness_n_m: f64,
+    pending_j: f64,
+}
+
+impl OfWall {
+    fn add(&mut self, wall: &mut Wall) {
+        let both = [
+            (&mut self.push, &wall.push),
+            (&mut self.damping, &wall.scratch.damping),
+        ];
+        for (sum, load) in both {
+            sum.add(load.force_n, load.torque_n_m, load.belt_w);
+        }
+        self.elastic_j += wall.scratch.elastic_j;
+        self.stiffness_n_m += wall.stiffness_n_m;
+        self.pending_j += std::mem::take(&mut wall.pending_j);
+    }
+}
+
+/// Works on the groups that have come to the present time, one after the other, between two common
+/// times. Breaks are kept for the next common time.
+pub(crate) fn in_groups_now(state: &mut State, work: impl Fn(&mut State)) {
+    for n in 0..groups(state) {
+        let level = state
+            .levels
+            .as_ref()
+            .map(|levels| levels.scratch.groups[n].levels[1]);
+        if level.is_some_and(|level| state.steps.is_multiple_of(1 << level)) {
+            in_group(state, n, &work);
+            let events = &mut state.scratch.events;
+            let broken = std::mem::take(&mut events.broken);
+            state
+                .unsearched
+                .extend(broken.iter().map(|broken| broken.bond));
+            let at = (state.steps, state.time_s);
+            events
+                .broken_between
+                .extend(broken.into_iter().map(|one| (at, one)));
+        }
+    }
+}
+
+fn groups(state: &State) -> usize {
+    (state.levels.as_ref()).map_or(0, |levels| levels.scratch.groups.len())
+}
+
+/// Works on a group: its arrays, its steps and its share of the ledger take the place of those of
+/// the state for a while.
+fn in_group(state: &mut State, n: usize, work: impl Fn(&mut State)) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    let mut group = std::mem::take(&mut levels.scratch.groups[n]);
+    levels.scratch.stepping = group.levels[1];
+    let [before, now] = group.levels.map(length);
+    swap_in(state, &mut group, n);
+    state.previous_time_step_s *= before;
+    state.time_step_s *= now;
+    work(state);
+    state.previous_time_step_s /= before;
+    state.time_step_s /= now;
+    swap_in(state, &mut group, n);
+    if let Some(levels) = &mut state.levels {
+        levels.scratch.groups[n] = group;
+    }
+}
+
+/// Exchanges the arrays of a group with those of the state.
+fn swap_in(state: &mut State, group: &mut Group, n: usize) {
+    use std::mem::swap;
+    swap(&mut state.particles.asleep, &mut group.others);
+    swap(&mut state.scratch.partitions, &mut group.partitions);
+    if let Some(contacts) = &mut state.contacts {
+        contacts.scratch.is_of_group ^= true;
+        swap(&mut contacts.scratch.partitions, &mut group.contacts);
+        swap(&mut contacts.scratch.close_m, &mut group.close_m);
+        let left_m = &mut contacts.scratch.close_skin_left_m;
+        swap(left_m, &mut group.close_skin_left_m);
+        swap(&mut contacts.moved_m, &mut group.moved_m);
+    }
+    for (wall, (near, touching)) in state.walls.iter_mut().zip(&mut group.walls) {
+        swap(&mut wall.near, near);
+        swap(&mut wall.touching, touching);
+    }
+    if let Some(levels) = &mut state.levels {
+        let (share, ledger) = (&mut levels.shares[n], &mut state.ledger);
+        swap(&mut ledger.mass_kg, &mut share.mass_kg);
+        swap(&mut ledger.first_moment, &mut share.first_moment);
+        swap(&mut ledger.momentum, &mut share.momentum);
+    }
+}
+
+/// What follows from the drift of a group that is being stepped.
+pub(crate) fn note_drift(state: &mut State) {
+    let step_s = state.time_step_s;
+    state.ledger.drift(step_s);
+    if let Some(contacts) = &mut state.contacts {
+        contacts.moved_m = state.fastest_m_s * step_s;
+        contacts.scratch.close_skin_left_m -= contacts.moved_m;
+    }
+    let moved = &state.scratch.chunks_moved_m;
+    let fastest_m_s = state.fastest_m_s;
+    let awake = state.particles.asleep.iter().filter(|other| !**other);
+    let awake = awake.count() as u64;
+    if let Some(levels) = &mut state.levels {
+        levels.particle_steps[1] += awake;
+        let scratch = &mut levels.scratch;
+        let steps = CYCLE as f64 / length(scratch.stepping);
+        scratch.fastest_m_s = scratch.fastest_m_s.max(fastest_m_s);
+        scratch.chunks_moved_m.resize(moved.len(), 0.0);
+        for (all_m, moved_m) in scratch.chunks_moved_m.iter_mut().zip(moved) {
+            *all_m = all_m.max(steps * moved_m);
+        }
+    }
+}
+
+/// Joins the groups that make the same steps from now on, after a kick in which levels changed.
+pub(crate) fn join_groups(state: &mut State) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    state.scratch.events.broken_between.clear();
+    levels.scratch.fastest_m_s = 0.0;
+    levels.scratch.chunks_moved_m.clear();
+    levels.particle_steps[0] += CYCLE * levels.of_particle.len() as u64;
+    if levels.scratch.before.is_empty() {
+        return;
+    }
+    levels.scratch.before.clear();
+    let of_groups = levels.scratch.groups.iter().zip(&levels.shares);
+    let mut shares: Vec<(u8, Share)> = Vec::new();
+    for (group, share) in of_groups {
+        match shares.last_mut() {
+            Some((level, sum)) if *level == group.levels[1] => *sum = sum_of(&[*sum, *share]),
+            _ => shares.push((group.levels[1], *share)),
+        }
+    }
+    levels.shares = shares.into_iter().map(|(_, share)| share).collect();
+    group(state);
+}
+
+/// Advances the time by one time step.
+pub(crate) fn tick(state: &mut State) {
+    state.time_s += state.time_step_s;
+    state.previous_time_step_s = state.time_step_s;
+    state.steps += 1;
+}
+
+/// Whether all groups are at the present time.
+pub(crate) fn is_common_time(state: &State) -> bool {
+    state.steps.is_multiple_of(CYCLE)
+}
+
+/// Puts together what belongs to all groups, at the end of a cycle.
+pub(crate) fn end_cycle(state: &mut State) {
+    gather(state);
+    if let Some(levels) = &mut state.levels {
+        let sum = sum_of(&levels.shares);
+        (state.ledger.momentum, state.ledger.first_moment) = (sum.momentum, sum.first_moment);
+        state.fastest_m_s = levels.scratch.fastest_m_s;
+        let moved_m = &mut levels.scratch.chunks_moved_m;
+        std::mem::swap(&mut state.scratch.chunks_moved_m, moved_m);
+    }
+}
+
+/// Puts together the contacts of all groups with walls, and the expected momentum.
+fn gather(state: &mut State) {
+    let Some(levels) = &state.levels else {
+        return;
+    };
+    for (n, wall) in state.walls.iter_mut().enumerate() {
+        wall.touching.clear();
+        let of_groups = levels.scratch.groups.iter();
+        let of_groups = of_groups.filter_map(|group| group.walls.get(n));
+        wall.touching
+            .extend(of_groups.flat_map(|(_, touching): &(_, Vec<WallContact>)| touching));
+        wall.touching.sort_by_key(|touch| touch.particle);
+    }
+    state.ledger.momentum = sum_of(&levels.shares).momentum;
+}
