@@ -22,8 +22,8 @@ use crate::stages::ledger::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
 };
 use crate::stages::levels::{
-    LEVELS, end_cycle, in_all_groups, in_groups_now, is_common_time, join_groups, note_drift,
-    set_levels, tick,
+    LEVELS, end_cycle, in_all_groups, in_groups_now, is_common_time, join_groups, keep_breaks,
+    note_drift, set_levels, tick,
 };
 use crate::stages::listing::{SEARCH, renew_lists, use_up_skin};
 use crate::stages::loads::{LOADS, apply_loads};
@@ -169,6 +169,7 @@ pub fn drift(state: &mut State) {
     while !is_common_time(state) {
         in_groups_now(state, |state| {
             interact_group(state);
+            keep_breaks(state);
             drift_group(state);
         });
         tick(state);
@@ -180,7 +181,7 @@ pub fn drift(state: &mut State) {
 }
 
 fn interact_group(state: &mut State) {
-    let is_own = |stage: &Stage| !OF_ALL.concat().contains(&stage);
+    let is_own = |stage: &Stage| !OF_ALL.iter().any(|some| some.contains(&stage));
     run(INTERACT, &TABLE.interact, state, is_own);
 }
 

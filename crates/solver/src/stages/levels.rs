@@ -48,7 +48,7 @@ const LOOK_EVERY: u64 = 64;
 /// all the time conserves energy less well.
 const ROOM: f64 = 1.05;
 /// Two particles are near each other if they could touch after so many cycles at their present
-/// speeds. Less than two, so that no pair is near that is not listed.
+/// relative speed. Less than two, so that no pair is near that is not listed.
 const AHEAD: f64 = 1.5;
 /// They are also near if the gap between them is below this fraction of the sum of their radii.
 const NEAR: f64 = 1e-3;
@@ -111,10 +111,10 @@ fn have_met(state: &State, levels: &Levels) -> bool {
 fn is_near(state: &State, pair: [u32; 2]) -> bool {
     let p = &state.particles;
     let ends = pair.map(|i| i as usize);
-    let speeds = ends.map(|i| Vector3::from(p.motions[i].velocity_m_s).norm());
+    let [a, b] = ends.map(|i| Vector3::from(p.motions[i].velocity_m_s));
     let radii = ends.map(|i| p.poses[i].radius_m());
     let cycle_s = CYCLE as f64 * state.time_step_s;
-    let reach_m = AHEAD * cycle_s * (speeds[0] + speeds[1]) + NEAR * (radii[0] + radii[1]);
+    let reach_m = AHEAD * cycle_s * (b - a).norm() + NEAR * (radii[0] + radii[1]);
     -overlap_m(&p.poses, pair) < reach_m
 }
 
@@ -382,26 +382,26 @@ impl OfWall {
 }
 
 /// Works on the groups that have come to the present time, one after the other, between two common
-/// times. Breaks are kept for the next common time.
+/// times.
 pub(crate) fn in_groups_now(state: &mut State, work: impl Fn(&mut State)) {
     for n in 0..groups(state) {
-        let level = state
-            .levels
-            .as_ref()
-            .map(|levels| levels.scratch.groups[n].levels[1]);
-        if level.is_some_and(|level| state.steps.is_multiple_of(1 << level)) {
+        let of_group = |levels: &Levels| levels.scratch.groups[n].levels[1];
+        let level = state.levels.as_ref().map_or(0, of_group);
+        if state.steps.is_multiple_of(1 << level) {
             in_group(state, n, &work);
-            let events = &mut state.scratch.events;
-            let broken = std::mem::take(&mut events.broken);
-            state
-                .unsearched
-                .extend(broken.iter().map(|broken| broken.bond));
-            let at = (state.steps, state.time_s);
-            events
-                .broken_between
-                .extend(broken.into_iter().map(|one| (at, one)));
         }
     }
+}
+
+/// Keeps the bonds that a group has just broken for the next common time.
+pub(crate) fn keep_breaks(state: &mut State) {
+    let at = (state.steps, state.time_s);
+    let events = &mut state.scratch.events;
+    let broken = events.broken.drain(..);
+    let first = events.broken_between.len();
+    events.broken_between.extend(broken.map(|one| (at, one)));
+    let new = events.broken_between[first..].iter();
+    state.unsearched.extend(new.map(|(_, one)| one.bond));
 }
 
 fn groups(state: &State) -> usize {
@@ -484,6 +484,7 @@ pub(crate) fn join_groups(state: &mut State) {
         return;
     };
     state.scratch.events.broken_between.clear();
+    levels.scratch.broken = std::mem::take(&mut state.scratch.events.broken);
     levels.scratch.fastest_m_s = 0.0;
     levels.scratch.chunks_moved_m.clear();
     levels.particle_steps[0] += CYCLE * levels.of_particle.len() as u64;
@@ -522,6 +523,7 @@ pub(crate) fn end_cycle(state: &mut State) {
         let sum = sum_of(&levels.shares);
         (state.ledger.momentum, state.ledger.first_moment) = (sum.momentum, sum.first_moment);
         state.fastest_m_s = levels.scratch.fastest_m_s;
+        state.scratch.events.broken = std::mem::take(&mut levels.scratch.broken);
         let moved_m = &mut levels.scratch.chunks_moved_m;
         std::mem::swap(&mut state.scratch.chunks_moved_m, moved_m);
     }

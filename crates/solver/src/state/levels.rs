@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::contacts::ContactPartition;
+use super::events::Break;
 use super::partitions::Partition;
 use super::walls::WallContact;
 
@@ -50,6 +51,15 @@ pub struct Levels {
     pub(crate) scratch: LevelScratch,
 }
 
+impl Levels {
+    /// Fraction of particle updates that was skipped because bodies took longer steps; 0 before the
+    /// first step.
+    pub(crate) fn updates_skipped(&self) -> f64 {
+        let [all, done] = self.particle_steps.map(|count| count as f64);
+        if all > 0.0 { 1.0 - done / all } else { 0.0 }
+    }
+}
+
 /// Part of the ledger that belongs to the particles of a group.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Share {
@@ -69,6 +79,8 @@ pub(crate) struct LevelScratch {
     pub(crate) stepping: u8,
     /// Number of bonds that had broken when the groups were made.
     pub(crate) broken_count: u64,
+    /// Bonds that broke at the last common time, kept until the next.
+    pub(crate) broken: Vec<Break>,
     /// Whether pairs have been listed anew since the groups were made.
     pub(crate) is_relisted: bool,
     /// For each particle its level in the step just made. Empty: the present one.
