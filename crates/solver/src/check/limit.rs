@@ -237,7 +237,7 @@ pub(super) fn clear_trial_wrenches(state: &mut State) {
 
 /// A step that is not too long, from another and the largest eigenvalue there of M^-1 (dt^2/4 K +
 /// dt/2 C): it grows at least with the step and at most with its square.
-pub(super) fn not_too_long(step_s: f64, value: f64) -> f64 {
+fn not_too_long(step_s: f64, value: f64) -> f64 {
     if value < 1.0 {
         step_s / value.sqrt()
     } else {

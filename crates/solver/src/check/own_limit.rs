@@ -1,12 +1,11 @@
-//! The largest stable step of each body alone: the largest eigenvalues of all bodies at once, by
+//! Which steps are stable for each body alone: the largest eigenvalues of all bodies at once, by
 //! Lanczos' method on each.
 
 use dem_io::random::uniform;
 
 use super::limit::{
     Field, ITERATIONS, add_damping_times, add_stiffness_times, clear_trial_wrenches,
-    inverse_mass_roots, largest_ritz, not_too_long, restore_stiffness,
-    stiffen_by_structural_damping,
+    inverse_mass_roots, largest_ritz, restore_stiffness, stiffen_by_structural_damping,
 };
 use super::linear::Weights;
 use crate::state::State;
@@ -16,23 +15,27 @@ const RESIDUAL: f64 = 1e-4;
 /// Beyond the least number of iterations, one in so many asks whether it was enough.
 const EVERY: usize = 5;
 
-/// For each body a stable step, alone in space, s: its limit, if that is one of `steps_s` or below
-/// all of them and nothing is damped; otherwise less, but above each of `steps_s` that is below the
-/// limit. Infinite for single particles. `body_of`: the number of the body of each particle; bodies
-/// are not joined by bonds. Afterwards no wrench acts on any particle.
-pub(crate) fn own_steps_s(state: &mut State, body_of: &[u32], steps_s: &[f64]) -> Vec<f64> {
+/// For each body, alone in space, and each of these steps, s, the largest eigenvalue of M^-1
+/// (dt^2/4 K + dt/2 C): the step is stable where it is below 1; see [`super::limit::limit`]. 0 for
+/// single particles. `body_of`: the number of the body of each particle; bodies are not joined by
+/// bonds. Afterwards no wrench acts on any particle.
+pub(crate) fn own_eigenvalues<const N: usize>(
+    state: &mut State,
+    body_of: &[u32],
+    steps_s: [f64; N],
+) -> Vec<[f64; N]> {
     let bodies = body_of.iter().map(|&body| body as usize + 1).max();
-    let mut found_s = vec![0.0_f64; bodies.unwrap_or(0)];
+    let mut found = vec![[0.0; N]; bodies.unwrap_or(0)];
     let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
-    for &step_s in steps_s {
+    for (n, &step_s) in steps_s.iter().enumerate() {
         let values = largest_eigenvalues(state, Weights::of_step(1.0, step_s), body_of);
-        for (found_s, value) in found_s.iter_mut().zip(values) {
-            *found_s = found_s.max(not_too_long(step_s, value));
+        for (found, value) in found.iter_mut().zip(values) {
+            found[n] = value;
         }
     }
     restore_stiffness(&mut state.bonds, unstiffened);
     clear_trial_wrenches(state);
-    found_s
+    found
 }
 
 /// Lanczos' method on one body.

@@ -6,11 +6,11 @@ use dem_scene::Scene;
 
 use super::time_step::{StepChoice, share_of_impact};
 use crate::check::linear::at_impact_of;
-use crate::check::own_limit::own_steps_s;
-use crate::stages::levels::wanted_levels;
+use crate::check::own_limit::own_eigenvalues;
+use crate::stages::levels::any_longer;
 use crate::state::State;
 use crate::state::clusters::Clusters;
-use crate::state::levels::{CYCLE, HIGHEST, LevelRule, Levels, length};
+use crate::state::levels::{CYCLE, LevelRule, Levels, length};
 
 /// Gives bodies steps of their own, if the scene asks for them and any body can take a longer one;
 /// then the step is adapted to the end time, and fragments are searched for at common times.
@@ -22,15 +22,14 @@ pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoi
     let rule = level_rule(state, step, safety);
     state.model.levels = Some(Arc::new(rule));
     state.time_step_s = step.step_s;
+    if !any_longer(state) {
+        state.model.levels = None;
+        return;
+    }
     state.levels = Some(Levels {
         of_particle: vec![0; state.particles.len()],
         ..Levels::default()
     });
-    if wanted_levels(state, true).iter().all(|&level| level == 0) {
-        state.levels = None;
-        state.model.levels = None;
-        return;
-    }
     if !step.given {
         let cycles = scene.run.end_time_s / (CYCLE as f64 * step.step_s);
         // A step that fits is kept.
@@ -43,8 +42,8 @@ pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoi
 
 fn level_rule(state: &mut State, step: &StepChoice, safety: f64) -> LevelRule {
     let body_of = Clusters::new(state.particles.len(), &state.bonds).of_particle;
-    let longer = (1..=HIGHEST).map(|level| length(level) * step.step_s / safety);
-    let own_s = own_steps_s(state, &body_of, &longer.collect::<Vec<_>>());
+    let longer = std::array::from_fn(|n| length(n as u8 + 1) * step.step_s / safety);
+    let own = own_eigenvalues(state, &body_of, longer);
     let materials = state
         .contacts
         .as_ref()
@@ -54,10 +53,10 @@ fn level_rule(state: &mut State, step: &StepChoice, safety: f64) -> LevelRule {
         [k, c]
     };
     LevelRule {
-        own_step_s: body_of.iter().map(|&body| own_s[body as usize]).collect(),
-        is_damped: !state.scratch.bond_resistance.is_empty(),
+        own,
+        time_step_s: step.step_s,
         impact_rates: (0..materials).map(at_impact).collect(),
         safety: [safety, share_of_impact(state, safety)],
-        block_of: body_of,
+        body_of,
     }
 }

@@ -6,14 +6,14 @@
 use nalgebra::Vector3;
 
 use super::stage::{NO_SAVING, Need, Stage};
-use crate::check::limit::{Bound, safe_step};
+use crate::check::limit::safe_step;
 use crate::check::linear::particle_contact_rates;
 use crate::stages::bonds::bond_strain;
 use crate::stages::contacts::overlap_m;
 use crate::state::State;
 use crate::state::events::Break;
 use crate::state::ledger::Work;
-use crate::state::levels::{CYCLE, Group, HIGHEST, Levels, Share, length};
+use crate::state::levels::{CYCLE, Group, HIGHEST, LevelRule, Levels, Share, length};
 use crate::state::partitions::{Idle, Partition, STALE, divide_busy};
 use crate::state::walls::{Wall, WallContact, WallLoad};
 use dem_io::disjoint::{find, join};
@@ -35,15 +35,15 @@ pub(crate) const LEVELS: Stage = Stage {
             let listed = group.partitions.iter().flat_map(|one| &one.batches);
             group.others.len() + listed.map(|batch| 4 * batch.which.listed()).sum::<usize>()
         };
-        // Own step, block and level of each particle.
-        let of_particles = 13 * state.particles.len();
+        // Body and level of each particle.
+        let of_particles = 5 * state.particles.len();
         of_particles + scratch.groups.iter().map(of_group).sum::<usize>()
     },
     saving: NO_SAVING,
 };
 
 /// Interval between looks for bodies that may take longer steps, in time steps.
-const LOOK_EVERY: u64 = 64;
+const LOOK_EVERY: u64 = 9 * CYCLE;
 /// A body gets a longer step only if that is below its limit by this factor: a step that changes
 /// all the time conserves energy less well.
 const ROOM: f64 = 1.05;
@@ -118,26 +118,39 @@ fn is_near(state: &State, pair: [u32; 2]) -> bool {
     -overlap_m(&p.poses, pair) < reach_m
 }
 
+/// Number of the body or fragment of each particle.
+fn ids<'a>(state: &'a State, rule: &'a LevelRule) -> &'a [u32] {
+    let clusters = state.clusters.as_ref();
+    clusters.map_or(&rule.body_of, |clusters| &clusters.of_particle)
+}
+
+/// Whether a body can take steps of a level above the lowest while it is near no other.
+pub(crate) fn any_longer(state: &State) -> bool {
+    let Some(rule) = &state.model.levels else {
+        return false;
+    };
+    let bodies = bodies(state, rule, ids(state, rule));
+    let present = bodies.iter().filter(|body| body.particles > 0);
+    let levels = present.map(|body| body.highest(HIGHEST, state.time_step_s, rule));
+    levels.max() > Some(0)
+}
+
 /// For each particle the level of its body: the highest that the limit of the body allows, and no
 /// higher than that of any body that it is near.
-pub(crate) fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
+fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
     let (Some(rule), Some(levels)) = (&state.model.levels, &state.levels) else {
         return Vec::new();
     };
-    let ids = match &state.clusters {
-        Some(clusters) => &clusters.of_particle,
-        None => &rule.block_of,
-    };
-    let steps_s = largest_steps_s(state, ids);
-    let mut present = vec![0; steps_s.len()];
+    let ids = ids(state, rule);
+    let bodies = bodies(state, rule, ids);
+    let mut present = vec![0; bodies.len()];
     for (&id, &level) in ids.iter().zip(&levels.of_particle) {
         present[id as usize] = if is_new { HIGHEST } else { level };
     }
-    let allowed = |(step_s, present): (&f64, &u8)| {
-        let ratio = step_s / state.time_step_s;
-        level_of(ratio).min(level_of(ratio / ROOM).max(*present))
-    };
-    let mut of_body: Vec<u8> = steps_s.iter().zip(&present).map(allowed).collect();
+    let of_bodies = bodies.iter().zip(present);
+    let mut of_body: Vec<u8> = of_bodies
+        .map(|(body, present)| body.highest(present, state.time_step_s, rule))
+        .collect();
     let mut names: Vec<u32> = (0..of_body.len() as u32).collect();
     for &pair in state.contacts.iter().flat_map(|contacts| &contacts.pairs) {
         let [a, b] = pair.map(|i| ids[i as usize]);
@@ -156,67 +169,95 @@ pub(crate) fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
     ids.iter().map(|&id| of_body[id as usize]).collect()
 }
 
-/// The highest level with steps of at most so many time steps.
-fn level_of(ratio: f64) -> u8 {
-    let fits = (1..=HIGHEST).filter(|&level| length(level) <= ratio);
-    fits.last().unwrap_or(0)
+/// What limits the steps of a body or fragment.
+#[derive(Debug, Clone, Copy)]
+struct Body {
+    particles: usize,
+    /// Number of the body that it belonged to at the start: it is no stiffer than that.
+    first: u32,
+    /// Largest strain of its bonds.
+    strain: f64,
+    /// Upper bounds of the largest eigenvalues of its contacts, present and foreseen, 1/s2 and 1/s.
+    rates: [f64; 2],
+    /// The same of the first impacts alone.
+    impact: [f64; 2],
+    /// Largest speed of its particles, if they can touch anything.
+    fastest_m_s: f64,
+    smallest_m: f64,
 }
 
-/// For each body, by the numbers of the bodies of its particles, a step that is stable as its bonds
-/// and contacts are now and in the first impacts, times the safety, s. Infinite for those that have
-/// ended.
-fn largest_steps_s(state: &State, ids: &[u32]) -> Vec<f64> {
-    let Some(rule) = &state.model.levels else {
-        return Vec::new();
+impl Body {
+    const NONE: Self = Self {
+        particles: 0,
+        first: 0,
+        strain: 0.0,
+        rates: [0.0; 2],
+        impact: [0.0; 2],
+        fastest_m_s: 0.0,
+        smallest_m: f64::INFINITY,
     };
+
+    /// The highest level whose steps it may take with this time step, s: below its limit with some
+    /// room, if that is above the present level.
+    fn highest(&self, present: u8, time_step_s: f64, rule: &LevelRule) -> u8 {
+        let may = |level: &u8| {
+            let room = if *level > present { ROOM } else { 1.0 };
+            self.may_take(*level, room * time_step_s, rule)
+        };
+        (1..=HIGHEST).take_while(may).last().unwrap_or(0)
+    }
+
+    /// Whether it may take the steps of a level, of at least 1, with this time step, s.
+    fn may_take(&self, level: u8, time_step_s: f64, rule: &LevelRule) -> bool {
+        let [safety, share] = rule.safety;
+        let step_s = length(level) * time_step_s;
+        // The eigenvalue grows at least with the step and at most with its square.
+        let longer = time_step_s / rule.time_step_s;
+        let longer = longer.max(longer * longer);
+        // Transverse stiffness of a bond grows with the square of its levers.
+        let strained = (1.0 + self.strain).powi(2);
+        let own = match self.particles {
+            1 => 0.0,
+            _ => rule.own[self.first as usize][usize::from(level) - 1],
+        };
+        let h = step_s / safety;
+        let of_contacts = 0.25 * h * h * self.rates[0] + 0.5 * h * self.rates[1];
+        let is_stable = own * longer * strained + of_contacts <= 1.0;
+        let [k, c] = self.impact;
+        let is_resolved = step_s <= share * safe_step(k, c);
+        is_stable && is_resolved && step_s * self.fastest_m_s <= FARTHEST * self.smallest_m
+    }
+}
+
+/// The bodies and fragments, by the numbers of their particles.
+fn bodies(state: &State, rule: &LevelRule, ids: &[u32]) -> Vec<Body> {
     let p = &state.particles;
     let count = ids.iter().map(|&id| id as usize + 1).max().unwrap_or(0);
-    let mut members = vec![0_usize; count];
-    let mut own_s = vec![f64::INFINITY; count];
-    let mut rates = vec![[0.0_f64; 2]; count];
-    let mut impacts = vec![[0.0_f64; 2]; count];
-    let mut fastest_m_s = vec![0.0_f64; count];
-    let mut radii_m = vec![f64::INFINITY; count];
+    let mut bodies = vec![Body::NONE; count];
     let materials = state.contacts.as_ref().map(|contacts| &contacts.materials);
     let of_contacts = particle_contact_rates(state);
     for (i, &id) in ids.iter().enumerate() {
-        let id = id as usize;
-        members[id] += 1;
-        own_s[id] = own_s[id].min(rule.own_step_s[i]);
-        radii_m[id] = radii_m[id].min(p.poses[i].radius_m());
-        let speed_m_s = Vector3::from(p.motions[i].velocity_m_s).norm();
-        fastest_m_s[id] = fastest_m_s[id].max(speed_m_s);
+        let body = &mut bodies[id as usize];
+        body.particles += 1;
+        body.first = rule.body_of[i];
+        body.smallest_m = body.smallest_m.min(p.poses[i].radius_m());
+        if state.contacts.is_some() {
+            let speed_m_s = Vector3::from(p.motions[i].velocity_m_s).norm();
+            body.fastest_m_s = body.fastest_m_s.max(speed_m_s);
+        }
         let impact = materials.and_then(|of| rule.impact_rates.get(usize::from(of[i])));
+        let impact = impact.copied().unwrap_or_default();
+        let present = of_contacts.get(i).copied().unwrap_or_default();
         for n in 0..2 {
-            let of_contacts = of_contacts.get(i).map_or(0.0, |rates| rates[n]);
-            rates[id][n] = rates[id][n].max(of_contacts);
-            impacts[id][n] = impacts[id][n].max(impact.map_or(0.0, |rates| rates[n]));
+            body.impact[n] = body.impact[n].max(impact[n]);
+            body.rates[n] = body.rates[n].max(impact[n]).max(present[n]);
         }
     }
-    let mut strains = vec![0.0_f64; count];
     for at in (0..state.bonds.len()).filter(|&at| !state.bonds.is_broken(at)) {
-        let id = ids[state.bonds.ends[at][0] as usize] as usize;
-        strains[id] = strains[id].max(bond_strain(&state.bonds, &p.poses, at));
+        let body = &mut bodies[ids[state.bonds.ends[at][0] as usize] as usize];
+        body.strain = body.strain.max(bond_strain(&state.bonds, &p.poses, at));
     }
-    let step_s = |id: usize| {
-        let own_s = if members[id] == 1 {
-            f64::INFINITY
-        } else {
-            own_s[id]
-        };
-        // Transverse stiffness of a bond grows with the square of its levers.
-        let bound = Bound {
-            step_s: own_s / (1.0 + strains[id]).powi(2),
-            is_damped: rule.is_damped,
-        };
-        let ([k, c], [impact_k, impact_c]) = (rates[id], impacts[id]);
-        let [safety, share] = rule.safety;
-        let stable_s = safety * bound.with_more([k.max(impact_k), c.max(impact_c)]);
-        let resolved_s = share * safe_step(impact_k, impact_c);
-        let way_s = FARTHEST * radii_m[id] / fastest_m_s[id];
-        stable_s.min(resolved_s).min(way_s)
-    };
-    (0..count).map(step_s).collect()
+    bodies
 }
 
 /// Puts the particles that make the same steps, now and just before, into groups.

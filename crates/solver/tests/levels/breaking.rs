@@ -26,8 +26,8 @@ fn breaks_are_booked_and_told_once() {
     let text = head("run.end_time = 0.01\nrun.seed = 3\nrun.safety_factor = 0.3")
         + "bonds.soft-brittle = { young_modulus = 1e6, poisson_ratio = 0.25, failure = { tensile_strength = 2e4, weibull_modulus = 4 } }\n\
            bonds.hard-brittle = { young_modulus = 1e8, poisson_ratio = 0.25, failure = { tensile_strength = 2e6, weibull_modulus = 4 } }\n"
-        + &rod("a", "soft", "[0, 0, 0]", 250.0)
-        + &rod("b", "hard", "[0, 0, 1]", 2500.0)
+        + &rod("a", "soft", "[0, 0, 0]", 320.0)
+        + &rod("b", "hard", "[0, 0, 1]", 3200.0)
         + &pair("c", "soft", [0.0, 0.0, 2.0], [0.0; 3]);
     let mut state = planned(&text).state;
     let mut told = Vec::new();
