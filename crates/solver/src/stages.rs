@@ -18,6 +18,7 @@ pub(crate) mod inlets;
 pub(crate) mod intake;
 pub(crate) mod lanes;
 pub mod ledger;
+pub(crate) mod levels;
 pub(crate) mod listing;
 pub mod loads;
 pub mod motion;

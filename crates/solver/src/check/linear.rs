@@ -145,9 +145,24 @@ fn translation(answer: &Linearised) -> [f64; 2] {
 /// is twice the sum of its springs.
 pub fn contact_rates(state: &State) -> [f64; 2] {
     let contacts = linear_contacts(state);
+    let mut rates = clump_rates(state, &contacts);
+    for of_one in rates_of_particles(state, &contacts) {
+        for (rate, of_one) in rates.iter_mut().zip(of_one) {
+            *rate = rate.max(of_one);
+        }
+    }
+    rates
+}
+
+/// The same bounds for each free particle, from its contacts.
+pub(crate) fn particle_contact_rates(state: &State) -> Vec<[f64; 2]> {
+    rates_of_particles(state, &linear_contacts(state))
+}
+
+fn rates_of_particles(state: &State, contacts: &[LinearContact]) -> Vec<[f64; 2]> {
     let p = &state.particles;
     let mut sums = vec![[0.0; 2]; p.free];
-    for contact in &contacts {
+    for contact in contacts {
         for i in contact.ends.into_iter().flatten().map(|end| end as usize) {
             let Some(sum) = sums.get_mut(i) else { continue };
             let answer = &contact.answer;
@@ -158,13 +173,10 @@ pub fn contact_rates(state: &State) -> [f64; 2] {
             sum[1] += damping.max(turning * answer.rolling_damping_n_m_s);
         }
     }
-    let mut rates = clump_rates(state, &contacts);
-    for (sum, motion) in sums.into_iter().zip(&p.motions) {
-        for (rate, sum) in rates.iter_mut().zip(sum) {
-            *rate = rate.max(2.0 * sum * motion.inverse_mass);
-        }
+    for (sum, motion) in sums.iter_mut().zip(&p.motions) {
+        *sum = sum.map(|sum| 2.0 * sum * motion.inverse_mass);
     }
-    rates
+    sums
 }
 
 /// Weights of the two symmetric operators of a body in a sum.
@@ -233,7 +245,7 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f6
         .map(|kind| matters.least_overlap_m(&kind.law))
         .collect();
     // Whatever touches was close at the last check of all pairs.
-    let of_partition = |partition: &ContactPartition| {
+    let of_partition = |partition: &&ContactPartition| {
         let mut largest = 0.0_f64;
         for ((kind, [_, own]), least_m) in contacts
             .model
@@ -251,8 +263,8 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f6
         }
         largest
     };
-    let of_pairs =
-        (contacts.scratch.partitions.par_iter().map(of_partition)).reduce(|| 0.0, f64::max);
+    let partitions = state.contact_partitions();
+    let of_pairs = (partitions.par_iter().map(of_partition)).reduce(|| 0.0, f64::max);
     let of_walls = state.walls.iter().flat_map(|wall| {
         wall.touching.iter().map(|touch| {
             let i = touch.particle as usize;
@@ -297,6 +309,11 @@ impl StiffestContacts {
 /// its [rate](largest_contact_rate_1_s2), 1/s2. A particle pushed by a body behind it may overlap
 /// more.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
+    at_impact_of(state, speed_m_s, None)
+}
+
+/// The same for the particles of one material, or of all.
+pub(crate) fn at_impact_of(state: &State, speed_m_s: f64, only: Option<usize>) -> [f64; 3] {
     let Some(contacts) = &state.contacts else {
         return [0.0; 3];
     };
@@ -323,6 +340,9 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     };
     for (i, inverse_kg) in first_to_hit(state) {
         let material = usize::from(contacts.materials[i]);
+        if only.is_some_and(|only| only != material) {
+            continue;
+        }
         let row = &contacts.model.kind_of[material * materials..(material + 1) * materials];
         for &kind in row {
             if let Some(kind) = contacts.model.kinds.get(usize::from(kind)) {

@@ -17,6 +17,7 @@ use crate::output::sizes::Fragments;
 use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
 use crate::state::clusters::fragments as fragments_of;
 use crate::state::clusters::fragments::Fragment;
+use crate::state::levels::Levels;
 use crate::step::{advance, number_of, stages};
 
 impl Run<'_> {
@@ -163,6 +164,7 @@ impl Run<'_> {
             fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
             population: PopulationSummary::of(state),
             sleep: state.sleep.as_ref().map(SleepSummary::of),
+            updates_skipped_by_longer_steps: state.levels.as_ref().map(Levels::updates_skipped),
             steps: state.steps,
             time_step_s: state.time_step_s,
             adaptive: scene.run.adaptive.then(|| AdaptiveSummary {

@@ -133,7 +133,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     for &i in &due.particles {
         let i = i as usize;
         let speed_m_s = Vector3::from(state.particles.motions[i].velocity_m_s).norm();
-        let moved_m = speed_m_s * state.time_step_s;
+        let moved_m = speed_m_s * state.cycle_s();
         refer_particle(contacts, i, &state.particles.poses[i], moved_m);
     }
     for &at in &due.clumps {
@@ -168,6 +168,9 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     };
     list_near_spheres(state, &pairs);
     relist(contacts, pairs, &state.particles);
+    if let Some(levels) = &mut state.levels {
+        levels.scratch.is_relisted = true;
+    }
     if contacts.model.relaxes {
         state.scratch.events.work.relaxing += contacts.relaxing();
     }

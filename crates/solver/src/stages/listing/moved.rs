@@ -75,7 +75,7 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
     if !is_urgent(state, references) {
         return Some(Due::default());
     }
-    let step_s = state.time_step_s;
+    let step_s = state.cycle_s();
     let (loose, carried): (Vec<u32>, Vec<u32>) =
         references.due.iter().partition(|i| (**i as usize) < p.free);
     let is_due = |i: &u32| {
@@ -117,7 +117,7 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
             for i in chunk_of(p, chunk) {
                 let [left_m, allowance_m] = free_left_m(p, references, i);
                 least_m = least_m.min(left_m);
-                urgent |= particle_is_due(p, i, left_m, NOW * allowance_m, state.time_step_s);
+                urgent |= particle_is_due(p, i, left_m, NOW * allowance_m, state.cycle_s());
             }
             references.chunks_left_m[chunk] = least_m;
         }
