@@ -365,6 +365,13 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
             friction: table.read("joint_friction")?,
         },
     );
+    if let Some(field) = table.get("model").filter(|field| field.is("shen")) {
+        let problem = format!(
+            "{} is \"shen\", the bond with concave ends of Shen et al. 2016, which is not available: the sources at hand do not give its formulas",
+            field.path
+        );
+        return Err(field.refuse(problem, "write another model, such as \"parallel\""));
+    }
     let model = table
         .read_by("model", |field| field.choice(&known))?
         .unwrap_or(BondModel::Timoshenko);

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use dem_io::{Diagnostic, Result};
 
 use super::begin::Run;
-use super::events::{write_breaks, write_discharge, write_population, write_sleep, write_splits};
+use super::events::{
+    write_breaks, write_discharge, write_population, write_sleep, write_splits, write_zones,
+};
 use super::files::{interruption, save, with_checkpoint};
 use super::fragments::write_fragments;
 use super::limits::{CHECK_EVERY_STEPS, tunnelling};
@@ -138,6 +140,7 @@ impl Run<'_> {
     pub(super) fn follow(&mut self) -> Result<Option<Ended>> {
         let replaced = self.follow_population()?;
         if let Some(files) = &mut self.files {
+            write_zones(&self.state, files)?;
             write_sleep(&self.state, files)?;
         }
         let since = self

@@ -6,8 +6,8 @@ use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
 use super::{
-    adhesion, breakage, daughters, families, impact, joints, limit_map, long, softening, swap,
-    yielding,
+    adhesion, breakage, bridges, daughters, families, impact, joints, limit_map, long, softening,
+    swap, yielding,
 };
 
 /// A case of the suite.
@@ -107,6 +107,11 @@ pub const CASES: [Case; 21] = [
         name: "adhesion",
         extreme: "spheres of 1e-6 m to 1e-2 m that adhesion holds on a wall",
         members: |_| Ok(adhesion::grains()),
+    },
+    Case {
+        name: "bridges",
+        extreme: "spheres of 1e-4 m to 1e-2 m that liquid holds on a wall or lets go",
+        members: |_| Ok(bridges::drops()),
     },
     Case {
         name: "mesh-wall",

@@ -54,6 +54,7 @@ fn nothing_is_missing() {
         ("spin", [2, 0, 0]),
         ("impact", [42, 0, 3]),
         ("adhesion", [12, 0, 0]),
+        ("bridges", [12, 0, 0]),
         ("mesh-wall", [4, 1, 1]),
         ("coordinates", [4, 1, 0]),
         ("size", [8, 0, 0]),

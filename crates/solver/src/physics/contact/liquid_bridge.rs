@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 const LINEAR: f64 = 1.05;
 const SQUARE: f64 = 2.5;
 /// The largest of -d/dx of 1/(1 + 1.05 x + 2.5 x^2), which is at x = 0.1344.
-const STEEPEST: f64 = 1.223_7;
+const STEEPEST: f64 = 1.223_658;
 
 /// The bridges of a pair of materials.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
