@@ -61,7 +61,7 @@ fn the_gap_at_rupture_is_that_of_the_source() {
 fn force_energy_and_stiffness_belong_together() {
     let end_m = WATER.rupture_m();
     for radius_m in [BETWEEN_M, RADIUS_M, 10.0 * RADIUS_M] {
-        let h = 1e-5 * end_m;
+        let h = 2e-6 * end_m;
         for share in [-0.2, -1e-3, 1e-3, 0.05, 0.3, 0.9] {
             let gap_m = share * end_m;
             let energy = |gap_m: f64| WATER.energy_j(gap_m, radius_m);
@@ -72,7 +72,7 @@ fn force_energy_and_stiffness_belong_together() {
             let wanted = WATER.fall_n_m(gap_m, radius_m);
             assert!((fall - wanted).abs() <= 1e-7 * WATER.steepest_n_m(radius_m));
         }
-        let count = 2000;
+        let count = 20_000;
         let simpson: f64 = (0..=count)
             .map(|n| {
                 let weight = if n == 0 || n == count {
@@ -88,7 +88,8 @@ fn force_energy_and_stiffness_belong_together() {
             simpson * end_m / (3.0 * f64::from(count)),
             1e-10,
         );
-        let falls = (0..=count).map(|n| WATER.fall_n_m(end_m * f64::from(n) / 2000.0, radius_m));
+        let falls =
+            (0..=count).map(|n| WATER.fall_n_m(end_m * f64::from(n) / f64::from(count), radius_m));
         let steepest = falls.fold(0.0, f64::max);
         assert_near(steepest, WATER.steepest_n_m(radius_m), 1e-4);
         assert!(steepest <= WATER.steepest_n_m(radius_m));

@@ -105,7 +105,7 @@ fn the_critical_speed_is_that_of_the_work_of_the_bridge() {
     let critical_m_s = (2.0 * WATER.work_j(BETWEEN_M) / reduced_kg).sqrt();
     for (share, leaves) in [(0.5, false), (0.995, false), (1.005, true), (2.0, true)] {
         let speed_m_s = share * critical_m_s;
-        let mut state = meeting(speed_m_s, 4.0);
+        let mut state = meeting(speed_m_s, 20.0);
         let mut largest_m = f64::NEG_INFINITY;
         let mut error = 0.0_f64;
         while state.time_s < 3.0 * WATER.rupture_m() / critical_m_s || largest_m < 0.0 {
@@ -118,7 +118,7 @@ fn the_critical_speed_is_that_of_the_work_of_the_bridge() {
                 break;
             }
         }
-        assert!(error < 5e-3, "{share}: {error}");
+        assert!(error < 1e-3, "{share}: {error}");
         assert_eq!(
             largest_m > WATER.rupture_m(),
             leaves,
@@ -155,20 +155,20 @@ fn spheres_that_a_bridge_holds_apart_turn_around_each_other() {
     step_and_balance(&mut state);
     state.supports.clear();
     state.particles.poses[1].put_at([length_m, 0.0, 0.0]);
-    // Speed of a circle.
-    let force_n = WATER.force_n(0.3 * WATER.rupture_m(), BETWEEN_M);
-    let speed = (force_n * 0.5 * length_m / mass_kg()).sqrt();
+    // Speed of a circle. It is unstable, as the force falls fast: a short way.
+    let gap_m0 = 0.3 * WATER.rupture_m();
+    let speed = (WATER.force_n(gap_m0, BETWEEN_M) * 0.5 * length_m / mass_kg()).sqrt();
     state.particles.motions[0].velocity_m_s = [0.0, -speed, 0.0];
     state.particles.motions[1].velocity_m_s = [0.0, speed, 0.0];
-    let quarter_s = 0.25 * std::f64::consts::PI * length_m / speed;
-    let end_s = state.time_s + quarter_s;
-    while state.time_s < end_s {
+    let (start_s, duration_s) = (state.time_s, 5e-4);
+    while state.time_s < start_s + duration_s {
         step_and_balance(&mut state);
-        assert_near(gap_m(&state), 0.3 * WATER.rupture_m(), 2e-2);
+        assert_near(gap_m(&state), gap_m0, 1e-2);
     }
     let places = [0, 1].map(|i| state.particles.poses[i].place());
     let way: Vector3<f64> = (places[1] - places[0]).normalize();
-    assert!(way.y > 0.999, "{way}");
+    let angle = 2.0 * speed / length_m * (state.time_s - start_s);
+    assert_near(way.y, angle.sin(), 1e-2);
     let motions = &state.particles.motions;
     let sum = Vector3::from(motions[0].velocity_m_s) + Vector3::from(motions[1].velocity_m_s);
     assert!(sum.norm() < 1e-12 * speed);
