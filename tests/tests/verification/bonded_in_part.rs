@@ -76,7 +76,7 @@ fn totals(state: &State) -> (Vector3<f64>, Vector3<f64>, f64) {
 fn largest_changes(more: &str, steps: usize) -> ([f64; 3], [u64; 2]) {
     let body =
         format!("{FLIES}bonded_within = {{ region = \"zone\", moves_with = \"blade\"{more} }}");
-    let rest = region([-9.0, -9.0, 0.3031], [9.0; 3])
+    let rest = region([-9.0, -9.0, 0.3031], [9.0, 9.0, 0.3052])
         + "[contacts.stuff-stuff]\nrestitution = 0.5\n[walls.blade]\nbox = { min = [9, 9, 9], max = [9.1, 9.1, 9.1] }\n\
            material = \"stuff\"\nvelocity = [1, -2, 2]\nangular_velocity = [0, 0, 3]\n";
     let mut state = scene(", safety_factor = 0.3", [6, 3, 3], &body, &rest);
@@ -189,7 +189,7 @@ const SPHERES: usize = 12;
 fn settle(state: &mut State) {
     state.time_step_s *= 0.3;
     let mut before_j = 0.0;
-    for _ in 0..100_000 {
+    for _ in 0..400_000 {
         step(state);
         let now_j = totals(state).2;
         let turns = now_j < before_j;

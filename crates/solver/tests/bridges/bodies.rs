@@ -35,7 +35,7 @@ fn far(text: &str) -> String {
 fn a_bridge_pulls_at_a_clump_beyond_the_skin() {
     let clump = format!(
         "[bodies.rod]\nmaterial = \"glass\"\nstart_as = \"clump\"\nposition = [0, 0, {:e}]\n\
-         particles = [[0, 0, 0, {RADIUS_M:e}], [0, 0, {:e}, {RADIUS_M:e}]]\nvelocity = [0, 0, 0.05]\n",
+         particles = [[0, 0, 0, {RADIUS_M:e}], [0, 0, {:e}, {RADIUS_M:e}]]\nvelocity = [0, 0, 0.2]\n",
         2.0 * RADIUS_M - 1e-8,
         1.9 * RADIUS_M
     );
@@ -46,7 +46,7 @@ fn a_bridge_pulls_at_a_clump_beyond_the_skin() {
             1.0,
             "initial_overlap = \"keep\", safety_factor = 0.3"
         )),
-        ball("a", [0.0; 3], [0.0, 0.0, -0.05])
+        ball("a", [0.0; 3], [0.0, 0.0, -0.2])
     ));
     let volume = dem_run::physics::contact::liquid_bridge::LiquidBridge {
         volume_m3: 3e-10,

@@ -105,10 +105,10 @@ fn the_critical_speed_is_that_of_the_work_of_the_bridge() {
     let critical_m_s = (2.0 * WATER.work_j(BETWEEN_M) / reduced_kg).sqrt();
     for (share, leaves) in [(0.5, false), (0.995, false), (1.005, true), (2.0, true)] {
         let speed_m_s = share * critical_m_s;
-        let mut state = meeting(speed_m_s, 20.0);
+        let mut state = meeting(speed_m_s, 8.0);
         let mut largest_m = f64::NEG_INFINITY;
         let mut error = 0.0_f64;
-        while state.time_s < 3.0 * WATER.rupture_m() / critical_m_s || largest_m < 0.0 {
+        while state.time_s < 12.0 * WATER.rupture_m() / critical_m_s {
             let balance = step_and_balance(&mut state);
             error = error.max(balance.energy_error.abs());
             if bridges(&state).formed_and_ruptured[0] > 0 {

@@ -228,8 +228,7 @@ fn of_what_touches() {
         &with(&touches, &["rolling friction"]),
         &touches,
     );
-    let wet =
-        ", liquid_bridge = { surface_tension = \"73 mN/m\", volume = \"1 mm3\" }";
+    let wet = ", liquid_bridge = { surface_tension = \"73 mN/m\", volume = \"1 mm3\" }";
     expect(
         "liquid that nothing touches",
         &scene("", "", "", &other(1.0, wet)),
