@@ -241,7 +241,7 @@ fn beam() -> String {
         settle(&mut state);
         let found_m = start_m - place(&state, SPHERES - 1).y;
         let what = format!("{deform} of 11 bonds deform: deflection of the tip, um");
-        Case::new(what, 1e6 * found_m, 1e6 * wanted_m, 1e-4)
+        Case::new(what, 1e6 * found_m, 1e6 * wanted_m, 1e-6).rounding(1e-7)
     });
     compared("beam", "", &cases)
 }

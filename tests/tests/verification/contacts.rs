@@ -680,7 +680,7 @@ fn liquid_bridge() -> String {
                 format!("{name}: pull-off force, uN"),
                 found,
                 wanted,
-                1e-9,
+                1.05 * step_m / scale_m,
             ));
             let [found, wanted] = [gap_m, rupture_m].map(|x| 1e6 * x);
             cases.push(Case::new(
