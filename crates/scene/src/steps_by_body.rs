@@ -47,6 +47,9 @@ pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
         found.extend(body.get("start_as").filter(|field| field.is("clump")));
         found.extend(body.get("bonded_within"));
     }
+    for (_, contact) in root.named("contacts")? {
+        found.extend(Table::any(&contact)?.get("liquid_bridge"));
+    }
     let Some(field) = found.first() else {
         return Ok(());
     };

@@ -3,6 +3,7 @@
 pub(crate) mod blocks;
 pub mod bonds;
 pub mod breakage;
+pub(crate) mod bridges;
 pub(crate) mod chunks;
 pub mod clumps;
 mod cluster_bytes;

@@ -3,6 +3,7 @@
 
 pub mod bodies;
 pub mod bonds;
+pub mod bridges;
 pub mod clumps;
 pub mod clusters;
 pub mod contacts;
@@ -33,6 +34,7 @@ use serde::{Deserialize, Serialize};
 use crate::physics::bond::failure::CauseCounts;
 
 use self::bonds::{BondRule, Bonds};
+use self::bridges::Bridges;
 use self::clumps::Clumps;
 use self::clusters::Clusters;
 use self::contacts::{ContactPartition, Contacts};
@@ -76,6 +78,8 @@ pub struct State {
     pub population: Population,
     /// Contacts between particles of different clusters. None: nothing can touch.
     pub contacts: Option<Contacts>,
+    /// Liquid bridges. None: no materials are wet.
+    pub bridges: Option<Bridges>,
     /// Sleeping bodies. None: no body can sleep.
     pub sleep: Option<Sleep>,
     /// Bodies with steps of their own. None: all bodies take the same steps.
@@ -134,6 +138,7 @@ impl State {
             clusters: None,
             unsearched: Vec::new(),
             contacts: None,
+            bridges: None,
             sleep: None,
             levels: None,
             walls: Vec::new(),

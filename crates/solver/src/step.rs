@@ -7,6 +7,7 @@ use crate::stages::breakage::{
     DAMAGE, FAILURE, FRICTION, RATES, SCATTER, break_failed_bonds, count_frictional, count_rates,
     count_scattered,
 };
+use crate::stages::bridges::{BRIDGES, compute_bridges};
 use crate::stages::clumps::{CLUMPS, drift_clumps, gather_clumps, kick_clumps};
 use crate::stages::contacts::{
     CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
@@ -67,6 +68,7 @@ const INTERACT: &[Part] = &[
     (&RELAXATION, count_relaxing),
     (&ROLLING, count_rolling),
     (&WALLS, compute_wall_contacts),
+    (&BRIDGES, compute_bridges),
     (&CLUMPS, gather_clumps),
     (&DAUGHTERS, take_in_energy),
     (&SUPPORTS, remember_held),

@@ -7,6 +7,7 @@
 pub(crate) mod adhesion;
 pub(crate) mod bonded;
 pub(crate) mod breakage;
+pub(crate) mod bridges;
 pub mod cases;
 pub(crate) mod daughters;
 pub(crate) mod families;

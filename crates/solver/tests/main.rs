@@ -13,6 +13,7 @@ mod closed_box;
 mod helpers;
 
 mod bond;
+mod bridges;
 mod clumps;
 mod clusters;
 mod contact;

@@ -4,7 +4,7 @@ use dem_io::Result;
 use dem_results::write_json;
 
 use super::begin::Run;
-use super::events::write_sleep;
+use super::events::{write_sleep, write_zones};
 use super::finish::End;
 use super::observe::Ended;
 use super::outcome::Outcome;
@@ -107,6 +107,7 @@ impl Run<'_> {
         advance(&mut self.state);
         self.follow_population()?;
         if let Some(files) = &mut self.files {
+            write_zones(&self.state, files)?;
             write_sleep(&self.state, files)?;
             let events = files.events.take_back(lengths[0])?;
             let discharge = match &mut files.discharge {

@@ -224,6 +224,25 @@ pub(super) fn write_discharge(state: &State, files: &mut Files<'_>) -> Result<()
     Ok(())
 }
 
+/// The spheres of bodies bonded in part that were released or joined a rigid part in this step.
+pub(super) fn write_zones(state: &State, files: &mut Files<'_>) -> Result<()> {
+    for news in &state.scratch.events.zones {
+        let plural = if news.particles == 1 { "" } else { "s" };
+        files.events.append(&[Event {
+            step: news.step,
+            time_s: news.time_s,
+            energy_j: Some(news.lost_j),
+            ..of_all(
+                state,
+                news.kind,
+                "region",
+                &format!("{}: {} particle{plural}", news.body, news.particles),
+            )
+        }])?;
+    }
+    Ok(())
+}
+
 /// The bodies that fell asleep or woke in this step.
 pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
     for news in &state.scratch.events.sleep {

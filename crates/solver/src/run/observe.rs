@@ -9,7 +9,7 @@ use dem_io::{Diagnostic, Result};
 use super::begin::Run;
 use super::events::{
     write_breaks, write_breaks_between, write_discharge, write_population, write_sleep,
-    write_splits,
+    write_splits, write_zones,
 };
 use super::files::{interruption, save, with_checkpoint};
 use super::fragments::write_fragments;
@@ -144,6 +144,7 @@ impl Run<'_> {
         self.progress.seen.note_breaks_between(state, bodies);
         if let Some(files) = &mut self.files {
             write_breaks_between(state, bodies, files)?;
+            write_zones(state, files)?;
             write_sleep(&self.state, files)?;
         }
         let since = self

@@ -7,6 +7,7 @@
 use super::chunks::{ordered_sum, ordered_sums};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::contact::law::ContactKind;
+use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
@@ -164,6 +165,10 @@ pub struct Balance {
     pub particle_breakage_j: f64,
     /// Plastic work of bonds, J: what hardening stores is part of it.
     pub bond_plastic_j: f64,
+    /// Energy of liquid bridges, J: the work from the touch of their ends to their present gaps.
+    pub liquid_bridge_j: f64,
+    /// Dissipated by liquid bridges as they formed and ruptured, J.
+    pub liquid_bridge_loss_j: f64,
     /// Energy of added bodies, minus that of removed bodies, plus the gain when clumps and clusters
     /// replaced each other, minus the kinetic energy that bodies had when they fell asleep, J.
     pub flow_energy_j: f64,
@@ -327,6 +332,8 @@ pub fn balance(state: &mut State) -> Balance {
     }
     contact_elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
     friction += state.ledger.joint_friction_j;
+    let bridges_j = bridges_energy_j(state);
+    let bridges_lost_j = state.bridges.as_ref().map_or(0.0, |bridges| bridges.lost_j);
     let (present, scales) = momenta(p, &state.clumps, state.ledger.about_m);
     let g = state.model.gravity_m_s2;
     let ledger = &mut state.ledger;
@@ -338,8 +345,9 @@ pub fn balance(state: &mut State) -> Balance {
         + contact_damping
         + friction
         + (ledger.released_j + ledger.damaged_j + ledger.plastic_j)
-        + ledger.particles_broken_j;
-    let stored = elastic.total() + contact_elastic;
+        + ledger.particles_broken_j
+        + bridges_lost_j;
+    let stored = elastic.total() + contact_elastic + bridges_j;
     let given = work.loads + work.supports + wall_work + ledger.brought_j;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
     let largest = [
@@ -380,6 +388,8 @@ pub fn balance(state: &mut State) -> Balance {
         bond_damage_j: ledger.damaged_j,
         particle_breakage_j: ledger.particles_broken_j,
         bond_plastic_j: ledger.plastic_j,
+        liquid_bridge_j: bridges_j,
+        liquid_bridge_loss_j: bridges_lost_j,
         flow_energy_j: ledger.brought_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),

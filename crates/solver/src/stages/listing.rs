@@ -18,6 +18,7 @@ use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{list_near, reached, reaches};
 use crate::state::State;
+use crate::state::bridges::Bridges;
 use crate::state::clumps::Clumps;
 use crate::state::contacts::Contacts;
 use crate::state::references::{ClumpReference, References};
@@ -221,13 +222,20 @@ fn with_others(known: &[[u32; 2]], found: Vec<[u32; 2]>, seeks: &[bool]) -> Vec<
     pairs
 }
 
-/// Lists the spheres of clumps that are in pairs or near walls, and puts them in place.
+/// Lists the spheres of clumps that are in pairs, near walls or at liquid bridges, and puts them in
+/// place.
 fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]]) {
     if state.clumps.all.is_empty() {
         return;
     }
     let at_walls = state.walls.iter().flat_map(|wall| &wall.near);
-    let near = pairs.iter().flatten().chain(at_walls).copied();
+    let at_bridges = state.bridges.iter().flat_map(Bridges::particles);
+    let near = pairs
+        .iter()
+        .flatten()
+        .chain(at_walls)
+        .copied()
+        .chain(at_bridges);
     clumps::list_near(&mut state.clumps, &mut state.particles, near);
 }
 

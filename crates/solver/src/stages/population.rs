@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use crate::physics::bond::scatter::{body_key, strength_factor};
+use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
 use crate::stages::listing::renumber_lists;
@@ -230,7 +231,7 @@ impl<'a> Rebuilt<'a> {
     }
 }
 
-/// Elastic energy of contacts between particles and with walls, J.
+/// Elastic energy of contacts between particles and with walls, and energy of liquid bridges, J.
 fn pressed_j(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
@@ -242,7 +243,7 @@ fn pressed_j(state: &State) -> f64 {
         energies.sum::<f64>()
     };
     let of_walls: f64 = state.walls.iter().map(of_wall).sum();
-    elastic_energy_j(contacts, &state.particles) + of_walls
+    elastic_energy_j(contacts, &state.particles) + of_walls + bridges_energy_j(state)
 }
 
 /// New numbers, without those of removed items.
@@ -365,6 +366,13 @@ fn count_anew(
             true
         });
         wall.touching.sort_by_key(|touch| touch.particle);
+    }
+    if let Some(bridges) = &mut state.bridges {
+        let poses = &state.particles.poses;
+        bridges.renumber(particles, |old| {
+            let now = &poses[particles[old as usize] as usize];
+            old_radii_m[old as usize] - now.radius_m()
+        });
     }
     let Some(contacts) = &mut state.contacts else {
         return;

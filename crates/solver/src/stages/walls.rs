@@ -60,7 +60,7 @@ pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
 const CHUNK: usize = 256;
 /// A contact that moves to another flat part of a wall keeps its history if the cosine of the angle
 /// between the normals exceeds this.
-const SAME_WAY: f64 = 0.9;
+pub(super) const SAME_WAY: f64 = 0.9;
 /// Fraction of the deviation that a servo corrects in a step.
 const SERVO: f64 = 0.1;
 

@@ -6,8 +6,8 @@ use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
 use super::{
-    adhesion, breakage, daughters, families, impact, joints, limit_map, long, own_steps, softening,
-    swap, yielding,
+    adhesion, breakage, bridges, daughters, families, impact, joints, limit_map, long, own_steps,
+    softening, swap, yielding,
 };
 
 /// A case of the suite.
@@ -32,7 +32,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 22] = [
+pub const CASES: [Case; 23] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -107,6 +107,11 @@ pub const CASES: [Case; 22] = [
         name: "adhesion",
         extreme: "spheres of 1e-6 m to 1e-2 m that adhesion holds on a wall",
         members: |_| Ok(adhesion::grains()),
+    },
+    Case {
+        name: "bridges",
+        extreme: "spheres of 1e-4 m to 1e-2 m that liquid holds on a wall or lets go",
+        members: |_| Ok(bridges::drops()),
     },
     Case {
         name: "mesh-wall",

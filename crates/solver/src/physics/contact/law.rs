@@ -5,11 +5,16 @@ use super::dmt::DerjaguinMullerToporov;
 use super::hertz_mindlin::HertzMindlin;
 use super::kinematics::ContactKinematics;
 use super::linear::Linear;
+use super::liquid_bridge::LiquidBridge;
 use super::normal::{ImpactLaw, NormalLaw};
 use super::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
 use super::{Linearised, linearised};
 use crate::physics::number::Number;
 use serde::Serialize;
+
+/// Rounds that find the overlap of an impact with a liquid bridge, each of which at least halves the
+/// logarithm of what is off.
+const ROUNDS: usize = 40;
 
 /// Normal law of a pair of materials.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -40,6 +45,8 @@ pub struct ContactKind {
     pub law: Law,
     /// Rolling friction.
     pub rolling: Rolling,
+    /// Its liquid bridges, which act beside the law. None: dry.
+    pub bridge: Option<LiquidBridge>,
 }
 
 impl Law {
@@ -96,6 +103,28 @@ impl ContactKind {
     pub fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64 {
         let law = self.law.at_impact();
         law.normal_n_m(overlap_m.max(0.0), effective_radius_m)
+    }
+
+    /// Largest overlap of an impact at a speed, m/s, without damping, m. The work of a liquid bridge,
+    /// which pulls with its largest force while the ends overlap, adds to the kinetic energy.
+    pub fn overlap_at_impact_m(
+        &self,
+        effective_radius_m: f64,
+        mass_kg: f64,
+        speed_m_s: f64,
+    ) -> f64 {
+        let law = self.law.at_impact();
+        let overlap_m =
+            |speed_m_s: f64| law.overlap_at_impact_m(effective_radius_m, mass_kg, speed_m_s);
+        let Some(bridge) = &self.bridge else {
+            return overlap_m(speed_m_s);
+        };
+        let force_n = bridge.largest_n(effective_radius_m);
+        let mut found_m = effective_radius_m.max(overlap_m(speed_m_s));
+        for _ in 0..ROUNDS {
+            found_m = overlap_m((speed_m_s * speed_m_s + 2.0 * force_n * found_m / mass_kg).sqrt());
+        }
+        found_m
     }
 
     /// Force without damping, N, its derivative with respect to the overlap, N/m, and energy, J, of
