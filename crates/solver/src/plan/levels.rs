@@ -13,7 +13,7 @@ use crate::state::clusters::Clusters;
 use crate::state::levels::{CYCLE, LevelRule, Levels, length};
 
 /// Gives bodies steps of their own, if the scene asks for them and any body can take a longer one;
-/// then the step is adapted to the end time, and fragments are searched for at common times.
+/// then the step is adapted to the end time.
 pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoice) {
     if !scene.run.steps_by_body {
         return;
@@ -36,8 +36,6 @@ pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoi
         let cycles = (cycles * (1.0 - 1e-12)).ceil();
         step.step_s = scene.run.end_time_s / (CYCLE as f64 * cycles);
     }
-    let interval = &mut state.model.search.interval;
-    *interval = interval.next_multiple_of(CYCLE);
 }
 
 fn level_rule(state: &mut State, step: &StepChoice, safety: f64) -> LevelRule {

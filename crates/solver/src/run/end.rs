@@ -4,7 +4,7 @@ use dem_io::Result;
 use dem_results::write_json;
 
 use super::begin::Run;
-use super::events::{write_sleep, write_zones};
+use super::events::{write_breaks_between, write_sleep, write_zones};
 use super::finish::End;
 use super::observe::Ended;
 use super::outcome::Outcome;
@@ -106,7 +106,10 @@ impl Run<'_> {
         ];
         advance(&mut self.state);
         self.follow_population()?;
+        let (state, bodies) = (&self.state, &self.bodies);
+        self.progress.seen.note_breaks_between(state, bodies);
         if let Some(files) = &mut self.files {
+            write_breaks_between(state, bodies, files)?;
             write_zones(&self.state, files)?;
             write_sleep(&self.state, files)?;
             let events = files.events.take_back(lengths[0])?;

@@ -369,7 +369,8 @@ pub(crate) fn in_all_groups(state: &mut State, work: impl Fn(&mut State)) {
     let mut broken: Vec<Break> = Vec::new();
     let mut pending = Work::default();
     let mut walls = vec![OfWall::default(); state.walls.len()];
-    let mut pressed = None;
+    // What has been found since the last common time counts as well.
+    let mut pressed = take_pressed(state);
     for n in 0..groups(state) {
         in_group(state, n, &work);
         broken.append(&mut state.scratch.events.broken);
@@ -378,9 +379,7 @@ pub(crate) fn in_all_groups(state: &mut State, work: impl Fn(&mut State)) {
         for (sum, wall) in walls.iter_mut().zip(&mut state.walls) {
             sum.add(wall);
         }
-        let contacts = state.contacts.as_mut();
-        let found = contacts.and_then(|contacts| contacts.scratch.excessive_overlap.take());
-        pressed = pressed.or(found);
+        pressed = pressed.or_else(|| take_pressed(state));
     }
     state.scratch.events.broken = broken;
     state.ledger.pending = pending;
@@ -425,13 +424,24 @@ impl OfWall {
 /// Works on the groups that have come to the present time, one after the other, between two common
 /// times.
 pub(crate) fn in_groups_now(state: &mut State, work: impl Fn(&mut State)) {
+    let mut pressed = take_pressed(state);
     for n in 0..groups(state) {
         let of_group = |levels: &Levels| levels.scratch.groups[n].levels[1];
         let level = state.levels.as_ref().map_or(0, of_group);
         if state.steps.is_multiple_of(1 << level) {
             in_group(state, n, &work);
+            pressed = pressed.or_else(|| take_pressed(state));
         }
     }
+    if let Some(contacts) = &mut state.contacts {
+        contacts.scratch.excessive_overlap = pressed;
+    }
+}
+
+/// The first pair with an excessive overlap; it is forgotten.
+fn take_pressed(state: &mut State) -> Option<[u32; 2]> {
+    let contacts = state.contacts.as_mut();
+    contacts.and_then(|contacts| contacts.scratch.excessive_overlap.take())
 }
 
 /// Keeps the bonds that a group has just broken for the next common time.
@@ -563,6 +573,7 @@ pub(crate) fn end_cycle(state: &mut State) {
     if let Some(levels) = &mut state.levels {
         let sum = sum_of(&levels.shares);
         (state.ledger.momentum, state.ledger.first_moment) = (sum.momentum, sum.first_moment);
+        state.ledger.note_fall(state.model.gravity_m_s2);
         state.fastest_m_s = levels.scratch.fastest_m_s;
         state.scratch.events.broken = std::mem::take(&mut levels.scratch.broken);
         let moved_m = &mut levels.scratch.chunks_moved_m;

@@ -100,7 +100,7 @@ fn a_sphere_hangs_from_a_ceiling() {
     );
 }
 
-/// A sphere that rolls over the triangles of a plate takes its bridge along: none forms anew.
+/// A sphere that rolls over the triangles of a flat plate takes its bridge along: none forms anew.
 #[test]
 fn a_bridge_moves_along_a_mesh() {
     let folder = tempfile::tempdir().unwrap();
@@ -132,14 +132,10 @@ fn a_bridge_moves_along_a_mesh() {
         speed / RADIUS_M,
         path
     ));
-    let mut features = std::collections::BTreeSet::new();
     while state.particles.poses[0].place().x < 8e-3 {
         step_and_balance(&mut state);
-        let all = &bridges(&state).walls;
-        assert_eq!(all.len(), 1);
-        features.insert(all[0].feature);
+        assert_eq!(bridges(&state).walls.len(), 1);
         assert!(state.time_s < 0.1);
     }
     assert_eq!(bridges(&state).formed_and_ruptured, [1, 0]);
-    assert!(!features.is_empty());
 }
