@@ -3,8 +3,10 @@
 
 use rayon::prelude::*;
 
-use super::references::Ball;
 use crate::geometry::Bounds;
+
+/// Centre x, y, z and radius, m.
+pub type Ball = [f64; 4];
 
 /// Clusters with fewer particles are small.
 const SMALL: usize = 16;

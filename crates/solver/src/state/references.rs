@@ -1,9 +1,8 @@
 //! Where particles were when their neighbours were last searched for.
 
-use super::groups::KnownClusters;
+pub use super::groups::Ball;
 
-/// Centre x, y, z and radius, m.
-pub type Ball = [f64; 4];
+use super::groups::KnownClusters;
 
 /// The last search for the neighbours of each particle. Its pairs cover all that can touch while no
 /// particle leaves its ball.

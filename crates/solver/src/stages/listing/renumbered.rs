@@ -1,8 +1,8 @@
 //! Neighbour lists after bodies have been added, removed or replaced: what was there before keeps
 //! its last search, under new numbers, and only what is new is searched for.
 
-use super::find_mean_radius;
 use super::moved::find_left;
+use crate::stages::contacts::find_mean_radius;
 use crate::state::State;
 use crate::state::events::REMOVED;
 use crate::state::references::{ClumpReference, References};
