@@ -123,7 +123,7 @@ pub struct ContactScratch {
     /// The last search for the neighbours of each particle.
     pub references: References,
     /// Whether the contacts of a group of bodies are worked on, not those of all: see
-    /// [`super::levels::Group`].
+    /// `levels::Group`.
     pub is_of_group: bool,
     /// Division of the work.
     pub partitions: Vec<ContactPartition>,
