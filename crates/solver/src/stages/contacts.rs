@@ -490,33 +490,12 @@ impl StepInput<'_> {
         let particles = (self.poses, self.motions);
         let (place_a, a) = contact_sphere::<T>(proof, particles, |lane| pair(lane)[0] as usize);
         let (place_b, b) = contact_sphere::<T>(proof, particles, |lane| pair(lane)[1] as usize);
-        let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| history(lane).tangential);
-        let [dx, dy, dz, origin_m] = T::columns(proof, |lane| history(lane).damping);
-        let nothing = overlap_m.zero();
-        let none = Vec3(nothing, nothing, nothing);
-        let (rolling_rad, moment_n_m) = if R::REMEMBERS {
-            (
-                vectors(proof, |lane| history(lane).rolling),
-                vectors(proof, |lane| history(lane).rolling_damping),
-            )
-        } else {
-            (none, none)
-        };
+        let before = stored_contact::<T, R>(proof, history);
         let touch = contact_kinematics(place_b - place_a, [a, b], self.dt);
+        let (overlap_m, origin_m) = (before.springs.overlap_m, before.origin_m);
+        let nothing = overlap_m.zero();
         let touched =
             touch.overlap_m.above(nothing) | overlap_m.above(nothing) | origin_m.above(nothing);
-        let before = StoredContact {
-            springs: ContactSprings {
-                tangential_m: Vec3(sx, sy, sz),
-                rolling_rad,
-                overlap_m,
-            },
-            damped: Damped {
-                force_n: Vec3(dx, dy, dz),
-                moment_n_m,
-            },
-            origin_m,
-        };
         let least_overlap = self.contacts.model.least_overlap;
         let met = assemble(law, rolling, &touch, &before, least_overlap, self.dt);
         let StoredContact {
@@ -536,6 +515,38 @@ impl StepInput<'_> {
             damping_j: met.damping_j.values(),
             forces: Forces::new(met.response.force_on_b, met.torques),
         }
+    }
+}
+
+/// One history for each lane.
+#[inline(always)]
+pub(super) fn stored_contact<'a, T: Lanes, R: RollingFriction<T>>(
+    proof: T::Proof,
+    history: impl Fn(usize) -> &'a ContactHistory,
+) -> StoredContact<T> {
+    let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| history(lane).tangential);
+    let [dx, dy, dz, origin_m] = T::columns(proof, |lane| history(lane).damping);
+    let nothing = overlap_m.zero();
+    let none = Vec3(nothing, nothing, nothing);
+    let (rolling_rad, moment_n_m) = if R::REMEMBERS {
+        (
+            vectors(proof, |lane| history(lane).rolling),
+            vectors(proof, |lane| history(lane).rolling_damping),
+        )
+    } else {
+        (none, none)
+    };
+    StoredContact {
+        springs: ContactSprings {
+            tangential_m: Vec3(sx, sy, sz),
+            rolling_rad,
+            overlap_m,
+        },
+        damped: Damped {
+            force_n: Vec3(dx, dy, dz),
+            moment_n_m,
+        },
+        origin_m,
     }
 }
 

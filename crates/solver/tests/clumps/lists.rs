@@ -135,6 +135,21 @@ fn what_touches_is_listed_while_bodies_come_are_replaced_and_go() {
     assert_eq!(searched, 0, "nothing asks for a search of all");
 }
 
+/// The same if all neighbours are to be searched for anyway when bodies come and go.
+#[test]
+fn lists_of_walls_follow_where_all_is_searched_for() {
+    let Plan { mut state, .. } = busy(1);
+    while state.time_s < 0.1 {
+        let clusters = state.clusters.as_ref().unwrap().of_particle.clone();
+        interact(&mut state);
+        assert_all_listed(&state, &clusters);
+        let contacts = state.contacts.as_mut().unwrap();
+        contacts.scratch.references.balls.clear();
+        advance(&mut state);
+    }
+    assert!(state.population.outlets[0].bodies > 0);
+}
+
 #[test]
 fn the_size_of_the_skin_changes_no_bit() {
     let end = |search: &str| {

@@ -2,20 +2,17 @@
 //! after an interruption.
 
 use std::fs;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use dem_io::Result;
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::{Existing, ResultsFolder};
-use dem_run::output::summary::Summary;
-use dem_run::plan::plan;
+use dem_run::plan::{Plan, plan};
 use dem_run::run::snapshot::Snapshot;
-use dem_run::run::{RunSettings, run};
 use dem_run::state::State;
 use dem_run::step::step;
 use dem_scene::{Scene, read_bodies, scene_from_text};
 
 use super::{CONTACTS, head, pair, planned};
+use crate::fragments::run_into;
 
 /// A particle of the second cake.
 const IN_B: usize = 700;
@@ -87,26 +84,8 @@ fn where_no_step_can_be_longer_nothing_changes() {
     assert_eq!(on.steps, off.steps);
 }
 
-fn run_into(
-    folder: &ResultsFolder,
-    scene: &Scene,
-    resume: Option<Snapshot<'static>>,
-    stop_at: f64,
-) -> Result<Summary> {
-    let plan = plan(scene, read_bodies(scene).unwrap(), 1, false).unwrap();
-    let interrupted = AtomicBool::new(false);
-    let settings = RunSettings {
-        folder: Some(folder),
-        resume,
-        test: None,
-        threads: 1,
-        interrupted: &interrupted,
-    };
-    run(plan, scene, settings, &|so_far| {
-        if so_far.fraction >= stop_at {
-            interrupted.store(true, Ordering::Relaxed);
-        }
-    })
+fn planned_of(scene: &Scene) -> Plan {
+    plan(scene, read_bodies(scene).unwrap(), 1, false).unwrap()
 }
 
 #[test]
@@ -116,16 +95,16 @@ fn after_an_interruption_the_results_are_the_same_bytes() {
     let parent = tempfile::tempdir().unwrap();
     let [whole, parted] = ["whole", "parted"].map(|name| parent.path().join(name));
     let of_whole = ResultsFolder::create(&whole, Existing::Refuse).unwrap();
-    run_into(&of_whole, &scene, None, 2.0).unwrap();
+    run_into(&of_whole, planned_of(&scene), &scene, None, 2.0).unwrap();
     // In flight, and where the bodies are about to meet.
     let folder = ResultsFolder::create(&parted, Existing::Refuse).unwrap();
-    run_into(&folder, &scene, None, 0.2).unwrap_err();
+    run_into(&folder, planned_of(&scene), &scene, None, 0.2).unwrap_err();
     drop(folder);
     for stop_at in [0.6, 2.0] {
         let folder = ResultsFolder::create(&parted, Existing::Continue).unwrap();
         let snapshot = read_checkpoint(&folder.checkpoint()).unwrap();
         let snapshot = Snapshot::from_bytes(&snapshot).unwrap();
-        let ended = run_into(&folder, &scene, Some(snapshot), stop_at);
+        let ended = run_into(&folder, planned_of(&scene), &scene, Some(snapshot), stop_at);
         assert_eq!(ended.is_ok(), stop_at > 1.0);
     }
     for name in ["series.csv", "events.csv", "frames/frame_000004.vtp"] {

@@ -20,6 +20,11 @@ pub(crate) fn renumber_lists(
         return;
     };
     find_mean_radius(&mut contacts, &state.particles);
+    let stays = |i: u32| Some(now[i as usize]).filter(|&to| to != REMOVED && !is_new(to));
+    for wall in &mut state.walls {
+        wall.near = wall.near.iter().filter_map(|&i| stays(i)).collect();
+        wall.near.sort_unstable();
+    }
     let references = &mut contacts.scratch.references;
     let knows_all =
         references.balls.len() == now.len() && references.clumps.len() == old_firsts.len();
@@ -27,11 +32,6 @@ pub(crate) fn renumber_lists(
         contacts.search_all();
         state.contacts = Some(contacts);
         return;
-    }
-    let stays = |i: u32| Some(now[i as usize]).filter(|&to| to != REMOVED && !is_new(to));
-    for wall in &mut state.walls {
-        wall.near = wall.near.iter().filter_map(|&i| stays(i)).collect();
-        wall.near.sort_unstable();
     }
     let mut balls = vec![None; state.particles.len()];
     for (i, ball) in (0..).zip(&references.balls) {

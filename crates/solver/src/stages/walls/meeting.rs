@@ -3,14 +3,14 @@
 use nalgebra::Vector3;
 
 use crate::geometry::Touch;
+use crate::physics::contact::NormalLaw;
 use crate::physics::contact::assembly::{StoredContact, assemble};
 use crate::physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
 use crate::physics::contact::law::{ContactKind, ContactWork};
 use crate::physics::contact::rolling::RollingFriction;
-use crate::physics::contact::{ContactSprings, Damped, NormalLaw};
 use crate::physics::number::Vec3;
 use crate::stages::blocks::{rows, vectors};
-use crate::stages::contacts::contact_sphere;
+use crate::stages::contacts::{contact_sphere, stored_contact};
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::state::contacts::ContactHistory;
 use crate::state::particles::Particles;
@@ -219,10 +219,10 @@ impl Place<'_> {
 
     /// One to as many meetings as there are lanes.
     #[inline(always)]
-    fn meet_some<T: Lanes>(
+    fn meet_some<T: Lanes, R: RollingFriction<T>>(
         &self,
         proof: T::Proof,
-        laws: (&impl NormalLaw<T>, &impl RollingFriction<T>),
+        laws: (&impl NormalLaw<T>, &R),
         some: &[Meeting<'_>],
     ) -> Answers {
         let meeting = |lane: usize| &some[lane.min(some.len() - 1)];
@@ -250,20 +250,7 @@ impl Place<'_> {
         let touch = wall_contact_kinematics(&foot, ball, self.dt);
         let none = ContactHistory::default();
         let history = |lane: usize| meeting(lane).old.map_or(&none, |old| &old.history);
-        let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| history(lane).tangential);
-        let [dx, dy, dz, origin_m] = T::columns(proof, |lane| history(lane).damping);
-        let before = StoredContact {
-            springs: ContactSprings {
-                tangential_m: Vec3(sx, sy, sz),
-                rolling_rad: vectors(proof, |lane| history(lane).rolling),
-                overlap_m,
-            },
-            damped: Damped {
-                force_n: Vec3(dx, dy, dz),
-                moment_n_m: vectors(proof, |lane| history(lane).rolling_damping),
-            },
-            origin_m,
-        };
+        let before = stored_contact::<T, R>(proof, history);
         let (law, rolling) = laws;
         let met = assemble(law, rolling, &touch, &before, self.least_overlap, self.dt);
         let StoredContact {
@@ -275,8 +262,8 @@ impl Place<'_> {
             geometries,
             tangential: with(springs.tangential_m, springs.overlap_m),
             damping: with(damped.force_n, met.remembered.origin_m),
-            rolling: with(springs.rolling_rad, overlap_m.zero()),
-            rolling_damping: with(damped.moment_n_m, overlap_m.zero()),
+            rolling: with(springs.rolling_rad, met.overlap_m.zero()),
+            rolling_damping: with(damped.moment_n_m, met.overlap_m.zero()),
             forces: rows(met.response.force_on_b),
             torques: with(torque, energy.normal + energy.tangential + energy.rolling),
             moments: with(met.response.moment_on_b, met.friction_j),
