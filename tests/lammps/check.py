@@ -214,6 +214,52 @@ angular_velocity = ["{5 + number} rad/s", "3 rad/s", "2 rad/s"]
     return text
 
 
+def feed():
+    """Two inlets feed clumps and spheres into a box, until it is filled to a few layers."""
+    shape = [(0, 0, 0), (0.006, 0, 0), (0.012, 0, 0)]
+    walls = ""
+    for name, point, normal in [("floor", [0, 0, 0], [0, 0, 1]), ("left", [-0.03, 0, 0], [1, 0, 0]), ("right", [0.03, 0, 0], [-1, 0, 0]), ("front", [0, -0.03, 0], [0, 1, 0]), ("back", [0, 0.03, 0], [0, -1, 0])]:
+        walls += f'[walls.{name}]\nplane = {{ point = {point}, normal = {normal} }}\nmaterial = "plate"\n'
+    return f"""version = 1
+[run]
+end_time = "1.6 s"
+gravity = [0, 0, -9.81]
+{SOFT}
+[contacts]
+grain-grain = {{ restitution = 0.3, friction = 0.3 }}
+grain-plate = {{ restitution = 0.3, friction = 0.3 }}
+[bodies.rod]
+material = "grain"
+start_as = "clump"
+particles = {particles(shape, 0.004)}
+[bodies.pebble]
+material = "grain"
+particles = [[0, 0, 0, 0.004]]
+[bodies.there]
+material = "grain"
+particles = [[0, 0, 0.0041, 0.004]]
+[regions.above]
+box = {{ min = [-0.018, -0.018, 0.12], max = [0.018, 0.018, 0.15] }}
+[inlets.mixed]
+bodies = {{ rod = 2, pebble = 1 }}
+region = "above"
+rate = "90 /s"
+count = 90
+velocity = [0, 0, "-1 m/s"]
+orientation = "random"
+[inlets.late]
+bodies = ["pebble"]
+region = "above"
+mass_rate = "0.02 kg/s"
+start = "0.5 s"
+end = "1 s"
+velocity = [0, 0, "-1 m/s"]
+{walls}
+[output]
+frames = "20 ms"
+"""
+
+
 class Dump:
     """Frames of a LAMMPS dump: times, and for each the rows by id."""
 
@@ -412,7 +458,16 @@ def case_clumps(program, folder):
         yield ranks, "the same after 200 ms, mm", 1e3 * a / 15, 1e3 * b / 15, relative(b, a), 0.05
 
 
-CASES = [case_cantilever, case_frequency, case_bounce, case_drop, case_heap, case_clumps]
+def case_feed(program, folder):
+    runs = Runs("feed", feed(), program, folder)
+    for ranks, dump in runs.lammps.items():
+        counts = [len(d.rows[-1]) for d in (runs.ours, dump)]
+        yield ranks, "inlets: spheres that came", *counts, relative(counts[1], counts[0]), 0.01
+        a, b = (sum(row["z"] for row in d.rows[-1].values()) / len(d.rows[-1]) for d in (runs.ours, dump))
+        yield ranks, "mean height of the filling, mm", 1e3 * a, 1e3 * b, relative(b, a), 0.05
+
+
+CASES = [case_cantilever, case_frequency, case_bounce, case_drop, case_heap, case_clumps, case_feed]
 
 
 def table(rows):

@@ -11,6 +11,7 @@ mod clumps;
 mod contacts;
 mod data;
 pub(crate) mod dump;
+mod feeds;
 pub(crate) mod files;
 mod forces;
 pub(crate) mod import;
@@ -30,7 +31,7 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 use serde::Serialize;
 
-use self::files::{CLUMPS, DATA, INPUT, MANIFEST, Manifest, PAGE, TYPES};
+use self::files::{CLUMPS, DATA, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES};
 use crate::plan::Plan;
 
 /// What has been written.
@@ -52,7 +53,8 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
     refusals::refuse(scene, plan)?;
     let types = bonds::bond_types(scene, &plan.state)?;
     let contacts = contacts::contacts(scene, plan)?;
-    let walls = walls::walls(scene, plan)?;
+    let feeds = feeds::feeds(scene, plan)?;
+    let walls = walls::walls(scene, plan, &feeds)?;
     let forces = forces::forces(scene, plan)?;
     let molecules = molecules::molecules(plan);
     let steps = input::steps(scene, plan);
@@ -63,6 +65,7 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
         contacts: &contacts,
         walls: &walls,
         forces: &forces,
+        feeds: &feeds,
     };
     let manifest = Manifest {
         program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
@@ -76,13 +79,20 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
             .collect(),
         body_of_molecule: molecules.bodies.clone(),
         is_clump: molecules.are_clumps.clone(),
+        fed: feeds.iter().map(|feed| fed_body(plan, feed)).collect(),
         bond_radii_m: types.types.iter().map(|one| one.radius_m).collect(),
     };
     let texts = [(INPUT, input.text()), (PAGE, page::page(&input))];
     in_new_folder(folder, |folder| {
         write_file(&folder.join(DATA), |out| {
-            data::write(plan, &contacts, &types, &molecules, out)
+            data::write(plan, &contacts, &types, &molecules, &feeds, out)
         })?;
+        for feed in &feeds {
+            let template = &plan.state.clumps.templates[feed.template];
+            write_file(&folder.join(feed.file()), |out| {
+                feeds::write(feed, template, out)
+            })?;
+        }
         if !types.types.is_empty() {
             write_file(&folder.join(TYPES), |out| bonds::write(&types, out))?;
         }
@@ -105,6 +115,15 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
         clumps: plan.state.clumps.all.len(),
         steps,
     })
+}
+
+fn fed_body(plan: &Plan, feed: &feeds::Feed) -> FedBody {
+    FedBody {
+        atom_type: feed.atom_type as u64,
+        body: plan.state.model.body_number(&feed.body),
+        is_clump: feed.is_clump,
+        density_kg_m3: feeds::density_kg_m3(&plan.state.clumps.templates[feed.template]),
+    }
 }
 
 /// Writes into a folder that must be new or empty. If it fails, nothing is left of it.

@@ -9,6 +9,7 @@ use dem_io::body::mass::volume_m3;
 use super::bonds::BondTypes;
 use super::clumps::is_body;
 use super::contacts::Contacts;
+use super::feeds::Feed;
 use super::molecules::Molecules;
 use crate::plan::Plan;
 
@@ -49,6 +50,7 @@ pub(super) fn write(
     contacts: &Contacts,
     types: &BondTypes,
     molecules: &Molecules,
+    feeds: &[Feed],
     out: &mut dyn Write,
 ) -> io::Result<()> {
     let state = &plan.state;
@@ -56,7 +58,8 @@ pub(super) fn write(
     writeln!(out, "Bonded spheres, units si (m, kg/m3, N/m, N m/rad)\n")?;
     writeln!(out, "{} atoms", p.len())?;
     writeln!(out, "{} bonds", state.bonds.len())?;
-    writeln!(out, "{} atom types", contacts.materials.len())?;
+    let atom_types = contacts.materials.len() + feeds.len();
+    writeln!(out, "{atom_types} atom types")?;
     if !types.types.is_empty() {
         writeln!(out, "{} bond types", types.types.len())?;
         writeln!(out, "{} extra bond per atom", most_bonds(plan))?;
@@ -67,10 +70,17 @@ pub(super) fn write(
             let (x, r) = (pose.position_m[k], pose.radius_m());
             [x - 2.0 * r, x + 2.0 * r]
         });
-        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| {
-            [low.min(a), high.max(b)]
-        });
+        // The regions of inlets are in the box.
+        let regions = feeds.iter().map(|f| [f.bounds.low[k], f.bounds.high[k]]);
+        let [low, high] = ends
+            .chain(regions)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| {
+                [low.min(a), high.max(b)]
+            });
         writeln!(out, "{low:e} {high:e} {axis}lo {axis}hi")?;
+    }
+    if p.len() == 0 {
+        return Ok(());
     }
     let (order, densities) = (by_id(plan), densities(plan));
     writeln!(out, "\nAtoms # bpm/sphere\n")?;

@@ -27,6 +27,21 @@ pub(crate) struct Manifest {
     pub body_of_molecule: Vec<u32>,
     /// For each molecule whether it is a rigid clump.
     pub is_clump: Vec<bool>,
+    /// Bodies that come while LAMMPS runs, each with its own type of atoms.
+    pub fed: Vec<FedBody>,
     /// Radius of the bonds of each type, m.
     pub bond_radii_m: Vec<f64>,
+}
+
+/// A body that an inlet feeds.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct FedBody {
+    /// Type of its atoms.
+    pub atom_type: u64,
+    /// Number in `body_names`.
+    pub body: u32,
+    /// Whether it is a rigid clump.
+    pub is_clump: bool,
+    /// Density of its spheres, with which they have the mass of the body together, kg/m3.
+    pub density_kg_m3: f64,
 }

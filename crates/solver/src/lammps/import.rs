@@ -22,7 +22,7 @@ use serde_json::json;
 use super::dump::{Dump, Section};
 use super::files::{BONDS, DATA, FRAMES, MANIFEST, Manifest};
 
-/// The particles and bonds of an export, from its data file. Particles in the order of their ids.
+/// The particles and bonds of an export, from its data file, and those fed by now. Particles in the order of their ids.
 #[derive(Debug, Default)]
 struct Exported {
     /// Ids in LAMMPS, from 1, ascending.
@@ -44,8 +44,8 @@ struct Exported {
 /// The folder is not that of an export or has no dump; a file is damaged (exit code 2); results
 /// cannot be written (exit code 1).
 pub(crate) fn import(folder: &Path, results: &Path, existing: Existing) -> Result<usize> {
-    let manifest = read_manifest(folder)?;
-    let exported = read_data(&folder.join(DATA))?;
+    let mut manifest = read_manifest(folder)?;
+    let mut exported = read_data(&folder.join(DATA))?;
     refuse_strangers(folder, &manifest, &exported)?;
     let frames_path = folder.join(FRAMES);
     let mut input = open(&frames_path, "run the exported script with LAMMPS first")?;
@@ -81,6 +81,9 @@ pub(crate) fn import(folder: &Path, results: &Path, existing: Existing) -> Resul
         if let Some(bonds) = &mut bonds {
             unbroken = unbroken_at(bonds, section.step).map_err(within(&bonds_path))?;
         }
+        exported
+            .take_fed(&mut manifest, &section)
+            .map_err(within(&frames_path))?;
         last_s = append(
             &manifest,
             &exported,
@@ -202,6 +205,43 @@ impl Exported {
         self.ids.binary_search(&id).ok().map(|at| at as u32)
     }
 
+    /// Takes atoms that inlets have fed since the last section: their molecules and radii from the
+    /// dump, the rest from the description of their type.
+    fn take_fed(&mut self, manifest: &mut Manifest, section: &Section) -> Result<()> {
+        if manifest.fed.is_empty() {
+            return Ok(());
+        }
+        let [id, molecule, of, radius] = section.find(["id", "mol", "type", "radius"])?;
+        let most = manifest.body_of_molecule.len() + section.rows.len();
+        for row in &section.rows {
+            let last = self.ids.last().copied().unwrap_or(0);
+            let atom_type = row[of] as u64;
+            let fed = manifest.fed.iter().find(|fed| fed.atom_type == atom_type);
+            let (Some(fed), true) = (fed, row[id] as u64 > last) else {
+                continue;
+            };
+            let number = row[molecule] as usize;
+            if !(1..=most).contains(&number) {
+                return Err(Diagnostic::input(
+                    format!("step {}", section.step),
+                    format!("atom {} is of molecule {}", row[id], row[molecule]),
+                    "keep the fix deposit of the exported script",
+                ));
+            }
+            if manifest.body_of_molecule.len() < number {
+                manifest.body_of_molecule.resize(number, fed.body);
+                manifest.is_clump.resize(number, fed.is_clump);
+            }
+            manifest.body_of_molecule[number - 1] = fed.body;
+            manifest.is_clump[number - 1] = fed.is_clump;
+            self.ids.push(row[id] as u64);
+            self.molecules.push(number as u32);
+            self.radii_m.push(row[radius]);
+            self.densities_kg_m3.push(fed.density_kg_m3);
+        }
+        Ok(())
+    }
+
     fn length_m(&self, bond: usize) -> f64 {
         let [a, b] = self.bonds[bond].map(|end| self.places_m[end as usize]);
         [0, 1, 2]
@@ -220,9 +260,8 @@ fn refuse_strangers(folder: &Path, manifest: &Manifest, exported: &Exported) -> 
     let bodies = manifest.body_names.len();
     let types = manifest.bond_radii_m.len();
     let belong = exported.molecules.iter().all(is_known)
-        && manifest
-            .body_of_molecule
-            .iter()
+        && (manifest.body_of_molecule.iter())
+            .chain(manifest.fed.iter().map(|fed| &fed.body))
             .all(|body| (*body as usize) < bodies)
         && exported
             .bond_types

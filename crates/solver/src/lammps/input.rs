@@ -8,9 +8,11 @@ use super::bonds::BondTypes;
 use super::clumps::has_bodies;
 use super::contacts::Contacts;
 use super::data::{atom, lone_spheres};
+use super::feeds::Feed;
 use super::files::{BONDS, BROKEN, CLUMPS, DATA, FRAMES, TYPES};
 use super::forces::Forces;
 use super::walls::WrittenWall;
+use super::words::numbers;
 use crate::plan::Plan;
 
 /// What the script is written from.
@@ -21,10 +23,13 @@ pub(super) struct Input<'a> {
     pub contacts: &'a Contacts,
     pub walls: &'a [WrittenWall],
     pub forces: &'a Forces,
+    pub feeds: &'a [Feed],
 }
 
 /// Frames of a scene that asks for none.
 const FRAMES_UNASKED: u64 = 100;
+/// The law of particles that never meet.
+const NO_LAW: &str = "hooke 0.0 1.0 tangential linear_nohistory 0.0 0.0 damping velocity";
 /// Ids on a line of a group.
 const IDS_PER_LINE: usize = 16;
 
@@ -64,6 +69,7 @@ impl Input<'_> {
         self.add_forces(&mut text);
         self.add_walls(&mut text);
         self.add_output(&mut text);
+        self.add_runs(&mut text);
         text
     }
 
@@ -136,38 +142,49 @@ impl Input<'_> {
             Self::line(text, "pair_coeff * *");
         } else {
             Self::line(text, "pair_style granular");
-            for ([a, b], law) in &self.contacts.laws {
-                Self::line(text, format!("pair_coeff {} {} {law}", a + 1, b + 1));
-            }
-            self.add_absent_pairs(text);
+            self.add_laws(text);
         }
         let skin = self.plan.state.smallest_radius_m() * 0.2;
         Self::line(text, format!("neighbor {skin:e} bin"));
         Self::line(text, "neigh_modify every 1 delay 0 check yes");
     }
 
-    /// Pairs of materials that never meet: LAMMPS asks for all.
-    fn add_absent_pairs(&self, text: &mut String) {
-        let count = self.contacts.materials.len();
-        for a in 0..count {
-            for b in a..count {
-                if !self.contacts.laws.iter().any(|(pair, _)| *pair == [a, b]) {
-                    let law = "hooke 0.0 1.0 tangential linear_nohistory 0.0 0.0 damping velocity";
-                    Self::line(text, format!("pair_coeff {} {} {law}", a + 1, b + 1));
-                }
+    /// The law of each pair of types, also of those that never meet: LAMMPS asks for all. Each
+    /// material is a type, and each body that is fed.
+    fn add_laws(&self, text: &mut String) {
+        let fed = self.feeds.iter().map(|feed| feed.material);
+        let materials: Vec<usize> = (0..self.contacts.materials.len()).chain(fed).collect();
+        for (a, one) in materials.iter().enumerate() {
+            for (b, other) in materials.iter().enumerate().skip(a) {
+                let both = [*one.min(other), *one.max(other)];
+                let law = self.contacts.laws.iter().find(|(pair, _)| *pair == both);
+                let law = law.map_or(NO_LAW, |(_, law)| law);
+                Self::line(text, format!("pair_coeff {} {} {law}", a + 1, b + 1));
             }
         }
     }
 
+    /// Whether `fix rigid/small` moves anything, now or later.
+    fn has_rigid(&self) -> bool {
+        has_bodies(&self.plan.state) || self.feeds.iter().any(|feed| feed.is_clump)
+    }
+
     fn add_groups(&self, text: &mut String) {
         let state = &self.plan.state;
-        if has_bodies(state) {
+        if has_bodies(state) || !self.feeds.is_empty() {
             let free: Vec<u32> = (0..state.particles.free as u32)
                 .chain(lone_spheres(self.plan).into_iter().map(|i| i as u32))
                 .collect();
             self.add_group(text, "loose", &free);
             Self::line(text, "group clumps subtract all loose");
             Self::line(text, "neigh_modify exclude molecule/intra clumps");
+        }
+        for feed in self.feeds {
+            Self::line(text, format!("group {} empty", feed.group()));
+            if feed.is_clump {
+                let exclude = format!("neigh_modify exclude molecule/intra {}", feed.group());
+                Self::line(text, exclude);
+            }
         }
         for (number, load) in (1..).zip(&self.forces.loads) {
             self.add_group(text, &format!("load_{number}"), &load.particles);
@@ -247,7 +264,8 @@ impl Input<'_> {
             format!("timestep {:e}", step_s(self.scene, self.plan)),
         );
         // The bodies of rigid/small have their own gravity.
-        let mut moving = if has_bodies(state) { "loose" } else { "all" };
+        let is_parted = has_bodies(state) || !self.feeds.is_empty();
+        let mut moving = if is_parted { "loose" } else { "all" };
         let gravity = state.model.gravity_m_s2;
         let size = gravity.iter().map(|x| x * x).sum::<f64>().sqrt();
         if size > 0.0 {
@@ -257,12 +275,19 @@ impl Input<'_> {
                 format!("fix gravity {moving} gravity {size:e} vector {x:e} {y:e} {z:e}"),
             );
         }
-        if has_bodies(state) {
-            let by = if size > 0.0 { " gravity gravity" } else { "" };
-            Self::line(
-                text,
-                format!("fix clumps clumps rigid/small molecule{by} infile {CLUMPS}"),
-            );
+        if self.has_rigid() {
+            self.add_rigid(text, size > 0.0);
+        }
+        for feed in self.feeds.iter().filter(|feed| !feed.is_clump) {
+            let group = feed.group();
+            if size > 0.0 {
+                let along = numbers(&gravity.map(|g| g / size));
+                Self::line(
+                    text,
+                    format!("fix gravity_{group} {group} gravity {size:e} vector {along}"),
+                );
+            }
+            Self::line(text, format!("fix motion_{group} {group} nve/bpm/sphere"));
         }
         let driven: Vec<usize> = (1..)
             .zip(&self.forces.supports)
@@ -278,6 +303,55 @@ impl Input<'_> {
             moving = "moving";
         }
         Self::line(text, format!("fix motion {moving} nve/bpm/sphere"));
+    }
+
+    /// Clumps, and the molecules that inlets feed.
+    fn add_rigid(&self, text: &mut String, has_gravity: bool) {
+        let mut fix = "rigid/small molecule".to_owned();
+        if has_gravity {
+            fix += " gravity gravity";
+        }
+        if has_bodies(&self.plan.state) {
+            fix += &format!(" infile {CLUMPS}");
+        }
+        let clumps: Vec<String> = (self.feeds.iter().filter(|feed| feed.is_clump))
+            .map(Feed::file)
+            .collect();
+        if !clumps.is_empty() {
+            Self::line(text, format!("molecule fed {}", clumps.join(" ")));
+            fix += " mol fed";
+        }
+        Self::line(text, format!("fix clumps clumps {fix}"));
+    }
+
+    /// A `fix deposit` with the molecule of a body: for a clump one of all those of `rigid/small`.
+    fn add_feed(&self, text: &mut String, feed: &Feed) {
+        Self::line(text, format!("# inlet {}, body {}", feed.inlet, feed.body));
+        let group = feed.group();
+        let (number, seed) = (feed.number, feed.seed);
+        let molecules = if feed.is_clump {
+            let clumps = self.feeds.iter().filter(|other| other.is_clump);
+            let shares = clumps.map(|other| f64::from(u8::from(other.number == number)));
+            let shares = numbers(&shares.collect::<Vec<f64>>());
+            format!("mol fed molfrac {shares} rigid clumps")
+        } else {
+            Self::line(text, format!("molecule sphere_{number} {}", feed.file()));
+            format!("mol sphere_{number}")
+        };
+        Self::line(
+            text,
+            format!("region inlet_{number} {} units box", feed.region),
+        );
+        let [x, y, z] = feed.velocity_m_s;
+        Self::line(
+            text,
+            format!(
+                "fix feed_{number} {group} deposit {} 0 {} {seed} region inlet_{number} near {:e} {molecules} vx {x:e} {x:e} vy {y:e} {y:e} vz {z:e} {z:e} units box",
+                feed.count,
+                feed.every,
+                2.0 * self.plan.state.largest_radius_m()
+            ),
+        );
     }
 
     fn add_forces(&self, text: &mut String) {
@@ -335,23 +409,25 @@ impl Input<'_> {
             );
             for (material, law) in &wall.laws {
                 let material = material + 1;
+                let met = format!("wall/gran/region granular {law} region wall_{number}");
                 Self::line(
                     text,
-                    format!(
-                        "fix wall_{number}_{material} material_{material} wall/gran/region granular {law} region wall_{number}"
-                    ),
+                    format!("fix wall_{number}_{material} material_{material} {met}"),
                 );
+                let fed = self.feeds.iter().filter(|f| f.material + 1 == material);
+                for group in fed.map(Feed::group) {
+                    Self::line(text, format!("fix wall_{number}_{group} {group} {met}"));
+                }
             }
         }
     }
 
     fn add_output(&self, text: &mut String) {
         let every = self.frame_every();
-        let steps = steps(self.scene, self.plan);
         let exact = "%.17g";
         for line in [
             format!(
-                "dump frames all custom {every} {FRAMES} id mol radius x y z vx vy vz omegax omegay omegaz"
+                "dump frames all custom {every} {FRAMES} id mol type radius x y z vx vy vz omegax omegay omegaz"
             ),
             format!("dump_modify frames sort id time yes format float {exact}"),
         ] {
@@ -379,6 +455,24 @@ impl Input<'_> {
         Self::line(text, "thermo_style custom step time atoms");
         Self::line(text, "thermo_modify lost error");
         Self::line(text, format!("thermo {every}"));
-        Self::line(text, format!("run {steps}"));
+    }
+
+    /// The runs: a new one begins where an inlet does.
+    fn add_runs(&self, text: &mut String) {
+        let mut starts: Vec<u64> = self.feeds.iter().map(|feed| feed.start).collect();
+        starts.sort_unstable();
+        starts.dedup();
+        let mut done = 0;
+        for start in starts {
+            if start > done {
+                Self::line(text, format!("run {}", start - done));
+                done = start;
+            }
+            for feed in self.feeds.iter().filter(|feed| feed.start == start) {
+                self.add_feed(text, feed);
+            }
+        }
+        let left = steps(self.scene, self.plan) - done;
+        Self::line(text, format!("run {left}"));
     }
 }

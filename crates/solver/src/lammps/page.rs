@@ -53,6 +53,16 @@ pub(super) fn page(input: &Input<'_>) -> String {
             counted(state.clumps.all.len(), "clump")
         ));
     }
+    for feed in input.feeds {
+        item(format!(
+            "inlet {}, body {}: {}, one every {}, as `deposit` in `region {}`",
+            feed.inlet,
+            feed.body,
+            counted(feed.count as usize, "body"),
+            counted(feed.every as usize, "step"),
+            feed.region
+        ));
+    }
     for load in &input.forces.loads {
         item(format!("load {} (`addforce`)", load.name));
     }
@@ -103,6 +113,9 @@ fn different(input: &Input<'_>) -> Vec<String> {
     }
     if !input.contacts.laws.is_empty() || !input.walls.is_empty() {
         lines.push("Where a contact slides, LAMMPS limits spring and damper together; in Crumble the spring first, and the damper to what is left.".to_owned());
+    }
+    if !input.feeds.is_empty() {
+        lines.push("Inlets: LAMMPS draws places and orientations of its own and feeds at whole numbers of steps, so results agree as those of two seeds do. The middle of a body's box is in the region, not its centre of mass. A body without room after ten tries is left out; in Crumble it waits. LAMMPS looks for room among particles, not at walls.".to_owned());
     }
     lines.push("Large deformations: bending and torsion are proportional to angles; in Crumble to twice the sine of half of them.".to_owned());
     lines

@@ -78,12 +78,6 @@ pub(crate) fn refuse_parts(scene: &Scene) -> Result<()> {
             run_it,
         ),
         (
-            !scene.inlets.is_empty(),
-            format!("[inlets.{}]", first(scene.inlets.keys().next())),
-            "bodies that come at places and times which both programs would draw alike",
-            "place the bodies in the scene, or run it with dem-run",
-        ),
-        (
             !scene.outlets.is_empty(),
             format!("[outlets.{}]", first(scene.outlets.keys().next())),
             "bodies that leave as a whole",

@@ -7,8 +7,9 @@ use dem_io::Result;
 use dem_scene::{Factor, Scene, WallMotion};
 
 use super::contacts::law_in_words;
+use super::feeds::Feed;
 use super::forces::formula;
-use super::words::refused;
+use super::words::{numbers, refused};
 use crate::geometry::{Shape, SolidBox};
 use crate::plan::Plan;
 use crate::plan::contacts::NO_KIND;
@@ -34,11 +35,14 @@ pub(super) struct WrittenWall {
 ///
 /// # Errors
 /// A surface, a box or cylinder across the axes, a belt, a servo or a turning wall.
-pub(super) fn walls(scene: &Scene, plan: &Plan) -> Result<Vec<WrittenWall>> {
+pub(super) fn walls(scene: &Scene, plan: &Plan, feeds: &[Feed]) -> Result<Vec<WrittenWall>> {
     let materials: Vec<&String> = scene.materials.keys().collect();
     let mut present = vec![false; materials.len()];
     for &material in plan.state.contacts.iter().flat_map(|c| &c.materials) {
         present[material as usize] = true;
+    }
+    for feed in feeds {
+        present[feed.material] = true;
     }
     let mut walls = Vec::new();
     for wall in &plan.state.walls {
@@ -74,24 +78,20 @@ pub(super) fn walls(scene: &Scene, plan: &Plan) -> Result<Vec<WrittenWall>> {
 /// Style and arguments of the region of a wall.
 fn region(scene: &Scene, part: &str, wall: &Wall) -> Result<String> {
     let frame = &wall.frame;
-    let words = |numbers: &[f64]| {
-        let words: Vec<String> = numbers.iter().map(|x| format!("{x:e}")).collect();
-        words.join(" ")
-    };
     match &wall.model.shape {
         Shape::Plane(plane) => {
             let point = frame.to_space(plane.point_m());
             let normal = frame.direction_to_space(plane.normal());
             Ok(format!(
                 "plane {} {} side in",
-                words(&point),
-                words(&normal)
+                numbers(&point),
+                numbers(&normal)
             ))
         }
         Shape::Box(solid) => {
             let [low, high] = corners(scene, part, wall, solid)?;
             let pairs: Vec<f64> = (0..3).flat_map(|k| [low[k], high[k]]).collect();
-            Ok(format!("block {} side out", words(&pairs)))
+            Ok(format!("block {} side out", numbers(&pairs)))
         }
         Shape::Cylinder(cylinder) => {
             let [from, to] = cylinder.ends_m().map(|end| frame.to_space(end));
@@ -110,9 +110,9 @@ fn region(scene: &Scene, part: &str, wall: &Wall) -> Result<String> {
             Ok(format!(
                 "cylinder {} {} {:e} {} side out",
                 ["x", "y", "z"][axis],
-                words(&across),
+                numbers(&across),
                 cylinder.radius_m(),
-                words(&ends)
+                numbers(&ends)
             ))
         }
         Shape::Mesh(_) => Err(refused(

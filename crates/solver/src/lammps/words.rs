@@ -5,6 +5,12 @@ use std::fmt::Display;
 use dem_io::Diagnostic;
 use dem_scene::Scene;
 
+/// Numbers with spaces between them.
+pub(super) fn numbers(numbers: &[f64]) -> String {
+    let words: Vec<String> = numbers.iter().map(|x| format!("{x:e}")).collect();
+    words.join(" ")
+}
+
 /// The refusal of a part of a scene.
 pub(super) fn refused(
     scene: &Scene,

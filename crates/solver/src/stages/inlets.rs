@@ -39,8 +39,12 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
         .map_or(0, |c| c.history.len() as u32);
     for (n, inlet) in inlets.iter().enumerate() {
         let mut come = state.population.inlets[n];
+        if !asks(inlet, &come) {
+            continue;
+        }
+        let there = There::around(inlet, state);
         while asks(inlet, &come) {
-            let Some(clump) = next_body(n, inlet, &mut come, state, &coming) else {
+            let Some(clump) = next_body(n, inlet, &mut come, state, &there, &coming) else {
                 if come.tries <= TRIES {
                     come.delayed += 1;
                 }
@@ -102,6 +106,7 @@ fn next_body(
     inlet: &Inlet,
     come: &mut InletProgress,
     state: &State,
+    there: &There,
     coming: &[Clump],
 ) -> Option<Clump> {
     let seed = state.model.rules.seed;
@@ -125,7 +130,7 @@ fn next_body(
         let Some(place_m) = region.point([1, 2, 3].map(|of| random(of, attempt))) else {
             continue;
         };
-        if is_taken(place_m, reach_m, state, coming) {
+        if is_taken(place_m, reach_m, state, there, coming) {
             continue;
         }
         let as_file = if inlet.random_orientation {
@@ -191,7 +196,48 @@ fn any_rotation([u, v, w]: [f64; 3]) -> UnitQuaternion<f64> {
     rotation([a * sv, a * cv, b * sw, b * cw])
 }
 
-fn is_taken(place_m: [f64; 3], reach_m: f64, state: &State, coming: &[Clump]) -> bool {
+/// What may be in the way of the bodies of an inlet in this step: found once for all tries.
+struct There {
+    /// Particles.
+    particles: Vec<u32>,
+    /// Clumps.
+    clumps: Vec<u32>,
+}
+
+impl There {
+    /// What is near the region of an inlet.
+    fn around(inlet: &Inlet, state: &State) -> Self {
+        let templates = &state.clumps.templates;
+        let reaches = inlet.templates.iter().map(|(of, _)| {
+            let template = &templates[*of as usize];
+            template.reach_m * template.scale.max(1.0)
+        });
+        let reach_m = reaches.fold(0.0, f64::max);
+        let room = state.model.rules.regions[inlet.region].bounds();
+        let free = &state.particles.poses[..state.particles.free];
+        let particles = (0..)
+            .zip(free)
+            .filter(|(_, pose)| room.is_near(&pose.place().into(), reach_m + pose.radius_m()));
+        let clumps = (0..).zip(&state.clumps.all).filter(|(_, clump)| {
+            let template = state.clumps.template(clump);
+            let own_m = template.reach_m * template.scale.max(1.0);
+            room.is_near(&clump.place_m, reach_m + own_m)
+        });
+        Self {
+            particles: particles.map(|(i, _)| i).collect(),
+            clumps: clumps.map(|(at, _)| at).collect(),
+        }
+    }
+}
+
+/// Whether a body at this place could touch another.
+fn is_taken(
+    place_m: [f64; 3],
+    reach_m: f64,
+    state: &State,
+    there: &There,
+    coming: &[Clump],
+) -> bool {
     let place = Vector3::from(place_m);
     let near = |other: Vector3<f64>, reach: f64| {
         (other - place).norm_squared() < (reach_m + reach).powi(2)
@@ -210,8 +256,15 @@ fn is_taken(place_m: [f64; 3], reach_m: f64, state: &State, coming: &[Clump]) ->
         };
         around(clump) && (0..template.spheres.len()).any(touches)
     };
-    let mut free = state.particles.poses[..state.particles.free].iter();
-    free.any(|pose| near(pose.place(), pose.radius_m()))
-        || state.clumps.all.iter().any(in_clump)
+    let mut particles = there
+        .particles
+        .iter()
+        .map(|&i| &state.particles.poses[i as usize]);
+    let mut clumps = there
+        .clumps
+        .iter()
+        .map(|&at| &state.clumps.all[at as usize]);
+    particles.any(|pose| near(pose.place(), pose.radius_m()))
+        || clumps.any(in_clump)
         || coming.iter().any(around)
 }
