@@ -56,8 +56,25 @@ def bar():
     return f'material = "steel"\nbonds = "steel"\nparticles = {particles(places, 0.2)}\nbond_list = [{bonds}]\n'
 
 
-def free_bar():
-    """A free bar whose middle is struck."""
+# Initial motions of particles of the free bar that excite one mode and leave it where it is: particles, key, value.
+MODES = {
+    "bending": [([5], "velocity", '[0, "0.11 m/s", 0]'), ([0, 10], "velocity", '[0, "-0.055 m/s", 0]')],
+    "second": [
+        ([0], "velocity", '[0, "-0.04 m/s", 0]'),
+        ([10], "velocity", '[0, "0.04 m/s", 0]'),
+        ([3], "velocity", '[0, "0.1 m/s", 0]'),
+        ([7], "velocity", '[0, "-0.1 m/s", 0]'),
+    ],
+    "axial": [([0], "velocity", '["-0.05 m/s", 0, 0]'), ([10], "velocity", '["0.05 m/s", 0, 0]')],
+    "torsion": [([0], "angular_velocity", '["-0.2 rad/s", 0, 0]'), ([10], "angular_velocity", '["0.2 rad/s", 0, 0]')],
+}
+
+
+def free_bar(mode):
+    """A free bar that is struck so that it vibrates in a mode."""
+    struck = ""
+    for number, (particles, key, value) in enumerate(MODES[mode]):
+        struck += f'[groups.g{number}]\nparticles = {particles}\n[initial.g{number}]\ngroup = "g{number}"\n{key} = {value}\n'
     return f"""version = 1
 [run]
 end_time = "0.3 s"
@@ -65,16 +82,7 @@ safety_factor = 0.3
 {STEEL}
 [bodies.bar]
 {bar()}
-[groups.middle]
-particles = [5]
-[groups.ends]
-particles = [0, 10]
-[initial.middle]
-group = "middle"
-velocity = [0, "0.11 m/s", 0]
-[initial.ends]
-group = "ends"
-velocity = [0, "-0.055 m/s", 0]
+{struck}
 [output]
 frames = "0.2 ms"
 """
@@ -364,7 +372,7 @@ def frequency(times, values):
         b = sum(w * math.sin(2 * math.pi * f * t) for t, w in zip(times, window))
         return a * a + b * b
 
-    best = max((2 / span + 0.5 * n / span for n in range(4 * 60)), key=power)
+    best = max((2 / span + 0.5 * n / span for n in range(int(0.6 * count))), key=power)
     width = 0.5 / span
     while width > 1e-7 * best:
         best = max((best + width * k / 4 for k in range(-4, 5)), key=power)
@@ -387,16 +395,27 @@ def case_cantilever(program, folder):
 
 
 def case_frequency(program, folder):
-    runs = Runs("frequency", free_bar(), program, folder)
-    ours = frequency(runs.ours.times, bend(runs.ours))
-    for ranks, dump in runs.lammps.items():
-        found = frequency(dump.times, bend(dump))
-        yield ranks, "first frequency of a free bar, Hz", ours, found, relative(found, ours), 1e-3
+    for mode, what, signal in [
+        ("bending", "first frequency of a free bar, Hz", bend),
+        ("second", "second frequency of bending, Hz", lambda dump: between_ends(dump, "y")),
+        ("axial", "first frequency along the bar, Hz", lambda dump: between_ends(dump, "x")),
+        ("torsion", "first frequency of torsion, Hz", lambda dump: between_ends(dump, "omegax")),
+    ]:
+        runs = Runs(f"frequency-{mode}", free_bar(mode), program, folder)
+        ours = frequency(runs.ours.times, signal(runs.ours))
+        for ranks, dump in runs.lammps.items():
+            found = frequency(dump.times, signal(dump))
+            yield ranks, what, ours, found, relative(found, ours), 1e-3
 
 
 def bend(dump):
     """Deflection of the middle relative to the ends, m."""
     return [m - 0.5 * (a + b) for m, a, b in zip(dump.of(6, "y"), dump.of(1, "y"), dump.of(11, "y"))]
+
+
+def between_ends(dump, column):
+    """Difference of the last and the first particle."""
+    return [b - a for a, b in zip(dump.of(1, column), dump.of(11, column))]
 
 
 def impacts(dump):

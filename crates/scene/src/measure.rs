@@ -1,16 +1,19 @@
 //! `[measures.NAME]`
 
+use std::collections::BTreeMap;
+
 use super::field::Field;
 use super::listing::Listing;
 use super::names::ALL;
 use super::numbers::quantity as shown;
+use super::region::Region;
 use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::targets::{Subject, Targets};
 use dem_io::diagnostic::Result;
 use dem_io::units::{
-    ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER, RATE, TIME,
-    TORQUE, VELOCITY,
+    ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, DENSITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER,
+    RATE, TIME, TORQUE, VELOCITY,
 };
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +61,14 @@ pub enum Quantity {
     FractionBelowDynamicUtilisation,
     /// "angle_of_repose": slope of the heap that the particles form, degrees.
     AngleOfRepose,
+    /// "mass" of the group, or of its part in the region `within`, kg.
+    Mass,
+    /// "bulk_density": mass of its part in the region `within` over the volume of the region;
+    /// without a region mass over the volume under the surface of the group, kg/m3.
+    BulkDensity,
+    /// "mixing_index" of Lacey, of the group and that of `with`, in cells of `cell_size` in the
+    /// region `within`.
+    MixingIndex,
     /// "force_x", ... total contact force: of particles on a wall, of other particles and walls on
     /// a group, N.
     Force(u8),
@@ -102,9 +113,14 @@ pub struct Measure {
     pub of: String,
     /// `quantity`
     pub quantity: Quantity,
-    /// `with`: the body, group or wall that `of` touches. Required for contacts, and only allowed
-    /// there.
+    /// `with`: the body, group or wall that `of` touches, or the body or group that it mixes with.
+    /// Required for contacts and mixing, and only allowed there.
     pub with: Option<String>,
+    /// `within`: the region to which it is restricted. Only for masses, densities and mixing;
+    /// required for mixing.
+    pub within: Option<String>,
+    /// `cell_size`, m: edge of the cells of a mixing index. Required there, and only allowed there.
+    pub cell_size_m: Option<f64>,
     /// `limit`: dynamic utilisation below which bonds count. Required for
     /// `fraction_below_dynamic_utilisation`, and only allowed there.
     pub limit: Option<f64>,
@@ -120,7 +136,7 @@ pub struct Measure {
 }
 
 /// Every quantity and its name in a scene.
-pub(super) const QUANTITIES: [(&str, Quantity); 48] = [
+pub(super) const QUANTITIES: [(&str, Quantity); 51] = [
     ("position_x", Quantity::Position(0)),
     ("position_y", Quantity::Position(1)),
     ("position_z", Quantity::Position(2)),
@@ -162,6 +178,9 @@ pub(super) const QUANTITIES: [(&str, Quantity); 48] = [
         Quantity::FractionBelowDynamicUtilisation,
     ),
     ("angle_of_repose", Quantity::AngleOfRepose),
+    ("mass", Quantity::Mass),
+    ("bulk_density", Quantity::BulkDensity),
+    ("mixing_index", Quantity::MixingIndex),
     ("force_x", Quantity::Force(0)),
     ("force_y", Quantity::Force(1)),
     ("force_z", Quantity::Force(2)),
@@ -215,7 +234,8 @@ impl Quantity {
             Self::ReactionTorque(_) | Self::Torque(_) => &TORQUE,
             Self::ContactDuration => &TIME,
             Self::KineticEnergy | Self::ElasticEnergy => &ENERGY,
-            Self::MassOfLargest => &MASS,
+            Self::MassOfLargest | Self::Mass => &MASS,
+            Self::BulkDensity => &DENSITY,
             Self::LargestStrainRate => &RATE,
             Self::BrokenBonds
             | Self::LargestUtilisation
@@ -223,6 +243,7 @@ impl Quantity {
             | Self::LargestDynamicUtilisation
             | Self::FractionBelowDynamicUtilisation
             | Self::Count
+            | Self::MixingIndex
             | Self::MassFractionOfLargest => &NUMBER,
         }
     }
@@ -269,8 +290,19 @@ pub(super) static MEASURE: Schema = Schema {
         Key::text(
             "with",
             "a group, a body or a wall",
-            "Other side of the contact; required for contact quantities.",
+            "Other side of the contact, or other part of the mixture; required for contact quantities and `mixing_index`.",
         ),
+        Key::text(
+            "within",
+            "a name in [regions]",
+            "Region to which `mass`, `bulk_density` or `mixing_index` is restricted; spheres that its border cuts count in part. Required for `mixing_index`.",
+        ),
+        Key::quantity(
+            "cell_size",
+            &LENGTH,
+            "Edge of the cells in which `mixing_index` compares mass fractions; required there.",
+        )
+        .positive(),
         Key::number(
             "limit",
             "Dynamic utilisation below which intact bonds count; required for `fraction_below_dynamic_utilisation`.",
@@ -296,7 +328,11 @@ pub(super) static MEASURE: Schema = Schema {
     ],
 };
 
-pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> {
+pub(super) fn read(
+    field: &Field<'_>,
+    targets: &Targets<'_>,
+    regions: &BTreeMap<String, Region>,
+) -> Result<Measure> {
     let table = Table::of(field, &MEASURE)?;
     let (of, subject) = table
         .read_by("of", |field| targets.measured(&field))?
@@ -308,6 +344,14 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
         targets.presence.refuse_without_start(&field, &of)?;
     }
     let with = counterpart(&table, &of, quantity, targets)?;
+    let within = within(&table, quantity, regions)?;
+    let cell_size_m = only_for(
+        &table,
+        "cell_size",
+        quantity,
+        Quantity::MixingIndex,
+        "10 mm",
+    )?;
     let limit = limit(&table, quantity)?;
     let dimension = quantity.dimension();
     let reference = table.read_by("reference", |field| field.quantity(dimension))?;
@@ -336,6 +380,8 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Measure> 
         of,
         quantity,
         with,
+        within,
+        cell_size_m,
         limit,
         statistic: table.read("statistic")?,
         reference,
@@ -352,7 +398,8 @@ fn counterpart(
     targets: &Targets<'_>,
 ) -> Result<Option<String>> {
     let name = quantity.name();
-    if !quantity.is_of_contact() {
+    let mixes = quantity == Quantity::MixingIndex;
+    if !quantity.is_of_contact() && !mixes {
         return match table.get("with") {
             Some(field) => {
                 let problem = format!(
@@ -365,13 +412,21 @@ fn counterpart(
         };
     }
     let Some(field) = table.get("with") else {
+        let (kind, others) = match mixes {
+            true => ("a mixture", "a body or a group"),
+            false => ("a contact", "a body, a group or a wall"),
+        };
         let problem = format!(
-            "{}.quantity is \"{name}\", of a contact, but nothing says with what",
+            "{}.quantity is \"{name}\", of {kind}, but nothing says with what",
             table.path
         );
-        return Err(table.refuse(problem, "add with = \"NAME\", of a body, a group or a wall"));
+        return Err(table.refuse(problem, format!("add with = \"NAME\", of {others}")));
     };
     let (with, subject) = targets.measured(&field)?;
+    if mixes && (subject != Subject::Particles || with == ALL || with == of) {
+        let problem = format!("{} is \"{with}\", which is no other group", field.path);
+        return Err(field.refuse(problem, "name a body or a group that \"of\" mixes with"));
+    }
     let problem = if with == of {
         format!("{} is \"{with}\", as of is", field.path)
     } else if with == ALL || subject == Subject::Fragments {
@@ -386,6 +441,64 @@ fn counterpart(
         problem,
         "name another body, group or wall; quantity = \"force\" is of contacts with all else",
     ))
+}
+
+/// The region to which a measure is restricted.
+fn within(
+    table: &Table<'_>,
+    quantity: Quantity,
+    regions: &BTreeMap<String, Region>,
+) -> Result<Option<String>> {
+    let bulk = [Quantity::Mass, Quantity::BulkDensity, Quantity::MixingIndex];
+    let name = quantity.name();
+    match table.get("within") {
+        None if quantity == Quantity::MixingIndex => {
+            let problem = format!(
+                "{}.quantity is \"{name}\", but nothing says where",
+                table.path
+            );
+            Err(table.refuse(problem, "add within = \"NAME\", a name in [regions]"))
+        }
+        Some(field) if !bulk.contains(&quantity) => {
+            let problem = format!(
+                "{} cannot be combined with the quantity \"{name}\"",
+                field.path
+            );
+            let remedy = "remove it, or ask for \"mass\", \"bulk_density\" or \"mixing_index\"";
+            Err(field.refuse(problem, remedy))
+        }
+        Some(field) => Ok(Some(field.reference(regions.keys(), "regions")?)),
+        None => Ok(None),
+    }
+}
+
+/// A number that one quantity requires, and that is refused otherwise.
+fn only_for(
+    table: &Table<'_>,
+    key: &str,
+    quantity: Quantity,
+    one: Quantity,
+    example: &str,
+) -> Result<Option<f64>> {
+    match (quantity == one, table.get(key)) {
+        (true, None) => {
+            let problem = format!(
+                "{}.quantity is \"{}\", but there is no {key}",
+                table.path,
+                one.name()
+            );
+            Err(table.refuse(problem, format!("add {key} = \"{example}\"")))
+        }
+        (false, Some(field)) => {
+            let problem = format!(
+                "{} cannot be combined with the quantity \"{}\"",
+                field.path,
+                quantity.name()
+            );
+            Err(field.refuse(problem, format!("remove it, or ask for \"{}\"", one.name())))
+        }
+        _ => table.read(key),
+    }
 }
 
 /// The dynamic utilisation below which bonds count: required if such bonds are counted, refused
@@ -468,6 +581,12 @@ pub(super) fn list(measure: &Measure, listing: &mut Listing) {
     listing.text("quantity", measure.quantity.name());
     if let Some(with) = &measure.with {
         listing.text("with", with);
+    }
+    if let Some(within) = &measure.within {
+        listing.text("within", within);
+    }
+    if let Some(cell_size) = &measure.cell_size_m {
+        listing.value("cell_size", cell_size);
     }
     if let Some(limit) = &measure.limit {
         listing.value("limit", limit);

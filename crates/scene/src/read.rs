@@ -111,7 +111,9 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         supports,
         initial: each(&root, "initial", |field| initial::read(field, &targets))?,
         loads: each(&root, "loads", |field| load::read(field, &targets))?,
-        measures: each(&root, "measures", |field| measure::read(field, &targets))?,
+        measures: each(&root, "measures", |field| {
+            measure::read(field, &targets, &regions)
+        })?,
         clusters: clusters::read(&root)?,
         relaxation: relaxation::read(&root)?,
         search: search::read(&root)?,

@@ -1,8 +1,10 @@
 //! Measures: named quantities of particle groups, recorded during a run.
 
 mod bonds;
+mod bulk;
 mod heap;
 mod members;
+mod spheres;
 mod whole;
 
 use std::collections::BTreeMap;
@@ -24,6 +26,7 @@ use crate::state::events::Renumbering;
 use crate::state::watches::{Seen, Watch, WatchTarget};
 
 use self::members::{Members, wall_number};
+use self::spheres::spheres;
 use self::whole::{Motions, Starts, start_centre, starts, turned_before};
 
 pub(crate) use self::bonds::utilisation_under;
@@ -42,6 +45,8 @@ pub struct Probe {
     with: Option<Members>,
     /// The walls among its two objects, by number.
     walls: [Option<usize>; 2],
+    /// The region to which it is restricted: number in the rules of the state.
+    region: Option<usize>,
     /// Initial positions of the bodies of the scene. Empty if not needed.
     starts: Arc<Starts>,
     /// Initial centre of mass of its particles, m. NaN if not needed.
@@ -126,6 +131,8 @@ pub fn probes(scene: &dem_scene::Scene, plan: &Plan) -> Vec<Probe> {
             members: members(&measure.of),
             with: with.filter(|_| with_wall.is_none()).map(members),
             walls: [wall_number(scene, &measure.of), with_wall],
+            region: (measure.within.as_ref())
+                .and_then(|name| scene.regions.keys().position(|region| region == name)),
             starts: Arc::clone(&starts),
             start: Vector3::repeat(f64::NAN),
             turned_before: BTreeMap::new(),
@@ -232,6 +239,12 @@ pub fn renumber(
     }
 }
 
+/// Against gravity; without gravity along z.
+fn up(state: &State) -> Vector3<f64> {
+    let down = Vector3::from(state.model.gravity_m_s2);
+    (-down).try_normalize(0.0).unwrap_or_else(Vector3::z)
+}
+
 impl Probe {
     /// Updates everything that depends on its particles.
     fn count_anew(&mut self, bodies: &[PlacedBody], state: &State) {
@@ -319,10 +332,9 @@ impl Probe {
             | Quantity::LargestDynamicUtilisation
             | Quantity::FractionBelowDynamicUtilisation => self.at_rates(state, common),
             Quantity::AngleOfRepose => {
-                let down = Vector3::from(state.model.gravity_m_s2);
-                let up = (-down).try_normalize(0.0).unwrap_or_else(Vector3::z);
-                heap::angle_of_repose_deg(members, state, up)
+                heap::angle_of_repose_deg(&spheres(members, state), up(state))
             }
+            Quantity::Mass | Quantity::BulkDensity | Quantity::MixingIndex => self.in_bulk(state),
             // Torque of the particles on the wall.
             Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.total_load()[1][at(k)]),
             Quantity::Count => {
@@ -340,6 +352,25 @@ impl Probe {
             | Quantity::ContactForceMagnitude
             | Quantity::ContactOverlap
             | Quantity::ContactDuration => f64::NAN,
+        }
+    }
+
+    /// Value of a quantity of the spheres in a region, or of all of them.
+    fn in_bulk(&self, state: &State) -> f64 {
+        let own = spheres(&self.members, state);
+        let region = self.region.map(|at| &state.model.rules.regions[at]);
+        match (self.measure.quantity, region) {
+            (Quantity::MixingIndex, Some(region)) => {
+                let others = self.with.as_ref().map(|with| spheres(with, state));
+                let cell_m = self.measure.cell_size_m.unwrap_or(f64::NAN);
+                bulk::lacey_index([&own, &others.unwrap_or_default()], region, cell_m)
+            }
+            (Quantity::BulkDensity, Some(region)) => {
+                bulk::mass_within_kg(&own, region) / region.volume_m3()
+            }
+            (Quantity::BulkDensity, None) => bulk::heap_density_kg_m3(&own, up(state)),
+            (_, Some(region)) => bulk::mass_within_kg(&own, region),
+            (_, None) => own.iter().map(|sphere| sphere.mass_kg).sum(),
         }
     }
 
@@ -370,11 +401,16 @@ impl Probe {
         let left = self.members.particles.len();
         if !value.is_nan() {
             None
-        } else if left == 0 {
+        } else if left == 0 && self.measure.within.is_none() {
             Some(format!("{name} has no value: nothing of \"{of}\" is left"))
         } else if self.measure.quantity == Quantity::AngleOfRepose {
             Some(format!(
                 "{name} has no value: an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{of}\" has {left}"
+            ))
+        } else if self.measure.quantity == Quantity::MixingIndex {
+            let within = self.measure.within.as_deref().unwrap_or_default();
+            Some(format!(
+                "{name} has no value: the region \"{within}\" has nothing of one of the two"
             ))
         } else if matches!(
             self.measure.quantity,

@@ -1,5 +1,6 @@
 //! Measures: of entire bodies, clumps or clusters; of contacts; of heaps.
 
+mod bulk;
 mod contacts;
 mod heaps;
 mod refused;

@@ -8,9 +8,8 @@
 
 use nalgebra::Vector3;
 
-use super::members::Members;
+use super::spheres;
 use crate::plan::measures::FEWEST_IN_HEAP;
-use crate::state::State;
 
 /// Spheres farther from the axis than this multiple of the cone's radius have rolled away.
 const ROLLED_AWAY: f64 = 1.25;
@@ -38,11 +37,11 @@ struct Moments {
     covariance_m3: f64,
 }
 
-/// Slope, degrees, of the cone with the same vertical and horizontal spread of mass as the members;
+/// Slope, degrees, of the cone with the same vertical and horizontal spread of mass as the spheres;
 /// 0 if their top is flat. A few that have rolled far away do not change it. NaN for fewer than
 /// [`FEWEST_IN_HEAP`]. `up`: unit vector.
-pub(super) fn angle_of_repose_deg(members: &Members, state: &State, up: Vector3<f64>) -> f64 {
-    let mut heap = spheres(members, state, &up);
+pub(super) fn angle_of_repose_deg(spheres: &[spheres::Sphere], up: Vector3<f64>) -> f64 {
+    let mut heap = turned(spheres, &up);
     if heap.len() < FEWEST_IN_HEAP {
         return f64::NAN;
     }
@@ -64,35 +63,17 @@ pub(super) fn angle_of_repose_deg(members: &Members, state: &State, up: Vector3<
     }
 }
 
-/// All spheres, including those within clumps.
-fn spheres(members: &Members, state: &State, up: &Vector3<f64>) -> Vec<Sphere> {
+/// The spheres, along axes of which one points up.
+fn turned(spheres: &[spheres::Sphere], up: &Vector3<f64>) -> Vec<Sphere> {
     let aside = up.cross(&Vector3::ith(up.iamin(), 1.0)).normalize();
     let across = up.cross(&aside);
-    let sphere = |mass_kg: f64, radius_m: f64, place: Vector3<f64>| Sphere {
-        mass_kg,
-        radius_m,
-        height_m: place.dot(up),
-        across_m: [place.dot(&aside), place.dot(&across)],
+    let turned = |sphere: &spheres::Sphere| Sphere {
+        mass_kg: sphere.mass_kg,
+        radius_m: sphere.radius_m,
+        height_m: sphere.place_m.dot(up),
+        across_m: [sphere.place_m.dot(&aside), sphere.place_m.dot(&across)],
     };
-    let p = &state.particles;
-    let free = members.free(state);
-    let free = free.map(|i| {
-        let pose = &p.poses[i];
-        sphere(
-            1.0 / p.motions[i].inverse_mass,
-            pose.radius_m(),
-            pose.place(),
-        )
-    });
-    let clumps = members.clumps(state, &state.clumps.all);
-    let carried = clumps.flat_map(|(clump, template)| {
-        (0..template.spheres.len()).map(move |n| {
-            let pose = template.pose(n, clump);
-            (template.spheres[n].mass_kg, pose.radius_m(), pose.place())
-        })
-    });
-    free.chain(carried.map(|(mass_kg, radius_m, place)| sphere(mass_kg, radius_m, place)))
-        .collect()
+    spheres.iter().map(turned).collect()
 }
 
 fn moments(heap: &[Sphere]) -> Moments {

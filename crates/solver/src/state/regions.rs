@@ -1,5 +1,7 @@
 //! Regions of space used by the rules of a scene.
 
+use std::f64::consts::PI;
+
 use nalgebra::Vector3;
 use serde::Serialize;
 
@@ -64,6 +66,29 @@ impl Region {
                 to_m,
                 radius_m,
             } => Bounds::of([*from_m, *to_m]).grown(*radius_m),
+        }
+    }
+
+    /// Its volume, m3.
+    pub fn volume_m3(&self) -> f64 {
+        match self {
+            Self::Box(Bounds { low, high }) => (0..3).map(|k| high[k] - low[k]).product(),
+            Self::Sphere { radius_m, .. } => 4.0 / 3.0 * PI * radius_m.powi(3),
+            Self::Cylinder {
+                from_m,
+                to_m,
+                radius_m,
+            } => {
+                let length_m = (Vector3::from(*to_m) - Vector3::from(*from_m)).norm();
+                PI * radius_m * radius_m * length_m
+            }
+            Self::Inside(triangles, _) => {
+                let tetrahedron = |corners: &[[f64; 3]; 3]| {
+                    let [a, b, c] = corners.map(Vector3::from);
+                    a.dot(&b.cross(&c)) / 6.0
+                };
+                triangles.iter().map(tetrahedron).sum::<f64>().abs()
+            }
         }
     }
 

@@ -1,0 +1,119 @@
+//! Bulk quantities: mass and bulk density of a region, bulk density of a heap, and mixing.
+//!
+//! A sphere counts with the part of it that is in a region: of [`POINTS`] points spread evenly
+//! through it, those within.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use nalgebra::Vector3;
+
+use super::spheres::Sphere;
+use crate::state::regions::Region;
+
+/// Points of a sphere that a border cuts: its part on one side is known to some thousandths.
+const POINTS: usize = 500;
+/// Columns of a heap are this wide, in mean diameters.
+const COLUMN: f64 = 0.5;
+
+/// Mass of the part of some spheres that is in a region, kg.
+pub(super) fn mass_within_kg(spheres: &[Sphere], region: &Region) -> f64 {
+    let points = points_of_ball();
+    let masses = spheres
+        .iter()
+        .map(|s| s.mass_kg * part_within(s, region, &points));
+    masses.sum()
+}
+
+/// The part of a sphere that is in a region.
+fn part_within(sphere: &Sphere, region: &Region, points: &[Vector3<f64>]) -> f64 {
+    if !region
+        .bounds()
+        .is_near(&sphere.place_m.into(), sphere.radius_m)
+    {
+        return 0.0;
+    }
+    let is_in = |point: &&Vector3<f64>| {
+        region.contains((sphere.place_m + sphere.radius_m * **point).into())
+    };
+    points.iter().filter(is_in).count() as f64 / points.len() as f64
+}
+
+/// Points spread evenly through a ball of radius 1: shells of equal volume along a spiral, turned by
+/// the golden ratio from point to point, at depths in the order of the van der Corput sequence.
+fn points_of_ball() -> Vec<Vector3<f64>> {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let point = |n: usize| {
+        let height = 1.0 - 2.0 * (n as f64 + 0.5) / POINTS as f64;
+        let angle = TAU * golden * n as f64;
+        let across = (1.0 - height * height).sqrt();
+        let depth = f64::from((n as u32 + 1).reverse_bits()) / 2.0_f64.powi(32);
+        depth.cbrt() * Vector3::new(across * angle.cos(), across * angle.sin(), height)
+    };
+    (0..POINTS).map(point).collect()
+}
+
+/// Mass of some spheres over the volume under their surface, kg/m3: that of columns along `up`, from
+/// the lowest point of all to the highest point in each column. Columns are half a mean diameter
+/// wide. NaN if there are none.
+pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
+    let aside = up.cross(&Vector3::ith(up.iamin(), 1.0)).normalize();
+    let across = up.cross(&aside);
+    let mean_m = spheres.iter().map(|s| s.radius_m).sum::<f64>() / spheres.len() as f64;
+    let width_m = 2.0 * COLUMN * mean_m;
+    let mut tops: BTreeMap<[i64; 2], f64> = BTreeMap::new();
+    let mut lowest_m = f64::INFINITY;
+    for sphere in spheres {
+        let radius_m = sphere.radius_m;
+        let [x, y, z] = [aside, across, up].map(|axis| sphere.place_m.dot(&axis));
+        lowest_m = lowest_m.min(z - radius_m);
+        let [from, to] = [-1.0, 1.0]
+            .map(|side| [x, y].map(|middle| ((middle + side * radius_m) / width_m).floor() as i64));
+        for i in from[0]..=to[0] {
+            for j in from[1]..=to[1] {
+                let [cx, cy] = [i, j].map(|n| (n as f64 + 0.5) * width_m);
+                let left_m2 = radius_m * radius_m - (cx - x).powi(2) - (cy - y).powi(2);
+                if left_m2 >= 0.0 {
+                    let top = tops.entry([i, j]).or_insert(f64::NEG_INFINITY);
+                    *top = top.max(z + left_m2.sqrt());
+                }
+            }
+        }
+    }
+    let heights = tops.values().map(|top| top - lowest_m);
+    let volume_m3 = width_m * width_m * heights.sum::<f64>();
+    spheres.iter().map(|s| s.mass_kg).sum::<f64>() / volume_m3
+}
+
+/// Lacey's index of the mixture of two sets in a region, 0 for sets apart and 1 for a random
+/// mixture: (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the first
+/// set among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a random
+/// mixture, sr^2 = s0^2 / n, for the mean number n of spheres in a cell. NaN if the region has
+/// nothing of one of them. Spheres count where their centres are.
+pub(super) fn lacey_index(sets: [&[Sphere]; 2], region: &Region, cell_m: f64) -> f64 {
+    let low = Vector3::from(region.bounds().low);
+    let mut cells: BTreeMap<[i64; 3], [f64; 2]> = BTreeMap::new();
+    let mut count = 0.0;
+    for (k, spheres) in sets.into_iter().enumerate() {
+        for sphere in spheres.iter().filter(|s| region.contains(s.place_m.into())) {
+            let cell = ((sphere.place_m - low) / cell_m).map(|x| x.floor() as i64);
+            cells.entry(cell.into()).or_default()[k] += sphere.mass_kg;
+            count += 1.0;
+        }
+    }
+    let mean_count = count / cells.len() as f64;
+    let mass_kg = |[a, b]: &[f64; 2]| a + b;
+    let all_kg: f64 = cells.values().map(mass_kg).sum();
+    let first_kg: f64 = cells.values().map(|[a, _]| a).sum();
+    let fraction = first_kg / all_kg;
+    let apart = fraction * (1.0 - fraction);
+    let squares = cells.values().map(|cell| {
+        let own = cell[0] / mass_kg(cell);
+        mass_kg(cell) * (own - fraction).powi(2)
+    });
+    let variance = squares.sum::<f64>() / all_kg;
+    if apart <= 0.0 {
+        return f64::NAN;
+    }
+    (apart - variance) / (apart - apart / mean_count)
+}

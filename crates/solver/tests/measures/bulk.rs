@@ -1,0 +1,160 @@
+//! Mass and bulk density of regions and heaps, and Lacey's index, against closed forms.
+
+use std::f64::consts::PI;
+use std::fmt::Write;
+
+use super::{Measured, assert_near};
+use crate::helpers::Random;
+
+const DENSITY: f64 = 2000.0;
+
+/// A scene of the bodies `a` and `b` of spheres (x, y, z, radius), with regions and measures.
+fn scene(a: &[[f64; 4]], b: &[[f64; 4]], rest: &str) -> String {
+    let mut text = format!(
+        "version = 1\n[run]\nend_time = 1\ntime_step = 1e-6\ninitial_overlap = \"keep\"\n[materials.stuff]\ndensity = {DENSITY}\n"
+    );
+    for (name, spheres) in [("a", a), ("b", b)] {
+        if spheres.is_empty() {
+            continue;
+        }
+        write!(
+            text,
+            "[bodies.{name}]\nmaterial = \"stuff\"\nparticles = {spheres:?}\n"
+        )
+        .unwrap();
+    }
+    text + rest
+}
+
+/// The values of the measures, by their names in order.
+fn values(text: &str) -> Vec<f64> {
+    let mut measured = Measured::new(text);
+    measured.interact();
+    measured.read().into_values().collect()
+}
+
+fn mass(radius: f64) -> f64 {
+    DENSITY * 4.0 / 3.0 * PI * radius.powi(3)
+}
+
+#[test]
+fn spheres_that_a_border_cuts_count_in_part() {
+    // A cap of this height, over the ball.
+    let cap = |height: f64| height * height * (3.0 - height) / 4.0;
+    let place = [0.1, 0.2, 0.3];
+    for (high, wanted) in [
+        ([9.0, 9.0, 9.0], 1.0),
+        ([9.0, 9.0, 0.3], 0.5),
+        ([9.0, 0.2, 0.3], 0.25),
+        ([0.1, 0.2, 0.3], 0.125),
+        ([9.0, 9.0, 0.8], 1.0 - cap(0.5)),
+        ([9.0, 9.0, -0.3], cap(0.4)),
+        ([-0.4, 9.0, 9.0], cap(0.5)),
+        ([9.0, 9.0, -0.9], 0.0),
+    ] {
+        let [x, y, z] = place;
+        let text = scene(
+            &[[x, y, z, 1.0]],
+            &[],
+            &format!(
+                "[regions.part]\nbox = {{ min = [-9, -9, -9], max = {high:?} }}\n[measures.m]\nof = \"a\"\nquantity = \"mass\"\nwithin = \"part\"\n"
+            ),
+        );
+        let found = values(&text)[0] / mass(1.0);
+        assert!((found - wanted).abs() < 6e-3, "{high:?}: {found} {wanted}");
+    }
+}
+
+#[test]
+fn a_region_divides_mass_by_its_volume() {
+    let spheres = [
+        [0.0, 0.0, 0.0, 1.0],
+        [0.5, 0.0, 0.0, 0.25],
+        [0.0, 9.0, 0.0, 0.5],
+    ];
+    let regions = "[regions.ball]\nsphere = { centre = [0, 0, 0], radius = 2 }\n\
+        [regions.can]\ncylinder = { from = [0, 0, -2], to = [0, 0, 3], radius = 1.5 }\n\
+        [regions.room]\nbox = { min = [-2, -2, -2], max = [2, 10, 2] }\n";
+    let measure = |region: &str| {
+        format!("[measures.{region}]\nquantity = \"bulk_density\"\nwithin = \"{region}\"\n")
+    };
+    let rest = regions.to_owned()
+        + &["ball", "can", "room"].map(measure).concat()
+        + "[measures.total]\nquantity = \"mass\"\n";
+    let found = values(&scene(&spheres, &[], &rest));
+    let two = mass(1.0) + mass(0.25);
+    assert_near(found[0], two / (4.0 / 3.0 * PI * 8.0), 1e-9);
+    assert_near(found[1], two / (PI * 1.5 * 1.5 * 5.0), 1e-9);
+    assert_near(found[2], (two + mass(0.5)) / (4.0 * 12.0 * 4.0), 1e-9);
+    assert_near(found[3], two + mass(0.5), 1e-9);
+}
+
+#[test]
+fn a_lattice_has_the_bulk_density_of_its_cell() {
+    let mut spheres = Vec::new();
+    for i in 0..8 {
+        for j in 0..8 {
+            for k in 0..8 {
+                spheres.push([i, j, k].map(|n| 2.0 * f64::from(n)));
+            }
+        }
+    }
+    let spheres: Vec<[f64; 4]> = spheres.iter().map(|[x, y, z]| [*x, *y, *z, 1.0]).collect();
+    // A region that cuts spheres at all sides, as many cells as it has volume.
+    let rest = "[regions.inside]\nbox = { min = [2.3, 2.7, 3.1], max = [10.3, 10.7, 11.1] }\n[measures.m]\nquantity = \"bulk_density\"\nwithin = \"inside\"\n";
+    let found = values(&scene(&spheres, &[], rest))[0];
+    let wanted = DENSITY * PI / 6.0;
+    assert!((found / wanted - 1.0).abs() < 2e-3, "{found} {wanted}");
+}
+
+#[test]
+fn the_surface_of_a_heap_is_that_of_its_spheres() {
+    // Spheres side by side on the ground: each has the upper half of a ball on a cylinder under it,
+    // 5/3 pi r^3.
+    let mut random = Random(5);
+    let spheres: Vec<[f64; 4]> = (0..400)
+        .map(|n| {
+            let [i, j] = [n % 20, n / 20].map(|n| 3.0 * f64::from(n));
+            [
+                i + random.within(-0.4, 0.4),
+                j + random.within(-0.4, 0.4),
+                0.0,
+                1.0,
+            ]
+        })
+        .collect();
+    let rest = "[measures.m]\nquantity = \"bulk_density\"\n";
+    let found = values(&scene(&spheres, &[], rest))[0];
+    assert!((found / (0.8 * DENSITY) - 1.0).abs() < 0.02, "{found}");
+    // Upwards is against gravity: seen from the side, rows stand above each other.
+    let fallen = scene(&spheres, &[], rest)
+        .replace("end_time = 1\n", "end_time = 1\ngravity = [-9.81, 0, 0]\n");
+    let sideways = values(&fallen)[0];
+    assert!(sideways < 0.9 * found, "{sideways} {found}");
+}
+
+#[test]
+fn laceys_index_is_0_apart_and_1_at_random() {
+    let place = |n: usize| [n % 16, n / 16 % 16, n / 256].map(|k| 2.0 * k as f64 + 1.0);
+    let sphere = |n: usize| {
+        let [x, y, z] = place(n);
+        [x, y, z, 1.0]
+    };
+    let rest = "[regions.room]\nbox = { min = [0, 0, 0], max = [32, 32, 32] }\n[measures.m]\nof = \"a\"\nwith = \"b\"\nquantity = \"mixing_index\"\nwithin = \"room\"\ncell_size = 8\n";
+    let index = |is_first: &mut dyn FnMut(usize) -> bool| {
+        let (a, b): (Vec<usize>, Vec<usize>) = (0..4096).partition(|&n| is_first(n));
+        let spheres = |of: &[usize]| of.iter().map(|&n| sphere(n)).collect::<Vec<_>>();
+        values(&scene(&spheres(&a), &spheres(&b), rest))[0]
+    };
+    assert_near(index(&mut |n| n < 1024), 0.0, 1e-12);
+    // Three fourths of each cell in the lower half, and nothing in the upper: p = 3/8,
+    // s^2 = (3/8)^2, s0^2 = 15/64, n = 64.
+    let apart = 15.0 / 64.0;
+    let variance = (3.0_f64 / 8.0).powi(2);
+    let wanted = (apart - variance) / (apart - apart / 64.0);
+    let halves = index(&mut |n| n < 2048 && n % 4 != 0);
+    assert_near(halves, wanted, 1e-12);
+    let mut random = Random(11);
+    let mixed = index(&mut |_| random.within(0.0, 1.0) < 0.3);
+    assert!((mixed - 1.0).abs() < 0.01, "{mixed}");
+}
