@@ -262,6 +262,21 @@ fn flat_sided_shapes_have_their_exact_volume() {
 }
 
 #[test]
+fn rings_around_a_hole_have_its_area() {
+    let side = PI / 36.0;
+    let polygon = |radius: f64| 36.0 * radius * radius * side.sin();
+    for (name, outer, height) in [("tube.stl", 5.3, 20.0), ("orifice.stl", 50.0, 1.0)] {
+        let exact = height * (polygon(outer) - PI * 25.0);
+        let facets = facets(name);
+        assert!(
+            (volume(&facets) - exact).abs() < 1e-4 * area(&facets),
+            "{name}: {} {exact}",
+            volume(&facets)
+        );
+    }
+}
+
+#[test]
 fn round_shapes_miss_their_volume_by_no_more_than_flat_facets_must() {
     let tablet = facets("tablet.stl");
     let dome = PI / 3.0 * (3.0 * 13.0 - 1.0);

@@ -70,10 +70,10 @@ pub(super) fn write(
             let (x, r) = (pose.position_m[k], pose.radius_m());
             [x - 2.0 * r, x + 2.0 * r]
         });
-        // The regions of inlets are in the box.
-        let regions = feeds.iter().map(|f| [f.bounds.low[k], f.bounds.high[k]]);
+        // An atom that comes outside of the box is lost.
+        let rooms = feeds.iter().map(|f| [f.room.low[k], f.room.high[k]]);
         let [low, high] = ends
-            .chain(regions)
+            .chain(rooms)
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| {
                 [low.min(a), high.max(b)]
             });

@@ -41,9 +41,10 @@ pub(super) struct Feed {
     pub start: u64,
     pub every: u64,
     pub count: u64,
-    /// Style and arguments of the region of its centre, and the box around it.
+    /// Style and arguments of the region of its centre.
     pub region: String,
-    pub bounds: Bounds,
+    /// The box around it in that region.
+    pub room: Bounds,
     /// m/s. Length 3.
     pub velocity_m_s: [f64; 3],
     /// Of the random numbers: at least 1.
@@ -107,7 +108,7 @@ pub(super) fn feeds(scene: &Scene, plan: &Plan) -> Result<Vec<Feed>> {
                 every,
                 count,
                 region: region.clone(),
-                bounds,
+                room: bounds.grown(template.scale.max(1.0) * template.reach_m),
                 velocity_m_s: inlet.velocity_m_s,
                 seed: (plan.state.model.rules.seed % 1_000_000) + number as u64,
             });

@@ -116,8 +116,8 @@ fn the_surface_of_a_heap_is_that_of_its_spheres() {
         .map(|n| {
             let [i, j] = [n % 20, n / 20].map(|n| 3.0 * f64::from(n));
             [
-                i + random.within(-0.4, 0.4),
-                j + random.within(-0.4, 0.4),
+                i + random.within(-0.5, 0.5),
+                j + random.within(-0.5, 0.5),
                 0.0,
                 1.0,
             ]

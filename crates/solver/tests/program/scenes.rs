@@ -144,7 +144,7 @@ fn every_good_scene_of_the_corpus_runs() {
 /// End time of each scene for a test without false alarms, and the shape and diameters of its body
 /// if it needs one. Laboratory tests, which have no end time of their own, load within one period
 /// of the body.
-const SHORT: [[&str; 4]; 23] = [
+const SHORT: [[&str; 4]; 25] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -159,10 +159,12 @@ const SHORT: [[&str; 4]; 23] = [
     ["four-point-bending", "", "bending-sample", "5mm..7mm"],
     ["hard-and-soft", "4 ms", "", ""],
     ["jaw-crusher", "0.1 s", "", ""],
+    ["lifted-cylinder", "30 ms", "", ""],
     ["one-cake", "60 ms", "", ""],
     ["repeated-drops", "3 ms", "", ""],
     ["roll-crusher", "0.2 s", "", ""],
     ["shatter", "5 ms", "", ""],
+    ["silo", "20 ms", "", ""],
     ["spinning-bar", "50 ms", "", ""],
     ["stalk-cut", "0.5 ms", "", ""],
     ["tension", "", "bar", "4mm..6mm"],

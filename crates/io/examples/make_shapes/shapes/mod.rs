@@ -29,10 +29,12 @@ pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
             "long-bending-sample",
             Mesh::cuboid([0.0, 0.0, 0.0], [200.0, 30.0, 35.0]),
         ),
+        ("orifice", round::orifice()),
         ("rock", rock::rock()),
         ("stalk", round::stalk()),
         ("tablet", round::tablet()),
         ("torus", round::torus()),
+        ("tube", round::tube()),
     ]
 }
 

@@ -56,6 +56,39 @@ pub(crate) fn c_shape() -> Mesh {
     mesh
 }
 
+/// A tube, open at both ends: 10 mm wide inside, 20 mm long, with a wall of 0.3 mm.
+pub(crate) fn tube() -> Mesh {
+    flat_ring(5.3, [0.0, 20.0])
+}
+
+/// A round plate of 100 mm, 1 mm thick, with its top on z = 0 and a hole of 10 mm.
+pub(crate) fn orifice() -> Mesh {
+    flat_ring(50.0, [-1.0, 0.0])
+}
+
+/// A ring between two heights around a hole of 10 mm: polygons of 72 corners with the area of the
+/// hole's circle.
+fn flat_ring(outer_mm: f64, [low, high]: [f64; 2]) -> Mesh {
+    const SIDES: u32 = 72;
+    let side = TAU / f64::from(SIDES);
+    let inner_mm = 5.0 * (side / side.sin()).sqrt();
+    let mut mesh = Mesh::default();
+    let section = |i: u32| {
+        let (sin, cos) = (side * f64::from(i)).sin_cos();
+        [
+            (inner_mm, low),
+            (inner_mm, high),
+            (outer_mm, high),
+            (outer_mm, low),
+        ]
+        .map(|(distance, z)| mesh.vertex([distance * cos, distance * sin, z]))
+        .to_vec()
+    };
+    let rings: Vec<Vec<u32>> = (0..SIDES).map(section).collect();
+    join_rings(&mut mesh, &rings, true);
+    mesh
+}
+
 /// An infinity knot: a round tube 14 mm thick along (45 sin t, 20 sin 2t, 8 cos t) mm, which passes
 /// over itself with a gap of 2 mm.
 pub(crate) fn infinity_knot() -> Mesh {
