@@ -8,6 +8,7 @@ mod bad_bodies;
 mod bad_input;
 mod body_information;
 mod browser;
+mod bulk;
 mod calibrate;
 mod check;
 mod command_line;

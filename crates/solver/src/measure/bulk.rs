@@ -85,7 +85,7 @@ pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
     spheres.iter().map(|s| s.mass_kg).sum::<f64>() / volume_m3
 }
 
-/// Lacey's index of the mixture of two sets in a region, 0 for sets apart and 1 for a random
+/// Lacey's index (Lacey 1954) of the mixture of two sets in a region, 0 for sets apart and 1 for a random
 /// mixture: (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the first
 /// set among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a random
 /// mixture, sr^2 = s0^2 / n, for the mean number n of spheres in a cell. NaN if the region has
