@@ -159,8 +159,8 @@ fn what_does_not_overlap_stays_where_it_is() {
         minimise_overlaps(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap(),
         Settled {
             steps: 0,
-            taken_out: 0,
-            is_stopped: false
+            thinned: 0,
+            taken_out: 0
         }
     );
     for (a, b) in balls.iter().zip(&before) {
