@@ -80,16 +80,14 @@ fn lists_of_the_wall_hold_the_triangles_within_reach() {
             [x, y, z, between(&mut random, 0.02, 0.1)]
         };
         let mut spheres: Vec<ReducedSphere> = (0..1500).map(|_| sphere()).collect();
-        let mut path = vec![0.0; spheres.len()];
         let mut lists = WallLists::new(&boundary, &spheres, ENLARGE, skin);
         assert_lists_are_complete(&lists, &boundary, &spheres, ENLARGE, skin);
         for most in [0.1, 0.3, 0.5, 2.0] {
-            for (sphere, path) in spheres.iter_mut().zip(&mut path) {
+            for sphere in &mut spheres {
                 let by = skin * between(&mut random, 0.0, most);
                 sphere[between(&mut random, 0.0, 3.0) as usize] += by;
-                *path += by;
             }
-            lists.renew(&spheres, &path);
+            lists.renew(&spheres);
             assert_lists_are_complete(&lists, &boundary, &spheres, ENLARGE, skin);
         }
     }

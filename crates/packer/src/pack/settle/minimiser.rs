@@ -267,7 +267,7 @@ impl<'a> State<'a> {
         // Frees the old lists before the new ones are allocated.
         self.near = NeighbourLists::default();
         self.near = NeighbourLists::new(balls, self.skin);
-        self.walls.renew(balls, &self.path);
+        self.walls.renew(balls);
         self.listed_at.clone_from(balls);
         let neighbours = (0..balls.len()).map(|i| self.near.of(i).len());
         let response = |n: usize| LARGEST_RESPONSE * (FEW_NEIGHBOURS / n as f64).min(1.0);

@@ -67,7 +67,7 @@ fn free_until(path: f64, distance: f64, reach: f64) -> f32 {
 }
 
 impl<'a> WallLists<'a> {
-    /// Lists the triangles near spheres whose paths begin here. They touch the wall at their radius
+    /// Lists the triangles near spheres, which touch the wall at their radius
     /// times `enlarge`. Lengths in local units.
     pub fn new(boundary: &'a Boundary, balls: &[ReducedSphere], enlarge: f64, skin: f64) -> Self {
         let mut lists = Self {
@@ -78,7 +78,7 @@ impl<'a> WallLists<'a> {
         };
         let of_chunk = |balls: &[ReducedSphere]| ChunkOfWalls {
             near: (balls.iter().enumerate())
-                .filter_map(|(k, ball)| lists.near(k, ball, 0.0))
+                .filter_map(|(k, ball)| lists.near(k, ball))
                 .collect(),
             listed_at: balls.to_vec(),
         };
@@ -87,8 +87,8 @@ impl<'a> WallLists<'a> {
     }
 
     /// Lists them anew for each sphere that could touch a triangle not in its list before it has
-    /// moved by half the skin. `path` are the lengths of the spheres' paths.
-    pub fn renew(&mut self, balls: &[ReducedSphere], path: &[f64]) {
+    /// moved by half the skin.
+    pub fn renew(&mut self, balls: &[ReducedSphere]) {
         let mut chunks = std::mem::take(&mut self.chunks);
         let most_squared = ((REACH - 0.5) * self.skin).powi(2);
         let renew_chunk = |(chunk, of_chunk): (usize, &mut ChunkOfWalls)| {
@@ -98,7 +98,7 @@ impl<'a> WallLists<'a> {
                 let known = before.next_if(|near| near.sphere == k);
                 if squared_distance(listed_at, &balls[i]) > most_squared {
                     *listed_at = balls[i];
-                    of_chunk.near.extend(self.near(k, &balls[i], path[i]));
+                    of_chunk.near.extend(self.near(k, &balls[i]));
                 } else {
                     of_chunk.near.extend(known);
                 }
@@ -108,8 +108,8 @@ impl<'a> WallLists<'a> {
         self.chunks = chunks;
     }
 
-    /// The wall near sphere `k` of a chunk, whose path has this length; none if it is far.
-    fn near(&self, k: usize, ball: &ReducedSphere, path: f64) -> Option<NearWall> {
+    /// The wall near sphere `k` of a chunk; none if it is far.
+    fn near(&self, k: usize, ball: &ReducedSphere) -> Option<NearWall> {
         let (centre, radius) = (centre_of(ball), ball[3] * self.enlarge);
         let reach = radius + REACH * self.skin;
         let is_near = |t: &u32| self.boundary.may_be_nearer(*t, &centre, reach);
@@ -117,7 +117,7 @@ impl<'a> WallLists<'a> {
         let triangles: Vec<NearTriangle> = triangles
             .map(|number| NearTriangle {
                 number,
-                free_until: path as f32,
+                free_until: 0.0,
             })
             .collect();
         (!triangles.is_empty()).then(|| NearWall {
