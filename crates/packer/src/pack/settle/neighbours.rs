@@ -76,6 +76,10 @@ fn list_chunk(
 
 /// Adds those of a row of spheres to the list of `ball`, sphere `number`, that are less than `skin`
 /// away. Each is written in any case and kept if near, since a branch would be mispredicted.
+#[expect(
+    clippy::needless_range_loop,
+    reason = "several arrays side by side, lane by lane"
+)]
 #[inline(always)]
 fn add_near(ball: &ReducedSphere, number: u32, row: &Row, skin: f64, list: &mut Vec<u32>) {
     let mut end = list.len();
