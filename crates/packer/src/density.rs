@@ -82,8 +82,8 @@ fn gain(begun: &[Begun]) -> f64 {
     median(gains).unwrap_or(1.0)
 }
 
-/// The median: of packings that jammed, and were begun again with more room, and of the others,
-/// which are denser, the mean may be the density of none.
+/// The median: of packings that jammed, from which spheres were left out, and of the others, which
+/// are denser, the mean may be the density of none.
 fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);

@@ -8,5 +8,4 @@ pub(crate) mod inside;
 mod plane;
 mod tree;
 pub(crate) mod union;
-pub(crate) mod wall_cells;
 mod winding;

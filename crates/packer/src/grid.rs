@@ -38,7 +38,7 @@ impl Lattice {
 
     /// Calls `visit` with the numbers of each row of cells that a cube of half edge `reach` around
     /// the point touches.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn rows_near(
         &self,
         [x, y, z]: [f64; 3],

@@ -50,9 +50,8 @@ pub mod internals {
     pub use crate::geometry::depth_map::DepthMap;
     pub use crate::geometry::inside::{first_hit, is_inside};
     pub use crate::geometry::union::outer_pieces;
-    pub use crate::geometry::wall_cells::WallCells;
     pub use crate::grid::Grid;
-    pub use crate::pack::settle::{Settled, SizeClasses, WhenJammed, minimise_overlaps};
+    pub use crate::pack::settle::{Settled, SizeClasses, WallLists, WhenJammed, minimise_overlaps};
     pub use crate::pack::shrink::FillTarget;
     pub use crate::quality::{
         BondedPacking, DEFAULT_GAP_LIMIT, assess, chi_squared_5_exceeds, depth_needed,

@@ -68,36 +68,25 @@ pub(crate) fn pack_if(
     let job = Job::new(solid, settings)?;
     let mut attempt = Retry::first(choose_shrink(settings), &settings.sizes);
     let mut retry = Retry::new(&job);
-    let mut densify_seconds = 0.0;
-    let (mut spheres, grown, thinned, settled) = loop {
+    let front = loop {
         let front = grow(&job, &attempt, progress)?;
-        if let Some(better) = retry.after_front(&attempt, &front) {
-            attempt = better;
-            continue;
-        }
-        let too_many = retry.too_many(&front);
-        let filled = (1.0 - too_many) * front.filled_fraction(&job);
-        if retry.has_not_jammed() && !is_wanted(filled) {
-            return Ok(None);
-        }
-        let (mut spheres, grown) = front.finish();
-        sort_along_curve(&mut spheres, job.radius_range()[1]);
-        let thinned = thin_out(&mut spheres, too_many);
-        let settling = Instant::now();
-        let settled = settle(
-            &job,
-            attempt.shrink,
-            retry.when_jammed(),
-            &mut spheres,
-            progress,
-        )?;
-        densify_seconds += settling.elapsed().as_secs_f64();
-        match retry.after_settling(&attempt, &settled) {
+        match retry.after_front(&attempt, &front) {
             Some(better) => attempt = better,
-            None => break (spheres, grown, thinned, settled),
+            None => break front,
         }
     };
-    let front_seconds = started.elapsed().as_secs_f64() - densify_seconds;
+    let too_many = retry.too_many(&front);
+    if !is_wanted((1.0 - too_many) * front.filled_fraction(&job)) {
+        return Ok(None);
+    }
+    let (mut spheres, grown) = front.finish();
+    sort_along_curve(&mut spheres, job.radius_range()[1]);
+    let thinned = thin_out(&mut spheres, too_many);
+    let front_seconds = started.elapsed().as_secs_f64();
+    let settling = Instant::now();
+    let when_jammed = retry.when_jammed();
+    let settled = settle(&job, attempt.shrink, when_jammed, &mut spheres, progress)?;
+    let densify_seconds = settling.elapsed().as_secs_f64();
     let filling = Instant::now();
     let filled = fill(&job, attempt.fills_voids, &mut spheres, progress)?;
 
@@ -107,7 +96,7 @@ pub(crate) fn pack_if(
         densify: attempt.shrink,
         fronts: grown.fronts,
         densify_steps: settled.steps,
-        thinned,
+        thinned: thinned + settled.thinned,
         removed: settled.taken_out,
         attempts: retry.fronts,
         void_fillers: grown.fillers + filled.fillers,

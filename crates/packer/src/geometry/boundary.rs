@@ -205,20 +205,6 @@ impl Boundary {
         self.surroundings[triangle].least_distance(&self.planes[triangle], point)
     }
 
-    /// True if a triangle of the wall is closer to a point than `reach` (local units).
-    pub(crate) fn is_nearer(&self, triangle: u32, point: &Vector3, reach: f64) -> bool {
-        let surroundings = &self.surroundings[triangle as usize];
-        !surroundings.is_beyond(point, reach)
-            && (surroundings.is_around_middle(point, reach)
-                || self.least_distance(triangle, point) < reach
-                    && self.nearest_on(triangle, point).distance < reach)
-    }
-
-    /// Smallest and largest corner of the box around the wall.
-    pub(crate) fn bounds(&self) -> [[f64; 3]; 2] {
-        self.wall().bounds()
-    }
-
     /// The nearest point of one triangle of the wall.
     pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
         let plane = &self.planes[triangle as usize];

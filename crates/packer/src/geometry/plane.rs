@@ -77,11 +77,6 @@ impl Surroundings {
         (point - self.middle).norm_squared() > (1.0 + MARGIN) * reach * reach
     }
 
-    /// True if the middle of the triangle is certainly closer to a point than `reach`.
-    pub(super) fn is_around_middle(&self, point: &Vector3, reach: f64) -> bool {
-        (point - self.middle).norm_squared() < (1.0 - MARGIN) * reach * reach
-    }
-
     /// A lower bound of the distance of the triangle from a point: that of the circle around it in
     /// its plane.
     pub(super) fn least_distance(&self, plane: &Plane, point: &Vector3) -> f64 {

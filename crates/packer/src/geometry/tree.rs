@@ -38,12 +38,6 @@ impl TriangleTree {
         [triangle.a, triangle.b, triangle.c].map(Into::into)
     }
 
-    /// Smallest and largest corner of the box around all triangles.
-    pub(super) fn bounds(&self) -> [[f64; 3]; 2] {
-        let bounds = self.0.local_aabb();
-        [bounds.mins, bounds.maxs].map(Into::into)
-    }
-
     /// The triangles whose boxes come within `reach` of `point`.
     pub(super) fn within(&self, point: &Vector3, reach: f64) -> impl Iterator<Item = u32> + '_ {
         let (centre, half) = (to_parry(point), Vector::splat(reach));

@@ -5,15 +5,14 @@
 //!   surplus.
 //! - A front before settling may leave too much room, or far too little, since small bodies vary by
 //!   chance. The next one runs at other radii. If it leaves a little too little, spheres are taken
-//!   out evenly.
-//! - Its spheres may still jam: the next front reduces the radii by less, for a lower target.
+//!   out evenly. So they are while settling if they jam.
 //!
 //! If the reduction of the radii was given by the user, only the sizes of a bare front are retried.
 
 use super::attempt::{Attempt, can_fill_voids};
 use super::grow::Grown;
 use super::job::Job;
-use super::settle::{Settled, WhenJammed};
+use super::settle::WhenJammed;
 use super::shrink::{FillTarget, is_wide, rounded};
 use crate::sizes::Sizes;
 
@@ -38,12 +37,7 @@ const SLOWEST_FALL: f64 = 0.6;
 /// Largest number of fronts until one leaves the room that settling needs, and of sizes that are
 /// wide.
 const MOST_FRONTS: usize = 4;
-const MOST_WIDE_FRONTS: usize = 2;
-/// Factors on the reduction of the radii and on the target after the spheres of the previous front
-/// have jammed, and the number of times that they are applied before jammed spheres are taken out.
-const AFTER_JAM: f64 = 0.93;
-const TARGET_AFTER_JAM: f64 = 0.991;
-const MOST_JAMS: usize = 3;
+const MOST_WIDE_FRONTS: usize = 1;
 
 /// The attempts made, and those still allowed.
 pub(super) struct Retry {
@@ -53,8 +47,6 @@ pub(super) struct Retry {
     most_fronts: usize,
     /// Number of fronts run.
     pub(super) fronts: usize,
-    /// Number of times that the spheres have jammed.
-    jams: usize,
     /// True if this bare front is the last one.
     is_last: bool,
     last_imbalance: f64,
@@ -73,7 +65,6 @@ impl Retry {
                 MOST_FRONTS
             },
             fronts: 0,
-            jams: 0,
             is_last: false,
             last_imbalance: f64::INFINITY,
         }
@@ -96,7 +87,7 @@ impl Retry {
         if attempt.fills_voids {
             return self.with_truer_sizes(attempt, grown);
         }
-        if self.jams > 0 || self.fronts >= self.most_fronts {
+        if self.fronts >= self.most_fronts {
             return None;
         }
         let shrink = self.target?.better_shrink(attempt.shrink, grown.volume())?;
@@ -111,37 +102,13 @@ impl Retry {
         (self.target.as_ref()).map_or(0.0, |target| target.too_many(grown.volume()))
     }
 
-    /// True if the next settling is the first one.
-    pub(super) fn has_not_jammed(&self) -> bool {
-        self.jams == 0
-    }
-
     /// Treatment of spheres that jam.
     pub(super) fn when_jammed(&self) -> WhenJammed {
-        if self.target.is_some() && self.jams < MOST_JAMS {
-            WhenJammed::Stop
+        if self.target.is_some() {
+            WhenJammed::ThinOut
         } else {
             WhenJammed::TakeOut
         }
-    }
-
-    /// The attempt to make if the spheres of this one jammed.
-    pub(super) fn after_settling(
-        &mut self,
-        attempt: &Attempt,
-        settled: &Settled,
-    ) -> Option<Attempt> {
-        if !settled.is_stopped {
-            return None;
-        }
-        self.jams += 1;
-        if let Some(target) = &mut self.target {
-            target.volume *= TARGET_AFTER_JAM;
-        }
-        Some(Attempt {
-            shrink: rounded(AFTER_JAM * attempt.shrink),
-            ..attempt.clone()
-        })
     }
 
     /// A bare front that holds back the sizes in surplus in this one, unless the sizes are correct.

@@ -48,7 +48,8 @@ pub struct PackHistory {
     pub fronts: usize,
     /// Number of steps of the settling minimiser.
     pub densify_steps: usize,
-    /// Number of spheres of the front that were too many for settling, and left out before it.
+    /// Number of spheres of the front that were too many, and left out evenly: before settling, and
+    /// while settling where they jammed.
     pub thinned: usize,
     /// Number of spheres removed because they were jammed.
     pub removed: usize,

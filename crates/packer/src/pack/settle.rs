@@ -1,8 +1,9 @@
 //! Settling: the spheres of a front with reduced radii grow to their full size while an energy of
 //! their overlaps, with each other and with the wall, is minimised to zero.
 //!
-//! E = 1/2 sum over pairs (g_a + g_b - d)^2 + 1/2 sum over spheres (r - wall distance)^2, each
-//! where positive; g is the reduced radius. The minimiser is damped dynamics: v <- (1 - c) v +
+//! E = 1/8 sum over pairs ((g^2 - d^2) / g)^2 + 1/2 sum over spheres (r - wall distance)^2, each
+//! where positive; g is the sum of two reduced radii. For small overlaps the first term is 1/2
+//! (g - d)^2; it takes no square root. The minimiser is damped dynamics: v <- (1 - c) v +
 //! response F, x <- x + v, with a damping c that decreases with the number of steps (Nesterov 1983
 //! has c = 3 / step; here it decreases less at first). The response replaces 1 / mass: it is
 //! smaller where many neighbours make a sphere's surroundings stiff (adaptive dynamic relaxation,
@@ -16,9 +17,11 @@ mod cells;
 mod forces;
 mod minimiser;
 mod neighbours;
+mod walls;
 
 pub use self::cells::SizeClasses;
 pub use self::minimiser::{Settled, WhenJammed, minimise_overlaps};
+pub use self::walls::WallLists;
 use super::job::Job;
 use super::settings::Progress;
 use crate::spheres::ReducedSphere;

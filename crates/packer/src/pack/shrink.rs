@@ -8,7 +8,7 @@
 //! surface over volume. This was fitted to bars, balls, discs, rocks and tori, 6 to 40 diameters
 //! thick, of one size, uniform and lognormal diameters: it separates jamming bodies from others
 //! within 0.5 %. Of wider distributions a few large spheres fill most of the volume: they jam at
-//! about 0.69, and walls count by the mean diameter by mass.
+//! about 0.676, and walls count by the mean diameter by mass.
 
 use super::settings::PackSettings;
 use crate::sizes::Sizes;
@@ -21,7 +21,7 @@ const JAMMED: [f64; 3] = [0.6304, 0.0658, 0.0857];
 const WALL: f64 = 0.080;
 /// Spread above which a distribution is wide, and the volume fraction at which it jams.
 const WIDE: f64 = 0.4;
-const WIDE_JAMMED: f64 = 0.69;
+const WIDE_JAMMED: f64 = 0.676;
 /// Reduction of the front's radii to begin with for a wide distribution.
 const WIDE_SHRINK: f64 = 0.0435;
 /// Target distance below jamming, as a fraction of the jamming density. Nearer, settling takes two

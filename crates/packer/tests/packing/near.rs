@@ -3,7 +3,7 @@
 use crate::helpers::solids::{
     between, icosphere, point_between, random_numbers, surface_of, torus,
 };
-use dem_pack::internals::{Boundary, Grid, ReducedSphere, SizeClasses, Vector3, WallCells};
+use dem_pack::internals::{Boundary, Grid, ReducedSphere, SizeClasses, Vector3, WallLists};
 use proptest::prelude::*;
 
 /// Spheres in a box whose edges are 1, 2 and 3, of radii that differ by up to the factor `ratio`.
@@ -31,9 +31,9 @@ proptest! {
         let classes = SizeClasses::new(&all, skin);
         for ball in &all {
             let mut found = vec![0; all.len()];
-            classes.near(ball, |spheres, numbers| {
-                for (sphere, i) in spheres.iter().zip(numbers) {
-                    assert_eq!(*sphere, all[*i as usize]);
+            classes.near(ball, |row| {
+                for (k, i) in row.numbers.iter().enumerate() {
+                    assert_eq!(row.coordinates.map(|numbers| numbers[k]), all[*i as usize]);
                     found[*i as usize] += 1;
                 }
             });
@@ -63,36 +63,62 @@ proptest! {
     }
 }
 
-/// The same triangles in the same order as those of the tree that are near enough.
+/// Before and after spheres have moved, each has all triangles in its list that it could touch after
+/// a further move of half the skin.
 #[test]
-fn cells_of_the_wall_hold_the_triangles_within_reach() {
+fn lists_of_the_wall_hold_the_triangles_within_reach() {
+    const ENLARGE: f64 = 1.25;
     let mut random = random_numbers(5);
     for facets in [
         torus(20.0, 5.0, 60, 24),
         icosphere(3, &|d| 5.0 + (4.0 * d[0]).sin()),
     ] {
         let (surface, boundary) = surface_of(&facets);
-        let extent = surface.extent();
-        let mean = extent.iter().sum::<f64>() / 3.0;
-        let range = [0.01 * mean, 0.2 * mean];
-        for most_cells in [100, 20_000] {
-            let cells = WallCells::new(&boundary, range, most_cells);
-            for _ in 0..300 {
-                let reach = between(&mut random, range[0], range[1]);
-                let low = [-0.5 * mean; 3];
-                let point = point_between(&mut random, low, extent.map(|e| e + 0.5 * mean));
-                let point = Vector3::from(point);
-                let found: Vec<u32> = cells.near(&point, reach).collect();
-                assert_eq!(found, near_one_by_one(&boundary, &point, reach));
+        let skin = 0.05;
+        let mut sphere = || {
+            let [x, y, z] = point_between(&mut random, [0.0; 3], surface.extent());
+            [x, y, z, between(&mut random, 0.02, 0.1)]
+        };
+        let mut spheres: Vec<ReducedSphere> = (0..1500).map(|_| sphere()).collect();
+        let mut lists = WallLists::new(&boundary, &spheres, ENLARGE, skin);
+        assert_lists_are_complete(&lists, &boundary, &spheres, ENLARGE, skin);
+        for most in [0.1, 0.3, 0.5, 2.0] {
+            for sphere in &mut spheres {
+                let by = skin * between(&mut random, 0.0, most);
+                sphere[between(&mut random, 0.0, 3.0) as usize] += by;
             }
+            lists.renew(&spheres);
+            assert_lists_are_complete(&lists, &boundary, &spheres, ENLARGE, skin);
         }
     }
 }
 
+fn assert_lists_are_complete(
+    lists: &WallLists,
+    boundary: &Boundary,
+    spheres: &[ReducedSphere],
+    enlarge: f64,
+    skin: f64,
+) {
+    let mut found = vec![Vec::new(); spheres.len()];
+    for (i, triangles) in lists.triangles() {
+        found[i].extend(triangles);
+    }
+    let mut most = 0;
+    for (sphere, mut found) in spheres.iter().zip(found) {
+        let centre = Vector3::new(sphere[0], sphere[1], sphere[2]);
+        let reach = enlarge * sphere[3] + 0.5 * skin;
+        let wanted = near_one_by_one(boundary, &centre, reach);
+        most = most.max(wanted.len());
+        assert!(wanted.iter().all(|triangle| found.contains(triangle)));
+        found.sort_unstable();
+        assert!(found.is_sorted_by(|a, b| a < b), "one twice");
+    }
+    assert!(most > 3, "{most}");
+}
+
 fn near_one_by_one(boundary: &Boundary, point: &Vector3, reach: f64) -> Vec<u32> {
     let is_near = |t: &u32| boundary.nearest_on(*t, point).distance < reach;
-    boundary
-        .triangles_near(point, reach)
-        .filter(is_near)
-        .collect()
+    let all = boundary.triangles_near(point, f64::INFINITY);
+    all.filter(is_near).collect()
 }

@@ -119,6 +119,32 @@ fn where_there_is_no_room_spheres_are_taken_out() {
     );
 }
 
+/// Before any is taken out for its overlap, some are left out evenly. The mean size is off by no more
+/// than chance allows.
+#[test]
+fn where_there_is_little_room_spheres_are_left_out_evenly() {
+    let (facets, mut balls, boundary) =
+        cloud(&cuboid([10.0, 8.0, 7.0]), 0.6, [0.9, 1.1], 0.0, 0.67, 6);
+    let before = sizes_of(&balls);
+    let settled =
+        minimise_overlaps(&boundary, &mut balls, 0.0, WhenJammed::ThinOut, &|_| Ok(())).unwrap();
+    assert_settled("little room", &facets, &balls, 0.0);
+    assert!(settled.thinned > 0);
+    assert!(settled.thinned as f64 <= 0.03 * before.len() as f64);
+    let missing = settled.thinned + settled.taken_out;
+    assert_eq!(balls.len(), before.len() - missing);
+    let mean = |sizes: &[f64]| sizes.iter().sum::<f64>() / sizes.len() as f64;
+    let spread = (before
+        .iter()
+        .map(|r| (r - mean(&before)).powi(2))
+        .sum::<f64>()
+        / before.len() as f64)
+        .sqrt();
+    let off = (mean(&sizes_of(&balls)) - mean(&before)).abs();
+    let chance = spread * (missing as f64).sqrt() / before.len() as f64;
+    assert!(off < 3.0 * chance, "{off} of {chance}");
+}
+
 /// Spheres thicker than the plate touch no others: the wall alone jams them.
 #[test]
 fn spheres_that_only_the_wall_jams_are_taken_out() {
@@ -159,8 +185,8 @@ fn what_does_not_overlap_stays_where_it_is() {
         minimise_overlaps(&boundary, &mut balls, 0.0, WhenJammed::TakeOut, &|_| Ok(())).unwrap(),
         Settled {
             steps: 0,
-            taken_out: 0,
-            is_stopped: false
+            thinned: 0,
+            taken_out: 0
         }
     );
     for (a, b) in balls.iter().zip(&before) {

@@ -27,9 +27,9 @@ impl SizeClasses {
             let is_smaller = |i: &u32| !is_last && balls[*i as usize][3] < 0.5 * largest;
             let (smaller, members): (Vec<u32>, Vec<u32>) = rest.into_iter().partition(is_smaller);
             if !members.is_empty() {
-                // Cells of half the largest reach: closer to the shape of a ball than 3 x 3 x 3
-                // cells of the full reach.
-                let cells = Cells::new(balls, &members, largest + 0.5 * skin);
+                // Cells of the largest reach: rows of three hold enough spheres to be compared
+                // several at once.
+                let cells = Cells::new(balls, &members, 2.0 * largest + skin);
                 classes.push((largest, cells));
             }
             rest = smaller;
@@ -38,9 +38,9 @@ impl SizeClasses {
         Self { skin, classes }
     }
 
-    /// Calls `visit` with all spheres less than the skin beyond contact with `ball`, and others,
-    /// and with their numbers.
-    pub fn near(&self, ball: &ReducedSphere, mut visit: impl FnMut(&[ReducedSphere], &[u32])) {
+    /// Calls `visit` with all spheres less than the skin beyond contact with `ball`, and others.
+    #[inline(always)]
+    pub fn near(&self, ball: &ReducedSphere, mut visit: impl FnMut(Row)) {
         for (largest, cells) in &self.classes {
             cells.near(ball, ball[3] + largest + self.skin, &mut visit);
         }
@@ -59,12 +59,21 @@ fn bounds(balls: impl Iterator<Item = ReducedSphere>) -> ([f64; 3], [f64; 3]) {
     (low, high)
 }
 
+/// Spheres of neighbouring cells.
+pub struct Row<'a> {
+    /// All x, all y, all z, and all reduced radii, local units.
+    pub coordinates: [&'a [f64]; 4],
+    /// Their numbers.
+    pub numbers: &'a [u32],
+}
+
 /// Spheres sorted by cell (counting sort).
 struct Cells {
     lattice: Lattice,
     /// Index of the first sphere of each cell, and the end of the last.
     first: Vec<u32>,
-    balls: Vec<ReducedSphere>,
+    /// All x, all y, all z, and all radii.
+    coordinates: [Vec<f64>; 4],
     numbers: Vec<u32>,
 }
 
@@ -82,7 +91,7 @@ impl Cells {
         let mut cells = Self {
             lattice: Lattice { low, cell, counts },
             first: vec![0; counts.iter().product::<usize>() + 1],
-            balls: vec![[0.0; 4]; members.len()],
+            coordinates: [0; 4].map(|_| vec![0.0; members.len()]),
             numbers: vec![0; members.len()],
         };
         let at: Vec<u32> = balls()
@@ -98,7 +107,9 @@ impl Cells {
         let mut next = cells.first.clone();
         for ((ball, i), a) in balls().zip(members).zip(&at) {
             let slot = &mut next[*a as usize];
-            cells.balls[*slot as usize] = ball;
+            for (all, x) in cells.coordinates.iter_mut().zip(ball) {
+                all[*slot as usize] = x;
+            }
             cells.numbers[*slot as usize] = *i;
             *slot += 1;
         }
@@ -106,17 +117,16 @@ impl Cells {
     }
 
     /// Calls `visit` with the spheres of rows of cells that come within `reach` of the centre of
-    /// `ball`, and their numbers.
-    fn near(
-        &self,
-        ball: &ReducedSphere,
-        reach: f64,
-        mut visit: impl FnMut(&[ReducedSphere], &[u32]),
-    ) {
+    /// `ball`.
+    #[inline(always)]
+    fn near(&self, ball: &ReducedSphere, reach: f64, mut visit: impl FnMut(Row)) {
         self.lattice
             .rows_near([ball[0], ball[1], ball[2]], reach, |row| {
                 let spheres = self.first[row.start] as usize..self.first[row.end] as usize;
-                visit(&self.balls[spheres.clone()], &self.numbers[spheres]);
+                visit(Row {
+                    coordinates: [0, 1, 2, 3].map(|k| &self.coordinates[k][spheres.clone()]),
+                    numbers: &self.numbers[spheres],
+                });
             });
     }
 }

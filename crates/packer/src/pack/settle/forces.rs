@@ -1,8 +1,9 @@
 //! Forces of overlaps, and the largest overlap: settling spends most of its time in this loop.
 
-use super::neighbours::{ChunkOfLists, NearTriangle, free_until};
-use crate::geometry::boundary::{Boundary, walls_among};
-use crate::spheres::{ReducedSphere, centre_of};
+use super::neighbours::ChunkOfLists;
+use super::walls::{NearWall, Workspace};
+use crate::geometry::boundary::Boundary;
+use crate::spheres::ReducedSphere;
 use pulp::NullaryFnOnce;
 
 /// Relative surplus of the radii while settling.
@@ -11,9 +12,6 @@ pub(super) const MARGIN: f64 = 5e-5;
 /// of its radius. Two spheres then overlap by less than the surplus of one of them, so not at all
 /// at their true sizes.
 const STANDS_OUT: f64 = 1e-10;
-/// Distance from the wall, as a fraction of the radius, below which a centre may have been pushed
-/// through it.
-const BEYOND: f64 = 0.9;
 /// A coordinate far from everything, in local units.
 const FAR: f64 = 1e6;
 /// Number of neighbours processed at once.
@@ -38,11 +36,13 @@ pub(super) struct ForcesOn<'a> {
     pub(super) first: usize,
     pub(super) boundary: &'a Boundary,
     pub(super) balls: &'a [ReducedSphere],
-    /// Lengths of the paths of these spheres since neighbours were listed.
+    /// Lengths of the paths of these spheres.
     pub(super) path: &'a [f64],
-    pub(super) spheres: &'a ChunkOfLists<u32>,
-    pub(super) walls: &'a mut ChunkOfLists<NearTriangle>,
+    pub(super) spheres: &'a ChunkOfLists,
+    pub(super) walls: &'a mut [NearWall],
     pub(super) enlarge: f64,
+    /// Fraction of its radius that a sphere may move while planes stand for the wall.
+    pub(super) plane_lasts: f64,
 }
 
 impl NullaryFnOnce for ForcesOn<'_> {
@@ -60,9 +60,10 @@ impl NullaryFnOnce for ForcesOn<'_> {
             spheres,
             walls,
             enlarge,
+            plane_lasts,
         } = self;
         let mut worst = 0.0_f64;
-        let (mut reached, mut touched) = (Vec::new(), Vec::new());
+        let mut workspace = Workspace::default();
         for (k, f) in force.iter_mut().enumerate() {
             let ball = balls[first + k];
             let mut push = ForceLanes::default();
@@ -78,45 +79,22 @@ impl NullaryFnOnce for ForcesOn<'_> {
                 }
                 push.add(&ball, last);
             }
-            let (mut total, worst_overlap) = push.sum();
+            let (total, worst_overlap) = push.sum();
             worst = worst.max(worst_overlap / ball[3]);
-            let walls = walls.of_mut(k);
-            if !walls.is_empty() {
-                let (centre, radius) = (centre_of(&ball), ball[3] * enlarge);
-                reached.clear();
-                for wall in walls
-                    .iter_mut()
-                    .filter(|w| f64::from(w.free_until) <= path[k])
-                {
-                    let near = boundary.nearest_on(wall.number, &centre);
-                    wall.free_until = free_until(path[k], near.distance, radius);
-                    if near.distance < radius {
-                        reached.push((wall.number, near));
-                    }
-                }
-                let nearest = reached.iter().map(|(_, near)| *near);
-                walls_among(nearest, &centre, radius, &mut touched);
-                // A centre that was pushed through the wall is pulled back.
-                let side = match touched.first() {
-                    Some(wall)
-                        if wall.distance < BEYOND * radius
-                            && boundary.is_behind_nearest(reached.iter().map(|r| r.0), &centre)
-                                == Some(false) =>
-                    {
-                        -1.0
-                    }
-                    _ => 1.0,
-                };
-                for wall in &touched {
-                    let overlap = radius - side * wall.distance;
-                    let push = side * overlap / wall.distance;
-                    for axis in 0..3 {
-                        total[axis] += push * (ball[axis] - wall.point[axis]);
-                    }
-                    worst = worst.max(wall_overlap(radius, side * wall.distance));
-                }
-            }
             *f = [total[0], total[1], total[2], 0.0];
+        }
+        for near in walls {
+            let k = near.sphere;
+            let ball = &balls[first + k];
+            let radius = ball[3] * enlarge;
+            let sphere = (ball, radius, path[k]);
+            let lasts = plane_lasts * radius;
+            near.touching(boundary, sphere, lasts, &mut workspace, |inward, height| {
+                for axis in 0..3 {
+                    force[k][axis] += (radius - height) * inward[axis];
+                }
+                worst = worst.max(wall_overlap(radius, height));
+            });
         }
         worst
     }
@@ -140,7 +118,7 @@ impl ForceLanes {
     #[inline(always)]
     fn add(&mut self, ball: &ReducedSphere, others: [ReducedSphere; LANES]) {
         let mut d = [[0.0; LANES]; 3];
-        let (mut squared, mut touching, mut overlap, mut push) =
+        let (mut squared, mut touching, mut excess, mut push) =
             ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for k in 0..LANES {
             for axis in 0..3 {
@@ -151,20 +129,20 @@ impl ForceLanes {
         for k in 0..LANES {
             squared[k] = d[0][k] * d[0][k] + d[1][k] * d[1][k] + d[2][k] * d[2][k];
         }
-        let distance = squared.map(f64::sqrt);
         for k in 0..LANES {
-            overlap[k] = if touching[k] > distance[k] {
-                touching[k] - distance[k]
+            let of_touching = touching[k] * touching[k];
+            excess[k] = if of_touching > squared[k] {
+                of_touching - squared[k]
             } else {
                 0.0
             };
+            push[k] = 0.5 * excess[k] / of_touching;
         }
         for k in 0..LANES {
-            push[k] = overlap[k] / distance[k];
-        }
-        for k in 0..LANES {
-            self.overlap[k] = if overlap[k] > self.overlap[k] {
-                overlap[k]
+            // The overlap, if it is small.
+            let overlap = push[k] * touching[k];
+            self.overlap[k] = if overlap > self.overlap[k] {
+                overlap
             } else {
                 self.overlap[k]
             };

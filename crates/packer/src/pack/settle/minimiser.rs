@@ -1,10 +1,11 @@
 //! The minimiser of the overlaps' energy: damped dynamics.
 
 use super::forces::{ForcesOn, MARGIN, wall_overlap};
-use super::neighbours::{CHUNK, NeighbourLists, sort_wall, squared_distance};
+use super::neighbours::{CHUNK, NeighbourLists, squared_distance};
+use super::walls::WallLists;
 use crate::geometry::boundary::Boundary;
 use crate::geometry::inside::is_inside;
-use crate::geometry::wall_cells::WallCells;
+use crate::pack::shrink::thin_out;
 use crate::spheres::{ReducedSphere, centre_of};
 use dem_io::{Diagnostic, Result};
 use pulp::Arch;
@@ -19,19 +20,28 @@ const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
 /// their places, and what is left only has to decay.
 const LAST_DAMPING: f64 = 0.1;
 const NEARLY_DONE: f64 = 0.03;
+/// Fraction of its radius that a sphere moves at the wall until it is measured again: a plane stands
+/// for the wall for so long, until and after overlaps are nearly done. At an edge the distance is
+/// off by half the square of this at most.
+const PLANE_LASTS: [f64; 2] = [0.1, 0.02];
 /// Velocity that a unit of force gives per step to a sphere of few neighbours; 1.5 times this value
 /// makes the dynamics unstable.
 const LARGEST_RESPONSE: f64 = 0.75;
 /// Number of listed neighbours up to which they are few: 6 of them touch. With more, the response
 /// decreases in proportion.
 const FEW_NEIGHBOURS: f64 = 10.0;
+/// Number of triangles of the wall that count as neighbours: more walls than that do not meet.
+const MOST_WALLS: usize = 3;
 /// Largest move of a sphere in a step, in mean radii: centres that begin almost at the same place
 /// are not shot through a wall, and the few fastest spheres do not set how often neighbours are
 /// listed. With half of it spheres are not shaken past each other.
 const LARGEST_MOVE: f64 = 0.1;
 
-/// Number of steps before spheres are taken out: the first time, and between later times.
-const PATIENCE: [usize; 2] = [1500, 200];
+/// Number of steps before spheres are left or taken out: the first time, and between later times.
+const PATIENCE: [usize; 2] = [1000, 200];
+/// Part of the spheres left out evenly each time, and the number of times.
+const THINNED_OUT: f64 = 0.009;
+const MOST_THINNINGS: usize = 3;
 /// Fraction of the spheres taken out the first time; it doubles each time, up to the second value.
 const TAKEN_OUT: [f64; 2] = [0.001, 0.016];
 /// Number of steps after which settling fails.
@@ -40,10 +50,11 @@ const MOST_STEPS: usize = 60_000;
 /// Treatment of spheres that are jammed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WhenJammed {
-    /// A few are taken out, until the rest has room.
+    /// A few of those that overlap most are taken out, until the rest has room.
     TakeOut,
-    /// Settling ends: the front is to have fewer spheres from the start.
-    Stop,
+    /// Some are left out evenly, without regard to size, `MOST_THINNINGS` times at most. Then a few
+    /// are taken out.
+    ThinOut,
 }
 
 /// Result of a settling run.
@@ -51,16 +62,15 @@ pub enum WhenJammed {
 pub struct Settled {
     /// Number of steps of the minimiser.
     pub steps: usize,
+    /// Number of spheres left out evenly because they were jammed.
+    pub thinned: usize,
     /// Number of spheres taken out because they were jammed.
     pub taken_out: usize,
-    /// True if settling was stopped because spheres were jammed: they still overlap.
-    pub is_stopped: bool,
 }
 
 /// Spheres with the variables of the minimiser.
 struct State<'a> {
     boundary: &'a Boundary,
-    wall: WallCells<'a>,
     balls: Vec<ReducedSphere>,
     /// Radius over reduced radius: 1 + overlap.
     enlarge: f64,
@@ -71,12 +81,15 @@ struct State<'a> {
     /// Velocity gained per step and unit of force: less for spheres with many neighbours.
     response: Vec<f64>,
     near: NeighbourLists,
+    walls: WallLists<'a>,
     /// The spheres when neighbours were listed last.
     listed_at: Vec<ReducedSphere>,
-    /// Length of the path of each sphere since then.
+    /// Length of the path of each sphere.
     path: Vec<f64>,
     skin: f64,
     largest_move: f64,
+    /// The largest overlap at the last positions, in radii.
+    worst: f64,
 }
 
 /// Moves spheres (reduced radii at full size) until none overlaps another or the wall. If they are
@@ -102,12 +115,21 @@ pub fn minimise_overlaps(
         ball[3] *= 1.0 + MARGIN;
     }
     let mut state = State::new(boundary, std::mem::take(balls), 1.0 + overlap);
+    let mut thinnings = match when_jammed {
+        WhenJammed::TakeOut => 0,
+        WhenJammed::ThinOut => MOST_THINNINGS,
+    };
     let mut patience = PATIENCE[0];
     let mut fraction = TAKEN_OUT[0];
     loop {
-        let worst = state.forces();
+        let mut worst = state.forces();
         if worst < MARGIN {
-            break;
+            // The walls may be known approximately only.
+            state.walls.forget();
+            worst = state.forces();
+            if worst < MARGIN {
+                break;
+            }
         }
         if settled.steps >= MOST_STEPS {
             return Err(Diagnostic::failed(
@@ -120,13 +142,14 @@ pub fn minimise_overlaps(
             ));
         }
         if settled.steps >= patience {
-            if when_jammed == WhenJammed::Stop {
-                settled.is_stopped = true;
-                return Ok(settled);
-            }
             patience += PATIENCE[1];
-            settled.taken_out += state.take_out_jammed(fraction);
-            fraction = TAKEN_OUT[1].min(2.0 * fraction);
+            if thinnings > 0 {
+                thinnings -= 1;
+                settled.thinned += state.thin_out();
+            } else {
+                settled.taken_out += state.take_out_jammed(fraction);
+                fraction = TAKEN_OUT[1].min(2.0 * fraction);
+            }
         } else {
             settled.steps += 1;
             if state.accelerate_and_move(damping(settled.steps, worst)) {
@@ -173,7 +196,7 @@ impl<'a> State<'a> {
         let skin = SKIN * mean;
         let mut state = Self {
             boundary,
-            wall: sort_wall(boundary, &balls, enlarge, skin),
+            walls: WallLists::new(boundary, &balls, enlarge, skin),
             balls,
             enlarge,
             velocity: vec![[0.0; 4]; n],
@@ -181,12 +204,23 @@ impl<'a> State<'a> {
             response: Vec::new(),
             near: NeighbourLists::default(),
             listed_at: Vec::new(),
-            path: Vec::new(),
+            path: vec![0.0; n],
             skin,
             largest_move: LARGEST_MOVE * mean,
+            worst: f64::INFINITY,
         };
         state.list_neighbours();
         state
+    }
+
+    /// Leaves out some spheres evenly, and lets the others come to rest. Returns the number left
+    /// out.
+    fn thin_out(&mut self) -> usize {
+        let boundary = self.boundary;
+        let mut balls = std::mem::take(&mut self.balls);
+        let number = thin_out(&mut balls, THINNED_OUT);
+        *self = Self::new(boundary, balls, self.enlarge);
+        number
     }
 
     /// Takes spheres out of the pairs that overlap most, and lets the others come to rest. Returns
@@ -196,7 +230,7 @@ impl<'a> State<'a> {
             .into_par_iter()
             .map(|i| {
                 let ball = &self.balls[i];
-                let earlier = (self.near.spheres.of(i).iter()).filter(|j| (**j as usize) < i);
+                let earlier = (self.near.of(i).iter()).filter(|j| (**j as usize) < i);
                 let overlap = |j: &u32| {
                     let other = &self.balls[*j as usize];
                     (ball[3] + other[3] - squared_distance(ball, other).sqrt())
@@ -232,26 +266,27 @@ impl<'a> State<'a> {
         let balls = &self.balls;
         // Frees the old lists before the new ones are allocated.
         self.near = NeighbourLists::default();
-        self.near = NeighbourLists::new(&self.wall, balls, self.enlarge, self.skin);
+        self.near = NeighbourLists::new(balls, self.skin);
+        self.walls.renew(balls);
         self.listed_at.clone_from(balls);
-        self.path.clear();
-        self.path.resize(balls.len(), 0.0);
-        self.response = (0..balls.len())
-            .map(|i| {
-                let neighbours = self.near.spheres.of(i).len() + self.near.walls.of(i).len();
-                LARGEST_RESPONSE * (FEW_NEIGHBOURS / neighbours as f64).min(1.0)
-            })
-            .collect();
+        let neighbours = (0..balls.len()).map(|i| self.near.of(i).len());
+        let response = |n: usize| LARGEST_RESPONSE * (FEW_NEIGHBOURS / n as f64).min(1.0);
+        self.response = neighbours.map(response).collect();
+        for (i, walls) in self.walls.triangles() {
+            let walls = walls.take(MOST_WALLS).count();
+            self.response[i] = response(self.near.of(i).len() + walls);
+        }
     }
 
     /// Forces at the present positions. Returns the largest overlap, in radii.
     fn forces(&mut self) -> f64 {
         let (boundary, balls, enlarge) = (self.boundary, &self.balls, self.enlarge);
+        let plane_lasts = PLANE_LASTS[usize::from(self.worst < NEARLY_DONE)];
         let force = self.force.par_chunks_mut(CHUNK);
         let path = self.path.par_chunks(CHUNK);
-        let spheres = self.near.spheres.chunks.par_iter();
-        let walls = self.near.walls.chunks.par_iter_mut();
-        (force, path, spheres, walls)
+        let spheres = self.near.chunks.par_iter();
+        let walls = self.walls.chunks.par_iter_mut();
+        self.worst = (force, path, spheres, walls)
             .into_par_iter()
             .enumerate()
             .map(|(chunk, (force, path, spheres, walls))| {
@@ -262,11 +297,13 @@ impl<'a> State<'a> {
                     balls,
                     path,
                     spheres,
-                    walls,
+                    walls: &mut walls.near,
                     enlarge,
+                    plane_lasts,
                 })
             })
-            .reduce(|| 0.0, f64::max)
+            .reduce(|| 0.0, f64::max);
+        self.worst
     }
 
     /// v = (1 - damping) v + response F; x += v. Returns true if a sphere has moved by more than

@@ -1,0 +1,227 @@
+//! The triangles of the wall that each sphere could touch, and the planes that stand for the wall
+//! while a sphere hardly moves. A sphere's triangles are listed anew only when that sphere has come
+//! far: most hardly leave their place while they settle.
+
+use super::neighbours::{CHUNK, squared_distance};
+use crate::geometry::boundary::{Boundary, Nearest, walls_among};
+use crate::spheres::{ReducedSphere, Vector3, centre_of};
+use rayon::prelude::*;
+
+/// Distance beyond contact up to which triangles are listed, in skins: half a skin is what a sphere
+/// may move until neighbours are listed again.
+const REACH: f64 = 0.75;
+/// Distance from the wall, as a fraction of the radius, below which a centre may have been pushed
+/// through it.
+const BEYOND: f64 = 0.9;
+
+/// The wall near each sphere.
+pub struct WallLists<'a> {
+    boundary: &'a Boundary,
+    /// Radius over reduced radius: 1 + overlap.
+    enlarge: f64,
+    skin: f64,
+    /// For each `CHUNK` spheres.
+    pub(super) chunks: Vec<ChunkOfWalls>,
+}
+
+/// The wall near up to `CHUNK` spheres.
+pub(super) struct ChunkOfWalls {
+    /// Those that have triangles near, in their order.
+    pub(super) near: Vec<NearWall>,
+    /// Each sphere when its triangles were listed.
+    listed_at: Vec<ReducedSphere>,
+}
+
+/// The wall near one sphere.
+pub(super) struct NearWall {
+    /// Number of the sphere within the chunk.
+    pub(super) sphere: usize,
+    triangles: Vec<NearTriangle>,
+    /// The walls that it touches, or nearly.
+    planes: Vec<WallPlane>,
+    /// Where the sphere was when these planes were found, and how far it may move until they are
+    /// found anew, squared.
+    found_at: ReducedSphere,
+    lasts_squared: f64,
+}
+
+/// A triangle of the wall near a sphere.
+struct NearTriangle {
+    number: u32,
+    /// Length of the sphere's path up to which it cannot touch the triangle.
+    free_until: f32,
+}
+
+/// The plane through the point of the wall nearest to a sphere.
+struct WallPlane {
+    point: Vector3,
+    /// Unit vector towards the sphere, or away from it if its centre is beyond the wall.
+    inward: Vector3,
+}
+
+/// Length of a path, now `path`, up to which a sphere at this distance from a triangle does not
+/// come within `reach` of it: rounded down.
+fn free_until(path: f64, distance: f64, reach: f64) -> f32 {
+    const MARGIN: f64 = 1e-9;
+    ((path + distance - (1.0 + MARGIN) * reach) as f32).next_down()
+}
+
+impl<'a> WallLists<'a> {
+    /// Lists the triangles near spheres, which touch the wall at their radius
+    /// times `enlarge`. Lengths in local units.
+    pub fn new(boundary: &'a Boundary, balls: &[ReducedSphere], enlarge: f64, skin: f64) -> Self {
+        let mut lists = Self {
+            boundary,
+            enlarge,
+            skin,
+            chunks: Vec::new(),
+        };
+        let of_chunk = |balls: &[ReducedSphere]| ChunkOfWalls {
+            near: (balls.iter().enumerate())
+                .filter_map(|(k, ball)| lists.near(k, ball))
+                .collect(),
+            listed_at: balls.to_vec(),
+        };
+        lists.chunks = balls.par_chunks(CHUNK).map(of_chunk).collect();
+        lists
+    }
+
+    /// Lists them anew for each sphere that could touch a triangle not in its list before it has
+    /// moved by half the skin.
+    pub fn renew(&mut self, balls: &[ReducedSphere]) {
+        let mut chunks = std::mem::take(&mut self.chunks);
+        let most_squared = ((REACH - 0.5) * self.skin).powi(2);
+        let renew_chunk = |(chunk, of_chunk): (usize, &mut ChunkOfWalls)| {
+            let mut before = std::mem::take(&mut of_chunk.near).into_iter().peekable();
+            for (k, listed_at) in of_chunk.listed_at.iter_mut().enumerate() {
+                let i = chunk * CHUNK + k;
+                let known = before.next_if(|near| near.sphere == k);
+                if squared_distance(listed_at, &balls[i]) > most_squared {
+                    *listed_at = balls[i];
+                    of_chunk.near.extend(self.near(k, &balls[i]));
+                } else {
+                    of_chunk.near.extend(known);
+                }
+            }
+        };
+        chunks.par_iter_mut().enumerate().for_each(renew_chunk);
+        self.chunks = chunks;
+    }
+
+    /// The wall near sphere `k` of a chunk; none if it is far.
+    fn near(&self, k: usize, ball: &ReducedSphere) -> Option<NearWall> {
+        let (centre, radius) = (centre_of(ball), ball[3] * self.enlarge);
+        let reach = radius + REACH * self.skin;
+        let is_near = |t: &u32| self.boundary.may_be_nearer(*t, &centre, reach);
+        let triangles = self.boundary.triangles_near(&centre, reach).filter(is_near);
+        let triangles: Vec<NearTriangle> = triangles
+            .map(|number| NearTriangle {
+                number,
+                free_until: 0.0,
+            })
+            .collect();
+        (!triangles.is_empty()).then(|| NearWall {
+            sphere: k,
+            triangles,
+            planes: Vec::new(),
+            found_at: *ball,
+            lasts_squared: -1.0,
+        })
+    }
+
+    /// Finds all planes anew for the next forces, however little the spheres have moved.
+    pub(super) fn forget(&mut self) {
+        for near in self.chunks.iter_mut().flat_map(|chunk| &mut chunk.near) {
+            near.lasts_squared = -1.0;
+        }
+    }
+
+    /// The spheres that have triangles near, each with the numbers of these.
+    pub fn triangles(&self) -> impl Iterator<Item = (usize, impl Iterator<Item = u32>)> {
+        let chunks = self.chunks.iter().enumerate();
+        chunks.flat_map(|(chunk, walls)| {
+            let sphere = move |near: &NearWall| chunk * CHUNK + near.sphere;
+            let near = walls.near.iter();
+            near.map(move |near| (sphere(near), near.triangles.iter().map(|t| t.number)))
+        })
+    }
+}
+
+impl WallPlane {
+    /// Height of the centre of a sphere above the plane, positive inside.
+    fn height(&self, ball: &ReducedSphere) -> f64 {
+        (centre_of(ball) - self.point).dot(&self.inward)
+    }
+}
+
+/// Work arrays of a thread.
+#[derive(Default)]
+pub(super) struct Workspace {
+    reached: Vec<(u32, Nearest)>,
+    touched: Vec<Nearest>,
+}
+
+impl NearWall {
+    /// Calls `push` with each wall that a sphere of this radius and length of path touches: the
+    /// direction into the solid, and the height of its centre. The planes that stand for the wall
+    /// are found anew once the sphere has moved by `lasts`.
+    pub(super) fn touching(
+        &mut self,
+        boundary: &Boundary,
+        (ball, radius, path): (&ReducedSphere, f64, f64),
+        lasts: f64,
+        workspace: &mut Workspace,
+        mut push: impl FnMut([f64; 3], f64),
+    ) {
+        let most_squared = self.lasts_squared.min(lasts * lasts);
+        if squared_distance(&self.found_at, ball) >= most_squared {
+            self.find_planes(boundary, (ball, radius, path), lasts, workspace);
+        }
+        for plane in &self.planes {
+            let height = plane.height(ball);
+            if height < radius {
+                push(plane.inward.into(), height);
+            }
+        }
+    }
+
+    /// Finds the planes of the walls that come within `lasts` of a sphere.
+    fn find_planes(
+        &mut self,
+        boundary: &Boundary,
+        (ball, radius, path): (&ReducedSphere, f64, f64),
+        lasts: f64,
+        Workspace { reached, touched }: &mut Workspace,
+    ) {
+        let (centre, reach) = (centre_of(ball), radius + lasts);
+        reached.clear();
+        for near in &mut self.triangles {
+            if f64::from(near.free_until) <= path + lasts {
+                let least = boundary.least_distance(near.number, &centre);
+                if least >= reach {
+                    near.free_until = free_until(path, least, radius);
+                    continue;
+                }
+                let nearest = boundary.nearest_on(near.number, &centre);
+                near.free_until = free_until(path, nearest.distance, radius);
+                if nearest.distance < reach {
+                    reached.push((near.number, nearest));
+                }
+            }
+        }
+        walls_among(reached.iter().map(|r| r.1), &centre, reach, touched);
+        // A centre that was pushed through the wall is pulled back.
+        let is_beyond = touched.first().is_some_and(|wall| {
+            wall.distance < BEYOND * radius
+                && boundary.is_behind_nearest(reached.iter().map(|r| r.0), &centre) == Some(false)
+        });
+        let side = if is_beyond { -1.0 } else { 1.0 };
+        self.planes.clear();
+        self.planes.extend(touched.iter().map(|wall| WallPlane {
+            point: wall.point,
+            inward: (centre - wall.point) * (side / wall.distance),
+        }));
+        self.found_at = *ball;
+        self.lasts_squared = lasts * lasts;
+    }
+}
