@@ -59,7 +59,8 @@ fn scene(run: &str, bonds: &str, [from_m, to_m]: [f64; 2], zone: &str) -> String
     format!(
         "version = 1
 run = {{ {run} }}
-materials.rock.density = {DENSITY}
+materials.rock = {{ density = {DENSITY}, young_modulus = {YOUNG_MODULUS_PA:e}, poisson_ratio = 0.25 }}
+contacts.rock-rock = {{ restitution = 0.5, friction = 0.5 }}
 bonds.rock = {{ young_modulus = {YOUNG_MODULUS_PA:e}, poisson_ratio = 0.25, {bonds} }}
 regions.zone.box = {{ min = [{from_m}, -1, -1], max = [{to_m}, 1, 1] }}
 bodies.bar = {{ file = \"bar.vtp\", material = \"rock\", bonds = \"rock\", bonded_within = {{ region = \"zone\"{zone} }} }}

@@ -23,7 +23,7 @@ fn leaving(scale: f64, volume: f64, speed_m_s: f64, restore: &str) -> State {
     let apart_m = 4.0 * RADIUS_M + (scale - 1.0) * RADIUS_M - 1e-8;
     let settings = "initial_overlap = \"keep\", safety_factor = 0.3";
     planned(&format!(
-        "{}bonds.glass = {{ young_modulus = 1e8, poisson_ratio = 0.25 }}\n{}{}\
+        "{}[bonds.glass]\nyoung_modulus = 1e8\npoisson_ratio = 0.25\n{}{}\
          [replacement.upper]\nwhen = {{ time = {SWAP_S} }}\n{restore}",
         head(1.0, 1.0, settings).replace("\"1e-3 mm3\"", &format!("{volume:e}")),
         rod("lower", 0.0, ""),

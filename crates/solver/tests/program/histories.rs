@@ -104,7 +104,7 @@ fn a_bond_stays_as_hard_as_it_has_become() {
     forgetful.bond_plastics.clear();
     let again = "file = \"left.vtp\"";
     for further in [2.0, -3.0] {
-        let path = format!("[0, 0], [5e-3, 4], [1e-2, 3], [2e-2, {}]", 3.0 + further);
+        let path = format!("[0, 0], [5e-3, 4], [1e-2, 3], [1.8e-2, {}]", 3.0 + further);
         let one = ran(&bench, &pair(INLINE, ELASTIC_PLASTIC, &moved(&path)), None);
         let second = pair(
             again,

@@ -7,7 +7,8 @@ use super::{Bench, table};
 /// A bar of which a plane goes to and fro by a sphere between two looks, and which vibrates.
 const SCENE: &str = "version = 1
 run = { end_time = 1.001e-4, time_step = 1e-7 }
-materials.rock.density = 2500
+materials.rock = { density = 2500, young_modulus = 1e9, poisson_ratio = 0.25 }
+contacts.rock-rock = { restitution = 0.5, friction = 0.5 }
 bonds.rock = { young_modulus = 1e9, poisson_ratio = 0.25 }
 regions.zone.box = { min = [-1, -1, -1], max = [5e-3, 1, 1] }
 [bodies.bar]

@@ -56,7 +56,7 @@ fn elongation(ratio: f64) -> Case {
     );
     let normal = YOUNG_PA * PI * FACTOR * FACTOR * radii_m[0] * radii_m[1] / sum_m;
     let what = format!("Rojek, radii 1 : {ratio}: elongation");
-    Case::new(what, 1e12 * x, 1e12 * load_n / normal, BOUND)
+    Case::new(what, 1e12 * x, 1e12 * load_n / normal, BOUND).rounding(BOUND)
 }
 
 /// The top of a triangle of touching spheres, whose other two are held, under a load along x or y.
@@ -87,7 +87,7 @@ fn triangle(axis: usize) -> Case {
         _ => ("down", 2.0 * (normal * 0.75 + shear * 0.25)),
     };
     let what = format!("triangle of pins: {name}");
-    Case::new(what, -1e12 * moved[axis], 1e12 * load_n / stiffness, BOUND)
+    Case::new(what, -1e12 * moved[axis], 1e12 * load_n / stiffness, BOUND).rounding(BOUND)
 }
 
 /// Displacements under a load.
