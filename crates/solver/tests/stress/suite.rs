@@ -45,7 +45,7 @@ fn nothing_is_missing() {
         ("step", [3, 3, 3]),
         ("overlap", [5, 0, 1]),
         ("shatter", [1, 0, 0]),
-        ("softening", [7, 0, 0]),
+        ("softening", [9, 0, 0]),
         ("yielding", [9, 0, 0]),
         ("joints", [7, 0, 0]),
         ("swap", [16, 0, 0]),
