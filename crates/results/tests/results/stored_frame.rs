@@ -324,8 +324,8 @@ proptest! {
             bond_lengths: (0..bonds.len()).map(|bond| 1.0 + 0.001 * bond as f64).collect(),
             broken: (0..bonds.len()).map(|bond| !whole[bond]).collect(),
             damages: Vec::new(),
-            hardened: Vec::new(),
-            failed: Vec::new(),
+            plastics: Vec::new(),
+            joints: Vec::new(),
             bonds,
             clusters,
         };
