@@ -81,7 +81,9 @@ fn refused_by(of_key: &Value) -> Vec<Value> {
         let limit = |word: &str| choice[word].as_f64();
         wrong.extend(limit("minimum").map(|least| number(least - step(least))));
         wrong.extend(limit("exclusiveMinimum").map(number));
-        wrong.extend(limit("maximum").map(|most| number(most + step(most))));
+        // Nothing is larger than the largest whole number.
+        let most = limit("maximum").filter(|most| *most < 1e15);
+        wrong.extend(most.map(|most| number(most + step(most))));
         wrong.extend(limit("exclusiveMaximum").map(number));
     }
     wrong
