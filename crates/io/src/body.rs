@@ -6,6 +6,7 @@
 pub(crate) mod check;
 pub mod csv;
 pub mod files;
+pub mod histories;
 pub mod inertia;
 pub mod lammps;
 pub mod mass;
@@ -19,6 +20,7 @@ pub mod txt;
 pub mod vtp;
 
 pub use files::{read_body, read_frame, read_particles, read_walls, write_body};
+pub use histories::{JointBond, PlasticBond};
 pub use parts::{About, Body};
 pub use stored_frame::{StoredFragment, StoredFrame};
 pub use stored_particles::StoredParticles;

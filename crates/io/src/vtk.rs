@@ -23,7 +23,7 @@ pub struct NamedArray<'a> {
     pub values: Values<'a>,
 }
 
-/// The values of an array: one number or one vector for each point or cell, found by its index.
+/// The values of an array: a number, a vector or small numbers for each point or cell, found by its index.
 #[derive(Clone, Copy)]
 pub enum Values<'a> {
     /// Numbers.
@@ -36,6 +36,8 @@ pub enum Values<'a> {
     Counts(&'a dyn Fn(usize) -> u32),
     /// Whole numbers with a sign.
     Integers(&'a dyn Fn(usize) -> i32),
+    /// This many small numbers each: by the index, and by the number of the component.
+    Flags(usize, &'a dyn Fn(usize, usize) -> u8),
 }
 
 impl Values<'_> {
@@ -45,6 +47,7 @@ impl Values<'_> {
             Self::SingleVectors(_) => "Float32",
             Self::Counts(_) => "UInt32",
             Self::Integers(_) => "Int32",
+            Self::Flags(..) => "UInt8",
         }
     }
 
@@ -55,6 +58,7 @@ impl Values<'_> {
             Self::Vectors(_) => 24,
             Self::SingleVectors(_) => 12,
             Self::Counts(_) | Self::Integers(_) => 4,
+            Self::Flags(count, _) => *count as u64,
         }
     }
 
@@ -68,6 +72,13 @@ impl Values<'_> {
             }
             Self::Counts(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
             Self::Integers(value) => write_array(out, count, |i| [value(i).to_le_bytes()]),
+            Self::Flags(components, value) => {
+                out.write_all(&((components * count) as u64).to_le_bytes())?;
+                (0..count).try_for_each(|i| {
+                    let flags: Vec<u8> = (0..*components).map(|k| value(i, k)).collect();
+                    out.write_all(&flags)
+                })
+            }
         }
     }
 }
@@ -193,7 +204,7 @@ impl PolyData<'_> {
         let mut section = |name: &str, arrays: &[Declaration]| {
             writeln!(out, "      <{name}>")?;
             for array in arrays {
-                let (kind, shape) = (array.kind, array.shape);
+                let (kind, shape) = (array.kind, &array.shape);
                 let name = escaped(array.name);
                 writeln!(
                     out,
@@ -207,7 +218,7 @@ impl PolyData<'_> {
         let whole = |name, bytes| Declaration {
             kind,
             name,
-            shape: "",
+            shape: String::new(),
             bytes,
         };
         let points = NamedArray {
@@ -235,7 +246,7 @@ struct Declaration<'a> {
     kind: &'static str,
     name: &'a str,
     /// An attribute, if the values are vectors.
-    shape: &'static str,
+    shape: String,
     bytes: u64,
 }
 
@@ -249,12 +260,17 @@ impl<'a> Declaration<'a> {
             kind: array.values.kind(),
             name: array.name,
             shape: match array.values {
-                Values::Vectors(_) | Values::SingleVectors(_) => " NumberOfComponents=\"3\"",
-                _ => "",
+                Values::Vectors(_) | Values::SingleVectors(_) => components(3),
+                Values::Flags(count, _) => components(count),
+                _ => String::new(),
             },
             bytes: array.values.bytes() * count as u64,
         }
     }
+}
+
+fn components(count: usize) -> String {
+    format!(" NumberOfComponents=\"{count}\"")
 }
 
 /// The shortest text that reads back as the same number.

@@ -281,6 +281,8 @@ impl Made<'_> {
             bond_radii: in_metres(bond_radii(spheres, bonds, settings.bond_radius_factor)),
             bond_lengths: in_metres(bond_lengths(spheres, bonds)),
             bond_damages: Vec::new(),
+            bond_plastics: Vec::new(),
+            bond_joints: Vec::new(),
             positions: spheres
                 .positions
                 .iter()

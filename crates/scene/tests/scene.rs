@@ -2,6 +2,7 @@
 
 mod as_run;
 mod corpus;
+mod every_key;
 mod feed;
 mod good;
 mod include;

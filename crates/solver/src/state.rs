@@ -23,6 +23,7 @@ pub mod rigid_parts;
 pub(crate) mod rules;
 pub(crate) mod scratch;
 pub mod sleep;
+pub(crate) mod stored_bonds;
 pub mod supports;
 pub mod walls;
 pub(crate) mod watches;

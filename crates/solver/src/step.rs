@@ -34,7 +34,7 @@ use crate::stages::motion::{
 };
 use crate::stages::pieces::{CLUSTERS, find_pieces};
 use crate::stages::plasticity::{PLASTICITY, compute_plastic_bonds};
-use crate::stages::replacement::{REPLACEMENT, replace_clumps};
+use crate::stages::replacement::{REPLACEMENT, SQUEEZE, count_squeezing, replace_clumps};
 use crate::stages::restoring::restore_clumps;
 use crate::stages::rigid_parts::{
     RIGID_PARTS, drift_rigid_parts, gather_rigid_parts, kick_rigid_parts,
@@ -101,6 +101,7 @@ const EXCHANGE: &[Part] = &[
     (&DAUGHTERS, replace_by_daughters),
     (&REPLACEMENT, restore_clumps),
     (&REPLACEMENT, replace_clumps),
+    (&SQUEEZE, count_squeezing),
     (&ZONES, follow_zones),
 ];
 

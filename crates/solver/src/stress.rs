@@ -24,3 +24,4 @@ pub mod text;
 pub mod trial;
 pub mod verdict;
 pub(crate) mod yielding;
+pub(crate) mod zones;

@@ -4,6 +4,7 @@ mod bodies;
 mod cloud;
 mod law;
 mod pairs;
+mod swapped;
 mod walls;
 
 use dem_run::physics::contact::liquid_bridge::LiquidBridge;

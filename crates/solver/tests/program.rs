@@ -17,6 +17,7 @@ mod damage;
 mod discharge;
 mod disk;
 mod dynamic;
+mod histories;
 mod inputs;
 mod interrupted;
 mod lab;
@@ -37,6 +38,7 @@ mod threads;
 mod unstable;
 mod verdict;
 mod wall_frames;
+mod zones;
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -239,6 +241,8 @@ fn row(particles: usize) -> Body {
         bond_radii: vec![5e-4; bonds.len()],
         bond_lengths: vec![2e-3; bonds.len()],
         bond_damages: Vec::new(),
+        bond_plastics: Vec::new(),
+        bond_joints: Vec::new(),
         bonds,
         about: About {
             particle_density_kg_m3: Some(2050.0),

@@ -3,9 +3,11 @@
 mod bar;
 mod cases;
 mod models;
+mod others;
 mod statics;
 mod tables;
 
+use self::others::of_others;
 use self::tables::{
     of_case1, of_case2, of_case3, of_case4, of_case5, of_stiffnesses, of_whole_load,
 };
@@ -32,6 +34,7 @@ fn files() -> Vec<(String, String)> {
         ("case 3", table3),
         ("case 4", table4),
         ("case 5", table5),
+        ("others", of_others()),
     ];
     let page = filled(include_str!("cantilevers.md"), &tables);
     let plots = [

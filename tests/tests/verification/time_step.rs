@@ -185,6 +185,36 @@ fn pairs() -> String {
     compared("bond model, bond radius: highest mode", "rad/s", &cases)
 }
 
+/// Two touching spheres of different size and the bond of Rojek, whose two segments are f times as
+/// thick as their spheres: k_n = E pi f^2 R_a R_b/(R_a + R_b). With a shear stiffness of a tenth of
+/// it, stretching is their fastest motion.
+fn unequal() -> String {
+    let mut cases = Vec::new();
+    for ratio in [1.0, 2.0, 4.0] {
+        for factor in [0.1, 0.5] {
+            let radii_m = [RADIUS_M, ratio * RADIUS_M];
+            let sum_m = radii_m[0] + radii_m[1];
+            let plan = planned(&format!(
+                r#"
+                version = 1
+                run = {{ end_time = "1 h", safety_factor = 1 }}
+                materials.stone = {{ density = {DENSITY_KG_M3:e}, young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e} }}
+                bodies.pair = {{ particles = [[0, 0, 0, {:e}], [{sum_m:e}, 0, 0, {:e}]], bond_list = [[0, 1]], material = "stone", bonds = "glue" }}
+                bonds.glue = {{ model = "rojek", stiffness_ratio = 10, young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, radius_factor = {factor:e} }}
+                "#,
+                radii_m[0], radii_m[1],
+            ));
+            let normal = YOUNG_PA * PI * factor * factor * radii_m[0] * radii_m[1] / sum_m;
+            let inverse_kg = (1.0 + ratio.powi(-3)) / mass_kg();
+            let found = plan.step.limit.omega_rad_s;
+            let what = format!("radii 1 : {ratio}, f = {factor}");
+            let wanted = (normal * inverse_kg).sqrt();
+            cases.push(Case::new(what, found, wanted, EXACT).rounding(SEARCHED));
+        }
+    }
+    compared("bond of Rojek", "rad/s", &cases)
+}
+
 /// Rows of spheres.
 fn chains() -> String {
     let mut cases = Vec::new();
@@ -303,6 +333,7 @@ fn the_page_shows_what_the_solver_gives() {
             include_str!("time-step.md"),
             &[
                 ("pairs", pairs()),
+                ("unequal", unequal()),
                 ("chains", chains()),
                 ("limits", limits),
                 ("observed", observed),

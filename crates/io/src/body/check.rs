@@ -1,5 +1,6 @@
 //! The rules for every body, checked whenever one is read or written.
 
+use super::histories;
 use super::parts::Body;
 use crate::diagnostic::{Diagnostic, Result};
 
@@ -19,6 +20,7 @@ impl Body {
         check_particles(self)?;
         check_bonds(self)?;
         check_about(self)?;
+        histories::check(self)?;
         check_double_bonds(self)
     }
 }
@@ -40,16 +42,25 @@ fn check_lengths(body: &Body) -> Result<()> {
             "split the body",
         ));
     }
-    // No damages: all bonds are intact.
-    let damages = match body.bond_damages.len() {
-        0 => bonds,
-        count => count,
-    };
+    // None: all bonds are intact.
+    let given = |count: usize| if count == 0 { bonds } else { count };
     for (what, length, of, wanted) in [
         ("radii", body.radii.len(), "particles", particles),
         ("bond radii", body.bond_radii.len(), "bonds", bonds),
         ("bond lengths", body.bond_lengths.len(), "bonds", bonds),
-        ("bond damages", damages, "bonds", bonds),
+        (
+            "bond damages",
+            given(body.bond_damages.len()),
+            "bonds",
+            bonds,
+        ),
+        (
+            "plastic deformations",
+            given(body.bond_plastics.len()),
+            "bonds",
+            bonds,
+        ),
+        ("flat joints", given(body.bond_joints.len()), "bonds", bonds),
     ] {
         if length != wanted {
             return Err(Diagnostic::input(

@@ -213,12 +213,12 @@ pub fn read_walls(path: &Path) -> Result<StoredWalls> {
 pub fn write_body(body: &Body, path: &Path) -> Result<()> {
     let storage = Storage::named(path)?;
     body.check()?;
-    if body.bond_damages.iter().any(|damage| *damage > 0.0)
-        && !matches!(storage, Storage::Pipe | Storage::Vtp(_))
-    {
+    let is_damaged = body.bond_damages.iter().any(|damage| *damage > 0.0);
+    let has_history = !body.bond_plastics.is_empty() || !body.bond_joints.is_empty();
+    if (is_damaged || has_history) && !matches!(storage, Storage::Pipe | Storage::Vtp(_)) {
         return Err(Diagnostic::input(
             path.display().to_string(),
-            "the body has damaged bonds, which such a file does not hold",
+            "the body has bonds with damage or a history, which such a file does not hold",
             "write a .vtp",
         ));
     }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::histories::{JointBond, PlasticBond};
 use crate::diagnostic::Result;
 
 /// Information on the origin of a body. Every field is optional: a body may come from anywhere.
@@ -43,6 +44,10 @@ pub struct Body {
     /// Damage of each bond, from 0 (intact) to below 1 (broken). One per bond, or empty: all are
     /// intact.
     pub bond_damages: Vec<f64>,
+    /// Plastic deformation of each bond. One per bond, or empty: none has yielded.
+    pub bond_plastics: Vec<PlasticBond>,
+    /// Failed elements of each flat joint. One per bond, or empty: no element has failed.
+    pub bond_joints: Vec<JointBond>,
     /// Information on its origin.
     pub about: About,
 }
@@ -56,6 +61,8 @@ pub(crate) struct Parts {
     pub(crate) bond_radii: Option<Vec<f64>>,
     pub(crate) bond_lengths: Option<Vec<f64>>,
     pub(crate) bond_damages: Vec<f64>,
+    pub(crate) bond_plastics: Vec<PlasticBond>,
+    pub(crate) bond_joints: Vec<JointBond>,
     pub(crate) about: About,
 }
 
@@ -87,6 +94,25 @@ impl Body {
         for end in self.bonds.iter().flatten() {
             bytes.extend(end.to_le_bytes());
         }
+        for plastic in &self.bond_plastics {
+            let [x, y, z] = plastic.slip_m;
+            let [bx, by, bz] = plastic.bend_rad;
+            let PlasticBond {
+                elongation_m,
+                twist_rad,
+                work_j,
+                ..
+            } = *plastic;
+            for number in [elongation_m, x, y, z, twist_rad, bx, by, bz, work_j] {
+                bytes.extend(number.to_bits().to_le_bytes());
+            }
+        }
+        for joint in &self.bond_joints {
+            for number in joint.first_edge {
+                bytes.extend(number.to_bits().to_le_bytes());
+            }
+            bytes.extend(joint.failed.iter().map(|failed| u8::from(*failed)));
+        }
         crate::hash::fnv1a(&bytes)
     }
 
@@ -103,6 +129,8 @@ impl Body {
             bond_radii,
             bond_lengths,
             bond_damages,
+            bond_plastics,
+            bond_joints,
             about,
         } = parts;
         for bond in &mut bonds {
@@ -135,6 +163,8 @@ impl Body {
             bond_radii,
             bond_lengths,
             bond_damages,
+            bond_plastics,
+            bond_joints,
             about,
         };
         body.check()?;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::histories::{JointBond, PlasticBond};
 use super::parts::{About, Body, Parts};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::units::significant;
@@ -28,8 +29,6 @@ pub const BROKEN: &str = "broken";
 pub const DAMAGE: &str = "damage";
 /// Bond array: failed part of the area of a flat joint.
 pub const FAILED: &str = "failed_fraction";
-/// Bond array: 1 for a bond that has hardened by plastic flow, else 0.
-pub const HARDENED: &str = "hardened";
 /// Field: names of the bodies of the scene.
 pub const BODY_NAMES: &str = "body_names";
 /// Field: simulated time, s.
@@ -64,10 +63,10 @@ pub struct StoredFrame {
     pub broken: Vec<bool>,
     /// Damage of each bond, or none: no bond can be damaged.
     pub damages: Vec<f64>,
-    /// For each bond, true if it has hardened by plastic flow. Empty: no bond hardens.
-    pub hardened: Vec<bool>,
-    /// For each bond, failed part of its area. Empty: no bond is a flat joint.
-    pub failed: Vec<f64>,
+    /// Plastic deformation of each bond, or none: no bond can yield.
+    pub plastics: Vec<PlasticBond>,
+    /// Elements of each bond, or none: no bond is a flat joint.
+    pub joints: Vec<JointBond>,
 }
 
 /// A fragment of a frame.
@@ -113,13 +112,13 @@ impl StoredFrame {
     /// A fragment as a body: its particles at their positions, in the order of the frame, and the
     /// unbroken bonds between them.
     ///
-    /// Bonds keep their damage and their stress-free lengths, so stretched or compressed bonds stay
-    /// so. Their bending, twist and shear are lost, and so are velocities. The density is that of
-    /// the particles, unless they differ.
+    /// Bonds keep their damage, their plastic deformation, the elements of flat joints that have
+    /// failed, and their stress-free lengths, so stretched or compressed bonds stay so. Their
+    /// elastic bending, twist and shear are lost, and so are velocities. The density is that of the
+    /// particles, unless they differ.
     ///
     /// # Errors
-    /// There is no such fragment; a bond of it has hardened or failed in part; the frame contains
-    /// no valid body of it.
+    /// There is no such fragment; the frame contains no valid body of it.
     pub fn body(&self, id: u32) -> Result<Body> {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)
@@ -136,31 +135,15 @@ impl StoredFrame {
             !self.broken[*bond] && ends == [id; 2]
         };
         let bonds: Vec<usize> = (0..self.bonds.len()).filter(is_whole).collect();
-        let is_hardened = |bond: &&usize| self.hardened.get(**bond) == Some(&true);
-        let hardened = bonds.iter().filter(is_hardened).count();
-        if hardened > 0 {
-            return Err(Diagnostic::input(
-                format!("fragment {id}"),
-                format!(
-                    "{hardened} of its {} bonds have hardened, which a body does not hold",
-                    bonds.len()
-                ),
-                "run the scene on with --resume, or with hardening_ratio = 0, which leaves nothing to hold",
-            ));
-        }
-        let is_partly_failed = |bond: &&usize| self.failed.get(**bond).is_some_and(|f| *f > 0.0);
-        let failed = bonds.iter().filter(is_partly_failed).count();
-        if failed > 0 {
-            return Err(Diagnostic::input(
-                format!("fragment {id}"),
-                format!(
-                    "{failed} of its {} bonds have failed elements, which a body does not hold",
-                    bonds.len()
-                ),
-                "run the scene on with --resume, or take another model of bonds",
-            ));
-        }
         let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);
+        let has_yielded = |bond: &usize| {
+            let plastic = self.plastics.get(*bond);
+            plastic.is_some_and(|plastic| *plastic != PlasticBond::default())
+        };
+        let has_failed = |bond: &usize| {
+            let joint = self.joints.get(*bond);
+            joint.is_some_and(|joint| joint.failed.contains(&true))
+        };
         let density = self.densities_kg_m3[first];
         let is_same = |i: &usize| (self.densities_kg_m3[*i] / density - 1.0).abs() <= SAME_DENSITY;
         Body::from_parts(Parts {
@@ -174,6 +157,19 @@ impl StoredFrame {
             bond_lengths: Some(bonds.iter().map(|&bond| self.bond_lengths[bond]).collect()),
             bond_damages: if bonds.iter().any(is_damaged) {
                 bonds.iter().map(|&bond| self.damages[bond]).collect()
+            } else {
+                Vec::new()
+            },
+            bond_plastics: if bonds.iter().any(has_yielded) {
+                bonds.iter().map(|&bond| self.plastics[bond]).collect()
+            } else {
+                Vec::new()
+            },
+            bond_joints: if bonds.iter().any(has_failed) {
+                bonds
+                    .iter()
+                    .map(|&bond| self.joints[bond].clone())
+                    .collect()
             } else {
                 Vec::new()
             },

@@ -1,7 +1,8 @@
 //! Bodies as VTK XML PolyData (.vtp), which ParaView and PyVista open directly.
 //!
 //! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius_m`,
-//! cell data `bond_radius_m`, `initial_length_m` and, if bonds are damaged, `damage`, field data:
+//! cell data `bond_radius_m`, `initial_length_m` and, if bonds are damaged, `damage`, or what
+//! [`super::histories`] names if they have yielded or are flat joints with failed elements; field data:
 //! `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
 //! encoding see [`crate::vtk`].
 
@@ -25,6 +26,7 @@ use names::{
     RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 
+use super::histories::with_arrays;
 use super::parts::{About, Body};
 use super::stored_frame::DAMAGE;
 use crate::vtk::{
@@ -40,20 +42,29 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
         name,
         values: Values::Scalars(value),
     };
-    // No damages: all bonds are intact.
-    let of_bonds = if body.bond_damages.is_empty() { 2 } else { 3 };
-    PolyData {
-        points: body.positions.len(),
-        place: Values::Vectors(&|i| body.positions[i]),
-        cells: Cells::Lines(body.bonds.len(), &|bond| body.bonds[bond]),
-        point_data: &[array(RADIUS, &|i| body.radii[i])],
-        cell_data: &[
-            array(BOND_RADIUS, &|bond| body.bond_radii[bond]),
-            array(BOND_LENGTH, &|bond| body.bond_lengths[bond]),
-            array(DAMAGE, &|bond| body.bond_damages[bond]),
-        ][..of_bonds],
+    let radius = |i: usize| body.radii[i];
+    let bond_radius = |bond: usize| body.bond_radii[bond];
+    let bond_length = |bond: usize| body.bond_lengths[bond];
+    let damage = |bond: usize| body.bond_damages[bond];
+    let mut of_bonds = vec![
+        array(BOND_RADIUS, &bond_radius),
+        array(BOND_LENGTH, &bond_length),
+    ];
+    // None: all bonds are intact.
+    if !body.bond_damages.is_empty() {
+        of_bonds.push(array(DAMAGE, &damage));
     }
-    .write(out, |out| write_fields(&body.about, out))
+    with_arrays(&body.bond_plastics, &body.bond_joints, |histories| {
+        let of_bonds: Vec<NamedArray<'_>> = of_bonds.iter().chain(histories).copied().collect();
+        PolyData {
+            points: body.positions.len(),
+            place: Values::Vectors(&|i| body.positions[i]),
+            cells: Cells::Lines(body.bonds.len(), &|bond| body.bonds[bond]),
+            point_data: &[array(RADIUS, &radius)],
+            cell_data: &of_bonds,
+        }
+        .write(out, |out| write_fields(&body.about, out))
+    })
 }
 
 fn write_fields(about: &About, out: &mut dyn Write) -> io::Result<()> {

@@ -13,6 +13,8 @@ pub(crate) fn triangle() -> Body {
         bond_radii: vec![4e-4, 3e-4],
         bond_lengths: vec![1e-3, 1.1e-3],
         bond_damages: Vec::new(),
+        bond_plastics: Vec::new(),
+        bond_joints: Vec::new(),
         about: About {
             program: Some("dem-pack 0.1.0".to_owned()),
             source: Some("Käse & \"Kuchen\" <1>.stl".to_owned()),
@@ -94,6 +96,8 @@ fn body_of(
                     bond_radii: sizes[..bonds.len()].to_vec(),
                     bond_lengths: sizes[bonds.len()..].to_vec(),
                     bond_damages: Vec::new(),
+                    bond_plastics: Vec::new(),
+                    bond_joints: Vec::new(),
                     about: about.clone(),
                 })
             },

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use dem_io::body::{StoredFrame, read_frame};
+use dem_io::body::histories::with_arrays;
+use dem_io::body::{JointBond, PlasticBond, StoredFrame, read_frame};
 use dem_io::body::{read_body, write_body};
 use dem_results::{Frame, NamedArray, Values, write_frame};
 use proptest::prelude::*;
@@ -31,8 +32,8 @@ fn stored() -> StoredFrame {
         bond_lengths: vec![1.9e-3, 2e-3, 2e-3, 2.1e-3],
         broken: vec![false, true, false, false],
         damages: Vec::new(),
-        hardened: Vec::new(),
-        failed: Vec::new(),
+        plastics: Vec::new(),
+        joints: Vec::new(),
     }
 }
 
@@ -49,8 +50,6 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     let bond_radius = |bond: usize| frame.bond_radii[bond];
     let bond_length = |bond: usize| frame.bond_lengths[bond];
     let damage = |bond: usize| frame.damages[bond];
-    let failed = |bond: usize| frame.failed[bond];
-    let hardened = |bond: usize| u32::from(frame.hardened[bond]);
     let mut of_particles = vec![
         array("radius_m", Values::Scalars(&radius)),
         array("velocity_m_s", Values::Vectors(&velocity)),
@@ -65,17 +64,12 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     if !frame.damages.is_empty() {
         of_bonds.push(array("damage", Values::Scalars(&damage)));
     }
-    if !frame.failed.is_empty() {
-        of_bonds.push(array("failed_fraction", Values::Scalars(&failed)));
-    }
-    if !frame.hardened.is_empty() {
-        of_bonds.push(array("hardened", Values::Counts(&hardened)));
-    }
     of_particles.retain(|array| array.name != without);
     of_bonds.retain(|array| array.name != without);
     let mut bytes = Vec::new();
-    write_frame(
-        &Frame {
+    with_arrays(&frame.plastics, &frame.joints, |histories| {
+        let of_bonds: Vec<NamedArray<'_>> = of_bonds.iter().chain(histories).copied().collect();
+        let frame = Frame {
             time_s: frame.time_s,
             body_names: &["a\"b", "K\u{f6}rper"],
             particles: frame.positions.len(),
@@ -84,10 +78,9 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
             bonds: frame.bonds.len(),
             ends: &|bond| frame.bonds[bond],
             bond_arrays: &of_bonds,
-        },
-        &mut bytes,
-    )
-    .unwrap();
+        };
+        write_frame(&frame, &mut bytes).unwrap();
+    });
     fs::write(&path, bytes).unwrap();
     (folder, path)
 }
@@ -144,40 +137,84 @@ fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
     }
 }
 
-#[test]
-fn a_fragment_whose_bonds_have_hardened_is_no_body() {
-    let hardened = StoredFrame {
-        hardened: vec![true, true, false, false],
-        ..stored()
-    };
-    let (_folder, path) = written(&hardened, "");
-    let frame = read_frame(&path).unwrap();
-    assert_eq!(frame, hardened);
-    let error = frame.body(7).unwrap_err();
-    assert_eq!(error.exit_code(), 2);
-    assert_eq!(
-        error.to_string(),
-        "fragment 7: 1 of its 1 bonds have hardened, which a body does not hold; run the scene on with --resume, or with hardening_ratio = 0, which leaves nothing to hold"
-    );
-    assert_eq!(frame.body(3).unwrap(), stored().body(3).unwrap());
+/// A bond that has yielded in every way, by this much.
+fn plastic(much: f64) -> PlasticBond {
+    PlasticBond {
+        elongation_m: 1e-5 * much,
+        slip_m: [0.0, 2e-5 * much, -3e-5 * much],
+        twist_rad: -0.1 * much,
+        bend_rad: [0.0, 0.2 * much, 0.3 * much],
+        work_j: much,
+    }
 }
 
 #[test]
-fn a_fragment_whose_bonds_have_failed_elements_is_no_body() {
-    let failed = StoredFrame {
-        failed: vec![0.25, 1.0, 0.0, 0.0],
+fn plastic_deformation_goes_with_the_bonds() {
+    let yielded = StoredFrame {
+        plastics: [0.0, 1.0, 0.0, 2.0].map(plastic).to_vec(),
         ..stored()
     };
-    let (_folder, path) = written(&failed, "");
+    let (folder, path) = written(&yielded, "");
     let frame = read_frame(&path).unwrap();
-    assert_eq!(frame, failed);
-    let error = frame.body(7).unwrap_err();
-    assert_eq!(error.exit_code(), 2);
-    assert_eq!(
-        error.to_string(),
-        "fragment 7: 1 of its 1 bonds have failed elements, which a body does not hold; run the scene on with --resume, or take another model of bonds"
+    assert_eq!(frame, yielded);
+    // Where no bond has yielded, nothing is said of it: the one that has is broken.
+    assert_eq!(frame.body(7).unwrap(), stored().body(7).unwrap());
+    let body = frame.body(3).unwrap();
+    assert_eq!(body.bond_plastics, [plastic(2.0)]);
+    assert_ne!(body.hash(), stored().body(3).unwrap().hash());
+    let file = folder.path().join("body.vtp");
+    write_body(&body, &file).unwrap();
+    assert_eq!(read_body(&file).unwrap(), body);
+    let mut longer = body;
+    longer.bond_plastics[0].elongation_m = 2.1e-3;
+    let error = longer.check().unwrap_err().to_string();
+    assert!(
+        error.starts_with("bond 0: its plastic elongation is not less than its length"),
+        "{error}"
     );
-    assert_eq!(frame.body(3).unwrap(), stored().body(3).unwrap());
+}
+
+#[test]
+fn failed_elements_go_with_the_bonds() {
+    let joint = |failed: [bool; 3]| JointBond {
+        first_edge: [0.0, 0.6, 0.8],
+        failed: failed.to_vec(),
+    };
+    let cracked = StoredFrame {
+        joints: vec![
+            joint([false; 3]),
+            joint([true; 3]),
+            joint([false; 3]),
+            joint([true, false, true]),
+        ],
+        ..stored()
+    };
+    let (folder, path) = written(&cracked, "");
+    let frame = read_frame(&path).unwrap();
+    assert_eq!(frame, cracked);
+    assert_eq!(frame.body(7).unwrap(), stored().body(7).unwrap());
+    let body = frame.body(3).unwrap();
+    assert_eq!(body.bond_joints, [joint([true, false, true])]);
+    assert_ne!(body.hash(), stored().body(3).unwrap().hash());
+    let file = folder.path().join("body.vtp");
+    write_body(&body, &file).unwrap();
+    assert_eq!(read_body(&file).unwrap(), body);
+    let mut bad = body.clone();
+    bad.bond_joints[0].failed = vec![true; 3];
+    let error = bad.check().unwrap_err().to_string();
+    assert!(
+        error.starts_with("bond 0: all of its elements have failed"),
+        "{error}"
+    );
+    bad.bond_joints[0] = JointBond {
+        first_edge: [0.0; 3],
+        ..joint([true, false, false])
+    };
+    let error = bad.check().unwrap_err().to_string();
+    assert!(
+        error.starts_with("bond 0: the edge of its first element is no unit vector"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -203,7 +240,7 @@ fn damage_goes_with_the_bonds() {
         assert_eq!(error.exit_code(), 2);
         let text = error.to_string();
         assert!(
-            text.ends_with("damaged bonds, which such a file does not hold; write a .vtp"),
+            text.ends_with("damage or a history, which such a file does not hold; write a .vtp"),
             "{text}"
         );
     }
@@ -287,8 +324,8 @@ proptest! {
             bond_lengths: (0..bonds.len()).map(|bond| 1.0 + 0.001 * bond as f64).collect(),
             broken: (0..bonds.len()).map(|bond| !whole[bond]).collect(),
             damages: Vec::new(),
-            hardened: Vec::new(),
-            failed: Vec::new(),
+            plastics: Vec::new(),
+            joints: Vec::new(),
             bonds,
             clusters,
         };

@@ -1,7 +1,7 @@
 //! The reference and the JSON Schema, which are generated from the schema by which scenes and
 //! studies are read.
 
-mod json;
+pub(super) mod json;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-fn schema(name: &str) -> Value {
+pub(super) fn schema(name: &str) -> Value {
     let (_, text) = reference::files()
         .into_iter()
         .find(|(other, _)| *other == name)
@@ -25,7 +25,7 @@ fn schema(name: &str) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-fn scenes() -> Vec<PathBuf> {
+pub(super) fn scenes() -> Vec<PathBuf> {
     [
         files(&root().join("data/scenes")),
         files(&root().join("data/thesis")),

@@ -1,10 +1,12 @@
 //! Frames: all particles and bonds at one time, in the order of the bodies' files.
 
 use dem_io::Result;
+use dem_io::body::histories::with_arrays;
 use dem_io::body::stored_frame::{
-    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FAILED, FRAGMENT_ID, HARDENED,
-    PARTICLE_ID, RADIUS, VELOCITY,
+    BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FAILED, FRAGMENT_ID, PARTICLE_ID,
+    RADIUS, VELOCITY,
 };
+use dem_io::body::{JointBond, PlasticBond};
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
 use super::walls::WallOutput;
@@ -16,6 +18,7 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clusters::fragments::fragment_masses_kg;
 use crate::state::events::REMOVED;
+use crate::state::stored_bonds::{joint_of, plastic_of};
 
 /// Numbering in a frame: particles and bonds of all bodies, in the order of their files, followed
 /// by the spheres of clumps.
@@ -175,20 +178,12 @@ impl FrameOrder {
         if !bonds.damages.is_empty() {
             bond_arrays.push(scalars(DAMAGE, &damage));
         }
-        let plastic_work = |i: usize| bonds.plastics[bond(i)].work_j;
-        if !bonds.plastics.is_empty() {
-            bond_arrays.push(scalars("plastic_work_j", &plastic_work));
-        }
         let failed = |i: usize| match bonds.is_broken(bond(i)) {
             true => 1.0,
             false => bonds.failed_fraction(bond(i)),
         };
         if !bonds.joints.is_empty() {
             bond_arrays.push(scalars(FAILED, &failed));
-        }
-        let hardened = |i: usize| u32::from(bonds.has_hardened(bond(i)));
-        if bonds.can_harden() {
-            bond_arrays.push(counts(HARDENED, &hardened));
         }
         if strengthen {
             bond_arrays.push(scalars("strain_rate_1_s", &strain_rate));
@@ -199,18 +194,46 @@ impl FrameOrder {
             bond_arrays.push(scalars(BOND_LENGTH, &length));
         }
         let poses = &state.particles.poses;
+        let (plastics, joints) = self.histories(state);
         let body_names: Vec<&str> = state.model.bodies.iter().map(|b| b.name.as_str()).collect();
-        let frame = Frame {
-            time_s: state.time_s,
-            body_names: &body_names,
-            particles: self.particles.len(),
-            position_m: &|i| poses[self.particles[i] as usize].place().into(),
-            particle_arrays,
-            bonds: self.bonds.len(),
-            ends: &|i| bonds.ends[bond(i)].map(|end| self.place_of[end as usize]),
-            bond_arrays: &bond_arrays,
+        with_arrays(&plastics, &joints, |histories| {
+            let all: Vec<NamedArray<'_>> = bond_arrays.iter().chain(histories).copied().collect();
+            let frame = Frame {
+                time_s: state.time_s,
+                body_names: &body_names,
+                particles: self.particles.len(),
+                position_m: &|i| poses[self.particles[i] as usize].place().into(),
+                particle_arrays,
+                bonds: self.bonds.len(),
+                ends: &|i| bonds.ends[bond(i)].map(|end| self.place_of[end as usize]),
+                bond_arrays: &all,
+            };
+            files.append(&frame, &walls.frame(state), walls.fixed())
+        })
+    }
+
+    /// Plastic deformation and elements of the bonds of the frame; none if no bond has any.
+    fn histories(&self, state: &State) -> (Vec<PlasticBond>, Vec<JointBond>) {
+        let (bonds, poses) = (&state.bonds, &state.particles.poses);
+        let each = || {
+            self.bonds.iter().map(|&at| {
+                let [a, b] = bonds.ends[at as usize].map(|end| self.place_of[end as usize]);
+                (at as usize, a > b)
+            })
         };
-        files.append(&frame, &walls.frame(state), walls.fixed())
+        let plastic = |(at, is_reversed)| plastic_of(bonds, at, poses, is_reversed);
+        let joint = |(at, is_reversed)| joint_of(bonds, at, poses, is_reversed);
+        let plastics = if bonds.plastics.is_empty() {
+            Vec::new()
+        } else {
+            each().map(plastic).collect()
+        };
+        let joints = if bonds.joints.is_empty() {
+            Vec::new()
+        } else {
+            each().map(joint).collect()
+        };
+        (plastics, joints)
     }
 }
 

@@ -6,7 +6,7 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 
 /// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 17] = [
+pub(super) const ENERGIES: [&str; 18] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
@@ -23,6 +23,7 @@ pub(super) const ENERGIES: [&str; 17] = [
     "bond_plastic_j",
     "liquid_bridge_j",
     "liquid_bridge_loss_j",
+    "rejoining_loss_j",
     "flow_energy_j",
 ];
 /// Names of the columns after those.
@@ -88,6 +89,7 @@ pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64
         balance.bond_plastic_j,
         balance.liquid_bridge_j,
         balance.liquid_bridge_loss_j,
+        balance.rejoining_loss_j,
         balance.flow_energy_j,
         balance.energy_error,
         balance.momentum_error,

@@ -31,6 +31,7 @@ use crate::state::bodies::PlacedBody;
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::order::spatial_order;
 use crate::state::particles::{Particles, Pose};
+use crate::state::stored_bonds::restore;
 
 /// Largest rounding error of a coordinate as a fraction of a radius: with it, a strain of a
 /// thousandth is accurate to a thousandth.
@@ -83,7 +84,9 @@ pub(super) fn place_body(
         (Some(rule), Some(kind)) => {
             one.first_bond = bonds.len();
             let seed = (scene.run.seed, body_key(name, 0));
+            let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
             place_bonds(body, kind, rule, seed, particles, &mut one, bonds)
+                .and_then(|()| restore(bonds, body, &one, &rotation))
                 .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
         }
         _ if !body.bonds.is_empty() && !stays_rigid(scene, name) => {
@@ -315,8 +318,10 @@ fn place_bonds(
         let distance = apart.norm();
         let given = body.bond_lengths[original];
         let at_rest = (given - distance).abs() <= SAME_LENGTH * distance;
+        let plastic = body.bond_plastics.get(original);
+        let elongation_m = plastic.map_or(0.0, |plastic| plastic.elongation_m);
         let shape = BondShape {
-            length_m: if at_rest { distance } else { given },
+            length_m: if at_rest { distance } else { given } - elongation_m,
             radius_m: match kind.radius_factor {
                 Some(factor) => factor * radii[0].min(radii[1]),
                 None => body.bond_radii[original],

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use dem_io::body::About;
+use dem_io::body::{About, PlasticBond};
 use dem_io::units::show_length;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{CountedEnergy, Daughters, Material, Scene, WholeMass};
@@ -111,9 +111,18 @@ fn scale(body: &mut Body, parent: &Template) {
     for (place, arm) in body.positions.iter_mut().zip(&arms_m) {
         *place = arm.map(|x| of_centres * x);
     }
+    let plastic = body.bond_plastics.iter_mut().flat_map(|plastic| {
+        let PlasticBond {
+            elongation_m,
+            slip_m,
+            ..
+        } = plastic;
+        slip_m.iter_mut().chain([elongation_m])
+    });
     let lengths = body.radii.iter_mut().chain(&mut body.bond_radii);
     lengths
         .chain(&mut body.bond_lengths)
+        .chain(plastic)
         .for_each(|length| *length *= of_radii);
 }
 

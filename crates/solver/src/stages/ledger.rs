@@ -169,6 +169,8 @@ pub struct Balance {
     pub liquid_bridge_j: f64,
     /// Dissipated by liquid bridges as they formed and ruptured, J.
     pub liquid_bridge_loss_j: f64,
+    /// Kinetic energy of spheres that they lost as they joined rigid parts again, J.
+    pub rejoining_loss_j: f64,
     /// Energy of added bodies, minus that of removed bodies, plus the gain when clumps and clusters
     /// replaced each other, minus the kinetic energy that bodies had when they fell asleep, J.
     pub flow_energy_j: f64,
@@ -346,7 +348,7 @@ pub fn balance(state: &mut State) -> Balance {
         + contact_damping
         + friction
         + (ledger.released_j + ledger.damaged_j + ledger.plastic_j)
-        + ledger.particles_broken_j
+        + (ledger.particles_broken_j + ledger.rejoined_j)
         + bridges_lost_j;
     let stored = elastic.total() + contact_elastic + bridges_j;
     let given = work.loads + work.supports + wall_work + ledger.brought_j;
@@ -391,6 +393,7 @@ pub fn balance(state: &mut State) -> Balance {
         bond_plastic_j: ledger.plastic_j,
         liquid_bridge_j: bridges_j,
         liquid_bridge_loss_j: bridges_lost_j,
+        rejoining_loss_j: ledger.rejoined_j,
         flow_energy_j: ledger.brought_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),

@@ -28,6 +28,27 @@ pub(crate) const REPLACEMENT: Stage = Stage {
     saving: NO_SAVING,
 };
 
+/// Contacts that triggers by single forces or stress read.
+pub(crate) const SQUEEZE: Stage = Stage {
+    name: "squeeze of clumps",
+    within: Some(REPLACEMENT.name),
+    need: |state, _| {
+        let mut triggers = state.model.rules.triggers.iter().flatten();
+        Need::of(
+            state.contacts.is_some() && triggers.any(|trigger| trigger.needs_squeeze()),
+            || "a trigger reads the forces of single contacts".to_owned(),
+            "no trigger reads the forces of single contacts",
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// The number of contacts that triggers have read in this step.
+pub(crate) fn count_squeezing(state: &mut State) -> usize {
+    std::mem::take(&mut state.scratch.squeezing)
+}
+
 /// Replaces the clumps whose trigger has fired, between a kick and the drift after it. Returns the
 /// number of clumps checked.
 pub(crate) fn replace_clumps(state: &mut State) -> usize {
@@ -35,9 +56,10 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
         return 0;
     }
     let clumps = state.clumps.all.len();
-    let squeezes = squeezes(state);
+    let (squeezes, read) = squeezes(state);
     let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) =
         triggered(state, &squeezes).unzip();
+    state.scratch.squeezing = read;
     if !to_clusters.is_empty() {
         swap(state, to_clusters, &causes);
     }

@@ -32,19 +32,18 @@ impl Squeeze {
     }
 }
 
-/// The squeeze of each clump; empty if no trigger needs it.
-pub(super) fn squeezes(state: &State) -> Vec<Squeeze> {
+/// The squeeze of each clump, and the number of contacts read for it; none if no trigger needs it.
+pub(super) fn squeezes(state: &State) -> (Vec<Squeeze>, usize) {
     let mut triggers = state.model.rules.triggers.iter().flatten();
     let Some(contacts) = &state.contacts else {
-        return Vec::new();
+        return (Vec::new(), 0);
     };
     if !triggers.any(|trigger| trigger.needs_squeeze()) {
-        return Vec::new();
+        return (Vec::new(), 0);
     }
     let mut squeezes = vec![Squeeze::default(); state.clumps.all.len()];
-    of_pairs(state, contacts, &mut squeezes);
-    of_walls(state, contacts, &mut squeezes);
-    squeezes
+    let read = of_pairs(state, contacts, &mut squeezes) + of_walls(state, contacts, &mut squeezes);
+    (squeezes, read)
 }
 
 /// The clump of a particle. None: it is free.
@@ -55,14 +54,15 @@ fn clump_of(state: &State, particle: u32) -> Option<usize> {
         .checked_sub(1)
 }
 
-fn of_pairs(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) {
-    let p = &state.particles;
+fn of_pairs(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) -> usize {
+    let (p, mut read) = (&state.particles, 0);
     let touching = contacts.pairs.iter().zip(&contacts.histories);
     for (&pair, history) in touching.filter(|(_, history)| history.overlap_m() > 0.0) {
         let clumps = pair.map(|i| clump_of(state, i));
         if clumps == [None; 2] {
             continue;
         }
+        read += 1;
         let force_n = pair_force_n(contacts, p, pair, history);
         let [a, b] = pair.map(|i| &p.poses[i as usize]);
         let apart = b.place() - a.place();
@@ -76,16 +76,18 @@ fn of_pairs(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) {
             }
         }
     }
+    read
 }
 
-fn of_walls(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) {
-    let p = &state.particles;
+fn of_walls(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) -> usize {
+    let (p, mut read) = (&state.particles, 0);
     for wall in &state.walls {
         let touching = wall.touching.iter();
         for touch in touching.filter(|touch| touch.history.overlap_m() > 0.0) {
             let Some(clump) = clump_of(state, touch.particle) else {
                 continue;
             };
+            read += 1;
             let force_n = touch_force_n(wall, contacts, p, touch);
             let pose = &p.poses[touch.particle as usize];
             let lever_m = pose.radius_m() - touch.history.overlap_m();
@@ -94,4 +96,5 @@ fn of_walls(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) {
             squeezes[clump].add(force_n, point - centre);
         }
     }
+    read
 }

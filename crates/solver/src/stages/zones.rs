@@ -95,7 +95,7 @@ fn record(state: &mut State, changed: &[Change]) {
     for (zone, change) in state.model.rules.zones.iter().zip(changed) {
         state.rigid_parts.released += change.released as u64;
         state.rigid_parts.rejoined += change.rejoined as u64;
-        state.ledger.gain(-change.lost_j);
+        state.ledger.rejoined_j += change.lost_j;
         for (kind, particles, lost_j) in [
             ("released", change.released, 0.0),
             ("rejoined", change.rejoined, change.lost_j),

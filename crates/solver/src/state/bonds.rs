@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use dem_scene::StrainRateMeasure;
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -51,12 +51,6 @@ pub struct BondRule {
 }
 
 impl BondRule {
-    /// Whether plastic flow hardens bonds.
-    pub(crate) fn hardens(&self) -> bool {
-        let plasticity = self.plasticity;
-        plasticity.is_some_and(|plasticity| plasticity.hardening_ratio > 0.0)
-    }
-
     /// Whether bonds have a history and are computed one at a time.
     pub(crate) fn is_single(&self) -> bool {
         self.incremental || self.plasticity.is_some() || self.flat_joint.is_some()
@@ -408,16 +402,6 @@ impl Bonds {
         flat_joint::forces(elements, &stiffness, &self.direction(at), length_m, ends)
     }
 
-    /// Whether bond `at` has yielded and hardens.
-    pub(crate) fn has_hardened(&self, at: usize) -> bool {
-        self.has_yielded(at) && self.rules[self.rule_of(at)].hardens()
-    }
-
-    /// Whether any bond hardens once it yields.
-    pub(crate) fn can_harden(&self) -> bool {
-        self.rules.iter().any(BondRule::hardens)
-    }
-
     /// Number of unbroken bonds that have yielded. None: no bond yields.
     pub(crate) fn count_yielded(&self) -> Option<usize> {
         let is_one = |at: &usize| self.has_yielded(*at) && !self.is_broken(*at);
@@ -453,6 +437,13 @@ impl Bonds {
             Some(plastic) => plastic.ends(&ends),
             None => ends,
         }
+    }
+
+    /// Rotation of the frame of bond `at`: halfway between those of its two ends.
+    pub(crate) fn frame_of(&self, at: usize, poses: &[Pose]) -> UnitQuaternion<f64> {
+        let [a, b] = self.ends_of(at, poses).map(|end| end.turned.into_inner());
+        let sign = a.dot(&b).signum();
+        UnitQuaternion::new_normalize(a + b * sign)
     }
 
     /// Number of unbroken bonds that are damaged. None: no bond softens beyond its strength.

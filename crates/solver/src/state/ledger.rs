@@ -19,6 +19,8 @@ pub struct EnergyLedger {
     pub(crate) damaged_j: f64,
     /// Lost by particles that daughters replaced, J.
     pub(crate) particles_broken_j: f64,
+    /// Kinetic energy of spheres that they lost as they joined rigid parts, J.
+    pub(crate) rejoined_j: f64,
     /// Friction of failed elements of flat joints, J.
     pub(crate) joint_friction_j: f64,
     /// Plastic work of bonds, J.

@@ -22,6 +22,8 @@ pub struct Scratch {
     pub chunks_moved_m: Vec<f64>,
     /// Damaged bonds that have reached their compressive strength.
     pub(crate) crushed: Vec<u32>,
+    /// Contacts that triggers have read in this step.
+    pub(crate) squeezing: usize,
     /// Events of the last step.
     pub events: Events,
     /// Time spent in each stage.

@@ -7,7 +7,7 @@ use dem_io::{Diagnostic, Result};
 use super::prediction::Member;
 use super::{
     adhesion, breakage, bridges, daughters, families, impact, joints, limit_map, long, own_steps,
-    softening, swap, yielding,
+    softening, swap, yielding, zones,
 };
 
 /// A case of the suite.
@@ -32,7 +32,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 23] = [
+pub const CASES: [Case; 24] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -87,6 +87,11 @@ pub const CASES: [Case; 23] = [
         name: "daughters",
         extreme: "spheres that daughters replace while plates squeeze them",
         members: |_| Ok(daughters::daughters()),
+    },
+    Case {
+        name: "zones",
+        extreme: "rigid parts that a fast zone, a hard or soft border, or a load takes apart",
+        members: |_| zones::zones(),
     },
     Case {
         name: "one-particle",

@@ -66,8 +66,14 @@ pub enum Quantity {
     AngularMomentumError,
     /// Bonds that broke.
     BrokenBonds,
+    /// Energy that damaged bonds have lost.
+    BondDamage,
     /// Fragments at the end.
     Fragments,
+    /// Spheres that were released from rigid parts.
+    Released,
+    /// Spheres that joined rigid parts again.
+    Rejoined,
     /// Largest stable time step.
     LargestStep,
 }
@@ -90,6 +96,16 @@ impl Shown {
             unit: "",
             value: 0.0,
             tolerance: limit,
+        }
+    }
+
+    /// A value between these two.
+    pub fn between(quantity: Quantity, unit: &'static str, least: f64, largest: f64) -> Self {
+        Self {
+            quantity,
+            unit,
+            value: 0.5 * (least + largest),
+            tolerance: 0.5 * (largest - least),
         }
     }
 
@@ -121,7 +137,10 @@ impl Quantity {
             Self::MomentumError => "momentum error",
             Self::AngularMomentumError => "angular momentum error",
             Self::BrokenBonds => "broken bonds",
+            Self::BondDamage => "bond damage",
             Self::Fragments => "fragments",
+            Self::Released => "released spheres",
+            Self::Rejoined => "rejoined spheres",
             Self::LargestStep => "largest stable step",
         }
     }
@@ -137,9 +156,17 @@ impl Quantity {
             Self::MomentumError => summary.momentum_error,
             Self::AngularMomentumError => summary.angular_momentum_error,
             Self::BrokenBonds => summary.broken_bonds as f64,
+            Self::BondDamage => summary.balance.bond_damage_j,
             Self::Fragments => {
                 let fragments = summary.fragments.as_ref();
                 fragments.map_or(f64::NAN, |fragments| fragments.count as f64)
+            }
+            Self::Released | Self::Rejoined => {
+                let moved = summary.population.as_ref().map(|population| match self {
+                    Self::Released => population.released,
+                    _ => population.rejoined,
+                });
+                moved.map_or(f64::NAN, |spheres| spheres as f64)
             }
             Self::LargestStep => f64::NAN,
         }

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::bonded::{self, RADIUS_M, STRAIN, mass_kg};
 use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
+use super::trial::Trial;
 
 /// Kinetic energy at the start over the fracture energy.
 const EXCESS: f64 = 1.5;
@@ -21,6 +22,7 @@ pub(crate) fn softening() -> Vec<Member> {
         }
     }
     members.push(rattling());
+    members.extend([(0.4, [0.01, 0.3]), (0.05, [0.0, 0.005])].map(undamped));
     members
 }
 
@@ -63,4 +65,26 @@ fn rattling() -> Member {
         Shown::count(Quantity::BrokenBonds, 0),
     ];
     bonded::row(trial, comes_to_rest)
+}
+
+/// The same row without damping, at this fraction of the limit, whose energy error lies between
+/// these. The stiffness of a damaged bond jumps where it closes: leapfrog creates energy there, by
+/// the square of the step.
+fn undamped((fraction, [least, largest]): (f64, [f64; 2])) -> Member {
+    let bonds = "failure = { tensile_strength = \"1 MPa\", fracture_energy = \"40 J/m2\" }";
+    let motion = |phase: f64| [-2.0 * phase.cos(), 2.0 * (0.1 * phase.sin()), 0.0];
+    let trial = bonded::rattling("20 ms", bonds, motion, "");
+    let scene = trial.scene.replace(
+        "safety_factor = 0.5",
+        &format!("safety_factor = {fraction}"),
+    );
+    Member {
+        what: format!("undamped row at {fraction} of the limit"),
+        trial: Trial { scene, ..trial },
+        way: ObservationMethod::Run,
+        prediction: Prediction::Ends(vec![
+            Shown::between(Quantity::EnergyError, "", least, largest),
+            Shown::count(Quantity::BrokenBonds, 0),
+        ]),
+    }
 }

@@ -1,5 +1,7 @@
 //! Clumps that are replaced while two plates squeeze them.
 
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
 use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
 use super::trial::Trial;
 
@@ -7,84 +9,153 @@ use super::trial::Trial;
 const RADIUS_M: f64 = 1e-3;
 /// Spheres along an edge of the block.
 const EDGE: usize = 3;
+/// Bonds of the block: those of neighbours along its edges.
+const BONDS: usize = 3 * EDGE * EDGE * (EDGE - 1);
 /// What a swap may add to the error of the energy: that of the run itself is smaller.
 const ENERGY_ERROR: f64 = 1e-3;
 /// The same for the momentum.
 const MOMENTUM_ERROR: f64 = 1e-10;
 
+/// Tensile strength of the bonds of an upright block, whose columns are only pressed, and of a
+/// tilted one, whose bonds bend and shear beyond it, Pa; the shear strength is twice as large.
+const STRENGTHS_PA: [f64; 2] = [2e6, 0.4e6];
+/// Fracture energy of bonds that soften, J/m2.
+const FRACTURE_J_M2: f64 = 200.0;
+/// What breaking bonds may add to the error of the energy: the verdict of a run permits as much.
+const BREAKAGE_ERROR: f64 = 1e-2;
+
 /// A block between plates that close by a thirtieth of its height becomes a bonded cluster when
 /// their squeeze reaches 1 MPa. The swap changes neither momentum nor energy, whatever else the
 /// scene asks for: clump spheres that are larger than those of the cluster, whose overlap vanishes
 /// with the clump and is booked; a cluster that becomes a clump again at every check, and is
-/// replaced at once; a block from an inlet; bonds that strengthen or soften.
+/// replaced at once; a block from an inlet. A tilted block is loaded beyond the strength of its
+/// bonds: they soften, break, or hold because the strain rate strengthens them.
 pub(crate) fn swaps() -> Vec<Member> {
     let mut members = Vec::new();
     for scale in [1.0, 1.02] {
-        let mut add = |what: &str, block: Block| {
-            members.push(block.member(format!("{what}, clump spheres x {scale}")));
-        };
-        let plain = Block {
+        let upright = Block {
             scale,
-            failure: "",
+            is_tilted: false,
+            failure: String::new(),
             restores: false,
             is_fed: false,
         };
-        add("replaced", plain);
-        add(
-            "restored and replaced again",
-            Block {
-                restores: true,
-                ..plain
-            },
-        );
-        add(
-            "fed",
-            Block {
-                is_fed: true,
-                ..plain
-            },
-        );
-        let failure = ", rate_strengthening = true";
-        add("rate strengthening", Block { failure, ..plain });
-        let failure = ", fracture_energy = \"200 J/m2\"";
-        add("softening", Block { failure, ..plain });
+        let tilted = |failure: &str| Block {
+            is_tilted: true,
+            failure: failure.to_owned(),
+            ..upright.clone()
+        };
+        let softens = tilted(&format!(", fracture_energy = {FRACTURE_J_M2}"));
+        let restored = |block: &Block| Block {
+            restores: true,
+            ..block.clone()
+        };
+        let fed = |block: &Block| Block {
+            is_fed: true,
+            ..block.clone()
+        };
+        let mut add = |what: &str, block: Block, more: Vec<Shown>| {
+            members.push(block.member(format!("{what}, clump spheres x {scale}"), more));
+        };
+        add("replaced", upright.clone(), whole());
+        add("restored and replaced again", restored(&upright), whole());
+        add("fed", fed(&upright), whole());
+        add("softening", softens.clone(), damaged());
+        add("softening and restored", restored(&softens), damaged());
+        add("softening and fed", fed(&softens), damaged());
+        add("breaking", tilted(""), broken());
+        let strengthens =
+            ", rate_strengthening = true, strain_rate_measure = \"relative-velocity\"";
+        add("held by its strain rate", tilted(strengthens), held());
     }
     members
 }
 
-#[derive(Clone, Copy)]
+/// Nothing breaks.
+fn whole() -> Vec<Shown> {
+    vec![
+        Shown::at_most(Quantity::EnergyError, ENERGY_ERROR),
+        Shown::count(Quantity::BrokenBonds, 0),
+        Shown::count(Quantity::Fragments, 1),
+    ]
+}
+
+/// Bonds take up to all of their fracture energy, and at least a hundredth of it, and hold.
+fn damaged() -> Vec<Shown> {
+    let all_j = BONDS as f64 * FRACTURE_J_M2 * PI * RADIUS_M * RADIUS_M;
+    let mut shown = whole();
+    shown.push(Shown::between(
+        Quantity::BondDamage,
+        "J",
+        0.01 * all_j,
+        all_j,
+    ));
+    shown
+}
+
+/// Some of the bonds break, or all.
+fn broken() -> Vec<Shown> {
+    vec![
+        Shown::at_most(Quantity::EnergyError, BREAKAGE_ERROR),
+        Shown::between(Quantity::BrokenBonds, "", 1.0, BONDS as f64),
+    ]
+}
+
+/// Bonds hold although stresses exceed their strength, at least by a tenth: it is larger by the
+/// dynamic increase factor.
+fn held() -> Vec<Shown> {
+    let mut shown = whole();
+    let beyond = Quantity::Measure("largest_utilisation");
+    shown.push(Shown::between(beyond, "", 1.1, 5.0));
+    shown.push(Shown::between(
+        Quantity::Measure("largest_dynamic_utilisation"),
+        "",
+        0.0,
+        1.0,
+    ));
+    shown
+}
+
+#[derive(Clone)]
 struct Block {
     /// Radius of the clump's spheres over that of the cluster's.
     scale: f64,
+    /// Stands on an edge instead of a face.
+    is_tilted: bool,
     /// Further keys of its failure.
-    failure: &'static str,
+    failure: String,
     restores: bool,
     is_fed: bool,
 }
 
 impl Block {
-    fn member(self, what: String) -> Member {
+    fn member(&self, what: String, more: Vec<Shown>) -> Member {
+        let mut shown = vec![Shown::at_most(Quantity::MomentumError, MOMENTUM_ERROR)];
+        shown.extend(more);
         Member {
             what,
             trial: Trial::of(self.scene()),
             way: ObservationMethod::Run,
-            prediction: Prediction::Ends(vec![
-                Shown::at_most(Quantity::EnergyError, ENERGY_ERROR),
-                Shown::at_most(Quantity::MomentumError, MOMENTUM_ERROR),
-                Shown::count(Quantity::BrokenBonds, 0),
-                Shown::count(Quantity::Fragments, 1),
-            ]),
+            prediction: Prediction::Ends(shown),
         }
     }
 
-    fn scene(self) -> String {
+    /// Centre of a sphere at this place in the block, m: the lowest are at z = 0.
+    fn centre_m(&self, place: [usize; 3]) -> [f64; 3] {
+        let [x, y, z] = place.map(|k| 2.0 * RADIUS_M * k as f64);
+        match self.is_tilted {
+            true => [FRAC_1_SQRT_2 * (x - z), y, FRAC_1_SQRT_2 * (x + z)],
+            false => [x, y, z],
+        }
+    }
+
+    fn scene(&self) -> String {
         let Self { scale, failure, .. } = self;
-        let at = |k: usize| 2.0 * RADIUS_M * k as f64;
         let mut particles = Vec::new();
         let mut bonds = Vec::new();
         for n in 0..EDGE * EDGE * EDGE {
             let place = [n % EDGE, n / EDGE % EDGE, n / (EDGE * EDGE)];
-            let [x, y, z] = place.map(at);
+            let [x, y, z] = self.centre_m(place);
             particles.push(format!("[{x}, {y}, {z}, {RADIUS_M}]"));
             for (k, step) in [1, EDGE, EDGE * EDGE].into_iter().enumerate() {
                 if place[k] + 1 < EDGE {
@@ -98,13 +169,19 @@ impl Block {
         };
         // An inlet needs room.
         let gap_m = if self.is_fed { 2e-6 } else { 0.0 };
-        let top_m = at(EDGE - 1) + 2.0 * (RADIUS_M * scale + gap_m);
+        let [_, _, height_m] = self.centre_m([EDGE - 1; 3]);
+        let top_m = height_m + 2.0 * (RADIUS_M * scale + gap_m);
+        let tensile_pa = STRENGTHS_PA[usize::from(self.is_tilted)];
+        let shear_pa = 2.0 * tensile_pa;
+        // What a restored cluster loses is known as well as leapfrog knows the energy of its fastest
+        // motions: to (w dt)^2/4 of it.
+        let fraction = if self.restores { 0.2 } else { 0.9 };
         let mut scene = format!(
             "version = 1
-run.end_time = \"4 ms\"
+run = {{ end_time = \"4 ms\", safety_factor = {fraction} }}
 materials.rock = {{ density = 2500, young_modulus = \"1 GPa\" }}
 contacts.rock-rock = {{ restitution = 0.5, friction = 0.3 }}
-bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ damping_ratio = 0.1 }}, failure = {{ tensile_strength = \"2 MPa\", shear_strength = \"4 MPa\"{failure} }} }}
+bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ damping_ratio = 0.1 }}, failure = {{ tensile_strength = {tensile_pa}, shear_strength = {shear_pa}{failure} }} }}
 walls.below = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"rock\" }}
 walls.above = {{ plane = {{ point = [0, 0, {top_m}], normal = [0, 0, -1] }}, material = \"rock\", velocity = [0, 0, -0.05] }}
 [bodies.block]
@@ -128,21 +205,30 @@ box = { min = [1, 1, 1], max = [2, 2, 2] }
 ";
         }
         if self.is_fed {
-            let [middle_m, height_m] = [at(1), at(1) + RADIUS_M * scale + gap_m];
-            let [from_m, to_m] = [middle_m - 1e-9, middle_m + 1e-9];
-            scene += &format!(
-                "[regions.gate]
-box = {{ min = [{from_m}, {from_m}, {}], max = [{to_m}, {to_m}, {}] }}
+            scene += &self.inlet(RADIUS_M * scale + gap_m);
+        } else {
+            scene += "[measures]
+largest_utilisation = { of = \"block\", quantity = \"largest_utilisation\", statistic = \"largest\" }
+largest_dynamic_utilisation = { of = \"block\", quantity = \"largest_dynamic_utilisation\", statistic = \"largest\" }
+";
+        }
+        scene
+    }
+
+    /// An inlet for the block, its lowest centres this high, m.
+    fn inlet(&self, lowest_m: f64) -> String {
+        let [x, y, z] = self.centre_m([EDGE / 2; 3]);
+        let centre = [x, y, z + lowest_m];
+        let [from_m, to_m] = [-1e-9, 1e-9].map(|off| centre.map(|x| x + off));
+        format!(
+            "[regions.gate]
+box = {{ min = {from_m:?}, max = {to_m:?} }}
 [inlets.gate]
 bodies = [\"block\"]
 region = \"gate\"
 rate = \"1 /s\"
 count = 1
-",
-                height_m - 1e-9,
-                height_m + 1e-9
-            );
-        }
-        scene
+"
+        )
     }
 }

@@ -276,6 +276,32 @@ fn of_rigid_bodies() {
         &["rigid clumps", "replacement"],
         &RIGID,
     );
+    let floor = format!(
+        "{MEETS}[walls.floor]\nplane = {{ point = [0, 0, -0.00999], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n"
+    );
+    let lying = |when: &str| {
+        let tables = format!("{floor}[replacement.row]\nwhen = {{ {when} }}\n");
+        scene(
+            ", initial_overlap = \"keep\"",
+            "",
+            "start_as = \"clump\"",
+            &tables,
+        )
+    };
+    let touches = ["neighbour search", "walls"];
+    let waits = with(&["rigid clumps", "replacement"], &touches);
+    expect(
+        "a clump on a floor, whose trigger reads no contacts",
+        &lying("time = 0.9"),
+        &waits,
+        &with(&RIGID, &touches),
+    );
+    expect(
+        "a clump on a floor, whose trigger reads its contacts",
+        &lying("principal_stress = 1e9"),
+        &with(&waits, &["squeeze of clumps"]),
+        &with(&RIGID, &touches),
+    );
     let bits = "[bodies.bits]\nparticles = [[0, 0, 0, 1], [1, 0, 0, 1]]\nmaterial = \"stuff\"\n\
                 [replacement.row.daughters]\nclasses = [{ from = 1e9, body = \"bits\" }]\n";
     expect(

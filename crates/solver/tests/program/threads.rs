@@ -45,6 +45,8 @@ fn block(n: usize) -> Body {
         bond_radii: vec![5e-4; bonds.len()],
         bond_lengths: vec![2e-3; bonds.len()],
         bond_damages: Vec::new(),
+        bond_plastics: Vec::new(),
+        bond_joints: Vec::new(),
         positions,
         bonds,
         about: About::default(),

@@ -71,7 +71,7 @@ fn spheres_join_again_and_what_they_lose_is_booked() {
     assert!(rigid(&state) > start);
     interact(&mut state);
     let balance = balance(&mut state);
-    let booked_j = -balance.flow_energy_j;
+    let booked_j = balance.rejoining_loss_j;
     eprintln!(
         "{count} changes, {} rejoined, lost {lost_j:e} J, booked {booked_j:e} J, error {:e} J, momenta {:e} {:e}",
         state.rigid_parts.rejoined,

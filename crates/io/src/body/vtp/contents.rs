@@ -9,9 +9,10 @@ use super::names::{
     SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 use super::numbers::{
-    check_count, float, floats, line_values, particle, particle_numbers, text, texts, whole,
+    check_count, float, floats, line_values, particle, particle_numbers, text, texts, tuples, whole,
 };
 use super::walls;
+use crate::body::histories::HistoryArrays;
 use crate::body::parts::{Body, Parts};
 use crate::body::stored_frame as frame;
 use crate::body::stored_walls::{StoredWalls, WALL_FORCES, WALL_NAMES};
@@ -27,6 +28,7 @@ pub(super) struct Contents {
     lines_ended: u64,
     /// All data except the radii.
     parts: Parts,
+    histories: HistoryArrays,
     of_frame: OfFrame,
     walls: StoredWalls,
 }
@@ -38,8 +40,6 @@ struct OfFrame {
     clusters: Option<Vec<u32>>,
     densities: Option<Vec<f64>>,
     broken: Option<Vec<f64>>,
-    hardened: Vec<f64>,
-    failed: Vec<f64>,
     ids: Option<Vec<u32>>,
     bodies: Option<Vec<u32>>,
     velocities: Option<Vec<f64>>,
@@ -67,6 +67,8 @@ impl Contents {
         const OF_WALLS: u64 = 1 << 20;
         const OF_OTHER: u64 = 1 << 16;
         const OF_OTHER_PER_CELL: u64 = 1 << 10;
+        /// Elements of a flat joint.
+        const OF_HISTORY_PER_CELL: u64 = 10_000;
         let counts = self.counts.unwrap_or_default();
         let others = counts.cells_before.saturating_add(counts.cells_after);
         let cells = counts.lines.saturating_add(others);
@@ -77,12 +79,8 @@ impl Contents {
             }
             Role::Connectivity => counts.lines.saturating_mul(2),
             Role::Offsets => counts.lines,
-            Role::BondRadii
-            | Role::BondLengths
-            | Role::Damages
-            | Role::Broken
-            | Role::Hardened
-            | Role::Failed => cells,
+            Role::BondRadii | Role::BondLengths | Role::Damages | Role::Broken => cells,
+            Role::History(_) => cells.saturating_mul(OF_HISTORY_PER_CELL),
             Role::Corners => counts.cells_after.saturating_mul(3),
             Role::CornerOffsets | Role::WallNumbers => counts.cells_after,
             Role::Field(WALL_NAMES | WALL_FORCES | frame::BODY_NAMES) => OF_WALLS,
@@ -149,11 +147,8 @@ impl Contents {
             Role::Broken => {
                 line_values(array, values, counts).map(|all| self.of_frame.broken = Some(all))
             }
-            Role::Failed => {
-                line_values(array, values, counts).map(|all| self.of_frame.failed = all)
-            }
-            Role::Hardened => {
-                line_values(array, values, counts).map(|all| self.of_frame.hardened = all)
+            Role::History(number) => {
+                tuples(array, values, counts).map(|all| self.histories.arrays[number] = all)
             }
             Role::Corners | Role::CornerOffsets | Role::WallNumbers => {
                 walls::fill(&mut self.walls, counts, array, values)
@@ -262,8 +257,11 @@ impl Contents {
                 format!("name the point data that hold them '{RADIUS}'"),
             ));
         };
+        let bonds = self.parts.bonds.len();
         Body::from_parts(Parts {
             radii,
+            bond_plastics: self.histories.plastics(bonds),
+            bond_joints: self.histories.joints(bonds),
             ..self.parts
         })
     }

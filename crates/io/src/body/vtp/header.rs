@@ -8,7 +8,7 @@ use super::names::{
     BOND_LENGTH, BOND_RADIUS, BOND_RANGE, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM, RADIUS,
     SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
-use crate::body::{stored_frame as frame, stored_walls as walls};
+use crate::body::{histories, stored_frame as frame, stored_walls as walls};
 use crate::diagnostic::{Diagnostic, Result};
 
 /// The type of content as which a file is read, which determines the names of the arrays.
@@ -34,8 +34,8 @@ pub(super) enum Role {
     Clusters,
     Densities,
     Broken,
-    Hardened,
-    Failed,
+    /// History of bonds, by its number in [`histories::ALL`].
+    History(usize),
     /// The id and the body of each particle, and its velocity.
     Ids,
     Bodies,
@@ -138,12 +138,18 @@ fn role_of(section: &str, name: &str) -> Role {
         ("CellData", BOND_LENGTH) => Role::BondLengths,
         ("CellData", frame::DAMAGE) => Role::Damages,
         ("CellData", frame::BROKEN) => Role::Broken,
+        ("CellData", name) => history(name),
         ("FieldData", _) => FIELDS
             .into_iter()
             .find(|field| *field == name)
             .map_or(Role::Other, Role::Field),
         _ => Role::Other,
     }
+}
+
+fn history(name: &str) -> Role {
+    let at = histories::ALL.iter().position(|other| *other == name);
+    at.map_or(Role::Other, Role::History)
 }
 
 fn role_in_frame(section: &str, name: &str) -> Role {
@@ -160,9 +166,8 @@ fn role_in_frame(section: &str, name: &str) -> Role {
         ("CellData", frame::BOND_RADIUS) => Role::BondRadii,
         ("CellData", frame::BOND_LENGTH) => Role::BondLengths,
         ("CellData", frame::DAMAGE) => Role::Damages,
-        ("CellData", frame::HARDENED) => Role::Hardened,
-        ("CellData", frame::FAILED) => Role::Failed,
         ("CellData", frame::BROKEN) => Role::Broken,
+        ("CellData", name) => history(name),
         ("FieldData", frame::TIME) => Role::Field(frame::TIME),
         ("FieldData", frame::BODY_NAMES) => Role::Field(frame::BODY_NAMES),
         _ => Role::Other,

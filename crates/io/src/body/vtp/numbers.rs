@@ -40,6 +40,30 @@ pub(super) fn line_values(array: &Array, values: Values<'_>, counts: Counts) -> 
     )
 }
 
+/// The values that belong to lines, of data for all cells with equally many numbers each.
+pub(super) fn tuples(array: &Array, values: Values<'_>, counts: Counts) -> Result<Vec<f64>> {
+    let mut all = Vec::new();
+    values.for_each(array.scalar()?, |number| {
+        all.push(float(number));
+        Ok(())
+    })?;
+    let [before, lines, after] = [counts.cells_before, counts.lines, counts.cells_after];
+    let cells = before.saturating_add(lines).saturating_add(after);
+    let each = if cells == 0 {
+        0
+    } else {
+        all.len() as u64 / cells
+    };
+    check_count(
+        all.len() as u64,
+        u128::from(each) * u128::from(cells),
+        "values",
+    )?;
+    let number = |count: u64| (count * each) as usize;
+    all.truncate(number(before + lines));
+    Ok(all.split_off(number(before)))
+}
+
 /// A whole number for each point.
 pub(super) fn particle_numbers(
     array: &Array,

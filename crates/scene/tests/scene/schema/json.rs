@@ -6,7 +6,7 @@ use regex::Regex;
 use serde_json::{Map, Value, json};
 use toml::de::{DeTable, DeValue};
 
-pub(super) fn toml_as_json(text: &str) -> Value {
+pub(in super::super) fn toml_as_json(text: &str) -> Value {
     let table = DeTable::parse(text).unwrap().into_inner();
     as_json(&DeValue::Table(table))
 }

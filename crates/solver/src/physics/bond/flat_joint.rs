@@ -37,6 +37,13 @@ pub struct FlatJointLaw {
     pub friction: f64,
 }
 
+impl FlatJointLaw {
+    /// Number of elements.
+    pub(crate) fn count(&self) -> usize {
+        self.radial_elements as usize * self.circumferential_elements as usize
+    }
+}
+
 /// Strengths of the elements of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElementStrengths {
@@ -107,14 +114,25 @@ impl FlatJoint {
     }
 }
 
-/// The elements of a joint of this radius whose axis has this direction. The centroid of a sector
-/// from r_1 to r_2 of the half angle a is at 2/3 (r_2^3 - r_1^3)/(r_2^2 - r_1^2) sin(a)/a.
+/// The elements of a joint of this radius whose axis has this direction.
 pub fn elements(law: &FlatJointLaw, radius_m: f64, direction: &Vector3<f64>) -> Vec<Element> {
     let least = direction.iamin();
     let mut beside = Vector3::zeros();
     beside[least] = 1.0;
     let first = direction.cross(&beside).normalize();
-    let second = direction.cross(&first);
+    elements_from(law, radius_m, direction, &first)
+}
+
+/// The elements of a joint of this radius whose axis has this direction, the first of them from the
+/// edge in the direction `first`, a unit vector across the axis. The centroid of a sector from r_1
+/// to r_2 of the half angle a is at 2/3 (r_2^3 - r_1^3)/(r_2^2 - r_1^2) sin(a)/a.
+pub(crate) fn elements_from(
+    law: &FlatJointLaw,
+    radius_m: f64,
+    direction: &Vector3<f64>,
+    first: &Vector3<f64>,
+) -> Vec<Element> {
+    let second = direction.cross(first);
     let (rings, sectors) = (law.radial_elements, law.circumferential_elements);
     let half = PI / f64::from(sectors);
     let mut found = Vec::new();
@@ -133,6 +151,21 @@ pub fn elements(law: &FlatJointLaw, radius_m: f64, direction: &Vector3<f64>) -> 
         }
     }
     found
+}
+
+/// Unit vector, in the bond's frame, to the edge at which the first of these elements begins: that
+/// of [`elements_from`].
+pub(crate) fn first_edge(
+    law: &FlatJointLaw,
+    elements: &[Element],
+    direction: &Vector3<f64>,
+) -> Vector3<f64> {
+    let Some(element) = elements.first() else {
+        return Vector3::zeros();
+    };
+    let middle = Vector3::from(element.place_m).normalize();
+    let (sine, cosine) = (PI / f64::from(law.circumferential_elements)).sin_cos();
+    cosine * middle - sine * direction.cross(&middle)
 }
 
 /// Relative position of the two faces of a joint.

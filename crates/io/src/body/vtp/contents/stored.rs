@@ -25,11 +25,10 @@ impl Contents {
             clusters,
             densities,
             broken,
-            hardened,
-            failed,
             ..
         } = self.of_frame;
         let parts = self.parts;
+        let bonds = parts.bonds.len();
         Ok(StoredFrame {
             time_s: time_s.ok_or_else(|| missing(frame::TIME))?,
             clusters: clusters.ok_or_else(|| missing(frame::FRAGMENT_ID))?,
@@ -49,8 +48,8 @@ impl Contents {
                 .map(|broken| broken != 0.0)
                 .collect(),
             damages: parts.bond_damages,
-            failed,
-            hardened: hardened.iter().map(|hardened| *hardened != 0.0).collect(),
+            plastics: self.histories.plastics(bonds),
+            joints: self.histories.joints(bonds),
         })
     }
 
