@@ -4,12 +4,13 @@
 use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
+use super::dynamic::{self, Pieces};
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use dem_laboratory::theory::Beam;
 use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_modulus_pa, disc_stress_pa};
-use dem_laboratory::{Line, Specimen, area_between};
+use dem_laboratory::{Line, Specimen, TestType, area_between};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
 /// settle into the surface; above, bonds break.
@@ -35,7 +36,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    fn new(name: &str, value: f64, unit: &str, theory: Option<f64>) -> Self {
+    pub(super) fn new(name: &str, value: f64, unit: &str, theory: Option<f64>) -> Self {
         Self {
             name: name.to_owned(),
             value,
@@ -96,7 +97,7 @@ pub struct TestResult {
     pub target_strength_pa: Option<f64>,
     /// Lowest frequency of the body in the test, estimated, Hz.
     pub lowest_frequency_hz: f64,
-    /// Crosshead velocity, m/s.
+    /// Crosshead velocity, that of the striker, or that of the weight at the impact, m/s.
     pub rate_m_s: f64,
     /// Dimensions used in the evaluation.
     pub dimensions: Vec<Figure>,
@@ -119,6 +120,12 @@ pub struct TestResult {
 }
 
 impl TestResult {
+    /// Whether the test was dynamic.
+    pub fn is_dynamic(&self) -> bool {
+        let found = TestType::NAMES.iter().find(|(name, _)| *name == self.kind);
+        found.is_some_and(|(_, kind)| kind.is_dynamic())
+    }
+
     /// The value of a figure.
     pub fn figure(&self, name: &str) -> Option<f64> {
         let found = self.figures.iter().find(|figure| figure.name == name);
@@ -158,6 +165,8 @@ pub struct TestInput<'a> {
     pub broken: bool,
     /// Number of all bonds.
     pub all_bonds: usize,
+    /// Pieces of the body at the end. None: it cannot break.
+    pub pieces: Option<Pieces>,
 }
 
 /// Ratio of load to displacement in the elastic part of a test.
@@ -216,6 +225,9 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         ..
     } = *evidence;
     let rows = &rows_of(record, evidence.lowest_frequency_hz);
+    if test.kind.is_dynamic() {
+        return evaluate_dynamic(evidence, rows);
+    }
     let by_travel = slope(rows, |row| row.travel_m);
     let measured = !setup.moving.is_empty();
     let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
@@ -248,23 +260,48 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         ..first
     });
     let mut result = TestResult {
-        kind: test.kind.name().to_owned(),
-        broken: evidence.broken,
-        broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
-        broken_at_peak: broken_at_peak(record, rows),
-        target_strength_pa: test.strength_pa,
-        lowest_frequency_hz: evidence.lowest_frequency_hz,
         rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),
         dimensions: measured.dimensions,
         figures: measured.figures,
-        calibration: Vec::new(),
         first_broken,
-        crack: crack(evidence),
         curve,
-        half_the_rate_changes: Vec::new(),
+        ..without_figures(evidence, rows)
     };
     result.calibration = calibration(&result, evidence);
     result
+}
+
+/// A dynamic test, whose figures are those of its bars or its weight. The travel has no play.
+fn evaluate_dynamic(evidence: &TestInput<'_>, rows: &[Row]) -> TestResult {
+    let found = dynamic::figures(evidence, rows);
+    let points = rows.iter().map(|row| [row.travel_m, row.load_n()]);
+    TestResult {
+        rate_m_s: found.rate_m_s,
+        dimensions: found.dimensions,
+        figures: found.figures,
+        first_broken: first_broken(evidence),
+        curve: points.collect(),
+        ..without_figures(evidence, rows)
+    }
+}
+
+fn without_figures(evidence: &TestInput<'_>, rows: &[Row]) -> TestResult {
+    TestResult {
+        kind: evidence.test.kind.name().to_owned(),
+        broken: evidence.broken,
+        broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
+        broken_at_peak: broken_at_peak(evidence.record, rows),
+        target_strength_pa: evidence.test.strength_pa,
+        lowest_frequency_hz: evidence.lowest_frequency_hz,
+        rate_m_s: f64::NAN,
+        dimensions: Vec::new(),
+        figures: Vec::new(),
+        calibration: Vec::new(),
+        first_broken: None,
+        crack: crack(evidence),
+        curve: Vec::new(),
+        half_the_rate_changes: Vec::new(),
+    }
 }
 
 /// The mean curve of the measured material of a test, for the simulated specimen: displacement, m,
@@ -464,7 +501,7 @@ const APART: &str = "area between the curves";
 /// Stress at that force according to the formula of the test.
 pub const STRENGTH: &str = "strength";
 
-/// Names of all results of tests; each test has some of them.
+/// Names of all results of quasi-static tests; each test has some of them.
 pub const RESULTS: [&str; 11] = [
     STIFFNESS,
     SPECIMEN_STIFFNESS,

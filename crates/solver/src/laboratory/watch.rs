@@ -5,6 +5,7 @@ use dem_results::ResultsFolder;
 use dem_scene::{Scene, Test};
 
 use super::crack::{CrackPicture, Sphere};
+use super::dynamic::Pieces;
 use super::evaluate::{TestInput, TestResult, evaluate};
 use super::files::{TestFiles, write_test};
 use super::record::{Loading, Record};
@@ -59,7 +60,16 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Records a step; returns whether the body is broken.
+    /// How a test that is over, or at the end of its time, has ended.
+    pub(crate) fn ended_by(&self, over: bool) -> &'static str {
+        match (self.test.kind.is_dynamic(), over) {
+            (true, _) => "end of the test",
+            (false, true) => "breakage",
+            (false, false) => "end of the stroke",
+        }
+    }
+
+    /// Records a step; returns whether the test is over.
     pub(crate) fn note(&self, record: &mut Record, state: &State) -> bool {
         record.note(&self.setup, &self.loading, state)
     }
@@ -72,7 +82,6 @@ impl<'a> Watch<'a> {
         &self,
         record: &Record,
         state: &State,
-        broken: bool,
         folder: Option<&ResultsFolder>,
     ) -> Result<TestResult> {
         let places: Vec<[f64; 3]> = record
@@ -93,7 +102,8 @@ impl<'a> Watch<'a> {
             places_m: &places,
             bonds: kind.and_then(|name| self.scene.bonds.get(name)),
             lowest_frequency_hz: self.settings.lowest_frequency_hz,
-            broken,
+            broken: record.fell,
+            pieces: Pieces::of(state, &self.test.body),
             all_bonds: state.bonds.len(),
         });
         if let Some(fast) = &self.settings.at_twice_the_rate {

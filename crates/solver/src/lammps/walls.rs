@@ -196,7 +196,7 @@ fn moves(scene: &Scene, part: &str, motion: &WallMotion) -> Result<Option<[Strin
             let factor = formula(factor);
             Ok(Some(displacement_m.map(|d| format!("{d:e}*{factor}"))))
         }
-        WallMotion::Servo { .. } => Err(refused(
+        WallMotion::Servo { .. } | WallMotion::Bar { .. } | WallMotion::Weight { .. } => Err(refused(
             scene,
             part,
             "a region that moves with particles around it takes no force as a target",

@@ -66,12 +66,16 @@ pub fn setup(
     let mean_radius_m = radii.sum::<f64>() / particles.len().max(1) as f64;
     let found = match test.kind {
         TestType::FourPointBending | TestType::ThreePointBending => beam(scene, test, extent),
-        TestType::BrazilianDisc => disc(test, direction, extent),
-        TestType::Compression | TestType::Tension => Ok(bar(test, direction, volume_m3, extent)),
+        TestType::BrazilianDisc | TestType::HopkinsonDisc => disc(test, direction, extent),
+        TestType::Compression
+        | TestType::Tension
+        | TestType::HopkinsonPressure
+        | TestType::HopkinsonTension
+        | TestType::DropWeight => Ok(bar(test, direction, volume_m3, extent)),
     };
     let place = || format!("{}: [test]", scene.source);
     let found = found.map_err(|(problem, remedy)| Diagnostic::input(place(), problem, remedy))?;
-    if test.kind != TestType::Tension {
+    if !test.kind.pulls() {
         all_come_nearer(scene, test, Vector3::from(found.middle_m))?;
     }
     let mut setup = Setup {
