@@ -7,6 +7,7 @@ use crate::listing::Listing;
 use crate::run::Run;
 use crate::schema::{Key, Schema};
 use crate::table::Table;
+use crate::tree::Value;
 use dem_io::diagnostic::Result;
 use dem_io::units::{DENSITY, LENGTH, MASS, STRESS, TIME, VELOCITY, show_quantity};
 
@@ -156,6 +157,7 @@ pub struct Weight {
 pub(super) fn bars(test: &Table<'_>, transmission: String) -> Result<Bars> {
     let (bars, striker) = (test.need("bars")?, test.need("striker")?);
     let (bars, of_striker) = (Table::of(&bars, &BARS)?, Table::of(&striker, &STRIKER)?);
+    refuse_unequal(&bars)?;
     let found = Bars {
         transmission,
         density_kg_m3: bars.read("density")?,
@@ -174,6 +176,18 @@ pub(super) fn bars(test: &Table<'_>, transmission: String) -> Result<Bars> {
         return Err(rise.wrong(&limit, "take a shorter rise or a longer striker"));
     }
     Ok(found)
+}
+
+/// Refuses a list of the values of two bars.
+fn refuse_unequal(bars: &Table<'_>) -> Result<()> {
+    let mut given = bars.given(&["density", "young_modulus", "diameter"]);
+    match given.find(|(_, field)| matches!(field.node.value, Value::List(_))) {
+        Some((_, field)) => {
+            let remedy = "two unequal bars cannot be tested with: write one value";
+            Err(field.wrong("one value, as both bars are alike", remedy))
+        }
+        None => Ok(()),
+    }
 }
 
 pub(super) fn weight(test: &Table<'_>, direction: [f64; 3], run: &Run) -> Result<Weight> {

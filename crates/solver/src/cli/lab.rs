@@ -128,7 +128,9 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
 
 impl LabArguments {
     fn test_type(&self) -> Result<TestType> {
-        let mut known = TestType::NAMES.iter().filter(|(_, test)| !test.is_dynamic());
+        let mut known = TestType::NAMES
+            .iter()
+            .filter(|(_, test)| !test.is_dynamic());
         let found = known.clone().find(|(name, _)| *name == self.test);
         found.map(|(_, test)| *test).ok_or_else(|| {
             let names: Vec<&str> = known.by_ref().map(|(name, _)| *name).collect();

@@ -122,13 +122,25 @@ fn of_bars(found: &mut Found, evidence: &TestInput<'_>, bars: &Bars, rows: &[Row
     found.dimension("bar wave speed", bars.wave_speed_m_s(), "m/s");
     found.dimension("bar impedance", bars.impedance_n_s_m(), "N s/m");
     found.dimension("pulse duration", bars.pulse_s(), "s");
-    found.dimension("incident strain", bars.incident_m_s() / bars.wave_speed_m_s(), "");
+    found.dimension(
+        "incident strain",
+        bars.incident_m_s() / bars.wave_speed_m_s(),
+        "",
+    );
     let curve = stress_strain(rows, &specimen, length_m);
     // The load while the pulse lasts: later waves are not part of the test.
     let during = rows.partition_point(|row| row.time_s <= bars.pulse_end_s());
     let peak = (0..during).max_by(|a, b| rows[*a].load_n().total_cmp(&rows[*b].load_n()));
     if let Some(peak) = peak {
-        at_peak(found, evidence, Peak { rows, curve: &curve, at: peak });
+        at_peak(
+            found,
+            evidence,
+            Peak {
+                rows,
+                curve: &curve,
+                at: peak,
+            },
+        );
     }
     let signals = bar_signals(evidence.record, bars);
     let largest = |of: fn(&BarSignal) -> f64| {
@@ -136,7 +148,11 @@ fn of_bars(found: &mut Found, evidence: &TestInput<'_>, bars: &Bars, rows: &[Row
         strains.max_by(|a, b| a.abs().total_cmp(&b.abs()))
     };
     found.add("reflected strain", largest(|signal| signal.reflected), "");
-    found.add("transmitted strain", largest(|signal| signal.transmitted), "");
+    found.add(
+        "transmitted strain",
+        largest(|signal| signal.transmitted),
+        "",
+    );
     let works = &evidence.record.works;
     let carried_j = works.incident_j - works.reflected_j - works.transmitted_j;
     let done_j = works.moving_j - works.resting_j;
@@ -185,9 +201,9 @@ fn at_peak(found: &mut Found, evidence: &TestInput<'_>, peak: Peak<'_>) {
     let rates = peak.rates();
     let strain_rate = match (&evidence.setup.specimen, test.young_modulus_pa) {
         // In the middle of a disc, the rate of the tensile stress over the modulus.
-        (Specimen::Disc { .. }, modulus_pa) => {
-            rates.zip(modulus_pa).map(|([_, stress], modulus)| stress / modulus)
-        }
+        (Specimen::Disc { .. }, modulus_pa) => rates
+            .zip(modulus_pa)
+            .map(|([_, stress], modulus)| stress / modulus),
         _ => rates.map(|[strain, _]| strain),
     };
     found.add(force, Some(row.load_n()), "N");
@@ -263,7 +279,9 @@ fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {
     let largest_n = rows.iter().map(|row| row.force_n).fold(0.0, f64::max);
     let touches = |row: &&Row| row.force_n >= TOUCHES * largest_n;
     let (first, last) = (rows.iter().find(touches), rows.iter().rev().find(touches));
-    let duration = first.zip(last).map(|(first, last)| last.time_s - first.time_s);
+    let duration = first
+        .zip(last)
+        .map(|(first, last)| last.time_s - first.time_s);
     let impact_j = 0.5 * weight.mass_kg * weight.velocity_m_s.powi(2);
     let end = rows.last();
     let left_j = end.map(|row| {
@@ -279,14 +297,26 @@ fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {
     let unbooked = left_j.map(|left_j| (impact_j - left_j - absorbed_j) / impact_j);
     found.add(UNBOOKED, unbooked, "");
     let speed = end.map(|row| row.speeds_m_s[0]);
-    found.add("rebound velocity", speed.map(|speed| -speed).filter(|v| *v > 0.0), "m/s");
+    found.add(
+        "rebound velocity",
+        speed.map(|speed| -speed).filter(|v| *v > 0.0),
+        "m/s",
+    );
     if let Some(pieces) = &evidence.pieces {
         let specific = impact_j / pieces.mass_kg;
         found.add("specific energy", Some(specific), "J/kg");
-        found.add("specific energy per tonne", Some(specific / J_KG_PER_KWH_T), "kWh/t");
+        found.add(
+            "specific energy per tonne",
+            Some(specific / J_KG_PER_KWH_T),
+            "kWh/t",
+        );
         let absorbed = absorbed_j / pieces.mass_kg;
         found.add("specific absorbed energy", Some(absorbed), "J/kg");
-        found.add("largest fragment", Some(pieces.largest_kg / pieces.mass_kg), "");
+        found.add(
+            "largest fragment",
+            Some(pieces.largest_kg / pieces.mass_kg),
+            "",
+        );
         found.add("d50", Some(pieces.sizes.d50_m), "m");
         found.add(T10, pieces.sizes.t10, "");
     }

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use dem_io::Result;
+use dem_laboratory::Specimen;
 use dem_plots::{Axis, Line, Plot};
 use dem_results::ResultsFolder;
-use dem_laboratory::Specimen;
 use dem_scene::{Bars, Test};
 
 use super::crack::{CrackPicture, crack_map};
@@ -46,12 +46,18 @@ pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Resul
     let mut play_m = play_m(&rows);
     if files.test.kind.is_dynamic() {
         play_m = 0.0;
-        folder.write_plot("force-time", &force_over_time(&rows, files.result).svg().file())?;
+        folder.write_plot(
+            "force-time",
+            &force_over_time(&rows, files.result).svg().file(),
+        )?;
     }
     if let Some(bars) = &files.test.bars {
         let plots = [
             ("bar-signals", bar_plot(files.record, bars)),
-            ("stress-strain", stress_plot(&rows, &files.picture.setup.specimen)),
+            (
+                "stress-strain",
+                stress_plot(&rows, &files.picture.setup.specimen),
+            ),
         ];
         for (name, plot) in plots {
             folder.write_plot(name, &plot.svg().file())?;
@@ -120,7 +126,9 @@ fn bar_plot(record: &Record, bars: &Bars) -> Plot {
 /// Stress over strain of a specimen between two bars.
 fn stress_plot(rows: &[Row], specimen: &Specimen) -> Plot {
     let (length_m, strain) = match specimen {
-        Specimen::Disc { diameter_m, .. } => (*diameter_m, "approach of the bars over the diameter"),
+        Specimen::Disc { diameter_m, .. } => {
+            (*diameter_m, "approach of the bars over the diameter")
+        }
         Specimen::Bar { length_m, .. } => (*length_m, "strain"),
         Specimen::Beam(_) => (1.0, "strain"),
     };
@@ -129,11 +137,7 @@ fn stress_plot(rows: &[Row], specimen: &Specimen) -> Plot {
         title: "stress over strain".to_owned(),
         x: Axis::of(strain),
         y: Axis::of("stress (Pa)"),
-        lines: vec![line(
-            "mean of both ends",
-            curve,
-            false,
-        )],
+        lines: vec![line("mean of both ends", curve, false)],
         ..Plot::default()
     }
 }
