@@ -16,6 +16,7 @@ mod damage;
 mod discharge;
 mod disk;
 mod dynamic;
+mod dynamic_tests;
 mod inputs;
 mod interrupted;
 mod lab;
