@@ -29,10 +29,8 @@ use programs::{Failed, Programs, output, root};
 
 const USAGE: &str = "write rates or heights";
 /// As in the study.
-const VELOCITIES: [&str; 7] = [
-    "0.5 m/s", "0.7 m/s", "1 m/s", "1.5 m/s", "2 m/s", "3 m/s", "4 m/s",
-];
-const HEIGHTS: [&str; 6] = ["50 mm", "0.1 m", "0.2 m", "0.5 m", "1 m", "2 m"];
+const VELOCITIES: [&str; 6] = ["2 m/s", "3 m/s", "4 m/s", "6 m/s", "8 m/s", "10 m/s"];
+const HEIGHTS: [&str; 7] = ["20 mm", "50 mm", "0.1 m", "0.2 m", "0.5 m", "1 m", "2 m"];
 /// Scenes of the disc.
 const DISC: &str = "hopkinson-disc";
 
@@ -128,6 +126,7 @@ fn rates(programs: &Programs) -> Result<(), Failed> {
                 programs,
                 DISC,
                 &[
+                    "test.striker.length=\"1.5 m\"".to_owned(),
                     format!("test.striker.velocity=\"{velocity}\""),
                     format!("bonds.rock.failure.rate_strengthening={strengthens}"),
                 ],
