@@ -1,4 +1,4 @@
-//! The tables and plots of doc/dynamic-tests.md, made by running its scenes. From the folder of the
+//! The tables and plots of doc/dynamic-tests.md, made by running its studies. From the folder of the
 //! clone:
 //!
 //! ```sh
@@ -6,9 +6,9 @@
 //! cargo run --release -p dem-run --example dynamic_tables -- heights    # doc/t10.svg
 //! ```
 //!
-//! Builds both programs and runs the scenes unchanged except for the `--set`s printed on standard
-//! error. The values are those of the studies `hopkinson-rates.toml` and
-//! `drop-weight-heights.toml`.
+//! Builds the program and runs `hopkinson-rates.toml` or `drop-weight-heights.toml` as they are,
+//! some minutes each. Results are written to `target/dynamic-tables`; `--resume` at the end keeps
+//! the complete runs.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -25,47 +25,47 @@ use dem_plots::{Axis, Line, Plot};
 use dem_run::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 use serde_json::Value;
 
-use programs::{Failed, Programs, output, root};
+use programs::{Failed, Programs, output, results, root};
 
-const USAGE: &str = "write rates or heights";
-/// As in the study.
-const VELOCITIES: [&str; 6] = ["2 m/s", "3 m/s", "4 m/s", "6 m/s", "8 m/s", "10 m/s"];
-const HEIGHTS: [&str; 7] = ["20 mm", "50 mm", "0.1 m", "0.2 m", "0.5 m", "1 m", "2 m"];
-/// Scenes of the disc.
-const DISC: &str = "hopkinson-disc";
+const USAGE: &str = "write rates or heights, then --resume or nothing";
 
 fn main() -> Result<(), Failed> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let work: fn(&Programs) -> Result<(), Failed> = match words.first().map(String::as_str) {
-        Some("rates") => rates,
-        Some("heights") => heights,
-        _ => return Err(USAGE.into()),
-    };
-    work(&Programs::build()?)
-}
-
-/// The results of a scene with these settings.
-fn results(programs: &Programs, scene: &str, sets: &[String]) -> Result<Value, Failed> {
-    let mut command = Command::new(&programs.dem_run);
-    command.arg(format!("data/scenes/{scene}.toml"));
-    command.args(["--json", "--quiet", "--force", "--output"]);
-    command.arg(programs::results("dynamic-tables")?.join(scene));
-    for set in sets {
-        command.args(["--set", set]);
+    let resume = words.get(1).is_some_and(|word| word == "--resume");
+    match words.first().map(String::as_str) {
+        Some("rates") => rates(&runs("hopkinson-rates", resume)?),
+        Some("heights") => heights(&runs("drop-weight-heights", resume)?),
+        _ => Err(USAGE.into()),
     }
-    Ok(serde_json::from_slice(&output(&mut command)?)?)
 }
 
-/// A figure of the test of a run.
+/// The summaries of the runs of a study, in its order.
+fn runs(study: &str, resume: bool) -> Result<Vec<Value>, Failed> {
+    let folder = results("dynamic-tables")?.join(study);
+    let mut command = Command::new(Programs::build()?.dem_run);
+    command.args(["sweep", &format!("data/studies/{study}.toml")]);
+    command.args(["--json", "--quiet", "--output"]).arg(&folder);
+    command.arg(if resume { "--resume" } else { "--force" });
+    let table: Value = serde_json::from_slice(&output(&mut command)?)?;
+    let runs = table["runs"].as_array().ok_or("the study has no runs")?;
+    let summary = |run: &Value| -> Result<Value, Failed> {
+        if let Some(why) = run["failed"].as_str() {
+            return Err(why.into());
+        }
+        let number = run["number"].as_u64().unwrap_or_default();
+        let file = folder.join(format!("runs/{number:04}-1/summary.json"));
+        Ok(serde_json::from_slice(&std::fs::read(file)?)?)
+    };
+    runs.iter().map(summary).collect()
+}
+
+/// A figure of the test of a run; not a number if the run has none.
 fn figure(run: &Value, name: &str) -> f64 {
     let figures = run["test"]["results"].as_array();
-    let found = figures
-        .into_iter()
-        .flatten()
-        .find(|figure| figure["name"] == name);
-    found
-        .and_then(|figure| figure["value"].as_f64())
-        .unwrap_or(f64::NAN)
+    let mut figures = figures.into_iter().flatten();
+    let found = figures.find(|figure| figure["name"] == name);
+    let value = found.and_then(|figure| figure["value"].as_f64());
+    value.unwrap_or(f64::NAN)
 }
 
 fn row(cells: &[String]) {
@@ -73,10 +73,7 @@ fn row(cells: &[String]) {
 }
 
 fn head(cells: &[&str]) {
-    row(&cells
-        .iter()
-        .map(|cell| (*cell).to_owned())
-        .collect::<Vec<_>>());
+    println!("| {} |", cells.join(" | "));
     println!("|{}", "---|".repeat(cells.len()));
 }
 
@@ -88,80 +85,43 @@ fn line(name: &str, points: Vec<[f64; 2]>, dashed: bool) -> Line {
     }
 }
 
-/// Strength of the same disc in the quasi-static test of brazilian-disc-rock.toml, Pa.
-fn static_strength_pa(programs: &Programs) -> Result<f64, Failed> {
-    let mut command = Command::new(&programs.dem_run);
-    command.arg("data/scenes/brazilian-disc-rock.toml");
-    command.args(["--json", "--quiet", "--force", "--output"]);
-    command.arg(programs::results("dynamic-tables")?.join("brazilian-disc-rock"));
-    command.args(["--body", "disc=data/bodies/disc.vtp"]);
-    command.args([
-        "--set",
-        "test.rate_check=false",
-        "--set",
-        "test.periods=100",
-    ]);
-    let run: Value = serde_json::from_slice(&output(&mut command)?)?;
-    Ok(figure(&run, "strength"))
-}
-
-/// Strength of the disc over the strain rate, without and with rate strengthening.
-fn rates(programs: &Programs) -> Result<(), Failed> {
-    let static_pa = static_strength_pa(programs)?;
+/// Strength of the disc over the strain rate, without rate strengthening and with it: the runs of
+/// the study take turns.
+fn rates(runs: &[Value]) -> Result<(), Failed> {
     head(&[
-        "striker, m/s",
-        "strain rate, 1/s",
-        "strength, MPa",
-        "over static",
-        "(F_1 - F_2)/F",
-        "strain rate with eq. 20, 1/s",
-        "strength, MPa",
-        "over static",
+        "striker",
+        "eq. 20 for bonds",
+        "strain rate",
+        "strength",
+        "over the static one",
         "eq. 20 at this rate",
+        "(F_1 - F_2)/F",
     ]);
-    let (mut without, mut with) = (Vec::new(), Vec::new());
-    for velocity in VELOCITIES {
-        let run = |strengthens: bool| {
-            results(
-                programs,
-                DISC,
-                &[
-                    "test.striker.length=\"1.5 m\"".to_owned(),
-                    format!("test.striker.velocity=\"{velocity}\""),
-                    format!("bonds.rock.failure.rate_strengthening={strengthens}"),
-                ],
-            )
-        };
-        let [off, on] = [run(false)?, run(true)?];
-        let of = |run: &Value| [figure(run, "strain rate"), figure(run, "strength")];
-        let [[slow, weak], [fast, strong]] = [of(&off), of(&on)];
-        without.push([slow, weak / static_pa]);
-        with.push([fast, strong / static_pa]);
-        let theory = dynamic_increase_factor(fast, 0.0);
+    let mut curves = [Vec::new(), Vec::new()];
+    for (at, run) in runs.iter().enumerate() {
+        let strengthens = at % 2;
+        let rate_1_s = figure(run, "strain rate");
+        let factor = figure(run, "dynamic increase factor");
+        curves[strengthens].push([rate_1_s, factor]);
+        let theory = dynamic_increase_factor(rate_1_s, 0.0);
         row(&[
-            velocity.trim_end_matches(" m/s").to_owned(),
-            significant(slow, 3),
-            significant(1e-6 * weak, 3),
-            significant(weak / static_pa, 3),
-            significant(figure(&off, "force equilibrium"), 2),
-            significant(fast, 3),
-            significant(1e-6 * strong, 3),
-            significant(strong / static_pa, 3),
+            format!(
+                "{} m/s",
+                significant(run["test"]["rate_m_s"].as_f64().unwrap_or(f64::NAN), 3)
+            ),
+            ["off", "on"][strengthens].to_owned(),
+            format!("{} /s", significant(rate_1_s, 3)),
+            format!("{} MPa", significant(1e-6 * figure(run, "strength"), 3)),
+            significant(factor, 3),
             significant(theory, 3),
+            format!("{:+.0} %", 100.0 * figure(run, "force equilibrium")),
         ]);
     }
-    println!(
-        "\nStatic strength: {} MPa",
-        significant(1e-6 * static_pa, 3)
-    );
-    let lowest = without
-        .iter()
-        .map(|[rate, _]| *rate)
-        .fold(f64::INFINITY, f64::min);
-    let rates = (0..=100).map(|i| {
-        let share = f64::from(i) / 100.0;
-        lowest * (HIGHEST_1_S / lowest).powf(share)
-    });
+    let [without, with] = curves;
+    let all = without.iter().chain(&with).map(|[rate, _]| *rate);
+    let lowest = all.fold(HIGHEST_1_S, f64::min);
+    let highest = with.iter().map(|[rate, _]| *rate).fold(lowest, f64::max);
+    let rates = (0..=50).map(|i| lowest * (highest / lowest).powf(f64::from(i) / 50.0));
     let theory = rates.map(|rate| [rate, dynamic_increase_factor(rate, 0.0)]);
     let plot = Plot {
         title: "strength of a disc over its strain rate".to_owned(),
@@ -172,7 +132,7 @@ fn rates(programs: &Programs) -> Result<(), Failed> {
         y: Axis::of("strength over static strength"),
         lines: vec![
             line("without rate strengthening", without, false),
-            line("bonds with eq. 20", with, false),
+            line("eq. 20 for the bonds", with, false),
             line("eq. 20", theory.collect(), true),
         ],
         ..Plot::default()
@@ -182,42 +142,39 @@ fn rates(programs: &Programs) -> Result<(), Failed> {
 }
 
 /// t10 and sizes over the specific energy.
-fn heights(programs: &Programs) -> Result<(), Failed> {
+fn heights(runs: &[Value]) -> Result<(), Failed> {
     head(&[
-        "height",
-        "specific energy, kWh/t",
-        "absorbed, kWh/t",
+        "impact",
+        "impact energy",
+        "absorbed energy",
         "largest fragment",
-        "d50, mm",
+        "d50",
         "t10",
     ]);
     let mut points = Vec::new();
-    for height in HEIGHTS {
-        let sets = [
-            format!("test.weight.height=\"{height}\""),
-            "output.pictures=\"1 s\"".to_owned(),
-        ];
-        let run = results(programs, "drop-weight", &sets)?;
-        let energy = figure(&run, "specific energy per tonne");
-        let t10 = figure(&run, "t10");
+    for run in runs {
+        let energy = figure(run, "specific energy per tonne");
+        let absorbed = figure(run, "specific absorbed energy") / 3600.0;
+        let t10 = figure(run, "t10");
         points.push([energy, 100.0 * t10]);
+        let percent = |share: f64| format!("{} %", significant(100.0 * share, 3));
         row(&[
-            height.to_owned(),
-            significant(energy, 3),
-            significant(figure(&run, "specific absorbed energy") / 3600.0, 3),
             format!(
-                "{} %",
-                significant(100.0 * figure(&run, "largest fragment"), 3)
+                "{} m/s",
+                significant(run["test"]["rate_m_s"].as_f64().unwrap_or(f64::NAN), 3)
             ),
-            significant(1e3 * figure(&run, "d50"), 3),
-            format!("{} %", significant(100.0 * t10, 3)),
+            format!("{} kWh/t", significant(energy, 3)),
+            format!("{} kWh/t", significant(absorbed, 3)),
+            percent(figure(run, "largest fragment")),
+            format!("{} mm", significant(1e3 * figure(run, "d50"), 3)),
+            percent(t10),
         ]);
     }
     let plot = Plot {
-        title: "fines over the energy of a drop weight".to_owned(),
+        title: "fines of a disc under a drop weight".to_owned(),
         x: Axis::of("impact energy over mass of the disc (kWh/t)"),
         y: Axis::of("t10 (%)"),
-        lines: vec![line("disc", points, false)],
+        lines: vec![line("", points, false)],
         ..Plot::default()
     };
     std::fs::write(root().join("doc/t10.svg"), plot.svg().file())?;
