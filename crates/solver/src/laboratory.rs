@@ -8,6 +8,7 @@ pub mod crack;
 pub mod dynamic;
 pub mod evaluate;
 pub mod files;
+pub mod pieces;
 pub mod record;
 mod text;
 pub(crate) mod watch;

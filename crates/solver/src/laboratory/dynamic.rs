@@ -9,11 +9,12 @@
 use dem_laboratory::Specimen;
 use dem_scene::{Bars, Weight};
 
-use super::evaluate::{FAILURE_FORCE, Figure, LARGEST_FORCE, STRENGTH, TestInput};
+use super::evaluate::{
+    FAILURE_FORCE, Figure, LARGEST_FORCE, STRENGTH, TestInput, TestResult, first_broken, rows_of,
+    without_figures,
+};
 use super::record::{Record, Row};
-use crate::output::sizes::{Fragments, SizeSummary};
 use crate::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
-use crate::state::State;
 
 /// Fraction of the largest load from which on the body counts as loaded.
 const LOADED: f64 = 0.1;
@@ -37,39 +38,29 @@ pub const UNBOOKED: &str = "energy unaccounted for";
 /// Share of the mass finer than a tenth of the body's size.
 pub const T10: &str = "t10";
 
-/// Pieces of the tested body at the end.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pieces {
-    /// Mass of the body, kg.
-    pub mass_kg: f64,
-    /// Mass of the largest piece, kg.
-    pub largest_kg: f64,
-    /// Their sizes.
-    pub sizes: SizeSummary,
-}
-
-impl Pieces {
-    /// Those of a body, by its name in the scene. None: it cannot break.
-    pub(super) fn of(state: &State, body: &str) -> Option<Self> {
-        let fragments = Fragments::of(state)?;
-        let sizes = fragments.sizes(&state.model);
-        let sizes = *sizes.bodies.get(body)?.get("both")?;
-        let number = state.model.bodies.iter().position(|one| one.name == body)?;
-        Some(Self {
-            mass_kg: sizes.mass_kg,
-            largest_kg: fragments.largest_kg(number as u32),
-            sizes,
-        })
+/// Evaluates a dynamic test: its figures are those of its bars or its weight, and its travel has no
+/// play.
+pub fn evaluate_dynamic(evidence: &TestInput<'_>) -> TestResult {
+    let rows = &rows_of(evidence.record, evidence.lowest_frequency_hz);
+    let found = figures(evidence, rows);
+    let points = rows.iter().map(|row| [row.travel_m, row.load_n()]);
+    TestResult {
+        rate_m_s: found.rate_m_s,
+        dimensions: found.dimensions,
+        figures: found.figures,
+        first_broken: first_broken(evidence),
+        curve: points.collect(),
+        ..without_figures(evidence, rows)
     }
 }
 
 /// Dimensions and figures of a dynamic test.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Found {
+struct Found {
     /// Velocity of the striker or of the weight, m/s.
-    pub(super) rate_m_s: f64,
-    pub(super) dimensions: Vec<Figure>,
-    pub(super) figures: Vec<Figure>,
+    rate_m_s: f64,
+    dimensions: Vec<Figure>,
+    figures: Vec<Figure>,
 }
 
 impl Found {
@@ -90,7 +81,7 @@ impl Found {
 
 /// Dimensions and figures of a test with bars or a weight; `rows` are means over a part of the
 /// body's lowest period.
-pub(super) fn figures(evidence: &TestInput<'_>, rows: &[Row]) -> Found {
+fn figures(evidence: &TestInput<'_>, rows: &[Row]) -> Found {
     let mut found = Found::default();
     match (&evidence.test.bars, &evidence.test.weight) {
         (Some(bars), _) => of_bars(&mut found, evidence, bars, rows),

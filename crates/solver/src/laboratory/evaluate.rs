@@ -4,7 +4,7 @@
 use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
-use super::dynamic::{self, Pieces};
+use super::pieces::Pieces;
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
@@ -216,7 +216,7 @@ pub fn peak(rows: &[Row]) -> Option<&Row> {
     rows.iter().max_by(|a, b| a.load_n().total_cmp(&b.load_n()))
 }
 
-/// Evaluates a test. Figures that cannot be determined from its record are omitted.
+/// Evaluates a quasi-static test. Figures that cannot be determined from its record are omitted.
 pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     let TestInput {
         test,
@@ -225,9 +225,6 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         ..
     } = *evidence;
     let rows = &rows_of(record, evidence.lowest_frequency_hz);
-    if test.kind.is_dynamic() {
-        return evaluate_dynamic(evidence, rows);
-    }
     let by_travel = slope(rows, |row| row.travel_m);
     let measured = !setup.moving.is_empty();
     let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
@@ -271,21 +268,8 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     result
 }
 
-/// A dynamic test, whose figures are those of its bars or its weight. The travel has no play.
-fn evaluate_dynamic(evidence: &TestInput<'_>, rows: &[Row]) -> TestResult {
-    let found = dynamic::figures(evidence, rows);
-    let points = rows.iter().map(|row| [row.travel_m, row.load_n()]);
-    TestResult {
-        rate_m_s: found.rate_m_s,
-        dimensions: found.dimensions,
-        figures: found.figures,
-        first_broken: first_broken(evidence),
-        curve: points.collect(),
-        ..without_figures(evidence, rows)
-    }
-}
-
-fn without_figures(evidence: &TestInput<'_>, rows: &[Row]) -> TestResult {
+/// What all tests have in common.
+pub(super) fn without_figures(evidence: &TestInput<'_>, rows: &[Row]) -> TestResult {
     TestResult {
         kind: evidence.test.kind.name().to_owned(),
         broken: evidence.broken,
@@ -573,7 +557,7 @@ fn broken_at_peak(record: &Record, rows: &[Row]) -> usize {
         .partition_point(|broken| broken.time_s <= time_s)
 }
 
-fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {
+pub(super) fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {
     let first = evidence.record.broken.first()?;
     let rows = &evidence.record.rows;
     // The last row before it: the next one may already include the fall.

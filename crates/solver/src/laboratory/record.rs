@@ -145,9 +145,12 @@ impl Loading {
         };
         let bars = test.bars.clone().map(Dynamic::Bars);
         let weight = || test.weight.as_ref().map(|_| Dynamic::Weight(test.stroke_m));
+        // The end of a drop-weight test is far off: its stroke gives the time of the impact.
+        let impact_s = (test.weight.as_ref()).map(|weight| test.stroke_m / weight.velocity_m_s);
+        let end_s = impact_s.unwrap_or(f64::INFINITY).min(scene.run.end_time_s);
         Self {
             dynamic: bars.or_else(weight),
-            ..Self::of(moving, resting, setup, state, scene.run.end_time_s)
+            ..Self::of(moving, resting, setup, state, end_s)
         }
     }
 

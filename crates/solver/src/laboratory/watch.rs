@@ -5,9 +5,10 @@ use dem_results::ResultsFolder;
 use dem_scene::{Scene, Test};
 
 use super::crack::{CrackPicture, Sphere};
-use super::dynamic::Pieces;
+use super::dynamic::evaluate_dynamic;
 use super::evaluate::{TestInput, TestResult, evaluate};
 use super::files::{TestFiles, write_test};
+use super::pieces::Pieces;
 use super::record::{Loading, Record};
 use crate::plan::Plan;
 use crate::plan::test_setup::Setup;
@@ -95,7 +96,7 @@ impl<'a> Watch<'a> {
             .collect();
         let kind = self.scene.bodies.get(&self.test.body);
         let kind = kind.and_then(|body| body.bond_kind.as_ref());
-        let mut result = evaluate(&TestInput {
+        let evidence = TestInput {
             test: self.test,
             setup: &self.setup,
             record,
@@ -105,7 +106,12 @@ impl<'a> Watch<'a> {
             broken: record.fell,
             pieces: Pieces::of(state, &self.test.body),
             all_bonds: state.bonds.len(),
-        });
+        };
+        let mut result = if self.test.kind.is_dynamic() {
+            evaluate_dynamic(&evidence)
+        } else {
+            evaluate(&evidence)
+        };
         if let Some(fast) = &self.settings.at_twice_the_rate {
             result.compare(fast);
         }
