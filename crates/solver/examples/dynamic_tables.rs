@@ -1,14 +1,14 @@
-//! The tables and plots of doc/dynamic-tests.md, made by running its studies. From the folder of the
-//! clone:
+//! The tables of doc/dynamic-tests.md, made by running its studies. From the folder of the clone:
 //!
 //! ```sh
-//! cargo run --release -p dem-run --example dynamic_tables -- rates      # doc/strain-rate.svg
-//! cargo run --release -p dem-run --example dynamic_tables -- heights    # doc/t10.svg
+//! cargo run --release -p dem-run --example dynamic_tables -- rates
+//! cargo run --release -p dem-run --example dynamic_tables -- heights
 //! ```
 //!
 //! Builds the program and runs `hopkinson-rates.toml` or `drop-weight-heights.toml` as they are,
-//! some minutes each. Results are written to `target/dynamic-tables`; `--resume` at the end keeps
-//! the complete runs.
+//! some minutes each. Results are written to `target/dynamic-tables`, with the plots
+//! `strain-rate.svg`, strength over strain rate beside eq. 20, and `t10.svg`, fines over specific
+//! energy; `--resume` at the end keeps the complete runs.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -25,7 +25,7 @@ use dem_plots::{Axis, Line, Plot};
 use dem_run::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 use serde_json::Value;
 
-use programs::{Failed, Programs, output, results, root};
+use programs::{Failed, Programs, output, results};
 
 const USAGE: &str = "write rates or heights, then --resume or nothing";
 
@@ -137,7 +137,10 @@ fn rates(runs: &[Value]) -> Result<(), Failed> {
         ],
         ..Plot::default()
     };
-    std::fs::write(root().join("doc/strain-rate.svg"), plot.svg().file())?;
+    std::fs::write(
+        results("dynamic-tables")?.join("strain-rate.svg"),
+        plot.svg().file(),
+    )?;
     Ok(())
 }
 
@@ -177,6 +180,9 @@ fn heights(runs: &[Value]) -> Result<(), Failed> {
         lines: vec![line("", points, false)],
         ..Plot::default()
     };
-    std::fs::write(root().join("doc/t10.svg"), plot.svg().file())?;
+    std::fs::write(
+        results("dynamic-tables")?.join("t10.svg"),
+        plot.svg().file(),
+    )?;
     Ok(())
 }
