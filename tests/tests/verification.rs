@@ -6,6 +6,7 @@ mod cantilevers;
 mod clumps;
 mod contacts;
 mod damping;
+mod dynamic_tests;
 mod failure;
 mod flat_joint;
 mod packing;

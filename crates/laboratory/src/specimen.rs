@@ -20,6 +20,14 @@ pub enum TestType {
     Compression,
     /// A body is gripped at its ends and pulled.
     Tension,
+    /// A body is pressed between two long bars, into one of which a striker sends a pulse.
+    HopkinsonPressure,
+    /// A body is pulled by two long bars, into one of which a striker sends a pulse.
+    HopkinsonTension,
+    /// A disc is pressed across its diameter between the two bars.
+    HopkinsonDisc,
+    /// A weight falls on a body.
+    DropWeight,
 }
 
 /// Dimensions of a specimen; those that its test does not have stay empty.
@@ -68,12 +76,16 @@ pub enum Specimen {
 
 impl TestType {
     /// All types with their names.
-    pub const NAMES: [(&'static str, Self); 5] = [
+    pub const NAMES: [(&'static str, Self); 9] = [
         ("four-point-bending", Self::FourPointBending),
         ("three-point-bending", Self::ThreePointBending),
         ("brazilian-disc", Self::BrazilianDisc),
         ("compression", Self::Compression),
         ("tension", Self::Tension),
+        ("hopkinson-pressure", Self::HopkinsonPressure),
+        ("hopkinson-tension", Self::HopkinsonTension),
+        ("hopkinson-disc", Self::HopkinsonDisc),
+        ("drop-weight", Self::DropWeight),
     ];
 
     /// Its name in scenes and options.
@@ -82,13 +94,35 @@ impl TestType {
         found.map_or("", |(name, _)| *name)
     }
 
+    /// Whether two long bars load the body.
+    pub fn has_bars(self) -> bool {
+        matches!(
+            self,
+            Self::HopkinsonPressure | Self::HopkinsonTension | Self::HopkinsonDisc
+        )
+    }
+
+    /// Whether the inertia of the loading device is part of the test, which then has no rate.
+    pub fn is_dynamic(self) -> bool {
+        self.has_bars() || self == Self::DropWeight
+    }
+
+    /// Whether groups of particles are gripped and pulled.
+    pub fn pulls(self) -> bool {
+        matches!(self, Self::Tension | Self::HopkinsonTension)
+    }
+
     /// Names of the dimensions that it needs.
     pub fn dimensions(self) -> &'static [&'static str] {
         match self {
             Self::FourPointBending => &["support_span", "loading_span", "width", "height"],
             Self::ThreePointBending => &["support_span", "width", "height"],
-            Self::BrazilianDisc => &["width", "height"],
-            Self::Compression | Self::Tension => &["length", "area"],
+            Self::BrazilianDisc | Self::HopkinsonDisc => &["width", "height"],
+            Self::Compression
+            | Self::Tension
+            | Self::HopkinsonPressure
+            | Self::HopkinsonTension
+            | Self::DropWeight => &["length", "area"],
         }
     }
 }
@@ -205,11 +239,15 @@ impl Specimen {
                 }
                 Ok(Self::Beam(beam))
             }
-            TestType::BrazilianDisc => Ok(Self::Disc {
+            TestType::BrazilianDisc | TestType::HopkinsonDisc => Ok(Self::Disc {
                 diameter_m: size("height"),
                 thickness_m: size("width"),
             }),
-            TestType::Compression | TestType::Tension => Ok(Self::Bar {
+            TestType::Compression
+            | TestType::Tension
+            | TestType::HopkinsonPressure
+            | TestType::HopkinsonTension
+            | TestType::DropWeight => Ok(Self::Bar {
                 length_m: size("length"),
                 area_m2: size("area"),
             }),

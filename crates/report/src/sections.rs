@@ -20,7 +20,10 @@ pub(crate) use time::add_time;
 use values::{number, text, texts};
 
 /// Plots that come first, in this order.
-const FIRST_PLOTS: [&str; 7] = [
+const FIRST_PLOTS: [&str; 10] = [
+    "bar-signals",
+    "stress-strain",
+    "force-time",
     "force-displacement",
     "crack",
     "fragment_sizes",

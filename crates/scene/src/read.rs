@@ -90,6 +90,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let supports = each(&root, "supports", |field| support::read(field, &targets))?;
     let known = test::Known {
         folder,
+        run: &run,
         presence: &presence,
         groups: &groups,
         walls: &walls,

@@ -22,6 +22,14 @@ pub enum Hold {
     Velocity(f64),
     /// Is displaced by this times the factor, m or rad.
     Displacement(f64),
+    /// All particles of the support move together, as the end of a long elastic bar that a `[test]`
+    /// glues to them: it exerts Z (2 v_I - v) on them.
+    Bar {
+        /// Impedance Z, N s/m.
+        impedance_n_s_m: f64,
+        /// Velocity v_I of the incident pulse, times the factor, m/s.
+        incident_m_s: f64,
+    },
 }
 
 /// A support: holds degrees of freedom of a group of particles.
@@ -193,6 +201,7 @@ fn hold(field: &Field<'_>, freedom: &str, place: &mut Option<Hold>, new: Hold) -
             Hold::Fixed => "fixed",
             Hold::Velocity(_) => "given a velocity",
             Hold::Displacement(_) => "given a displacement",
+            Hold::Bar { .. } => "moved by a bar",
         };
         let problem = format!("{}: {freedom} is already {how} by this support", field.path);
         return Err(field.refuse(problem, "a freedom is held in one way: remove one"));
@@ -211,6 +220,7 @@ pub(super) fn list(support: &Support, listing: &mut Listing) {
             Some(Hold::Velocity(velocity)) => {
                 format!("velocity {}", quantity(*velocity, unit(["m/s", "rad/s"])))
             }
+            Some(Hold::Bar { .. }) => "end of a bar".to_owned(),
             Some(Hold::Displacement(displacement)) => {
                 format!(
                     "displacement {}",

@@ -1,4 +1,8 @@
-//! `[test]`: a quasi-static laboratory test.
+//! `[test]`: a laboratory test, quasi-static or dynamic.
+
+mod dynamic;
+
+pub use dynamic::{Bars, Weight};
 
 use std::collections::BTreeMap;
 use std::ops::Bound::{Included, Unbounded};
@@ -9,6 +13,7 @@ use super::listing::Listing;
 use super::material::poisson_ratio;
 use super::names::suggestion;
 use super::presence::Presence;
+use super::run::{Integrator, Run};
 use super::schema::{Key, Kind, Schema, words_of};
 use super::support::Support;
 use super::table::Table;
@@ -41,10 +46,10 @@ pub(super) static TEST: Schema = Schema {
         Key::quantity(
             "stroke",
             &LENGTH,
-            "Maximum crosshead travel; the run ends early when the body has broken.",
+            "Maximum travel of the crosshead or of the weight; the run ends early when the body has broken, or when the weight has come back. Not for bars.",
         )
         .positive()
-        .required("\"4 mm\""),
+        .sometimes_required("\"4 mm\""),
         Key::new(
             "rate",
             Kind::Auto(&VELOCITY),
@@ -72,6 +77,18 @@ pub(super) static TEST: Schema = Schema {
             "a file written by dem-run lab",
             "Measured material: its modulus and strength are the reference values unless given, and its mean curve is drawn with the simulated one.",
         ),
+        Key::text(
+            "transmission_bar",
+            "a name in [walls], for tension in [groups]",
+            "End of the bar behind the body, whose bar in front of it is the crosshead: a wall, or for tension a group.",
+        )
+        .sometimes_required("\"NAME\""),
+        Key::table("bars", &dynamic::BARS, "The two bars of a split-Hopkinson test.")
+            .sometimes_required("{ density = \"7850 kg/m3\", young_modulus = \"210 GPa\", diameter = \"20 mm\" }"),
+        Key::table("striker", &dynamic::STRIKER, "The striker of a split-Hopkinson test.")
+            .sometimes_required("{ length = \"200 mm\", velocity = \"10 m/s\" }"),
+        Key::table("weight", &dynamic::WEIGHT, "The weight of a drop-weight test: the crosshead.")
+            .sometimes_required("{ mass = \"5 kg\", height = \"0.5 m\" }"),
         size("support_span", "Distance between the supports of a beam."),
         size("loading_span", "Distance between the two loading pins."),
         size("width", "Width of a beam, or thickness of a disc."),
@@ -92,7 +109,7 @@ const fn size(name: &'static str, doc: &'static str) -> Key {
         .otherwise(MEASURED)
 }
 
-/// A quasi-static test: the moving parts, their stroke and rate, and the reference values.
+/// A test: the moving parts, their motion, and the reference values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Test {
     /// `type`
@@ -104,14 +121,20 @@ pub struct Test {
     pub crosshead: Vec<String>,
     /// `direction` of their motion, of length 1; for tension along x, y or z. Length 3.
     pub direction: [f64; 3],
-    /// `stroke`: largest displacement of the crosshead, m.
+    /// `stroke`: largest displacement of the crosshead, m; infinite for bars.
     pub stroke_m: f64,
-    /// `rate`: velocity of the crosshead, m/s. None, "auto": such that the stroke takes `periods`.
+    /// `rate`: velocity of the crosshead, m/s. None, "auto": such that the stroke takes `periods`,
+    /// or the test is dynamic.
     pub rate_m_s: Option<f64>,
     /// `periods` of the body's lowest frequency, 20 unless given. At least 1.
     pub periods: f64,
-    /// `rate_check`: the test is also done at twice the rate. True unless given.
+    /// `rate_check`: the test is also done at twice the rate. True unless given; false for a dynamic
+    /// test.
     pub rate_check: bool,
+    /// `bars`, `striker` and `transmission_bar` of a split-Hopkinson test.
+    pub bars: Option<Bars>,
+    /// `weight` of a drop-weight test.
+    pub weight: Option<Weight>,
     /// `young_modulus`: target modulus of the entire body, Pa. None: not compared.
     pub young_modulus_pa: Option<f64>,
     /// `poisson_ratio` of the entire body, for its shear in bending; 0.3 unless given.
@@ -149,6 +172,7 @@ pub struct MeasuredReference {
 pub(super) struct Known<'a> {
     /// Folder of the scene.
     pub(super) folder: &'a Path,
+    pub(super) run: &'a Run,
     pub(super) presence: &'a Presence<'a>,
     pub(super) groups: &'a BTreeMap<String, ParticleGroup>,
     pub(super) walls: &'a BTreeMap<String, Wall>,
@@ -159,20 +183,35 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
     let table = Table::of(field, &TEST)?;
     let kind = table.need("type")?.choice(&TestType::NAMES)?;
     refuse_dimensions(&table, kind)?;
-    let pulls = kind == TestType::Tension;
+    refuse_others(&table, kind)?;
+    refuse_run(&table, kind, known.run)?;
+    let pulls = kind.pulls();
     let example = if pulls {
         "[\"NAME\"], groups that are pulled"
     } else {
         "[\"NAME\"], walls that load the body"
     };
-    let crosshead = table.need_such("crosshead", example)?;
-    let crosshead = all_moved(&crosshead, pulls, known)?;
+    let field = table.need_such("crosshead", example)?;
+    let crosshead = all_moved(&field, pulls, known)?;
+    if kind.is_dynamic() && crosshead.len() > 1 {
+        let limit = format!("one name, as a {} test has one", kind.name());
+        return Err(field.wrong(&limit, "remove the others"));
+    }
     let direction: [f64; 3] = table.read("direction")?;
     if pulls && direction.iter().filter(|c| **c != 0.0).count() != 1 {
         let remedy = "write [1, 0, 0], [0, 1, 0], [0, 0, 1] or the opposite";
         let along = table.need("direction")?;
         return Err(along.wrong("along x, y or z, as what a support moves", remedy));
     }
+    let bars = if kind.has_bars() {
+        let behind = transmission(&table, &crosshead, pulls, known)?;
+        Some(dynamic::bars(&table, behind)?)
+    } else {
+        None
+    };
+    let weight = (kind == TestType::DropWeight)
+        .then(|| dynamic::weight(&table, direction, known.run))
+        .transpose()?;
     let measured = measured(&table, kind, known.folder)?;
     let of_material = measured.as_ref().map(|measured| &measured.material);
     let modulus = of_material.and_then(|material| material.young_modulus_pa);
@@ -184,10 +223,16 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
         body: body(&table, known)?,
         crosshead,
         direction,
-        stroke_m: table.read("stroke")?,
+        stroke_m: if kind.has_bars() {
+            f64::INFINITY
+        } else {
+            table.read("stroke")?
+        },
         rate_m_s: table.read("rate")?,
         periods: table.read("periods")?,
-        rate_check: table.read("rate_check")?,
+        rate_check: !kind.is_dynamic() && table.read("rate_check")?,
+        bars,
+        weight,
         young_modulus_pa: given_modulus.or(modulus.map(|modulus| modulus.mean)),
         poisson_ratio: table.read("poisson_ratio")?,
         strength_pa: given_strength.or(strength),
@@ -206,10 +251,19 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
     listing.text("body", &test.body);
     listing.text("crosshead", test.crosshead.join(", "));
     listing.value("direction", &test.direction);
-    listing.value("stroke", &test.stroke_m);
-    listing.value("rate", &test.rate_m_s);
-    listing.value("periods", &test.periods);
-    listing.value("rate_check", &test.rate_check);
+    if let Some(bars) = &test.bars {
+        dynamic::list_bars(bars, listing);
+    } else {
+        listing.value("stroke", &test.stroke_m);
+    }
+    if let Some(weight) = &test.weight {
+        dynamic::list_weight(weight, listing);
+    }
+    if !test.kind.is_dynamic() {
+        listing.value("rate", &test.rate_m_s);
+        listing.value("periods", &test.periods);
+        listing.value("rate_check", &test.rate_check);
+    }
     listing.value("young_modulus", &test.young_modulus_pa);
     listing.value("poisson_ratio", &test.poisson_ratio);
     listing.value("strength", &test.strength_pa);
@@ -275,6 +329,59 @@ fn refuse_dimensions(table: &Table<'_>, kind: TestType) -> Result<()> {
         }
         None => Ok(()),
     }
+}
+
+/// Refuses the keys of other types of test.
+fn refuse_others(table: &Table<'_>, kind: TestType) -> Result<()> {
+    let mut others: Vec<&'static str> = Vec::new();
+    if kind.is_dynamic() {
+        others.extend(["rate", "periods", "rate_check", "measured"]);
+    }
+    if kind.has_bars() {
+        others.push("stroke");
+    } else {
+        others.extend(["transmission_bar", "bars", "striker"]);
+    }
+    if kind != TestType::DropWeight {
+        others.push("weight");
+    }
+    match table.given(&others).next() {
+        Some((_, field)) => {
+            let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
+            Err(field.refuse(problem, "remove it"))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses settings of the run with which bars and weights cannot move.
+fn refuse_run(table: &Table<'_>, kind: TestType, run: &Run) -> Result<()> {
+    let key = match (run.integrator, run.steps_by_body) {
+        (Integrator::Static, _) => "run.integrator = \"static\"",
+        (_, true) => "run.steps_by_body",
+        _ => return Ok(()),
+    };
+    if !kind.is_dynamic() {
+        return Ok(());
+    }
+    let problem = format!("a {} test cannot be combined with {key}", kind.name());
+    Err(table.refuse(problem, "remove it"))
+}
+
+/// The end of the transmission bar: a wall at rest, or a group, other than the crosshead.
+fn transmission(
+    table: &Table<'_>,
+    crosshead: &[String],
+    pulls: bool,
+    known: &Known<'_>,
+) -> Result<String> {
+    let field = table.need("transmission_bar")?;
+    let name = moved(&field, pulls, known)?;
+    if crosshead.contains(&name) {
+        let problem = format!("{} is \"{name}\", which is the crosshead", field.path);
+        return Err(field.refuse(problem, "name what the body rests on"));
+    }
+    Ok(name)
 }
 
 /// The named body, or the only one.

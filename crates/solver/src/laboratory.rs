@@ -1,12 +1,14 @@
-//! Quasi-static laboratory tests: `[test]` of a scene. `arrange` sets the loading rate,
-//! [`record`] records force and displacement during loading, [`evaluate`] compares them with
-//! [`theory`](dem_laboratory::theory), [`files`] writes the results; `watch` connects these to
-//! a run.
+//! Laboratory tests: `[test]` of a scene. `arrange` sets the loading rate or the bars or the
+//! weight, [`record`] records force and displacement during loading, [`evaluate`] compares them
+//! with [`theory`](dem_laboratory::theory), and [`dynamic`] does so for bars and weights, [`files`]
+//! writes the results; `watch` connects these to a run.
 
 pub(crate) mod arrange;
 pub mod crack;
+pub mod dynamic;
 pub mod evaluate;
 pub mod files;
+pub mod pieces;
 pub mod record;
 mod text;
 pub(crate) mod watch;

@@ -5,6 +5,7 @@
 //! ends with the right result, is refused before it starts, or is stopped with the cause.
 
 pub(crate) mod adhesion;
+pub(crate) mod bars;
 pub(crate) mod bonded;
 pub(crate) mod breakage;
 pub(crate) mod bridges;

@@ -17,6 +17,7 @@ mod damage;
 mod discharge;
 mod disk;
 mod dynamic;
+mod dynamic_tests;
 mod histories;
 mod inputs;
 mod interrupted;

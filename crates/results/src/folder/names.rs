@@ -20,10 +20,11 @@ pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
 pub(super) const TEST_CURVE: &str = "force-displacement.csv";
+pub(super) const BAR_SIGNALS: &str = "bar-signals.csv";
 pub(super) const CHECKPOINT: &str = "checkpoint.dem";
 pub(super) const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 14] = [
+pub(super) const SINGLE_FILES: [&str; 15] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -34,6 +35,7 @@ pub(super) const SINGLE_FILES: [&str; 14] = [
     SUMMARY,
     REPORT,
     TEST_CURVE,
+    BAR_SIGNALS,
     FILM_STRIP,
     FILM,
     CHECKPOINT,

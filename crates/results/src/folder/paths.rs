@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::names::{
-    CHECKPOINT, DISCHARGE, DISTRIBUTION, ENDED, EVENTS, FILM, FILM_STRIP, FRAGMENT_TREE, FRAGMENTS,
-    INDEX, PICTURES, PLOTS, REPORT, SCENE, SERIES, SUMMARY, TEST_CURVE, fixed_walls_name, frame_in,
-    walls_in,
+    BAR_SIGNALS, CHECKPOINT, DISCHARGE, DISTRIBUTION, ENDED, EVENTS, FILM, FILM_STRIP,
+    FRAGMENT_TREE, FRAGMENTS, INDEX, PICTURES, PLOTS, REPORT, SCENE, SERIES, SUMMARY, TEST_CURVE,
+    fixed_walls_name, frame_in, walls_in,
 };
 
 /// The folder to which a run writes. No other run can write to it as long as this or a clone of it
@@ -132,5 +132,10 @@ impl ResultsFolder {
     /// The curve of a laboratory test: `force-displacement.csv`.
     pub fn test_curve(&self) -> PathBuf {
         self.path.join(TEST_CURVE)
+    }
+
+    /// The pulses of a split-Hopkinson test: `bar-signals.csv`.
+    pub fn bar_signals(&self) -> PathBuf {
+        self.path.join(BAR_SIGNALS)
     }
 }

@@ -53,6 +53,15 @@ impl ResultsFolder {
         write_file(&self.test_curve(), |out| out.write_all(csv.as_bytes()))
     }
 
+    /// Writes the pulses in the bars of a split-Hopkinson test to `bar-signals.csv`, replacing an
+    /// earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_bar_signals(&self, csv: &str) -> Result<()> {
+        write_file(&self.bar_signals(), |out| out.write_all(csv.as_bytes()))
+    }
+
     /// Writes a plot to `plots/NAME.svg`, replacing an earlier one. `svg`: the text of an SVG file.
     ///
     /// # Errors

@@ -46,6 +46,29 @@ pub enum WallMotion {
         /// Factor on the force, over time.
         factor: Factor,
     },
+    /// The end of a long elastic bar, which a `[test]` makes of its walls: it pushes the body with
+    /// Z (2 v_I - v) and moves at v, both along `direction`.
+    Bar {
+        /// Towards the body, or away from it behind the body, of length 1. Length 3.
+        direction: [f64; 3],
+        /// Impedance Z, N s/m.
+        impedance_n_s_m: f64,
+        /// Velocity v_I of the incident pulse, m/s; 0: none.
+        incident_m_s: f64,
+        /// Factor on it, over time.
+        factor: Factor,
+    },
+    /// A weight that a `[test]` makes of its wall: it moves freely along `direction`.
+    Weight {
+        /// Of length 1. Length 3.
+        direction: [f64; 3],
+        /// Mass, kg.
+        mass_kg: f64,
+        /// Velocity at the start, m/s.
+        velocity_m_s: f64,
+        /// Acceleration by gravity along `direction`, m/s2.
+        gravity_m_s2: f64,
+    },
 }
 
 pub(crate) static SERVO: Schema = Schema {
@@ -161,6 +184,11 @@ pub(super) fn list(motion: &WallMotion, listing: &mut Listing) {
             });
             factor
         }
+        WallMotion::Bar { factor, .. } => {
+            listing.text("motion", "end of a bar");
+            factor
+        }
+        WallMotion::Weight { .. } => return listing.text("motion", "weight"),
     };
     factor::list(factor, listing);
 }

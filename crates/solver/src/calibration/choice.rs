@@ -181,6 +181,7 @@ impl Chooser<'_> {
     fn stiffness(&self, test: &Test) -> Option<(&'static str, &'static str, f64)> {
         let modulus = test.young_modulus_pa;
         match (test.kind, self.by) {
+            (kind, _) if kind.is_dynamic() => None,
             (TestType::BrazilianDisc, ModulusBy::Travel) if self.stiffness_n_m.is_some() => {
                 Some((STIFFNESS, "N/m", self.stiffness_n_m?))
             }
@@ -191,6 +192,7 @@ impl Chooser<'_> {
                 Some((EQ_18, "Pa", modulus?))
             }
             (TestType::Compression | TestType::Tension, _) => Some((BY_TRAVEL, "Pa", modulus?)),
+            _ => None,
         }
     }
 

@@ -128,9 +128,13 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
 
 impl LabArguments {
     fn test_type(&self) -> Result<TestType> {
-        let found = TestType::NAMES.iter().find(|(name, _)| *name == self.test);
+        let mut known = TestType::NAMES
+            .iter()
+            .filter(|(_, test)| !test.is_dynamic());
+        let found = known.clone().find(|(name, _)| *name == self.test);
         found.map(|(_, test)| *test).ok_or_else(|| {
-            let names = TestType::NAMES.map(|(name, _)| name).join(", ");
+            let names: Vec<&str> = known.by_ref().map(|(name, _)| *name).collect();
+            let names = names.join(", ");
             let problem = format!("'{}' is not a type of test", self.test.escape_debug());
             Diagnostic::input("--type", problem, format!("use one of {names}"))
         })

@@ -4,12 +4,18 @@ use std::collections::BTreeMap;
 
 use dem_io::{Body, Diagnostic, Result};
 use dem_laboratory::TestType;
-use dem_scene::{Factor, Hold, Scene, Support, Test, WallMotion};
+use dem_scene::{Bars, Factor, Hold, Scene, Support, Test, WallMotion, Weight};
 
 use crate::check::lowest_frequency::lowest_frequency_hz;
 use crate::plan::bodies::place_bodies;
 use crate::state::State;
 use dem_laboratory::theory::ON_PINS;
+
+/// Time that a test with bars takes, in ends of its pulse.
+const AFTER_PULSE: f64 = 1.5;
+/// Longest time of a drop-weight test, in times that the weight takes for the stroke at the velocity
+/// of the impact.
+const LONGEST_FALL: f64 = 20.0;
 
 /// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets get a
 /// moving support, the run gets its end. A scene without a test stays as it is. The velocity rises
@@ -23,6 +29,12 @@ pub(crate) fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> R
     let Some(test) = scene.test.clone() else {
         return Ok(scene);
     };
+    if let Some(bars) = &test.bars {
+        return between_bars(scene, &test, bars);
+    }
+    if let Some(weight) = &test.weight {
+        return Ok(under_weight(scene, &test, weight));
+    }
     let period_s = 1.0 / lowest_frequency_hz;
     let rate = test
         .rate_m_s
@@ -38,20 +50,8 @@ pub(crate) fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> R
             };
             continue;
         }
-        let support = Support {
-            group: name.clone(),
-            holds: pulled(&test, rate),
-            factor: ramp.clone(),
-            end_s: None,
-        };
-        let key = support_of(name);
-        if scene.supports.insert(key.clone(), support).is_some() {
-            return Err(Diagnostic::input(
-                format!("{}: [supports.{key}]", scene.source),
-                format!("the test holds '{name}' by a support of this name"),
-                "give it another name",
-            ));
-        }
+        let holds = pulled(&test, |along| Hold::Velocity(rate * along));
+        grip(&mut scene, name, holds, ramp.clone())?;
     }
     // Half a period is lost while the velocity rises.
     let end_s = test.stroke_m / rate + 0.5 * period_s;
@@ -62,6 +62,66 @@ pub(crate) fn arrange(scene: &Scene, lowest_frequency_hz: f64, faster: f64) -> R
     Ok(scene)
 }
 
+/// A scene whose test has the ends of the two bars, and its end time.
+fn between_bars(mut scene: Scene, test: &Test, bars: &Bars) -> Result<Scene> {
+    let impedance_n_s_m = bars.impedance_n_s_m();
+    let incident = [(&test.crosshead[0], bars.incident_m_s(), bars.pulse())];
+    let transmitted = [(&bars.transmission, 0.0, Factor::One)];
+    for (name, incident_m_s, factor) in incident.into_iter().chain(transmitted) {
+        if let Some(wall) = scene.walls.get_mut(name) {
+            wall.motion = WallMotion::Bar {
+                direction: test.direction,
+                impedance_n_s_m,
+                incident_m_s,
+                factor,
+            };
+            continue;
+        }
+        let holds = pulled(test, |along| Hold::Bar {
+            impedance_n_s_m,
+            incident_m_s: incident_m_s * along,
+        });
+        grip(&mut scene, name, holds, factor)?;
+    }
+    let end_s = AFTER_PULSE * bars.pulse_end_s();
+    scene.run.end_time_s = scene.run.end_time_s.min(end_s);
+    Ok(scene)
+}
+
+/// A scene whose test has its weight, and its latest end time.
+fn under_weight(mut scene: Scene, test: &Test, weight: &Weight) -> Scene {
+    if let Some(wall) = scene.walls.get_mut(&test.crosshead[0]) {
+        wall.motion = WallMotion::Weight {
+            direction: test.direction,
+            mass_kg: weight.mass_kg,
+            velocity_m_s: weight.velocity_m_s,
+            gravity_m_s2: weight.gravity_m_s2,
+        };
+    }
+    let end_s = LONGEST_FALL * test.stroke_m / weight.velocity_m_s;
+    scene.run.end_time_s = scene.run.end_time_s.min(end_s);
+    scene
+}
+
+/// Adds the support by which a test moves a group.
+fn grip(scene: &mut Scene, name: &str, holds: [Option<Hold>; 6], factor: Factor) -> Result<()> {
+    let support = Support {
+        group: name.to_owned(),
+        holds,
+        factor,
+        end_s: None,
+    };
+    let key = support_of(name);
+    if scene.supports.insert(key.clone(), support).is_some() {
+        return Err(Diagnostic::input(
+            format!("{}: [supports.{key}]", scene.source),
+            format!("the test holds '{name}' by a support of this name"),
+            "give it another name",
+        ));
+    }
+    Ok(())
+}
+
 /// Name of the support with which a test moves a set.
 pub(crate) fn support_of(set: &str) -> String {
     format!("test-{set}")
@@ -70,11 +130,11 @@ pub(crate) fn support_of(set: &str) -> String {
 /// A grip: moves along the direction of the test, which is one of the axes. Across it the body may
 /// become thinner, as if the grip slid on ice: holding it across as well would make it break at the
 /// grip.
-fn pulled(test: &Test, rate_m_s: f64) -> [Option<Hold>; 6] {
+fn pulled(test: &Test, hold_along: impl Fn(f64) -> Hold) -> [Option<Hold>; 6] {
     let mut holds = [None; 6];
     for (hold, along) in holds.iter_mut().zip(test.direction) {
         if along != 0.0 {
-            *hold = Some(Hold::Velocity(rate_m_s * along));
+            *hold = Some(hold_along(along));
         }
     }
     holds
@@ -106,6 +166,6 @@ pub(crate) fn lowest_in_test_hz(
     })?;
     Ok(Some(match test.kind {
         TestType::FourPointBending | TestType::ThreePointBending => ON_PINS * free,
-        TestType::BrazilianDisc | TestType::Compression | TestType::Tension => free,
+        _ => free,
     }))
 }

@@ -4,12 +4,13 @@
 use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
+use super::pieces::Pieces;
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use dem_laboratory::theory::Beam;
 use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_modulus_pa, disc_stress_pa};
-use dem_laboratory::{Line, Specimen, area_between};
+use dem_laboratory::{Line, Specimen, TestType, area_between};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
 /// settle into the surface; above, bonds break.
@@ -35,7 +36,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    fn new(name: &str, value: f64, unit: &str, theory: Option<f64>) -> Self {
+    pub(super) fn new(name: &str, value: f64, unit: &str, theory: Option<f64>) -> Self {
         Self {
             name: name.to_owned(),
             value,
@@ -96,7 +97,7 @@ pub struct TestResult {
     pub target_strength_pa: Option<f64>,
     /// Lowest frequency of the body in the test, estimated, Hz.
     pub lowest_frequency_hz: f64,
-    /// Crosshead velocity, m/s.
+    /// Crosshead velocity, that of the striker, or that of the weight at the impact, m/s.
     pub rate_m_s: f64,
     /// Dimensions used in the evaluation.
     pub dimensions: Vec<Figure>,
@@ -119,6 +120,12 @@ pub struct TestResult {
 }
 
 impl TestResult {
+    /// Whether the test was dynamic.
+    pub fn is_dynamic(&self) -> bool {
+        let found = TestType::NAMES.iter().find(|(name, _)| *name == self.kind);
+        found.is_some_and(|(_, kind)| kind.is_dynamic())
+    }
+
     /// The value of a figure.
     pub fn figure(&self, name: &str) -> Option<f64> {
         let found = self.figures.iter().find(|figure| figure.name == name);
@@ -158,6 +165,8 @@ pub struct TestInput<'a> {
     pub broken: bool,
     /// Number of all bonds.
     pub all_bonds: usize,
+    /// Pieces of the body at the end. None: it cannot break.
+    pub pieces: Option<Pieces>,
 }
 
 /// Ratio of load to displacement in the elastic part of a test.
@@ -207,7 +216,7 @@ pub fn peak(rows: &[Row]) -> Option<&Row> {
     rows.iter().max_by(|a, b| a.load_n().total_cmp(&b.load_n()))
 }
 
-/// Evaluates a test. Figures that cannot be determined from its record are omitted.
+/// Evaluates a quasi-static test. Figures that cannot be determined from its record are omitted.
 pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     let TestInput {
         test,
@@ -248,23 +257,35 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         ..first
     });
     let mut result = TestResult {
-        kind: test.kind.name().to_owned(),
-        broken: evidence.broken,
-        broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
-        broken_at_peak: broken_at_peak(record, rows),
-        target_strength_pa: test.strength_pa,
-        lowest_frequency_hz: evidence.lowest_frequency_hz,
         rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),
         dimensions: measured.dimensions,
         figures: measured.figures,
-        calibration: Vec::new(),
         first_broken,
-        crack: crack(evidence),
         curve,
-        half_the_rate_changes: Vec::new(),
+        ..without_figures(evidence, rows)
     };
     result.calibration = calibration(&result, evidence);
     result
+}
+
+/// What all tests have in common.
+pub(super) fn without_figures(evidence: &TestInput<'_>, rows: &[Row]) -> TestResult {
+    TestResult {
+        kind: evidence.test.kind.name().to_owned(),
+        broken: evidence.broken,
+        broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
+        broken_at_peak: broken_at_peak(evidence.record, rows),
+        target_strength_pa: evidence.test.strength_pa,
+        lowest_frequency_hz: evidence.lowest_frequency_hz,
+        rate_m_s: f64::NAN,
+        dimensions: Vec::new(),
+        figures: Vec::new(),
+        calibration: Vec::new(),
+        first_broken: None,
+        crack: crack(evidence),
+        curve: Vec::new(),
+        half_the_rate_changes: Vec::new(),
+    }
 }
 
 /// The mean curve of the measured material of a test, for the simulated specimen: displacement, m,
@@ -464,7 +485,7 @@ const APART: &str = "area between the curves";
 /// Stress at that force according to the formula of the test.
 pub const STRENGTH: &str = "strength";
 
-/// Names of all results of tests; each test has some of them.
+/// Names of all results of quasi-static tests; each test has some of them.
 pub const RESULTS: [&str; 11] = [
     STIFFNESS,
     SPECIMEN_STIFFNESS,
@@ -536,7 +557,7 @@ fn broken_at_peak(record: &Record, rows: &[Row]) -> usize {
         .partition_point(|broken| broken.time_s <= time_s)
 }
 
-fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {
+pub(super) fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {
     let first = evidence.record.broken.first()?;
     let rows = &evidence.record.rows;
     // The last row before it: the next one may already include the fall.

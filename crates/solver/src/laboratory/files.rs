@@ -3,11 +3,13 @@
 use std::fmt::Write;
 
 use dem_io::Result;
+use dem_laboratory::Specimen;
 use dem_plots::{Axis, Line, Plot};
 use dem_results::ResultsFolder;
-use dem_scene::Test;
+use dem_scene::{Bars, Test};
 
 use super::crack::{CrackPicture, crack_map};
+use super::dynamic::{BarSignal, bar_signals, stress_strain};
 use super::evaluate::{
     FAILURE_FORCE, Figure, TestResult, measured_curve, peak, play_m, rows_of, slope,
 };
@@ -28,7 +30,9 @@ pub struct TestFiles<'a> {
     pub picture: CrackPicture<'a>,
 }
 
-/// Writes `plots/force-displacement.svg`, `plots/crack.svg` and `force-displacement.csv`.
+/// Writes `plots/force-displacement.svg`, `plots/crack.svg` and `force-displacement.csv`; of a test
+/// with bars also `bar-signals.csv` and plots of the pulses, forces and stress; of a weight the
+/// force over time.
 ///
 /// # Errors
 /// Those of the files.
@@ -39,7 +43,120 @@ pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Resul
     let crack = crack_map(&files.picture).svg();
     folder.write_plot("force-displacement", &curve.file())?;
     folder.write_plot("crack", &crack.file())?;
-    folder.write_test_curve(&curve_csv(files.record, play_m(&rows)))
+    let mut play_m = play_m(&rows);
+    if files.test.kind.is_dynamic() {
+        play_m = 0.0;
+        folder.write_plot(
+            "force-time",
+            &force_over_time(&rows, files.result).svg().file(),
+        )?;
+    }
+    if let Some(bars) = &files.test.bars {
+        let plots = [
+            ("bar-signals", bar_plot(files.record, bars)),
+            (
+                "stress-strain",
+                stress_plot(&rows, &files.picture.setup.specimen),
+            ),
+        ];
+        for (name, plot) in plots {
+            folder.write_plot(name, &plot.svg().file())?;
+        }
+        folder.write_bar_signals(&signals_csv(files.record, bars))?;
+    }
+    folder.write_test_curve(&curve_csv(files.record, play_m))
+}
+
+/// A line of a plot.
+fn line(name: &str, points: Vec<[f64; 2]>, dashed: bool) -> Line {
+    Line {
+        name: name.to_owned(),
+        points,
+        dashed,
+    }
+}
+
+/// The first line of `bar-signals.csv`.
+const SIGNALS: &str = "time_s,incident_strain,reflected_strain,transmitted_strain,incident_force_n,transmission_force_n,incident_bar_velocity_m_s,transmission_bar_velocity_m_s";
+
+fn signals_csv(record: &Record, bars: &Bars) -> String {
+    let mut out = format!("{SIGNALS}\n");
+    for (signal, row) in bar_signals(record, bars).iter().zip(&record.rows) {
+        let [moving_m_s, resting_m_s, _] = row.speeds_m_s;
+        let numbers = [
+            signal.time_s,
+            signal.incident,
+            signal.reflected,
+            signal.transmitted,
+            row.force_n,
+            row.reaction_n,
+            moving_m_s,
+            resting_m_s,
+        ];
+        out += &numbers.map(|number| format!("{number:e}")).join(",");
+        out.push('\n');
+    }
+    out
+}
+
+/// The three pulses over time, and the sum of two of them, which is the third in equilibrium.
+fn bar_plot(record: &Record, bars: &Bars) -> Plot {
+    let signals = bar_signals(record, bars);
+    let points = |of: &dyn Fn(&BarSignal) -> f64| -> Vec<[f64; 2]> {
+        signals.iter().map(|one| [one.time_s, of(one)]).collect()
+    };
+    Plot {
+        title: "pulses at the ends of the bars".to_owned(),
+        x: Axis::of("time (s)"),
+        y: Axis::of("strain"),
+        lines: vec![
+            line("incident", points(&|one| one.incident), false),
+            line("reflected", points(&|one| one.reflected), false),
+            line("transmitted", points(&|one| one.transmitted), false),
+            line(
+                "incident + reflected",
+                points(&|one| one.incident + one.reflected),
+                true,
+            ),
+        ],
+        ..Plot::default()
+    }
+}
+
+/// Stress over strain of a specimen between two bars.
+fn stress_plot(rows: &[Row], specimen: &Specimen) -> Plot {
+    let (length_m, strain) = match specimen {
+        Specimen::Disc { diameter_m, .. } => {
+            (*diameter_m, "approach of the bars over the diameter")
+        }
+        Specimen::Bar { length_m, .. } => (*length_m, "strain"),
+        Specimen::Beam(_) => (1.0, "strain"),
+    };
+    let curve = stress_strain(rows, specimen, length_m);
+    Plot {
+        title: "stress over strain".to_owned(),
+        x: Axis::of(strain),
+        y: Axis::of("stress (Pa)"),
+        lines: vec![line("mean of both ends", curve, false)],
+        ..Plot::default()
+    }
+}
+
+/// The force on both sides of the body over time.
+fn force_over_time(rows: &[Row], result: &TestResult) -> Plot {
+    let points = |of: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
+        rows.iter().map(|row| [row.time_s, of(row)]).collect()
+    };
+    Plot {
+        title: result.kind.replace('-', " "),
+        x: Axis::of("time (s)"),
+        y: Axis::of("force (N)"),
+        lines: vec![
+            line("on the loaded side", points(&|row| row.force_n), false),
+            line("on the other side", points(&|row| row.reaction_n), false),
+        ],
+        ..Plot::default()
+    }
 }
 
 /// The first line of `force-displacement.csv`.
@@ -73,7 +190,11 @@ fn curve_csv(record: &Record, play_m: f64) -> String {
 /// Load over displacement of the rows used in the evaluation ([`rows_of`]), with the theory's line
 /// if the scene gives a modulus, and the measured curve ([`measured_curve`]) unless it is empty.
 pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
-    let play_m = play_m(rows);
+    let play_m = if result.is_dynamic() {
+        0.0
+    } else {
+        play_m(rows)
+    };
     let points = |way: &dyn Fn(&Row) -> f64| -> Vec<[f64; 2]> {
         rows.iter().map(|row| [way(row), row.load_n()]).collect()
     };

@@ -1,13 +1,15 @@
 //! Record of a test: force, displacement, and every broken bond.
 
-use dem_scene::{Scene, Test};
+use dem_scene::{Bars, Scene, Test};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::arrange::support_of;
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
+use crate::stages::supports::velocity_at_kick;
 use crate::state::State;
+use crate::state::loads::factor_at;
 
 /// Number of intervals of a test's full stroke over which forces are averaged.
 const INTERVALS: f64 = 1000.0;
@@ -30,6 +32,24 @@ pub struct Row {
     pub reaction_n: f64,
     /// Deflection or elongation of the body between the measured points, m.
     pub deflection_m: f64,
+    /// Of a dynamic test: velocities along the direction of the moving walls and supports, and of
+    /// the others, and that of the incident pulse, m/s. Otherwise 0.
+    pub speeds_m_s: [f64; 3],
+}
+
+/// Energies of a dynamic test so far.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Works {
+    /// Work of the moving walls and supports on the body, J.
+    pub moving_j: f64,
+    /// Work of the body on the others, J.
+    pub resting_j: f64,
+    /// Energy of the incident pulse, J.
+    pub incident_j: f64,
+    /// Energy of the reflected pulse, J.
+    pub reflected_j: f64,
+    /// Energy of the transmitted pulse, J.
+    pub transmitted_j: f64,
 }
 
 impl Row {
@@ -62,6 +82,11 @@ pub struct Record {
     open: (Row, u64),
     /// Largest load of a row, N.
     largest_n: f64,
+    /// Whether bonds had broken when the load of a row was below half of that, before the end of the
+    /// pulse of a test with bars.
+    pub fell: bool,
+    /// Energies of a dynamic test.
+    pub works: Works,
 }
 
 /// Numbers of walls and supports in a state.
@@ -88,6 +113,16 @@ pub struct Loading {
     start_m: f64,
     /// Initial distance of the measured particles along the direction, moving minus resting, m.
     apart_m: f64,
+    /// What a dynamic test moves. None: the test is quasi-static.
+    dynamic: Option<Dynamic>,
+}
+
+/// What a dynamic test moves.
+#[derive(Debug, Clone, PartialEq)]
+enum Dynamic {
+    Bars(Bars),
+    /// With the stroke after which it is stopped, m.
+    Weight(f64),
 }
 
 impl Loading {
@@ -98,11 +133,25 @@ impl Loading {
         let supports = scene.supports.keys().map(|name| grips.contains(name));
         let ([walls, other_walls], [supports, other_supports]) = (split(walls), split(supports));
         let moving = Holders { walls, supports };
-        let resting = Holders {
-            walls: other_walls,
-            supports: other_supports,
+        let resting = match &test.bars {
+            Some(bars) => Holders {
+                walls: places(scene.walls.keys(), &bars.transmission),
+                supports: places(scene.supports.keys(), &support_of(&bars.transmission)),
+            },
+            None => Holders {
+                walls: other_walls,
+                supports: other_supports,
+            },
         };
-        Self::of(moving, resting, setup, state, scene.run.end_time_s)
+        let bars = test.bars.clone().map(Dynamic::Bars);
+        let weight = || test.weight.as_ref().map(|_| Dynamic::Weight(test.stroke_m));
+        // The end of a drop-weight test is far off: its stroke gives the time of the impact.
+        let impact_s = (test.weight.as_ref()).map(|weight| test.stroke_m / weight.velocity_m_s);
+        let end_s = impact_s.unwrap_or(f64::INFINITY).min(scene.run.end_time_s);
+        Self {
+            dynamic: bars.or_else(weight),
+            ..Self::of(moving, resting, setup, state, end_s)
+        }
     }
 
     /// For a test that takes `end_s`, in a state before the first step.
@@ -115,6 +164,7 @@ impl Loading {
             every: (every as u64).max(FEWEST_STEPS),
             start_m: 0.0,
             apart_m: 0.0,
+            dynamic: None,
         };
         loading.start_m = loading.place_m(setup, state);
         loading.apart_m = apart_m(setup, state);
@@ -124,6 +174,20 @@ impl Loading {
     /// Deflection or elongation of the body between the measured points, m.
     pub(crate) fn deflection_m(&self, setup: &Setup, state: &State) -> f64 {
         apart_m(setup, state) - self.apart_m
+    }
+
+    /// Velocities of the moving and the resting side along the direction at the kick, and of the
+    /// incident pulse, m/s; 0 if the test is quasi-static.
+    fn speeds_m_s(&self, setup: &Setup, state: &State) -> [f64; 3] {
+        let speeds = |of: &Holders| of.speed_m_s(setup, state);
+        match &self.dynamic {
+            None => [0.0; 3],
+            Some(Dynamic::Weight(_)) => [speeds(&self.moving), speeds(&self.resting), 0.0],
+            Some(Dynamic::Bars(bars)) => {
+                let wave_m_s = bars.incident_m_s() * factor_at(&bars.pulse(), state.time_s);
+                [speeds(&self.moving), speeds(&self.resting), wave_m_s]
+            }
+        }
     }
 
     /// Mean coordinate of the moving side along the direction, m.
@@ -157,6 +221,31 @@ impl Holders {
     }
 }
 
+impl Holders {
+    /// Their mean velocity along the direction of a test at the kick just made, m/s.
+    fn speed_m_s(&self, setup: &Setup, state: &State) -> f64 {
+        let steps_s = state.steps_s();
+        let between = |before: Vector3<f64>, after: Vector3<f64>| {
+            velocity_at_kick(along(before, setup), along(after, setup), steps_s)
+        };
+        let walls = self.walls.iter().map(|&at| {
+            let [before, after] = state.walls[at].velocities_m_s;
+            between(before.into(), after.into())
+        });
+        let supports = self.supports.iter();
+        let held = supports.flat_map(|&at| &state.supports[at].held);
+        let held = held.map(|held| {
+            let [x, y, z, ..] = held.before;
+            let after = state.particles.motions[held.particle as usize].velocity_m_s;
+            between(Vector3::new(x, y, z), after.into())
+        });
+        let (sum, count) = walls
+            .chain(held)
+            .fold((0.0, 0.0), |(sum, count), speed| (sum + speed, count + 1.0));
+        sum / f64::max(count, 1.0)
+    }
+}
+
 fn apart_m(setup: &Setup, state: &State) -> f64 {
     let mean = |of: &[u32]| {
         let places = of
@@ -173,8 +262,9 @@ fn along(vector: impl Into<Vector3<f64>>, setup: &Setup) -> f64 {
 }
 
 impl Record {
-    /// Records a step between a kick and the drift after it. Returns whether the body is broken:
-    /// bonds have broken, and the force has fallen below half of its maximum.
+    /// Records a step between a kick and the drift after it. Returns whether the test is over: of a
+    /// quasi-static one, the body is broken, as bonds have broken and the force has fallen below
+    /// half of its maximum; a weight has travelled its stroke, or has come back.
     pub fn note(&mut self, setup: &Setup, loading: &Loading, state: &State) -> bool {
         for broken in &state.scratch.events.broken {
             self.broken.push(BrokenBond {
@@ -194,6 +284,16 @@ impl Record {
             -loading.resting.force_n(setup, state) - loading.weight_n
         };
         sum.deflection_m += loading.deflection_m(setup, state);
+        if let Some(dynamic) = &loading.dynamic {
+            let speeds_m_s = loading.speeds_m_s(setup, state);
+            let resting_n = -loading.resting.force_n(setup, state);
+            for (sum, speed_m_s) in sum.speeds_m_s.iter_mut().zip(speeds_m_s) {
+                *sum += speed_m_s;
+            }
+            let [before_s, after_s] = state.steps_s();
+            let during_s = 0.5 * (before_s + after_s);
+            (self.works).add(dynamic, [force_n, resting_n], speeds_m_s, during_s);
+        }
         *steps += 1;
         if *steps < loading.every {
             return false;
@@ -205,11 +305,26 @@ impl Record {
             force_n: fraction * sum.force_n,
             reaction_n: fraction * sum.reaction_n,
             deflection_m: fraction * sum.deflection_m,
+            speeds_m_s: sum.speeds_m_s.map(|sum| fraction * sum),
         };
         self.open = Default::default();
         self.rows.push(row);
         self.largest_n = self.largest_n.max(row.load_n());
-        !self.broken.is_empty() && row.load_n() < BROKEN * self.largest_n
+        let falls = !self.broken.is_empty() && row.load_n() < BROKEN * self.largest_n;
+        match &loading.dynamic {
+            None => {
+                self.fell |= falls;
+                self.fell
+            }
+            Some(Dynamic::Bars(bars)) => {
+                self.fell |= falls && row.time_s < bars.pulse_s();
+                false
+            }
+            Some(Dynamic::Weight(stroke_m)) => {
+                self.fell |= falls;
+                row.travel_m >= *stroke_m || row.travel_m < 0.0
+            }
+        }
     }
 
     /// Means of the rows over `over_s`, around each: rows are shorter after the time step has been
@@ -234,7 +349,39 @@ fn mean(rows: &[Row]) -> Row {
         force_n: of(|row| row.force_n),
         reaction_n: of(|row| row.reaction_n),
         deflection_m: of(|row| row.deflection_m),
+        speeds_m_s: [0, 1, 2].map(|k| {
+            let speeds = rows.iter().map(|row| row.speeds_m_s[k]);
+            fraction * speeds.sum::<f64>()
+        }),
     }
+}
+
+impl Works {
+    /// Adds the works during a time, s, of the forces on the body along the direction and of the
+    /// body against it, N, with the velocities of both sides and of the incident pulse, m/s.
+    ///
+    /// The reflected wave is F/Z less the incident one, and the transmitted one F/Z.
+    fn add(
+        &mut self,
+        dynamic: &Dynamic,
+        [force_n, reaction_n]: [f64; 2],
+        [moving_m_s, resting_m_s, wave_m_s]: [f64; 3],
+        during_s: f64,
+    ) {
+        self.moving_j += during_s * force_n * moving_m_s;
+        self.resting_j += during_s * reaction_n * resting_m_s;
+        if let Dynamic::Bars(bars) = dynamic {
+            let z = bars.impedance_n_s_m();
+            self.incident_j += during_s * z * wave_m_s.powi(2);
+            self.reflected_j += during_s * z * (force_n / z - wave_m_s).powi(2);
+            self.transmitted_j += during_s * reaction_n.powi(2) / z;
+        }
+    }
+}
+
+/// Position of a name among others.
+fn places<'a>(mut names: impl Iterator<Item = &'a String>, wanted: &str) -> Vec<usize> {
+    names.position(|name| name == wanted).into_iter().collect()
 }
 
 /// The indices of those that load, and those of the others.

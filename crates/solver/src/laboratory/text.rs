@@ -4,15 +4,24 @@ use std::fmt;
 
 use dem_io::units::{show_quantity, significant};
 
+use super::dynamic::{EQUILIBRIUM, UNBOOKED};
 use super::evaluate::{Figure, STIFFNESS, TestResult};
 use super::files::percent;
 
 /// Smallest change at half the rate that is reported.
 const MUCH: f64 = 0.02;
+/// Largest difference of the forces on both ends of a specimen over their mean, at the largest load,
+/// at which it counts as in equilibrium.
+const APART: f64 = 0.1;
+/// The test without a strength.
+const DROP: &str = "drop-weight";
 
 impl TestResult {
     /// Reasons to doubt the test. Empty: none.
     pub fn doubts(&self) -> Vec<String> {
+        if self.is_dynamic() {
+            return self.dynamic_doubts();
+        }
         let mut doubts = Vec::new();
         if self.target_strength_pa.is_some() && !self.broken {
             let although = match self.broken_share() {
@@ -47,6 +56,34 @@ impl TestResult {
         doubts
     }
 
+    /// The same for a dynamic test.
+    fn dynamic_doubts(&self) -> Vec<String> {
+        let mut doubts = Vec::new();
+        let apart = self.figure(EQUILIBRIUM).unwrap_or(0.0);
+        if apart.abs() > APART {
+            doubts.push(format!(
+                "the forces on the two ends differ by {} of their mean at the largest load, so the specimen was not in equilibrium (at most {:.0} %): take a longer rise (test.striker.rise_time), a shorter specimen or a slower striker",
+                percent(apart),
+                100.0 * APART
+            ));
+        }
+        let unbooked = self.figure(UNBOOKED).unwrap_or(0.0);
+        if unbooked.abs() > MUCH {
+            doubts.push(format!(
+                "{} of the energy of the impact is unaccounted for: take a smaller step (run.safety_factor)",
+                percent(unbooked)
+            ));
+        }
+        let needs_strength = self.target_strength_pa.is_some() && self.kind != DROP;
+        if needs_strength && !self.broken {
+            doubts.push(
+                "the load did not fall to half of its largest before the pulse ended, so there is no strength: take a faster or a longer striker (test.striker)"
+                    .to_owned(),
+            );
+        }
+        doubts
+    }
+
     /// Fraction of the bonds that broke; 0 without bonds.
     fn broken_share(&self) -> f64 {
         let [broken, all] = self.broken_bonds;
@@ -63,14 +100,14 @@ impl TestResult {
             return found;
         }
         say(
-            "rate",
+            if self.is_dynamic() { "impact" } else { "rate" },
             format!(
                 "{}; lowest frequency about {} Hz",
                 show_quantity(self.rate_m_s, "m/s"),
                 significant(self.lowest_frequency_hz, 3)
             ),
         );
-        if !self.broken {
+        if !self.broken && !self.is_dynamic() {
             let [broken, all] = self.broken_bonds;
             say(
                 "broken",

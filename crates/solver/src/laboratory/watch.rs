@@ -5,8 +5,10 @@ use dem_results::ResultsFolder;
 use dem_scene::{Scene, Test};
 
 use super::crack::{CrackPicture, Sphere};
+use super::dynamic::evaluate_dynamic;
 use super::evaluate::{TestInput, TestResult, evaluate};
 use super::files::{TestFiles, write_test};
+use super::pieces::Pieces;
 use super::record::{Loading, Record};
 use crate::plan::Plan;
 use crate::plan::test_setup::Setup;
@@ -59,7 +61,16 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Records a step; returns whether the body is broken.
+    /// How a test that is over, or at the end of its time, has ended.
+    pub(crate) fn ended_by(&self, over: bool) -> &'static str {
+        match (self.test.kind.is_dynamic(), over) {
+            (true, _) => "end of the test",
+            (false, true) => "breakage",
+            (false, false) => "end of the stroke",
+        }
+    }
+
+    /// Records a step; returns whether the test is over.
     pub(crate) fn note(&self, record: &mut Record, state: &State) -> bool {
         record.note(&self.setup, &self.loading, state)
     }
@@ -72,7 +83,6 @@ impl<'a> Watch<'a> {
         &self,
         record: &Record,
         state: &State,
-        broken: bool,
         folder: Option<&ResultsFolder>,
     ) -> Result<TestResult> {
         let places: Vec<[f64; 3]> = record
@@ -86,16 +96,22 @@ impl<'a> Watch<'a> {
             .collect();
         let kind = self.scene.bodies.get(&self.test.body);
         let kind = kind.and_then(|body| body.bond_kind.as_ref());
-        let mut result = evaluate(&TestInput {
+        let evidence = TestInput {
             test: self.test,
             setup: &self.setup,
             record,
             places_m: &places,
             bonds: kind.and_then(|name| self.scene.bonds.get(name)),
             lowest_frequency_hz: self.settings.lowest_frequency_hz,
-            broken,
+            broken: record.fell,
+            pieces: Pieces::of(state, &self.test.body),
             all_bonds: state.bonds.len(),
-        });
+        };
+        let mut result = if self.test.kind.is_dynamic() {
+            evaluate_dynamic(&evidence)
+        } else {
+            evaluate(&evidence)
+        };
         if let Some(fast) = &self.settings.at_twice_the_rate {
             result.compare(fast);
         }

@@ -196,11 +196,13 @@ fn moves(scene: &Scene, part: &str, motion: &WallMotion) -> Result<Option<[Strin
             let factor = formula(factor);
             Ok(Some(displacement_m.map(|d| format!("{d:e}*{factor}"))))
         }
-        WallMotion::Servo { .. } => Err(refused(
-            scene,
-            part,
-            "a region that moves with particles around it takes no force as a target",
-            "give it a velocity or a displacement",
-        )),
+        WallMotion::Servo { .. } | WallMotion::Bar { .. } | WallMotion::Weight { .. } => {
+            Err(refused(
+                scene,
+                part,
+                "a region that moves with particles around it takes no force as a target",
+                "give it a velocity or a displacement",
+            ))
+        }
     }
 }

@@ -89,6 +89,12 @@ impl Fragments {
         chosen
     }
 
+    /// Mass of the largest fragment of a body, by its number, kg.
+    pub(crate) fn largest_kg(&self, body: u32) -> f64 {
+        let of_body = self.chosen(Some(body), true, true);
+        of_body.iter().map(|one| one.mass_kg).fold(0.0, f64::max)
+    }
+
     /// Bodies that have fragments, with their names, and all together.
     fn groups<'a>(&self, model: &'a Model) -> Vec<(Option<u32>, &'a str)> {
         let has = |number: u32| !self.chosen(Some(number), true, true).is_empty();

@@ -1,7 +1,7 @@
 //! Geometry of a test: the dimensions for its formulas, and the particles whose displacement is
 //! measured.
 
-use dem_io::units::significant;
+use dem_io::units::{show_length, show_quantity, significant};
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Scene, Test, Wall, WallShape};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -66,12 +66,17 @@ pub fn setup(
     let mean_radius_m = radii.sum::<f64>() / particles.len().max(1) as f64;
     let found = match test.kind {
         TestType::FourPointBending | TestType::ThreePointBending => beam(scene, test, extent),
-        TestType::BrazilianDisc => disc(test, direction, extent),
-        TestType::Compression | TestType::Tension => Ok(bar(test, direction, volume_m3, extent)),
+        TestType::BrazilianDisc | TestType::HopkinsonDisc => disc(test, direction, extent),
+        TestType::Compression
+        | TestType::Tension
+        | TestType::HopkinsonPressure
+        | TestType::HopkinsonTension
+        | TestType::DropWeight => Ok(bar(test, direction, volume_m3, extent)),
     };
     let place = || format!("{}: [test]", scene.source);
+    let found = found.and_then(|found| fits_the_load(test, found, mass_kg(state, particles)));
     let found = found.map_err(|(problem, remedy)| Diagnostic::input(place(), problem, remedy))?;
-    if test.kind != TestType::Tension {
+    if !test.kind.pulls() {
         all_come_nearer(scene, test, Vector3::from(found.middle_m))?;
     }
     let mut setup = Setup {
@@ -80,6 +85,49 @@ pub fn setup(
     };
     choose_measured(&mut setup, state, particles);
     Ok(setup)
+}
+
+/// Refuses a body that is too long for the pulse in its bars, or too heavy for the weight.
+fn fits_the_load(test: &Test, found: Setup, body_kg: f64) -> std::result::Result<Setup, Refusal> {
+    let length_m = match found.specimen {
+        Specimen::Bar { length_m, .. } => length_m,
+        Specimen::Disc { diameter_m, .. } => diameter_m,
+        Specimen::Beam(_) => return Ok(found),
+    };
+    if let Some(bars) = &test.bars
+        && length_m >= 2.0 * bars.striker_m
+    {
+        let problem = format!(
+            "the body '{}' is {} long, and the pulse {}, twice the striker (at most as long)",
+            test.body,
+            show_length(length_m),
+            show_length(2.0 * bars.striker_m)
+        );
+        return Err((problem, "take a longer striker, or a shorter body"));
+    }
+    // Lighter than what it touches, a weight would need smaller steps than a fixed wall.
+    if let Some(weight) = &test.weight
+        && weight.mass_kg < body_kg
+    {
+        let problem = format!(
+            "the weight of {} is lighter than the body '{}' of {} (at least as heavy)",
+            show_quantity(weight.mass_kg, "kg"),
+            test.body,
+            show_quantity(body_kg, "kg")
+        );
+        return Err((
+            problem,
+            "take a heavier weight, or let the body fall on a wall",
+        ));
+    }
+    Ok(found)
+}
+
+fn mass_kg(state: &State, particles: &[u32]) -> f64 {
+    let masses = particles
+        .iter()
+        .map(|&i| 1.0 / state.particles.motions[i as usize].inverse_mass);
+    masses.sum()
 }
 
 /// Smallest and largest coordinate of the body along an axis, m.

@@ -458,6 +458,8 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
             max_velocity_m_s: largest_velocity_m_s,
             ..
         } => *largest_velocity_m_s,
+        WallMotion::Bar { incident_m_s, .. } => 2.0 * incident_m_s,
+        WallMotion::Weight { velocity_m_s, .. } => *velocity_m_s,
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
-use dem_scene::{InitialOverlap, Scene, Wall as SceneWall, WallShape};
+use dem_scene::{InitialOverlap, Scene, Wall as SceneWall, WallMotion, WallShape};
 use nalgebra::Vector3;
 
 use super::contacts::{Kinds, ROUNDING};
@@ -67,6 +67,14 @@ pub(super) fn place_walls(
             kinds: kinds.kinds.clone(),
         };
         let mut wall = Wall::new(Arc::new(model), frame);
+        if let WallMotion::Weight {
+            direction,
+            velocity_m_s,
+            ..
+        } = &entry.motion
+        {
+            wall.velocities_m_s = [direction.map(|d| velocity_m_s * d); 2];
+        }
         let keeps = scene.run.initial_overlap == InitialOverlap::Keep;
         // Bodies that only touch press so little that the contact is dropped, unless overlaps are
         // to be kept.

@@ -29,7 +29,7 @@ impl Run<'_> {
         let folder = self.settings.folder;
         let (state, progress) = (&self.state, &self.progress);
         let test = self.watch.take();
-        let test = test.map(|watch| watch.finish(&progress.test, state, progress.broke, folder));
+        let test = test.map(|watch| watch.finish(&progress.test, state, folder));
         let clusters = state.clusters.as_ref();
         let fragments = clusters.map(|c| fragments_of(c, &state.particles, &state.clumps, None));
         self.progress.seen.look_at_edges(&self.state, &self.bodies);

@@ -182,7 +182,6 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         Watch::new(scene, test, setup.clone(), of_test.clone(), plan).finish(
             &progress.test,
             &state,
-            progress.broke,
             Some(folder),
         )?;
     }

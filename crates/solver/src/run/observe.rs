@@ -78,8 +78,8 @@ impl Run<'_> {
         }
         self.note_step()?;
         let test = self.watch.as_ref();
-        let broke = test.is_some_and(|watch| watch.note(&mut self.progress.test, &self.state));
-        let due = self.due(broke);
+        let over = test.is_some_and(|watch| watch.note(&mut self.progress.test, &self.state));
+        let due = self.due(over);
         if due.end {
             self.find_last_pieces()?;
         }
@@ -115,12 +115,11 @@ impl Run<'_> {
         self.plan_checkpoint(due);
         if let (true, Some(balance)) = (due.end || rests, balanced) {
             self.progress.rested = !due.end;
-            self.progress.broke = broke;
-            let by = match (broke, due.end, &self.watch) {
-                (true, ..) => "breakage",
-                (false, true, Some(_)) => "end of the stroke",
-                (false, true, None) => "end time",
-                (false, false, _) => "rest",
+            self.progress.test_ended = over;
+            let by = match (due.end, &self.watch) {
+                (true, Some(watch)) => watch.ended_by(over),
+                (true, None) => "end time",
+                (false, _) => "rest",
             };
             let problem = None;
             return Ok(Some(Ended {
@@ -195,11 +194,11 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Output that is due at this step. `broke`: the body of a test has broken, so that it ends.
-    fn due(&self, broke: bool) -> Due {
+    /// Output that is due at this step. `over`: the test has ended.
+    fn due(&self, over: bool) -> Due {
         let (state, schedule, progress) = (&self.state, &self.schedule, &self.progress);
         let end_s = self.scene.run.end_time_s;
-        let end = broke || state.time_s + 0.5 * state.time_step_s >= end_s;
+        let end = over || state.time_s + 0.5 * state.time_step_s >= end_s;
         let first = state.steps == 0;
         let frame = (schedule.frame_s).map_or(first, |s| due(state, s, progress.next_frame));
         let checkpoint = schedule.checkpoint_s;

@@ -58,8 +58,8 @@ pub struct Progress {
     pub(super) rested: bool,
     /// Record of a laboratory test.
     pub(super) test: Record,
-    /// Whether it has ended because the body broke.
-    pub(super) broke: bool,
+    /// Whether it has ended before its end time: the body broke, or the weight came to its end.
+    pub(super) test_ended: bool,
     /// Lines of `events.csv` and `discharge.csv` of what happened between the last output of the run
     /// and its checkpoint: only a run that is continued shows them.
     pub(super) after_end: [String; 2],
@@ -83,6 +83,7 @@ fn last_change_s(state: &State) -> f64 {
             Factor::Table(points) if points.last().is_some_and(|[_, f]| *f == 0.0) => end(factor),
             _ => f64::INFINITY,
         },
+        WallMotion::Bar { .. } | WallMotion::Weight { .. } => f64::INFINITY,
     });
     let let_go = state.supports.iter().map(|support| support.end_s);
     let let_go = let_go.chain(state.loads.iter().map(|load| load.end_s));
@@ -157,9 +158,14 @@ impl Progress {
                 "set a smaller run.rest_energy_ratio",
             ));
         }
-        self.broke.then(|| {
+        self.test_ended.then(|| {
+            let what = if self.test.fell {
+                "the body of this test has broken"
+            } else {
+                "this test has ended"
+            };
             (
-                format!("the body of this test has broken at {before_s:.6e} s"),
+                format!("{what} at {before_s:.6e} s"),
                 "run its fragments in another scene",
             )
         })

@@ -194,7 +194,7 @@ fn leave_out_islands(names: &mut [u32], may: &mut [bool], sleep: Option<&Sleep>)
 /// Whether a wall moves in the previous step or in the one of this length, s, that begins at this
 /// time.
 fn moves(wall: &Wall, [time_s, time_step_s]: [f64; 2]) -> bool {
-    has_moved(wall) || will_move(wall, time_s, time_step_s)
+    has_moved(wall) || will_move(wall, time_s, [time_step_s; 2])
 }
 
 /// Whether any body sleeps and a wall at rest begins to move: then no body may sleep on it.
@@ -203,7 +203,7 @@ pub(crate) fn begins_to_move(
     walls: &[Wall],
     [time_s, time_step_s]: [f64; 2],
 ) -> bool {
-    let begins = |wall: &Wall| !has_moved(wall) && will_move(wall, time_s, time_step_s);
+    let begins = |wall: &Wall| !has_moved(wall) && will_move(wall, time_s, [time_step_s; 2]);
     sleep.is_some_and(|sleep| sleep.bodies > 0) && walls.iter().any(begins)
 }
 

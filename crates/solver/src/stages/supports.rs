@@ -87,13 +87,27 @@ pub fn hold(
             held,
             ..
         } = support;
-        let prescribed = holds.map(|hold| {
-            hold.map(|hold| match hold {
+        let own = &*held;
+        let prescribed = [0, 1, 2, 3, 4, 5].map(|k| {
+            holds[k].map(|hold| match hold {
                 Hold::Fixed => 0.0,
                 Hold::Velocity(v) => v * factor_at(factor, time_s + 0.5 * time_step_s),
                 Hold::Displacement(d) => {
                     let gain = factor_at(factor, time_s + time_step_s) - factor_at(factor, time_s);
                     d * gain / time_step_s
+                }
+                Hold::Bar {
+                    impedance_n_s_m,
+                    incident_m_s,
+                } => {
+                    let wave_m_s = incident_m_s * factor_at(factor, time_s);
+                    let moving = Moving {
+                        own,
+                        particles,
+                        broken,
+                        along: k,
+                    };
+                    moving.bar_velocity_m_s(impedance_n_s_m, wave_m_s, [before_s, kick_s])
                 }
             })
         });
@@ -118,6 +132,43 @@ pub fn hold(
                 }
             }
         }
+    }
+}
+
+/// The particles of a support that move together along one axis.
+struct Moving<'a> {
+    own: &'a [HeldParticle],
+    particles: &'a Particles,
+    broken: &'a [Break],
+    along: usize,
+}
+
+impl Moving<'_> {
+    /// Their velocity after a kick, if the end of a bar of this impedance is glued to them and its
+    /// incident wave moves at `wave_m_s`: it exerts Z (2 v_I - v) with the mean v of the velocities
+    /// before and after the kick, which is stable for every Z.
+    fn bar_velocity_m_s(
+        &self,
+        impedance_n_s_m: f64,
+        wave_m_s: f64,
+        [before_s, kick_s]: [f64; 2],
+    ) -> f64 {
+        let k = self.along;
+        let (mut mass_kg, mut before, mut free) = (0.0, 0.0, 0.0);
+        for held in self.own {
+            let motion = &self.particles.motions[held.particle as usize];
+            let own_kg = 1.0 / motion.inverse_mass;
+            mass_kg += own_kg;
+            before += own_kg * held.before[k];
+            let parted = of_broken(self.broken, held.particle)[k];
+            free += own_kg * motion.velocity_m_s[k] - 0.5 * before_s * parted;
+        }
+        if mass_kg == 0.0 {
+            return 0.0;
+        }
+        let impulse = kick_s * impedance_n_s_m;
+        let driven = free + impulse * (2.0 * wave_m_s - 0.5 * before / mass_kg);
+        driven / (mass_kg + 0.5 * impulse)
     }
 }
 

@@ -1,11 +1,13 @@
 //! Walls: their motion, and their contacts with particles.
 
+mod driven;
 mod meeting;
 
 use dem_scene::WallMotion;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use self::driven::{bar_velocity_m_s, weight_velocity_m_s};
 use self::meeting::{Meeting, Met, Place};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
@@ -52,7 +54,8 @@ pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
 
 /// Determines the motion of the walls in the coming drift.
 pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
-    plan_motions(&mut state.walls, state.time_s, state.time_step_s);
+    let steps_s = state.steps_s();
+    plan_motions(&mut state.walls, state.time_s, steps_s);
     0
 }
 
@@ -398,17 +401,20 @@ pub(crate) fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
     gaps.fold(f64::INFINITY, f64::min)
 }
 
-/// Determines the motion of the walls in the step of `dt`, s, that begins at `time_s`.
-pub(crate) fn plan_motions(walls: &mut [Wall], time_s: f64, dt: f64) {
+/// Determines the motion of the walls in the second of two steps, `steps_s`, which begins at
+/// `time_s`.
+pub(crate) fn plan_motions(walls: &mut [Wall], time_s: f64, steps_s: [f64; 2]) {
     for wall in walls {
-        let [velocity, spin] = planned(wall, time_s, dt);
+        let [velocity, spin] = planned(wall, time_s, steps_s);
         wall.velocities_m_s[1] = velocity;
         wall.spins_rad_s[1] = spin;
     }
 }
 
-/// Velocity, m/s, and spin, rad/s, of a wall in the step of `dt`, s, that begins at `time_s`.
-fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
+/// Velocity, m/s, and spin, rad/s, of a wall in the second of two steps, `steps_s`, which begins at
+/// `time_s`.
+fn planned(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> [[f64; 3]; 2] {
+    let dt = steps_s[1];
     match &wall.model.motion {
         WallMotion::Fixed => [[0.0; 3]; 2],
         WallMotion::Velocity {
@@ -454,6 +460,26 @@ fn planned(wall: &Wall, time_s: f64, dt: f64) -> [[f64; 3]; 2] {
             let speed = wanted.clamp(-largest_velocity_m_s, *largest_velocity_m_s);
             [direction.map(|d| speed * d), [0.0; 3]]
         }
+        WallMotion::Bar {
+            direction,
+            impedance_n_s_m,
+            incident_m_s,
+            factor,
+        } => {
+            let wave_m_s = factor_at(factor, time_s + 0.5 * dt) * incident_m_s;
+            let speed = bar_velocity_m_s(wall, direction, *impedance_n_s_m, wave_m_s, dt);
+            [direction.map(|d| speed * d), [0.0; 3]]
+        }
+        WallMotion::Weight {
+            direction,
+            mass_kg,
+            gravity_m_s2,
+            ..
+        } => {
+            let kick_s = 0.5 * (steps_s[0] + dt);
+            let speed = weight_velocity_m_s(wall, direction, *mass_kg, *gravity_m_s2, kick_s);
+            [direction.map(|d| speed * d), [0.0; 3]]
+        }
     }
 }
 
@@ -464,12 +490,15 @@ pub(crate) fn has_moved(wall: &Wall) -> bool {
         wall.spins_rad_s[0],
         wall.model.surface_velocity_m_s,
     ];
-    matches!(wall.model.motion, WallMotion::Servo { .. }) || moving != [[0.0; 3]; 3]
+    matches!(
+        wall.model.motion,
+        WallMotion::Servo { .. } | WallMotion::Bar { .. } | WallMotion::Weight { .. }
+    ) || moving != [[0.0; 3]; 3]
 }
 
-/// Whether a wall moves in the step of `dt`, s, that begins at `time_s`.
-pub(crate) fn will_move(wall: &Wall, time_s: f64, dt: f64) -> bool {
-    planned(wall, time_s, dt) != [[0.0; 3]; 2]
+/// Whether a wall moves in the second of two steps, `steps_s`, which begins at `time_s`.
+pub(crate) fn will_move(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> bool {
+    planned(wall, time_s, steps_s) != [[0.0; 3]; 2]
 }
 
 /// Moves the walls. Returns the largest speed of a wall's point near particles, m/s.

@@ -6,8 +6,8 @@ use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
 use super::{
-    adhesion, breakage, bridges, daughters, families, impact, joints, limit_map, long, own_steps,
-    softening, swap, yielding, zones,
+    adhesion, bars, breakage, bridges, daughters, families, impact, joints, limit_map, long,
+    own_steps, softening, swap, yielding, zones,
 };
 
 /// A case of the suite.
@@ -32,7 +32,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 24] = [
+pub const CASES: [Case; 25] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -117,6 +117,11 @@ pub const CASES: [Case; 24] = [
         name: "bridges",
         extreme: "spheres of 1e-4 m to 1e-2 m that liquid holds on a wall or lets go",
         members: |_| Ok(bridges::drops()),
+    },
+    Case {
+        name: "bars",
+        extreme: "a row between bars of 1e-6 to 1e6 times its impedance",
+        members: |_| Ok(bars::bars()),
     },
     Case {
         name: "mesh-wall",

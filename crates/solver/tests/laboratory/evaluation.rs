@@ -34,6 +34,8 @@ pub(crate) fn test(kind: TestType) -> Test {
         rate_m_s: Some(0.01),
         periods: 20.0,
         rate_check: false,
+        bars: None,
+        weight: None,
         young_modulus_pa: Some(MODULUS),
         poisson_ratio: 0.3,
         strength_pa: Some(STRENGTH),
@@ -78,6 +80,7 @@ pub(crate) fn record(stiffness: f64, largest: f64) -> Record {
             force_n,
             reaction_n: force_n,
             deflection_m,
+            ..Row::default()
         }
     });
     let broken = [(0.8, 7), (1.0, 3)];
@@ -118,6 +121,7 @@ fn evaluated_at(
         lowest_frequency_hz,
         broken,
         all_bonds: ALL_BONDS,
+        pieces: None,
     })
 }
 
@@ -314,6 +318,7 @@ fn bonds_without_strength_are_not_calibrated() {
         lowest_frequency_hz: 40.0,
         broken: true,
         all_bonds: ALL_BONDS,
+        pieces: None,
     });
     assert!(!result.calibration.is_empty());
     assert!(result.calibration.iter().all(|f| f.value.is_finite()));

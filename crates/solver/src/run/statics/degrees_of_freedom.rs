@@ -123,7 +123,8 @@ impl DegreesOfFreedom {
 /// Displacement of a held degree of freedom until `end_s`, m or rad.
 fn way(hold: Hold, factor: &Factor, end_s: f64) -> f64 {
     match hold {
-        Hold::Fixed => 0.0,
+        // No static scene has the end of a bar.
+        Hold::Fixed | Hold::Bar { .. } => 0.0,
         Hold::Displacement(d) => d * (factor_at(factor, end_s) - factor_at(factor, 0.0)),
         Hold::Velocity(v) => v * integral_s(factor, end_s),
     }

@@ -386,6 +386,7 @@ impl<'a> Press<'a> {
             force_n,
             reaction_n: if has_walls { -held_n } else { force_n },
             deflection_m: self.loading.deflection_m(self.setup, self.state),
+            ..Row::default()
         }
     }
 }

@@ -1,0 +1,314 @@
+//! Results of dynamic tests: of a specimen between two long bars, and of a body under a falling
+//! weight.
+//!
+//! Bars: with the impedance Z = rho c A of a bar, the force F_1 of the incident bar on the specimen
+//! and that of the specimen on the transmission bar, F_2, the strains in compression (in a tension
+//! test, in tension) at the ends of the bars are eps_I = v_I/c, eps_R = F_1/(Z c) - eps_I and
+//! eps_T = F_2/(Z c). Source: Kolsky 1949; the specimen is in equilibrium if eps_I + eps_R = eps_T.
+
+use dem_laboratory::Specimen;
+use dem_scene::{Bars, Weight};
+
+use super::evaluate::{
+    FAILURE_FORCE, Figure, LARGEST_FORCE, STRENGTH, TestInput, TestResult, first_broken, rows_of,
+    without_figures,
+};
+use super::record::{Record, Row};
+use crate::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
+
+/// Fraction of the largest load from which on the body counts as loaded.
+const LOADED: f64 = 0.1;
+/// Fractions of the largest load between which the rates are means.
+const RISE: [f64; 2] = [LOADED, 0.9];
+/// Fraction of the largest load at which a contact of the weight begins and ends.
+const TOUCHES: f64 = 0.01;
+/// Energy in J/kg of one kWh/t.
+const J_KG_PER_KWH_T: f64 = 3600.0;
+
+/// Largest stress, Pa, of a body that did not break.
+pub const LARGEST_STRESS: &str = "largest stress";
+/// Rate of strain while the load rises, 1/s.
+pub const STRAIN_RATE: &str = "strain rate";
+/// Strength over the static one.
+pub const INCREASE_FACTOR: &str = "dynamic increase factor";
+/// Difference of the forces on both ends over their mean, at the largest load.
+pub const EQUILIBRIUM: &str = "force equilibrium";
+/// Share of the incident energy that the pulses and the work of the bars disagree by.
+pub const UNBOOKED: &str = "energy unaccounted for";
+/// Share of the mass finer than a tenth of the body's size.
+pub const T10: &str = "t10";
+
+/// Evaluates a dynamic test: its figures are those of its bars or its weight, and its travel has no
+/// play.
+pub fn evaluate_dynamic(evidence: &TestInput<'_>) -> TestResult {
+    let rows = &rows_of(evidence.record, evidence.lowest_frequency_hz);
+    let found = figures(evidence, rows);
+    let points = rows.iter().map(|row| [row.travel_m, row.load_n()]);
+    TestResult {
+        rate_m_s: found.rate_m_s,
+        dimensions: found.dimensions,
+        figures: found.figures,
+        first_broken: first_broken(evidence),
+        curve: points.collect(),
+        ..without_figures(evidence, rows)
+    }
+}
+
+/// Dimensions and figures of a dynamic test.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Found {
+    /// Velocity of the striker or of the weight, m/s.
+    rate_m_s: f64,
+    dimensions: Vec<Figure>,
+    figures: Vec<Figure>,
+}
+
+impl Found {
+    fn dimension(&mut self, name: &str, value: f64, unit: &str) {
+        self.dimensions.push(Figure::new(name, value, unit, None));
+    }
+
+    fn add(&mut self, name: &str, value: Option<f64>, unit: &str) {
+        self.compare(name, value, unit, None);
+    }
+
+    fn compare(&mut self, name: &str, value: Option<f64>, unit: &str, theory: Option<f64>) {
+        let value = value.filter(|value| value.is_finite());
+        self.figures
+            .extend(value.map(|value| Figure::new(name, value, unit, theory)));
+    }
+}
+
+/// Dimensions and figures of a test with bars or a weight; `rows` are means over a part of the
+/// body's lowest period.
+fn figures(evidence: &TestInput<'_>, rows: &[Row]) -> Found {
+    let mut found = Found::default();
+    match (&evidence.test.bars, &evidence.test.weight) {
+        (Some(bars), _) => of_bars(&mut found, evidence, bars, rows),
+        (_, Some(weight)) => of_weight(&mut found, evidence, weight),
+        _ => {}
+    }
+    found
+}
+
+fn of_bars(found: &mut Found, evidence: &TestInput<'_>, bars: &Bars, rows: &[Row]) {
+    found.rate_m_s = bars.striker_m_s;
+    let specimen = evidence.setup.specimen;
+    let length_m = match specimen {
+        Specimen::Disc {
+            diameter_m,
+            thickness_m,
+        } => {
+            found.dimension("diameter", diameter_m, "m");
+            found.dimension("thickness", thickness_m, "m");
+            diameter_m
+        }
+        Specimen::Bar { length_m, area_m2 } => {
+            found.dimension("length", length_m, "m");
+            found.dimension("area", area_m2, "m2");
+            length_m
+        }
+        Specimen::Beam(_) => return,
+    };
+    found.dimension("bar wave speed", bars.wave_speed_m_s(), "m/s");
+    found.dimension("bar impedance", bars.impedance_n_s_m(), "N s/m");
+    found.dimension("pulse duration", bars.pulse_s(), "s");
+    found.dimension(
+        "incident strain",
+        bars.incident_m_s() / bars.wave_speed_m_s(),
+        "",
+    );
+    let curve = stress_strain(rows, &specimen, length_m);
+    // The load while the pulse lasts: later waves are not part of the test.
+    let during = rows.partition_point(|row| row.time_s <= bars.pulse_end_s());
+    let peak = (0..during).max_by(|a, b| rows[*a].load_n().total_cmp(&rows[*b].load_n()));
+    if let Some(peak) = peak {
+        at_peak(
+            found,
+            evidence,
+            Peak {
+                rows,
+                curve: &curve,
+                at: peak,
+            },
+        );
+    }
+    let signals = bar_signals(evidence.record, bars);
+    let largest = |of: fn(&BarSignal) -> f64| {
+        let strains = signals.iter().map(of);
+        strains.max_by(|a, b| a.abs().total_cmp(&b.abs()))
+    };
+    found.add("reflected strain", largest(|signal| signal.reflected), "");
+    found.add(
+        "transmitted strain",
+        largest(|signal| signal.transmitted),
+        "",
+    );
+    let works = &evidence.record.works;
+    let carried_j = works.incident_j - works.reflected_j - works.transmitted_j;
+    let done_j = works.moving_j - works.resting_j;
+    found.add("incident energy", Some(works.incident_j), "J");
+    found.add("reflected energy", Some(works.reflected_j), "J");
+    found.add("transmitted energy", Some(works.transmitted_j), "J");
+    found.add("absorbed energy", Some(done_j), "J");
+    found.add(UNBOOKED, Some((carried_j - done_j) / works.incident_j), "");
+}
+
+/// The largest load of a test with bars.
+#[derive(Clone, Copy)]
+struct Peak<'a> {
+    rows: &'a [Row],
+    /// Strain and stress, Pa, of each row.
+    curve: &'a [[f64; 2]],
+    /// Number of the row.
+    at: usize,
+}
+
+impl Peak<'_> {
+    /// Rates, 1/s, of strain and of stress, Pa/s, while the load rises.
+    fn rates(&self) -> Option<[f64; 2]> {
+        let largest_n = self.rows[self.at].load_n();
+        let reaches = |share: f64| {
+            let mut before = self.rows[..=self.at].iter();
+            before.position(|row| row.load_n() >= share * largest_n)
+        };
+        let [from, to] = [reaches(RISE[0])?, reaches(RISE[1])?];
+        let during_s = self.rows[to].time_s - self.rows[from].time_s;
+        let gain = |k: usize| (self.curve[to][k] - self.curve[from][k]) / during_s;
+        (during_s > 0.0).then(|| [gain(0), gain(1)])
+    }
+}
+
+/// Figures at the largest load.
+fn at_peak(found: &mut Found, evidence: &TestInput<'_>, peak: Peak<'_>) {
+    let test = evidence.test;
+    let row = &peak.rows[peak.at];
+    let [strain, stress_pa] = peak.curve[peak.at];
+    let (force, stress) = if evidence.broken {
+        (FAILURE_FORCE, STRENGTH)
+    } else {
+        (LARGEST_FORCE, LARGEST_STRESS)
+    };
+    let rates = peak.rates();
+    let strain_rate = match (&evidence.setup.specimen, test.young_modulus_pa) {
+        // In the middle of a disc, the rate of the tensile stress over the modulus.
+        (Specimen::Disc { .. }, modulus_pa) => rates
+            .zip(modulus_pa)
+            .map(|([_, stress], modulus)| stress / modulus),
+        _ => rates.map(|[strain, _]| strain),
+    };
+    found.add(force, Some(row.load_n()), "N");
+    found.add(stress, Some(stress_pa), "Pa");
+    found.add("loading rate", rates.map(|[_, stress]| stress), "Pa/s");
+    found.add(STRAIN_RATE, strain_rate, "1/s");
+    if matches!(evidence.setup.specimen, Specimen::Bar { .. }) {
+        found.add("strain at the largest load", Some(strain), "");
+    }
+    let difference_n = row.force_n - row.reaction_n;
+    found.add(EQUILIBRIUM, Some(difference_n / row.load_n()), "");
+    if let (true, Some(strength_pa)) = (evidence.broken, test.strength_pa) {
+        // The printed fit ends at 50/s.
+        let known = strain_rate.filter(|rate| *rate > 0.0 && *rate <= HIGHEST_1_S);
+        let theory = known.map(|rate| dynamic_increase_factor(rate, 0.0));
+        let factor = stress_pa / strength_pa;
+        found.compare(INCREASE_FACTOR, Some(factor), "", theory);
+    }
+}
+
+/// Strain, shortening or elongation from the motion of the bars' ends over the length of the
+/// specimen (of a disc, over its diameter), and stress, Pa, for each row.
+pub(super) fn stress_strain(rows: &[Row], specimen: &Specimen, length_m: f64) -> Vec<[f64; 2]> {
+    let mut curve: Vec<[f64; 2]> = Vec::with_capacity(rows.len());
+    let (mut strain, mut before_s, mut before_1_s) = (0.0, 0.0, 0.0);
+    for row in rows {
+        let [moving_m_s, resting_m_s, _] = row.speeds_m_s;
+        let rate_1_s = (moving_m_s - resting_m_s) / length_m;
+        strain += 0.5 * (before_1_s + rate_1_s) * (row.time_s - before_s);
+        (before_s, before_1_s) = (row.time_s, rate_1_s);
+        curve.push([strain, specimen.stress_pa(row.load_n())]);
+    }
+    curve
+}
+
+/// Strains at the ends of the bars.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BarSignal {
+    /// s.
+    pub time_s: f64,
+    /// Of the incident pulse; positive in compression, or in tension if the test pulls.
+    pub incident: f64,
+    /// Of the reflected pulse.
+    pub reflected: f64,
+    /// Of the transmitted pulse.
+    pub transmitted: f64,
+}
+
+/// The pulses that strain gauges would record, moved to the ends of the bars.
+pub fn bar_signals(record: &Record, bars: &Bars) -> Vec<BarSignal> {
+    let c_m_s = bars.wave_speed_m_s();
+    let strain = |force_n: f64| force_n / (bars.impedance_n_s_m() * c_m_s);
+    let signal = |row: &Row| {
+        let incident = row.speeds_m_s[2] / c_m_s;
+        BarSignal {
+            time_s: row.time_s,
+            incident,
+            reflected: strain(row.force_n) - incident,
+            transmitted: strain(row.reaction_n),
+        }
+    };
+    record.rows.iter().map(signal).collect()
+}
+
+fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {
+    found.rate_m_s = weight.velocity_m_s;
+    found.dimension("weight", weight.mass_kg, "kg");
+    found.dimension("impact velocity", weight.velocity_m_s, "m/s");
+    if let Some(pieces) = &evidence.pieces {
+        found.dimension("mass of the body", pieces.mass_kg, "kg");
+    }
+    let rows = &evidence.record.rows;
+    let largest_n = rows.iter().map(|row| row.force_n).fold(0.0, f64::max);
+    let touches = |row: &&Row| row.force_n >= TOUCHES * largest_n;
+    let (first, last) = (rows.iter().find(touches), rows.iter().rev().find(touches));
+    let duration = first
+        .zip(last)
+        .map(|(first, last)| last.time_s - first.time_s);
+    let impact_j = 0.5 * weight.mass_kg * weight.velocity_m_s.powi(2);
+    let end = rows.last();
+    let left_j = end.map(|row| {
+        let speed_m_s = row.speeds_m_s[0];
+        let fall_j = weight.mass_kg * weight.gravity_m_s2 * row.travel_m;
+        0.5 * weight.mass_kg * speed_m_s * speed_m_s - fall_j
+    });
+    found.add(LARGEST_FORCE, Some(largest_n), "N");
+    found.add("contact duration", duration, "s");
+    found.add("impact energy", Some(impact_j), "J");
+    let absorbed_j = evidence.record.works.moving_j;
+    found.add("absorbed energy", Some(absorbed_j), "J");
+    let unbooked = left_j.map(|left_j| (impact_j - left_j - absorbed_j) / impact_j);
+    found.add(UNBOOKED, unbooked, "");
+    let speed = end.map(|row| row.speeds_m_s[0]);
+    found.add(
+        "rebound velocity",
+        speed.map(|speed| -speed).filter(|v| *v > 0.0),
+        "m/s",
+    );
+    if let Some(pieces) = &evidence.pieces {
+        let specific = impact_j / pieces.mass_kg;
+        found.add("specific energy", Some(specific), "J/kg");
+        found.add(
+            "specific energy per tonne",
+            Some(specific / J_KG_PER_KWH_T),
+            "kWh/t",
+        );
+        let absorbed = absorbed_j / pieces.mass_kg;
+        found.add("specific absorbed energy", Some(absorbed), "J/kg");
+        found.add(
+            "largest fragment",
+            Some(pieces.largest_kg / pieces.mass_kg),
+            "",
+        );
+        found.add("d50", Some(pieces.sizes.d50_m), "m");
+        found.add(T10, pieces.sizes.t10, "");
+    }
+}

@@ -1,0 +1,243 @@
+//! Dynamic laboratory tests from end to end: bars and a weight.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::program::Bench;
+
+/// A row of 21 spheres of radius 1 mm along z between the ends of two bars: bonds of 20 GPa.
+fn row(test: &str, bonds: &str) -> String {
+    let particles: Vec<String> = (0..21)
+        .map(|i| format!("[0, 0, {}, 0.001]", 0.002 * f64::from(i)))
+        .collect();
+    let pairs: Vec<String> = (0..20).map(|i| format!("[{i}, {}]", i + 1)).collect();
+    format!(
+        r#"version = 1
+[run]
+gravity = [0, 0, 0]
+[materials.rock]
+density = 2600
+young_modulus = "20 GPa"
+[materials.steel]
+young_modulus = "210 GPa"
+[contacts]
+rock-rock = {{ law = "linear", normal_stiffness = "20 MN/m", restitution = 1, friction = 0 }}
+rock-steel = {{ law = "linear", normal_stiffness = "20 MN/m", restitution = 1, friction = 0 }}
+[bonds.rock]
+young_modulus = "20 GPa"
+poisson_ratio = 0.2
+{bonds}
+[bodies.row]
+particles = [{}]
+bond_list = [{}]
+material = "rock"
+bonds = "rock"
+[groups]
+low = {{ particles = [0] }}
+high = {{ particles = [20] }}
+[walls.above]
+plane = {{ point = [0, 0, 0.041], normal = [0, 0, -1] }}
+material = "steel"
+[walls.below]
+plane = {{ point = [0, 0, -0.001], normal = [0, 0, 1] }}
+material = "steel"
+[test]
+body = "row"
+{test}
+[output]
+"#,
+        particles.join(", "),
+        pairs.join(", ")
+    )
+}
+
+const BARS: &str = r#"
+bars = { density = 7850, young_modulus = "210 GPa", diameter = "2 mm" }
+striker = { length = "200 mm", velocity = "2 m/s", rise_time = "30 us" }
+length = "40 mm"
+area = "3.1416 mm2"
+"#;
+
+fn pressure() -> String {
+    let names = "type = \"hopkinson-pressure\"\ncrosshead = [\"above\"]\ntransmission_bar = \"below\"\ndirection = [0, 0, -1]";
+    row(&format!("{names}{BARS}"), "")
+}
+
+fn tension(strength: &str) -> String {
+    let names = "type = \"hopkinson-tension\"\ncrosshead = [\"high\"]\ntransmission_bar = \"low\"\ndirection = [0, 0, 1]\nstrength = \"20 MPa\"";
+    // The walls are out of the way of the grips.
+    row(&format!("{names}{BARS}"), strength)
+        .replace("point = [0, 0, 0.041]", "point = [0, 0, 1]")
+        .replace("point = [0, 0, -0.001]", "point = [0, 0, -1]")
+}
+
+fn summary(bench: &Bench, name: &str, scene: &str, options: &[&str]) -> Value {
+    let scene = bench.write(name, scene);
+    let options = [&["--json", "--output", "out", "--force"], options].concat();
+    serde_json::from_str(&bench.good(&scene, &options)).unwrap()
+}
+
+fn figure(summary: &Value, name: &str) -> f64 {
+    let figures = summary["test"]["results"].as_array().unwrap();
+    let found = figures.iter().find(|figure| figure["name"] == name);
+    let found = found.unwrap_or_else(|| panic!("{name} in {figures:?}"));
+    found["value"].as_f64().unwrap()
+}
+
+/// In equilibrium the specimen is a spring between two bars: it takes the same force on both ends,
+/// and the pulse that is not reflected goes through it. Energy is accounted for by the pulses, by
+/// the work of the bars and by the balance of the run.
+#[test]
+fn a_row_between_two_bars() {
+    for (name, scene, work) in [
+        ("pressure.toml", pressure(), "wall_work_j"),
+        ("tension.toml", tension(""), "support_work_j"),
+    ] {
+        let bench = Bench::new();
+        let found = summary(&bench, name, &scene, &[]);
+        let of = |name: &str| figure(&found, name);
+        assert!(of("force equilibrium").abs() < 0.1, "{name}: {found}");
+        assert!(of("energy unaccounted for").abs() < 2e-3, "{name}: {found}");
+        assert!(
+            found["energy_error"].as_f64().unwrap() < 1e-3,
+            "{name}: {found}"
+        );
+        assert_eq!(found["ended_by"], "end of the test");
+        let booked = found["balance"][work].as_f64().unwrap();
+        let absorbed = of("absorbed energy");
+        let incident = of("incident energy");
+        assert!(
+            (booked - absorbed).abs() < 1e-6 * incident,
+            "{name}: {booked} {absorbed}"
+        );
+        // The pulse: Z v_I^2 over the flat part, and a third of it over rise and fall.
+        let (c, v): (f64, f64) = ((210e9_f64 / 7850.0).sqrt(), 1.0);
+        let z = 7850.0 * c * std::f64::consts::PI * 1e-6;
+        let pulse_s = 0.4 / c;
+        let wanted = z * v * v * (pulse_s - 30e-6 + 2.0 / 3.0 * 30e-6);
+        assert!(
+            (incident / wanted - 1.0).abs() < 2e-3,
+            "{name}: {incident} {wanted}"
+        );
+        // A spring k between two bars: F' = 2 k (v_I - F/Z). The row has little mass.
+        let bond = 20e9 * std::f64::consts::PI * 1e-6 / 2e-3;
+        let contacts = if name == "pressure.toml" {
+            2.0 / 20e6
+        } else {
+            0.0
+        };
+        let k = 1.0 / (20.0 / bond + contacts);
+        let (mut force, mut largest) = (0.0_f64, 0.0_f64);
+        let step_s = 1e-8;
+        for i in 0..((pulse_s + 30e-6) / step_s) as usize {
+            let time_s = step_s * i as f64;
+            let wave = v
+                * (time_s / 30e-6)
+                    .min(1.0)
+                    .min((pulse_s + 30e-6 - time_s) / 30e-6);
+            force += step_s * 2.0 * k * (wave - force / z);
+            largest = largest.max(force);
+        }
+        let found = of("largest force");
+        assert!(
+            (found / largest - 1.0).abs() < 0.05,
+            "{name}: {found} {largest}"
+        );
+        for file in [
+            "bar-signals.csv",
+            "force-displacement.csv",
+            "plots/bar-signals.svg",
+            "plots/stress-strain.svg",
+            "plots/force-time.svg",
+        ] {
+            assert!(bench.path("out").join(file).is_file(), "{file}");
+        }
+        let table = fs::read_to_string(bench.path("out/bar-signals.csv")).unwrap();
+        let rows: Vec<Vec<f64>> = table
+            .lines()
+            .skip(1)
+            .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+            .collect();
+        assert!(rows.len() > 500, "{name}: {}", rows.len());
+        for row in &rows {
+            let force = z * c * (row[1] + row[2]);
+            assert!((force - row[4]).abs() <= 1e-9 * z, "{name}: {row:?}");
+        }
+        let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
+        assert!(page.contains("force equilibrium"));
+    }
+}
+
+/// A row that breaks has a strength and a dynamic increase factor; a run that was cut in two has the
+/// same results.
+#[test]
+fn a_row_that_breaks_is_the_same_after_a_break_of_the_run() {
+    let bench = Bench::new();
+    let scene = tension("failure = { tensile_strength = \"20 MPa\" }");
+    let scene = scene.replace("gravity = [0, 0, 0]", "time_step = \"20 ns\"");
+    let whole = summary(&bench, "whole.toml", &scene, &[]);
+    assert_eq!(whole["test"]["broken"], true, "{whole}");
+    let factor = figure(&whole, "dynamic increase factor");
+    let strength = figure(&whole, "strength");
+    assert!(
+        (factor - strength / 20e6).abs() < 1e-9,
+        "{factor} {strength}"
+    );
+    assert!(strength > 10e6 && strength < 30e6, "{strength}");
+    let half = bench.write("whole.toml", &scene);
+    let go = |options: &[&str]| {
+        let options = [&["--json", "--output", "cut"], options].concat();
+        serde_json::from_str::<Value>(&bench.good(&half, &options)).unwrap()
+    };
+    go(&["--set", "run.end_time=\"30 us\""]);
+    let resumed = go(&["--resume"]);
+    assert_eq!(resumed["test"], whole["test"]);
+    let read = |folder: &str| fs::read(bench.path(folder).join("bar-signals.csv")).unwrap();
+    assert_eq!(read("cut"), read("out"));
+}
+
+/// A weight on a row of bonded spheres, a spring of 20 bonds and two contacts: energy and rebound.
+#[test]
+fn a_weight_on_a_row() {
+    let bench = Bench::new();
+    let test = "type = \"drop-weight\"\ncrosshead = [\"above\"]\ndirection = [0, 0, -1]\nstroke = \"2 mm\"\nweight = { mass = \"10 g\", height = \"5 mm\" }";
+    let scene = row(test, "damping = { damping_ratio = 0 }")
+        .replace("gravity = [0, 0, 0]", "gravity = [0, 0, -9.81]");
+    let found = summary(&bench, "weight.toml", &scene, &[]);
+    let of = |name: &str| figure(&found, name);
+    let speed = (2.0 * 9.81 * 5e-3_f64).sqrt();
+    let impact = 0.5 * 0.01 * speed * speed;
+    assert!((of("impact energy") / impact - 1.0).abs() < 1e-9);
+    assert!(of("energy unaccounted for").abs() < 2e-3, "{found}");
+    assert!(found["energy_error"].as_f64().unwrap() < 1e-3, "{found}");
+    // The row is light, but not without mass: it keeps a part of the energy as vibration.
+    let rebound = of("rebound velocity");
+    assert!(
+        rebound < 1.001 * speed && rebound > 0.9 * speed,
+        "{rebound} {speed}"
+    );
+    let bond = 20e9 * std::f64::consts::PI * 1e-6 / 2e-3;
+    let spring = 1.0 / (20.0 / bond + 2.0 / 20e6);
+    let largest = 0.01 * 9.81 + (0.01 * 9.81_f64).hypot((spring * 0.01).sqrt() * speed);
+    let force = of("largest force");
+    assert!((force / largest - 1.0).abs() < 0.1, "{force} {largest}");
+}
+
+/// What only the plan can see is refused there.
+#[test]
+fn bodies_that_do_not_fit_are_refused() {
+    let bench = Bench::new();
+    let long = pressure().replace("length = \"200 mm\"", "length = \"15 mm\"");
+    let long = long.replace("rise_time = \"30 us\"", "rise_time = 0");
+    let scene = bench.write("long.toml", long);
+    let said = bench.bad(std::path::Path::new(&scene), &[], 2);
+    assert!(
+        said.contains("the body 'row' is 40 mm long, and the pulse 30 mm, twice the striker"),
+        "{said}"
+    );
+    let test = "type = \"drop-weight\"\ncrosshead = [\"above\"]\ndirection = [0, 0, -1]\nstroke = \"2 mm\"\nweight = { mass = \"0.1 g\", velocity = 1 }";
+    let scene = bench.write("light.toml", row(test, ""));
+    let said = bench.bad(std::path::Path::new(&scene), &[], 2);
+    assert!(said.contains("is lighter than the body 'row'"), "{said}");
+}
