@@ -20,7 +20,7 @@ impl Body {
         check_particles(self)?;
         check_bonds(self)?;
         check_about(self)?;
-        histories::check(self)?;
+        histories::check(&self.bond_plastics, &self.bond_joints, &self.bond_lengths)?;
         check_double_bonds(self)
     }
 }

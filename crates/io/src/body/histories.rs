@@ -1,7 +1,6 @@
 //! What the bonds of a body have been through, beyond their damage: plastic deformation, and failed
 //! elements of flat joints.
 
-use super::parts::Body;
 use crate::diagnostic::{Diagnostic, Result};
 use crate::vtk::{NamedArray, Values};
 
@@ -145,23 +144,27 @@ pub fn with_arrays<R>(
     then(&arrays)
 }
 
-/// Checks the history of the bonds of a body.
-pub(super) fn check(body: &Body) -> Result<()> {
-    for (bond, plastic) in body.bond_plastics.iter().enumerate() {
+/// Checks the history of bonds of these lengths, m.
+pub(super) fn check(
+    plastics: &[PlasticBond],
+    joints: &[JointBond],
+    lengths_m: &[f64],
+) -> Result<()> {
+    for (bond, plastic) in plastics.iter().enumerate() {
         let angles = [plastic.elongation_m, plastic.twist_rad, plastic.work_j];
         let vectors = [plastic.slip_m, plastic.bend_rad];
         let numbers = angles.iter().chain(vectors.as_flattened());
         if numbers.clone().any(|number| !number.is_finite()) {
             return Err(wrong(bond, "its plastic deformation is not finite"));
         }
-        if plastic.elongation_m >= body.bond_lengths[bond] {
+        if plastic.elongation_m >= lengths_m[bond] {
             return Err(wrong(
                 bond,
                 "its plastic elongation is not less than its length",
             ));
         }
     }
-    for (bond, joint) in body.bond_joints.iter().enumerate() {
+    for (bond, joint) in joints.iter().enumerate() {
         let [x, y, z] = joint.first_edge;
         let size = (x * x + y * y + z * z).sqrt();
         if !joint.failed.is_empty() && !(0.5..2.0).contains(&size) {
