@@ -160,13 +160,25 @@ impl State {
     pub fn divide(&mut self) {
         let free = self.particles.free;
         self.divide_bonds();
+        let any = |is_so: fn(&BondRule) -> bool| self.bonds.rules.iter().any(is_so);
+        let damped = if any(|rule| rule.damped) { free } else { 0 };
+        self.particles.damping.resize(damped, Wrench::default());
+        let damped = any(|rule| rule.structural_damping > 0.0);
         let scratch = &mut self.scratch;
-        let damped = self.bonds.rules.iter().any(BondRule::resists);
-        let resistances = if damped { free } else { 0 };
-        scratch.bond_resistance = vec![Wrench::default(); resistances];
+        scratch.structural_resistance = vec![Wrench::default(); if damped { free } else { 0 }];
         let is_damped = self.model.particle_damping > 0.0;
         let resistances = if is_damped { self.particles.len() } else { 0 };
         scratch.particle_resistance = vec![Wrench::default(); resistances];
+    }
+
+    /// The lists of damping forces: viscous and structural of bonds, and on particles; each with one
+    /// for each particle, or empty.
+    pub(crate) fn resistances(&self) -> [&[Wrench]; 3] {
+        [
+            &self.particles.damping,
+            &self.scratch.structural_resistance,
+            &self.scratch.particle_resistance,
+        ]
     }
 
     /// Divides the work on particles and bonds again.

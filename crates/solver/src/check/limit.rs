@@ -7,12 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
-use crate::stages::bonds::{bond_wrenches, damping_wrenches};
+use crate::stages::bonds::bond_wrenches;
+use crate::stages::damped::damping_wrenches;
 use crate::stages::plasticity::add_elasto_plastic_wrenches;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
-use crate::state::scratch::Scratch;
 
 /// Iterations at least and at most.
 const ITERATIONS: [usize; 2] = [20, 200];
@@ -58,26 +58,31 @@ pub struct Limit {
     pub undamped_step_s: f64,
     /// Largest circular frequency, rad/s.
     pub omega_rad_s: f64,
-    /// Largest eigenvalue of damping over mass, 1/s.
+    /// Largest eigenvalue of the viscous damping of bonds over mass, 1/s.
     pub damping_1_s: f64,
+    /// Its parts: `step_s` is the smaller.
+    pub bound: Bound,
     /// Iterations needed for the frequency.
     pub iterations: usize,
     /// Iterations in all, those for damping included: each takes the forces of all bonds twice, or
-    /// their damping, or both.
+    /// their damping.
     pub all_iterations: usize,
 }
 
-/// A step that is not above the largest stable one.
+/// Steps that are not above the largest stable one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bound {
-    /// s.
-    pub step_s: f64,
-    /// Whether damping of any kind but that of particles was there.
+    /// For bonds without viscous damping, s.
+    pub vibration_s: f64,
+    /// Whether dashpots of contacts count in it.
     pub is_damped: bool,
+    /// For the viscous damping of bonds alone, s; infinite: there is none.
+    pub bond_damping_s: f64,
 }
 
 /// The limit of kick-drift-kick for the state as it stands: the largest dt at which no eigenvalue
-/// of M^-1 (dt^2/4 K + dt/2 C) is above 1.
+/// of M^-1 (dt^2/4 K + dt/2 C) is above 1, with the dashpots C of contacts, and none of dt M^-1 C,
+/// with those of bonds: see [`crate::stages::damping`]. The two conditions are independent.
 ///
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always
 /// against its force, which damping of particles raises by a fraction: K counts 1 + gamma
@@ -120,32 +125,43 @@ fn limit_of_bonded(state: &mut State) -> Limit {
         (undamped, of_undamped)
     };
     let stiffer = stiffer_by_damping(state);
-    let (c, of_damping) = if is_damped(state, contacts) {
-        largest_eigenvalue(state, contacts, Weights::DAMPING, Search::Fine)
-    } else {
+    let (c, of_damping) = if contacts.is_empty() {
         (0.0, 0)
+    } else {
+        largest_eigenvalue(state, contacts, Weights::CONTACT_DAMPING, Search::Fine)
     };
-    let (step_s, of_both) = if c > 0.0 {
+    let (vibration_s, of_both) = if c > 0.0 {
         damped_limit(state, contacts, stiffer, safe_step(stiffer * k, c))
     } else {
         (safe_step(stiffer * k, 0.0), 0)
     };
-    let of_particles = Limit {
-        step_s,
-        undamped_step_s: safe_step(undamped, 0.0),
-        omega_rad_s: undamped.sqrt(),
-        damping_1_s: c,
-        iterations,
-        all_iterations: iterations + of_damping + of_both,
+    let (damping_1_s, of_bonds) = bond_damping(state, Search::Fine);
+    let of_particles = Bound {
+        vibration_s,
+        is_damped: c > 0.0,
+        bond_damping_s: 1.0 / damping_1_s,
     };
-    let limit = Limit {
-        step_s: of_particles.bound().with_more(clump_rates(state, contacts)),
-        ..of_particles
-    };
+    let bound = of_particles.with_more(clump_rates(state, contacts));
     restore_stiffness(&mut state.bonds, unstiffened);
     restore_stiffness(&mut state.bonds, damaged);
-    clear_trial_wrenches(state);
-    limit
+    state.particles.wrenches.fill(Wrench::default());
+    Limit {
+        step_s: bound.step_s(),
+        undamped_step_s: safe_step(undamped, 0.0),
+        omega_rad_s: undamped.sqrt(),
+        damping_1_s,
+        bound,
+        iterations,
+        all_iterations: iterations + of_damping + of_both + of_bonds,
+    }
+}
+
+/// Largest eigenvalue of the viscous damping of bonds over mass, 1/s, and the iterations needed.
+fn bond_damping(state: &mut State, search: Search) -> (f64, usize) {
+    if state.particles.damping.is_empty() {
+        return (0.0, 0);
+    }
+    largest_eigenvalue(state, &[], Weights::BOND_DAMPING, search)
 }
 
 /// A step that is not above the limit, or by less than a thousandth, and not below this one, s,
@@ -163,14 +179,14 @@ fn bound_near_of_bonded(state: &mut State, step_s: f64) -> Bound {
     let (value, _) = largest_eigenvalue(state, contacts, both, Search::Rough);
     restore_stiffness(&mut state.bonds, unstiffened);
     restore_stiffness(&mut state.bonds, damaged);
-    let is_damped = is_damped(state, contacts);
     let of_particles = Bound {
-        step_s: not_too_long(step_s, value),
-        is_damped,
+        vibration_s: not_too_long(step_s, value),
+        is_damped: !contacts.is_empty(),
+        bond_damping_s: 1.0 / bond_damping(state, Search::Rough).0,
     };
-    let step_s = of_particles.with_more(clump_rates(state, contacts));
-    clear_trial_wrenches(state);
-    Bound { step_s, is_damped }
+    let bound = of_particles.with_more(clump_rates(state, contacts));
+    state.particles.wrenches.fill(Wrench::default());
+    bound
 }
 
 /// Damping of particles always acts against the fastest mode: see [`limit`].
@@ -224,17 +240,6 @@ fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>>) {
     }
 }
 
-fn is_damped(state: &State, contacts: &[LinearContact]) -> bool {
-    !state.scratch.bond_resistance.is_empty() || !contacts.is_empty()
-}
-
-/// Clears the wrenches of the search: a balance before the next step would read them, and what acts
-/// on the spheres of clumps is added to them.
-fn clear_trial_wrenches(state: &mut State) {
-    state.particles.wrenches.fill(Wrench::default());
-    state.scratch.bond_resistance.fill(Wrench::default());
-}
-
 /// A step that is not too long, from another and the largest eigenvalue there of M^-1 (dt^2/4 K +
 /// dt/2 C): it grows at least with the step and at most with its square.
 fn not_too_long(step_s: f64, value: f64) -> f64 {
@@ -251,36 +256,36 @@ pub fn safe_step(k: f64, c: f64) -> f64 {
     4.0 / (c + (c * c + 4.0 * k).sqrt())
 }
 
-impl Limit {
-    /// As a bound of itself.
-    pub fn bound(&self) -> Bound {
-        Bound {
-            step_s: self.step_s,
-            is_damped: self.damping_1_s > 0.0,
-        }
-    }
-}
-
 impl Bound {
-    /// A step that is not too long once something more acts, with the largest eigenvalues k, 1/s2,
+    /// The smaller step, s.
+    pub fn step_s(&self) -> f64 {
+        self.vibration_s.min(self.bond_damping_s)
+    }
+
+    /// Steps that are not too long once something more acts, with the largest eigenvalues k, 1/s2,
     /// and c, 1/s, of its own: the largest eigenvalue of a sum is at most the sum of the largest
     /// ones.
-    pub fn with_more(&self, [k, c]: [f64; 2]) -> f64 {
+    pub fn with_more(&self, [k, c]: [f64; 2]) -> Self {
         if k == 0.0 && c == 0.0 {
-            return self.step_s;
+            return *self;
         }
         // What is there grows with the square of the step; with damping, at least with the step
         // itself.
-        let present = 2.0 / self.step_s;
-        if self.is_damped {
+        let present = 2.0 / self.vibration_s;
+        let vibration_s = if self.is_damped {
             safe_step(k, c + present)
         } else {
             safe_step(k + present * present, c)
+        };
+        Self {
+            vibration_s,
+            ..*self
         }
     }
 }
 
-/// Largest dt at which the largest eigenvalue of M^-1 (`stiffer` dt^2/4 K + dt/2 C) is 1, from a
+/// Largest dt at which the largest eigenvalue of M^-1 (`stiffer` dt^2/4 K + dt/2 C) is 1, with the
+/// dashpots C of contacts, from a
 /// step that is not too long. By the secant of the eigenvalue over dt; not above the limit if the
 /// eigenvalues found are the largest, and less than `NEAR` below it. And the iterations needed.
 fn damped_limit(
@@ -319,19 +324,28 @@ impl Weights {
     /// K alone.
     const STIFFNESS: Self = Self {
         stiffness: 1.0,
-        damping: 0.0,
+        contact_damping: 0.0,
+        bond_damping: 0.0,
     };
-    /// C alone.
-    const DAMPING: Self = Self {
+    /// C of contacts alone.
+    const CONTACT_DAMPING: Self = Self {
         stiffness: 0.0,
-        damping: 1.0,
+        contact_damping: 1.0,
+        bond_damping: 0.0,
+    };
+    /// C of bonds alone.
+    const BOND_DAMPING: Self = Self {
+        stiffness: 0.0,
+        contact_damping: 0.0,
+        bond_damping: 1.0,
     };
 
-    /// dt^2/4 K, `stiffer` by so much, + dt/2 C.
+    /// dt^2/4 K, `stiffer` by so much, + dt/2 C of contacts.
     fn of_step(stiffer: f64, step_s: f64) -> Self {
         Self {
             stiffness: 0.25 * stiffer * step_s * step_s,
-            damping: 0.5 * step_s,
+            contact_damping: 0.5 * step_s,
+            bond_damping: 0.0,
         }
     }
 }
@@ -378,8 +392,8 @@ fn largest_eigenvalue(
                 &mut image,
             );
         }
-        if weights.damping > 0.0 && !state.scratch.bond_resistance.is_empty() {
-            add_damping_times(state, weights.damping, &roots, &present, &mut image);
+        if weights.bond_damping > 0.0 {
+            add_damping_times(state, weights.bond_damping, &roots, &present, &mut image);
         }
         if !contacts.is_empty() {
             let motions = motions(&present, &roots);
@@ -585,19 +599,9 @@ fn add_damping_times(
         scratch,
         ..
     } = state;
-    let Scratch {
-        partitions,
-        bond_resistance,
-        ..
-    } = scratch;
-    damping_wrenches(
-        bonds,
-        &particles.poses,
-        &motions,
-        partitions,
-        bond_resistance,
-    );
-    add_forces(-weight, bond_resistance, roots, sum);
+    let (poses, wrenches) = (&particles.poses, &mut particles.wrenches);
+    damping_wrenches(bonds, poses, &motions, &mut scratch.partitions, wrenches);
+    add_forces(-weight, wrenches, roots, sum);
 }
 
 /// Adds a factor times wrenches to a field.

@@ -320,7 +320,8 @@ fn time_step(plan: &Plan) -> String {
             ),
         );
     }
-    if choice.limit.damping_1_s > 0.0 {
+    let damped = choice.limit.damping_1_s > 0.0 || choice.limit.bound.is_damped;
+    if damped && choice.limit.step_s < choice.limit.undamped_step_s {
         line(
             "",
             format!(

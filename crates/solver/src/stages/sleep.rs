@@ -216,7 +216,8 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
                 [p.poses[i].place().into(), motion.velocity_m_s, own],
             );
             let resisting = [
-                &mut state.scratch.bond_resistance,
+                &mut p.damping,
+                &mut state.scratch.structural_resistance,
                 &mut state.scratch.particle_resistance,
             ];
             for wrench in resisting.into_iter().filter_map(|list| list.get_mut(i)) {

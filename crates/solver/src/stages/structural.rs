@@ -1,9 +1,9 @@
-//! Structural damping forces of bonds on the particles, added to those of viscous damping.
+//! Structural damping forces of bonds on the particles, against the motions predicted without them.
 
 use nalgebra::Vector3;
 
 use super::bonds::{BONDS, any_bond};
-use super::damping::any_damped;
+use super::damping::predict;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::bond::damping::{DampingForces, EndMotion};
 use crate::physics::bond::damping_models::structural_forces;
@@ -24,31 +24,24 @@ pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
             "not asked for",
         )
     },
-    // Those of viscous damping serve both.
-    bytes: |state| {
-        if any_damped(state) {
-            0
-        } else {
-            size_of_val(&state.scratch.bond_resistance[..])
-        }
-    },
+    bytes: |state| size_of_val(&state.scratch.structural_resistance[..]),
     saving: NO_SAVING,
 };
 
-/// Adds the structural damping forces to the resistances of the bonds. Returns the number of bonds
-/// computed.
-pub(crate) fn add_structural_damping(state: &mut State) -> usize {
-    let rules = &state.bonds.rules;
-    if rules.iter().all(|rule| rule.structural_damping == 0.0) {
+/// Sets the structural damping forces of bonds. Returns the number of bonds computed.
+pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
+    if state.scratch.structural_resistance.is_empty() {
         return 0;
     }
-    let (bonds, p) = (&state.bonds, &state.particles);
-    let resisting = &mut state.scratch.bond_resistance;
+    state.scratch.structural_resistance.fill(Wrench::default());
+    predict(state);
+    let (bonds, poses, scratch) = (&state.bonds, &state.particles.poses, &mut state.scratch);
+    let motions = &scratch.predicted;
     for_each_partition(
-        &mut state.scratch.partitions,
-        resisting,
+        &mut scratch.partitions,
+        &mut scratch.structural_resistance,
         &|partition, resisting| {
-            of_partition(bonds, &p.poses, &p.motions, partition, resisting);
+            of_partition(bonds, poses, motions, partition, resisting);
         },
     );
     let partitions = state.scratch.partitions.iter();

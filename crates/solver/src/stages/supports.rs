@@ -81,23 +81,8 @@ pub fn hold(
             let_go(support, phase, particles, broken, steps_s);
             continue;
         }
-        let GroupSupport {
-            holds,
-            factor,
-            held,
-            ..
-        } = support;
-        let prescribed = holds.map(|hold| {
-            hold.map(|hold| match hold {
-                Hold::Fixed => 0.0,
-                Hold::Velocity(v) => v * factor_at(factor, time_s + 0.5 * time_step_s),
-                Hold::Displacement(d) => {
-                    let gain = factor_at(factor, time_s + time_step_s) - factor_at(factor, time_s);
-                    d * gain / time_step_s
-                }
-            })
-        });
-        for held in held {
+        let prescribed = prescribed(support, time_s, time_step_s);
+        for held in &mut support.held {
             let i = held.particle as usize;
             let parted = of_broken(broken, held.particle);
             let motion = &mut particles.motions[i];
@@ -119,6 +104,49 @@ pub fn hold(
             }
         }
     }
+}
+
+/// Sets held degrees of freedom of predicted motions to what the support prescribes at the time of
+/// the poses; those that it lets go of now had their velocity until now.
+pub(super) fn predict_held(state: &State, predicted: &mut [Motion]) {
+    let steps_s = state.steps_s();
+    for support in &state.supports {
+        let phase = support.phase(state.time_s, steps_s);
+        if phase == SupportPhase::Over {
+            continue;
+        }
+        let prescribed = match phase {
+            SupportPhase::Holds => prescribed(support, state.time_s, state.time_step_s),
+            _ => [None; 6],
+        };
+        for held in &support.held {
+            let motion = &mut predicted[held.particle as usize];
+            for k in (0..6).filter(|&k| support.holds[k].is_some()) {
+                let before = held.before[k];
+                let after = prescribed[k].unwrap_or(before);
+                let now = velocity_at_kick(before, after, steps_s);
+                match k {
+                    0..3 => motion.velocity_m_s[k] = now,
+                    _ => motion.spin_rad_s[k - 3] = now,
+                }
+            }
+        }
+    }
+}
+
+/// Velocities and spins that a support prescribes in the step from `time_s` on; none: free.
+fn prescribed(support: &GroupSupport, time_s: f64, time_step_s: f64) -> [Option<f64>; 6] {
+    let factor = &support.factor;
+    support.holds.map(|hold| {
+        hold.map(|hold| match hold {
+            Hold::Fixed => 0.0,
+            Hold::Velocity(v) => v * factor_at(factor, time_s + 0.5 * time_step_s),
+            Hold::Displacement(d) => {
+                let gain = factor_at(factor, time_s + time_step_s) - factor_at(factor, time_s);
+                d * gain / time_step_s
+            }
+        })
+    })
 }
 
 /// Gives the degrees of freedom of a support that has ended their own half of the kick at which it
