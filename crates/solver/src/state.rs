@@ -6,6 +6,7 @@ pub mod bonds;
 pub mod clumps;
 pub mod clusters;
 pub mod contacts;
+pub mod damping_rate;
 pub mod events;
 pub(crate) mod ledger;
 pub mod loads;
@@ -34,6 +35,7 @@ use self::bonds::{BondRule, Bonds};
 use self::clumps::Clumps;
 use self::clusters::Clusters;
 use self::contacts::Contacts;
+use self::damping_rate::damping_rate_1_s;
 use self::ledger::EnergyLedger;
 use self::loads::GroupLoad;
 use self::model::Model;
@@ -91,6 +93,8 @@ pub struct State {
     pub time_step_s: f64,
     /// The previous step, s; 0 at the start.
     pub previous_time_step_s: f64,
+    /// Upper bound of the largest eigenvalue of the viscous damping of bonds over mass, 1/s.
+    pub damping_rate_1_s: f64,
     /// Largest speed of a particle in the previous step, plus that of a wall if there are contacts,
     /// m/s.
     pub fastest_m_s: f64,
@@ -138,6 +142,7 @@ impl State {
             time_s: 0.0,
             time_step_s,
             previous_time_step_s: 0.0,
+            damping_rate_1_s: 0.0,
             fastest_m_s: 0.0,
             broken_count: 0,
             broken_by_cause: CauseCounts::default(),
@@ -162,10 +167,13 @@ impl State {
         self.divide_bonds();
         let any = |is_so: fn(&BondRule) -> bool| self.bonds.rules.iter().any(is_so);
         let damped = if any(|rule| rule.damped) { free } else { 0 };
-        self.particles.damping.resize(damped, Wrench::default());
-        let damped = any(|rule| rule.structural_damping > 0.0);
+        let structural = any(|rule| rule.structural_damping > 0.0);
+        let structural = if structural { free } else { 0 };
+        self.damping_rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
         let scratch = &mut self.scratch;
-        scratch.structural_resistance = vec![Wrench::default(); if damped { free } else { 0 }];
+        scratch.bond_resistance = vec![Wrench::default(); damped];
+        scratch.structural_resistance = vec![Wrench::default(); structural];
+        scratch.damping_stages = std::array::from_fn(|_| vec![Wrench::default(); damped]);
         let is_damped = self.model.particle_damping > 0.0;
         let resistances = if is_damped { self.particles.len() } else { 0 };
         scratch.particle_resistance = vec![Wrench::default(); resistances];
@@ -175,10 +183,16 @@ impl State {
     /// for each particle, or empty.
     pub(crate) fn resistances(&self) -> [&[Wrench]; 3] {
         [
-            &self.particles.damping,
+            &self.scratch.bond_resistance,
             &self.scratch.structural_resistance,
             &self.scratch.particle_resistance,
         ]
+    }
+
+    /// Raises the bound of damping if bonds have become longer.
+    pub(crate) fn renew_damping_rate(&mut self) {
+        let rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
+        self.damping_rate_1_s = self.damping_rate_1_s.max(rate_1_s);
     }
 
     /// Divides the work on particles and bonds again.
@@ -235,7 +249,10 @@ impl State {
         self.model = model;
         self.scratch.threads = threads;
         self.rigid_parts.number(self.particles.free, &self.bonds);
+        // Bonds that broke since it was found still count.
+        let damping_rate_1_s = self.damping_rate_1_s;
         self.divide();
+        self.damping_rate_1_s = damping_rate_1_s;
         self.particles.wrenches = vec![Wrench::default(); self.particles.len()];
         if let Some(clusters) = &mut self.clusters {
             clusters.rebuild(&self.bonds)?;

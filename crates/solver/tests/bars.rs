@@ -192,7 +192,7 @@ pub(crate) fn damp(state: &mut State, damping: BondDamping) {
         ..*rule
     };
     state.bonds.rules = state.bonds.rules.iter().map(damped).collect();
-    state.scratch.bond_resistance = vec![Wrench::default(); p.len()];
+    state.divide();
 }
 
 /// Damps all particles with this fraction of the force on them.

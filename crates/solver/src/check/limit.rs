@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
 use crate::stages::bonds::bond_wrenches;
-use crate::stages::damped::damping_wrenches;
 use crate::stages::plasticity::add_elasto_plastic_wrenches;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
@@ -54,35 +53,31 @@ impl Search {
 pub struct Limit {
     /// Largest stable step, s. Infinite where nothing vibrates.
     pub step_s: f64,
-    /// The same without damping of any kind, s.
+    /// The same without damping of contacts and particles and without structural damping, s.
     pub undamped_step_s: f64,
     /// Largest circular frequency, rad/s.
     pub omega_rad_s: f64,
-    /// Largest eigenvalue of the viscous damping of bonds over mass, 1/s.
+    /// Largest eigenvalue of the damping of contacts over mass, 1/s.
     pub damping_1_s: f64,
-    /// Its parts: `step_s` is the smaller.
-    pub bound: Bound,
     /// Iterations needed for the frequency.
     pub iterations: usize,
     /// Iterations in all, those for damping included: each takes the forces of all bonds twice, or
-    /// their damping.
+    /// the damping of contacts, or both.
     pub all_iterations: usize,
 }
 
-/// Steps that are not above the largest stable one.
+/// A step that is not above the largest stable one.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bound {
-    /// For bonds without viscous damping, s.
-    pub vibration_s: f64,
-    /// Whether dashpots of contacts count in it.
+    /// s.
+    pub step_s: f64,
+    /// Whether contacts were there, which may be damped.
     pub is_damped: bool,
-    /// For the viscous damping of bonds alone, s; infinite: there is none.
-    pub bond_damping_s: f64,
 }
 
 /// The limit of kick-drift-kick for the state as it stands: the largest dt at which no eigenvalue
-/// of M^-1 (dt^2/4 K + dt/2 C) is above 1, with the dashpots C of contacts, and none of dt M^-1 C,
-/// with those of bonds: see [`crate::stages::damping`]. The two conditions are independent.
+/// of M^-1 (dt^2/4 K + dt/2 C) is above 1, with the dashpots C of contacts. Those of bonds do not
+/// matter: see [`crate::stages::damping`].
 ///
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always
 /// against its force, which damping of particles raises by a fraction: K counts 1 + gamma
@@ -128,40 +123,29 @@ fn limit_of_bonded(state: &mut State) -> Limit {
     let (c, of_damping) = if contacts.is_empty() {
         (0.0, 0)
     } else {
-        largest_eigenvalue(state, contacts, Weights::CONTACT_DAMPING, Search::Fine)
+        largest_eigenvalue(state, contacts, Weights::DAMPING, Search::Fine)
     };
-    let (vibration_s, of_both) = if c > 0.0 {
+    let (step_s, of_both) = if c > 0.0 {
         damped_limit(state, contacts, stiffer, safe_step(stiffer * k, c))
     } else {
         (safe_step(stiffer * k, 0.0), 0)
     };
-    let (damping_1_s, of_bonds) = bond_damping(state, Search::Fine);
-    let of_particles = Bound {
-        vibration_s,
-        is_damped: c > 0.0,
-        bond_damping_s: 1.0 / damping_1_s,
-    };
-    let bound = of_particles.with_more(clump_rates(state, contacts));
-    restore_stiffness(&mut state.bonds, unstiffened);
-    restore_stiffness(&mut state.bonds, damaged);
-    state.particles.wrenches.fill(Wrench::default());
-    Limit {
-        step_s: bound.step_s(),
+    let of_particles = Limit {
+        step_s,
         undamped_step_s: safe_step(undamped, 0.0),
         omega_rad_s: undamped.sqrt(),
-        damping_1_s,
-        bound,
+        damping_1_s: c,
         iterations,
-        all_iterations: iterations + of_damping + of_both + of_bonds,
-    }
-}
-
-/// Largest eigenvalue of the viscous damping of bonds over mass, 1/s, and the iterations needed.
-fn bond_damping(state: &mut State, search: Search) -> (f64, usize) {
-    if state.particles.damping.is_empty() {
-        return (0.0, 0);
-    }
-    largest_eigenvalue(state, &[], Weights::BOND_DAMPING, search)
+        all_iterations: iterations + of_damping + of_both,
+    };
+    let limit = Limit {
+        step_s: of_particles.bound().with_more(clump_rates(state, contacts)),
+        ..of_particles
+    };
+    restore_stiffness(&mut state.bonds, unstiffened);
+    restore_stiffness(&mut state.bonds, damaged);
+    clear_trial_wrenches(state);
+    limit
 }
 
 /// A step that is not above the limit, or by less than a thousandth, and not below this one, s,
@@ -179,14 +163,14 @@ fn bound_near_of_bonded(state: &mut State, step_s: f64) -> Bound {
     let (value, _) = largest_eigenvalue(state, contacts, both, Search::Rough);
     restore_stiffness(&mut state.bonds, unstiffened);
     restore_stiffness(&mut state.bonds, damaged);
+    let is_damped = !contacts.is_empty();
     let of_particles = Bound {
-        vibration_s: not_too_long(step_s, value),
-        is_damped: !contacts.is_empty(),
-        bond_damping_s: 1.0 / bond_damping(state, Search::Rough).0,
+        step_s: not_too_long(step_s, value),
+        is_damped,
     };
-    let bound = of_particles.with_more(clump_rates(state, contacts));
-    state.particles.wrenches.fill(Wrench::default());
-    bound
+    let step_s = of_particles.with_more(clump_rates(state, contacts));
+    clear_trial_wrenches(state);
+    Bound { step_s, is_damped }
 }
 
 /// Damping of particles always acts against the fastest mode: see [`limit`].
@@ -240,6 +224,12 @@ fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>>) {
     }
 }
 
+/// Clears the wrenches of the search: a balance before the next step would read them, and what acts
+/// on the spheres of clumps is added to them.
+fn clear_trial_wrenches(state: &mut State) {
+    state.particles.wrenches.fill(Wrench::default());
+}
+
 /// A step that is not too long, from another and the largest eigenvalue there of M^-1 (dt^2/4 K +
 /// dt/2 C): it grows at least with the step and at most with its square.
 fn not_too_long(step_s: f64, value: f64) -> f64 {
@@ -256,36 +246,36 @@ pub fn safe_step(k: f64, c: f64) -> f64 {
     4.0 / (c + (c * c + 4.0 * k).sqrt())
 }
 
-impl Bound {
-    /// The smaller step, s.
-    pub fn step_s(&self) -> f64 {
-        self.vibration_s.min(self.bond_damping_s)
-    }
-
-    /// Steps that are not too long once something more acts, with the largest eigenvalues k, 1/s2,
-    /// and c, 1/s, of its own: the largest eigenvalue of a sum is at most the sum of the largest
-    /// ones.
-    pub fn with_more(&self, [k, c]: [f64; 2]) -> Self {
-        if k == 0.0 && c == 0.0 {
-            return *self;
-        }
-        // What is there grows with the square of the step; with damping, at least with the step
-        // itself.
-        let present = 2.0 / self.vibration_s;
-        let vibration_s = if self.is_damped {
-            safe_step(k, c + present)
-        } else {
-            safe_step(k + present * present, c)
-        };
-        Self {
-            vibration_s,
-            ..*self
+impl Limit {
+    /// As a bound of itself.
+    pub fn bound(&self) -> Bound {
+        Bound {
+            step_s: self.step_s,
+            is_damped: self.damping_1_s > 0.0,
         }
     }
 }
 
-/// Largest dt at which the largest eigenvalue of M^-1 (`stiffer` dt^2/4 K + dt/2 C) is 1, with the
-/// dashpots C of contacts, from a
+impl Bound {
+    /// A step that is not too long once something more acts, with the largest eigenvalues k, 1/s2,
+    /// and c, 1/s, of its own: the largest eigenvalue of a sum is at most the sum of the largest
+    /// ones.
+    pub fn with_more(&self, [k, c]: [f64; 2]) -> f64 {
+        if k == 0.0 && c == 0.0 {
+            return self.step_s;
+        }
+        // What is there grows with the square of the step; with damping, at least with the step
+        // itself.
+        let present = 2.0 / self.step_s;
+        if self.is_damped {
+            safe_step(k, c + present)
+        } else {
+            safe_step(k + present * present, c)
+        }
+    }
+}
+
+/// Largest dt at which the largest eigenvalue of M^-1 (`stiffer` dt^2/4 K + dt/2 C) is 1, from a
 /// step that is not too long. By the secant of the eigenvalue over dt; not above the limit if the
 /// eigenvalues found are the largest, and less than `NEAR` below it. And the iterations needed.
 fn damped_limit(
@@ -324,28 +314,19 @@ impl Weights {
     /// K alone.
     const STIFFNESS: Self = Self {
         stiffness: 1.0,
-        contact_damping: 0.0,
-        bond_damping: 0.0,
+        damping: 0.0,
     };
-    /// C of contacts alone.
-    const CONTACT_DAMPING: Self = Self {
+    /// C alone.
+    const DAMPING: Self = Self {
         stiffness: 0.0,
-        contact_damping: 1.0,
-        bond_damping: 0.0,
-    };
-    /// C of bonds alone.
-    const BOND_DAMPING: Self = Self {
-        stiffness: 0.0,
-        contact_damping: 0.0,
-        bond_damping: 1.0,
+        damping: 1.0,
     };
 
-    /// dt^2/4 K, `stiffer` by so much, + dt/2 C of contacts.
+    /// dt^2/4 K, `stiffer` by so much, + dt/2 C.
     fn of_step(stiffer: f64, step_s: f64) -> Self {
         Self {
             stiffness: 0.25 * stiffer * step_s * step_s,
-            contact_damping: 0.5 * step_s,
-            bond_damping: 0.0,
+            damping: 0.5 * step_s,
         }
     }
 }
@@ -391,9 +372,6 @@ fn largest_eigenvalue(
                 &mut displaced,
                 &mut image,
             );
-        }
-        if weights.bond_damping > 0.0 {
-            add_damping_times(state, weights.bond_damping, &roots, &present, &mut image);
         }
         if !contacts.is_empty() {
             let motions = motions(&present, &roots);
@@ -582,26 +560,6 @@ fn motions(field: &Field, roots: &Field) -> Vec<Motion> {
         }
     };
     field.iter().zip(roots).map(motion).collect()
-}
-
-/// Adds `weight` times the damping times a field to `sum`.
-fn add_damping_times(
-    state: &mut State,
-    weight: f64,
-    roots: &Field,
-    field: &Field,
-    sum: &mut Field,
-) {
-    let motions = motions(field, roots);
-    let State {
-        bonds,
-        particles,
-        scratch,
-        ..
-    } = state;
-    let (poses, wrenches) = (&particles.poses, &mut particles.wrenches);
-    damping_wrenches(bonds, poses, &motions, &mut scratch.partitions, wrenches);
-    add_forces(-weight, wrenches, roots, sum);
 }
 
 /// Adds a factor times wrenches to a field.

@@ -167,15 +167,13 @@ pub fn contact_rates(state: &State) -> [f64; 2] {
     rates
 }
 
-/// Weights of the symmetric operators of a body in a sum.
+/// Weights of the two symmetric operators of a body in a sum.
 #[derive(Debug, Clone, Copy)]
 pub struct Weights {
     /// Weight of K, from displacements to forces.
     pub stiffness: f64,
-    /// Weight of C of contacts, from velocities to forces.
-    pub contact_damping: f64,
-    /// Weight of C of bonds.
-    pub bond_damping: f64,
+    /// Weight of C, from velocities to forces.
+    pub damping: f64,
 }
 
 /// Sets `wrenches` to the contact forces on particles with the displacements, or velocities,
@@ -191,7 +189,7 @@ pub(crate) fn linear_wrenches(
     for contact in contacts {
         let (touch, answer) = (&contact.touch, &contact.answer);
         let of = |stiffness: f64, damping: f64| {
-            weights.stiffness * stiffness + weights.contact_damping * damping
+            weights.stiffness * stiffness + weights.damping * damping
         };
         let along = of(answer.normal_n_m, answer.normal_damping_n_s_m);
         let across = of(answer.tangential_n_m, answer.tangential_damping_n_s_m);

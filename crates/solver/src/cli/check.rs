@@ -320,8 +320,7 @@ fn time_step(plan: &Plan) -> String {
             ),
         );
     }
-    let damped = choice.limit.damping_1_s > 0.0 || choice.limit.bound.is_damped;
-    if damped && choice.limit.step_s < choice.limit.undamped_step_s {
+    if choice.limit.damping_1_s > 0.0 {
         line(
             "",
             format!(

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::check::limit::{Bound, Limit, limit, safe_step};
+use crate::check::limit::{Limit, limit, safe_step};
 use crate::check::linear::{
     StiffestContacts, at_impact, largest_contact_rate_1_s2, stiffest_contact,
 };
@@ -84,7 +84,7 @@ impl StepBasis {
             rates = [0, 1, 2].map(|n| rates[n].max(later[n]));
         }
         let [k, c, rate] = rates;
-        let foreseen_s = found.bound.with_more([k, c]).step_s();
+        let foreseen_s = found.bound().with_more([k, c]);
         let across = if state.contacts.is_some() {
             FARTHEST * state.smallest_radius_m() / impact_speed_m_s
         } else {
@@ -131,11 +131,6 @@ impl StepChoice {
             undamped_step_s: f64::INFINITY,
             omega_rad_s: 0.0,
             damping_1_s: 0.0,
-            bound: Bound {
-                vibration_s: f64::INFINITY,
-                is_damped: false,
-                bond_damping_s: f64::INFINITY,
-            },
             iterations: 0,
             all_iterations: 0,
         };

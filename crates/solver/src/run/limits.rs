@@ -103,6 +103,7 @@ impl<'a> Limits<'a> {
             let strain = progress.seen.look_at_bonds(state, bodies);
             if strain > progress.strain + MORE_STRAIN {
                 progress.strain = strain;
+                state.renew_damping_rate();
                 may_be_less = true;
             }
         }
@@ -128,9 +129,9 @@ impl<'a> Limits<'a> {
             && needed_s > bound_s(rates, progress)
         {
             let mut bound = bound_near(state, needed_s);
-            if bound.step_s() < needed_s {
-                bound = limit(state).bound;
-                progress.limit_s = progress.limit_s.min(bound.step_s());
+            if bound.step_s < needed_s {
+                bound = limit(state).bound();
+                progress.limit_s = progress.limit_s.min(bound.step_s);
             }
             progress.bound = bound;
             progress.bound_strain = progress.strain;
@@ -270,11 +271,10 @@ fn bound_s(rates: [f64; 2], progress: &Progress) -> f64 {
     // Transverse stiffness of a bond grows with the square of its levers.
     let longer = (1.0 + progress.strain) / (1.0 + progress.bound_strain);
     let of_bonds = Bound {
-        vibration_s: progress.bound.vibration_s / (longer * longer),
-        bond_damping_s: progress.bound.bond_damping_s / (longer * longer),
+        step_s: progress.bound.step_s / (longer * longer),
         ..progress.bound
     };
-    let with_all_s = of_bonds.with_more(rates).step_s();
+    let with_all_s = of_bonds.with_more(rates);
     let stiffer = |n: usize| {
         if rates[n] <= progress.bound_rates[n] {
             1.0
@@ -282,8 +282,8 @@ fn bound_s(rates: [f64; 2], progress: &Progress) -> f64 {
             rates[n] / progress.bound_rates[n]
         }
     };
-    let all_stiffer_s = of_bonds.vibration_s / stiffer(0).max(stiffer(1)).sqrt();
-    with_all_s.max(all_stiffer_s.min(of_bonds.bond_damping_s))
+    let all_stiffer_s = of_bonds.step_s / stiffer(0).max(stiffer(1)).sqrt();
+    with_all_s.max(all_stiffer_s)
 }
 
 /// Stops a run in which a particle moves farther in a step than contacts can resolve.

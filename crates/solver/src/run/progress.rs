@@ -97,7 +97,7 @@ impl Progress {
         Self {
             rhythm,
             limit_s: choice.foreseen_s,
-            bound: choice.limit.bound,
+            bound: choice.limit.bound(),
             contact_rate_1_s2: choice.contact_rate_1_s2,
             impact_speed_m_s: choice.impact_speed_m_s,
             had_bonds: true,
@@ -109,7 +109,7 @@ impl Progress {
     /// Sets the requirements that the step meets from now on.
     pub(super) fn allow_for(&mut self, basis: &StepBasis) {
         self.limit_s = basis.foreseen_s;
-        self.bound = basis.limit.bound;
+        self.bound = basis.limit.bound();
         self.bound_rates = [0.0; 2];
         self.contact_rate_1_s2 = basis.contact_rate_1_s2;
         self.impact_speed_m_s = basis.impact_speed_m_s;
@@ -117,8 +117,8 @@ impl Progress {
 
     /// Adds requirements that the step meets from now on.
     pub(super) fn allow_as_well_for(&mut self, basis: &StepBasis) {
-        if basis.limit.step_s < self.bound.step_s() {
-            self.bound = basis.limit.bound;
+        if basis.limit.step_s < self.bound.step_s {
+            self.bound = basis.limit.bound();
             self.bound_rates = [0.0; 2];
         }
         self.limit_s = self.limit_s.min(basis.foreseen_s);

@@ -117,7 +117,7 @@ pub(super) struct Forces<'a> {
 }
 
 impl<'a> Forces<'a> {
-    /// The forces on particles: see [`State::resistances`].
+    /// All forces on particles, with these resisting ones: see [`State::resistances`].
     pub(super) fn of(
         particles: &'a Particles,
         resisting: [&'a [Wrench]; 3],
@@ -130,6 +130,17 @@ impl<'a> Forces<'a> {
             asleep: &particles.asleep,
             gravity_m_s2,
             kick_s,
+        }
+    }
+
+    /// Impulses, N s and N m s, one for each particle.
+    pub(super) fn impulses(impulses: &'a [Wrench], asleep: &'a [bool]) -> Self {
+        Self {
+            wrenches: impulses,
+            resisting: [&[]; 3],
+            asleep,
+            gravity_m_s2: [0.0; 3],
+            kick_s: 1.0,
         }
     }
 }

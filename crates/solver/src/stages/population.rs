@@ -253,7 +253,6 @@ fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
     new.poses.push(old.poses[i]);
     new.motions.push(old.motions[i]);
     new.wrenches.push(old.wrenches[i]);
-    new.damping.extend(old.damping.get(i));
     new.ids.push(old.id(i));
     new.len() as u32 - 1
 }
@@ -344,6 +343,7 @@ fn count_anew(
     state.rigid_parts.renumber(particles, REMOVED);
     let free = state.particles.free;
     state.rigid_parts.number(free, &state.bonds);
+    // The next step computes damping forces before it needs them.
     state.divide();
     for wall in &mut state.walls {
         wall.near.clear();

@@ -10,7 +10,7 @@ use crate::physics::rotation;
 use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation as rotation_of;
 use crate::state::State;
-use crate::state::particles::{Motion, Particles, Wrench};
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::rigid_parts::{RigidPart, RigidParts};
 
 /// Rigid parts of bonded bodies.
@@ -40,10 +40,11 @@ pub(crate) const RIGID_PARTS: Stage = Stage {
 /// move as the parts do. Returns the number of their spheres.
 pub(crate) fn gather_rigid_parts(state: &mut State) -> usize {
     take_broken_impulses(state);
-    let structural = &state.scratch.structural_resistance;
+    let scratch = &state.scratch;
+    let resisting = [&scratch.bond_resistance[..], &scratch.structural_resistance];
     let particles = &mut state.particles;
     for part in &mut state.rigid_parts.all {
-        gather(part, particles, structural);
+        gather(part, particles, resisting);
     }
     spheres(&state.rigid_parts)
 }
@@ -68,18 +69,14 @@ fn take_broken_impulses(state: &mut State) {
     }
 }
 
-/// Force on a part, N, and torque about its centre of mass, N m, damping of bonds included.
-fn forces_on(
-    part: &RigidPart,
-    particles: &Particles,
-    structural: &[Wrench],
-) -> [Vector3<f64>; 2] {
+/// Force on a part, N, and torque about its centre of mass, N m, of all `lists` of wrenches, each
+/// with one for each particle, or empty. Or impulses, N s and N m s.
+fn forces_on(part: &RigidPart, poses: &[Pose], lists: [&[Wrench]; 3]) -> [Vector3<f64>; 2] {
     let centre = Vector3::from(part.place_m);
     let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
     for &i in &part.members {
         let i = i as usize;
-        let arm = particles.poses[i].place() - centre;
-        let lists = [&particles.wrenches[..], &particles.damping, structural];
+        let arm = poses[i].place() - centre;
         for wrench in lists.iter().filter_map(|list| list.get(i)) {
             let on_sphere = vector(wrench.force_n);
             force += on_sphere;
@@ -89,29 +86,34 @@ fn forces_on(
     [force, torque]
 }
 
-/// Gives the spheres of rigid parts the predicted motions of the parts.
-pub(super) fn predict_rigid_parts(state: &State, predicted: &mut [Motion]) {
+/// Gives the spheres of rigid parts the motions of the parts at the time of their poses: predicted
+/// from the forces without viscous damping, and these impulses, one for each particle, or none.
+pub(super) fn predict_rigid_parts(state: &State, impulses: &[Wrench], predicted: &mut [Motion]) {
     let half_s = 0.5 * state.previous_time_step_s;
     let gravity = Vector3::from(state.model.gravity_m_s2);
+    let (poses, wrenches) = (&state.particles.poses, &state.particles.wrenches);
     for part in &state.rigid_parts.all {
-        let structural = &state.scratch.structural_resistance;
-        let [force, torque] = forces_on(part, &state.particles, structural);
+        let structural = &state.scratch.structural_resistance[..];
+        let [force, torque] = forces_on(part, poses, [wrenches, structural, &[]]);
+        let [push, twist] = forces_on(part, poses, [impulses, &[], &[]]);
+        let velocity = half_s * (force / part.mass_kg + gravity) + push / part.mass_kg;
+        let angular = half_s * torque + twist;
         let now = RigidPart {
-            velocity_m_s: (Vector3::from(part.velocity_m_s)
-                + half_s * (force / part.mass_kg + gravity))
-                .into(),
-            angular_momentum: (Vector3::from(part.angular_momentum) + half_s * torque).into(),
+            velocity_m_s: (Vector3::from(part.velocity_m_s) + velocity).into(),
+            angular_momentum: (Vector3::from(part.angular_momentum) + angular).into(),
             ..part.clone()
         };
-        now.set_motions(&state.particles.poses, predicted);
+        now.set_motions(poses, predicted);
     }
 }
 
 /// Sums the forces on a part. Each sphere gets the motion of the part, and a wrench that accelerates
 /// it, together with its damping of bonds, as the part is accelerated.
-fn gather(part: &mut RigidPart, particles: &mut Particles, structural: &[Wrench]) {
+fn gather(part: &mut RigidPart, particles: &mut Particles, resisting: [&[Wrench]; 2]) {
     let centre = Vector3::from(part.place_m);
-    let [force, torque] = forces_on(part, particles, structural);
+    let [viscous, structural] = resisting;
+    let lists = [&particles.wrenches[..], viscous, structural];
+    let [force, torque] = forces_on(part, &particles.poses, lists);
     part.set_motions(&particles.poses, &mut particles.motions);
     let (faster, spun) = (force / part.mass_kg, part.spun_by(&torque));
     for (&i, sphere) in part.members.iter().zip(&part.spheres) {
@@ -122,8 +124,7 @@ fn gather(part: &mut RigidPart, particles: &mut Particles, structural: &[Wrench]
             &(sphere.mass_kg * (faster + spun.cross(&arm))),
             &(sphere.inertia_kg_m2 * spun),
         );
-        let damping = [&particles.damping[..], structural];
-        for resists in damping.iter().filter_map(|list| list.get(i)) {
+        for resists in resisting.iter().filter_map(|list| list.get(i)) {
             wrench.add(&-vector(resists.force_n), &-vector(resists.torque_n_m));
         }
         particles.wrenches[i] = wrench;

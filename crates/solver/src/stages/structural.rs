@@ -1,9 +1,10 @@
-//! Structural damping forces of bonds on the particles, against the motions predicted without them.
+//! Structural damping forces of bonds on the particles, against the motions predicted without
+//! damping of bonds.
 
 use nalgebra::Vector3;
 
-use super::bonds::{BONDS, any_bond};
-use super::damping::predict;
+use super::bonds::any_bond;
+use super::damping::{predict, predicted_bytes};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::bond::damping::{DampingForces, EndMotion};
 use crate::physics::bond::damping_models::structural_forces;
@@ -16,7 +17,7 @@ use crate::state::partitions::{BondSelection, Partition};
 /// Structural damping of bonds.
 pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
     name: "structural damping",
-    within: Some(BONDS.name),
+    within: None,
     need: |state, _| {
         Need::of(
             any_bond(state, |rule| rule.structural_damping > 0.0),
@@ -24,7 +25,12 @@ pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
             "not asked for",
         )
     },
-    bytes: |state| size_of_val(&state.scratch.structural_resistance[..]),
+    bytes: |state| {
+        let resistance = &state.scratch.structural_resistance;
+        let is_alone = !resistance.is_empty() && state.scratch.bond_resistance.is_empty();
+        let predicted = if is_alone { predicted_bytes(state) } else { 0 };
+        size_of_val(&resistance[..]) + predicted
+    },
     saving: NO_SAVING,
 };
 
@@ -36,7 +42,7 @@ pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
     state.scratch.structural_resistance.fill(Wrench::default());
     predict(state);
     let (bonds, poses, scratch) = (&state.bonds, &state.particles.poses, &mut state.scratch);
-    let motions = &scratch.predicted;
+    let motions = &scratch.predicted[0];
     for_each_partition(
         &mut scratch.partitions,
         &mut scratch.structural_resistance,

@@ -61,11 +61,6 @@ impl BondRule {
     pub(crate) fn is_single(&self) -> bool {
         self.incremental || self.plasticity.is_some() || self.flat_joint.is_some()
     }
-
-    /// Whether bonds have damping forces of any kind.
-    pub fn resists(&self) -> bool {
-        self.damped || self.structural_damping > 0.0
-    }
 }
 
 /// Bonds in a block.

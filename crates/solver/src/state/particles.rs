@@ -84,7 +84,7 @@ impl Motion {
 }
 
 /// Force and torque on a particle.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(align(64))]
 pub struct Wrench {
     /// Force, N: x, y, z and an unused fourth number.
@@ -115,9 +115,6 @@ pub struct Particles {
     /// Forces and torques in this step.
     #[serde(skip)]
     pub wrenches: Vec<Wrench>,
-    /// Viscous damping forces of bonds at the last kick, from which those of the next follow: one
-    /// for each free particle. Empty: no bond has any.
-    pub damping: Vec<Wrench>,
     /// A number that stands for the same particle throughout a run, and is never reused: see
     /// [`Particles::id`].
     pub ids: Vec<u32>,

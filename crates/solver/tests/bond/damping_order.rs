@@ -1,0 +1,99 @@
+//! Damping of bonds is of second order in the step, in a network and in a body that spins.
+
+use crate::bars::{
+    BondDamping, ELASTIC, bar, body, damp, random_spheres, shake, soft, spheres, steel, tumble,
+};
+use dem_run::physics::bond::stiffness::BondModel;
+use dem_run::state::State;
+use dem_run::state::bonds::BondRule;
+use dem_run::step::step;
+
+/// Positions of all particles after `end_s`, in `steps` steps.
+fn places(start: &State, end_s: f64, steps: u32) -> Vec<f64> {
+    let mut state = start.clone();
+    state.time_step_s = end_s / f64::from(steps);
+    for _ in 0..steps {
+        step(&mut state);
+    }
+    let poses = state.particles.poses.iter();
+    poses
+        .flat_map(|pose| pose.position_m[..3].to_vec())
+        .collect()
+}
+
+fn apart(a: &[f64], b: &[f64]) -> f64 {
+    let square = |(a, b): (&f64, &f64)| (a - b) * (a - b);
+    a.iter().zip(b).map(square).sum::<f64>().sqrt()
+}
+
+/// Half the step, a quarter of the difference to half the step.
+fn assert_second_order(name: &str, start: &State, end_s: f64, steps: u32) {
+    let found = [1, 2, 4, 8].map(|finer| places(start, end_s, steps * finer));
+    let errors: Vec<f64> = found
+        .windows(2)
+        .map(|two| apart(&two[0], &two[1]))
+        .collect();
+    for (n, two) in errors.windows(2).enumerate() {
+        let order = (two[0] / two[1]).log2();
+        eprintln!("{name}: {:e}, {:e}: order {order:.3}", two[0], two[1]);
+        // The first is not yet of the limit of small steps.
+        let off = if n == 0 { 0.3 } else { 0.1 };
+        assert!((order - 2.0).abs() < off, "{name}: {errors:?}");
+    }
+}
+
+/// 500 spheres with 2500 bonds, shaken, a bar that tumbles and vibrates, total and incremental.
+#[test]
+fn a_damped_network_is_of_second_order() {
+    for damping in [
+        BondDamping::Chen(0.1),
+        BondDamping::Chen(0.5),
+        BondDamping::Chen(10.0),
+        BondDamping::ChenByMode(0.3),
+    ] {
+        let (particles, pairs) = random_spheres();
+        let bonding = soft(BondModel::Timoshenko, ELASTIC);
+        let mut state = body(particles, &pairs, &bonding, 1e-9);
+        damp(&mut state, damping);
+        shake(&mut state, 0.1);
+        assert_second_order(&format!("network, {damping:?}"), &state, 2e-5, 64);
+    }
+    for incremental in [false, true] {
+        let rule = BondRule {
+            incremental,
+            ..ELASTIC
+        };
+        let mut state = bar(BondModel::Timoshenko, rule, 1e-9);
+        damp(&mut state, BondDamping::Chen(0.2));
+        tumble(&mut state);
+        assert_second_order("tumbling bar", &state, 2e-3, 128);
+    }
+}
+
+/// Two spheres on a circle: once their vibration has decayed, what the dashpot carries of the load
+/// that holds them there falls with the square of the step.
+#[test]
+fn dashpots_carry_no_load_on_a_circle() {
+    let carried = [4e-5, 2e-5, 1e-5].map(|dt| {
+        let (particles, pairs) = spheres(2);
+        let bonding = steel(BondModel::Timoshenko, ELASTIC);
+        let mut state = body(particles, &pairs, &bonding, dt);
+        damp(&mut state, BondDamping::Chen(0.3));
+        for (motion, pose) in (state.particles.motions.iter_mut()).zip(&state.particles.poses) {
+            motion.spin_rad_s = [0.0, 0.0, 500.0];
+            motion.velocity_m_s = [0.0, 500.0 * (pose.position_m[0] - 0.2), 0.0];
+        }
+        while state.time_s < 0.2 {
+            step(&mut state);
+        }
+        let size = |[x, y, z, _]: [f64; 4]| (x * x + y * y + z * z).sqrt();
+        let held = size(state.particles.wrenches[0].force_n);
+        assert!(held > 1e6, "{held}");
+        size(state.scratch.bond_resistance[0].force_n) / held
+    });
+    eprintln!("{carried:?}");
+    assert!(carried[0] < 0.1 * (500.0_f64 * 4e-5).powi(2), "{carried:?}");
+    for two in carried.windows(2) {
+        assert!(two[1] < 0.27 * two[0], "{carried:?}");
+    }
+}
