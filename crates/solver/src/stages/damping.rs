@@ -49,17 +49,17 @@ pub const BOND_DAMPING: Stage = Stage {
         let Scratch {
             bond_resistance,
             damping_stages,
+            predicted,
             ..
         } = &state.scratch;
-        let predicted = match bond_resistance.is_empty() {
-            true => 0,
-            false => predicted_bytes(state),
-        };
         let stages = damping_stages.iter().map(|stage| size_of_val(&stage[..]));
         size_of_val(&state.bonds.damping[..])
             + size_of_val(&bond_resistance[..])
             + stages.sum::<usize>()
             + predicted
+                .iter()
+                .map(|motions| size_of_val(&motions[..]))
+                .sum::<usize>()
     },
     saving: |state| {
         let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
@@ -70,12 +70,6 @@ pub const BOND_DAMPING: Stage = Stage {
         })
     },
 };
-
-/// Bytes of the predicted motions, which viscous and structural damping share.
-pub(super) fn predicted_bytes(state: &State) -> usize {
-    let predicted = state.scratch.predicted.iter();
-    predicted.map(|motions| size_of_val(&motions[..])).sum()
-}
 
 /// Sets the damping forces of bonds: those that, over the kick, have the impulse of its damping.
 /// Returns the number of bonds computed, in one stage.
@@ -112,7 +106,7 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
 }
 
 /// Predicts the motions of the free particles at the time of their poses, without damping of bonds.
-pub(super) fn predict(state: &mut State) {
+fn predict(state: &mut State) {
     let half_s = 0.5 * state.previous_time_step_s;
     let mut predicted = std::mem::take(&mut state.scratch.predicted[0]);
     let p = &state.particles;

@@ -1,10 +1,13 @@
-//! Structural damping forces of bonds on the particles, against the motions predicted without
-//! damping of bonds.
+//! Structural damping forces of bonds on the particles, from the velocities half a step ago.
+//!
+//! The force jumps where a mode reverses, so that displacements are of first order in the step
+//! whichever velocities decide on its sign. With those of half a step ago the limit of the step is
+//! exact: in the fastest mode at its limit, x, -x, x, they oppose the force, while those at the time
+//! of the forces nearly vanish, and slower modes decide.
 
 use nalgebra::Vector3;
 
 use super::bonds::any_bond;
-use super::damping::{predict, predicted_bytes};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::bond::damping::{DampingForces, EndMotion};
 use crate::physics::bond::damping_models::structural_forces;
@@ -25,12 +28,7 @@ pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
             "not asked for",
         )
     },
-    bytes: |state| {
-        let resistance = &state.scratch.structural_resistance;
-        let is_alone = !resistance.is_empty() && state.scratch.bond_resistance.is_empty();
-        let predicted = if is_alone { predicted_bytes(state) } else { 0 };
-        size_of_val(&resistance[..]) + predicted
-    },
+    bytes: |state| size_of_val(&state.scratch.structural_resistance[..]),
     saving: NO_SAVING,
 };
 
@@ -40,14 +38,12 @@ pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
         return 0;
     }
     state.scratch.structural_resistance.fill(Wrench::default());
-    predict(state);
-    let (bonds, poses, scratch) = (&state.bonds, &state.particles.poses, &mut state.scratch);
-    let motions = &scratch.predicted[0];
+    let (bonds, p) = (&state.bonds, &state.particles);
     for_each_partition(
-        &mut scratch.partitions,
-        &mut scratch.structural_resistance,
+        &mut state.scratch.partitions,
+        &mut state.scratch.structural_resistance,
         &|partition, resisting| {
-            of_partition(bonds, poses, motions, partition, resisting);
+            of_partition(bonds, &p.poses, &p.motions, partition, resisting);
         },
     );
     let partitions = state.scratch.partitions.iter();

@@ -124,7 +124,11 @@ pub(super) fn predict_held(state: &State, predicted: &mut [Motion]) {
             for k in (0..6).filter(|&k| support.holds[k].is_some()) {
                 let before = held.before[k];
                 let after = prescribed[k].unwrap_or(before);
-                let now = velocity_at_kick(before, after, steps_s);
+                // A support that moves from the start has done so since just before it.
+                let now = match steps_s[0] > 0.0 {
+                    true => velocity_at_kick(before, after, steps_s),
+                    false => after,
+                };
                 match k {
                     0..3 => motion.velocity_m_s[k] = now,
                     _ => motion.spin_rad_s[k - 3] = now,

@@ -133,7 +133,7 @@ fn damping_of_bonds_does_not_shorten_the_limit() {
             damp(&mut state, of_eta(1.0));
             let covered = state.damping_rate_1_s / damping_1_s(&state);
             eprintln!("{name}: covered {covered:.3}");
-            assert!((1.0..3.0).contains(&covered), "{name}: {covered}");
+            assert!((1.0..4.0).contains(&covered), "{name}: {covered}");
         }
     }
 }
