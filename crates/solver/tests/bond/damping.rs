@@ -271,7 +271,8 @@ fn grows(k: &DMatrix<f64>, c: &DMatrix<f64>) -> bool {
     set(1, 1, &decay);
     for _ in 0..16 {
         map = &map * &map;
-        if !(map.amax() < 1e12) {
+        let is_small = map.amax() < 1e12;
+        if !is_small {
             return true;
         }
     }
