@@ -92,13 +92,18 @@ impl BatchWork<'_> {
             let apart: Vec3<T> = separations(proof, &four.ends[first..], self.poses);
             let ends = &four.ends[first..first + T::COUNT];
             let at = &four.numbers[first..first + T::COUNT];
-            let moving = [0, 1].map(|side: usize| {
-                let motion = |lane: usize| &self.motions[ends[lane][side] as usize];
+            let motion = |lane: usize, side: usize| &self.motions[ends[lane][side] as usize];
+            // Spelled out: a closure around lanes may not be compiled for them.
+            let moving = [
                 [
-                    vectors(proof, |lane| motion(lane).velocity_row()),
-                    vectors(proof, |lane| motion(lane).spin_row()),
-                ]
-            });
+                    vectors(proof, |lane| motion(lane, 0).velocity_row()),
+                    vectors(proof, |lane| motion(lane, 0).spin_row()),
+                ],
+                [
+                    vectors(proof, |lane| motion(lane, 1).velocity_row()),
+                    vectors(proof, |lane| motion(lane, 1).spin_row()),
+                ],
+            ];
             let [normal, shear, torsion, bending] =
                 T::columns(proof, |lane| self.bonds.damping[at[lane]]);
             let coefficients = DampingCoefficients {

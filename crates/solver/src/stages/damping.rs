@@ -165,14 +165,16 @@ fn add_multiples<const N: usize>(
         .par_chunks_mut(CHUNK)
         .enumerate()
         .for_each(|(chunk, wrenches)| {
-            for (i, wrench) in (chunk * CHUNK..).zip(wrenches) {
-                for k in 0..3 {
-                    let sum = |of: fn(&Wrench) -> &[f64; 4], own: f64| {
-                        let terms = others.iter().map(|(factor, list)| factor * of(&list[i])[k]);
-                        terms.fold(factor * own, |sum, term| sum + term)
-                    };
-                    wrench.force_n[k] = sum(|wrench| &wrench.force_n, wrench.force_n[k]);
-                    wrench.torque_n_m[k] = sum(|wrench| &wrench.torque_n_m, wrench.torque_n_m[k]);
+            for wrench in wrenches.iter_mut() {
+                wrench.force_n = wrench.force_n.map(|force| factor * force);
+                wrench.torque_n_m = wrench.torque_n_m.map(|torque| factor * torque);
+            }
+            for (factor, list) in others {
+                for (wrench, other) in wrenches.iter_mut().zip(&list[chunk * CHUNK..]) {
+                    for k in 0..4 {
+                        wrench.force_n[k] += factor * other.force_n[k];
+                        wrench.torque_n_m[k] += factor * other.torque_n_m[k];
+                    }
                 }
             }
         });
