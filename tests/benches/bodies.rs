@@ -1,12 +1,14 @@
 //! The table of doc/performance.md on many bodies: the time of a step over the number of bodies
 //! that wait in an inlet, fly bonded or rigid, are broken, or sleep; alone, and beside ten bonded
 //! bodies that fly. `cargo bench -p dem-tests --bench bodies`, then the largest number of bodies or
-//! nothing (10,000). On one thread, some minutes.
+//! nothing (10,000), and `--page FILE` to write it. On one thread, some minutes.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
     reason = "a benchmark stops where it fails, and prints a table"
 )]
+
+mod page;
 
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -14,6 +16,8 @@ use std::time::Instant;
 use dem_run::plan::plan;
 use dem_run::state::State;
 use dem_run::step::step;
+
+use self::page::{Table, words};
 
 /// Numbers of bodies.
 const COUNTS: [usize; 4] = [10, 100, 1_000, 10_000];
@@ -177,18 +181,18 @@ fn step_us(state: &mut State) -> f64 {
 
 fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.expect("a thread starts").install(table);
+    pool.expect("a thread starts").install(write_table);
 }
 
-fn table() {
-    let most = std::env::args()
-        .skip(1)
-        .find(|word| !word.starts_with('-'))
+fn write_table() {
+    let most = words()
+        .first()
         .map_or(COUNTS[3], |word| word.parse().expect("a number of bodies"));
+    let mut table = Table::new();
     let counts: Vec<usize> = COUNTS.into_iter().filter(|count| *count <= most).collect();
     let head: Vec<String> = counts.iter().map(|count| format!(" {count} |")).collect();
-    println!("| bodies | beside them |{} |", head.concat());
-    println!("|---|---|{}---|", "---|".repeat(counts.len()));
+    table.row(&format!("| bodies | beside them |{} |", head.concat()));
+    table.row(&format!("|---|---|{}---|", "---|".repeat(counts.len())));
     for (doing, name) in CASES {
         for flying in [0, FLYING] {
             let times: Vec<f64> = counts
@@ -201,7 +205,11 @@ fn table() {
             } else {
                 "ten bonded ones"
             };
-            println!("| {name} | {beside} |{} us per step |", row.concat());
+            table.row(&format!(
+                "| {name} | {beside} |{} us per step |",
+                row.concat()
+            ));
         }
     }
+    table.write("bodies");
 }

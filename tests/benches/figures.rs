@@ -1,11 +1,14 @@
 //! The table of doc/performance.md: how fast a step is in scenes of bonded bodies, of loose spheres
 //! and of rigid clumps, and how much of it is the neighbour search. `cargo bench -p dem-tests
-//! --bench figures`, then the names of cases or nothing. Some minutes.
+//! --bench figures`, then the names of cases or nothing, and `--page FILE` to write it. Some
+//! minutes.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
     reason = "a benchmark stops where it fails, and prints a table"
 )]
+
+mod page;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -21,6 +24,8 @@ use dem_run::state::State;
 use dem_run::state::bonds::BLOCK;
 use dem_run::step::{stages, step};
 use rayon::prelude::*;
+
+use self::page::{Table, words};
 
 /// Number of rounds, of which the median is taken.
 const ROUNDS: usize = 7;
@@ -319,16 +324,15 @@ fn packed(stl: &[u8], diameters: &str, overlap: f64, bonds: Option<f64>) -> Body
 }
 
 fn main() {
-    let words: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|w| !w.starts_with('-'))
-        .collect();
+    let words = words();
     let wanted = |name: &str| words.is_empty() || words.iter().any(|word| word == name);
-    println!("| case | particles | bonds | threads | rate | | reading alone | neighbour search |");
-    println!("|---|---|---|---|---|---|---|---|");
+    let mut table = Table::new();
+    table.row("| case | particles | bonds | threads | rate | | reading alone | neighbour search |");
+    table.row("|---|---|---|---|---|---|---|---|");
     for case in cases(wanted) {
         for threads in [1, 2] {
-            println!("{}", case.row(threads));
+            table.row(&case.row(threads));
         }
     }
+    table.write("figures");
 }

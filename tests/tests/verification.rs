@@ -1,6 +1,7 @@
 //! Pages of verification: results of the solver and the packer compared with closed forms and other
 //! references.
 
+mod bonded_in_part;
 mod cantilevers;
 mod clumps;
 mod contacts;

@@ -57,6 +57,23 @@ pub const AREA: Dimension = Dimension {
     example: "9cm2",
 };
 
+/// Volume, m3.
+pub const VOLUME: Dimension = Dimension {
+    name: "volume",
+    si: "m3",
+    units: &[
+        ("um3", 1e-18),
+        ("nl", 1e-12),
+        ("mm3", 1e-9),
+        ("ul", 1e-9),
+        ("ml", 1e-6),
+        ("cm3", 1e-6),
+        ("l", 1e-3),
+        ("m3", 1.0),
+    ],
+    example: "1 mm3",
+};
+
 /// Density, kg/m3.
 pub const DENSITY: Dimension = Dimension {
     name: "density",
@@ -243,6 +260,14 @@ pub const ENERGY_PER_AREA: Dimension = Dimension {
     example: "50 J/m2",
 };
 
+/// Surface tension, N/m.
+pub const SURFACE_TENSION: Dimension = Dimension {
+    name: "surface tension",
+    si: "N/m",
+    units: &[("mN/m", 1e-3), ("N/m", 1.0), ("mJ/m2", 1e-3), ("J/m2", 1.0)],
+    example: "73 mN/m",
+};
+
 /// Mass over time, kg/s.
 pub const MASS_RATE: Dimension = Dimension {
     name: "mass rate",
@@ -286,10 +311,11 @@ pub const NUMBER: Dimension = Dimension {
 };
 
 /// All dimensions.
-pub const DIMENSIONS: [Dimension; 20] = [
+pub const DIMENSIONS: [Dimension; 22] = [
     NUMBER,
     LENGTH,
     AREA,
+    VOLUME,
     TIME,
     MASS,
     DENSITY,
@@ -304,6 +330,7 @@ pub const DIMENSIONS: [Dimension; 20] = [
     ENERGY,
     ENERGY_PER_MASS,
     ENERGY_PER_AREA,
+    SURFACE_TENSION,
     MASS_RATE,
     RATE,
     VISCOUS_DAMPING,

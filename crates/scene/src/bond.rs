@@ -169,12 +169,14 @@ pub(super) static BOND: Schema = Schema {
             Kind::Whole { least: 1, most: Some(100), of: "" },
             "Rings of elements in the section, for the model `flat-joint`.",
         )
+        .remedy("leave it out for 3")
         .or(3.0),
         Key::new(
             "circumferential_elements",
             Kind::Whole { least: 3, most: Some(100), of: "" },
             "Elements of each ring, for the model `flat-joint`.",
         )
+        .remedy("leave it out for 12")
         .or(12.0),
         Key::number(
             "joint_friction",
@@ -365,6 +367,13 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
             friction: table.read("joint_friction")?,
         },
     );
+    if let Some(field) = table.get("model").filter(|field| field.is("shen")) {
+        let problem = format!(
+            "{} is \"shen\", the bond with concave ends of Shen et al. 2016, which is not available: the sources at hand do not give its formulas",
+            field.path
+        );
+        return Err(field.refuse(problem, "write another model, such as \"parallel\""));
+    }
     let model = table
         .read_by("model", |field| field.choice(&known))?
         .unwrap_or(BondModel::Timoshenko);

@@ -1,10 +1,14 @@
 //! `[contacts]`: the contact between two materials.
 
+mod liquid_bridge;
 mod pair;
 
 use std::collections::BTreeMap;
 use std::ops::Bound::{Excluded, Included};
 
+pub use self::liquid_bridge::LiquidBridge;
+
+use self::liquid_bridge::LIQUID_BRIDGE;
 use self::pair::named_pair;
 use super::field::Field;
 use super::listing::Listing;
@@ -94,6 +98,11 @@ pub(super) static CONTACT: Schema = Schema {
         .within(Included(0.0), Included(1.0))
         .remedy("it is a fraction of critical damping: a usual value is 0.3")
         .or(0.3),
+        Key::table(
+            "liquid_bridge",
+            &LIQUID_BRIDGE,
+            "Liquid between ends that have touched, which pulls them together beside the law; without it they are dry.",
+        ),
     ],
 };
 
@@ -110,6 +119,8 @@ pub struct Contact {
     pub friction: f64,
     /// `rolling`: none if `friction` is 0.
     pub rolling: Rolling,
+    /// `liquid_bridge = { ... }`. None: dry.
+    pub liquid_bridge: Option<LiquidBridge>,
 }
 
 /// How forces are computed from overlap and sliding.
@@ -201,6 +212,7 @@ fn read(
         restitution,
         friction,
         rolling: rolling(&table, friction)?,
+        liquid_bridge: table.read_by("liquid_bridge", |field| liquid_bridge::read(&field))?,
     })
 }
 
@@ -344,5 +356,10 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
             listing.value("rolling_friction", &friction);
             listing.value("rolling_damping_ratio", &damping);
         }
+    }
+    if let Some(bridge) = &contact.liquid_bridge {
+        listing.table("liquid_bridge", &LIQUID_BRIDGE, |listing| {
+            liquid_bridge::list(bridge, listing);
+        });
     }
 }

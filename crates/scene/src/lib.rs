@@ -49,6 +49,7 @@ mod search;
 mod shape;
 mod sleep;
 mod statics;
+mod steps_by_body;
 pub mod study;
 mod support;
 mod table;
@@ -68,7 +69,7 @@ pub use bond::{BondDamping, BondKind, BondModel, BondPlasticity, Formulation, Jo
 pub use bond_failure::{BondFailure, EquivalentStress, StrainRateMeasure};
 pub use clump::{ClumpMass, ClumpSettings, StartAs};
 pub use clusters::Clusters;
-pub use contact::{Contact, ContactLaw, Rolling};
+pub use contact::{Contact, ContactLaw, LiquidBridge, Rolling};
 pub use daughters::{CountedEnergy, Daughters, SizeClass};
 pub use factor::Factor;
 pub use fall::Fall;

@@ -15,8 +15,8 @@ use super::targets::Targets;
 use super::tree::option_place;
 use super::{
     body, bond, clusters, contact, fall_check, group, initial, inlet, load, material, measure,
-    outlet, output, region, relaxation, replacement, run, search, sleep, statics, support, test,
-    wall, zone_check,
+    outlet, output, region, relaxation, replacement, run, search, sleep, statics, steps_by_body,
+    support, test, wall, zone_check,
 };
 use crate::field::Field;
 use dem_io::diagnostic::Result;
@@ -98,6 +98,9 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let test = root.read_by("test", |field| test::read(&field, &known))?;
     if run.integrator == Integrator::Static {
         statics::refuse_what_moves(&root)?;
+    }
+    if run.steps_by_body {
+        steps_by_body::refuse_others(&root, &run)?;
     }
     Ok(Scene {
         source: source.to_owned(),

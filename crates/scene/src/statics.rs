@@ -58,6 +58,11 @@ pub(super) fn refuse_what_moves(root: &Table<'_>) -> Result<()> {
             "is not available with run.integrator = \"static\", which bonds all of a body",
         ),
         (
+            "contacts",
+            "liquid_bridge",
+            "has no part in run.integrator = \"static\", in which contacts only press",
+        ),
+        (
             "bonds",
             "plasticity",
             "needs the way to a load, and run.integrator = \"static\" goes straight to its equilibrium",

@@ -10,15 +10,26 @@ use std::time::{Duration, Instant};
 pub(crate) const EVERY: u64 = 16;
 
 /// Largest number of stages.
-const MOST: usize = 32;
+const MOST: usize = 40;
 
 /// Times of the stages in the timed steps, and their work in all steps.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct StageClock {
     times: [Duration; MOST],
     done: [u64; MOST],
     left_out: [bool; MOST],
     since: Option<Instant>,
+}
+
+impl Default for StageClock {
+    fn default() -> Self {
+        Self {
+            times: [Duration::ZERO; MOST],
+            done: [0; MOST],
+            left_out: [false; MOST],
+            since: None,
+        }
+    }
 }
 
 impl StageClock {

@@ -3,6 +3,7 @@
 pub(crate) mod blocks;
 pub mod bonds;
 pub mod breakage;
+pub(crate) mod bridges;
 pub(crate) mod chunks;
 pub mod clumps;
 mod cluster_bytes;
@@ -18,6 +19,7 @@ pub(crate) mod inlets;
 pub(crate) mod intake;
 pub(crate) mod lanes;
 pub mod ledger;
+pub(crate) mod levels;
 pub(crate) mod listing;
 pub mod loads;
 pub mod motion;

@@ -3,12 +3,15 @@
 
 pub mod bodies;
 pub mod bonds;
+pub mod bridges;
 pub mod clumps;
 pub mod clusters;
 pub mod contacts;
 pub mod damping_rate;
 pub mod events;
+pub mod groups;
 pub(crate) mod ledger;
+pub mod levels;
 pub mod loads;
 pub mod model;
 pub mod order;
@@ -32,11 +35,13 @@ use serde::{Deserialize, Serialize};
 use crate::physics::bond::failure::CauseCounts;
 
 use self::bonds::{BondRule, Bonds};
+use self::bridges::Bridges;
 use self::clumps::Clumps;
 use self::clusters::Clusters;
-use self::contacts::Contacts;
+use self::contacts::{ContactPartition, Contacts};
 use self::damping_rate::damping_rate_1_s;
 use self::ledger::EnergyLedger;
+use self::levels::{CYCLE, Levels, length};
 use self::loads::GroupLoad;
 use self::model::Model;
 use self::particles::{Particles, Wrench};
@@ -75,8 +80,12 @@ pub struct State {
     pub population: Population,
     /// Contacts between particles of different clusters. None: nothing can touch.
     pub contacts: Option<Contacts>,
+    /// Liquid bridges. None: no materials are wet.
+    pub bridges: Option<Bridges>,
     /// Sleeping bodies. None: no body can sleep.
     pub sleep: Option<Sleep>,
+    /// Bodies with steps of their own. None: all bodies take the same steps.
+    pub levels: Option<Levels>,
     /// Walls, in the order of their names.
     pub walls: Vec<Wall>,
     /// Forces and contacts that measures record in every step. Empty: none.
@@ -133,7 +142,9 @@ impl State {
             clusters: None,
             unsearched: Vec::new(),
             contacts: None,
+            bridges: None,
             sleep: None,
+            levels: None,
             walls: Vec::new(),
             watches: Vec::new(),
             loads: Vec::new(),
@@ -310,6 +321,41 @@ impl State {
     /// Length of the kick of this step: half of the previous step and half of the next, s.
     pub(crate) fn kick_s(&self) -> f64 {
         0.5 * (self.previous_time_step_s + self.time_step_s)
+    }
+
+    /// Number of time steps from one time at which all bodies are to the next.
+    pub(crate) fn cycle(&self) -> u64 {
+        if self.levels.is_some() { CYCLE } else { 1 }
+    }
+
+    /// Length of such a cycle, s.
+    pub(crate) fn cycle_s(&self) -> f64 {
+        self.cycle() as f64 * self.time_step_s
+    }
+
+    /// The previous step of a particle and its next, s.
+    pub(crate) fn steps_of_s(&self, i: usize) -> [f64; 2] {
+        let Some(levels) = &self.levels else {
+            return self.steps_s();
+        };
+        let now = levels.of_particle[i];
+        let before = levels.scratch.before.get(i).copied().unwrap_or(now);
+        [
+            length(before) * self.previous_time_step_s,
+            length(now) * self.time_step_s,
+        ]
+    }
+
+    /// Division of the work on contacts.
+    pub(crate) fn contact_partitions(&self) -> Vec<&ContactPartition> {
+        match (&self.levels, &self.contacts) {
+            (_, None) => Vec::new(),
+            (Some(levels), _) => {
+                let groups = levels.scratch.groups.iter();
+                groups.flat_map(|group| &group.contacts).collect()
+            }
+            (None, Some(contacts)) => contacts.scratch.partitions.iter().collect(),
+        }
     }
 
     /// The previous step and the next, s.

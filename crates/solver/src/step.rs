@@ -7,6 +7,7 @@ use crate::stages::breakage::{
     DAMAGE, FAILURE, FRICTION, RATES, SCATTER, break_failed_bonds, count_frictional, count_rates,
     count_scattered,
 };
+use crate::stages::bridges::{BRIDGES, compute_bridges};
 use crate::stages::clumps::{CLUMPS, drift_clumps, gather_clumps, kick_clumps};
 use crate::stages::contacts::{
     CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
@@ -20,6 +21,10 @@ use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
 use crate::stages::intake::{DAUGHTERS, take_in_energy};
 use crate::stages::ledger::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
+};
+use crate::stages::levels::{
+    LEVELS, end_cycle, in_all_groups, in_groups_now, is_common_time, join_groups, keep_breaks,
+    note_drift, set_levels, tick,
 };
 use crate::stages::listing::{SEARCH, renew_lists, use_up_skin};
 use crate::stages::loads::{LOADS, apply_loads};
@@ -52,6 +57,7 @@ type Part = (&'static Stage, fn(&mut State) -> usize);
 /// that follow from them.
 const INTERACT: &[Part] = &[
     (&SEARCH, renew_lists),
+    (&LEVELS, set_levels),
     (&MOTION, clear_wrenches),
     (&BONDS, compute_bonds),
     (&HISTORIES, compute_incremental_bonds),
@@ -62,6 +68,7 @@ const INTERACT: &[Part] = &[
     (&RELAXATION, count_relaxing),
     (&ROLLING, count_rolling),
     (&WALLS, compute_wall_contacts),
+    (&BRIDGES, compute_bridges),
     (&CLUMPS, gather_clumps),
     (&DAUGHTERS, take_in_energy),
     (&SUPPORTS, remember_held),
@@ -108,6 +115,12 @@ const DRIFT: &[Part] = &[
     (&LEDGER, advance_time),
 ];
 
+/// Stages of the first half that are done once for all groups of bodies with steps of their own,
+/// before the groups and after them.
+const OF_ALL: [&[&Stage]; 2] = [&[&SEARCH, &LEVELS], &[&CLUSTERS, &OUTPUT, &CHECKS]];
+/// The same of the second half, after all drifts.
+const AFTER_DRIFTS: [&Stage; 2] = [&WALLS, &SEARCH];
+
 /// A complete step. Returns what happened in it.
 pub fn step(state: &mut State) -> &Events {
     interact(state);
@@ -122,7 +135,16 @@ pub fn interact(state: &mut State) {
     if !state.ledger.is_open {
         state.ledger = opened(state);
     }
-    run(INTERACT, &TABLE.interact, state);
+    if state.levels.is_none() {
+        return run(INTERACT, &TABLE.interact, state, |_| true);
+    }
+    run(INTERACT, &TABLE.interact, state, |stage| {
+        OF_ALL[0].contains(&stage)
+    });
+    in_all_groups(state, interact_group);
+    run(INTERACT, &TABLE.interact, state, |stage| {
+        OF_ALL[1].contains(&stage)
+    });
 }
 
 /// Second half of a step. Afterwards poses and time are those at the end of the step.
@@ -134,18 +156,47 @@ pub fn advance(state: &mut State) {
 /// Adds, removes and replaces bodies, while poses are those of `time_s` and velocities those half a
 /// step later.
 pub fn exchange(state: &mut State) {
-    run(EXCHANGE, &TABLE.exchange, state);
+    run(EXCHANGE, &TABLE.exchange, state, |_| true);
 }
 
-/// Moves everything on to the end of the step.
+/// Moves everything on to the end of the step; bodies with steps of their own to the next time that
+/// they have in common.
 pub fn drift(state: &mut State) {
-    run(DRIFT, &TABLE.drift, state);
+    if state.levels.is_none() {
+        return run(DRIFT, &TABLE.drift, state, |_| true);
+    }
+    join_groups(state);
+    in_groups_now(state, drift_group);
+    tick(state);
+    while !is_common_time(state) {
+        in_groups_now(state, |state| {
+            interact_group(state);
+            keep_breaks(state);
+            drift_group(state);
+        });
+        tick(state);
+    }
+    end_cycle(state);
+    run(DRIFT, &TABLE.drift, state, |stage| {
+        AFTER_DRIFTS.contains(&stage)
+    });
 }
 
-fn run(parts: &[Part], stages: &[usize], state: &mut State) {
-    state.scratch.clock.start(state.steps);
-    for ((_, part), &stage) in parts.iter().zip(stages) {
-        if !state.scratch.clock.is_left_out(stage) {
+fn interact_group(state: &mut State) {
+    let is_own = |stage: &Stage| !OF_ALL.iter().any(|some| some.contains(&stage));
+    run(INTERACT, &TABLE.interact, state, is_own);
+}
+
+fn drift_group(state: &mut State) {
+    run(DRIFT, &TABLE.drift, state, |stage| *stage == MOTION);
+    note_drift(state);
+}
+
+/// Does those parts whose stages are meant.
+fn run(parts: &[Part], stages: &[usize], state: &mut State, is_meant: fn(&Stage) -> bool) {
+    state.scratch.clock.start(state.steps / state.cycle());
+    for ((own, part), &stage) in parts.iter().zip(stages) {
+        if is_meant(own) && !state.scratch.clock.is_left_out(stage) {
             let items = part(state);
             state.scratch.clock.did(stage, items);
             state.scratch.clock.book(stage);

@@ -7,6 +7,7 @@
 pub(crate) mod adhesion;
 pub(crate) mod bonded;
 pub(crate) mod breakage;
+pub(crate) mod bridges;
 pub mod cases;
 pub(crate) mod daughters;
 pub(crate) mod families;
@@ -15,6 +16,7 @@ pub(crate) mod joints;
 pub mod limit_map;
 pub(crate) mod long;
 pub(crate) mod oscillator;
+pub(crate) mod own_steps;
 pub mod prediction;
 pub(crate) mod softening;
 pub(crate) mod swap;

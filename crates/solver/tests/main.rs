@@ -13,6 +13,7 @@ mod closed_box;
 mod helpers;
 
 mod bond;
+mod bridges;
 mod clumps;
 mod clusters;
 mod contact;
@@ -20,6 +21,7 @@ mod failure;
 mod fragments;
 mod laboratory;
 mod leave_out;
+mod levels;
 mod measures;
 mod meet;
 mod notation;

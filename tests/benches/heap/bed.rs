@@ -67,6 +67,7 @@ fn contacts(state: &State, threads: usize) -> Contacts {
             kinds: vec![ContactKind {
                 law: Law::HertzMindlin(HertzMindlin::new([glass; 2], &PairInput::new(0.5, 0.5))),
                 rolling: Rolling::Free,
+                bridge: None,
             }],
             kind_of: vec![0],
             least_overlap: 1e-3,

@@ -626,6 +626,82 @@ fn adhesion() -> String {
     compared("work of adhesion", "", &cases)
 }
 
+/// A sphere of 1 mm is pulled from another, or from a wall, at 1 mm/s: the pull-off force, the gap
+/// at rupture and the energy lost are those of the closed forms, to the movement in a step.
+fn liquid_bridge() -> String {
+    const RADIUS_M: f64 = 1e-3;
+    const STEP_S: f64 = 5e-6;
+    const SPEED_M_S: f64 = 1e-3;
+    let mut cases = Vec::new();
+    for degrees in [0.0_f64, 30.0] {
+        let angle = degrees.to_radians();
+        let rupture_m = (1.0 + 0.5 * angle) * 1e-4;
+        // R of Derjaguin: that of two equal spheres; of a sphere and a wall twice that.
+        for (what, derjaguin_m) in [("sphere", RADIUS_M), ("wall", 2.0 * RADIUS_M)] {
+            let other = if what == "wall" {
+                "walls.plate = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"glass\", velocity = [0, 0, -1e-3] }"
+            } else {
+                "bodies.other = { particles = [[0, 0, -1e-3, 1e-3]], material = \"glass\", velocity = [0, 0, -1e-3] }
+                 supports.other = { group = \"other\", fixed = [\"x\", \"y\"], velocity.z = -1e-3 }"
+            };
+            let mut state = started(&format!(
+                r#"
+                version = 1
+                run = {{ end_time = "1 s", time_step = {STEP_S:e}, initial_overlap = "keep" }}
+                materials.glass = {{ density = 2500, young_modulus = "100 MPa" }}
+                contacts.glass-glass = {{ restitution = 1, liquid_bridge = {{ surface_tension = "73 mN/m", contact_angle = "{degrees} deg", volume = "1e-3 mm3" }} }}
+                bodies.ball = {{ particles = [[0, 0, {:e}, 1e-3]], material = "glass" }}
+                supports.ball = {{ group = "ball", fixed = ["x", "y", "z"] }}
+                {other}
+                "#,
+                RADIUS_M - 1e-9
+            ));
+            let (mut largest_n, mut gap_m) = (0.0_f64, 0.0_f64);
+            while state.time_s < 1.1 * rupture_m / SPEED_M_S {
+                dem_run::step::interact(&mut state);
+                let down_n = -state.particles.wrenches[0].force_n[2];
+                largest_n = largest_n.max(down_n);
+                if down_n > 0.0 {
+                    gap_m = SPEED_M_S * state.time_s;
+                }
+                dem_run::step::advance(&mut state);
+            }
+            let pull_n = 2.0 * PI * derjaguin_m * 0.073 * angle.cos();
+            let scale_m = (1e-12 / derjaguin_m).sqrt();
+            let x = rupture_m / scale_m;
+            let root = 8.8975_f64.sqrt();
+            let work_j = pull_n * scale_m * 2.0 / root * (root * x / (2.0 + 1.05 * x)).atan();
+            let step_m = SPEED_M_S * STEP_S;
+            let last_n = pull_n / (1.0 + 1.05 * x + 2.5 * x * x);
+            let lost_j = state.bridges.as_ref().map_or(0.0, |bridges| bridges.lost_j);
+            let name = format!("{what}, {degrees}°");
+            let [found, wanted] = [largest_n, pull_n].map(|x| 1e6 * x);
+            cases.push(Case::new(
+                format!("{name}: pull-off force, uN"),
+                found,
+                wanted,
+                1.05 * step_m / scale_m,
+            ));
+            let [found, wanted] = [gap_m, rupture_m].map(|x| 1e6 * x);
+            cases.push(Case::new(
+                format!("{name}: gap at rupture, um"),
+                found,
+                wanted,
+                1.01 * step_m / rupture_m,
+            ));
+            let [found, wanted] = [lost_j, work_j].map(|x| 1e9 * x);
+            let bound = (last_n * step_m + pull_n * 1e-9) / work_j;
+            cases.push(Case::new(
+                format!("{name}: energy lost, nJ"),
+                found,
+                wanted,
+                bound,
+            ));
+        }
+    }
+    compared("liquid bridge", "", &cases)
+}
+
 /// The page of contacts equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
@@ -650,6 +726,7 @@ fn the_page_shows_what_the_solver_gives() {
                 ("rolling friction", rolling_friction()),
                 ("held", held()),
                 ("adhesion", adhesion()),
+                ("liquid bridge", liquid_bridge()),
             ],
         )
     });

@@ -107,7 +107,21 @@ fn contact(materials: [&str; 2], law: ContactLaw, restitution: f64, rolling: Rol
         restitution,
         friction: 0.0,
         rolling,
+        liquid_bridge: None,
     }
+}
+
+#[test]
+fn a_liquid_bridge_belongs_to_any_law() {
+    let scene = good("liquid-bridge.toml");
+    let [contact] = &scene.contacts[..] else {
+        panic!("one pair");
+    };
+    assert_eq!(contact.law, ContactLaw::HertzMindlin);
+    let bridge = contact.liquid_bridge.unwrap();
+    assert_near(bridge.surface_tension_n_m, 0.073);
+    assert_near(bridge.contact_angle_rad, 20_f64.to_radians());
+    assert_near(bridge.volume_m3, 1e-12);
 }
 
 #[test]
@@ -566,6 +580,7 @@ run.rest_energy_ratio           never
 run.time_step                   auto
 run.safety_factor               0.9
 run.adaptive                    false
+run.steps_by_body               false
 run.gravity                     [0, 0, 0] m/s2
 run.local_damping               0
 run.seed                        0

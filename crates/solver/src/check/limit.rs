@@ -14,7 +14,7 @@ use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
 
 /// Iterations at least and at most.
-const ITERATIONS: [usize; 2] = [20, 200];
+pub(super) const ITERATIONS: [usize; 2] = [20, 200];
 /// Beyond the least number of iterations, one in so many asks whether it was enough.
 const EVERY: usize = 5;
 /// Displacement for the difference quotient, in radii, and rotation, of particles and of the axes
@@ -201,7 +201,7 @@ fn undamage(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
 
 /// Makes bonds with structural damping stiffer by its gamma. Returns what they were; None: there
 /// are none.
-fn stiffen_by_structural_damping(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
+pub(super) fn stiffen_by_structural_damping(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
     let gamma = |rule: &BondRule| rule.structural_damping;
     if bonds.rules.iter().all(|rule| gamma(rule) == 0.0) {
         return None;
@@ -218,7 +218,7 @@ fn stiffen_by_structural_damping(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
     Some(before)
 }
 
-fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>>) {
+pub(super) fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>>) {
     if let Some(blocks) = before {
         bonds.blocks = blocks;
     }
@@ -226,7 +226,7 @@ fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>>) {
 
 /// Clears the wrenches of the search: a balance before the next step would read them, and what acts
 /// on the spheres of clumps is added to them.
-fn clear_trial_wrenches(state: &mut State) {
+pub(super) fn clear_trial_wrenches(state: &mut State) {
     state.particles.wrenches.fill(Wrench::default());
 }
 
@@ -323,7 +323,7 @@ impl Weights {
     };
 
     /// dt^2/4 K, `stiffer` by so much, + dt/2 C.
-    fn of_step(stiffer: f64, step_s: f64) -> Self {
+    pub(super) fn of_step(stiffer: f64, step_s: f64) -> Self {
         Self {
             stiffness: 0.25 * stiffer * step_s * step_s,
             damping: 0.5 * step_s,
@@ -403,7 +403,7 @@ fn largest_eigenvalue(
 
 /// Largest eigenvalue of Lanczos' tridiagonal matrix, and how far it can be from an eigenvalue of
 /// the operator.
-fn largest_ritz(diagonal: &[f64], beside: &[f64], beta: f64) -> (f64, f64) {
+pub(super) fn largest_ritz(diagonal: &[f64], beside: &[f64], beta: f64) -> (f64, f64) {
     let n = diagonal.len();
     let mut matrix = DMatrix::zeros(n, n);
     for i in 0..n {
@@ -423,7 +423,7 @@ fn largest_ritz(diagonal: &[f64], beside: &[f64], beta: f64) -> (f64, f64) {
 
 /// One over the root of mass or inertia of each freedom; 0 where a support holds it to the end.
 /// What a support lets go of counts as free all along, which never gives a larger step.
-fn inverse_mass_roots(state: &State) -> Field {
+pub(super) fn inverse_mass_roots(state: &State) -> Field {
     let p = &state.particles;
     let mut roots: Field = (0..p.len())
         .map(|i| {

@@ -8,11 +8,13 @@ use crate::physics::contact::Linearised;
 use crate::physics::contact::kinematics::{ContactKinematics, contact_kinematics, torques};
 use crate::physics::contact::law::ContactKind;
 use crate::physics::contact::law::Law;
+use crate::physics::contact::liquid_bridge::LiquidBridge;
 use crate::physics::number::Vec3;
 use crate::stages::walls::wall_contact;
 use crate::state::State;
+use crate::state::bridges::Bridges;
 use crate::state::clumps::{Clump, Clumps};
-use crate::state::contacts::ContactPartition;
+use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallContact};
 
@@ -29,7 +31,7 @@ pub struct LinearContact {
     answer: Linearised,
 }
 
-/// All touching contacts of a state.
+/// All touching contacts and all liquid bridges of a state.
 pub(crate) fn linear_contacts(state: &State) -> Vec<LinearContact> {
     let mut found = Vec::new();
     let p = &state.particles;
@@ -58,8 +60,62 @@ pub(crate) fn linear_contacts(state: &State) -> Vec<LinearContact> {
             let touching = touching.filter(|touch| touch.history.overlap_m() > 0.0);
             found.extend(touching.map(|touch| at_wall(wall, touch, &contacts.materials, p)));
         }
+        if let Some(bridges) = &state.bridges {
+            found.extend(linear_bridges(state, contacts, bridges));
+        }
     }
     found
+}
+
+/// Liquid bridges as springs between centres. Along the normal their stiffness is negative; its
+/// magnitude counts, so that a step resolves how fast it pulls ends together or lets them go.
+/// Across it, the pull holds like a string.
+fn linear_bridges<'a>(
+    state: &'a State,
+    contacts: &'a Contacts,
+    bridges: &'a Bridges,
+) -> impl Iterator<Item = LinearContact> + 'a {
+    let p = &state.particles;
+    let linear = |ends, touch: ContactKinematics, law: LiquidBridge, gap_m: f64, length_m: f64| {
+        let radius_m = touch.effective_radius_m;
+        LinearContact {
+            ends,
+            touch: ContactKinematics {
+                levers_m: [0.0; 2],
+                ..touch
+            },
+            answer: Linearised {
+                normal_n_m: law.fall_n_m(gap_m, radius_m),
+                tangential_n_m: law.force_n(gap_m, radius_m) / length_m,
+                ..Linearised::default()
+            },
+        }
+    };
+    let of_pairs = bridges.pairs.iter().filter_map(move |bridge| {
+        let law = contacts.model.kinds[contacts.kind(bridge.pair)].bridge?;
+        let [a, b] = bridge.pair.map(|end| end as usize);
+        let apart = p.poses[b].place() - p.poses[a].place();
+        let ends = [a, b].map(|i| p.contact_sphere_at_rest(i));
+        let touch = contact_kinematics(apart.into(), ends, 0.0);
+        Some(linear(
+            bridge.pair.map(Some),
+            touch,
+            law,
+            bridge.gap_m,
+            apart.norm(),
+        ))
+    });
+    let of_walls = bridges.walls.iter().filter_map(move |bridge| {
+        let i = bridge.particle as usize;
+        let law = state.walls[bridge.wall as usize]
+            .kind(contacts.materials[i])
+            .bridge?;
+        let touch = wall_contact(p, i, &Vector3::from(bridge.normal), -bridge.gap_m);
+        let length_m = p.poses[i].radius_m() + bridge.gap_m;
+        let ends = [None, Some(bridge.particle)];
+        Some(linear(ends, touch, law, bridge.gap_m, length_m))
+    });
+    of_pairs.chain(of_walls)
 }
 
 fn at_wall(
@@ -145,9 +201,24 @@ fn translation(answer: &Linearised) -> [f64; 2] {
 /// is twice the sum of its springs.
 pub fn contact_rates(state: &State) -> [f64; 2] {
     let contacts = linear_contacts(state);
+    let mut rates = clump_rates(state, &contacts);
+    for of_one in rates_of_particles(state, &contacts) {
+        for (rate, of_one) in rates.iter_mut().zip(of_one) {
+            *rate = rate.max(of_one);
+        }
+    }
+    rates
+}
+
+/// The same bounds for each free particle, from its contacts.
+pub(crate) fn particle_contact_rates(state: &State) -> Vec<[f64; 2]> {
+    rates_of_particles(state, &linear_contacts(state))
+}
+
+fn rates_of_particles(state: &State, contacts: &[LinearContact]) -> Vec<[f64; 2]> {
     let p = &state.particles;
     let mut sums = vec![[0.0; 2]; p.free];
-    for contact in &contacts {
+    for contact in contacts {
         for i in contact.ends.into_iter().flatten().map(|end| end as usize) {
             let Some(sum) = sums.get_mut(i) else { continue };
             let answer = &contact.answer;
@@ -158,13 +229,10 @@ pub fn contact_rates(state: &State) -> [f64; 2] {
             sum[1] += damping.max(turning * answer.rolling_damping_n_m_s);
         }
     }
-    let mut rates = clump_rates(state, &contacts);
-    for (sum, motion) in sums.into_iter().zip(&p.motions) {
-        for (rate, sum) in rates.iter_mut().zip(sum) {
-            *rate = rate.max(2.0 * sum * motion.inverse_mass);
-        }
+    for (sum, motion) in sums.iter_mut().zip(&p.motions) {
+        *sum = sum.map(|sum| 2.0 * sum * motion.inverse_mass);
     }
-    rates
+    sums
 }
 
 /// Weights of the two symmetric operators of a body in a sum.
@@ -233,7 +301,7 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f6
         .map(|kind| matters.least_overlap_m(&kind.law))
         .collect();
     // Whatever touches was close at the last check of all pairs.
-    let of_partition = |partition: &ContactPartition| {
+    let of_partition = |partition: &&ContactPartition| {
         let mut largest = 0.0_f64;
         for ((kind, [_, own]), least_m) in contacts
             .model
@@ -251,8 +319,8 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f6
         }
         largest
     };
-    let of_pairs =
-        (contacts.scratch.partitions.par_iter().map(of_partition)).reduce(|| 0.0, f64::max);
+    let partitions = state.contact_partitions();
+    let of_pairs = (partitions.par_iter().map(of_partition)).reduce(|| 0.0, f64::max);
     let of_walls = state.walls.iter().flat_map(|wall| {
         wall.touching.iter().map(|touch| {
             let i = touch.particle as usize;
@@ -297,6 +365,11 @@ impl StiffestContacts {
 /// its [rate](largest_contact_rate_1_s2), 1/s2. A particle pushed by a body behind it may overlap
 /// more.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
+    at_impact_of(state, speed_m_s, None)
+}
+
+/// The same for the particles of one material, or of all.
+pub(crate) fn at_impact_of(state: &State, speed_m_s: f64, only: Option<usize>) -> [f64; 3] {
     let Some(contacts) = &state.contacts else {
         return [0.0; 3];
     };
@@ -315,7 +388,10 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
         };
         let ends = if at_wall { 1.0 } else { 2.0 };
         let per_mass = ends * inverse_kg;
-        let answer = kind.linearised(&touch);
+        let mut answer = kind.linearised(&touch);
+        if let Some(bridge) = &kind.bridge {
+            answer.normal_n_m += bridge.steepest_n_m(touch.effective_radius_m);
+        }
         let [stiffness, damping] = translation(&answer);
         largest[0] = largest[0].max(per_mass * stiffness);
         largest[1] = largest[1].max(per_mass * damping);
@@ -323,6 +399,9 @@ pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     };
     for (i, inverse_kg) in first_to_hit(state) {
         let material = usize::from(contacts.materials[i]);
+        if only.is_some_and(|only| only != material) {
+            continue;
+        }
         let row = &contacts.model.kind_of[material * materials..(material + 1) * materials];
         for &kind in row {
             if let Some(kind) = contacts.model.kinds.get(usize::from(kind)) {
@@ -422,6 +501,5 @@ fn overlap_at_impact_m(
 ) -> f64 {
     let half = if at_wall { 1.0 } else { 0.5 };
     let mass_kg = half / inverse_kg;
-    let law = kind.law.at_impact();
-    law.overlap_at_impact_m(half * radius_m, mass_kg, speed_m_s)
+    kind.overlap_at_impact_m(half * radius_m, mass_kg, speed_m_s)
 }

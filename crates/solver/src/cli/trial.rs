@@ -17,7 +17,7 @@ use crate::step::{number_of, step};
 /// The run time is predicted from this many samples of the first steps of a copy.
 const SAMPLES: usize = 8;
 /// Number of steps of a sample, and their time limit, s.
-const SAMPLE: (u32, f64) = (250, 0.07);
+const SAMPLE: (u64, f64) = (250, 0.07);
 /// Cost of the first steps, tried on a copy in several samples.
 pub(super) struct Trial {
     /// Of the fastest sample, which other programs have disturbed least.
@@ -36,12 +36,13 @@ impl Trial {
         let mut copy = plan.state.clone();
         let mut sample_s = || {
             let clock = Instant::now();
+            let first = copy.steps;
             let mut done = 0;
             while done < SAMPLE.0 && (done < 1 || clock.elapsed().as_secs_f64() < SAMPLE.1) {
                 step(&mut copy);
-                done += 1;
+                done = copy.steps - first;
             }
-            clock.elapsed().as_secs_f64() / f64::from(done)
+            clock.elapsed().as_secs_f64() / done as f64
         };
         let samples_s: Vec<f64> = (0..SAMPLES).map(|_| sample_s()).collect();
         Ok(Self {

@@ -32,7 +32,7 @@ pub(super) struct Contacts {
 /// The contacts of a planned scene.
 ///
 /// # Errors
-/// Rolling friction, or a restitution that is too small.
+/// Rolling friction, a liquid bridge, or a restitution that is too small.
 pub(super) fn contacts(scene: &Scene, plan: &Plan) -> Result<Contacts> {
     let state = &plan.state;
     let materials: Vec<String> = scene.materials.keys().cloned().collect();
@@ -76,7 +76,7 @@ pub(super) fn contacts(scene: &Scene, plan: &Plan) -> Result<Contacts> {
 /// A contact law in the words of `pair_coeff` and `fix wall/gran`.
 ///
 /// # Errors
-/// Rolling friction, or a restitution that is too small.
+/// Rolling friction, a liquid bridge, or a restitution that is too small.
 pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Result<String> {
     if kind.rolling != Rolling::Free {
         return Err(refused(
@@ -84,6 +84,14 @@ pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Re
             format!("contacts.{names}.rolling_friction"),
             "the spring of its rolling friction does not follow the load of the contact, and it has no constant moment",
             "leave rolling_friction out",
+        ));
+    }
+    if kind.bridge.is_some() {
+        return Err(refused(
+            scene,
+            format!("contacts.{names}.liquid_bridge"),
+            "liquid between its ends, which pulls them together beyond their touch",
+            "leave it out, or run the scene with dem-run",
         ));
     }
     let (normal, tangential, parameters) = match &kind.law {

@@ -6,7 +6,7 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 
 /// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 15] = [
+pub(super) const ENERGIES: [&str; 17] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
@@ -21,6 +21,8 @@ pub(super) const ENERGIES: [&str; 15] = [
     "bond_damage_j",
     "particle_breakage_j",
     "bond_plastic_j",
+    "liquid_bridge_j",
+    "liquid_bridge_loss_j",
     "flow_energy_j",
 ];
 /// Names of the columns after those.
@@ -84,6 +86,8 @@ pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64
         balance.bond_damage_j,
         balance.particle_breakage_j,
         balance.bond_plastic_j,
+        balance.liquid_bridge_j,
+        balance.liquid_bridge_loss_j,
         balance.flow_energy_j,
         balance.energy_error,
         balance.momentum_error,

@@ -29,6 +29,7 @@ pub mod hertz_mindlin;
 pub mod kinematics;
 pub mod law;
 pub mod linear;
+pub mod liquid_bridge;
 mod normal;
 pub mod pair_parameters;
 pub mod relaxation;

@@ -12,11 +12,13 @@ use crate::physics::contact::law::ContactKind;
 use crate::physics::contact::law::Law;
 use crate::physics::contact::law::Rolling;
 use crate::physics::contact::linear::Linear;
+use crate::physics::contact::liquid_bridge::LiquidBridge;
 use crate::physics::contact::pair_parameters::{Elastic, PairInput};
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use crate::stages::contacts::{list_contacts, overlap_m};
 use crate::state::State;
 use crate::state::bodies::{PlacedBody, called};
+use crate::state::bridges::Bridges;
 use crate::state::clusters::Clusters;
 use crate::state::contacts::{ContactHistory, ContactModel, Contacts};
 
@@ -130,6 +132,11 @@ fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
                 tangential_stiffness_ratio: tangential_ratio,
             } => Law::Linear(Linear::new(normal_n_m, tangential_ratio, &pair_input)),
         },
+        bridge: contact.liquid_bridge.map(|bridge| LiquidBridge {
+            surface_tension_n_m: bridge.surface_tension_n_m,
+            contact_angle_rad: bridge.contact_angle_rad,
+            volume_m3: bridge.volume_m3,
+        }),
         rolling: match contact.rolling {
             SceneRolling::None => Rolling::Free,
             SceneRolling::ConstantTorque { friction } => {
@@ -209,6 +216,12 @@ pub(super) fn place_contacts(
     contacts.model = Arc::new(model);
     state.model.contacts = Some(Arc::clone(&contacts.model));
     contacts.search_all();
+    let is_wet = contacts
+        .model
+        .kinds
+        .iter()
+        .any(|kind| kind.bridge.is_some());
+    state.bridges = is_wet.then(Bridges::default);
     state.contacts = Some(contacts);
     Ok(())
 }

@@ -468,7 +468,7 @@ pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
     share_of_impact(state, safety) * safe_step(k, c)
 }
 
-fn share_of_impact(state: &State, safety: f64) -> f64 {
+pub(super) fn share_of_impact(state: &State, safety: f64) -> f64 {
     let of_particles = state
         .contacts
         .iter()

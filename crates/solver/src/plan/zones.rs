@@ -42,6 +42,7 @@ pub(super) fn place_zones(scene: &Scene, bodies: &[PlacedBody], state: &mut Stat
         let wall = asked.moves_with.as_ref();
         let wall = wall.and_then(|wall| scene.walls.keys().position(|name| name == wall));
         zones.push(Zone {
+            body: body.name.clone(),
             ids: first..last + 1,
             region: region.unwrap_or(0),
             carrier: wall.map(|wall| Carrier {

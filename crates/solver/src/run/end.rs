@@ -4,7 +4,7 @@ use dem_io::Result;
 use dem_results::write_json;
 
 use super::begin::Run;
-use super::events::write_sleep;
+use super::events::{write_breaks_between, write_sleep, write_zones};
 use super::finish::End;
 use super::observe::Ended;
 use super::outcome::Outcome;
@@ -17,6 +17,7 @@ use crate::output::sizes::Fragments;
 use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
 use crate::state::clusters::fragments as fragments_of;
 use crate::state::clusters::fragments::Fragment;
+use crate::state::levels::Levels;
 use crate::step::{advance, number_of, stages};
 
 impl Run<'_> {
@@ -105,7 +106,11 @@ impl Run<'_> {
         ];
         advance(&mut self.state);
         self.follow_population()?;
+        let (state, bodies) = (&self.state, &self.bodies);
+        self.progress.seen.note_breaks_between(state, bodies);
         if let Some(files) = &mut self.files {
+            write_breaks_between(state, bodies, files)?;
+            write_zones(&self.state, files)?;
             write_sleep(&self.state, files)?;
             let events = files.events.take_back(lengths[0])?;
             let discharge = match &mut files.discharge {
@@ -163,6 +168,7 @@ impl Run<'_> {
             fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
             population: PopulationSummary::of(state),
             sleep: state.sleep.as_ref().map(SleepSummary::of),
+            updates_skipped_by_longer_steps: state.levels.as_ref().map(Levels::updates_skipped),
             steps: state.steps,
             time_step_s: state.time_step_s,
             adaptive: scene.run.adaptive.then(|| AdaptiveSummary {

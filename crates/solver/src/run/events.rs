@@ -11,6 +11,7 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::bond_of_file;
 use crate::state::clusters::sizes::Discharged;
+use crate::state::events::Break;
 use crate::state::events::PopulationEvent;
 use crate::state::events::STARTS_BONDED;
 
@@ -20,7 +21,33 @@ pub(super) fn write_breaks(
     bodies: &[PlacedBody],
     files: &mut Files<'_>,
 ) -> Result<()> {
-    for broken in &state.scratch.events.broken {
+    let now = (state.steps, state.time_s);
+    let broken = &state.scratch.events.broken;
+    write(broken.iter().map(|one| (now, one)), state, bodies, files)
+}
+
+/// Those that broke since then, up to the next common time of all bodies.
+pub(super) fn write_breaks_between(
+    state: &State,
+    bodies: &[PlacedBody],
+    files: &mut Files<'_>,
+) -> Result<()> {
+    let broken = &state.scratch.events.broken_between;
+    write(
+        broken.iter().map(|(at, one)| (*at, one)),
+        state,
+        bodies,
+        files,
+    )
+}
+
+fn write<'a>(
+    broken: impl Iterator<Item = ((u64, f64), &'a Break)>,
+    state: &State,
+    bodies: &[PlacedBody],
+    files: &mut Files<'_>,
+) -> Result<()> {
+    for ((step, time_s), broken) in broken {
         let ends = state.bonds.ends[broken.bond as usize];
         let found = bond_of_file(bodies, broken.bond as usize);
         let mut ends = ends.map(|end| {
@@ -30,8 +57,8 @@ pub(super) fn write_breaks(
         });
         ends.sort_unstable();
         let event = Event {
-            step: state.steps,
-            time_s: state.time_s,
+            step,
+            time_s,
             kind: "bond_broken",
             bond: found.map(|(_, number)| u64::from(number)),
             particle_a: ends[0],
@@ -194,6 +221,25 @@ pub(super) fn write_discharge(state: &State, files: &mut Files<'_>) -> Result<()
     };
     file.append(all[*written..].iter().map(row))?;
     *written = all.len();
+    Ok(())
+}
+
+/// The spheres of bodies bonded in part that were released or joined a rigid part in this step.
+pub(super) fn write_zones(state: &State, files: &mut Files<'_>) -> Result<()> {
+    for news in &state.scratch.events.zones {
+        let plural = if news.particles == 1 { "" } else { "s" };
+        files.events.append(&[Event {
+            step: news.step,
+            time_s: news.time_s,
+            energy_j: Some(news.lost_j),
+            ..of_all(
+                state,
+                news.kind,
+                "region",
+                &format!("{}: {} particle{plural}", news.body, news.particles),
+            )
+        }])?;
+    }
     Ok(())
 }
 

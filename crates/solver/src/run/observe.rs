@@ -7,7 +7,10 @@ use std::time::{Duration, Instant};
 use dem_io::{Diagnostic, Result};
 
 use super::begin::Run;
-use super::events::{write_breaks, write_discharge, write_population, write_sleep, write_splits};
+use super::events::{
+    write_breaks, write_breaks_between, write_discharge, write_population, write_sleep,
+    write_splits, write_zones,
+};
 use super::files::{interruption, save, with_checkpoint};
 use super::fragments::write_fragments;
 use super::limits::{CHECK_EVERY_STEPS, tunnelling};
@@ -137,7 +140,11 @@ impl Run<'_> {
     /// Those of the files.
     pub(super) fn follow(&mut self) -> Result<Option<Ended>> {
         let replaced = self.follow_population()?;
+        let (state, bodies) = (&self.state, &self.bodies);
+        self.progress.seen.note_breaks_between(state, bodies);
         if let Some(files) = &mut self.files {
+            write_breaks_between(state, bodies, files)?;
+            write_zones(state, files)?;
             write_sleep(&self.state, files)?;
         }
         let since = self

@@ -160,20 +160,19 @@ pub(crate) fn largest_strain(bonds: &Bonds, poses: &[Pose]) -> f64 {
     most_strained(bonds, poses).map_or(0.0, |(strain, _)| strain)
 }
 
+/// Ratio of change of length to initial length of a bond.
+pub(crate) fn bond_strain(bonds: &Bonds, poses: &[Pose], at: usize) -> f64 {
+    let [a, b] = bonds.ends[at].map(|end| poses[end as usize].place());
+    ((b - a).norm() / bonds.initial_length_m(at) - 1.0).abs()
+}
+
 /// The bond with the largest strain, and that strain. None: all bonds are broken.
 pub(crate) fn most_strained(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)> {
-    let strain = |at: usize| {
-        let [a, b] = bonds.ends[at].map(|end| poses[end as usize].place());
-        (
-            ((b - a).norm() / bonds.initial_length_m(at) - 1.0).abs(),
-            at,
-        )
-    };
     (0..bonds.len())
         .into_par_iter()
         .with_min_len(CHUNK)
         .filter(|&at| !bonds.is_broken(at))
-        .map(strain)
+        .map(|at| (bond_strain(bonds, poses, at), at))
         .reduce_with(|one, other| if other.0 > one.0 { other } else { one })
 }
 

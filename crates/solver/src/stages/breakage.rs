@@ -10,13 +10,11 @@ use crate::state::bonds::Bonds;
 use crate::state::events::{Break, Events};
 use crate::state::particles::Particles;
 use crate::state::partitions::Partition;
-use crate::state::partitions::{Idle, divide_anew};
+use crate::state::partitions::{Idle, STALE, divide_anew};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const FAILURE_NS: f64 = 2.1;
 const SCATTER_NS: f64 = 1.2;
-/// Work is divided again when one in this many of the computed bonds is broken.
-const STALE: u64 = 64;
 
 /// Comparison of bonds with their strength.
 pub const FAILURE: Stage = Stage {
@@ -153,8 +151,12 @@ pub(crate) fn count_frictional(state: &mut State) -> usize {
         .sum()
 }
 
-/// Divides the work again once enough bonds have broken since the last division.
+/// Divides the work again once enough bonds have broken since the last division. Groups of bodies
+/// with steps of their own are divided again at the next common time.
 fn leave_out_broken(state: &mut State) {
+    if state.levels.is_some() {
+        return;
+    }
     let computed: usize = state
         .scratch
         .partitions

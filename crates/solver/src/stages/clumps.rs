@@ -101,6 +101,7 @@ pub(crate) fn list_near(
     for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
         let template = clumps.template(clump);
         let to_space = rotation_of(clump.turned).to_rotation_matrix();
+        let motion_at = clump.motion(template);
         let [from, to] = clump.near.map(|n| n as usize);
         for &i in &clumps.near[from..to] {
             let i = i as usize;
@@ -109,7 +110,7 @@ pub(crate) fn list_near(
                 let sphere = template.outer[i - clump.first as usize] as usize;
                 let place = place_of(template, sphere, clump, &to_space);
                 particles.poses[i].put_at(place.into());
-                particles.motions[i] = clump.motion_at(template, &place);
+                particles.motions[i] = motion_at(&place);
             }
         }
     }

@@ -23,7 +23,7 @@ use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::neighbours::near_pairs;
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, ContactPartition, Contacts};
-use crate::state::particles::{Particles, Pose, Wrench};
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// Contacts between particles.
 pub const CONTACTS: Stage = Stage {
@@ -178,6 +178,11 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
         contacts: known,
         poses: &p.poses,
         motions: &p.motions,
+        idle: if known.scratch.is_of_group {
+            &p.asleep
+        } else {
+            &[]
+        },
         checks_all,
         dt,
     };
@@ -204,16 +209,21 @@ pub fn list_contacts(
     particles: &Particles,
     skin_m: f64,
 ) {
+    find_mean_radius(contacts, particles);
     let pairs = near_pairs(&particles.poses, clusters, skin_m);
     relist(contacts, pairs, particles);
     contacts.skin_left_m = 0.5 * skin_m;
 }
 
+/// Finds the mean radius of the particles.
+pub(super) fn find_mean_radius(contacts: &mut Contacts, particles: &Particles) {
+    let radii_m: f64 = particles.poses.iter().map(Pose::radius_m).sum();
+    contacts.scratch.mean_radius_m = radii_m / particles.len().max(1) as f64;
+}
+
 /// Replaces the list of pairs, and divides the work anew.
 pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, particles: &Particles) {
     let poses = &particles.poses;
-    let radii_m: f64 = poses.iter().map(Pose::radius_m).sum();
-    contacts.scratch.mean_radius_m = radii_m / poses.len().max(1) as f64;
     let relaxes = contacts.model.relaxes;
     contacts.relist(
         pairs,
@@ -477,35 +487,15 @@ impl StepInput<'_> {
         pair: impl Fn(usize) -> [u32; 2],
         history: impl Fn(usize) -> &'a ContactHistory,
     ) -> ContactOutput {
-        let (place_a, a) = self.contact_sphere::<T>(proof, |lane| pair(lane)[0] as usize);
-        let (place_b, b) = self.contact_sphere::<T>(proof, |lane| pair(lane)[1] as usize);
-        let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| history(lane).tangential);
-        let [dx, dy, dz, origin_m] = T::columns(proof, |lane| history(lane).damping);
-        let nothing = overlap_m.zero();
-        let none = Vec3(nothing, nothing, nothing);
-        let (rolling_rad, moment_n_m) = if R::REMEMBERS {
-            (
-                vectors(proof, |lane| history(lane).rolling),
-                vectors(proof, |lane| history(lane).rolling_damping),
-            )
-        } else {
-            (none, none)
-        };
+        let particles = (self.poses, self.motions);
+        let (place_a, a) = contact_sphere::<T>(proof, particles, |lane| pair(lane)[0] as usize);
+        let (place_b, b) = contact_sphere::<T>(proof, particles, |lane| pair(lane)[1] as usize);
+        let before = stored_contact::<T, R>(proof, history);
         let touch = contact_kinematics(place_b - place_a, [a, b], self.dt);
+        let (overlap_m, origin_m) = (before.springs.overlap_m, before.origin_m);
+        let nothing = overlap_m.zero();
         let touched =
             touch.overlap_m.above(nothing) | overlap_m.above(nothing) | origin_m.above(nothing);
-        let before = StoredContact {
-            springs: ContactSprings {
-                tangential_m: Vec3(sx, sy, sz),
-                rolling_rad,
-                overlap_m,
-            },
-            damped: Damped {
-                force_n: Vec3(dx, dy, dz),
-                moment_n_m,
-            },
-            origin_m,
-        };
         let least_overlap = self.contacts.model.least_overlap;
         let met = assemble(law, rolling, &touch, &before, least_overlap, self.dt);
         let StoredContact {
@@ -526,26 +516,58 @@ impl StepInput<'_> {
             forces: Forces::new(met.response.force_on_b, met.torques),
         }
     }
+}
 
-    /// One particle for each lane, and its centre, m.
-    #[inline(always)]
-    fn contact_sphere<T: Lanes>(
-        &self,
-        proof: T::Proof,
-        particle: impl Fn(usize) -> usize,
-    ) -> (Vec3<T>, ContactSphere<T>) {
-        let [x, y, z, radius_m] = T::columns(proof, |lane| self.poses[particle(lane)].position_m);
-        let [vx, vy, vz, inverse_mass] =
-            T::columns(proof, |lane| self.motions[particle(lane)].velocity_row());
-        let [wx, wy, wz, inverse_inertia] =
-            T::columns(proof, |lane| self.motions[particle(lane)].spin_row());
-        let ball = ContactSphere {
-            velocity_m_s: Vec3(vx, vy, vz),
-            spin_rad_s: Vec3(wx, wy, wz),
-            radius_m,
-            inverse_mass_per_kg: inverse_mass,
-            inverse_inertia_per_kg_m2: inverse_inertia,
-        };
-        (Vec3(x, y, z), ball)
+/// One history for each lane.
+#[inline(always)]
+pub(super) fn stored_contact<'a, T: Lanes, R: RollingFriction<T>>(
+    proof: T::Proof,
+    history: impl Fn(usize) -> &'a ContactHistory,
+) -> StoredContact<T> {
+    let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| history(lane).tangential);
+    let [dx, dy, dz, origin_m] = T::columns(proof, |lane| history(lane).damping);
+    let nothing = overlap_m.zero();
+    let none = Vec3(nothing, nothing, nothing);
+    let (rolling_rad, moment_n_m) = if R::REMEMBERS {
+        (
+            vectors(proof, |lane| history(lane).rolling),
+            vectors(proof, |lane| history(lane).rolling_damping),
+        )
+    } else {
+        (none, none)
+    };
+    StoredContact {
+        springs: ContactSprings {
+            tangential_m: Vec3(sx, sy, sz),
+            rolling_rad,
+            overlap_m,
+        },
+        damped: Damped {
+            force_n: Vec3(dx, dy, dz),
+            moment_n_m,
+        },
+        origin_m,
     }
+}
+
+/// One particle for each lane, and its centre, m.
+#[inline(always)]
+pub(super) fn contact_sphere<T: Lanes>(
+    proof: T::Proof,
+    (poses, motions): (&[Pose], &[Motion]),
+    particle: impl Fn(usize) -> usize,
+) -> (Vec3<T>, ContactSphere<T>) {
+    let [x, y, z, radius_m] = T::columns(proof, |lane| poses[particle(lane)].position_m);
+    let [vx, vy, vz, inverse_mass] =
+        T::columns(proof, |lane| motions[particle(lane)].velocity_row());
+    let [wx, wy, wz, inverse_inertia] =
+        T::columns(proof, |lane| motions[particle(lane)].spin_row());
+    let ball = ContactSphere {
+        velocity_m_s: Vec3(vx, vy, vz),
+        spin_rad_s: Vec3(wx, wy, wz),
+        radius_m,
+        inverse_mass_per_kg: inverse_mass,
+        inverse_inertia_per_kg_m2: inverse_inertia,
+    };
+    (Vec3(x, y, z), ball)
 }

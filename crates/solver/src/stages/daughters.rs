@@ -368,7 +368,7 @@ fn kept_back_j(
             let clump = &state.clumps.all[n];
             let template = state.clumps.template(clump);
             let now = at_positions(clump, template, gravity, half_s);
-            let motion = now.motion_at(template, point);
+            let motion = now.motion(template)(point);
             (Vector3::from(motion.velocity_m_s), motion.inverse_mass)
         }
         None => {

@@ -153,7 +153,7 @@ fn velocity_m_s(state: &State, i: usize) -> Vector3<f64> {
             let mut now = state.clumps.all[clump];
             let template = state.clumps.template(&now);
             kick_one(&mut now, template, gravity, half_s);
-            now.motion_at(template, &p.poses[i].place())
+            now.motion(template)(&p.poses[i].place())
                 .velocity_m_s
                 .into()
         }

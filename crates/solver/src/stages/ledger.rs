@@ -7,12 +7,13 @@
 use super::chunks::{ordered_sum, ordered_sums};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::contact::law::ContactKind;
+use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::power_w;
 use crate::stages::supports::reactions_work_j;
-use crate::stages::totals::{elastic_energy, kinetic_energy, momenta, synchronous_motions};
+use crate::stages::totals::{elastic_energy, kinetic_energy, momenta, synchronous_motions_of_free};
 use crate::state::State;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
@@ -164,6 +165,10 @@ pub struct Balance {
     pub particle_breakage_j: f64,
     /// Plastic work of bonds, J: what hardening stores is part of it.
     pub bond_plastic_j: f64,
+    /// Energy of liquid bridges, J: the work from the touch of their ends to their present gaps.
+    pub liquid_bridge_j: f64,
+    /// Dissipated by liquid bridges as they formed and ruptured, J.
+    pub liquid_bridge_loss_j: f64,
     /// Energy of added bodies, minus that of removed bodies, plus the gain when clumps and clusters
     /// replaced each other, minus the kinetic energy that bodies had when they fell asleep, J.
     pub flow_energy_j: f64,
@@ -251,9 +256,10 @@ pub(crate) fn after_kick(state: &mut State) {
     for broken in &state.scratch.events.broken {
         ledger.released_j += broken.released_j;
     }
-    ledger.fallen_j = ledger
-        .fallen_j
-        .max(ledger.fallen_now_j(state.model.gravity_m_s2));
+    // With steps by body, at common times only: a group has but its share of the moment.
+    if state.levels.is_none() {
+        ledger.note_fall(state.model.gravity_m_s2);
+    }
 
     let about = ledger.about_m;
     let mut total = loads_resultant(loads, state.time_s, steps_s, &particles.poses, about);
@@ -307,7 +313,7 @@ fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3
 /// The ledger between the two halves of a step, `interact` and `advance`. Records the largest
 /// energies and momenta.
 pub fn balance(state: &mut State) -> Balance {
-    let motions = synchronous_motions(state);
+    let motions = synchronous_motions_of_free(state);
     let p = &state.particles;
     let clumps = synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s);
     let of_clumps = clumps.iter();
@@ -328,6 +334,8 @@ pub fn balance(state: &mut State) -> Balance {
     }
     contact_elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
     friction += state.ledger.joint_friction_j;
+    let bridges_j = bridges_energy_j(state);
+    let bridges_lost_j = state.bridges.as_ref().map_or(0.0, |bridges| bridges.lost_j);
     let (present, scales) = momenta(p, &state.clumps, state.ledger.about_m);
     let g = state.model.gravity_m_s2;
     let ledger = &mut state.ledger;
@@ -339,8 +347,9 @@ pub fn balance(state: &mut State) -> Balance {
         + contact_damping
         + friction
         + (ledger.released_j + ledger.damaged_j + ledger.plastic_j)
-        + ledger.particles_broken_j;
-    let stored = elastic.total() + contact_elastic;
+        + ledger.particles_broken_j
+        + bridges_lost_j;
+    let stored = elastic.total() + contact_elastic + bridges_j;
     let given = work.loads + work.supports + wall_work + ledger.brought_j;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
     let largest = [
@@ -381,6 +390,8 @@ pub fn balance(state: &mut State) -> Balance {
         bond_damage_j: ledger.damaged_j,
         particle_breakage_j: ledger.particles_broken_j,
         bond_plastic_j: ledger.plastic_j,
+        liquid_bridge_j: bridges_j,
+        liquid_bridge_loss_j: bridges_lost_j,
         flow_energy_j: ledger.brought_j,
         energy_error_j: error,
         energy_error: over(error, ledger.scale_j),

@@ -2,22 +2,26 @@
 //! either.
 
 mod moved;
+mod renumbered;
 
 use dem_scene::WallMotion;
 use nalgebra::Vector3;
 
+pub(super) use self::renumbered::renumber_lists;
+
 use self::moved::{Due, due, find_left, may_be_due, refer_clump, refer_particle, use_up};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
-use super::contacts::{list_contacts, relist};
+use super::contacts::{find_mean_radius, list_contacts, relist};
 use super::neighbours::overlapping_pairs;
 use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{list_near, reached, reaches};
 use crate::state::State;
+use crate::state::bridges::Bridges;
 use crate::state::clumps::Clumps;
 use crate::state::contacts::Contacts;
-use crate::state::references::ClumpReference;
+use crate::state::references::{ClumpReference, References};
 use crate::state::walls::Wall;
 
 /// The neighbour search.
@@ -107,6 +111,7 @@ fn search_for_moved(state: &mut State) -> usize {
 
 /// Searches for the neighbours of all particles.
 fn search_for_all(state: &mut State, contacts: &mut Contacts) -> usize {
+    find_mean_radius(contacts, &state.particles);
     let references = &mut contacts.scratch.references;
     references.balls = vec![[0.0; 4]; state.particles.len()];
     references.clumps = vec![ClumpReference::default(); state.clumps.all.len()];
@@ -129,7 +134,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     for &i in &due.particles {
         let i = i as usize;
         let speed_m_s = Vector3::from(state.particles.motions[i].velocity_m_s).norm();
-        let moved_m = speed_m_s * state.time_step_s;
+        let moved_m = speed_m_s * state.cycle_s();
         refer_particle(contacts, i, &state.particles.poses[i], moved_m);
     }
     for &at in &due.clumps {
@@ -147,18 +152,26 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     }
     let pairs = match &state.clusters {
         Some(clusters) if !contacts.model.alone => {
-            let balls = &contacts.scratch.references.balls;
-            if seeks.contains(&false) {
-                let found = overlapping_pairs(balls, &clusters.of_particle, Some(&seeks));
+            let References {
+                balls,
+                clusters: known,
+                ..
+            } = &mut contacts.scratch.references;
+            let some = seeks.contains(&false).then_some(&seeks[..]);
+            let found = overlapping_pairs(balls, &clusters.of_particle, some, known);
+            if some.is_some() {
                 with_others(&contacts.pairs, found, &seeks)
             } else {
-                overlapping_pairs(balls, &clusters.of_particle, None)
+                found
             }
         }
         _ => Vec::new(),
     };
     list_near_spheres(state, &pairs);
     relist(contacts, pairs, &state.particles);
+    if let Some(levels) = &mut state.levels {
+        levels.scratch.is_relisted = true;
+    }
     if contacts.model.relaxes {
         state.scratch.events.work.relaxing += contacts.relaxing();
     }
@@ -209,13 +222,20 @@ fn with_others(known: &[[u32; 2]], found: Vec<[u32; 2]>, seeks: &[bool]) -> Vec<
     pairs
 }
 
-/// Lists the spheres of clumps that are in pairs or near walls, and puts them in place.
+/// Lists the spheres of clumps that are in pairs, near walls or at liquid bridges, and puts them in
+/// place.
 fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]]) {
     if state.clumps.all.is_empty() {
         return;
     }
     let at_walls = state.walls.iter().flat_map(|wall| &wall.near);
-    let near = pairs.iter().flatten().chain(at_walls).copied();
+    let at_bridges = state.bridges.iter().flat_map(Bridges::particles);
+    let near = pairs
+        .iter()
+        .flatten()
+        .chain(at_walls)
+        .copied()
+        .chain(at_bridges);
     clumps::list_near(&mut state.clumps, &mut state.particles, near);
 }
 

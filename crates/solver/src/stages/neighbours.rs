@@ -10,20 +10,19 @@
 //! and large ones where they may meet small ones, are put into grids.
 
 mod grid;
-mod groups;
 mod meetings;
 
 use rayon::prelude::*;
 
 use self::grid::{Grids, Seeker};
-use self::groups::Groups;
-use self::meetings::{Large, Meetings};
+use self::meetings::Meetings;
 use super::chunks::CHUNK;
+use super::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
+use crate::geometry::Bounds;
+use crate::physics::number::Vec3;
+use crate::state::groups::{KnownClusters, LargeCluster};
 use crate::state::particles::Pose;
 use crate::state::references::Ball;
-
-/// Up to this number of tests, two lists of balls are compared one by one.
-const FEW_TESTS: usize = 4096;
 
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the
 /// smaller index first, sorted. `clusters`: one for each particle.
@@ -33,27 +32,29 @@ pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]
         [x, y, z, radius_m + 0.5 * skin_m]
     };
     let balls: Vec<Ball> = poses.iter().map(ball).collect();
-    overlapping_pairs(&balls, clusters, None)
+    overlapping_pairs(&balls, clusters, None, &mut KnownClusters::default())
 }
 
 /// Pairs of overlapping balls of different clusters, the smaller index first, sorted; with `seeks`
 /// (one for each ball) only those with at least one ball that seeks. `clusters`: one for each ball.
+/// `known`: of the last search; since then only balls that seek have changed.
 pub(crate) fn overlapping_pairs(
     balls: &[Ball],
     clusters: &[u32],
     seeks: Option<&[bool]>,
+    known: &mut KnownClusters,
 ) -> Vec<[u32; 2]> {
+    known.update(balls, clusters, seeks);
     let search = Search {
         balls,
         clusters,
         seeks,
+        known,
     };
-    let groups = Groups::new(clusters);
-    let meetings = Meetings::new(balls, &groups, seeks);
-    let mut pairs = search.among_small(&groups, &meetings);
-    let of_large: Vec<Vec<[u32; 2]>> = (0..meetings.large.len())
+    let mut pairs = search.among_small();
+    let of_large: Vec<Vec<[u32; 2]>> = (0..known.large.len())
         .into_par_iter()
-        .map(|n| search.of_large(&groups, &meetings, n))
+        .map(|n| search.of_large(n))
         .collect();
     pairs.extend(of_large.into_iter().flatten());
     if !pairs.is_sorted() {
@@ -67,6 +68,7 @@ struct Search<'a> {
     balls: &'a [Ball],
     clusters: &'a [u32],
     seeks: Option<&'a [bool]>,
+    known: &'a KnownClusters,
 }
 
 impl Search<'_> {
@@ -83,56 +85,26 @@ impl Search<'_> {
     }
 
     /// Pairs of the large cluster of this place in the list with those that come after it.
-    fn of_large(&self, groups: &Groups, meetings: &Meetings, n: usize) -> Vec<[u32; 2]> {
-        let a = &meetings.large[n];
+    fn of_large(&self, n: usize) -> Vec<[u32; 2]> {
         let mut pairs = Vec::new();
-        let reaches = |b: &&Large| b.bounds.low[0] <= a.bounds.high[0];
-        for b in meetings.large[n + 1..].iter().take_while(reaches) {
-            if !(a.seeks || b.seeks) || !a.bounds.overlaps(&b.bounds) {
-                continue;
-            }
-            let common = a.bounds.common(&b.bounds);
-            let of_a: Vec<u32> = a.within(&common, self.balls, groups).collect();
-            if !of_a.is_empty() {
-                let of_b: Vec<u32> = b.within(&common, self.balls, groups).collect();
-                self.between(&of_a, &of_b, &mut pairs);
-            }
-        }
+        with_most_lanes(LargeMeetings {
+            search: self,
+            of: n,
+            pairs: &mut pairs,
+        });
         pairs
     }
 
-    /// Pairs between two lists of balls, of two clusters.
-    fn between(&self, of_a: &[u32], of_b: &[u32], pairs: &mut Vec<[u32; 2]>) {
-        if of_a.len() * of_b.len() > FEW_TESTS {
-            let grids = Grids::new(self.balls, self.clusters, of_b);
-            for &i in of_a {
-                let counts = |j: u32| self.seeks(i) || self.seeks(j);
-                grids.add_all_pairs(&self.seeker(i), counts, pairs);
-            }
-            return;
-        }
-        for &i in of_a {
-            let [px, py, pz, radius_m] = self.balls[i as usize];
-            for &j in of_b {
-                let [ox, oy, oz, other_m] = self.balls[j as usize];
-                let (apart, near) = ([ox - px, oy - py, oz - pz], radius_m + other_m);
-                let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                if square < near * near && (self.seeks(i) || self.seeks(j)) {
-                    pairs.push([i.min(j), i.max(j)]);
-                }
-            }
-        }
-    }
-
     /// Pairs of which at least one is of a small cluster.
-    fn among_small(&self, groups: &Groups, meetings: &Meetings) -> Vec<[u32; 2]> {
-        let active = meetings.with_small(self.balls, groups);
+    fn among_small(&self) -> Vec<[u32; 2]> {
+        let groups = &self.known.groups;
+        let active = Meetings::new(self.balls, self.known, self.seeks).with_small(self.balls);
         if active.len() < 2 {
             return Vec::new();
         }
         let grids = Grids::new(self.balls, self.clusters, &active);
         let is_large = |i: u32| groups.is_large(self.clusters[i as usize]);
-        let any_large = !meetings.large.is_empty();
+        let any_large = !self.known.large.is_empty();
         let of_chunk = |some: &[u32]| {
             let mut pairs = Vec::new();
             for &i in some.iter().filter(|i| self.seeks(**i)) {
@@ -150,5 +122,68 @@ impl Search<'_> {
         };
         let chunks: Vec<Vec<[u32; 2]>> = active.par_chunks(CHUNK).map(of_chunk).collect();
         chunks.concat()
+    }
+}
+
+/// Meetings of a large cluster with those that come after it in the list.
+struct LargeMeetings<'a> {
+    search: &'a Search<'a>,
+    of: usize,
+    pairs: &'a mut Vec<[u32; 2]>,
+}
+
+impl LaneWork for LargeMeetings<'_> {
+    #[inline(always)]
+    fn with<T: Lanes>(mut self, proof: T::Proof) {
+        let large = &self.search.known.large;
+        let a = &large[self.of];
+        let reaches = |b: &&LargeCluster| b.bounds.low[0] <= a.bounds.high[0];
+        for b in large[self.of + 1..].iter().take_while(reaches) {
+            if (a.seeks || b.seeks) && a.bounds.overlaps(&b.bounds) {
+                self.meet::<T>(proof, a, b);
+            }
+        }
+    }
+}
+
+impl LargeMeetings<'_> {
+    /// Adds the pairs of two clusters: those of their blocks that overlap.
+    #[inline(always)]
+    fn meet<T: Lanes>(&mut self, proof: T::Proof, a: &LargeCluster, b: &LargeCluster) {
+        let groups = &self.search.known.groups;
+        let mut room = a.bounds.common(&b.bounds);
+        // What one of them has there narrows down where the other can meet it.
+        for large in [a, b, a, b] {
+            let blocks = large.blocks_within(&room, groups).map(|(_, bounds)| bounds);
+            room = room.common(&blocks.fold(Bounds::EMPTY, |all, one| all.with(one)));
+        }
+        for (of_a, around_a) in a.blocks_within(&room, groups) {
+            for (of_b, _) in b.blocks_within(&room.common(around_a), groups) {
+                for some in of_b.chunks(T::COUNT) {
+                    self.test::<T>(proof, of_a, some);
+                }
+            }
+        }
+    }
+
+    /// Tests some balls against others, one for each lane.
+    #[inline(always)]
+    fn test<T: Lanes>(&mut self, proof: T::Proof, some: &[u32], others: &[u32]) {
+        let search = self.search;
+        let other = |lane: usize| others[lane.min(others.len() - 1)];
+        let [ox, oy, oz, other_m] = T::columns(proof, |lane| search.balls[other(lane) as usize]);
+        for &i in some {
+            let [x, y, z, radius_m] = search.balls[i as usize].map(|c| T::all(proof, c));
+            let apart = Vec3(ox - x, oy - y, oz - z);
+            let near = radius_m + other_m;
+            let mut bits = (near * near).above(apart.square()) & (0xff >> (MOST - others.len()));
+            while bits != 0 {
+                let j = other(bits.trailing_zeros() as usize);
+                bits &= bits - 1;
+                if search.seeks(i) || search.seeks(j) {
+                    self.pairs.push([i.min(j), i.max(j)]);
+                }
+            }
+        }
     }
 }

@@ -5,6 +5,7 @@ use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
 use crate::state::clusters::Clusters;
+use crate::state::clusters::triggers::Triggers;
 use crate::state::contacts::Contacts;
 
 /// The search for fragments.
@@ -37,7 +38,12 @@ pub(crate) fn find_pieces(state: &mut State) -> usize {
     let broken = state.scratch.events.broken.iter().map(|broken| broken.bond);
     state.unsearched.extend(broken);
     let unsearched = state.unsearched.len() as u64;
-    if !state.model.search.due(state.steps, unsearched) {
+    let interval = state.model.search.interval.next_multiple_of(state.cycle());
+    let search = Triggers {
+        interval,
+        ..state.model.search
+    };
+    if !search.due(state.steps, unsearched) {
         return 0;
     }
     find_pieces_now(state)

@@ -7,8 +7,10 @@
 use std::sync::Arc;
 
 use crate::physics::bond::scatter::{body_key, strength_factor};
+use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
+use crate::stages::listing::renumber_lists;
 use crate::stages::sleep::{count_sleepers, prepare_change};
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
@@ -31,6 +33,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         leaving,
     } = changes;
     let old = std::mem::take(&mut state.particles);
+    let old_firsts: Vec<u32> = state.clumps.all.iter().map(|clump| clump.first).collect();
     let mut near = std::mem::take(&mut state.clumps.near);
     let mut rebuilt = Rebuilt::of(&old);
     let mut clusters = state.clusters.take();
@@ -77,6 +80,8 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         // They belong together by construction.
         let _ = clusters.rebuild(&state.bonds);
     }
+    let is_new = |i: u32| materials_of_new[i as usize].is_some();
+    renumber_lists(state, &particles, is_new, &old_firsts);
     for created in &created {
         state.ledger.gain(strain_of(created, state));
     }
@@ -226,7 +231,7 @@ impl<'a> Rebuilt<'a> {
     }
 }
 
-/// Elastic energy of contacts between particles and with walls, J.
+/// Elastic energy of contacts between particles and with walls, and energy of liquid bridges, J.
 fn pressed_j(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
@@ -238,7 +243,7 @@ fn pressed_j(state: &State) -> f64 {
         energies.sum::<f64>()
     };
     let of_walls: f64 = state.walls.iter().map(of_wall).sum();
-    elastic_energy_j(contacts, &state.particles) + of_walls
+    elastic_energy_j(contacts, &state.particles) + of_walls + bridges_energy_j(state)
 }
 
 /// New numbers, without those of removed items.
@@ -260,9 +265,10 @@ fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
 /// All spheres of a clump, as particles that move with it (Platzer 2022, section 4.5.4.1): x = c +
 /// R s, v = v_c + w x (R s).
 fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
+    let motion_at = clump.motion(template);
     for (sphere, sub) in template.spheres.iter().enumerate() {
         let pose = template.pose(sphere, clump);
-        let motion = clump.motion_at(template, &pose.place());
+        let motion = motion_at(&pose.place());
         new.poses.push(pose);
         new.motions.push(Motion {
             inverse_mass: 1.0 / sub.mass_kg,
@@ -346,7 +352,6 @@ fn count_anew(
     // The next step computes damping forces before it needs them.
     state.divide();
     for wall in &mut state.walls {
-        wall.near.clear();
         wall.touching.retain_mut(|touch| {
             let before = touch.particle as usize;
             touch.particle = particles[before];
@@ -361,6 +366,13 @@ fn count_anew(
             true
         });
         wall.touching.sort_by_key(|touch| touch.particle);
+    }
+    if let Some(bridges) = &mut state.bridges {
+        let poses = &state.particles.poses;
+        bridges.renumber(particles, |old| {
+            let now = &poses[particles[old as usize] as usize];
+            old_radii_m[old as usize] - now.radius_m()
+        });
     }
     let Some(contacts) = &mut state.contacts else {
         return;
@@ -405,6 +417,4 @@ fn count_anew(
     remembered.sort_unstable_by_key(|(pair, _)| *pair);
     (contacts.pairs, contacts.histories) = remembered.into_iter().unzip();
     contacts.divide(count, state.scratch.threads);
-    // The next step searches for near pairs again.
-    contacts.search_all();
 }

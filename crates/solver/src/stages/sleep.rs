@@ -13,6 +13,7 @@ use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
 use crate::stages::totals::synchronous_motions;
 use crate::state::State;
+use crate::state::bridges::Bridges;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::events::SleepEvent;
 use crate::state::events::TopologyChange;
@@ -116,7 +117,7 @@ fn speeds_m_s(state: &State) -> Vec<Option<f64>> {
 }
 
 /// The candidates that can sleep, in ascending order: nothing holds, loads or moves them, and all
-/// bodies that they touch or are near to can sleep as well.
+/// bodies that they touch, are near to or have liquid bridges to can sleep as well.
 fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
     let (Some(contacts), Some(clusters)) = (&state.contacts, &state.clusters) else {
         return Vec::new();
@@ -143,6 +144,16 @@ fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
     for (pair, history) in contacts.pairs.iter().zip(&contacts.histories) {
         if history.overlap_m() > 0.0 {
             join(&mut names, id(pair[0]), id(pair[1]));
+        }
+    }
+    if let Some(bridges) = &state.bridges {
+        for [a, b] in bridges.pairs.iter().map(|bridge| bridge.pair) {
+            join(&mut names, id(a), id(b));
+        }
+        for bridge in &bridges.walls {
+            if moving(&&state.walls[bridge.wall as usize]) {
+                may[id(bridge.particle) as usize] = false;
+            }
         }
     }
     leave_out_islands(&mut names, &mut may, state.sleep.as_ref());
@@ -289,11 +300,12 @@ pub(crate) fn disturbed(state: &State) -> Vec<u32> {
                 _ => None,
             });
     let mut near: Vec<u32> = near_particles.collect();
-    for wall in &state.walls {
+    for (n, wall) in state.walls.iter().enumerate() {
         if moves(wall, [state.time_s, state.time_step_s]) {
             let is_near = nearness(wall, contacts.skin_m);
             let sleepers = (0..p.len()).filter(|&i| p.asleep[i] && is_near(&p.poses[i]));
             near.extend(sleepers.map(|i| i as u32));
+            near.extend(asleep_at(state, n));
         }
     }
     let ids = near.iter().map(|&i| clusters.of_particle[i as usize]);
@@ -303,17 +315,28 @@ pub(crate) fn disturbed(state: &State) -> Vec<u32> {
     ids
 }
 
-/// Wakes clusters and all that sleep with them, through contacts, directly or indirectly.
+/// Sleeping particles with a liquid bridge to the wall of this number.
+fn asleep_at(state: &State, wall: usize) -> impl Iterator<Item = u32> {
+    let bridges = state.bridges.iter().flat_map(|bridges| &bridges.walls);
+    let of_wall = bridges.filter(move |bridge| bridge.wall as usize == wall);
+    let particles = of_wall.map(|bridge| bridge.particle);
+    particles.filter(|&i| state.particles.sleeps(i as usize))
+}
+
+/// Wakes clusters and all that sleep with them, through contacts and liquid bridges, directly or
+/// indirectly.
 pub(crate) fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
     let (Some(sleep), Some(clusters)) = (&mut state.sleep, &state.clusters) else {
         return;
     };
-    let mut names: Vec<u32> = (0..sleep.of_cluster.len() as u32).collect();
-    for kept in &sleep.pairs {
-        let [a, b] = kept.pair.map(|i| clusters.of_particle[i as usize]);
+    let mut names: Vec<u32> = (0..clusters.history.len() as u32).collect();
+    let bridged = state.bridges.iter().flat_map(|bridges| &bridges.pairs);
+    let bridged = bridged.map(|bridge| bridge.pair);
+    for pair in sleep.pairs.iter().map(|kept| kept.pair).chain(bridged) {
+        let [a, b] = pair.map(|i| clusters.of_particle[i as usize]);
         join(&mut names, a, b);
     }
-    let mut wakes = vec![false; sleep.of_cluster.len()];
+    let mut wakes = vec![false; names.len()];
     for &id in ids {
         wakes[find(&mut names, id) as usize] = true;
     }
@@ -338,6 +361,7 @@ pub(crate) fn wake(state: &mut State, ids: &[u32], cause: &'static str) {
         &mut sleep.touches,
         state.contacts.as_mut(),
         &mut state.walls,
+        state.bridges.as_ref(),
         is_awake,
     );
     count_sleepers(state);
@@ -361,7 +385,10 @@ pub(crate) fn prepare_change(state: &mut State, changes: &TopologyChange) {
     if let Some(sleep) = &mut state.sleep {
         let contacts = state.contacts.as_mut();
         let Sleep { pairs, touches, .. } = sleep;
-        put_back(pairs, touches, contacts, &mut state.walls, |_| true);
+        let bridges = state.bridges.as_ref();
+        put_back(pairs, touches, contacts, &mut state.walls, bridges, |_| {
+            true
+        });
     }
 }
 
@@ -371,6 +398,7 @@ fn put_back(
     touches: &mut Vec<FrozenWallContact>,
     contacts: Option<&mut Contacts>,
     walls: &mut [Wall],
+    bridges: Option<&Bridges>,
     is_awake: impl Fn(u32) -> bool,
 ) {
     if let Some(contacts) = contacts {
@@ -388,7 +416,7 @@ fn put_back(
     for wall in walls.iter_mut() {
         wall.touching.sort_by_key(|touch| touch.particle);
     }
-    sum_pushes(touches, walls);
+    sum_pushes(touches, bridges, |i| !is_awake(i), walls);
 }
 
 /// Moves the contact histories of sleeping bodies out of the lists and keeps them.
@@ -428,17 +456,24 @@ pub(crate) fn freeze_contacts(state: &mut State) {
                 elastic_j: touch_energy_j(wall, contacts, p, &touch),
             }));
     }
-    if sleep.pairs.len() + sleep.touches.len() > known {
+    if sleep.pairs.len() + sleep.touches.len() > known || state.bridges.is_some() {
         sleep.pairs.sort_by_key(|kept| kept.pair);
         sleep
             .touches
             .sort_by_key(|kept| (kept.wall, kept.touch.particle));
-        sum_pushes(&sleep.touches, &mut state.walls);
+        let sleeps = |i: u32| p.sleeps(i as usize);
+        let bridges = state.bridges.as_ref();
+        sum_pushes(&sleep.touches, bridges, sleeps, &mut state.walls);
     }
 }
 
 /// Forces between walls and the bodies that sleep on them.
-fn sum_pushes(touches: &[FrozenWallContact], walls: &mut [Wall]) {
+fn sum_pushes(
+    touches: &[FrozenWallContact],
+    bridges: Option<&Bridges>,
+    sleeps: impl Fn(u32) -> bool,
+    walls: &mut [Wall],
+) {
     for wall in walls.iter_mut() {
         wall.load_by_sleepers = WallLoad::default();
     }
@@ -446,6 +481,17 @@ fn sum_pushes(touches: &[FrozenWallContact], walls: &mut [Wall]) {
         walls[*wall]
             .load_by_sleepers
             .add(push.force_n, push.torque_n_m, push.belt_w);
+    }
+    let of_walls = bridges.into_iter().flat_map(|bridges| &bridges.walls);
+    for bridge in of_walls.filter(|bridge| sleeps(bridge.particle)) {
+        let WallLoad {
+            force_n,
+            torque_n_m,
+            belt_w,
+        } = bridge.load;
+        walls[bridge.wall as usize]
+            .load_by_sleepers
+            .add(force_n, torque_n_m, belt_w);
     }
 }
 

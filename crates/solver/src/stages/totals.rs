@@ -17,13 +17,25 @@ use rayon::prelude::*;
 /// particle.
 pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     let p = &state.particles;
-    let half_s = 0.5 * state.time_step_s;
+    let mut motions = synchronous_motions_of_free(state);
+    for clump in synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s) {
+        let motion_at = clump.motion(state.clumps.template(&clump));
+        let spheres = &p.poses[state.clumps.spheres_of(&clump)];
+        motions.extend(spheres.iter().map(|pose| motion_at(&pose.place())));
+    }
+    motions
+}
+
+/// The same for free particles only.
+pub fn synchronous_motions_of_free(state: &State) -> Vec<Motion> {
+    let p = &state.particles;
     let [viscous, structural, particles] = state.resistances();
     let back = |i: usize| {
         let mut motion = p.motions[i];
         if p.sleeps(i) {
             return motion;
         }
+        let half_s = 0.5 * state.steps_of_s(i)[1];
         let (per_mass, per_inertia) = (
             half_s * motion.inverse_mass,
             half_s * motion.inverse_inertia,
@@ -46,15 +58,6 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
         .with_min_len(CHUNK)
         .map(back)
         .collect();
-    for clump in synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s) {
-        let template = state.clumps.template(&clump);
-        let spheres = &p.poses[state.clumps.spheres_of(&clump)];
-        motions.extend(
-            spheres
-                .iter()
-                .map(|pose| clump.motion_at(template, &pose.place())),
-        );
-    }
     let steps_s = state.steps_s();
     let holds =
         |support: &&GroupSupport| support.phase(state.time_s, steps_s) == SupportPhase::Holds;
@@ -83,8 +86,10 @@ pub fn motions_before_kick(state: &State) -> Vec<Motion> {
     let mut motions = synchronous_motions(state);
     // In a static equilibrium nothing moves, and there is no step.
     if state.time_step_s > 0.0 {
-        let back = state.previous_time_step_s / state.time_step_s;
-        for (motion, after) in motions.iter_mut().zip(&state.particles.motions) {
+        let after = state.particles.motions.iter().enumerate();
+        for (motion, (i, after)) in motions.iter_mut().zip(after) {
+            let [before_s, step_s] = state.steps_of_s(i);
+            let back = before_s / step_s;
             for (now, after) in motion.velocity_m_s.iter_mut().zip(after.velocity_m_s) {
                 *now -= back * (after - *now);
             }
@@ -92,8 +97,8 @@ pub fn motions_before_kick(state: &State) -> Vec<Motion> {
     }
     // The ends of a bond that broke in this step have had its half of the kick after the
     // comparison.
-    let half_s = 0.5 * state.previous_time_step_s;
     for (end, on_end) in state.scratch.events.broken.iter().flat_map(|b| b.ends) {
+        let half_s = 0.5 * state.steps_of_s(end as usize)[0];
         let motion = &mut motions[end as usize];
         for (velocity, force_n) in motion.velocity_m_s.iter_mut().zip(on_end) {
             *velocity -= half_s * motion.inverse_mass * force_n;

@@ -1,17 +1,15 @@
 //! Walls: their motion, and their contacts with particles.
 
+mod meeting;
+
 use dem_scene::WallMotion;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use self::meeting::{Meeting, Met, Place};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
-use crate::physics::contact::assembly::StoredContact;
-use crate::physics::contact::kinematics::{
-    ContactKinematics, ContactSphere, WallPoint, wall_contact_kinematics,
-};
-use crate::physics::contact::law::ContactKind;
-use crate::physics::contact::{ContactSprings, Damped, Response};
+use crate::physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
 use crate::physics::number::Vec3;
 use crate::physics::rigid::turn;
 use crate::stages::contacts::{StoredEnergy, StoredForce};
@@ -62,7 +60,7 @@ pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
 const CHUNK: usize = 256;
 /// A contact that moves to another flat part of a wall keeps its history if the cosine of the angle
 /// between the normals exceeds this.
-const SAME_WAY: f64 = 0.9;
+pub(super) const SAME_WAY: f64 = 0.9;
 /// Fraction of the deviation that a servo corrects in a step.
 const SERVO: f64 = 0.1;
 
@@ -126,50 +124,16 @@ pub(crate) fn wall_wrenches(
     particles: &mut Particles,
     dt: f64,
 ) {
-    let Contacts {
-        model, materials, ..
-    } = contacts;
-    let least_overlap = &model.least_overlap;
     for wall in walls {
-        let known = &*particles;
-        let to_wall = wall.frame.all_to_wall();
-        let bounds = wall.model.shape.bounds();
-        let is_solid = matches!(wall.model.shape, Shape::Box(_) | Shape::Cylinder(_));
-        let of_chunk = |some: &[u32]| {
-            let (mut found, mut touches) = (Vec::new(), Vec::new());
-            let first = some.first().copied().unwrap_or(0);
-            let first = wall.touching.partition_point(|old| old.particle < first);
-            let mut old = &wall.touching[first..];
-            for &particle in some {
-                let passed = old.iter().take_while(|old| old.particle < particle);
-                old = &old[passed.count()..];
-                let own = old.iter().take_while(|old| old.particle == particle);
-                let before = &old[..own.count()];
-                let pose = &known.poses[particle as usize];
-                let centre = to_wall(pose.place().into());
-                touches.clear();
-                if bounds.is_near(&centre, pose.radius_m()) {
-                    wall.model
-                        .shape
-                        .touches(centre, pose.radius_m(), &mut touches);
-                }
-                if !touches.is_empty() || !before.is_empty() {
-                    let kind = wall.kind(materials[particle as usize]);
-                    let at = |there: &Touch, old: Option<&WallContact>| {
-                        meet_at(wall, kind, known, particle, there, old, *least_overlap, dt)
-                    };
-                    let first_found = found.len();
-                    meet(&wall.frame, pose, &touches, before, &at, &mut found);
-                    if is_solid
-                        && let (Some(met), true) = (found.get_mut(first_found), !touches.is_empty())
-                    {
-                        met.crossed |= comes_out_behind(&met.touch, before);
-                    }
-                }
-            }
-            found
+        let place = Place {
+            wall,
+            particles,
+            materials: &contacts.materials,
+            least_overlap: contacts.model.least_overlap,
+            dt,
         };
-        let met: Vec<Vec<Met>> = wall.near.par_chunks(CHUNK).map(of_chunk).collect();
+        let meet = |some: &[u32]| place.meet(&meetings(wall, particles, some));
+        let met: Vec<Vec<Met>> = wall.near.par_chunks(CHUNK).map(meet).collect();
         wall.push = WallLoad::default();
         wall.scratch.damping = WallLoad::default();
         wall.scratch.elastic_j = 0.0;
@@ -181,28 +145,38 @@ pub(crate) fn wall_wrenches(
     }
 }
 
-/// Interaction of a particle and a wall at one point.
-struct Met {
-    touch: WallContact,
-    /// Feature whose history is continued.
-    old: Option<u32>,
-    /// Point of contact, m.
-    point: Vector3<f64>,
-    /// Velocity of the belt there, m/s.
-    belt: Vector3<f64>,
-    /// Force on the particle and its damping part, N.
-    forces: [Vector3<f64>; 2],
-    /// Torque on the particle, N m.
-    torque: Vector3<f64>,
-    /// Moment of rolling friction on the particle and its damping part, N m.
-    moments: [Vector3<f64>; 2],
-    elastic_j: f64,
-    /// Energy lost to friction and to damping in the step just made.
-    lost_j: [f64; 2],
-    /// Whether the centre of the particle has gone through the surface.
-    crossed: bool,
-    /// Stiffness along the normal, N/m.
-    stiffness_n_m: f64,
+/// Where some particles, ascending, touch a wall, or did in the previous step.
+fn meetings<'a>(wall: &'a Wall, particles: &Particles, some: &[u32]) -> Vec<Meeting<'a>> {
+    let to_wall = wall.frame.all_to_wall();
+    let bounds = wall.model.shape.bounds();
+    let is_solid = matches!(wall.model.shape, Shape::Box(_) | Shape::Cylinder(_));
+    let (mut found, mut touches) = (Vec::new(), Vec::new());
+    let first = some.first().copied().unwrap_or(0);
+    let first = wall.touching.partition_point(|old| old.particle < first);
+    let mut old = &wall.touching[first..];
+    for &particle in some {
+        let passed = old.iter().take_while(|old| old.particle < particle);
+        old = &old[passed.count()..];
+        let own = old.iter().take_while(|old| old.particle == particle);
+        let before = &old[..own.count()];
+        let pose = &particles.poses[particle as usize];
+        let centre = to_wall(pose.place().into());
+        touches.clear();
+        if bounds.is_near(&centre, pose.radius_m()) {
+            wall.model
+                .shape
+                .touches(centre, pose.radius_m(), &mut touches);
+        }
+        let first_found = found.len();
+        add_meetings(&wall.frame, (particle, pose), &touches, before, &mut found);
+        if is_solid
+            && !touches.is_empty()
+            && let Some(meeting) = found.get_mut(first_found)
+        {
+            meeting.is_behind = comes_out_behind(meeting, before);
+        }
+    }
+    found
 }
 
 fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
@@ -226,26 +200,28 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
     }
 }
 
-/// Result for the `touches` of a particle, in the wall's frame, and for the contacts that have
-/// ended.
-fn meet(
+/// Adds the `touches` of a particle, given in the wall's frame, and the contacts that have ended.
+fn add_meetings<'a>(
     frame: &Frame,
-    pose: &Pose,
+    (particle, pose): (u32, &Pose),
     touches: &[Touch],
-    before: &[WallContact],
-    at: &dyn Fn(&Touch, Option<&WallContact>) -> Met,
-    found: &mut Vec<Met>,
+    before: &'a [WallContact],
+    found: &mut Vec<Meeting<'a>>,
 ) {
     let first_found = found.len();
     for touch in touches {
         let there = frame.touch_to_space(touch);
         let normal = -Vector3::from(there.normal);
         let old = remembered(before, touches, touch, &normal);
-        found.push(at(&there, old));
+        found.push(Meeting::new(particle, there, old));
     }
     // The losses of contacts that have ended are still to be recorded.
     for old in before {
-        let goes_on = |met: &Met| met.old == Some(old.feature);
+        let goes_on = |meeting: &Meeting<'_>| {
+            meeting
+                .old
+                .is_some_and(|known| known.feature == old.feature)
+        };
         if !found[first_found..].iter().any(goes_on) {
             let there = Touch {
                 point: pose.place().into(),
@@ -253,15 +229,15 @@ fn meet(
                 normal: old.normal.map(|n| -n),
                 distance_m: pose.radius_m(),
             };
-            found.push(at(&there, Some(old)));
+            found.push(Meeting::new(particle, there, Some(old)));
         }
     }
 }
 
 /// Whether a particle touches a solid from the opposite side compared with the previous step: it
 /// went through a solid thinner than itself.
-fn comes_out_behind(touch: &WallContact, before: &[WallContact]) -> bool {
-    let normal = Vector3::from(touch.normal);
+fn comes_out_behind(meeting: &Meeting<'_>, before: &[WallContact]) -> bool {
+    let normal = -Vector3::from(meeting.there.normal);
     before
         .iter()
         .any(|old| Vector3::from(old.normal).dot(&normal) < 0.0)
@@ -284,96 +260,6 @@ fn remembered<'a>(
     })
 }
 
-#[expect(clippy::too_many_arguments, reason = "the inside of a loop")]
-fn meet_at(
-    wall: &Wall,
-    kind: &ContactKind,
-    particles: &Particles,
-    particle: u32,
-    there: &Touch,
-    old: Option<&WallContact>,
-    least_overlap: f64,
-    dt: f64,
-) -> Met {
-    let i = particle as usize;
-    let motion = &particles.motions[i];
-    let normal = -Vector3::from(there.normal);
-    // Point of action of the particle's force and torque: half the overlap below its surface.
-    let pose = &particles.poses[i];
-    let point = pose.place() - normal * (0.5 * (pose.radius_m() + there.distance_m));
-    let arm = point - Vector3::from(wall.frame.position_m);
-    let [velocity, _] = wall.velocities_m_s.map(Vector3::from);
-    let [spin, _] = wall.spins_rad_s.map(Vector3::from);
-    let belt = Vector3::from(wall.model.surface_velocity_m_s);
-    let belt = belt - normal * belt.dot(&normal);
-    let foot = WallPoint {
-        normal: normal.into(),
-        normal_before: old.map_or(normal, |old| old.normal.into()).into(),
-        distance_m: there.distance_m,
-        velocity_m_s: (velocity + spin.cross(&arm) + belt).into(),
-        spin_rad_s: spin.into(),
-    };
-    let ball = ContactSphere {
-        velocity_m_s: Vector3::from(motion.velocity_m_s).into(),
-        spin_rad_s: Vector3::from(motion.spin_rad_s).into(),
-        ..particles.contact_sphere_at_rest(i)
-    };
-    let touch = wall_contact_kinematics(&foot, ball, dt);
-    let history = old.map_or(ContactHistory::default(), |old| old.history);
-    let vector = |[x, y, z, _]: [f64; 4]| Vec3(x, y, z);
-    let before = StoredContact {
-        springs: ContactSprings {
-            tangential_m: vector(history.tangential),
-            rolling_rad: vector(history.rolling),
-            overlap_m: history.overlap_m(),
-        },
-        damped: Damped {
-            force_n: vector(history.damping),
-            moment_n_m: vector(history.rolling_damping),
-        },
-        origin_m: history.origin_m(),
-    };
-    let met = kind.assemble(&touch, &before, least_overlap, dt);
-    let StoredContact {
-        springs,
-        damped,
-        origin_m,
-    } = met.remembered;
-    let [_, torque] = met.torques;
-    let Response {
-        force_on_b,
-        moment_on_b,
-        energy,
-        damping,
-        ..
-    } = met.response;
-    let row = |Vec3(x, y, z): Vec3<f64>, last: f64| [x, y, z, last];
-    Met {
-        old: old.map(|old| old.feature),
-        touch: WallContact {
-            particle,
-            feature: there.feature,
-            normal: normal.into(),
-            history: ContactHistory {
-                tangential: row(springs.tangential_m, springs.overlap_m),
-                damping: row(damped.force_n, origin_m),
-                rolling: row(springs.rolling_rad, 0.0),
-                rolling_damping: row(damped.moment_n_m, 0.0),
-            },
-        },
-        point,
-        belt,
-        forces: [force_on_b.into(), damped.force_n.into()],
-        torque: torque.into(),
-        moments: [moment_on_b.into(), damping.rolling_n_m.into()],
-        elastic_j: energy.normal + energy.tangential + energy.rolling,
-        lost_j: [met.friction_j, met.damping_j],
-        crossed: met.overlap_m > ball.radius_m
-            || old.is_some_and(|old| Vector3::from(old.normal).dot(&normal) < 0.0),
-        stiffness_n_m: kind.normal_n_m(met.overlap_m, touch.effective_radius_m),
-    }
-}
-
 /// Force of a wall at rest on a particle at rest at one point, from its contact history.
 pub(crate) fn push_at_rest(
     wall: &Wall,
@@ -388,21 +274,20 @@ pub(crate) fn push_at_rest(
         normal: old.normal.map(|n| -n),
         distance_m: pose.radius_m() - old.history.overlap_m() - old.history.origin_m(),
     };
-    let kind = wall.kind(contacts.materials[old.particle as usize]);
-    let met = meet_at(
+    let place = Place {
         wall,
-        kind,
         particles,
-        old.particle,
-        &there,
-        Some(old),
-        contacts.model.least_overlap,
-        0.0,
-    );
-    let arm = met.point - Vector3::from(wall.frame.position_m);
-    let about_pivot = arm.cross(&met.forces[0]) + met.moments[0];
+        materials: &contacts.materials,
+        least_overlap: contacts.model.least_overlap,
+        dt: 0.0,
+    };
+    let meeting = Meeting::new(old.particle, there, Some(old));
     let mut push = WallLoad::default();
-    push.add(met.forces[0].into(), about_pivot.into(), 0.0);
+    for met in place.meet(&[meeting]) {
+        let arm = met.point - Vector3::from(wall.frame.position_m);
+        let about_pivot = arm.cross(&met.forces[0]) + met.moments[0];
+        push.add(met.forces[0].into(), about_pivot.into(), 0.0);
+    }
     push
 }
 

@@ -51,11 +51,12 @@ pub(crate) fn watch(state: &mut State) -> usize {
 
 fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {
     // The lists cover at least this distance, whether rebuilt in this step or in the previous one.
-    let longest_s = state.time_step_s.max(state.previous_time_step_s);
+    let cycle = state.cycle() as f64;
+    let longest_s = cycle * state.time_step_s.max(state.previous_time_step_s);
     let sure_m = 2.0 * state.fastest_m_s * longest_s;
     let now_m = met.overlap_m.max(-sure_m);
     if let Some(before_m) = seen.overlap_m {
-        seen.touched_s += state.previous_time_step_s * share_above_0(before_m, now_m);
+        seen.touched_s += cycle * state.previous_time_step_s * share_above_0(before_m, now_m);
     }
     seen.overlap_m = Some(now_m);
     seen.value = match quantity {

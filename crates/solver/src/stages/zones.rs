@@ -13,6 +13,7 @@ use dem_io::disjoint::{find, join};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::totals::synchronous_motions;
 use crate::state::State;
+use crate::state::events::ZoneEvent;
 use crate::state::particles::Particles;
 use crate::state::rigid_parts::{FREE, RigidPart};
 use crate::state::rules::{Rejoin, Zone};
@@ -56,30 +57,73 @@ pub fn follow_zones(state: &mut State) -> usize {
     }
     let mut part_of = state.rigid_parts.of_particle.clone();
     part_of.resize(state.particles.free, FREE);
-    let mut released = 0;
+    let mut changed = vec![Change::default(); state.model.rules.zones.len()];
     for &i in state.rigid_parts.all.iter().flat_map(|part| &part.members) {
-        if is_outside(i, state) == Some(false) {
+        if let (Some(zone), Some(false)) = (number_of_zone(i, state), is_outside(i, state)) {
             part_of[i as usize] = FREE;
-            released += 1;
+            changed[zone].released += 1;
         }
     }
     let joining = joining(state, &part_of);
     for &(i, part) in &joining {
         part_of[i as usize] = part;
+        if let Some(zone) = number_of_zone(i, state) {
+            changed[zone].rejoined += 1;
+        }
     }
-    if released > 0 || !joining.is_empty() {
-        regroup(state, &part_of, !joining.is_empty());
-        state.rigid_parts.released += released;
-        state.rigid_parts.rejoined += joining.len() as u64;
+    if changed.iter().any(|change| *change != Change::default()) {
+        regroup(state, &part_of, &mut changed);
+        record(state, &changed);
     }
     state.particles.free
 }
 
-/// The zone of the body of a particle.
-fn zone_of(i: u32, state: &State) -> Option<&Zone> {
+/// What a look at a zone changed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Change {
+    /// Number of spheres released.
+    released: usize,
+    /// Number of spheres that joined a part again.
+    rejoined: usize,
+    /// Kinetic energy that those took from the body, J.
+    lost_j: f64,
+}
+
+/// Counts the changes, and records them in the ledger and the events.
+fn record(state: &mut State, changed: &[Change]) {
+    let (step, time_s) = (state.steps, state.time_s);
+    for (zone, change) in state.model.rules.zones.iter().zip(changed) {
+        state.rigid_parts.released += change.released as u64;
+        state.rigid_parts.rejoined += change.rejoined as u64;
+        state.ledger.gain(-change.lost_j);
+        for (kind, particles, lost_j) in [
+            ("released", change.released, 0.0),
+            ("rejoined", change.rejoined, change.lost_j),
+        ] {
+            if particles > 0 {
+                state.scratch.events.zones.push(ZoneEvent {
+                    step,
+                    time_s,
+                    kind,
+                    body: zone.body.clone(),
+                    particles,
+                    lost_j,
+                });
+            }
+        }
+    }
+}
+
+/// Number of the zone of the body of a particle. None: it has none.
+fn number_of_zone(i: u32, state: &State) -> Option<usize> {
     let id = state.particles.id(i as usize);
     let mut zones = state.model.rules.zones.iter();
-    zones.find(|zone| zone.ids.contains(&id))
+    zones.position(|zone| zone.ids.contains(&id))
+}
+
+/// The zone of the body of a particle.
+fn zone_of(i: u32, state: &State) -> Option<&Zone> {
+    number_of_zone(i, state).map(|number| &state.model.rules.zones[number])
 }
 
 /// Whether a particle is outside the bonded zone of its body. None: it is bonded everywhere.
@@ -159,8 +203,10 @@ fn is_quiet(
         && passing_m_s.max(turning_m_s) <= rule.speed_m_s
 }
 
-/// Forms the rigid parts again whose spheres have changed. `joins`: spheres have joined some.
-fn regroup(state: &mut State, part_of: &[u32], joins: bool) {
+/// Forms the rigid parts again whose spheres have changed, and adds to `changed` what each zone
+/// loses where spheres have joined parts.
+fn regroup(state: &mut State, part_of: &[u32], changed: &mut [Change]) {
+    let joins = changed.iter().any(|change| change.rejoined > 0);
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); state.rigid_parts.all.len()];
     for (i, &part) in (0..).zip(part_of) {
         if let Some(members) = members.get_mut(part as usize) {
@@ -173,7 +219,6 @@ fn regroup(state: &mut State, part_of: &[u32], joins: bool) {
     } else {
         Vec::new()
     };
-    let mut gained_j = 0.0;
     let mut parts = Vec::new();
     for (n, members) in members.into_iter().enumerate() {
         if members == state.rigid_parts.all[n].members {
@@ -182,16 +227,15 @@ fn regroup(state: &mut State, part_of: &[u32], joins: bool) {
         }
         for part in connected(&members, state) {
             let p = &state.particles;
-            if joins {
+            if let (true, Some(zone)) = (joins, number_of_zone(part.members[0], state)) {
                 let now = RigidPart::of(part.members.clone(), &p.poses, &motions);
                 let own = part.members.iter().map(|&i| i as usize);
                 let before: f64 = own.map(|i| p.kinetic_j(i, &motions[i])).sum();
-                gained_j += now.kinetic_j() - before;
+                changed[zone].lost_j += before - now.kinetic_j();
             }
             parts.push(part);
         }
     }
-    state.ledger.gain(gained_j);
     parts.sort_by_key(|part| part.members[0]);
     set_parts(state, parts);
 }

@@ -214,13 +214,13 @@ impl Clump {
             + kinetic_j(&self.turned, self.angular_momentum, template.moments_kg_m2)
     }
 
-    /// Motion of a sphere of the clump at this position.
-    pub fn motion_at(&self, template: &Template, place: &Vector3<f64>) -> Motion {
+    /// Motion of a sphere of the clump at any position, m.
+    pub fn motion(&self, template: &Template) -> impl Fn(&Vector3<f64>) -> Motion + use<> {
+        let [centre, velocity] = [self.place_m, self.velocity_m_s].map(Vector3::from);
         let spin = self.spin_rad_s(template);
-        let arm = place - Vector3::from(self.place_m);
         let [inverse_mass, inverse_inertia] = template.inert();
-        Motion {
-            velocity_m_s: (Vector3::from(self.velocity_m_s) + spin.cross(&arm)).into(),
+        move |place| Motion {
+            velocity_m_s: (velocity + spin.cross(&(place - centre))).into(),
             inverse_mass,
             spin_rad_s: spin.into(),
             inverse_inertia,
@@ -284,12 +284,11 @@ impl Clumps {
     /// clump.
     pub(crate) fn push_spheres(template: &Template, clump: &mut Clump, particles: &mut Particles) {
         clump.first = particles.len() as u32;
+        let motion_at = clump.motion(template);
         for &sphere in &template.outer {
             let mut pose = template.pose(sphere as usize, clump);
             pose.position_m[3] *= template.scale;
-            particles
-                .motions
-                .push(clump.motion_at(template, &pose.place()));
+            particles.motions.push(motion_at(&pose.place()));
             particles.poses.push(pose);
             particles.wrenches.push(Wrench::default());
             particles.ids.push(template.id(sphere as usize, clump));

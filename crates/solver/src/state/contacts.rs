@@ -122,6 +122,9 @@ pub struct Contacts {
 pub struct ContactScratch {
     /// The last search for the neighbours of each particle.
     pub references: References,
+    /// Whether the contacts of a group of bodies are worked on, not those of all: see
+    /// `levels::Group`.
+    pub is_of_group: bool,
     /// Division of the work.
     pub partitions: Vec<ContactPartition>,
     /// Requested number of partitions: few contacts need fewer.

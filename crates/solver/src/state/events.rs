@@ -15,12 +15,17 @@ pub struct Events {
     pub time_s: f64,
     /// Bonds that broke in the kick.
     pub broken: Vec<Break>,
+    /// Bonds that broke after it and before the next common time of all bodies, each with the
+    /// steps done before and the time of the kick, s: only with steps by body.
+    pub broken_between: Vec<((u64, f64), Break)>,
     /// Clusters that were found in pieces.
     pub splits: Vec<Split>,
     /// Bodies added, removed or replaced.
     pub population: Vec<PopulationEvent>,
     /// New numbers of particles and bonds after each of these changes.
     pub renumberings: Vec<Renumbering>,
+    /// Spheres that were released from rigid parts of bodies or joined them again.
+    pub zones: Vec<ZoneEvent>,
     /// Bodies that fell asleep or woke.
     pub sleep: Vec<SleepEvent>,
     /// Work that stages did as part of others.
@@ -45,6 +50,7 @@ impl Events {
         self.splits.clear();
         self.population.clear();
         self.renumberings.clear();
+        self.zones.clear();
         self.sleep.clear();
         self.work = Work::default();
     }
@@ -162,6 +168,24 @@ pub struct SleepEvent {
     pub cause: &'static str,
     /// Number of bodies.
     pub bodies: usize,
+}
+
+/// Spheres of a body bonded in part that were released from its rigid parts or joined them again,
+/// together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ZoneEvent {
+    /// At this step.
+    pub step: u64,
+    /// s.
+    pub time_s: f64,
+    /// `released` or `rejoined`.
+    pub kind: &'static str,
+    /// Name of the body.
+    pub body: String,
+    /// Number of spheres.
+    pub particles: usize,
+    /// Kinetic energy that they lost, J.
+    pub lost_j: f64,
 }
 
 /// Number of a particle or bond that has been removed.

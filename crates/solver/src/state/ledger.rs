@@ -81,6 +81,11 @@ impl EnergyLedger {
         fallen.abs()
     }
 
+    /// Notes the energy supplied by gravity up to now, if it is the largest so far.
+    pub(crate) fn note_fall(&mut self, gravity_m_s2: [f64; 3]) {
+        self.fallen_j = self.fallen_j.max(self.fallen_now_j(gravity_m_s2));
+    }
+
     pub(crate) fn settle(&mut self) {
         let pending = std::mem::take(&mut self.pending);
         self.work.add(&pending, 1.0);

@@ -10,6 +10,9 @@ use std::ops::Range;
 use super::bonds::Bonds;
 use super::rigid_parts::{FREE, is_within_part};
 
+/// Work is divided again when one in this many of the computed bonds is broken.
+pub(crate) const STALE: u64 = 64;
+
 /// What is not computed.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Idle<'a> {

@@ -1,7 +1,8 @@
 //! Where particles were when their neighbours were last searched for.
 
-/// Centre x, y, z and radius, m.
-pub type Ball = [f64; 4];
+pub use super::groups::Ball;
+
+use super::groups::KnownClusters;
 
 /// The last search for the neighbours of each particle. Its pairs cover all that can touch while no
 /// particle leaves its ball.
@@ -16,6 +17,8 @@ pub struct References {
     pub clumps: Vec<ClumpReference>,
     /// Particles to be searched for again, wherever they are: those of new fragments.
     pub due: Vec<u32>,
+    /// The clusters.
+    pub clusters: KnownClusters,
 }
 
 /// A clump at the last search for its neighbours.

@@ -163,6 +163,8 @@ pub struct Outlet {
 /// The bonded part of a body, the rest of which is rigid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Zone {
+    /// Name of the body.
+    pub body: String,
     /// [Ids](super::particles::Particles::id) of the spheres of the body.
     pub ids: Range<u32>,
     /// Number in [`Rules::regions`].

@@ -6,8 +6,8 @@ use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
 use super::{
-    adhesion, breakage, daughters, families, impact, joints, limit_map, long, softening, swap,
-    yielding,
+    adhesion, breakage, bridges, daughters, families, impact, joints, limit_map, long, own_steps,
+    softening, swap, yielding,
 };
 
 /// A case of the suite.
@@ -32,7 +32,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 21] = [
+pub const CASES: [Case; 23] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -109,6 +109,11 @@ pub const CASES: [Case; 21] = [
         members: |_| Ok(adhesion::grains()),
     },
     Case {
+        name: "bridges",
+        extreme: "spheres of 1e-4 m to 1e-2 m that liquid holds on a wall or lets go",
+        members: |_| Ok(bridges::drops()),
+    },
+    Case {
         name: "mesh-wall",
         extreme: "a sphere faster than its radius per step against a sheet of triangles",
         members: |_| Ok(impact::at_mesh()),
@@ -132,6 +137,11 @@ pub const CASES: [Case; 21] = [
         name: "short-bonds",
         extreme: "bonds down to a billionth of a radius long",
         members: |_| families::short_bonds(),
+    },
+    Case {
+        name: "own-steps",
+        extreme: "bodies whose moduli differ by 10 to 1e6 collide, with steps of their own",
+        members: |_| Ok(own_steps::collisions()),
     },
     Case {
         name: "rest",

@@ -153,11 +153,16 @@ proptest! {
         let found = of(&at);
         let energy = |at: &[End; 2]| of(at).energy.total();
         let h = 1e-6;
+        let here = energy(&at);
+        // Where a failed element opens, the energy of its sliding ends, and there is no gradient.
+        let is_smooth = |more: f64, less: f64| (more - 2.0 * here + less).abs() < 1e-2 * h;
         for axis in 0..3 {
             let mut step = Vector3::zeros();
             step[axis] = h;
             let moved = |sign: f64| [at[0], End { position_m: at[1].position_m + sign * step, ..at[1] }];
-            let force = -(energy(&moved(1.0)) - energy(&moved(-1.0))) / (2.0 * h);
+            let [more, less] = [1.0, -1.0].map(|sign| energy(&moved(sign)));
+            prop_assume!(is_smooth(more, less));
+            let force = -(more - less) / (2.0 * h);
             prop_assert!((force - found.force_on_b[axis]).abs() < 1e-3, "{force} {}", found.force_on_b[axis]);
             for end in 0..2 {
                 let moved = |sign: f64| {
@@ -165,7 +170,9 @@ proptest! {
                     moved[end] = turned(&at[end], sign * step);
                     moved
                 };
-                let torque = -(energy(&moved(1.0)) - energy(&moved(-1.0))) / (2.0 * h);
+                let [more, less] = [1.0, -1.0].map(|sign| energy(&moved(sign)));
+                prop_assume!(is_smooth(more, less));
+                let torque = -(more - less) / (2.0 * h);
                 prop_assert!((torque - found.torques[end][axis]).abs() < 1e-3, "{torque} {}", found.torques[end][axis]);
             }
         }

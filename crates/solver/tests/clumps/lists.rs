@@ -7,9 +7,11 @@ use dem_run::geometry::Touch;
 use dem_run::plan::Plan;
 use dem_run::stages::clumps::place_all;
 use dem_run::state::State;
+use dem_run::state::events::PopulationEvent;
 use dem_run::state::particles::Pose;
 use dem_run::step::{advance, interact, stages, step};
 
+use super::again::busy;
 use super::{HEAD, MEETS, block, lump, planned};
 
 /// Clumps and a breakable block fall at different speeds into a box with a moving plate, after a
@@ -101,6 +103,51 @@ fn what_touches_is_listed_however_unevenly_bodies_move() {
     // A particle is searched for again when it has used at least three tenths of the distance that
     // it goes in thirty steps.
     assert!(searched > 0.0 && searched < particles as f64 / 9.0);
+}
+
+/// What was there keeps its lists when a lump comes, becomes a cluster or a clump, or goes.
+#[test]
+fn what_touches_is_listed_while_bodies_come_are_replaced_and_go() {
+    let Plan { mut state, .. } = busy(1);
+    let [mut came, mut replaced, mut restored] = [0; 3];
+    let mut searched = 0;
+    while state.time_s < 0.25 {
+        let clusters = state.clusters.as_ref().unwrap().of_particle.clone();
+        interact(&mut state);
+        assert_all_listed(&state, &clusters);
+        advance(&mut state);
+        for event in &state.scratch.events.population {
+            match event {
+                PopulationEvent::Came { .. } => came += 1,
+                PopulationEvent::Replaced { .. } => replaced += 1,
+                PopulationEvent::Restored { .. } => restored += 1,
+                _ => {}
+            }
+        }
+        let asked = &state.contacts.as_ref().unwrap().scratch.references.balls;
+        searched += usize::from(asked.is_empty());
+    }
+    let left = state.population.outlets[0].bodies;
+    assert!(
+        came > 20 && replaced > 10 && restored > 3 && left > 3,
+        "{came} {replaced} {restored} {left}"
+    );
+    assert_eq!(searched, 0, "nothing asks for a search of all");
+}
+
+/// The same if all neighbours are to be searched for anyway when bodies come and go.
+#[test]
+fn lists_of_walls_follow_where_all_is_searched_for() {
+    let Plan { mut state, .. } = busy(1);
+    while state.time_s < 0.1 {
+        let clusters = state.clusters.as_ref().unwrap().of_particle.clone();
+        interact(&mut state);
+        assert_all_listed(&state, &clusters);
+        let contacts = state.contacts.as_mut().unwrap();
+        contacts.scratch.references.balls.clear();
+        advance(&mut state);
+    }
+    assert!(state.population.outlets[0].bodies > 0);
 }
 
 #[test]

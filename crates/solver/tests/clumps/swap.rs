@@ -175,7 +175,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
             assert_eq!(clusters.of_particle[i as usize], was.cluster);
             // It starts at the position of the clump's sphere, and has moved for one step.
             let pose = template.pose(sphere, &was);
-            let motion = was.motion_at(template, &pose.place());
+            let motion = was.motion(template)(&pose.place());
             let wanted = pose.place() + Vector3::from(motion.velocity_m_s) * 1e-6;
             let found = &state.particles.poses[i as usize];
             assert!((found.place() - wanted).norm() < 1e-15);

@@ -228,6 +228,19 @@ fn of_what_touches() {
         &with(&touches, &["rolling friction"]),
         &touches,
     );
+    let wet = ", liquid_bridge = { surface_tension = \"73 mN/m\", volume = \"1 mm3\" }";
+    expect(
+        "liquid that nothing touches",
+        &scene("", "", "", &other(1.0, wet)),
+        &searches,
+        &searches,
+    );
+    expect(
+        "liquid bridges",
+        &scene("", "", "", &other(0.02, wet)),
+        &with(&touches, &["liquid bridges"]),
+        &with(&touches, &["liquid bridges"]),
+    );
     expect(
         "sleep",
         &scene("", "", "", &format!("{}[sleep]\n", other(1.0, ""))),

@@ -48,10 +48,12 @@ pub(crate) fn kinds() -> [ContactKind; 3] {
         ContactKind {
             law: hertz(),
             rolling: Rolling::Free,
+            bridge: None,
         },
         ContactKind {
             law: Law::Linear(Linear::new(2e3, 2.0 / 7.0, &pair_input())),
             rolling: Rolling::Constant(ConstantMoment { friction: 0.1 }),
+            bridge: None,
         },
         ContactKind {
             law: hertz(),
@@ -59,6 +61,7 @@ pub(crate) fn kinds() -> [ContactKind; 3] {
                 friction: 0.1,
                 damping_ratio: 0.3,
             }),
+            bridge: None,
         },
     ]
 }

@@ -346,6 +346,11 @@ fn everything_else_is_refused_by_name() {
             "rolling_friction: LAMMPS has no word for it: the spring of its rolling friction",
         ),
         (
+            "friction = 0.3 }",
+            "friction = 0.3, liquid_bridge = { surface_tension = 0.073, volume = \"1 mm3\" } }",
+            "liquid_bridge: LAMMPS has no word for it: liquid between its ends",
+        ),
+        (
             "restitution = 0.5",
             "restitution = 0.1",
             "contacts.grain-grain.restitution: LAMMPS has no word for it: it needs a damping ratio of",

@@ -144,7 +144,7 @@ fn every_good_scene_of_the_corpus_runs() {
 /// End time of each scene for a test without false alarms, and the shape and diameters of its body
 /// if it needs one. Laboratory tests, which have no end time of their own, load within one period
 /// of the body.
-const SHORT: [[&str; 4]; 21] = [
+const SHORT: [[&str; 4]; 23] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -157,6 +157,7 @@ const SHORT: [[&str; 4]; 21] = [
     ["drop-height", "3 ms", "", ""],
     ["drop-inclined", "5 ms", "", ""],
     ["four-point-bending", "", "bending-sample", "5mm..7mm"],
+    ["hard-and-soft", "4 ms", "", ""],
     ["jaw-crusher", "0.1 s", "", ""],
     ["one-cake", "60 ms", "", ""],
     ["repeated-drops", "3 ms", "", ""],
@@ -166,6 +167,7 @@ const SHORT: [[&str; 4]; 21] = [
     ["stalk-cut", "0.5 ms", "", ""],
     ["tension", "", "bar", "4mm..6mm"],
     ["three-point-bending", "", "bending-sample", "5mm..7mm"],
+    ["wet-heap", "50 ms", "", ""],
 ];
 
 /// The watchdog, walls and contacts stop none of them: no false alarm.

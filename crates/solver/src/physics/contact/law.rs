@@ -1,16 +1,20 @@
 //! The contact laws and rolling friction models available to a pair of materials: the one place
 //! that lists them. See `doc/adding-a-model.md` for how to add another.
 
-use super::assembly::{Assembled, StoredContact, assemble};
 use super::dmt::DerjaguinMullerToporov;
 use super::hertz_mindlin::HertzMindlin;
 use super::kinematics::ContactKinematics;
 use super::linear::Linear;
+use super::liquid_bridge::LiquidBridge;
 use super::normal::{ImpactLaw, NormalLaw};
 use super::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
 use super::{Linearised, linearised};
 use crate::physics::number::Number;
 use serde::Serialize;
+
+/// Rounds that find the overlap of an impact with a liquid bridge, each of which at least halves the
+/// logarithm of what is off.
+const ROUNDS: usize = 40;
 
 /// Normal law of a pair of materials.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -41,6 +45,8 @@ pub struct ContactKind {
     pub law: Law,
     /// Rolling friction.
     pub rolling: Rolling,
+    /// Its liquid bridges, which act beside the law. None: dry.
+    pub bridge: Option<LiquidBridge>,
 }
 
 impl Law {
@@ -99,6 +105,28 @@ impl ContactKind {
         law.normal_n_m(overlap_m.max(0.0), effective_radius_m)
     }
 
+    /// Largest overlap of an impact at a speed, m/s, without damping, m. The work of a liquid bridge,
+    /// which pulls with its largest force while the ends overlap, adds to the kinetic energy.
+    pub fn overlap_at_impact_m(
+        &self,
+        effective_radius_m: f64,
+        mass_kg: f64,
+        speed_m_s: f64,
+    ) -> f64 {
+        let law = self.law.at_impact();
+        let overlap_m =
+            |speed_m_s: f64| law.overlap_at_impact_m(effective_radius_m, mass_kg, speed_m_s);
+        let Some(bridge) = &self.bridge else {
+            return overlap_m(speed_m_s);
+        };
+        let force_n = bridge.largest_n(effective_radius_m);
+        let mut found_m = effective_radius_m.max(overlap_m(speed_m_s));
+        for _ in 0..ROUNDS {
+            found_m = overlap_m((speed_m_s * speed_m_s + 2.0 * force_n * found_m / mass_kg).sqrt());
+        }
+        found_m
+    }
+
     /// Force without damping, N, its derivative with respect to the overlap, N/m, and energy, J, of
     /// a contact at rest.
     pub(crate) fn elastic(&self, touch: &ContactKinematics) -> [f64; 3] {
@@ -129,28 +157,5 @@ impl ContactKind {
             }
         }
         self.with(|number| number, Linearise(touch))
-    }
-
-    /// Result for a contact after a step of `dt`, s: see [`assemble`].
-    pub(crate) fn assemble(
-        &self,
-        touch: &ContactKinematics,
-        before: &StoredContact,
-        least_overlap: f64,
-        dt: f64,
-    ) -> Assembled {
-        struct Assemble<'a>(&'a ContactKinematics, &'a StoredContact, f64, f64);
-        impl ContactWork<f64> for Assemble<'_> {
-            type Output = Assembled;
-
-            fn with(
-                self,
-                law: &impl NormalLaw<f64>,
-                rolling: &impl RollingFriction<f64>,
-            ) -> Assembled {
-                assemble(law, rolling, self.0, self.1, self.2, self.3)
-            }
-        }
-        self.with(|number| number, Assemble(touch, before, least_overlap, dt))
     }
 }

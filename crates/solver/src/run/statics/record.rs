@@ -93,6 +93,7 @@ impl AtRest<'_> {
             sizes: None,
             population: None,
             sleep: None,
+            updates_skipped_by_longer_steps: None,
             steps: state.steps,
             time_step_s: state.time_step_s,
             limit_s: f64::INFINITY,

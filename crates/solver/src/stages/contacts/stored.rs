@@ -18,12 +18,15 @@ pub fn overlap_m(poses: &[Pose], pair: [u32; 2]) -> f64 {
 /// Elastic energy of all contacts, J. Summed by particle, so that near pairs without contact, which
 /// may differ in a resumed run, do not change its last bit.
 pub fn elastic_energy_j(contacts: &Contacts, particles: &Particles) -> f64 {
+    let mut firsts = vec![0; particles.len() + 1];
+    for &[a, _] in &contacts.pairs {
+        firsts[a as usize + 1] += 1;
+    }
+    for i in 0..particles.len() {
+        firsts[i + 1] += firsts[i];
+    }
     ordered_sum(particles.len(), |i| {
-        let first = contacts.pairs.partition_point(|&[a, _]| (a as usize) < i);
-        let own = contacts.pairs[first..]
-            .iter()
-            .take_while(|[a, _]| *a as usize == i);
-        (first..first + own.count())
+        (firsts[i]..firsts[i + 1])
             .map(|at| contact_energy_j(contacts, particles, at))
             .sum()
     })

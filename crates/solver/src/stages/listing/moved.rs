@@ -16,10 +16,10 @@ use crate::state::references::{ClumpReference, References};
 /// Number of steps that a particle may go on at its present speed until its next search.
 const STEPS: f64 = 30.0;
 /// The same for a clump: its spheres are many, but few of them are near something.
-const STEPS_OF_CLUMP: f64 = 60.0;
+const STEPS_OF_CLUMP: f64 = 40.0;
 /// Largest distance that a clump may move between two searches, as a multiple of the radius of its
 /// largest sphere.
-const FARTHEST_OF_CLUMP: f64 = 2.0;
+const FARTHEST_OF_CLUMP: f64 = 1.0;
 /// A search is due when something has less than this fraction of its distance left.
 const NOW: f64 = 0.1;
 /// Then everything is searched for that has less than this fraction left: a free particle, and a
@@ -75,7 +75,7 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
     if !is_urgent(state, references) {
         return Some(Due::default());
     }
-    let step_s = state.time_step_s;
+    let step_s = state.cycle_s();
     let (loose, carried): (Vec<u32>, Vec<u32>) =
         references.due.iter().partition(|i| (**i as usize) < p.free);
     let is_due = |i: &u32| {
@@ -117,7 +117,7 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
             for i in chunk_of(p, chunk) {
                 let [left_m, allowance_m] = free_left_m(p, references, i);
                 least_m = least_m.min(left_m);
-                urgent |= particle_is_due(p, i, left_m, NOW * allowance_m, state.time_step_s);
+                urgent |= particle_is_due(p, i, left_m, NOW * allowance_m, state.cycle_s());
             }
             references.chunks_left_m[chunk] = least_m;
         }

@@ -87,24 +87,6 @@ impl Grids {
         }
     }
 
-    /// Adds the pairs of a ball with all overlapping balls of other clusters that count.
-    #[inline]
-    pub(super) fn add_all_pairs(
-        &self,
-        seeker: &Seeker,
-        counts: impl Fn(u32) -> bool,
-        pairs: &mut Vec<[u32; 2]>,
-    ) {
-        let i = seeker.particle;
-        for grid in &self.levels {
-            grid.each_near(seeker, |j| {
-                if counts(j) {
-                    pairs.push([i.min(j), i.max(j)]);
-                }
-            });
-        }
-    }
-
     /// The pairs of a ball as by [`Self::add_pairs`] if all balls seek.
     #[inline]
     pub(super) fn add_pairs_of_all(&self, seeker: &Seeker, pairs: &mut Vec<[u32; 2]>) {

@@ -1,47 +1,12 @@
-//! Where clusters may meet: boxes around them.
+//! Where clusters may meet small ones.
 
-use rayon::prelude::*;
-
-use super::groups::Groups;
 use crate::geometry::Bounds;
+use crate::state::groups::{KnownClusters, around, box_of};
 use crate::state::references::Ball;
 
-/// Number of balls, in the order of a cluster, that have a box of their own. Near ones follow one
-/// another.
-const BLOCK: usize = 16;
-
-/// A cluster of many balls.
-pub(super) struct Large {
-    pub(super) group: u32,
-    /// Box around its balls.
-    pub(super) bounds: Bounds,
-    /// Boxes around each [`BLOCK`] of its balls.
-    blocks: Vec<Bounds>,
-    /// Whether any of its balls seeks.
-    pub(super) seeks: bool,
-}
-
-impl Large {
-    /// Its balls that reach into a box.
-    pub(super) fn within<'a>(
-        &'a self,
-        room: &'a Bounds,
-        balls: &'a [Ball],
-        groups: &'a Groups,
-    ) -> impl Iterator<Item = u32> + 'a {
-        let blocks = groups.members(self.group).chunks(BLOCK).zip(&self.blocks);
-        blocks
-            .filter(|(_, bounds)| bounds.overlaps(room))
-            .flat_map(|(members, _)| members)
-            .copied()
-            .filter(|&i| around(&balls[i as usize]).overlaps(room))
-    }
-}
-
-/// Boxes around clusters.
-pub(super) struct Meetings {
-    /// Large clusters, by the lower end of their boxes along x.
-    pub(super) large: Vec<Large>,
+/// Small clusters, and the boxes around them.
+pub(super) struct Meetings<'a> {
+    known: &'a KnownClusters,
     /// Small clusters; all are given if all seek.
     small: Vec<u32>,
     /// Box around all small clusters, and around those that seek.
@@ -49,46 +14,24 @@ pub(super) struct Meetings {
     all_seek: bool,
 }
 
-impl Meetings {
-    pub(super) fn new(balls: &[Ball], groups: &Groups, seeks: Option<&[bool]>) -> Self {
+impl<'a> Meetings<'a> {
+    pub(super) fn new(balls: &[Ball], known: &'a KnownClusters, seeks: Option<&[bool]>) -> Self {
+        let groups = &known.groups;
         let seeks_any =
             |members: &[u32]| seeks.is_none_or(|seeks| members.iter().any(|&i| seeks[i as usize]));
-        let box_of = |members: &[u32]| {
-            let boxes = members.iter().map(|&i| around(&balls[i as usize]));
-            boxes.fold(Bounds::EMPTY, |all, one| all.with(&one))
-        };
-        let (large, small): (Vec<u32>, Vec<u32>) = groups
-            .all()
-            .filter(|&group| !groups.members(group).is_empty())
-            .partition(|&group| groups.is_large(group));
-        let mut large: Vec<Large> = large
-            .into_par_iter()
-            .map(|group| {
-                let members = groups.members(group);
-                let blocks: Vec<Bounds> = members.chunks(BLOCK).map(box_of).collect();
-                Large {
-                    group,
-                    bounds: blocks.iter().fold(Bounds::EMPTY, |all, one| all.with(one)),
-                    blocks,
-                    seeks: seeks_any(members),
-                }
-            })
-            .collect();
-        large.sort_by(|a, b| {
-            let low = |large: &Large| large.bounds.low[0];
-            low(a).total_cmp(&low(b)).then(a.group.cmp(&b.group))
-        });
+        let is_small = |&group: &u32| !groups.is_large(group) && !groups.members(group).is_empty();
+        let small: Vec<u32> = groups.all().filter(is_small).collect();
         let mut of_small = [Bounds::EMPTY; 2];
         for &group in &small {
             let members = groups.members(group);
-            let bounds = box_of(members);
+            let bounds = box_of(members, balls);
             of_small[0] = of_small[0].with(&bounds);
             if seeks_any(members) {
                 of_small[1] = of_small[1].with(&bounds);
             }
         }
         Self {
-            large,
+            known,
             small,
             of_small,
             all_seek: seeks.is_none(),
@@ -96,11 +39,12 @@ impl Meetings {
     }
 
     /// The balls that may be in a pair with one of a small cluster, ascending.
-    pub(super) fn with_small(&self, balls: &[Ball], groups: &Groups) -> Vec<u32> {
+    pub(super) fn with_small(&self, balls: &[Ball]) -> Vec<u32> {
+        let groups = &self.known.groups;
         let [all, seeking] = &self.of_small;
         let mut active = Vec::new();
         let mut where_sought = *seeking;
-        for large in &self.large {
+        for large in &self.known.large {
             let small = if large.seeks { all } else { seeking };
             let common = large.bounds.common(small);
             where_sought = where_sought.with(&common);
@@ -112,12 +56,5 @@ impl Meetings {
         active.extend(of_small.filter(may_meet));
         active.sort_unstable();
         active
-    }
-}
-
-pub(super) fn around(&[x, y, z, radius_m]: &Ball) -> Bounds {
-    Bounds {
-        low: [x - radius_m, y - radius_m, z - radius_m],
-        high: [x + radius_m, y + radius_m, z + radius_m],
     }
 }

@@ -1,0 +1,58 @@
+//! Refusal of what does not go together with `run.steps_by_body`.
+
+use super::field::Field;
+use super::run::{Integrator, Run};
+use super::table::Table;
+use dem_io::diagnostic::Result;
+
+/// Tables that hold, drive, add or remove bodies.
+const TABLES: [&str; 7] = [
+    "inlets",
+    "loads",
+    "outlets",
+    "replacement",
+    "sleep",
+    "supports",
+    "test",
+];
+/// Keys of `[walls.NAME]` that move a wall.
+const MOTIONS: [&str; 5] = [
+    "velocity",
+    "angular_velocity",
+    "displacement",
+    "angular_displacement",
+    "servo",
+];
+
+/// Refuses what does not go together with steps by body: everything that holds, drives, adds or
+/// removes bodies, rigid bodies, moving walls, damping of all particles, and steps that rise.
+pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
+    let mut found: Vec<Field<'_>> = root.given(&TABLES).map(|(_, field)| field).collect();
+    if let Some(table) = root.get("run") {
+        let table = Table::any(&table)?;
+        let chosen = [
+            ("adaptive", run.adaptive),
+            ("integrator", run.integrator == Integrator::Static),
+            ("local_damping", run.local_damping > 0.0),
+        ];
+        let chosen = chosen.iter().filter(|(_, is_chosen)| *is_chosen);
+        found.extend(chosen.filter_map(|(key, _)| table.get(key)));
+    }
+    for (_, wall) in root.named("walls")? {
+        let wall = Table::any(&wall)?;
+        found.extend(MOTIONS.iter().filter_map(|key| wall.get(key)));
+    }
+    for (_, body) in root.named("bodies")? {
+        let body = Table::any(&body)?;
+        found.extend(body.get("start_as").filter(|field| field.is("clump")));
+        found.extend(body.get("bonded_within"));
+    }
+    for (_, contact) in root.named("contacts")? {
+        found.extend(Table::any(&contact)?.get("liquid_bridge"));
+    }
+    let Some(field) = found.first() else {
+        return Ok(());
+    };
+    let problem = format!("{} does not go together with run.steps_by_body", field.path);
+    Err(field.refuse(problem, "remove one of them"))
+}

@@ -1,0 +1,60 @@
+//! Steps by body, at the start: what the steps of bodies follow from.
+
+use std::sync::Arc;
+
+use dem_scene::Scene;
+
+use super::time_step::{StepChoice, share_of_impact};
+use crate::check::linear::at_impact_of;
+use crate::check::own_limit::own_eigenvalues;
+use crate::stages::levels::any_longer;
+use crate::state::State;
+use crate::state::clusters::Clusters;
+use crate::state::levels::{CYCLE, LevelRule, Levels, length};
+
+/// Gives bodies steps of their own, if the scene asks for them and any body can take a longer one;
+/// then the step is adapted to the end time.
+pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoice) {
+    if !scene.run.steps_by_body {
+        return;
+    }
+    let safety = scene.run.safety_factor;
+    let rule = level_rule(state, step, safety);
+    state.model.levels = Some(Arc::new(rule));
+    state.time_step_s = step.step_s;
+    if !any_longer(state) {
+        state.model.levels = None;
+        return;
+    }
+    state.levels = Some(Levels {
+        of_particle: vec![0; state.particles.len()],
+        ..Levels::default()
+    });
+    if !step.given {
+        let cycles = scene.run.end_time_s / (CYCLE as f64 * step.step_s);
+        // A step that fits is kept.
+        let cycles = (cycles * (1.0 - 1e-12)).ceil();
+        step.step_s = scene.run.end_time_s / (CYCLE as f64 * cycles);
+    }
+}
+
+fn level_rule(state: &mut State, step: &StepChoice, safety: f64) -> LevelRule {
+    let body_of = Clusters::new(state.particles.len(), &state.bonds).of_particle;
+    let longer = std::array::from_fn(|n| length(n as u8 + 1) * step.step_s / safety);
+    let own = own_eigenvalues(state, &body_of, longer);
+    let materials = state
+        .contacts
+        .as_ref()
+        .map_or(0, |contacts| contacts.model.kind_of.len().isqrt());
+    let at_impact = |material: usize| {
+        let [k, c, _] = at_impact_of(state, step.impact_speed_m_s, Some(material));
+        [k, c]
+    };
+    LevelRule {
+        own,
+        time_step_s: step.step_s,
+        impact_rates: (0..materials).map(at_impact).collect(),
+        safety: [safety, share_of_impact(state, safety)],
+        body_of,
+    }
+}

@@ -1,0 +1,366 @@
+//! Liquid bridges: they form where wet ends touch, pull their ends together, and rupture.
+
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use super::stage::{NO_SAVING, Need, Stage};
+use super::walls::SAME_WAY;
+use crate::physics::contact::liquid_bridge::LiquidBridge;
+use crate::stages::chunks::CHUNK;
+use crate::state::State;
+use crate::state::bridges::{Bridges, PairBridge, WallBridge};
+use crate::state::contacts::{ContactPartition, Contacts};
+use crate::state::particles::{Particles, Wrench};
+use crate::state::walls::{Wall, WallLoad};
+
+/// Liquid bridges.
+pub(crate) const BRIDGES: Stage = Stage {
+    name: "liquid bridges",
+    within: None,
+    need: |state, _| {
+        Need::of(
+            state.bridges.is_some(),
+            || "materials are wet".to_owned(),
+            "no materials are wet",
+        )
+    },
+    bytes: |state| {
+        state.bridges.as_ref().map_or(0, |bridges| {
+            size_of_val(&bridges.pairs[..]) + size_of_val(&bridges.walls[..])
+        })
+    },
+    saving: NO_SAVING,
+};
+
+/// Forms and ruptures bridges, and adds their forces to the wrenches. Returns their number.
+pub(crate) fn compute_bridges(state: &mut State) -> usize {
+    let Some(mut bridges) = state.bridges.take() else {
+        return 0;
+    };
+    between_particles(state, &mut bridges);
+    at_walls(state, &mut bridges);
+    let count = bridges.pairs.len() + bridges.walls.len();
+    state.bridges = Some(bridges);
+    count
+}
+
+/// A bridge after a step.
+struct Stepped<B> {
+    /// None: it ruptured.
+    bridge: Option<B>,
+    /// Force on its second end, or on its particle, N.
+    force_n: Vector3<f64>,
+    /// Energy lost in the step, J.
+    lost_j: f64,
+}
+
+/// Records the formation and the loss of a bridge. Returns it, unless it ruptured.
+fn booked<B>(bridges: &mut Bridges, stepped: Stepped<B>, is_new: bool) -> Option<B> {
+    bridges.lost_j += stepped.lost_j;
+    bridges.formed_and_ruptured[0] += u64::from(is_new);
+    bridges.formed_and_ruptured[1] += u64::from(stepped.bridge.is_none());
+    stepped.bridge
+}
+
+fn between_particles(state: &mut State, bridges: &mut Bridges) {
+    let Some(contacts) = &state.contacts else {
+        return;
+    };
+    let (p, drift_s) = (&mut state.particles, state.previous_time_step_s);
+    let old = std::mem::take(&mut bridges.pairs);
+    let new = new_pairs(contacts, &old);
+    let known = old.par_iter().with_min_len(CHUNK);
+    let known =
+        known.map(|bridge| step_pair(contacts, p, bridge.pair, Some(bridge.gap_m), drift_s));
+    let mut stepped: Vec<_> = known.collect();
+    stepped.extend(
+        new.iter()
+            .map(|&pair| step_pair(contacts, p, pair, None, drift_s)),
+    );
+    for (n, stepped) in stepped.into_iter().enumerate() {
+        let is_new = n >= old.len();
+        let pair = if is_new {
+            new[n - old.len()]
+        } else {
+            old[n].pair
+        };
+        let [a, b] = pair.map(|end| end as usize);
+        let none = Vector3::zeros();
+        p.wrenches[a].add(&-stepped.force_n, &none);
+        p.wrenches[b].add(&stepped.force_n, &none);
+        let kept = booked(bridges, stepped, is_new);
+        bridges.pairs.extend(kept);
+    }
+    bridges.pairs.sort_unstable_by_key(|bridge| bridge.pair);
+}
+
+/// Wet pairs that touch and have no bridge yet, in order.
+fn new_pairs(contacts: &Contacts, known: &[PairBridge]) -> Vec<[u32; 2]> {
+    let kinds = &contacts.model.kinds;
+    // Whatever touches was close at the last check of all pairs.
+    let of_partition = |partition: &ContactPartition| {
+        let wet = kinds
+            .iter()
+            .zip(&partition.close)
+            .filter(|(kind, _)| kind.bridge.is_some());
+        let close = wet.flat_map(|(_, [_, own])| own);
+        let touching = close.filter(|at| contacts.histories[**at as usize].overlap_m() > 0.0);
+        let pairs = touching.map(|at| contacts.pairs[*at as usize]);
+        let is_new = |pair: &[u32; 2]| {
+            known
+                .binary_search_by_key(pair, |known| known.pair)
+                .is_err()
+        };
+        pairs.filter(is_new).collect::<Vec<_>>()
+    };
+    let partitions = contacts.scratch.partitions.par_iter();
+    let mut new: Vec<[u32; 2]> = partitions.flat_map_iter(of_partition).collect();
+    new.sort_unstable();
+    new
+}
+
+/// The bridge of a pair after a drift, from its gap before, m (none: it is new).
+fn step_pair(
+    contacts: &Contacts,
+    p: &Particles,
+    pair: [u32; 2],
+    before_m: Option<f64>,
+    drift_s: f64,
+) -> Stepped<PairBridge> {
+    let [a, b] = pair.map(|end| end as usize);
+    let unchanged = |gap_m: f64| Stepped {
+        bridge: Some(PairBridge { pair, gap_m }),
+        force_n: Vector3::zeros(),
+        lost_j: 0.0,
+    };
+    let gap_m = before_m.unwrap_or(0.0);
+    let Some(law) = contacts.model.kinds[contacts.kind(pair)].bridge else {
+        return unchanged(gap_m);
+    };
+    if p.sleeps(a) && p.sleeps(b) {
+        return unchanged(gap_m);
+    }
+    let radii_m = [a, b].map(|i| p.poses[i].radius_m());
+    let reach_m = radii_m[0] + radii_m[1];
+    let apart = p.poses[b].place() - p.poses[a].place();
+    let distance_m = apart.norm();
+    let earlier_m = || {
+        let [from, to] = [a, b].map(|i| Vector3::from(p.motions[i].velocity_m_s));
+        (apart - (to - from) * drift_s).norm() - reach_m
+    };
+    let gaps_m = [before_m.unwrap_or_else(earlier_m), distance_m - reach_m];
+    let is_there = gaps_m[1] <= law.rupture_m();
+    let radius_m = radii_m[0] * radii_m[1] / reach_m;
+    let [force_n, lost_j] = law.after_step(radius_m, gaps_m, [before_m.is_some(), is_there]);
+    Stepped {
+        bridge: is_there.then_some(PairBridge {
+            pair,
+            gap_m: gaps_m[1],
+        }),
+        force_n: apart * (-force_n / distance_m),
+        lost_j,
+    }
+}
+
+fn at_walls(state: &mut State, bridges: &mut Bridges) {
+    let Some(contacts) = &state.contacts else {
+        return;
+    };
+    let old = std::mem::take(&mut bridges.walls);
+    let follow = |bridge: &WallBridge| followed(state, contacts, &old, bridge);
+    let mut stepped: Vec<_> = old.par_iter().with_min_len(CHUNK).map(follow).collect();
+    stepped.extend(new_at_walls(state, contacts, &stepped));
+    for (n, mut stepped) in stepped.into_iter().enumerate() {
+        if let Some(bridge) = &mut stepped.bridge
+            && !state.particles.sleeps(bridge.particle as usize)
+        {
+            bridge.load = load(
+                &state.walls[bridge.wall as usize],
+                &state.particles,
+                bridge,
+                stepped.force_n,
+            );
+            let wrench: &mut Wrench = &mut state.particles.wrenches[bridge.particle as usize];
+            wrench.add(&stepped.force_n, &Vector3::zeros());
+            let WallLoad {
+                force_n,
+                torque_n_m,
+                belt_w,
+            } = bridge.load;
+            state.walls[bridge.wall as usize]
+                .push
+                .add(force_n, torque_n_m, belt_w);
+        }
+        let kept = booked(bridges, stepped, n >= old.len());
+        bridges.walls.extend(kept);
+    }
+    bridges.walls.sort_unstable_by_key(WallBridge::key);
+}
+
+/// The load of a wall on the particle of a bridge with this force, N, which acts along the normal
+/// through the centre.
+fn load(
+    wall: &Wall,
+    particles: &Particles,
+    bridge: &WallBridge,
+    force_n: Vector3<f64>,
+) -> WallLoad {
+    let centre = particles.poses[bridge.particle as usize].place();
+    let arm = centre - Vector3::from(wall.frame.position_m);
+    WallLoad {
+        force_n: force_n.into(),
+        torque_n_m: arm.cross(&force_n).into(),
+        belt_w: 0.0,
+    }
+}
+
+/// A bridge at a wall after a drift: at the same feature of the wall, or at one without a bridge to
+/// which the particle has moved on.
+fn followed(
+    state: &State,
+    contacts: &Contacts,
+    all: &[WallBridge],
+    bridge: &WallBridge,
+) -> Stepped<WallBridge> {
+    let (wall, i) = (&state.walls[bridge.wall as usize], bridge.particle as usize);
+    let law = wall.kind(contacts.materials[i]).bridge;
+    let Some(law) = law.filter(|_| !state.particles.sleeps(i)) else {
+        return Stepped {
+            bridge: Some(*bridge),
+            force_n: Vector3::zeros(),
+            lost_j: 0.0,
+        };
+    };
+    let pose = &state.particles.poses[i];
+    let mut touches = Vec::new();
+    let reach_m = pose.radius_m() + 2.0 * law.rupture_m();
+    wall.model.shape.touches(
+        wall.frame.to_wall(pose.place().into()),
+        reach_m,
+        &mut touches,
+    );
+    let is_taken = |feature: u32| {
+        let key = WallBridge { feature, ..*bridge }.key();
+        all.binary_search_by_key(&key, WallBridge::key).is_ok()
+    };
+    let along = |normal: &[f64; 3]| -Vector3::from(*normal).dot(&Vector3::from(bridge.normal));
+    let there = touches.iter().find(|touch| touch.feature == bridge.feature);
+    let there = there
+        .map(|touch| wall.frame.touch_to_space(touch))
+        .or_else(|| {
+            let free = touches.iter().filter(|touch| !is_taken(touch.feature));
+            let mut free = free.map(|touch| wall.frame.touch_to_space(touch));
+            free.find(|touch| along(&touch.normal) > SAME_WAY)
+        });
+    let now = match there {
+        Some(touch) => WallBridge {
+            feature: touch.feature,
+            normal: touch.normal.map(|n| -n),
+            gap_m: touch.distance_m - pose.radius_m(),
+            ..*bridge
+        },
+        None => {
+            let gone_m = opening_m_s(wall, &state.particles, bridge) * state.previous_time_step_s;
+            WallBridge {
+                gap_m: bridge.gap_m + gone_m,
+                ..*bridge
+            }
+        }
+    };
+    let is_there = there.is_some() && now.gap_m <= law.rupture_m();
+    let gaps_m = [bridge.gap_m, now.gap_m];
+    stepped_at_wall(&law, pose.radius_m(), now, gaps_m, [true, is_there])
+}
+
+/// Bridges of wet particles that touch a wall and have none yet at the same feature.
+fn new_at_walls(
+    state: &State,
+    contacts: &Contacts,
+    known: &[Stepped<WallBridge>],
+) -> Vec<Stepped<WallBridge>> {
+    let mut keys: Vec<[u32; 3]> = known
+        .iter()
+        .filter_map(|known| Some(known.bridge.as_ref()?.key()))
+        .collect();
+    keys.sort_unstable();
+    let mut new = Vec::new();
+    for (n, wall) in (0..).zip(&state.walls) {
+        for touch in wall
+            .touching
+            .iter()
+            .filter(|touch| touch.history.overlap_m() > 0.0)
+        {
+            let i = touch.particle as usize;
+            let bridge = WallBridge {
+                wall: n,
+                particle: touch.particle,
+                feature: touch.feature,
+                normal: touch.normal,
+                gap_m: -touch.history.overlap_m() - touch.history.origin_m(),
+                load: WallLoad::default(),
+            };
+            let is_known = keys.binary_search(&bridge.key()).is_ok();
+            let law = wall.kind(contacts.materials[i]).bridge;
+            if let Some(law) = law.filter(|_| !is_known) {
+                let p = &state.particles;
+                let drift_s = state.previous_time_step_s;
+                let before_m = bridge.gap_m - opening_m_s(wall, p, &bridge) * drift_s;
+                let (radius_m, gaps_m) = (p.poses[i].radius_m(), [before_m, bridge.gap_m]);
+                new.push(stepped_at_wall(
+                    &law,
+                    radius_m,
+                    bridge,
+                    gaps_m,
+                    [false, true],
+                ));
+            }
+        }
+    }
+    new
+}
+
+/// Speed at which the gap between a particle and a wall opened in the drift, m/s.
+fn opening_m_s(wall: &Wall, particles: &Particles, bridge: &WallBridge) -> f64 {
+    let i = bridge.particle as usize;
+    let normal = Vector3::from(bridge.normal);
+    let centre = particles.poses[i].place();
+    let foot = centre - normal * (particles.poses[i].radius_m() + bridge.gap_m);
+    let arm = foot - Vector3::from(wall.frame.position_m);
+    let [velocity, spin] = [wall.velocities_m_s[0], wall.spins_rad_s[0]].map(Vector3::from);
+    let of_particle = Vector3::from(particles.motions[i].velocity_m_s);
+    (of_particle - velocity - spin.cross(&arm)).dot(&normal)
+}
+
+fn stepped_at_wall(
+    law: &LiquidBridge,
+    radius_m: f64,
+    bridge: WallBridge,
+    gaps_m: [f64; 2],
+    there: [bool; 2],
+) -> Stepped<WallBridge> {
+    let [force_n, lost_j] = law.after_step(radius_m, gaps_m, there);
+    Stepped {
+        bridge: there[1].then_some(bridge),
+        force_n: Vector3::from(bridge.normal) * -force_n,
+        lost_j,
+    }
+}
+
+/// Energy of all bridges, J: see [`LiquidBridge::energy_j`].
+pub(crate) fn bridges_energy_j(state: &State) -> f64 {
+    let (Some(bridges), Some(contacts)) = (&state.bridges, &state.contacts) else {
+        return 0.0;
+    };
+    let radius_m = |i: u32| state.particles.poses[i as usize].radius_m();
+    let of_pairs = bridges.pairs.iter().filter_map(|bridge| {
+        let [a, b] = bridge.pair.map(radius_m);
+        let law = contacts.model.kinds[contacts.kind(bridge.pair)].bridge?;
+        Some(law.energy_j(bridge.gap_m, a * b / (a + b)))
+    });
+    let of_walls = bridges.walls.iter().filter_map(|bridge| {
+        let material = contacts.materials[bridge.particle as usize];
+        let law = state.walls[bridge.wall as usize].kind(material).bridge?;
+        Some(law.energy_j(bridge.gap_m, radius_m(bridge.particle)))
+    });
+    of_pairs.chain(of_walls).sum()
+}

@@ -1,0 +1,598 @@
+//! Steps by body: which bodies may take longer steps, and the work on one group of them at a time.
+//!
+//! Leapfrog with a step of its own for each group. The kick at a common time at which the step of a
+//! body changes from h to H covers (h + H)/2, so that positions keep their second order.
+
+use nalgebra::Vector3;
+
+use super::stage::{NO_SAVING, Need, Stage};
+use crate::check::limit::safe_step;
+use crate::check::linear::particle_contact_rates;
+use crate::stages::bonds::bond_strain;
+use crate::stages::contacts::overlap_m;
+use crate::state::State;
+use crate::state::events::Break;
+use crate::state::ledger::Work;
+use crate::state::levels::{CYCLE, Group, HIGHEST, LevelRule, Levels, Share, length};
+use crate::state::partitions::{Idle, Partition, STALE, divide_busy};
+use crate::state::walls::{Wall, WallContact, WallLoad};
+use dem_io::disjoint::{find, join};
+
+/// Steps by body.
+pub(crate) const LEVELS: Stage = Stage {
+    name: "steps by body",
+    within: None,
+    need: |state, scene| match (&state.levels, scene.run.steps_by_body) {
+        (Some(_), _) => Need::Needed(format!("steps of up to {CYCLE} times the time step")),
+        (None, true) => Need::LeftOut("no body can take twice the time step"),
+        (None, false) => Need::LeftOut("not asked for"),
+    },
+    bytes: |state| {
+        let Some(Levels { scratch, .. }) = &state.levels else {
+            return 0;
+        };
+        let of_group = |group: &Group| {
+            let listed = group.partitions.iter().flat_map(|one| &one.batches);
+            group.others.len() + listed.map(|batch| 4 * batch.which.listed()).sum::<usize>()
+        };
+        // Body and level of each particle.
+        let of_particles = 5 * state.particles.len();
+        of_particles + scratch.groups.iter().map(of_group).sum::<usize>()
+    },
+    saving: NO_SAVING,
+};
+
+/// Interval between looks for bodies that may take longer steps, in time steps.
+const LOOK_EVERY: u64 = 9 * CYCLE;
+/// A body gets a longer step only if that is below its limit by this factor: a step that changes
+/// all the time conserves energy less well.
+const ROOM: f64 = 1.05;
+/// Two particles are near each other if they could touch after so many cycles at their present
+/// relative speed. Less than two, so that no pair is near that is not listed.
+const AHEAD: f64 = 1.5;
+/// They are also near if the gap between them is below this fraction of the sum of their radii.
+const NEAR: f64 = 1e-3;
+/// Number of particles and bonds of a group that justify a thread of their own.
+const WORTH_A_THREAD: usize = 5000;
+/// Largest fraction of the smallest radius of a body that its particles may move in a step.
+const FARTHEST: f64 = 0.5;
+
+/// Sets the levels of the bodies at a common time, and groups the particles. Returns the number of
+/// bodies whose level was looked for.
+pub(crate) fn set_levels(state: &mut State) -> usize {
+    let Some(levels) = &state.levels else {
+        return 0;
+    };
+    let is_new = levels.shares.is_empty();
+    let looks = is_new || state.steps.is_multiple_of(LOOK_EVERY) || have_met(state, levels);
+    let wanted = looks.then(|| wanted_levels(state, is_new));
+    let Some(levels) = &mut state.levels else {
+        return 0;
+    };
+    let changed = wanted.filter(|wanted| *wanted != levels.of_particle);
+    let is_changed = changed.is_some();
+    if let Some(now) = changed {
+        levels.scratch.before = std::mem::replace(&mut levels.of_particle, now);
+    }
+    if is_new || is_changed {
+        group(state);
+        share_out(state);
+    } else if levels.scratch.groups.is_empty() || is_stale(levels, state.broken_count) {
+        group(state);
+    } else if levels.scratch.is_relisted {
+        list_in_groups(state);
+    }
+    usize::from(looks)
+}
+
+/// Whether so many of the bonds that are computed have broken that it is worth to group again.
+fn is_stale(levels: &Levels, broken_count: u64) -> bool {
+    let computed = levels
+        .scratch
+        .groups
+        .iter()
+        .flat_map(|group| &group.partitions);
+    let computed: usize = computed.map(Partition::own_bonds).sum();
+    (broken_count - levels.scratch.broken_count) * STALE >= computed.max(1) as u64
+}
+
+/// Whether two particles of different levels are near each other.
+fn have_met(state: &State, levels: &Levels) -> bool {
+    let pairs = state.contacts.iter().flat_map(|contacts| &contacts.pairs);
+    let mut pairs = pairs.filter(|pair| {
+        let [a, b] = pair.map(|i| levels.of_particle[i as usize]);
+        a != b
+    });
+    pairs.any(|&pair| is_near(state, pair))
+}
+
+/// Whether two particles may touch in the coming cycle. It depends on places and motions only, not
+/// on when neighbours were searched for.
+fn is_near(state: &State, pair: [u32; 2]) -> bool {
+    let p = &state.particles;
+    let ends = pair.map(|i| i as usize);
+    let [a, b] = ends.map(|i| Vector3::from(p.motions[i].velocity_m_s));
+    let radii = ends.map(|i| p.poses[i].radius_m());
+    let cycle_s = CYCLE as f64 * state.time_step_s;
+    let reach_m = AHEAD * cycle_s * (b - a).norm() + NEAR * (radii[0] + radii[1]);
+    -overlap_m(&p.poses, pair) < reach_m
+}
+
+/// Number of the body or fragment of each particle.
+fn ids<'a>(state: &'a State, rule: &'a LevelRule) -> &'a [u32] {
+    let clusters = state.clusters.as_ref();
+    clusters.map_or(&rule.body_of, |clusters| &clusters.of_particle)
+}
+
+/// Whether a body can take steps of a level above the lowest while it is near no other.
+pub(crate) fn any_longer(state: &State) -> bool {
+    let Some(rule) = &state.model.levels else {
+        return false;
+    };
+    let bodies = bodies(state, rule, ids(state, rule));
+    let present = bodies.iter().filter(|body| body.particles > 0);
+    let levels = present.map(|body| body.highest(HIGHEST, state.time_step_s, rule));
+    levels.max() > Some(0)
+}
+
+/// For each particle the level of its body: the highest that the limit of the body allows, and no
+/// higher than that of any body that it is near.
+fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
+    let (Some(rule), Some(levels)) = (&state.model.levels, &state.levels) else {
+        return Vec::new();
+    };
+    let ids = ids(state, rule);
+    let bodies = bodies(state, rule, ids);
+    let mut present = vec![0; bodies.len()];
+    for (&id, &level) in ids.iter().zip(&levels.of_particle) {
+        present[id as usize] = if is_new { HIGHEST } else { level };
+    }
+    let of_bodies = bodies.iter().zip(present);
+    let mut of_body: Vec<u8> = of_bodies
+        .map(|(body, present)| body.highest(present, state.time_step_s, rule))
+        .collect();
+    let mut names: Vec<u32> = (0..of_body.len() as u32).collect();
+    for &pair in state.contacts.iter().flat_map(|contacts| &contacts.pairs) {
+        let [a, b] = pair.map(|i| ids[i as usize]);
+        if find(&mut names, a) != find(&mut names, b) && is_near(state, pair) {
+            join(&mut names, a, b);
+        }
+    }
+    let mut of_group = vec![HIGHEST; of_body.len()];
+    for (id, level) in of_body.iter().enumerate() {
+        let group = find(&mut names, id as u32) as usize;
+        of_group[group] = of_group[group].min(*level);
+    }
+    for (id, level) in of_body.iter_mut().enumerate() {
+        *level = of_group[find(&mut names, id as u32) as usize];
+    }
+    ids.iter().map(|&id| of_body[id as usize]).collect()
+}
+
+/// What limits the steps of a body or fragment.
+#[derive(Debug, Clone, Copy)]
+struct Body {
+    particles: usize,
+    /// Number of the body that it belonged to at the start: it is no stiffer than that.
+    first: u32,
+    /// Largest strain of its bonds.
+    strain: f64,
+    /// Upper bounds of the largest eigenvalues of its contacts, present and foreseen, 1/s2 and 1/s.
+    rates: [f64; 2],
+    /// The same of the first impacts alone.
+    impact: [f64; 2],
+    /// Largest speed of its particles, if they can touch anything.
+    fastest_m_s: f64,
+    smallest_m: f64,
+}
+
+impl Body {
+    const NONE: Self = Self {
+        particles: 0,
+        first: 0,
+        strain: 0.0,
+        rates: [0.0; 2],
+        impact: [0.0; 2],
+        fastest_m_s: 0.0,
+        smallest_m: f64::INFINITY,
+    };
+
+    /// The highest level whose steps it may take with this time step, s: below its limit with some
+    /// room, if that is above the present level.
+    fn highest(&self, present: u8, time_step_s: f64, rule: &LevelRule) -> u8 {
+        let may = |level: &u8| {
+            let room = if *level > present { ROOM } else { 1.0 };
+            self.may_take(*level, room * time_step_s, rule)
+        };
+        (1..=HIGHEST).take_while(may).last().unwrap_or(0)
+    }
+
+    /// Whether it may take the steps of a level, of at least 1, with this time step, s.
+    fn may_take(&self, level: u8, time_step_s: f64, rule: &LevelRule) -> bool {
+        let [safety, share] = rule.safety;
+        let step_s = length(level) * time_step_s;
+        // The eigenvalue grows at least with the step and at most with its square.
+        let longer = time_step_s / rule.time_step_s;
+        let longer = longer.max(longer * longer);
+        // Transverse stiffness of a bond grows with the square of its levers.
+        let strained = (1.0 + self.strain).powi(2);
+        let own = match self.particles {
+            1 => 0.0,
+            _ => rule.own[self.first as usize][usize::from(level) - 1],
+        };
+        let h = step_s / safety;
+        let of_contacts = 0.25 * h * h * self.rates[0] + 0.5 * h * self.rates[1];
+        let is_stable = own * longer * strained + of_contacts <= 1.0;
+        let [k, c] = self.impact;
+        let is_resolved = step_s <= share * safe_step(k, c);
+        is_stable && is_resolved && step_s * self.fastest_m_s <= FARTHEST * self.smallest_m
+    }
+}
+
+/// The bodies and fragments, by the numbers of their particles.
+fn bodies(state: &State, rule: &LevelRule, ids: &[u32]) -> Vec<Body> {
+    let p = &state.particles;
+    let count = ids.iter().map(|&id| id as usize + 1).max().unwrap_or(0);
+    let mut bodies = vec![Body::NONE; count];
+    let materials = state.contacts.as_ref().map(|contacts| &contacts.materials);
+    let of_contacts = particle_contact_rates(state);
+    for (i, &id) in ids.iter().enumerate() {
+        let body = &mut bodies[id as usize];
+        body.particles += 1;
+        body.first = rule.body_of[i];
+        body.smallest_m = body.smallest_m.min(p.poses[i].radius_m());
+        if state.contacts.is_some() {
+            let speed_m_s = Vector3::from(p.motions[i].velocity_m_s).norm();
+            body.fastest_m_s = body.fastest_m_s.max(speed_m_s);
+        }
+        let impact = materials.and_then(|of| rule.impact_rates.get(usize::from(of[i])));
+        let impact = impact.copied().unwrap_or_default();
+        let present = of_contacts.get(i).copied().unwrap_or_default();
+        for n in 0..2 {
+            body.impact[n] = body.impact[n].max(impact[n]);
+            body.rates[n] = body.rates[n].max(impact[n]).max(present[n]);
+        }
+    }
+    for at in (0..state.bonds.len()).filter(|&at| !state.bonds.is_broken(at)) {
+        let body = &mut bodies[ids[state.bonds.ends[at][0] as usize] as usize];
+        body.strain = body.strain.max(bond_strain(&state.bonds, &p.poses, at));
+    }
+    bodies
+}
+
+/// Puts the particles that make the same steps, now and just before, into groups.
+fn group(state: &mut State) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    let before = &levels.scratch.before;
+    let both = |i: usize| {
+        let now = levels.of_particle[i];
+        [before.get(i).copied().unwrap_or(now), now]
+    };
+    let mut kinds: Vec<[u8; 2]> = (0..levels.of_particle.len()).map(both).collect();
+    let all = kinds.clone();
+    kinds.sort_unstable_by_key(|[before, now]| (*now, *before));
+    kinds.dedup();
+    let (bonds, free) = (&state.bonds, state.particles.free);
+    let of_kind = |levels: [u8; 2]| {
+        let others: Vec<bool> = all.iter().map(|other| *other != levels).collect();
+        let idle = Idle {
+            asleep: &others,
+            part_of: &[],
+        };
+        let particles = others.iter().filter(|other| !**other).count();
+        let own = bonds.ends.iter().filter(|ends| !others[ends[0] as usize]);
+        let worth = 1 + (particles + own.count()) / WORTH_A_THREAD;
+        let threads = state.scratch.threads.min(worth);
+        Group {
+            levels,
+            partitions: divide_busy(bonds, free, threads, idle),
+            others,
+            ..Group::default()
+        }
+    };
+    levels.scratch.groups = kinds.into_iter().map(of_kind).collect();
+    levels.scratch.broken_count = state.broken_count;
+    list_in_groups(state);
+}
+
+/// Divides the contacts of each group, and lists what is near walls and what touches them.
+fn list_in_groups(state: &mut State) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    levels.scratch.is_relisted = false;
+    let count = state.particles.len();
+    for group in &mut levels.scratch.groups {
+        if let Some(contacts) = &mut state.contacts {
+            contacts.divide(count, group.partitions.len());
+            group.contacts = std::mem::take(&mut contacts.scratch.partitions);
+            group.close_skin_left_m = 0.0;
+        }
+        let is_own = |i: u32| !group.others[i as usize];
+        let of_wall = |wall: &Wall| {
+            let near = wall.near.iter().copied().filter(|&i| is_own(i));
+            let touching = wall.touching.iter();
+            let touching = touching.filter(|touch| is_own(touch.particle)).copied();
+            (near.collect(), touching.collect())
+        };
+        group.walls = state.walls.iter().map(of_wall).collect();
+    }
+}
+
+/// Gives each group its part of the expected motion. Their sums stay what they are.
+fn share_out(state: &mut State) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    let (p, ledger) = (&state.particles, &state.ledger);
+    let share = |group: &Group| {
+        let mut share = Share::default();
+        for i in (0..p.free).filter(|&i| !group.others[i]) {
+            let mass_kg = 1.0 / p.motions[i].inverse_mass;
+            share.mass_kg += mass_kg;
+            for k in 0..3 {
+                let from_m = p.poses[i].position_m[k] - ledger.about_m[k];
+                share.first_moment[k] += mass_kg * from_m;
+                share.momentum[k] += mass_kg * p.motions[i].velocity_m_s[k];
+            }
+        }
+        share
+    };
+    let mut shares: Vec<Share> = levels.scratch.groups.iter().map(share).collect();
+    let sum = sum_of(&shares);
+    if let Some(first) = shares.first_mut() {
+        first.mass_kg += ledger.mass_kg - sum.mass_kg;
+        for k in 0..3 {
+            first.first_moment[k] += ledger.first_moment[k] - sum.first_moment[k];
+            first.momentum[k] += ledger.momentum[k] - sum.momentum[k];
+        }
+    }
+    levels.shares = shares;
+}
+
+fn sum_of(shares: &[Share]) -> Share {
+    shares.iter().fold(Share::default(), |mut sum, share| {
+        sum.mass_kg += share.mass_kg;
+        for k in 0..3 {
+            sum.first_moment[k] += share.first_moment[k];
+            sum.momentum[k] += share.momentum[k];
+        }
+        sum
+    })
+}
+
+/// Works on the groups one after the other at a common time, with the velocities before the kick.
+/// Afterwards the state holds what all of them have in common: loads of walls, contacts, breaks.
+pub(crate) fn in_all_groups(state: &mut State, work: impl Fn(&mut State)) {
+    let mut broken: Vec<Break> = Vec::new();
+    let mut pending = Work::default();
+    let mut walls = vec![OfWall::default(); state.walls.len()];
+    // What has been found since the last common time counts as well.
+    let mut pressed = take_pressed(state);
+    for n in 0..groups(state) {
+        in_group(state, n, &work);
+        broken.append(&mut state.scratch.events.broken);
+        // What comes after this time is not to be recorded by the groups that follow.
+        pending.add(&std::mem::take(&mut state.ledger.pending), 1.0);
+        for (sum, wall) in walls.iter_mut().zip(&mut state.walls) {
+            sum.add(wall);
+        }
+        pressed = pressed.or_else(|| take_pressed(state));
+    }
+    state.scratch.events.broken = broken;
+    state.ledger.pending = pending;
+    for (sum, wall) in walls.into_iter().zip(&mut state.walls) {
+        wall.push = sum.push;
+        wall.scratch.damping = sum.damping;
+        wall.scratch.elastic_j = sum.elastic_j;
+        wall.stiffness_n_m = sum.stiffness_n_m;
+        wall.pending_j = sum.pending_j;
+    }
+    if let Some(contacts) = &mut state.contacts {
+        contacts.scratch.excessive_overlap = pressed;
+    }
+    gather(state);
+}
+
+/// What the groups add to a wall.
+#[derive(Debug, Clone, Copy, Default)]
+struct OfWall {
+    push: WallLoad,
+    damping: WallLoad,
+    elastic_j: f64,
+    stiffness_n_m: f64,
+    pending_j: f64,
+}
+
+impl OfWall {
+    fn add(&mut self, wall: &mut Wall) {
+        let both = [
+            (&mut self.push, &wall.push),
+            (&mut self.damping, &wall.scratch.damping),
+        ];
+        for (sum, load) in both {
+            sum.add(load.force_n, load.torque_n_m, load.belt_w);
+        }
+        self.elastic_j += wall.scratch.elastic_j;
+        self.stiffness_n_m += wall.stiffness_n_m;
+        self.pending_j += std::mem::take(&mut wall.pending_j);
+    }
+}
+
+/// Works on the groups that have come to the present time, one after the other, between two common
+/// times.
+pub(crate) fn in_groups_now(state: &mut State, work: impl Fn(&mut State)) {
+    let mut pressed = take_pressed(state);
+    for n in 0..groups(state) {
+        let of_group = |levels: &Levels| levels.scratch.groups[n].levels[1];
+        let level = state.levels.as_ref().map_or(0, of_group);
+        if state.steps.is_multiple_of(1 << level) {
+            in_group(state, n, &work);
+            pressed = pressed.or_else(|| take_pressed(state));
+        }
+    }
+    if let Some(contacts) = &mut state.contacts {
+        contacts.scratch.excessive_overlap = pressed;
+    }
+}
+
+/// The first pair with an excessive overlap; it is forgotten.
+fn take_pressed(state: &mut State) -> Option<[u32; 2]> {
+    let contacts = state.contacts.as_mut();
+    contacts.and_then(|contacts| contacts.scratch.excessive_overlap.take())
+}
+
+/// Keeps the bonds that a group has just broken for the next common time.
+pub(crate) fn keep_breaks(state: &mut State) {
+    let at = (state.steps, state.time_s);
+    let events = &mut state.scratch.events;
+    let broken = events.broken.drain(..);
+    let first = events.broken_between.len();
+    events.broken_between.extend(broken.map(|one| (at, one)));
+    let new = events.broken_between[first..].iter();
+    state.unsearched.extend(new.map(|(_, one)| one.bond));
+}
+
+fn groups(state: &State) -> usize {
+    (state.levels.as_ref()).map_or(0, |levels| levels.scratch.groups.len())
+}
+
+/// Works on a group: its arrays, its steps and its share of the ledger take the place of those of
+/// the state for a while.
+fn in_group(state: &mut State, n: usize, work: impl Fn(&mut State)) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    let mut group = std::mem::take(&mut levels.scratch.groups[n]);
+    levels.scratch.stepping = group.levels[1];
+    let [before, now] = group.levels.map(length);
+    swap_in(state, &mut group, n);
+    state.previous_time_step_s *= before;
+    state.time_step_s *= now;
+    work(state);
+    state.previous_time_step_s /= before;
+    state.time_step_s /= now;
+    swap_in(state, &mut group, n);
+    if let Some(levels) = &mut state.levels {
+        levels.scratch.groups[n] = group;
+    }
+}
+
+/// Exchanges the arrays of a group with those of the state.
+fn swap_in(state: &mut State, group: &mut Group, n: usize) {
+    use std::mem::swap;
+    swap(&mut state.particles.asleep, &mut group.others);
+    swap(&mut state.scratch.partitions, &mut group.partitions);
+    if let Some(contacts) = &mut state.contacts {
+        contacts.scratch.is_of_group ^= true;
+        swap(&mut contacts.scratch.partitions, &mut group.contacts);
+        swap(&mut contacts.scratch.close_m, &mut group.close_m);
+        let left_m = &mut contacts.scratch.close_skin_left_m;
+        swap(left_m, &mut group.close_skin_left_m);
+        swap(&mut contacts.moved_m, &mut group.moved_m);
+    }
+    for (wall, (near, touching)) in state.walls.iter_mut().zip(&mut group.walls) {
+        swap(&mut wall.near, near);
+        swap(&mut wall.touching, touching);
+    }
+    if let Some(levels) = &mut state.levels {
+        let (share, ledger) = (&mut levels.shares[n], &mut state.ledger);
+        swap(&mut ledger.mass_kg, &mut share.mass_kg);
+        swap(&mut ledger.first_moment, &mut share.first_moment);
+        swap(&mut ledger.momentum, &mut share.momentum);
+    }
+}
+
+/// What follows from the drift of a group that is being stepped.
+pub(crate) fn note_drift(state: &mut State) {
+    let step_s = state.time_step_s;
+    state.ledger.drift(step_s);
+    if let Some(contacts) = &mut state.contacts {
+        contacts.moved_m = state.fastest_m_s * step_s;
+        contacts.scratch.close_skin_left_m -= contacts.moved_m;
+    }
+    let moved = &state.scratch.chunks_moved_m;
+    let fastest_m_s = state.fastest_m_s;
+    let awake = state.particles.asleep.iter().filter(|other| !**other);
+    let awake = awake.count() as u64;
+    if let Some(levels) = &mut state.levels {
+        levels.particle_steps[1] += awake;
+        let scratch = &mut levels.scratch;
+        let steps = CYCLE as f64 / length(scratch.stepping);
+        scratch.fastest_m_s = scratch.fastest_m_s.max(fastest_m_s);
+        scratch.chunks_moved_m.resize(moved.len(), 0.0);
+        for (all_m, moved_m) in scratch.chunks_moved_m.iter_mut().zip(moved) {
+            *all_m = all_m.max(steps * moved_m);
+        }
+    }
+}
+
+/// Joins the groups that make the same steps from now on, after a kick in which levels changed.
+pub(crate) fn join_groups(state: &mut State) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    state.scratch.events.broken_between.clear();
+    levels.scratch.broken = std::mem::take(&mut state.scratch.events.broken);
+    levels.scratch.fastest_m_s = 0.0;
+    levels.scratch.chunks_moved_m.clear();
+    levels.particle_steps[0] += CYCLE * levels.of_particle.len() as u64;
+    if levels.scratch.before.is_empty() {
+        return;
+    }
+    levels.scratch.before.clear();
+    let of_groups = levels.scratch.groups.iter().zip(&levels.shares);
+    let mut shares: Vec<(u8, Share)> = Vec::new();
+    for (group, share) in of_groups {
+        match shares.last_mut() {
+            Some((level, sum)) if *level == group.levels[1] => *sum = sum_of(&[*sum, *share]),
+            _ => shares.push((group.levels[1], *share)),
+        }
+    }
+    levels.shares = shares.into_iter().map(|(_, share)| share).collect();
+    group(state);
+}
+
+/// Advances the time by one time step.
+pub(crate) fn tick(state: &mut State) {
+    state.time_s += state.time_step_s;
+    state.previous_time_step_s = state.time_step_s;
+    state.steps += 1;
+}
+
+/// Whether all groups are at the present time.
+pub(crate) fn is_common_time(state: &State) -> bool {
+    state.steps.is_multiple_of(CYCLE)
+}
+
+/// Puts together what belongs to all groups, at the end of a cycle.
+pub(crate) fn end_cycle(state: &mut State) {
+    gather(state);
+    if let Some(levels) = &mut state.levels {
+        let sum = sum_of(&levels.shares);
+        (state.ledger.momentum, state.ledger.first_moment) = (sum.momentum, sum.first_moment);
+        state.ledger.note_fall(state.model.gravity_m_s2);
+        state.fastest_m_s = levels.scratch.fastest_m_s;
+        state.scratch.events.broken = std::mem::take(&mut levels.scratch.broken);
+        let moved_m = &mut levels.scratch.chunks_moved_m;
+        std::mem::swap(&mut state.scratch.chunks_moved_m, moved_m);
+    }
+}
+
+/// Puts together the contacts of all groups with walls, and the expected momentum.
+fn gather(state: &mut State) {
+    let Some(levels) = &state.levels else {
+        return;
+    };
+    for (n, wall) in state.walls.iter_mut().enumerate() {
+        wall.touching.clear();
+        let of_groups = levels.scratch.groups.iter();
+        let of_groups = of_groups.filter_map(|group| group.walls.get(n));
+        wall.touching
+            .extend(of_groups.flat_map(|(_, touching): &(_, Vec<WallContact>)| touching));
+        wall.touching.sort_by_key(|touch| touch.particle);
+    }
+    state.ledger.momentum = sum_of(&levels.shares).momentum;
+}

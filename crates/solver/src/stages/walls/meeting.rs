@@ -1,0 +1,292 @@
+//! Forces between a wall and the particles that touch it, one contact for each lane.
+
+use nalgebra::Vector3;
+
+use crate::geometry::Touch;
+use crate::physics::contact::NormalLaw;
+use crate::physics::contact::assembly::{StoredContact, assemble};
+use crate::physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
+use crate::physics::contact::law::{ContactKind, ContactWork};
+use crate::physics::contact::rolling::RollingFriction;
+use crate::physics::number::Vec3;
+use crate::stages::blocks::{rows, vectors};
+use crate::stages::contacts::{contact_sphere, stored_contact};
+use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
+use crate::state::contacts::ContactHistory;
+use crate::state::particles::Particles;
+use crate::state::walls::{Wall, WallContact};
+
+/// A particle at a point of a wall.
+pub(super) struct Meeting<'a> {
+    pub(super) particle: u32,
+    /// In space.
+    pub(super) there: Touch,
+    /// The contact that it continues.
+    pub(super) old: Option<&'a WallContact>,
+    /// Whether the particle has gone through a wall thinner than itself.
+    pub(super) is_behind: bool,
+}
+
+impl<'a> Meeting<'a> {
+    pub(super) fn new(particle: u32, there: Touch, old: Option<&'a WallContact>) -> Self {
+        Self {
+            particle,
+            there,
+            old,
+            is_behind: false,
+        }
+    }
+}
+
+/// Interaction of a particle and a wall at one point.
+pub(super) struct Met {
+    pub(super) touch: WallContact,
+    /// Point of contact, m.
+    pub(super) point: Vector3<f64>,
+    /// Velocity of the belt there, m/s.
+    pub(super) belt: Vector3<f64>,
+    /// Force on the particle and its damping part, N.
+    pub(super) forces: [Vector3<f64>; 2],
+    /// Torque on the particle, N m.
+    pub(super) torque: Vector3<f64>,
+    /// Moment of rolling friction on the particle and its damping part, N m.
+    pub(super) moments: [Vector3<f64>; 2],
+    pub(super) elastic_j: f64,
+    /// Energy lost to friction and to damping in the step just made.
+    pub(super) lost_j: [f64; 2],
+    /// Whether the centre of the particle has gone through the surface.
+    pub(super) crossed: bool,
+    /// Stiffness along the normal, N/m.
+    pub(super) stiffness_n_m: f64,
+}
+
+/// A wall and the particles at it.
+pub(super) struct Place<'a> {
+    pub(super) wall: &'a Wall,
+    pub(super) particles: &'a Particles,
+    /// Material of each particle.
+    pub(super) materials: &'a [u8],
+    pub(super) least_overlap: f64,
+    /// Time step just made, s.
+    pub(super) dt: f64,
+}
+
+impl Place<'_> {
+    /// The interactions, in the order of the meetings.
+    pub(super) fn meet(&self, meetings: &[Meeting<'_>]) -> Vec<Met> {
+        let mut found = Vec::with_capacity(meetings.len());
+        with_most_lanes(MeetingWork {
+            place: self,
+            meetings,
+            found: &mut found,
+        });
+        found
+    }
+
+    fn kind(&self, meeting: &Meeting<'_>) -> &ContactKind {
+        self.wall.kind(self.materials[meeting.particle as usize])
+    }
+}
+
+/// The work on all meetings.
+struct MeetingWork<'a> {
+    place: &'a Place<'a>,
+    meetings: &'a [Meeting<'a>],
+    found: &'a mut Vec<Met>,
+}
+
+impl LaneWork for MeetingWork<'_> {
+    #[inline(always)]
+    fn with<T: Lanes>(self, proof: T::Proof) {
+        let Self {
+            place,
+            meetings,
+            found,
+        } = self;
+        let alike = |a: &Meeting<'_>, b: &Meeting<'_>| std::ptr::eq(place.kind(a), place.kind(b));
+        for meetings in meetings.chunk_by(alike) {
+            let kind = place.kind(&meetings[0]);
+            let work = KindWork::<T> {
+                place,
+                kind,
+                meetings,
+                found,
+                proof,
+            };
+            kind.with(|number| T::all(proof, number), work);
+        }
+    }
+}
+
+/// The work on meetings of one contact type.
+struct KindWork<'a, T: Lanes> {
+    place: &'a Place<'a>,
+    kind: &'a ContactKind,
+    meetings: &'a [Meeting<'a>],
+    found: &'a mut Vec<Met>,
+    proof: T::Proof,
+}
+
+impl<T: Lanes> ContactWork<T> for KindWork<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with(self, law: &impl NormalLaw<T>, rolling: &impl RollingFriction<T>) {
+        for some in self.meetings.chunks(T::COUNT) {
+            let answers = self.place.meet_some(self.proof, (law, rolling), some);
+            for (lane, meeting) in some.iter().enumerate() {
+                self.found
+                    .push(self.place.met(meeting, self.kind, &answers, lane));
+            }
+        }
+    }
+}
+
+/// Geometry of a meeting.
+#[derive(Clone, Copy, Default)]
+struct Geometry {
+    /// Unit vector from the wall to the centre, and the same a step before.
+    normals: [Vector3<f64>; 2],
+    /// Point of action of the force: half the overlap below the surface of the particle, m.
+    point: Vector3<f64>,
+    /// Velocity of the belt there, m/s.
+    belt: Vector3<f64>,
+    /// Velocity of the wall's surface there, m/s.
+    velocity: Vector3<f64>,
+}
+
+impl Place<'_> {
+    fn geometry(&self, meeting: &Meeting<'_>) -> Geometry {
+        let wall = self.wall;
+        let normal = -Vector3::from(meeting.there.normal);
+        let pose = &self.particles.poses[meeting.particle as usize];
+        let depth_m = 0.5 * (pose.radius_m() + meeting.there.distance_m);
+        let point = pose.place() - normal * depth_m;
+        let arm = point - Vector3::from(wall.frame.position_m);
+        let [velocity, _] = wall.velocities_m_s.map(Vector3::from);
+        let [spin, _] = wall.spins_rad_s.map(Vector3::from);
+        let belt = Vector3::from(wall.model.surface_velocity_m_s);
+        let belt = belt - normal * belt.dot(&normal);
+        Geometry {
+            normals: [normal, meeting.old.map_or(normal, |old| old.normal.into())],
+            point,
+            belt,
+            velocity: velocity + spin.cross(&arm) + belt,
+        }
+    }
+
+    /// Interaction of the particle in a lane.
+    fn met(
+        &self,
+        meeting: &Meeting<'_>,
+        kind: &ContactKind,
+        answers: &Answers,
+        lane: usize,
+    ) -> Met {
+        let vector = |[x, y, z, _]: [f64; 4]| Vector3::new(x, y, z);
+        let Geometry {
+            normals: [normal, normal_before],
+            point,
+            belt,
+            ..
+        } = answers.geometries[lane];
+        let [overlap_m, friction_j, elastic_j] =
+            [answers.overlaps, answers.moments, answers.torques].map(|rows| rows[lane][3]);
+        let radius_m = self.particles.poses[meeting.particle as usize].radius_m();
+        Met {
+            touch: WallContact {
+                particle: meeting.particle,
+                feature: meeting.there.feature,
+                normal: normal.into(),
+                history: ContactHistory {
+                    tangential: answers.tangential[lane],
+                    damping: answers.damping[lane],
+                    rolling: answers.rolling[lane],
+                    rolling_damping: answers.rolling_damping[lane],
+                },
+            },
+            point,
+            belt,
+            forces: [answers.forces, answers.damping].map(|rows| vector(rows[lane])),
+            torque: vector(answers.torques[lane]),
+            moments: [answers.moments, answers.overlaps].map(|rows| vector(rows[lane])),
+            elastic_j,
+            lost_j: [friction_j, answers.damping_j[lane]],
+            crossed: meeting.is_behind || overlap_m > radius_m || normal_before.dot(&normal) < 0.0,
+            stiffness_n_m: kind.normal_n_m(overlap_m, radius_m),
+        }
+    }
+
+    /// One to as many meetings as there are lanes.
+    #[inline(always)]
+    fn meet_some<T: Lanes, R: RollingFriction<T>>(
+        &self,
+        proof: T::Proof,
+        laws: (&impl NormalLaw<T>, &R),
+        some: &[Meeting<'_>],
+    ) -> Answers {
+        let meeting = |lane: usize| &some[lane.min(some.len() - 1)];
+        let mut geometries = [Geometry::default(); MOST];
+        for (geometry, meeting) in geometries.iter_mut().zip(some) {
+            *geometry = self.geometry(meeting);
+        }
+        let row = |vector: &Vector3<f64>, last: f64| [vector.x, vector.y, vector.z, last];
+        let [x, y, z, distance_m] = T::columns(proof, |lane| {
+            row(&geometries[lane].normals[0], meeting(lane).there.distance_m)
+        });
+        let foot = WallPoint {
+            normal: Vec3(x, y, z),
+            normal_before: vectors(proof, |lane| row(&geometries[lane].normals[1], 0.0)),
+            distance_m,
+            velocity_m_s: vectors(proof, |lane| row(&geometries[lane].velocity, 0.0)),
+            spin_rad_s: vectors(proof, |_| row(&self.wall.spins_rad_s[0].into(), 0.0)),
+        };
+        let particle = |lane: usize| meeting(lane).particle as usize;
+        let (_, ball) = contact_sphere::<T>(
+            proof,
+            (&self.particles.poses, &self.particles.motions),
+            particle,
+        );
+        let touch = wall_contact_kinematics(&foot, ball, self.dt);
+        let none = ContactHistory::default();
+        let history = |lane: usize| meeting(lane).old.map_or(&none, |old| &old.history);
+        let before = stored_contact::<T, R>(proof, history);
+        let (law, rolling) = laws;
+        let met = assemble(law, rolling, &touch, &before, self.least_overlap, self.dt);
+        let StoredContact {
+            springs, damped, ..
+        } = met.remembered;
+        let (energy, [_, torque]) = (met.response.energy, met.torques);
+        let with = |Vec3(x, y, z): Vec3<T>, last: T| T::rows([x, y, z, last]);
+        Answers {
+            geometries,
+            tangential: with(springs.tangential_m, springs.overlap_m),
+            damping: with(damped.force_n, met.remembered.origin_m),
+            rolling: with(springs.rolling_rad, met.overlap_m.zero()),
+            rolling_damping: with(damped.moment_n_m, met.overlap_m.zero()),
+            forces: rows(met.response.force_on_b),
+            torques: with(torque, energy.normal + energy.tangential + energy.rolling),
+            moments: with(met.response.moment_on_b, met.friction_j),
+            overlaps: with(met.response.damping.rolling_n_m, met.overlap_m),
+            damping_j: met.damping_j.values(),
+        }
+    }
+}
+
+/// Results for several meetings, row by row.
+struct Answers {
+    geometries: [Geometry; MOST],
+    tangential: [[f64; 4]; MOST],
+    damping: [[f64; 4]; MOST],
+    rolling: [[f64; 4]; MOST],
+    rolling_damping: [[f64; 4]; MOST],
+    /// Forces on the particles.
+    forces: [[f64; 4]; MOST],
+    /// Torques on the particles, and elastic energies.
+    torques: [[f64; 4]; MOST],
+    /// Moments of rolling friction, and energies lost to friction.
+    moments: [[f64; 4]; MOST],
+    /// Damping moments of rolling friction, and overlaps of the law.
+    overlaps: [[f64; 4]; MOST],
+    damping_j: [f64; MOST],
+}

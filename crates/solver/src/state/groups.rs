@@ -1,0 +1,169 @@
+//! Particles by cluster, and boxes around large clusters: known from one neighbour search to the
+//! next.
+
+use rayon::prelude::*;
+
+use crate::geometry::Bounds;
+
+/// Centre x, y, z and radius, m.
+pub type Ball = [f64; 4];
+
+/// Clusters with fewer particles are small.
+const SMALL: usize = 16;
+/// Number of balls, in the order of a cluster, that have a box of their own. Near ones follow one
+/// another.
+const BLOCK: usize = 16;
+
+/// What the last neighbour search knew of the clusters.
+#[derive(Debug, Clone, Default)]
+pub struct KnownClusters {
+    /// Cluster of each particle.
+    of_particle: Vec<u32>,
+    /// The particles of each cluster.
+    pub(crate) groups: Groups,
+    /// Boxes around the large ones, by the lower end of the box along x.
+    pub(crate) large: Vec<LargeCluster>,
+}
+
+/// A cluster of many balls.
+#[derive(Debug, Clone)]
+pub struct LargeCluster {
+    /// Its number.
+    pub(crate) group: u32,
+    /// Box around its balls.
+    pub(crate) bounds: Bounds,
+    /// Boxes around each [`BLOCK`] of its balls.
+    blocks: Vec<Bounds>,
+    /// Whether any of its balls seeks.
+    pub(crate) seeks: bool,
+}
+
+impl KnownClusters {
+    /// Updates the boxes of the clusters of which a ball seeks. The balls of the others are those
+    /// of the last time. `clusters`, `seeks`: one for each ball; without `seeks` all seek.
+    pub(crate) fn update(&mut self, balls: &[Ball], clusters: &[u32], seeks: Option<&[bool]>) {
+        let all_new = self.of_particle != clusters;
+        if all_new {
+            self.of_particle = clusters.to_vec();
+            self.groups = Groups::new(clusters);
+            let groups = &self.groups;
+            let large = groups.all().filter(|&group| groups.is_large(group));
+            self.large = large.map(LargeCluster::new).collect();
+        }
+        let groups = &self.groups;
+        self.large.par_iter_mut().for_each(|large| {
+            let members = groups.members(large.group);
+            large.seeks = seeks.is_none_or(|seeks| members.iter().any(|&i| seeks[i as usize]));
+            if large.seeks || all_new {
+                large.find_boxes(members, balls);
+            }
+        });
+        self.large.sort_by(|a, b| {
+            let low = |large: &LargeCluster| large.bounds.low[0];
+            low(a).total_cmp(&low(b)).then(a.group.cmp(&b.group))
+        });
+    }
+}
+
+impl LargeCluster {
+    fn new(group: u32) -> Self {
+        Self {
+            group,
+            bounds: Bounds::EMPTY,
+            blocks: Vec::new(),
+            seeks: true,
+        }
+    }
+
+    fn find_boxes(&mut self, members: &[u32], balls: &[Ball]) {
+        let blocks = members.chunks(BLOCK).map(|some| box_of(some, balls));
+        self.blocks.clear();
+        self.blocks.extend(blocks);
+        let blocks = self.blocks.iter();
+        self.bounds = blocks.fold(Bounds::EMPTY, |all, one| all.with(one));
+    }
+
+    /// The members and the boxes of its blocks that reach into a box.
+    pub(crate) fn blocks_within<'a>(
+        &'a self,
+        room: &'a Bounds,
+        groups: &'a Groups,
+    ) -> impl Iterator<Item = (&'a [u32], &'a Bounds)> {
+        let blocks = groups.members(self.group).chunks(BLOCK).zip(&self.blocks);
+        blocks.filter(|(_, bounds)| bounds.overlaps(room))
+    }
+
+    /// Its balls that reach into a box.
+    pub(crate) fn within<'a>(
+        &'a self,
+        room: &'a Bounds,
+        balls: &'a [Ball],
+        groups: &'a Groups,
+    ) -> impl Iterator<Item = u32> + 'a {
+        let blocks = self.blocks_within(room, groups);
+        blocks
+            .flat_map(|(members, _)| members)
+            .copied()
+            .filter(|&i| around(&balls[i as usize]).overlaps(room))
+    }
+}
+
+/// The box around some balls.
+pub(crate) fn box_of(some: &[u32], balls: &[Ball]) -> Bounds {
+    let boxes = some.iter().map(|&i| around(&balls[i as usize]));
+    boxes.fold(Bounds::EMPTY, |all, one| all.with(&one))
+}
+
+/// The box around a ball.
+pub(crate) fn around(&[x, y, z, radius_m]: &Ball) -> Bounds {
+    Bounds {
+        low: [x - radius_m, y - radius_m, z - radius_m],
+        high: [x + radius_m, y + radius_m, z + radius_m],
+    }
+}
+
+/// The particles of each cluster.
+#[derive(Debug, Clone, Default)]
+pub struct Groups {
+    /// Particles, sorted by cluster, then by number.
+    members: Vec<u32>,
+    /// Start of each cluster in `members`, followed by the total number.
+    starts: Vec<u32>,
+}
+
+impl Groups {
+    /// `clusters`: one for each particle.
+    pub(crate) fn new(clusters: &[u32]) -> Self {
+        let count = clusters.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut starts = vec![0_u32; count + 1];
+        for &cluster in clusters {
+            starts[cluster as usize + 1] += 1;
+        }
+        for cluster in 0..count {
+            starts[cluster + 1] += starts[cluster];
+        }
+        let mut next = starts.clone();
+        let mut members = vec![0; clusters.len()];
+        for (i, &cluster) in (0..).zip(clusters) {
+            let place = &mut next[cluster as usize];
+            members[*place as usize] = i;
+            *place += 1;
+        }
+        Self { members, starts }
+    }
+
+    /// All clusters, some of which may have no particle.
+    pub(crate) fn all(&self) -> std::ops::Range<u32> {
+        0..self.starts.len().saturating_sub(1) as u32
+    }
+
+    /// The particles of a cluster, ascending.
+    pub(crate) fn members(&self, cluster: u32) -> &[u32] {
+        let [start, end] = [0, 1].map(|k| self.starts[cluster as usize + k] as usize);
+        &self.members[start..end]
+    }
+
+    pub(crate) fn is_large(&self, cluster: u32) -> bool {
+        self.members(cluster).len() >= SMALL
+    }
+}

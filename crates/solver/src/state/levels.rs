@@ -1,0 +1,114 @@
+//! Steps by body: a body of level k takes steps of 2^k times the time step (block time steps).
+//!
+//! Bodies that may touch each other have the same level. All bodies are at the same time once in
+//! [`CYCLE`] time steps: only then levels change, neighbours are searched for and results are
+//! measured.
+
+use serde::{Deserialize, Serialize};
+
+use super::contacts::ContactPartition;
+use super::events::Break;
+use super::partitions::Partition;
+use super::walls::WallContact;
+
+/// The highest level.
+pub const HIGHEST: u8 = 3;
+/// Number of time steps from one common time to the next.
+pub const CYCLE: u64 = 1 << HIGHEST;
+
+/// Length of a step of a level in time steps. Products with it are exact.
+pub(crate) fn length(level: u8) -> f64 {
+    f64::from(1_u32 << level)
+}
+
+/// What the levels follow from, by the plan.
+#[derive(Debug, Clone, Default)]
+pub struct LevelRule {
+    /// For each particle the number of the body that it belonged to at the start, among all
+    /// connected ones.
+    pub body_of: Vec<u32>,
+    /// For each of these bodies and each level from 1, with the steps of that level over the safety
+    /// factor: the largest eigenvalue of M^-1 (dt^2/4 K + dt/2 C), alone in space.
+    pub own: Vec<[f64; HIGHEST as usize]>,
+    /// The time step for which these hold, s.
+    pub time_step_s: f64,
+    /// For each material the largest eigenvalues that the first impacts add, 1/s2 and 1/s.
+    pub impact_rates: Vec<[f64; 2]>,
+    /// The safety factor of the step, and of the step that impacts allow.
+    pub safety: [f64; 2],
+}
+
+/// The levels of all bodies.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Levels {
+    /// For each particle the level of its body.
+    pub of_particle: Vec<u8>,
+    /// Expected motion of each group of particles, in their order. Empty before the first step.
+    pub(crate) shares: Vec<Share>,
+    /// Number of particles times time steps, and of the steps of particles.
+    pub particle_steps: [u64; 2],
+    /// Data that can be rebuilt.
+    #[serde(skip)]
+    pub(crate) scratch: LevelScratch,
+}
+
+impl Levels {
+    /// Fraction of particle updates that was skipped because bodies took longer steps; 0 before the
+    /// first step.
+    pub(crate) fn updates_skipped(&self) -> f64 {
+        let [all, done] = self.particle_steps.map(|count| count as f64);
+        if all > 0.0 { 1.0 - done / all } else { 0.0 }
+    }
+}
+
+/// Part of the ledger that belongs to the particles of a group.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Share {
+    pub(crate) mass_kg: f64,
+    /// Sum of mass times position, as in the ledger, kg m.
+    pub(crate) first_moment: [f64; 3],
+    /// N s.
+    pub(crate) momentum: [f64; 3],
+}
+
+/// Data of levels that can be rebuilt from the other parts of a state.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LevelScratch {
+    /// The groups. Empty: the particles are to be grouped again.
+    pub(crate) groups: Vec<Group>,
+    /// Level of the group that is being stepped.
+    pub(crate) stepping: u8,
+    /// Number of bonds that had broken when the groups were made.
+    pub(crate) broken_count: u64,
+    /// Bonds that broke at the last common time, kept until the next.
+    pub(crate) broken: Vec<Break>,
+    /// Whether pairs have been listed anew since the groups were made.
+    pub(crate) is_relisted: bool,
+    /// For each particle its level in the step just made. Empty: the present one.
+    pub(crate) before: Vec<u8>,
+    /// For each chunk of particles the distance that the fastest of them moves in a cycle, m.
+    pub(crate) chunks_moved_m: Vec<f64>,
+    /// Largest speed of a particle in this cycle, m/s.
+    pub(crate) fastest_m_s: f64,
+}
+
+/// Particles that make the same steps. What it holds takes the place of the arrays of the state
+/// while the group is stepped.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Group {
+    /// Level in the step before, and in the present one.
+    pub(crate) levels: [u8; 2],
+    /// For each particle whether it is in another group.
+    pub(crate) others: Vec<bool>,
+    /// Division of its particles and bonds.
+    pub(crate) partitions: Vec<Partition>,
+    /// Division of its contacts.
+    pub(crate) contacts: Vec<ContactPartition>,
+    /// See [`super::contacts::ContactScratch`].
+    pub(crate) close_m: f64,
+    pub(crate) close_skin_left_m: f64,
+    /// Distance that its fastest particle moved in its last step, m.
+    pub(crate) moved_m: f64,
+    /// For each wall the particles near it, and its contacts.
+    pub(crate) walls: Vec<(Vec<u32>, Vec<WallContact>)>,
+}
