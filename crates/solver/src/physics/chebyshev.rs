@@ -25,7 +25,7 @@ pub struct Chebyshev {
 pub struct Stage {
     /// Of the change after the last stage (mu_j).
     pub last: f64,
-    /// Of the change after the stage before (nu_j).
+    /// Of the change after the stage before (nu_j); 0 where there is none.
     pub before: f64,
     /// Of the rate after the last stage.
     pub force: f64,
@@ -81,7 +81,7 @@ impl Chebyshev {
             let force = 2.0 * b(j) * scale / b(j - 1);
             Stage {
                 last: 2.0 * b(j) * at / b(j - 1),
-                before: -b(j) / b(j - 2),
+                before: if j > 2 { -b(j) / b(j - 2) } else { 0.0 },
                 force,
                 first_force: -a(j - 1) * force,
             }

@@ -113,9 +113,7 @@ impl BatchWork<'_> {
                 bending,
             };
             let levers_m = [0, 1].map(|end: usize| T::load(proof, &numbers.levers_m[end], first));
-            let length = apart.square().sqrt();
-            let c = apart * length.inverse();
-            let (force_on_b, torques) = resistance(&coefficients, levers_m, c, length, moving);
+            let (force_on_b, torques) = resistance(&coefficients, levers_m, apart, moving);
             let particles = &self.partition.particles;
             four.add(first, force_on_b, torques, self.damping, particles);
         }

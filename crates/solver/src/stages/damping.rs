@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use super::bonds::any_bond;
 use super::chunks::CHUNK;
 use super::damped::damping_wrenches;
-use super::motion::{Forces, kick_chunk};
+use super::motion::{Forces, for_each_awake};
 use super::rigid_parts::predict_rigid_parts;
 use super::stage::{Need, Saving, Stage};
 use super::supports::predict_held;
@@ -80,27 +80,37 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
     let kick_s = state.kick_s();
     let stages = Chebyshev::covering(kick_s * state.damping_rate_1_s);
     predict(state);
-    let mut now = std::mem::take(&mut state.scratch.bond_resistance);
-    let mut work = std::mem::take(&mut state.scratch.damping_stages);
-    let [before, first, force] = &mut work;
-    damp(state, 0, first);
-    before.fill(Wrench::default());
-    now.fill(Wrench::default());
-    add_multiples(&mut now, 0.0, [(stages.first * kick_s, first)]);
-    for stage in &stages.others {
-        add_impulses(state, &now);
-        damp(state, 1, force);
-        let others: [(f64, &[Wrench]); 3] = [
-            (stage.last, &now),
-            (stage.force * kick_s, force),
-            (stage.first_force * kick_s, first),
-        ];
-        add_multiples(before, stage.before, others);
-        std::mem::swap(before, &mut now);
+    let mut force = std::mem::take(&mut state.scratch.bond_resistance);
+    let [mut before, mut now, mut first] = std::mem::take(&mut state.scratch.damping_stages);
+    damp(state, 0, &mut first);
+    go_on(state, &mut now, 0.0, [(stages.first * kick_s, &first)]);
+    for (stages_left, stage) in (0..stages.others.len()).rev().zip(&stages.others) {
+        damp(state, 1, &mut force);
+        if stages_left > 0 {
+            let others: [(f64, &[Wrench]); 3] = [
+                (stage.last, &now),
+                (stage.force * kick_s, &force),
+                (stage.first_force * kick_s, &first),
+            ];
+            go_on(state, &mut before, stage.before, others);
+            std::mem::swap(&mut before, &mut now);
+        } else {
+            let others: [(f64, &[Wrench]); 3] = [
+                (stage.last / kick_s, &now),
+                (stage.before / kick_s, &before),
+                (stage.first_force, &first),
+            ];
+            let asleep = &state.particles.asleep;
+            let chunks = force.par_chunks_mut(CHUNK).enumerate();
+            chunks.for_each(|(chunk, force)| {
+                for_each_awake(chunk * CHUNK, force, asleep, |i, force| {
+                    *force = sum(force, stage.force, others, i);
+                });
+            });
+        }
     }
-    add_multiples(&mut now, 1.0 / kick_s, []);
-    state.scratch.bond_resistance = now;
-    state.scratch.damping_stages = work;
+    state.scratch.bond_resistance = force;
+    state.scratch.damping_stages = [before, now, first];
     let partitions = state.scratch.partitions.iter();
     partitions.map(|partition| partition.computed.damped).sum()
 }
@@ -113,34 +123,77 @@ fn predict(state: &mut State) {
     let [_, structural, on_particles] = state.resistances();
     let resisting = [&[], structural, on_particles];
     let forces = Forces::of(p, resisting, state.model.gravity_m_s2, half_s);
-    predict_from(&p.motions[..p.free], &forces, &mut predicted);
+    predicted.resize(p.free, Motion::default());
+    let chunks = predicted.par_chunks_mut(CHUNK).enumerate();
+    chunks.for_each(|(chunk, predicted)| {
+        for_each_awake(chunk * CHUNK, predicted, &p.asleep, |i, motion| {
+            *motion = p.motions[i];
+            forces.kick(i, motion);
+        });
+    });
     predict_held(state, &mut predicted);
     predict_rigid_parts(state, &[], &mut predicted);
     state.scratch.predicted[0] = predicted;
 }
 
-/// Sets the motions of a stage: those predicted, with these impulses of damping.
-fn add_impulses(state: &mut State, impulses: &[Wrench]) {
-    let mut predicted = std::mem::take(&mut state.scratch.predicted[1]);
-    let forces = Forces::impulses(impulses, &state.particles.asleep);
-    predict_from(&state.scratch.predicted[0], &forces, &mut predicted);
-    predict_held(state, &mut predicted);
-    predict_rigid_parts(state, impulses, &mut predicted);
-    state.scratch.predicted[1] = predicted;
+/// Multiplies impulses of damping by a factor, adds multiples of others, and sets the motions of the
+/// next stage: those predicted, with these impulses.
+fn go_on<const N: usize>(
+    state: &mut State,
+    impulses: &mut [Wrench],
+    factor: f64,
+    others: [(f64, &[Wrench]); N],
+) {
+    let [start, mut next] = std::mem::take(&mut state.scratch.predicted);
+    next.resize(start.len(), Motion::default());
+    let asleep = &state.particles.asleep;
+    let chunks = impulses
+        .par_chunks_mut(CHUNK)
+        .zip(next.par_chunks_mut(CHUNK));
+    chunks.enumerate().for_each(|(chunk, (impulses, next))| {
+        let first = chunk * CHUNK;
+        for_each_awake(first, next, asleep, |i, motion| {
+            let impulse = &mut impulses[i - first];
+            *impulse = sum(impulse, factor, others, i);
+            *motion = start[i];
+            for k in 0..3 {
+                motion.velocity_m_s[k] += motion.inverse_mass * impulse.force_n[k];
+                motion.spin_rad_s[k] += motion.inverse_inertia * impulse.torque_n_m[k];
+            }
+        });
+    });
+    predict_held(state, &mut next);
+    predict_rigid_parts(state, impulses, &mut next);
+    state.scratch.predicted = [start, next];
 }
 
-/// Sets motions to others, changed by forces.
-fn predict_from(motions: &[Motion], forces: &Forces<'_>, predicted: &mut Vec<Motion>) {
-    predicted.resize(motions.len(), Motion::default());
-    let chunks = motions
-        .par_chunks(CHUNK)
-        .zip(predicted.par_chunks_mut(CHUNK));
-    chunks
-        .enumerate()
-        .for_each(|(chunk, (motions, predicted))| {
-            predicted.copy_from_slice(motions);
-            kick_chunk(chunk * CHUNK, predicted, forces);
-        });
+/// A wrench times a factor, plus multiples of those of particle `i` in lists. What counts 0 times is
+/// not read: it may be of another step.
+#[inline(always)]
+fn sum<const N: usize>(
+    wrench: &Wrench,
+    factor: f64,
+    others: [(f64, &[Wrench]); N],
+    i: usize,
+) -> Wrench {
+    let mut sum = Wrench::default();
+    if factor != 0.0 {
+        add_multiple(&mut sum, factor, wrench);
+    }
+    for (factor, list) in others {
+        if factor != 0.0 {
+            add_multiple(&mut sum, factor, &list[i]);
+        }
+    }
+    sum
+}
+
+#[inline(always)]
+fn add_multiple(sum: &mut Wrench, factor: f64, wrench: &Wrench) {
+    for k in 0..4 {
+        sum.force_n[k] += factor * wrench.force_n[k];
+        sum.torque_n_m[k] += factor * wrench.torque_n_m[k];
+    }
 }
 
 /// Sets `forces` to the damping of bonds between ends with the motions of this stage.
@@ -153,29 +206,4 @@ fn damp(state: &mut State, stage: usize, forces: &mut [Wrench]) {
         &mut scratch.partitions,
         forces,
     );
-}
-
-/// Multiplies wrenches by a factor and adds multiples of others.
-fn add_multiples<const N: usize>(
-    wrenches: &mut [Wrench],
-    factor: f64,
-    others: [(f64, &[Wrench]); N],
-) {
-    wrenches
-        .par_chunks_mut(CHUNK)
-        .enumerate()
-        .for_each(|(chunk, wrenches)| {
-            for wrench in wrenches.iter_mut() {
-                wrench.force_n = wrench.force_n.map(|force| factor * force);
-                wrench.torque_n_m = wrench.torque_n_m.map(|torque| factor * torque);
-            }
-            for (factor, list) in others {
-                for (wrench, other) in wrenches.iter_mut().zip(&list[chunk * CHUNK..]) {
-                    for k in 0..4 {
-                        wrench.force_n[k] += factor * other.force_n[k];
-                        wrench.torque_n_m[k] += factor * other.torque_n_m[k];
-                    }
-                }
-            }
-        });
 }

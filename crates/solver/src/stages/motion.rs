@@ -85,8 +85,11 @@ pub(crate) fn kick_particles(state: &mut State) -> usize {
     let mut motions = std::mem::take(&mut state.particles.motions);
     let p = &state.particles;
     let forces = Forces::of(p, state.resistances(), state.model.gravity_m_s2, kick_s);
-    (motions[..p.free].par_chunks_mut(CHUNK).enumerate())
-        .for_each(|(chunk, motions)| kick_chunk(chunk * CHUNK, motions, &forces));
+    (motions[..p.free].par_chunks_mut(CHUNK).enumerate()).for_each(|(chunk, motions)| {
+        for_each_awake(chunk * CHUNK, motions, &p.asleep, |i, motion| {
+            forces.kick(i, motion)
+        });
+    });
     state.particles.motions = motions;
     state.particles.free
 }
@@ -111,7 +114,6 @@ pub(super) struct Forces<'a> {
     wrenches: &'a [Wrench],
     /// Each with one for each particle, or empty.
     resisting: [&'a [Wrench]; 3],
-    asleep: &'a [bool],
     gravity_m_s2: [f64; 3],
     kick_s: f64,
 }
@@ -127,53 +129,47 @@ impl<'a> Forces<'a> {
         Self {
             wrenches: &particles.wrenches,
             resisting,
-            asleep: &particles.asleep,
             gravity_m_s2,
             kick_s,
         }
     }
-
-    /// Impulses, N s and N m s, one for each particle.
-    pub(super) fn impulses(impulses: &'a [Wrench], asleep: &'a [bool]) -> Self {
-        Self {
-            wrenches: impulses,
-            resisting: [&[]; 3],
-            asleep,
-            gravity_m_s2: [0.0; 3],
-            kick_s: 1.0,
-        }
-    }
 }
 
-/// Changes the velocities of the free particles from number `first` on.
-pub(super) fn kick_chunk(first: usize, motions: &mut [Motion], forces: &Forces<'_>) {
-    let Forces {
-        wrenches,
-        resisting,
-        asleep,
-        gravity_m_s2,
-        kick_s,
-    } = *forces;
-    if all_sleep(asleep, first..first + motions.len()) {
-        return;
-    }
-    let fall = gravity_m_s2.map(|g| kick_s * g);
-    for (i, motion) in (first..).zip(motions) {
-        if asleep.get(i).is_some_and(|asleep| *asleep) {
-            continue;
-        }
-        let per_mass = kick_s * motion.inverse_mass;
-        let per_inertia = kick_s * motion.inverse_inertia;
-        let wrench = &wrenches[i];
-        for (k, fall) in fall.iter().enumerate() {
+impl Forces<'_> {
+    /// Changes the velocities of particle `i`, which have been these.
+    #[inline(always)]
+    pub(super) fn kick(&self, i: usize, motion: &mut Motion) {
+        let per_mass = self.kick_s * motion.inverse_mass;
+        let per_inertia = self.kick_s * motion.inverse_inertia;
+        let wrench = &self.wrenches[i];
+        for k in 0..3 {
+            let fall = self.kick_s * self.gravity_m_s2[k];
             motion.velocity_m_s[k] += per_mass * wrench.force_n[k] + fall;
             motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
         }
-        for wrench in resisting.iter().filter_map(|list| list.get(i)) {
+        for wrench in self.resisting.iter().filter_map(|list| list.get(i)) {
             for k in 0..3 {
                 motion.velocity_m_s[k] += per_mass * wrench.force_n[k];
                 motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
             }
+        }
+    }
+}
+
+/// Changes those of some particles from number `first` on that are awake.
+#[inline(always)]
+pub(super) fn for_each_awake<T>(
+    first: usize,
+    some: &mut [T],
+    asleep: &[bool],
+    mut change: impl FnMut(usize, &mut T),
+) {
+    if all_sleep(asleep, first..first + some.len()) {
+        return;
+    }
+    for (i, one) in (first..).zip(some) {
+        if !asleep.get(i).is_some_and(|asleep| *asleep) {
+            change(i, one);
         }
     }
 }
