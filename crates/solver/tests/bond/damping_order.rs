@@ -59,7 +59,7 @@ fn a_damped_network_is_of_second_order() {
     for (damping, end_s, steps) in [
         (BondDamping::Chen(0.1), 2e-5, 64),
         (BondDamping::Chen(0.5), 2e-5, 128),
-        (BondDamping::Chen(10.0), 2.5e-6, 256),
+        (BondDamping::Chen(10.0), 2.5e-6, 512),
         (BondDamping::ChenByMode(0.3), 2e-5, 64),
     ] {
         let (particles, pairs) = random_spheres();
