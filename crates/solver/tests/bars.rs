@@ -22,6 +22,7 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     criteria: None,
     strengthening_from_1_s: None,
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
+    contact_beside: false,
 };
 
 /// All bond models, with the names in the reference values, which have no elastic solid bond.

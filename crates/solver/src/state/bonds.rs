@@ -48,6 +48,8 @@ pub struct BondRule {
     pub strengthening_from_1_s: Option<f64>,
     /// The strain whose rate is used.
     pub strain_rate_measure: StrainRateMeasure,
+    /// The contact law of the two ends acts beside the bond.
+    pub contact_beside: bool,
 }
 
 impl BondRule {
