@@ -146,7 +146,7 @@ fn the_energy_of_a_vibrating_pair_is_kept() {
 /// from the same origin, which falls once the two part.
 #[test]
 fn a_contact_goes_on_when_its_bond_breaks() {
-    let mut state = pair(1.0, ", failure = { compressive_strength = 1e3 }");
+    let mut state = pair(1.0, ", failure = { compressive_strength = 400 }");
     let origin_m = 2e-3 - APART_M;
     approach(&mut state, 0.1);
     let energy_j = 0.25 / state.particles.motions[0].inverse_mass * 0.01;
