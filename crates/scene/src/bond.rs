@@ -98,6 +98,8 @@ pub struct BondKind {
     pub failure: BondFailure,
     /// `plasticity = { ... }`. None: elastic until it breaks.
     pub plasticity: Option<BondPlasticity>,
+    /// `contact_beside_bond`: the contact law of the two ends acts beside the bond.
+    pub contact_beside_bond: bool,
 }
 
 /// Viscous and structural damping at the bond. All may act together.
@@ -211,6 +213,11 @@ pub(super) static BOND: Schema = Schema {
             &PLASTICITY,
             "Yield strengths; without them bonds are elastic until they break.",
         ),
+        Key::flag(
+            "contact_beside_bond",
+            false,
+            "The contact law of the two materials acts beside the bond, from the overlap at which the ends were bonded.",
+        ),
     ],
 };
 
@@ -314,6 +321,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
             .read_by("failure", |field| bond_failure::read(&field))?
             .unwrap_or_default(),
         plasticity: table.read_by("plasticity", |field| plasticity(&field))?,
+        contact_beside_bond: table.read("contact_beside_bond")?,
     };
     if let Some(field) = table.get("plasticity") {
         check_plasticity(&field, &kind)?;
@@ -587,4 +595,5 @@ pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
             listing.value("hardening_ratio", &plasticity.hardening_ratio);
         });
     }
+    listing.value("contact_beside_bond", &kind.contact_beside_bond);
 }

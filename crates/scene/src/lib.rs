@@ -13,6 +13,7 @@ mod bond_failure;
 mod clump;
 mod clusters;
 mod contact;
+mod contact_beside_bond;
 mod daughters;
 mod describe;
 mod direction;

@@ -14,9 +14,9 @@ use super::table::Table;
 use super::targets::Targets;
 use super::tree::option_place;
 use super::{
-    body, bond, clusters, contact, fall_check, group, initial, inlet, load, material, measure,
-    outlet, output, region, relaxation, replacement, run, search, sleep, statics, steps_by_body,
-    support, test, wall, zone_check,
+    body, bond, clusters, contact, contact_beside_bond, fall_check, group, initial, inlet, load,
+    material, measure, outlet, output, region, relaxation, replacement, run, search, sleep,
+    statics, steps_by_body, support, test, wall, zone_check,
 };
 use crate::field::Field;
 use dem_io::diagnostic::Result;
@@ -100,6 +100,7 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     if run.integrator == Integrator::Static {
         statics::refuse_what_moves(&root)?;
     }
+    contact_beside_bond::refuse_others(&root, &run)?;
     if run.steps_by_body {
         steps_by_body::refuse_others(&root, &run)?;
     }

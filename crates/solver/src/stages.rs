@@ -9,7 +9,7 @@ pub mod clumps;
 mod cluster_bytes;
 pub mod contacts;
 pub(crate) mod damage;
-mod damped;
+pub(crate) mod damped;
 pub mod damping;
 pub(crate) mod daughters;
 pub(crate) mod flat_joints;

@@ -7,6 +7,7 @@ pub mod bridges;
 pub mod clumps;
 pub mod clusters;
 pub mod contacts;
+pub mod damping_rate;
 pub mod events;
 pub mod groups;
 pub(crate) mod ledger;
@@ -39,6 +40,7 @@ use self::bridges::Bridges;
 use self::clumps::Clumps;
 use self::clusters::Clusters;
 use self::contacts::{ContactPartition, Contacts};
+use self::damping_rate::damping_rate_1_s;
 use self::ledger::EnergyLedger;
 use self::levels::{CYCLE, Levels, length};
 use self::loads::GroupLoad;
@@ -101,6 +103,8 @@ pub struct State {
     pub time_step_s: f64,
     /// The previous step, s; 0 at the start.
     pub previous_time_step_s: f64,
+    /// Upper bound of the largest eigenvalue of the viscous damping of bonds over mass, 1/s.
+    pub damping_rate_1_s: f64,
     /// Largest speed of a particle in the previous step, plus that of a wall if there are contacts,
     /// m/s.
     pub fastest_m_s: f64,
@@ -150,6 +154,7 @@ impl State {
             time_s: 0.0,
             time_step_s,
             previous_time_step_s: 0.0,
+            damping_rate_1_s: 0.0,
             fastest_m_s: 0.0,
             broken_count: 0,
             broken_by_cause: CauseCounts::default(),
@@ -172,13 +177,34 @@ impl State {
     pub fn divide(&mut self) {
         let free = self.particles.free;
         self.divide_bonds();
+        let any = |is_so: fn(&BondRule) -> bool| self.bonds.rules.iter().any(is_so);
+        let damped = if any(|rule| rule.damped) { free } else { 0 };
+        let structural = any(|rule| rule.structural_damping > 0.0);
+        let structural = if structural { free } else { 0 };
+        self.damping_rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
         let scratch = &mut self.scratch;
-        let damped = self.bonds.rules.iter().any(BondRule::resists);
-        let resistances = if damped { free } else { 0 };
-        scratch.bond_resistance = vec![Wrench::default(); resistances];
+        scratch.bond_resistance = vec![Wrench::default(); damped];
+        scratch.structural_resistance = vec![Wrench::default(); structural];
+        scratch.damping_stages = std::array::from_fn(|_| vec![Wrench::default(); damped]);
         let is_damped = self.model.particle_damping > 0.0;
         let resistances = if is_damped { self.particles.len() } else { 0 };
         scratch.particle_resistance = vec![Wrench::default(); resistances];
+    }
+
+    /// The lists of damping forces: viscous and structural of bonds, and on particles; each with one
+    /// for each particle, or empty.
+    pub(crate) fn resistances(&self) -> [&[Wrench]; 3] {
+        [
+            &self.scratch.bond_resistance,
+            &self.scratch.structural_resistance,
+            &self.scratch.particle_resistance,
+        ]
+    }
+
+    /// Raises the bound of damping if bonds have become longer.
+    pub(crate) fn renew_damping_rate(&mut self) {
+        let rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
+        self.damping_rate_1_s = self.damping_rate_1_s.max(rate_1_s);
     }
 
     /// Divides the work on particles and bonds again.
@@ -235,7 +261,10 @@ impl State {
         self.model = model;
         self.scratch.threads = threads;
         self.rigid_parts.number(self.particles.free, &self.bonds);
+        // Bonds that broke since it was found still count.
+        let damping_rate_1_s = self.damping_rate_1_s;
         self.divide();
+        self.damping_rate_1_s = damping_rate_1_s;
         self.particles.wrenches = vec![Wrench::default(); self.particles.len()];
         if let Some(clusters) = &mut self.clusters {
             clusters.rebuild(&self.bonds)?;

@@ -41,7 +41,7 @@ use crate::stages::rigid_parts::{
 };
 use crate::stages::sleep::{SLEEP, update_sleep};
 use crate::stages::stage::Stage;
-use crate::stages::structural::{STRUCTURAL_DAMPING, add_structural_damping};
+use crate::stages::structural::{STRUCTURAL_DAMPING, compute_structural_damping};
 use crate::stages::supports::{SUPPORTS, hold_supports, remember_held};
 use crate::stages::walls::{WALLS, compute_wall_contacts, drift_walls, plan_wall_motions};
 use crate::stages::watching::{OUTPUT, watch};
@@ -78,9 +78,9 @@ const INTERACT: &[Part] = &[
     (&FRICTION, count_frictional),
     (&CLUSTERS, find_pieces),
     (&LOADS, apply_loads),
-    (&BOND_DAMPING, compute_bond_damping),
-    (&STRUCTURAL_DAMPING, add_structural_damping),
     (&PARTICLE_DAMPING, compute_particle_damping),
+    (&STRUCTURAL_DAMPING, compute_structural_damping),
+    (&BOND_DAMPING, compute_bond_damping),
     (&RIGID_PARTS, gather_rigid_parts),
     (&LEDGER, book_before_kick),
     (&MOTION, kick_particles),

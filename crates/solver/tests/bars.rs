@@ -22,6 +22,7 @@ pub(crate) const ELASTIC: BondRule = BondRule {
     criteria: None,
     strengthening_from_1_s: None,
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
+    contact_beside: false,
 };
 
 /// All bond models, with the names in the reference values, which have no elastic solid bond.
@@ -192,7 +193,7 @@ pub(crate) fn damp(state: &mut State, damping: BondDamping) {
         ..*rule
     };
     state.bonds.rules = state.bonds.rules.iter().map(damped).collect();
-    state.scratch.bond_resistance = vec![Wrench::default(); p.len()];
+    state.divide();
 }
 
 /// Damps all particles with this fraction of the force on them.

@@ -1,6 +1,7 @@
 //! Bond laws compared with closed forms, reference values and their own energy.
 
 mod damping;
+mod damping_order;
 mod failure;
 mod flat_joint;
 mod incremental;

@@ -29,6 +29,7 @@ pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
             criteria: None,
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
+            contact_beside: false,
         }]),
         ..Bonds::default()
     };

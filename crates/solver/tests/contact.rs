@@ -1,5 +1,6 @@
 //! Contact laws compared with an independent implementation and closed forms, and their invariants.
 
+mod beside_bond;
 mod books;
 mod dmt;
 mod documented;

@@ -26,9 +26,16 @@ pub(crate) fn head(run: &str) -> String {
         "version = 1\nrun.steps_by_body = true\n{run}\n\
          materials.soft = {{ density = 2500, young_modulus = 1e6, poisson_ratio = 0.25 }}\n\
          materials.hard = {{ density = 2500, young_modulus = 1e8, poisson_ratio = 0.25 }}\n\
-         bonds.soft = {{ young_modulus = 1e6, poisson_ratio = 0.25 }}\n\
-         bonds.hard = {{ young_modulus = 1e8, poisson_ratio = 0.25 }}\n"
+         bonds.soft.young_modulus = 1e6\n\
+         bonds.soft.poisson_ratio = 0.25\n\
+         bonds.hard.young_modulus = 1e8\n\
+         bonds.hard.poisson_ratio = 0.25\n"
     )
+}
+
+/// Damping of the bonds of a kind, to follow the head.
+pub(crate) fn damped(kind: &str, damping_ratio: f64) -> String {
+    format!("bonds.{kind}.damping.damping_ratio = {damping_ratio:e}\n")
 }
 
 /// Laws for all contacts.

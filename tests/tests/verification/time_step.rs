@@ -242,16 +242,16 @@ const STEPS: usize = 20_000;
 /// Fraction by which the step must exceed the limit so that a motion grows a millionfold in this
 /// number of steps: ten thousandfold from its start, of which a hundredth is in the fastest mode.
 ///
-/// With r = omega dt, a step multiplies that mode by a root of q^2 - q (2 - 2 zeta r - r^2) + 1 - 2
-/// zeta r = 0, which is -1 at the limit. Beyond it by a fraction s, its logarithm is 2 sqrt(2 s)
-/// without damping, and 2 s (1 + r/(2 zeta)) with it.
+/// With r = omega dt and b = 2/(1 + R), where R is the decay of velocities by damping in a step,
+/// about exp(-2 zeta r), a step multiplies that mode by a root of b q^2 + (r^2 - 2) q + 2 - b = 0,
+/// which is -1 at r = 2. Beyond it by a fraction s, its logarithm is 2 sqrt(2 s) without damping, and
+/// 4 s/(b - 1) = 4 s/tanh(2 zeta) with it.
 fn late(damping: f64) -> f64 {
     let in_a_step = 1e6_f64.ln() / STEPS as f64;
     let late = if damping == 0.0 {
         in_a_step * in_a_step / 8.0
     } else {
-        let r = 2.0 * (damping.hypot(1.0) - damping);
-        in_a_step / (2.0 * (1.0 + 0.5 * r / damping))
+        0.25 * in_a_step * (2.0 * damping).tanh()
     };
     late + HALVED
 }
@@ -274,7 +274,7 @@ fn limits() -> [String; 2] {
             damping,
         };
         let omega = row.chain_rad_s();
-        let wanted = 2.0 / omega * (damping.hypot(1.0) - damping);
+        let wanted = 2.0 / omega;
         let found = row.plan("\"auto\"", "").step.limit.step_s;
         let what = format!("{spheres} spheres, {}", if held { "held" } else { "free" });
         let what = format!("{what}, damping ratio {damping}");

@@ -7,12 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
-use crate::stages::bonds::{bond_wrenches, damping_wrenches};
+use crate::stages::bonds::bond_wrenches;
 use crate::stages::plasticity::add_elasto_plastic_wrenches;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
-use crate::state::scratch::Scratch;
 
 /// Iterations at least and at most.
 pub(super) const ITERATIONS: [usize; 2] = [20, 200];
@@ -54,16 +53,16 @@ impl Search {
 pub struct Limit {
     /// Largest stable step, s. Infinite where nothing vibrates.
     pub step_s: f64,
-    /// The same without damping of any kind, s.
+    /// The same without damping of contacts and particles and without structural damping, s.
     pub undamped_step_s: f64,
     /// Largest circular frequency, rad/s.
     pub omega_rad_s: f64,
-    /// Largest eigenvalue of damping over mass, 1/s.
+    /// Largest eigenvalue of the damping of contacts over mass, 1/s.
     pub damping_1_s: f64,
     /// Iterations needed for the frequency.
     pub iterations: usize,
     /// Iterations in all, those for damping included: each takes the forces of all bonds twice, or
-    /// their damping, or both.
+    /// the damping of contacts, or both.
     pub all_iterations: usize,
 }
 
@@ -72,12 +71,13 @@ pub struct Limit {
 pub struct Bound {
     /// s.
     pub step_s: f64,
-    /// Whether damping of any kind but that of particles was there.
+    /// Whether contacts were there, which may be damped.
     pub is_damped: bool,
 }
 
 /// The limit of kick-drift-kick for the state as it stands: the largest dt at which no eigenvalue
-/// of M^-1 (dt^2/4 K + dt/2 C) is above 1.
+/// of M^-1 (dt^2/4 K + dt/2 C) is above 1, with the dashpots C of contacts. Those of bonds do not
+/// matter: see [`crate::stages::damping`].
 ///
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always
 /// against its force, which damping of particles raises by a fraction: K counts 1 + gamma
@@ -120,10 +120,10 @@ fn limit_of_bonded(state: &mut State) -> Limit {
         (undamped, of_undamped)
     };
     let stiffer = stiffer_by_damping(state);
-    let (c, of_damping) = if is_damped(state, contacts) {
-        largest_eigenvalue(state, contacts, Weights::DAMPING, Search::Fine)
-    } else {
+    let (c, of_damping) = if contacts.is_empty() {
         (0.0, 0)
+    } else {
+        largest_eigenvalue(state, contacts, Weights::DAMPING, Search::Fine)
     };
     let (step_s, of_both) = if c > 0.0 {
         damped_limit(state, contacts, stiffer, safe_step(stiffer * k, c))
@@ -163,7 +163,7 @@ fn bound_near_of_bonded(state: &mut State, step_s: f64) -> Bound {
     let (value, _) = largest_eigenvalue(state, contacts, both, Search::Rough);
     restore_stiffness(&mut state.bonds, unstiffened);
     restore_stiffness(&mut state.bonds, damaged);
-    let is_damped = is_damped(state, contacts);
+    let is_damped = !contacts.is_empty();
     let of_particles = Bound {
         step_s: not_too_long(step_s, value),
         is_damped,
@@ -224,15 +224,10 @@ pub(super) fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>
     }
 }
 
-fn is_damped(state: &State, contacts: &[LinearContact]) -> bool {
-    !state.scratch.bond_resistance.is_empty() || !contacts.is_empty()
-}
-
 /// Clears the wrenches of the search: a balance before the next step would read them, and what acts
 /// on the spheres of clumps is added to them.
 pub(super) fn clear_trial_wrenches(state: &mut State) {
     state.particles.wrenches.fill(Wrench::default());
-    state.scratch.bond_resistance.fill(Wrench::default());
 }
 
 /// A step that is not too long, from another and the largest eigenvalue there of M^-1 (dt^2/4 K +
@@ -377,9 +372,6 @@ fn largest_eigenvalue(
                 &mut displaced,
                 &mut image,
             );
-        }
-        if weights.damping > 0.0 && !state.scratch.bond_resistance.is_empty() {
-            add_damping_times(state, weights.damping, &roots, &present, &mut image);
         }
         if !contacts.is_empty() {
             let motions = motions(&present, &roots);
@@ -568,36 +560,6 @@ fn motions(field: &Field, roots: &Field) -> Vec<Motion> {
         }
     };
     field.iter().zip(roots).map(motion).collect()
-}
-
-/// Adds `weight` times the damping times a field to `sum`.
-pub(super) fn add_damping_times(
-    state: &mut State,
-    weight: f64,
-    roots: &Field,
-    field: &Field,
-    sum: &mut Field,
-) {
-    let motions = motions(field, roots);
-    let State {
-        bonds,
-        particles,
-        scratch,
-        ..
-    } = state;
-    let Scratch {
-        partitions,
-        bond_resistance,
-        ..
-    } = scratch;
-    damping_wrenches(
-        bonds,
-        &particles.poses,
-        &motions,
-        partitions,
-        bond_resistance,
-    );
-    add_forces(-weight, bond_resistance, roots, sum);
 }
 
 /// Adds a factor times wrenches to a field.

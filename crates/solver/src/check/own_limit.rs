@@ -4,10 +4,9 @@
 use dem_io::random::uniform;
 
 use super::limit::{
-    Field, ITERATIONS, add_damping_times, add_stiffness_times, clear_trial_wrenches,
-    inverse_mass_roots, largest_ritz, restore_stiffness, stiffen_by_structural_damping,
+    Field, ITERATIONS, add_stiffness_times, clear_trial_wrenches, inverse_mass_roots, largest_ritz,
+    restore_stiffness, stiffen_by_structural_damping,
 };
-use super::linear::Weights;
 use crate::state::State;
 
 /// The search for an eigenvalue ends at this ratio of residual to eigenvalue.
@@ -15,24 +14,12 @@ const RESIDUAL: f64 = 1e-4;
 /// Beyond the least number of iterations, one in so many asks whether it was enough.
 const EVERY: usize = 5;
 
-/// For each body, alone in space, and each of these steps, s, the largest eigenvalue of M^-1
-/// (dt^2/4 K + dt/2 C): the step is stable where it is below 1; see [`super::limit::limit`]. 0 for
-/// single particles. `body_of`: the number of the body of each particle; bodies are not joined by
-/// bonds. Afterwards no wrench acts on any particle.
-pub(crate) fn own_eigenvalues<const N: usize>(
-    state: &mut State,
-    body_of: &[u32],
-    steps_s: [f64; N],
-) -> Vec<[f64; N]> {
-    let bodies = body_of.iter().map(|&body| body as usize + 1).max();
-    let mut found = vec![[0.0; N]; bodies.unwrap_or(0)];
+/// For each body, alone in space, the largest eigenvalue of M^-1 K, 1/s2; 0 for single particles.
+/// What counts is said at [`super::limit::limit`]. `body_of`: the number of the body of each
+/// particle; bodies are not joined by bonds. Afterwards no wrench acts on any particle.
+pub(crate) fn own_eigenvalues(state: &mut State, body_of: &[u32]) -> Vec<f64> {
     let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
-    for (n, &step_s) in steps_s.iter().enumerate() {
-        let values = largest_eigenvalues(state, Weights::of_step(1.0, step_s), body_of);
-        for (found, value) in found.iter_mut().zip(values) {
-            found[n] = value;
-        }
-    }
+    let found = largest_eigenvalues(state, body_of);
     restore_stiffness(&mut state.bonds, unstiffened);
     clear_trial_wrenches(state);
     found
@@ -68,9 +55,9 @@ impl Search {
     }
 }
 
-/// For each body the largest eigenvalue of a sum of the operators over mass, without contacts; 0
-/// for single particles.
-fn largest_eigenvalues(state: &mut State, weights: Weights, body_of: &[u32]) -> Vec<f64> {
+/// For each body the largest eigenvalue of stiffness over mass, without contacts; 0 for single
+/// particles.
+fn largest_eigenvalues(state: &mut State, body_of: &[u32]) -> Vec<f64> {
     let roots = inverse_mass_roots(state);
     let mut displaced = state.particles.poses.clone();
     let mut searches: Vec<Search> = Vec::new();
@@ -101,19 +88,15 @@ fn largest_eigenvalues(state: &mut State, weights: Weights, body_of: &[u32]) -> 
         let mut image = before;
         let factors: Vec<f64> = searches.iter().map(|search| -search.beta).collect();
         scale(&mut image, &factors, body_of);
-        let weight = weights.stiffness;
         add_stiffness_times(
             state,
-            weight,
+            1.0,
             &roots,
             &present,
             None,
             &mut displaced,
             &mut image,
         );
-        if !state.scratch.bond_resistance.is_empty() {
-            add_damping_times(state, weights.damping, &roots, &present, &mut image);
-        }
         let alphas = dots(&image, &present, body_of, searches.len());
         for ((image, present), &body) in image.iter_mut().zip(&present).zip(body_of) {
             for (image, present) in image.iter_mut().zip(present) {

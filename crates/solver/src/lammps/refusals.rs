@@ -84,6 +84,12 @@ pub(crate) fn refuse_parts(scene: &Scene) -> Result<()> {
             run_it,
         ),
         (
+            scene.bonds.values().any(|bond| bond.contact_beside_bond),
+            "contact_beside_bond".to_owned(),
+            "contact laws that begin at an overlap",
+            run_it,
+        ),
+        (
             scene.sleep.is_some(),
             "[sleep]".to_owned(),
             "bodies that sleep",

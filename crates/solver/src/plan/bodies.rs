@@ -533,6 +533,7 @@ fn rule(kind: &BondKind) -> BondRule {
         criteria: has_strength(&criteria).then_some(criteria),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,
+        contact_beside: kind.contact_beside_bond,
     }
 }
 

@@ -242,7 +242,8 @@ fn is_alone(state: &State, clusters: &Clusters) -> bool {
     let breaks = has_bonds && state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
     let rules = &state.model.rules;
     let others_come = rules.make_daughters() || !rules.inlets.is_empty();
-    clusters.living().count() <= 1 && !breaks && !others_come
+    let beside = state.bonds.rules.iter().any(|rule| rule.contact_beside);
+    clusters.living().count() <= 1 && !breaks && !others_come && !beside
 }
 
 /// Chooses the skin of the pair list for impacts at this speed, m/s: the distance that both
@@ -275,6 +276,14 @@ fn need_pairs(
             let rule = state.bonds.rule_of(body.first_bond);
             state.bonds.rules[rule].criteria.is_some()
         });
+        let beside = body.bonds.first().is_some_and(|_| {
+            let rule = state.bonds.rule_of(body.first_bond);
+            state.bonds.rules[rule].contact_beside
+        });
+        if beside {
+            let who = format!("contacts beside the bonds of the body '{}' need", body.name);
+            kinds.need(scene, [material(body); 2], &who)?;
+        }
         if breaks || is_in_pieces {
             let why = if breaks {
                 "can break into"

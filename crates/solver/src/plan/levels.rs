@@ -10,7 +10,7 @@ use crate::check::own_limit::own_eigenvalues;
 use crate::stages::levels::any_longer;
 use crate::state::State;
 use crate::state::clusters::Clusters;
-use crate::state::levels::{CYCLE, LevelRule, Levels, length};
+use crate::state::levels::{CYCLE, LevelRule, Levels};
 
 /// Gives bodies steps of their own, if the scene asks for them and any body can take a longer one;
 /// then the step is adapted to the end time.
@@ -40,8 +40,7 @@ pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoi
 
 fn level_rule(state: &mut State, step: &StepChoice, safety: f64) -> LevelRule {
     let body_of = Clusters::new(state.particles.len(), &state.bonds).of_particle;
-    let longer = std::array::from_fn(|n| length(n as u8 + 1) * step.step_s / safety);
-    let own = own_eigenvalues(state, &body_of, longer);
+    let own = own_eigenvalues(state, &body_of);
     let materials = state
         .contacts
         .as_ref()
@@ -52,7 +51,6 @@ fn level_rule(state: &mut State, step: &StepChoice, safety: f64) -> LevelRule {
     };
     LevelRule {
         own,
-        time_step_s: step.step_s,
         impact_rates: (0..materials).map(at_impact).collect(),
         safety: [safety, share_of_impact(state, safety)],
         body_of,

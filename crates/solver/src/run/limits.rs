@@ -103,6 +103,7 @@ impl<'a> Limits<'a> {
             let strain = progress.seen.look_at_bonds(state, bodies);
             if strain > progress.strain + MORE_STRAIN {
                 progress.strain = strain;
+                state.renew_damping_rate();
                 may_be_less = true;
             }
         }

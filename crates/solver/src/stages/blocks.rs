@@ -164,29 +164,16 @@ pub(super) fn for_each_partition(
     wrenches: &mut [Wrench],
     work: &(impl Fn(&mut Partition, &mut [Wrench]) + Sync),
 ) {
-    let of_one = |partition: &mut Partition, [wrenches, _]: [&mut [Wrench]; 2]| {
-        work(partition, wrenches);
-    };
-    for_each_partition_of_two(partitions, [wrenches, &mut []], &of_one);
-}
-
-/// The same for two lists of wrenches, the second of which may be empty.
-pub(super) fn for_each_partition_of_two(
-    partitions: &mut [Partition],
-    [wrenches, others]: [&mut [Wrench]; 2],
-    work: &(impl Fn(&mut Partition, [&mut [Wrench]; 2]) + Sync),
-) {
     match partitions {
         [] => {}
-        [partition] => work(partition, [wrenches, others]),
+        [partition] => work(partition, wrenches),
         _ => {
             let (left, right) = partitions.split_at_mut(partitions.len() / 2);
             let count = right[0].particles.start - left[0].particles.start;
             let (of_left, of_right) = wrenches.split_at_mut(count);
-            let (others_of_left, others_of_right) = others.split_at_mut(count.min(others.len()));
             rayon::join(
-                || for_each_partition_of_two(left, [of_left, others_of_left], work),
-                || for_each_partition_of_two(right, [of_right, others_of_right], work),
+                || for_each_partition(left, of_left, work),
+                || for_each_partition(right, of_right, work),
             );
         }
     }

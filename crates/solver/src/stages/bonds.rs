@@ -12,15 +12,13 @@ use crate::physics::bond::total::bond_response;
 use crate::physics::number::{Rotation, Vec3};
 use crate::stages::blocks::{
     BondGroup, blocks_of, coming_second_ends, fetch_soon, fetch_wrench_soon, for_each_partition,
-    for_each_partition_of_two, separations,
+    separations,
 };
-use crate::stages::damped::damping_forces;
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_lanes};
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
-use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Computed, Partition};
-use crate::state::scratch::Scratch;
 
 use LaneChoice::{AsManyLanes, OneLane};
 
@@ -94,19 +92,14 @@ pub(crate) fn clear_wrenches(state: &mut State) -> usize {
     0
 }
 
-/// Sets the wrenches to the bond forces, and the resistances of the bonds to their damping forces.
-/// Returns the number of bonds computed.
+/// Sets the wrenches to the bond forces. Returns the number of bonds computed.
 pub(crate) fn compute_bonds(state: &mut State) -> usize {
     if state.bonds.is_empty() {
         return 0;
     }
     let p = &mut state.particles;
-    if state.scratch.bond_resistance.is_empty() {
-        let partitions = &mut state.scratch.partitions;
-        bond_wrenches(&state.bonds, &p.poses, partitions, &mut p.wrenches);
-    } else {
-        damped_bond_wrenches(&state.bonds, p, &mut state.scratch);
-    }
+    let partitions = &mut state.scratch.partitions;
+    bond_wrenches(&state.bonds, &p.poses, partitions, &mut p.wrenches);
     state
         .scratch
         .partitions
@@ -133,45 +126,6 @@ pub fn bond_wrenches(
     each_partition(bonds, poses, partitions, wrenches, AsManyLanes);
 }
 
-/// The same, with the damping forces.
-fn damped_bond_wrenches(bonds: &Bonds, particles: &mut Particles, scratch: &mut Scratch) {
-    let (poses, motions) = (&particles.poses, &particles.motions);
-    let both = [&mut particles.wrenches[..], &mut scratch.bond_resistance];
-    let work = |partition: &mut Partition, [wrenches, resisting]: [&mut [Wrench]; 2]| {
-        let work = PartitionWork {
-            bonds,
-            poses,
-            partition,
-            wrenches,
-            elastic: true,
-            damping: Some(Damping { motions, resisting }),
-        };
-        work.done(AsManyLanes);
-    };
-    for_each_partition_of_two(&mut scratch.partitions, both, &work);
-}
-
-/// Sets `resisting` (one for each particle) to the damping forces of the bonds.
-pub(crate) fn damping_wrenches(
-    bonds: &Bonds,
-    poses: &[Pose],
-    motions: &[Motion],
-    partitions: &mut [Partition],
-    resisting: &mut [Wrench],
-) {
-    for_each_partition(partitions, resisting, &|partition, resisting| {
-        let work = PartitionWork {
-            bonds,
-            poses,
-            partition,
-            wrenches: &mut [],
-            elastic: false,
-            damping: Some(Damping { motions, resisting }),
-        };
-        work.done(AsManyLanes);
-    });
-}
-
 /// The bond forces, one bond at a time.
 pub fn bond_wrenches_one_by_one(
     bonds: &Bonds,
@@ -196,8 +150,6 @@ fn each_partition(
             poses,
             partition,
             wrenches,
-            elastic: true,
-            damping: None,
         };
         work.done(lanes);
     });
@@ -251,17 +203,6 @@ struct PartitionWork<'a> {
     partition: &'a mut Partition,
     /// Wrenches of the particles of the partition.
     wrenches: &'a mut [Wrench],
-    /// Whether the bond forces are computed.
-    elastic: bool,
-    /// Damping forces, if they are computed.
-    damping: Option<Damping<'a>>,
-}
-
-/// Damping forces of the bonds of one partition.
-struct Damping<'a> {
-    motions: &'a [Motion],
-    /// Those on the particles of the partition.
-    resisting: &'a mut [Wrench],
 }
 
 /// How many bonds are computed at once. The results are the same bits.
@@ -272,74 +213,49 @@ enum LaneChoice {
 }
 
 /// One batch of a partition's work: compiled for itself, so that each kind has its own stack frame.
-struct BatchWork<'w, 'a, const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool>(
-    &'w mut PartitionWork<'a>,
-    &'w Batch,
-);
+struct BatchWork<'w, 'a, const FRICTIONAL: bool>(&'w mut PartitionWork<'a>, &'w Batch);
 
-impl<const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool> LaneWork
-    for BatchWork<'_, '_, TOTAL, DAMPED, FRICTIONAL>
-{
+impl<const FRICTIONAL: bool> LaneWork for BatchWork<'_, '_, FRICTIONAL> {
     #[inline(always)]
     fn with<T: Lanes>(self, proof: T::Proof) {
-        self.0
-            .of_batch::<T, TOTAL, DAMPED, FRICTIONAL>(proof, self.1);
+        self.0.of_batch::<T, FRICTIONAL>(proof, self.1);
     }
 }
 
 impl PartitionWork<'_> {
     fn done(mut self, lanes: LaneChoice) {
-        self.partition.computed.damped = 0;
-        if self.elastic {
-            self.partition.computed = Computed::default();
-            self.partition.failing.clear();
-        }
+        self.partition.computed = Computed::default();
+        self.partition.failing.clear();
         for awake in &self.partition.awake {
-            if self.elastic {
-                self.wrenches[awake.clone()].fill(Wrench::default());
-            }
-            if let Some(damping) = &mut self.damping {
-                damping.resisting[awake.clone()].fill(Wrench::default());
-            }
+            self.wrenches[awake.clone()].fill(Wrench::default());
         }
         let batches = std::mem::take(&mut self.partition.batches);
         for batch in &batches {
             let rule = &self.bonds.rules[batch.rule];
-            let total = self.elastic && !rule.is_single();
-            let damped = rule.damped && self.damping.is_some();
             let frictional = rule
                 .criteria
                 .is_some_and(|criteria| criteria.is_frictional());
-            match (total, damped, frictional) {
-                (true, false, false) => self.batch::<true, false, false>(batch, lanes),
-                (true, true, false) => self.batch::<true, true, false>(batch, lanes),
-                (true, false, true) => self.batch::<true, false, true>(batch, lanes),
-                (true, true, true) => self.batch::<true, true, true>(batch, lanes),
-                (false, true, _) => self.batch::<false, true, false>(batch, lanes),
-                (false, false, _) => {}
+            match (rule.is_single(), frictional) {
+                (true, _) => {}
+                (false, false) => self.batch::<false>(batch, lanes),
+                (false, true) => self.batch::<true>(batch, lanes),
             }
         }
         self.partition.batches = batches;
     }
-}
 
-impl PartitionWork<'_> {
-    fn batch<const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool>(
-        &mut self,
-        batch: &Batch,
-        lanes: LaneChoice,
-    ) {
-        let work = BatchWork::<TOTAL, DAMPED, FRICTIONAL>(self, batch);
+    fn batch<const FRICTIONAL: bool>(&mut self, batch: &Batch, lanes: LaneChoice) {
+        let work = BatchWork::<FRICTIONAL>(self, batch);
         match lanes {
             AsManyLanes => with_lanes(work),
             OneLane => work.with::<f64>(()),
         }
     }
 
-    /// The bonds of a batch: their forces, by the total formulation, if `TOTAL`, and their damping
-    /// forces if `DAMPED`. `FRICTIONAL`: their strength is that of Mohr and Coulomb.
+    /// Forces of the bonds of a batch, by the total formulation. `FRICTIONAL`: their strength is
+    /// that of Mohr and Coulomb.
     #[inline(always)]
-    fn of_batch<T: Lanes, const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool>(
+    fn of_batch<T: Lanes, const FRICTIONAL: bool>(
         &mut self,
         proof: T::Proof,
         Batch { rule, which }: &Batch,
@@ -351,29 +267,22 @@ impl PartitionWork<'_> {
             screen: bonds.rules[*rule].criteria.as_ref().map(Screen::new),
         };
         let computed = &mut self.partition.computed;
-        if TOTAL {
-            computed.total += which.count();
-            computed.compared += if kind.screen.is_some() {
-                which.count()
-            } else {
-                0
-            };
-            if FRICTIONAL {
-                computed.frictional += which.count();
-            }
-        }
-        if DAMPED {
-            computed.damped += which.count();
+        computed.total += which.count();
+        computed.compared += if kind.screen.is_some() {
+            which.count()
+        } else {
+            0
+        };
+        if FRICTIONAL {
+            computed.frictional += which.count();
         }
         match which {
             BondSelection::Run(range) => {
                 for block in blocks_of(range) {
-                    self.fetch_coming::<TOTAL, DAMPED>(block);
+                    self.fetch_coming(block);
                     let four = BondGroup::of_block(bonds, block, range);
                     let numbers = &bonds.blocks[block];
-                    self.of_four::<T, TOTAL, DAMPED, FRICTIONAL>(
-                        proof, &kind, &four, numbers, true,
-                    );
+                    self.of_four::<T, FRICTIONAL>(proof, &kind, &four, numbers, true);
                 }
             }
             BondSelection::Own(list) | BondSelection::Border(list) => {
@@ -381,7 +290,7 @@ impl PartitionWork<'_> {
                 for some in list.chunks(BLOCK) {
                     let four = BondGroup::of_list(bonds, some);
                     let numbers = &BondBlock::of(bonds, four.numbers);
-                    self.of_four::<T, TOTAL, DAMPED, FRICTIONAL>(proof, &kind, &four, numbers, own);
+                    self.of_four::<T, FRICTIONAL>(proof, &kind, &four, numbers, own);
                 }
             }
         }
@@ -389,23 +298,17 @@ impl PartitionWork<'_> {
 
     /// Prefetches what the bonds that follow a block soon need.
     #[inline(always)]
-    fn fetch_coming<const TOTAL: bool, const DAMPED: bool>(&self, block: usize) {
+    fn fetch_coming(&self, block: usize) {
         let particles = &self.partition.particles;
         for b in coming_second_ends(self.bonds, block) {
             fetch_soon(&self.poses[b]);
-            if TOTAL {
-                fetch_wrench_soon(self.wrenches, b, particles);
-            }
-            if let (true, Some(damping)) = (DAMPED, &self.damping) {
-                fetch_soon(&damping.motions[b]);
-                fetch_wrench_soon(damping.resisting, b, particles);
-            }
+            fetch_wrench_soon(self.wrenches, b, particles);
         }
     }
 
     /// Four bonds, whose first ends are in the partition if they are its `own`.
     #[inline(always)]
-    fn of_four<T: Lanes, const TOTAL: bool, const DAMPED: bool, const FRICTIONAL: bool>(
+    fn of_four<T: Lanes, const FRICTIONAL: bool>(
         &mut self,
         proof: T::Proof,
         kind: &Kind,
@@ -418,25 +321,18 @@ impl PartitionWork<'_> {
         } = &mut *self.partition;
         for first in (0..BLOCK).step_by(T::COUNT) {
             let apart = separations(proof, &four.ends[first..], self.poses);
-            if let (true, Some(Damping { motions, resisting })) = (DAMPED, &mut self.damping) {
-                let (force_on_b, torques) =
-                    damping_forces::<T>(proof, self.bonds, four, numbers, first, apart, motions);
-                four.add(first, force_on_b, torques, resisting, particles);
-            }
-            if TOTAL {
-                let found =
-                    kind.forces::<T, FRICTIONAL>(proof, four, numbers, first, apart, self.poses);
-                four.add(
-                    first,
-                    found.force_on_b,
-                    found.torques,
-                    self.wrenches,
-                    particles,
-                );
-                if own {
-                    let beyond = &found.beyond[..T::COUNT];
-                    list_failing(self.bonds, four, numbers, first, beyond, failing);
-                }
+            let found =
+                kind.forces::<T, FRICTIONAL>(proof, four, numbers, first, apart, self.poses);
+            four.add(
+                first,
+                found.force_on_b,
+                found.torques,
+                self.wrenches,
+                particles,
+            );
+            if own {
+                let beyond = &found.beyond[..T::COUNT];
+                list_failing(self.bonds, four, numbers, first, beyond, failing);
             }
         }
     }

@@ -1,13 +1,16 @@
 //! Contact forces between particles.
 
+mod beside;
 mod close;
 mod input;
 mod stored;
 
+pub(super) use self::beside::list_beside;
 pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n};
 
 pub(in crate::stages) use self::stored::{StoredEnergy, StoredForce};
 
+use self::beside::hold_origins;
 use self::close::{close_m, look};
 use self::input::StepInput;
 use super::bonds::any_bond;
@@ -118,6 +121,7 @@ fn can_break(state: &State) -> bool {
 pub(crate) fn compute_contacts(state: &mut State) -> usize {
     match &mut state.contacts {
         Some(contacts) if !contacts.model.alone => {
+            hold_origins(contacts, &state.bonds);
             contact_wrenches(contacts, &mut state.particles, state.previous_time_step_s);
             contacts
                 .scratch

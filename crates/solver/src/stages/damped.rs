@@ -1,46 +1,121 @@
-//! Damping forces of several bonds at once.
+//! Viscous damping forces of bonds, several bonds at once.
 
 use crate::physics::bond::damping::{DampingCoefficients, resistance};
 use crate::physics::number::Vec3;
-use crate::stages::blocks::{BondGroup, vectors};
-use crate::stages::lanes::Lanes;
-use crate::state::bonds::{BondBlock, Bonds};
-use crate::state::particles::Motion;
+use crate::stages::blocks::{
+    BondGroup, blocks_of, coming_second_ends, fetch_soon, fetch_wrench_soon, for_each_partition,
+    separations, vectors,
+};
+use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::state::bonds::{BLOCK, BondBlock, Bonds};
+use crate::state::particles::{Motion, Pose, Wrench};
+use crate::state::partitions::{Batch, BondSelection, Partition};
 
-/// Damping forces of the bonds from `first` on, one for each lane, with these vectors from the first
-/// to the second ends, m: on the second ends, N, and torques on both, N m.
-#[inline(always)]
-pub(super) fn damping_forces<T: Lanes>(
-    proof: T::Proof,
+/// Sets `damping` (one for each particle) to the viscous forces of the bonds between ends with
+/// these motions.
+pub(crate) fn damping_wrenches(
     bonds: &Bonds,
-    four: &BondGroup,
-    block: &BondBlock,
-    first: usize,
-    apart: Vec3<T>,
+    poses: &[Pose],
     motions: &[Motion],
-) -> (Vec3<T>, [Vec3<T>; 2]) {
-    let ends = &four.ends[first..first + T::COUNT];
-    let numbers = &four.numbers[first..first + T::COUNT];
-    let motion = |lane: usize, side: usize| &motions[ends[lane][side] as usize];
-    let moving = [
-        [
-            vectors(proof, |lane| motion(lane, 0).velocity_row()),
-            vectors(proof, |lane| motion(lane, 0).spin_row()),
-        ],
-        [
-            vectors(proof, |lane| motion(lane, 1).velocity_row()),
-            vectors(proof, |lane| motion(lane, 1).spin_row()),
-        ],
-    ];
-    let [normal, shear, torsion, bending] = T::columns(proof, |lane| bonds.damping[numbers[lane]]);
-    let coefficients = DampingCoefficients {
-        normal,
-        shear,
-        torsion,
-        bending,
-    };
-    let levers_m = [0, 1].map(|end: usize| T::load(proof, &block.levers_m[end], first));
-    let length = apart.square().sqrt();
-    let c = apart * length.inverse();
-    resistance(&coefficients, levers_m, c, length, moving)
+    partitions: &mut [Partition],
+    damping: &mut [Wrench],
+) {
+    for_each_partition(partitions, damping, &|partition, damping| {
+        for awake in &partition.awake {
+            damping[awake.clone()].fill(Wrench::default());
+        }
+        partition.computed.damped = 0;
+        for Batch { rule, which } in &partition.batches {
+            if bonds.rules[*rule].damped {
+                partition.computed.damped += which.count();
+                with_lanes(BatchWork {
+                    bonds,
+                    poses,
+                    motions,
+                    partition,
+                    which,
+                    damping,
+                });
+            }
+        }
+    });
+}
+
+/// The work on the bonds of one batch of a partition.
+struct BatchWork<'a> {
+    bonds: &'a Bonds,
+    poses: &'a [Pose],
+    motions: &'a [Motion],
+    partition: &'a Partition,
+    which: &'a BondSelection,
+    /// Those on the particles of the partition.
+    damping: &'a mut [Wrench],
+}
+
+impl LaneWork for BatchWork<'_> {
+    #[inline(always)]
+    fn with<T: Lanes>(mut self, proof: T::Proof) {
+        match self.which {
+            BondSelection::Run(range) => {
+                for block in blocks_of(range) {
+                    self.fetch_coming(block);
+                    let four = BondGroup::of_block(self.bonds, block, range);
+                    self.add::<T>(proof, &four, &self.bonds.blocks[block]);
+                }
+            }
+            BondSelection::Own(list) | BondSelection::Border(list) => {
+                for some in list.chunks(BLOCK) {
+                    let four = BondGroup::of_list(self.bonds, some);
+                    let numbers = BondBlock::of(self.bonds, four.numbers);
+                    self.add::<T>(proof, &four, &numbers);
+                }
+            }
+        }
+    }
+}
+
+impl BatchWork<'_> {
+    /// Prefetches what the bonds that follow a block soon need.
+    #[inline(always)]
+    fn fetch_coming(&self, block: usize) {
+        for b in coming_second_ends(self.bonds, block) {
+            fetch_soon(&self.poses[b]);
+            fetch_soon(&self.motions[b]);
+            fetch_wrench_soon(self.damping, b, &self.partition.particles);
+        }
+    }
+
+    /// Adds the forces of four bonds.
+    #[inline(always)]
+    fn add<T: Lanes>(&mut self, proof: T::Proof, four: &BondGroup, numbers: &BondBlock) {
+        for first in (0..BLOCK).step_by(T::COUNT) {
+            let apart: Vec3<T> = separations(proof, &four.ends[first..], self.poses);
+            let ends = &four.ends[first..first + T::COUNT];
+            let at = &four.numbers[first..first + T::COUNT];
+            let motion = |lane: usize, side: usize| &self.motions[ends[lane][side] as usize];
+            // Spelled out: a closure around lanes may not be compiled for them.
+            let moving = [
+                [
+                    vectors(proof, |lane| motion(lane, 0).velocity_row()),
+                    vectors(proof, |lane| motion(lane, 0).spin_row()),
+                ],
+                [
+                    vectors(proof, |lane| motion(lane, 1).velocity_row()),
+                    vectors(proof, |lane| motion(lane, 1).spin_row()),
+                ],
+            ];
+            let [normal, shear, torsion, bending] =
+                T::columns(proof, |lane| self.bonds.damping[at[lane]]);
+            let coefficients = DampingCoefficients {
+                normal,
+                shear,
+                torsion,
+                bending,
+            };
+            let levers_m = [0, 1].map(|end: usize| T::load(proof, &numbers.levers_m[end], first));
+            let (force_on_b, torques) = resistance(&coefficients, levers_m, apart, moving);
+            let particles = &self.partition.particles;
+            four.add(first, force_on_b, torques, self.damping, particles);
+        }
+    }
 }

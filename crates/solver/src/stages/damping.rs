@@ -1,11 +1,35 @@
-//! Viscous forces of damped bonds on the particles, from the velocities half a step ago. They are
-//! computed together with the bond forces, and once more in steps in which bonds break, since the
-//! ends of these have other velocities then.
+//! Viscous forces of damped bonds on the particles.
+//!
+//! Velocities are known half a step before the forces (leapfrog). The kick is therefore split (Strang
+//! 1968): half of it by all other forces F, then the decay of velocities by damping alone over the
+//! step, then the other half by F. With the step dt, and G = dt M^-1 C at the present positions,
+//!
+//!   w = v_(n-1/2) + dt/2 M^-1 F_n,   v_(n+1/2) = R(G) w + dt/2 M^-1 F_n,
+//!
+//! where R approximates exp(-G) to second order by the stages of Runge, Kutta and Chebyshev
+//! ([`Chebyshev`]), as many as keep R between 0 and 1. The error is of second order in the step in
+//! any network of bonds, damping only ever takes energy, and each stage keeps momenta.
+//!
+//! With symmetric K and C the scheme is stable up to the same step as without damping of bonds:
+//! with B = (1 + R)/2 and A = dt^2 M^-1 K, z^n u is a solution if (z - 1)^2 B^-1 u + z A u +
+//! 2 (z - 1) (B^-1 - 1) u = 0. With the quadratic forms a of A and b of B^-1 in u, of norm 1,
+//! b z^2 + (a - 2) z + 2 - b = 0: |z| is at most 1 if b is at least 1 and a at most 4, and z = -1
+//! where A has the eigenvalue 4. Dashpots of contacts, which F contains with the velocity of half a
+//! step ago, change the last condition alone: see [`crate::check::limit`].
 
-use super::bonds::{BONDS, any_bond, damping_wrenches};
+use rayon::prelude::*;
+
+use super::bonds::any_bond;
+use super::chunks::CHUNK;
+use super::damped::damping_wrenches;
+use super::motion::{Forces, for_each_awake};
+use super::rigid_parts::predict_rigid_parts;
 use super::stage::{Need, Saving, Stage};
+use super::supports::predict_held;
+use crate::physics::chebyshev::Chebyshev;
 use crate::state::State;
-use crate::state::particles::Wrench;
+use crate::state::particles::{Motion, Wrench};
+use crate::state::scratch::Scratch;
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const BOND_DAMPING_NS: f64 = 19.3;
@@ -13,7 +37,7 @@ const BOND_DAMPING_NS: f64 = 19.3;
 /// Damping of bonds.
 pub const BOND_DAMPING: Stage = Stage {
     name: "bond damping",
-    within: Some(BONDS.name),
+    within: None,
     need: |state, _| {
         Need::of(
             any_bond(state, |rule| rule.damped),
@@ -22,46 +46,164 @@ pub const BOND_DAMPING: Stage = Stage {
         )
     },
     bytes: |state| {
-        let resistances = if any_damped(state) {
-            size_of_val(&state.scratch.bond_resistance[..])
-        } else {
-            0
-        };
-        size_of_val(&state.bonds.damping[..]) + resistances
+        let Scratch {
+            bond_resistance,
+            damping_stages,
+            predicted,
+            ..
+        } = &state.scratch;
+        let stages = damping_stages.iter().map(|stage| size_of_val(&stage[..]));
+        size_of_val(&state.bonds.damping[..])
+            + size_of_val(&bond_resistance[..])
+            + stages.sum::<usize>()
+            + predicted
+                .iter()
+                .map(|motions| size_of_val(&motions[..]))
+                .sum::<usize>()
     },
     saving: |state| {
         let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
+        let of_particle = 4 * size_of::<Wrench>() + 2 * size_of::<Motion>();
         Some(Saving {
-            bytes: of_bonds.bytes + state.particles.free * size_of::<Wrench>(),
+            bytes: of_bonds.bytes + state.particles.free * of_particle,
             ..of_bonds
         })
     },
 };
 
-/// Whether any rule has viscous damping.
-pub(super) fn any_damped(state: &State) -> bool {
-    state.bonds.rules.iter().any(|rule| rule.damped)
+/// Sets the damping forces of bonds: those that, over the kick, have the impulse of its damping.
+/// Returns the number of bonds computed, in one stage.
+pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
+    if state.scratch.bond_resistance.is_empty() {
+        return 0;
+    }
+    let kick_s = state.kick_s();
+    let stages = Chebyshev::covering(kick_s * state.damping_rate_1_s);
+    predict(state);
+    let mut force = std::mem::take(&mut state.scratch.bond_resistance);
+    let [mut before, mut now, mut first] = std::mem::take(&mut state.scratch.damping_stages);
+    damp(state, 0, &mut first);
+    go_on(state, &mut now, 0.0, [(stages.first * kick_s, &first)]);
+    for (stages_left, stage) in (0..stages.others.len()).rev().zip(&stages.others) {
+        damp(state, 1, &mut force);
+        if stages_left > 0 {
+            let others: [(f64, &[Wrench]); 3] = [
+                (stage.last, &now),
+                (stage.force * kick_s, &force),
+                (stage.first_force * kick_s, &first),
+            ];
+            go_on(state, &mut before, stage.before, others);
+            std::mem::swap(&mut before, &mut now);
+        } else {
+            let others: [(f64, &[Wrench]); 3] = [
+                (stage.last / kick_s, &now),
+                (stage.before / kick_s, &before),
+                (stage.first_force, &first),
+            ];
+            let asleep = &state.particles.asleep;
+            let chunks = force.par_chunks_mut(CHUNK).enumerate();
+            chunks.for_each(|(chunk, force)| {
+                for_each_awake(chunk * CHUNK, force, asleep, |i, force| {
+                    *force = sum(force, stage.force, others, i);
+                });
+            });
+        }
+    }
+    state.scratch.bond_resistance = force;
+    state.scratch.damping_stages = [before, now, first];
+    let partitions = state.scratch.partitions.iter();
+    partitions.map(|partition| partition.computed.damped).sum()
 }
 
-/// Sets the damping forces of bonds, if not done with the bond forces. Returns the number of bonds
-/// computed.
-pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
-    let bonds_broke = !state.scratch.events.broken.is_empty();
-    if bonds_broke && !state.scratch.bond_resistance.is_empty() {
-        let p = &state.particles;
-        let resisting = &mut state.scratch.bond_resistance;
-        damping_wrenches(
-            &state.bonds,
-            &p.poses,
-            &p.motions,
-            &mut state.scratch.partitions,
-            resisting,
-        );
+/// Predicts the motions of the free particles at the time of their poses, without damping of bonds.
+fn predict(state: &mut State) {
+    let half_s = 0.5 * state.previous_time_step_s;
+    let mut predicted = std::mem::take(&mut state.scratch.predicted[0]);
+    let p = &state.particles;
+    let [_, structural, on_particles] = state.resistances();
+    let resisting = [&[], structural, on_particles];
+    let forces = Forces::of(p, resisting, state.model.gravity_m_s2, half_s);
+    predicted.resize(p.free, Motion::default());
+    let chunks = predicted.par_chunks_mut(CHUNK).enumerate();
+    chunks.for_each(|(chunk, predicted)| {
+        for_each_awake(chunk * CHUNK, predicted, &p.asleep, |i, motion| {
+            *motion = p.motions[i];
+            forces.kick(i, motion);
+        });
+    });
+    predict_held(state, &mut predicted);
+    predict_rigid_parts(state, &[], &mut predicted);
+    state.scratch.predicted[0] = predicted;
+}
+
+/// Multiplies impulses of damping by a factor, adds multiples of others, and sets the motions of the
+/// next stage: those predicted, with these impulses.
+fn go_on<const N: usize>(
+    state: &mut State,
+    impulses: &mut [Wrench],
+    factor: f64,
+    others: [(f64, &[Wrench]); N],
+) {
+    let [start, mut next] = std::mem::take(&mut state.scratch.predicted);
+    next.resize(start.len(), Motion::default());
+    let asleep = &state.particles.asleep;
+    let chunks = impulses
+        .par_chunks_mut(CHUNK)
+        .zip(next.par_chunks_mut(CHUNK));
+    chunks.enumerate().for_each(|(chunk, (impulses, next))| {
+        let first = chunk * CHUNK;
+        for_each_awake(first, next, asleep, |i, motion| {
+            let impulse = &mut impulses[i - first];
+            *impulse = sum(impulse, factor, others, i);
+            *motion = start[i];
+            for k in 0..3 {
+                motion.velocity_m_s[k] += motion.inverse_mass * impulse.force_n[k];
+                motion.spin_rad_s[k] += motion.inverse_inertia * impulse.torque_n_m[k];
+            }
+        });
+    });
+    predict_held(state, &mut next);
+    predict_rigid_parts(state, impulses, &mut next);
+    state.scratch.predicted = [start, next];
+}
+
+/// A wrench times a factor, plus multiples of those of particle `i` in lists. What counts 0 times is
+/// not read: it may be of another step.
+#[inline(always)]
+fn sum<const N: usize>(
+    wrench: &Wrench,
+    factor: f64,
+    others: [(f64, &[Wrench]); N],
+    i: usize,
+) -> Wrench {
+    let mut sum = Wrench::default();
+    if factor != 0.0 {
+        add_multiple(&mut sum, factor, wrench);
     }
-    state
-        .scratch
-        .partitions
-        .iter()
-        .map(|partition| partition.computed.damped)
-        .sum()
+    for (factor, list) in others {
+        if factor != 0.0 {
+            add_multiple(&mut sum, factor, &list[i]);
+        }
+    }
+    sum
+}
+
+#[inline(always)]
+fn add_multiple(sum: &mut Wrench, factor: f64, wrench: &Wrench) {
+    for k in 0..4 {
+        sum.force_n[k] += factor * wrench.force_n[k];
+        sum.torque_n_m[k] += factor * wrench.torque_n_m[k];
+    }
+}
+
+/// Sets `forces` to the damping of bonds between ends with the motions of this stage.
+fn damp(state: &mut State, stage: usize, forces: &mut [Wrench]) {
+    let scratch = &mut state.scratch;
+    damping_wrenches(
+        &state.bonds,
+        &state.particles.poses,
+        &scratch.predicted[stage],
+        &mut scratch.partitions,
+        forces,
+    );
 }

@@ -208,6 +208,7 @@ fn wall_power_w(wall: &Wall, push: &WallLoad, step: usize) -> f64 {
 /// Powers of loads and damping, W.
 fn powers(state: &State) -> Work {
     let particles = &state.particles;
+    let [viscous, structural, on_particles] = state.resistances();
     Work {
         loads: loads_power_w(
             &state.loads,
@@ -216,8 +217,8 @@ fn powers(state: &State) -> Work {
             &particles.motions,
         ),
         supports: 0.0,
-        bond_damping: -power_w(&state.scratch.bond_resistance, particles),
-        particle_damping: -power_w(&state.scratch.particle_resistance, particles),
+        bond_damping: -(power_w(viscous, particles) + power_w(structural, particles)),
+        particle_damping: -power_w(on_particles, particles),
     }
 }
 

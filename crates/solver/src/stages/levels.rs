@@ -211,18 +211,15 @@ impl Body {
     fn may_take(&self, level: u8, time_step_s: f64, rule: &LevelRule) -> bool {
         let [safety, share] = rule.safety;
         let step_s = length(level) * time_step_s;
-        // The eigenvalue grows at least with the step and at most with its square.
-        let longer = time_step_s / rule.time_step_s;
-        let longer = longer.max(longer * longer);
         // Transverse stiffness of a bond grows with the square of its levers.
         let strained = (1.0 + self.strain).powi(2);
         let own = match self.particles {
             1 => 0.0,
-            _ => rule.own[self.first as usize][usize::from(level) - 1],
+            _ => rule.own[self.first as usize] * strained,
         };
+        let [contacts, dashpots] = self.rates;
         let h = step_s / safety;
-        let of_contacts = 0.25 * h * h * self.rates[0] + 0.5 * h * self.rates[1];
-        let is_stable = own * longer * strained + of_contacts <= 1.0;
+        let is_stable = 0.25 * h * h * (own + contacts) + 0.5 * h * dashpots <= 1.0;
         let [k, c] = self.impact;
         let is_resolved = step_s <= share * safe_step(k, c);
         is_stable && is_resolved && step_s * self.fastest_m_s <= FARTHEST * self.smallest_m

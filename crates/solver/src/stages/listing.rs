@@ -12,7 +12,7 @@ pub(super) use self::renumbered::renumber_lists;
 use self::moved::{Due, due, find_left, may_be_due, refer_clump, refer_particle, use_up};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
-use super::contacts::{find_mean_radius, list_contacts, relist};
+use super::contacts::{find_mean_radius, list_beside, list_contacts, relist};
 use super::neighbours::overlapping_pairs;
 use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
@@ -150,7 +150,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
         wall.near.extend(near);
         wall.near.sort_unstable();
     }
-    let pairs = match &state.clusters {
+    let mut pairs = match &state.clusters {
         Some(clusters) if !contacts.model.alone => {
             let References {
                 balls,
@@ -167,6 +167,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
         }
         _ => Vec::new(),
     };
+    list_beside(state, contacts, &mut pairs);
     list_near_spheres(state, &pairs);
     relist(contacts, pairs, &state.particles);
     if let Some(levels) = &mut state.levels {

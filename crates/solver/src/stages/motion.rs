@@ -82,16 +82,15 @@ pub(crate) fn compute_particle_damping(state: &mut State) -> usize {
 /// Updates the velocities of particles. Returns the number of particles.
 pub(crate) fn kick_particles(state: &mut State) -> usize {
     let kick_s = state.kick_s();
-    let resistance = [
-        &state.scratch.bond_resistance[..],
-        &state.scratch.particle_resistance,
-    ];
-    kick(
-        &mut state.particles,
-        resistance,
-        state.model.gravity_m_s2,
-        kick_s,
-    );
+    let mut motions = std::mem::take(&mut state.particles.motions);
+    let p = &state.particles;
+    let forces = Forces::of(p, state.resistances(), state.model.gravity_m_s2, kick_s);
+    (motions[..p.free].par_chunks_mut(CHUNK).enumerate()).for_each(|(chunk, motions)| {
+        for_each_awake(chunk * CHUNK, motions, &p.asleep, |i, motion| {
+            forces.kick(i, motion)
+        });
+    });
+    state.particles.motions = motions;
     state.particles.free
 }
 
@@ -110,48 +109,69 @@ pub(crate) fn drift_particles(state: &mut State) -> usize {
     0
 }
 
-/// Changes the velocities of the free particles by the wrenches, by the resisting wrenches (each
-/// list empty or with one for each particle) and by gravity, over the time `kick_s`.
-pub fn kick(
-    particles: &mut Particles,
-    resisting: [&[Wrench]; 2],
+/// What changes the velocities of particles over the time `kick_s`.
+pub(super) struct Forces<'a> {
+    wrenches: &'a [Wrench],
+    /// Each with one for each particle, or empty.
+    resisting: [&'a [Wrench]; 3],
     gravity_m_s2: [f64; 3],
     kick_s: f64,
+}
+
+impl<'a> Forces<'a> {
+    /// All forces on particles, with these resisting ones: see [`State::resistances`].
+    pub(super) fn of(
+        particles: &'a Particles,
+        resisting: [&'a [Wrench]; 3],
+        gravity_m_s2: [f64; 3],
+        kick_s: f64,
+    ) -> Self {
+        Self {
+            wrenches: &particles.wrenches,
+            resisting,
+            gravity_m_s2,
+            kick_s,
+        }
+    }
+}
+
+impl Forces<'_> {
+    /// Changes the velocities of particle `i`, which have been these.
+    #[inline(always)]
+    pub(super) fn kick(&self, i: usize, motion: &mut Motion) {
+        let per_mass = self.kick_s * motion.inverse_mass;
+        let per_inertia = self.kick_s * motion.inverse_inertia;
+        let wrench = &self.wrenches[i];
+        for k in 0..3 {
+            let fall = self.kick_s * self.gravity_m_s2[k];
+            motion.velocity_m_s[k] += per_mass * wrench.force_n[k] + fall;
+            motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
+        }
+        for wrench in self.resisting.iter().filter_map(|list| list.get(i)) {
+            for k in 0..3 {
+                motion.velocity_m_s[k] += per_mass * wrench.force_n[k];
+                motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
+            }
+        }
+    }
+}
+
+/// Changes those of some particles from number `first` on that are awake.
+#[inline(always)]
+pub(super) fn for_each_awake<T>(
+    first: usize,
+    some: &mut [T],
+    asleep: &[bool],
+    mut change: impl FnMut(usize, &mut T),
 ) {
-    let Particles {
-        motions,
-        wrenches,
-        asleep,
-        ..
-    } = particles;
-    let fall = gravity_m_s2.map(|g| kick_s * g);
-    motions[..particles.free]
-        .par_chunks_mut(CHUNK)
-        .enumerate()
-        .for_each(|(chunk, motions)| {
-            let first = chunk * CHUNK;
-            if all_sleep(asleep, first..first + motions.len()) {
-                return;
-            }
-            for (i, motion) in (first..).zip(motions) {
-                if asleep.get(i).is_some_and(|asleep| *asleep) {
-                    continue;
-                }
-                let per_mass = kick_s * motion.inverse_mass;
-                let per_inertia = kick_s * motion.inverse_inertia;
-                let wrench = &wrenches[i];
-                for (k, fall) in fall.iter().enumerate() {
-                    motion.velocity_m_s[k] += per_mass * wrench.force_n[k] + fall;
-                    motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
-                }
-                for wrench in resisting.iter().filter_map(|list| list.get(i)) {
-                    for k in 0..3 {
-                        motion.velocity_m_s[k] += per_mass * wrench.force_n[k];
-                        motion.spin_rad_s[k] += per_inertia * wrench.torque_n_m[k];
-                    }
-                }
-            }
-        });
+    if all_sleep(asleep, first..first + some.len()) {
+        return;
+    }
+    for (i, one) in (first..).zip(some) {
+        if !asleep.get(i).is_some_and(|asleep| *asleep) {
+            change(i, one);
+        }
+    }
 }
 
 /// Whether all of these particles sleep.

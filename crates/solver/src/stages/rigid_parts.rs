@@ -10,7 +10,7 @@ use crate::physics::rotation;
 use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation as rotation_of;
 use crate::state::State;
-use crate::state::particles::{Particles, Wrench};
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::rigid_parts::{RigidPart, RigidParts};
 
 /// Rigid parts of bonded bodies.
@@ -40,7 +40,8 @@ pub(crate) const RIGID_PARTS: Stage = Stage {
 /// move as the parts do. Returns the number of their spheres.
 pub(crate) fn gather_rigid_parts(state: &mut State) -> usize {
     take_broken_impulses(state);
-    let resisting = &state.scratch.bond_resistance;
+    let scratch = &state.scratch;
+    let resisting = [&scratch.bond_resistance[..], &scratch.structural_resistance];
     let particles = &mut state.particles;
     for part in &mut state.rigid_parts.all {
         gather(part, particles, resisting);
@@ -68,24 +69,52 @@ fn take_broken_impulses(state: &mut State) {
     }
 }
 
-/// Sums the forces on a part, `resisting` ones included. Each sphere gets the motion of the part,
-/// and a wrench that accelerates it, together with its resisting one, as the part is accelerated.
-fn gather(part: &mut RigidPart, particles: &mut Particles, resisting: &[Wrench]) {
+/// Force on a part, N, and torque about its centre of mass, N m, of all `lists` of wrenches, each
+/// with one for each particle, or empty. Or impulses, N s and N m s.
+fn forces_on(part: &RigidPart, poses: &[Pose], lists: [&[Wrench]; 3]) -> [Vector3<f64>; 2] {
     let centre = Vector3::from(part.place_m);
     let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
     for &i in &part.members {
         let i = i as usize;
-        let arm = particles.poses[i].place() - centre;
-        for wrench in [particles.wrenches.get(i), resisting.get(i)]
-            .into_iter()
-            .flatten()
-        {
+        let arm = poses[i].place() - centre;
+        for wrench in lists.iter().filter_map(|list| list.get(i)) {
             let on_sphere = vector(wrench.force_n);
             force += on_sphere;
             torque += vector(wrench.torque_n_m) + arm.cross(&on_sphere);
         }
     }
-    part.set_motions(particles);
+    [force, torque]
+}
+
+/// Gives the spheres of rigid parts the motions of the parts at the time of their poses: predicted
+/// from the forces without viscous damping, and these impulses, one for each particle, or none.
+pub(super) fn predict_rigid_parts(state: &State, impulses: &[Wrench], predicted: &mut [Motion]) {
+    let half_s = 0.5 * state.previous_time_step_s;
+    let gravity = Vector3::from(state.model.gravity_m_s2);
+    let (poses, wrenches) = (&state.particles.poses, &state.particles.wrenches);
+    for part in &state.rigid_parts.all {
+        let structural = &state.scratch.structural_resistance[..];
+        let [force, torque] = forces_on(part, poses, [wrenches, structural, &[]]);
+        let [push, twist] = forces_on(part, poses, [impulses, &[], &[]]);
+        let velocity = half_s * (force / part.mass_kg + gravity) + push / part.mass_kg;
+        let angular = half_s * torque + twist;
+        let now = RigidPart {
+            velocity_m_s: (Vector3::from(part.velocity_m_s) + velocity).into(),
+            angular_momentum: (Vector3::from(part.angular_momentum) + angular).into(),
+            ..part.clone()
+        };
+        now.set_motions(poses, predicted);
+    }
+}
+
+/// Sums the forces on a part. Each sphere gets the motion of the part, and a wrench that accelerates
+/// it, together with its damping of bonds, as the part is accelerated.
+fn gather(part: &mut RigidPart, particles: &mut Particles, resisting: [&[Wrench]; 2]) {
+    let centre = Vector3::from(part.place_m);
+    let [viscous, structural] = resisting;
+    let lists = [&particles.wrenches[..], viscous, structural];
+    let [force, torque] = forces_on(part, &particles.poses, lists);
+    part.set_motions(&particles.poses, &mut particles.motions);
     let (faster, spun) = (force / part.mass_kg, part.spun_by(&torque));
     for (&i, sphere) in part.members.iter().zip(&part.spheres) {
         let i = i as usize;
@@ -95,7 +124,7 @@ fn gather(part: &mut RigidPart, particles: &mut Particles, resisting: &[Wrench])
             &(sphere.mass_kg * (faster + spun.cross(&arm))),
             &(sphere.inertia_kg_m2 * spun),
         );
-        if let Some(resists) = resisting.get(i) {
+        for resists in resisting.iter().filter_map(|list| list.get(i)) {
             wrench.add(&-vector(resists.force_n), &-vector(resists.torque_n_m));
         }
         particles.wrenches[i] = wrench;

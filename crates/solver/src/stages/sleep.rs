@@ -228,6 +228,7 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
             );
             let resisting = [
                 &mut state.scratch.bond_resistance,
+                &mut state.scratch.structural_resistance,
                 &mut state.scratch.particle_resistance,
             ];
             for wrench in resisting.into_iter().filter_map(|list| list.get_mut(i)) {

@@ -1,9 +1,13 @@
-//! Structural damping forces of bonds on the particles, added to those of viscous damping.
+//! Structural damping forces of bonds on the particles, from the velocities half a step ago.
+//!
+//! The force jumps where a mode reverses, so that displacements are of first order in the step
+//! whichever velocities decide on its sign. With those of half a step ago the limit of the step is
+//! exact: in the fastest mode at its limit, x, -x, x, they oppose the force, while those at the time
+//! of the forces nearly vanish, and slower modes decide.
 
 use nalgebra::Vector3;
 
-use super::bonds::{BONDS, any_bond};
-use super::damping::any_damped;
+use super::bonds::any_bond;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::bond::damping::{DampingForces, EndMotion};
 use crate::physics::bond::damping_models::structural_forces;
@@ -16,7 +20,7 @@ use crate::state::partitions::{BondSelection, Partition};
 /// Structural damping of bonds.
 pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
     name: "structural damping",
-    within: Some(BONDS.name),
+    within: None,
     need: |state, _| {
         Need::of(
             any_bond(state, |rule| rule.structural_damping > 0.0),
@@ -24,29 +28,20 @@ pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
             "not asked for",
         )
     },
-    // Those of viscous damping serve both.
-    bytes: |state| {
-        if any_damped(state) {
-            0
-        } else {
-            size_of_val(&state.scratch.bond_resistance[..])
-        }
-    },
+    bytes: |state| size_of_val(&state.scratch.structural_resistance[..]),
     saving: NO_SAVING,
 };
 
-/// Adds the structural damping forces to the resistances of the bonds. Returns the number of bonds
-/// computed.
-pub(crate) fn add_structural_damping(state: &mut State) -> usize {
-    let rules = &state.bonds.rules;
-    if rules.iter().all(|rule| rule.structural_damping == 0.0) {
+/// Sets the structural damping forces of bonds. Returns the number of bonds computed.
+pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
+    if state.scratch.structural_resistance.is_empty() {
         return 0;
     }
+    state.scratch.structural_resistance.fill(Wrench::default());
     let (bonds, p) = (&state.bonds, &state.particles);
-    let resisting = &mut state.scratch.bond_resistance;
     for_each_partition(
         &mut state.scratch.partitions,
-        resisting,
+        &mut state.scratch.structural_resistance,
         &|partition, resisting| {
             of_partition(bonds, &p.poses, &p.motions, partition, resisting);
         },

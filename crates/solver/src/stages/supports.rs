@@ -81,37 +81,25 @@ pub fn hold(
             let_go(support, phase, particles, broken, steps_s);
             continue;
         }
-        let GroupSupport {
-            holds,
-            factor,
-            held,
-            ..
-        } = support;
-        let own = &*held;
-        let prescribed = [0, 1, 2, 3, 4, 5].map(|k| {
-            holds[k].map(|hold| match hold {
-                Hold::Fixed => 0.0,
-                Hold::Velocity(v) => v * factor_at(factor, time_s + 0.5 * time_step_s),
-                Hold::Displacement(d) => {
-                    let gain = factor_at(factor, time_s + time_step_s) - factor_at(factor, time_s);
-                    d * gain / time_step_s
-                }
-                Hold::Bar {
-                    impedance_n_s_m,
-                    incident_m_s,
-                } => {
-                    let wave_m_s = incident_m_s * factor_at(factor, time_s);
-                    let moving = Moving {
-                        own,
-                        particles,
-                        broken,
-                        along: k,
-                    };
-                    moving.bar_velocity_m_s(impedance_n_s_m, wave_m_s, [before_s, kick_s])
-                }
-            })
-        });
-        for held in held {
+        let mut prescribed = prescribed(support, time_s, time_step_s);
+        for (k, hold) in support.holds.iter().enumerate() {
+            if let Some(Hold::Bar {
+                impedance_n_s_m,
+                incident_m_s,
+            }) = *hold
+            {
+                let wave_m_s = incident_m_s * factor_at(&support.factor, time_s);
+                let moving = Moving {
+                    own: &support.held,
+                    particles,
+                    broken,
+                    along: k,
+                };
+                let kick = [before_s, kick_s];
+                prescribed[k] = Some(moving.bar_velocity_m_s(impedance_n_s_m, wave_m_s, kick));
+            }
+        }
+        for held in &mut support.held {
             let i = held.particle as usize;
             let parted = of_broken(broken, held.particle);
             let motion = &mut particles.motions[i];
@@ -170,6 +158,53 @@ impl Moving<'_> {
         let driven = free + impulse * (2.0 * wave_m_s - 0.5 * before / mass_kg);
         driven / (mass_kg + 0.5 * impulse)
     }
+}
+
+/// Sets held degrees of freedom of predicted motions to what the support prescribes at the time of
+/// the poses; those that it lets go of now had their velocity until now.
+pub(super) fn predict_held(state: &State, predicted: &mut [Motion]) {
+    let steps_s = state.steps_s();
+    for support in &state.supports {
+        let phase = support.phase(state.time_s, steps_s);
+        if phase == SupportPhase::Over {
+            continue;
+        }
+        let prescribed = match phase {
+            SupportPhase::Holds => prescribed(support, state.time_s, state.time_step_s),
+            _ => [None; 6],
+        };
+        for held in &support.held {
+            let motion = &mut predicted[held.particle as usize];
+            for k in (0..6).filter(|&k| support.holds[k].is_some()) {
+                let before = held.before[k];
+                let after = prescribed[k].unwrap_or(before);
+                // A support that moves from the start has done so since just before it.
+                let now = match steps_s[0] > 0.0 {
+                    true => velocity_at_kick(before, after, steps_s),
+                    false => after,
+                };
+                match k {
+                    0..3 => motion.velocity_m_s[k] = now,
+                    _ => motion.spin_rad_s[k - 3] = now,
+                }
+            }
+        }
+    }
+}
+
+/// Velocities and spins that a support prescribes in the step from `time_s` on; none: free, or what
+/// a bar does, which depends on the forces.
+fn prescribed(support: &GroupSupport, time_s: f64, time_step_s: f64) -> [Option<f64>; 6] {
+    let factor = &support.factor;
+    support.holds.map(|hold| match hold? {
+        Hold::Fixed => Some(0.0),
+        Hold::Velocity(v) => Some(v * factor_at(factor, time_s + 0.5 * time_step_s)),
+        Hold::Displacement(d) => {
+            let gain = factor_at(factor, time_s + time_step_s) - factor_at(factor, time_s);
+            Some(d * gain / time_step_s)
+        }
+        Hold::Bar { .. } => None,
+    })
 }
 
 /// Gives the degrees of freedom of a support that has ended their own half of the kick at which it

@@ -29,7 +29,7 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
 /// The same for free particles only.
 pub fn synchronous_motions_of_free(state: &State) -> Vec<Motion> {
     let p = &state.particles;
-    let resistances = state.scratch.resistances();
+    let [viscous, structural, particles] = state.resistances();
     let back = |i: usize| {
         let mut motion = p.motions[i];
         if p.sleeps(i) {
@@ -40,8 +40,7 @@ pub fn synchronous_motions_of_free(state: &State) -> Vec<Motion> {
             half_s * motion.inverse_mass,
             half_s * motion.inverse_inertia,
         );
-        let [bonds, particles] = resistances;
-        for wrenches in [&p.wrenches, bonds, particles] {
+        for wrenches in [&p.wrenches, viscous, structural, particles] {
             if let Some(wrench) = wrenches.get(i) {
                 for k in 0..3 {
                     motion.velocity_m_s[k] -= per_mass * wrench.force_n[k];

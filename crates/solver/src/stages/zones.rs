@@ -270,7 +270,8 @@ fn connected(members: &[u32], state: &State) -> Vec<RigidPart> {
 /// motion.
 fn set_parts(state: &mut State, parts: Vec<RigidPart>) {
     for part in &parts {
-        part.set_motions(&mut state.particles);
+        let Particles { poses, motions, .. } = &mut state.particles;
+        part.set_motions(poses, motions);
     }
     state.rigid_parts.all = parts;
     let free = state.particles.free;

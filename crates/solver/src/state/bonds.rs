@@ -48,17 +48,14 @@ pub struct BondRule {
     pub strengthening_from_1_s: Option<f64>,
     /// The strain whose rate is used.
     pub strain_rate_measure: StrainRateMeasure,
+    /// The contact law of the two ends acts beside the bond.
+    pub contact_beside: bool,
 }
 
 impl BondRule {
     /// Whether bonds have a history and are computed one at a time.
     pub(crate) fn is_single(&self) -> bool {
         self.incremental || self.plasticity.is_some() || self.flat_joint.is_some()
-    }
-
-    /// Whether bonds have damping forces of any kind.
-    pub fn resists(&self) -> bool {
-        self.damped || self.structural_damping > 0.0
     }
 }
 

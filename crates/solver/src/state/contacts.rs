@@ -139,6 +139,19 @@ pub struct ContactScratch {
     pub close_skin_left_m: f64,
     /// The first pair in this step that overlaps by more than the radius of the smaller particle.
     pub excessive_overlap: Option<[u32; 2]>,
+    /// Pairs with a contact beside their bond.
+    pub(crate) beside: Vec<Beside>,
+}
+
+/// A pair with a contact beside its bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Beside {
+    /// Number of the pair.
+    pub(crate) pair: u32,
+    /// Number of the bond.
+    pub(crate) bond: u32,
+    /// Overlap at which the ends were bonded, m; 0 if they did not touch then.
+    pub(crate) origin_m: f64,
 }
 
 /// Contacts that one thread works on at a time: those of its particles with others of a larger

@@ -27,11 +27,8 @@ pub struct LevelRule {
     /// For each particle the number of the body that it belonged to at the start, among all
     /// connected ones.
     pub body_of: Vec<u32>,
-    /// For each of these bodies and each level from 1, with the steps of that level over the safety
-    /// factor: the largest eigenvalue of M^-1 (dt^2/4 K + dt/2 C), alone in space.
-    pub own: Vec<[f64; HIGHEST as usize]>,
-    /// The time step for which these hold, s.
-    pub time_step_s: f64,
+    /// For each of these bodies the largest eigenvalue of M^-1 K, alone in space, 1/s2.
+    pub own: Vec<f64>,
     /// For each material the largest eigenvalues that the first impacts add, 1/s2 and 1/s.
     pub impact_rates: Vec<[f64; 2]>,
     /// The safety factor of the step, and of the step that impacts allow.

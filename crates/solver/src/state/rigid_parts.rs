@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bonds::Bonds;
 use super::clumps::{SubSphere, sub_spheres};
-use super::particles::{Motion, Particles, Pose};
+use super::particles::{Motion, Pose};
 use crate::physics::rotation::{kinetic_j, rotation, spin_rad_s};
 use crate::shape::inertia::{MassProperties, of_spheres};
 
@@ -131,12 +131,12 @@ impl RigidPart {
     }
 
     /// Gives its particles the motion that they have in it.
-    pub(crate) fn set_motions(&self, particles: &mut Particles) {
+    pub(crate) fn set_motions(&self, poses: &[Pose], motions: &mut [Motion]) {
         let (spin, centre) = (self.spin_rad_s(), Vector3::from(self.place_m));
         let velocity = Vector3::from(self.velocity_m_s);
         for &i in &self.members {
-            let arm = particles.poses[i as usize].place() - centre;
-            let motion = &mut particles.motions[i as usize];
+            let arm = poses[i as usize].place() - centre;
+            let motion = &mut motions[i as usize];
             *motion = Motion {
                 velocity_m_s: (velocity + spin.cross(&arm)).into(),
                 spin_rad_s: spin.into(),

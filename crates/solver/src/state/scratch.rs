@@ -1,7 +1,7 @@
 //! Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 
 use super::events::Events;
-use super::particles::Wrench;
+use super::particles::{Motion, Wrench};
 use super::partitions::Partition;
 use crate::clock::StageClock;
 
@@ -13,10 +13,18 @@ pub struct Scratch {
     pub threads: usize,
     /// Division of particles and bonds among threads.
     pub partitions: Vec<Partition>,
-    /// Damping forces of bonds. Empty: no bond is damped.
+    /// Viscous damping forces of bonds. Empty: no bond has any.
     pub bond_resistance: Vec<Wrench>,
+    /// Structural damping forces of bonds. Empty: no bond has any.
+    pub structural_resistance: Vec<Wrench>,
     /// Damping forces on particles. Empty: none.
     pub particle_resistance: Vec<Wrench>,
+    /// Motions of the free particles at the time of their poses without damping of bonds, and in a
+    /// stage of it. Length 0 or free particles.
+    pub predicted: [Vec<Motion>; 2],
+    /// Impulses of the damping of bonds after the last stage but one and the last, N s and N m s; its
+    /// forces in the first stage, N and N m. Length as `bond_resistance`.
+    pub damping_stages: [Vec<Wrench>; 3],
     /// For each chunk of free particles the distance that the fastest of them moved in the last
     /// drift, m.
     pub chunks_moved_m: Vec<f64>,
@@ -28,12 +36,4 @@ pub struct Scratch {
     pub events: Events,
     /// Time spent in each stage.
     pub clock: StageClock,
-}
-
-impl Scratch {
-    /// The lists of damping forces that are recorded separately: of bonds and on particles; each
-    /// with one for each particle, or empty.
-    pub(crate) fn resistances(&self) -> [&[Wrench]; 2] {
-        [&self.bond_resistance, &self.particle_resistance]
-    }
 }

@@ -43,6 +43,7 @@ fn chain(criteria: Criteria, is_scattered: bool) -> (Particles, Bonds) {
             criteria: Some(criteria),
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
+            contact_beside: false,
         }]),
         ..Bonds::default()
     };

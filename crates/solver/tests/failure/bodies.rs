@@ -109,6 +109,7 @@ pub(crate) fn bonded(
             criteria: Some(criteria),
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
+            contact_beside: false,
         }]),
         ..Bonds::default()
     };

@@ -99,7 +99,22 @@ fn after_a_kill_a_run_goes_on_from_its_last_checkpoint() {
 #[test]
 fn the_limit_of_the_step_is_looked_at_again_on_the_way() {
     let bench = Bench::new();
-    bench.good(&good("strained.toml"), &["--output", "out"]);
+    let squeezed = "version = 1
+run = { end_time = \"300 ms\", safety_factor = 0.5 }
+materials.soft = { density = 2000, young_modulus = 1e7, poisson_ratio = 0.3 }
+contacts.soft-soft = { restitution = 0.5, friction = 0.3 }
+bodies.ball = { particles = [[0, 0, 1e-3, 1e-3]], material = \"soft\" }
+output.series = \"30 ms\"
+[walls.floor]
+plane = { point = [0, 0, 0], normal = [0, 0, 1] }
+material = \"soft\"
+[walls.plate]
+plane = { point = [0, 0, 2e-3], normal = [0, 0, -1] }
+material = \"soft\"
+velocity = [0, 0, -2e-3]
+";
+    let scene = bench.write("squeezed.toml", squeezed);
+    bench.good(Path::new(&scene), &["--output", "out"]);
     let (_, events) = table(&bench.path("out/events.csv"));
     assert!(!events.is_empty());
     assert!(

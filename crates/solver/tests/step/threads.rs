@@ -36,6 +36,7 @@ const BREAKING: BondRule = BondRule {
     }),
     strengthening_from_1_s: Some(1.1),
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
+    contact_beside: false,
 };
 
 /// Three random bodies side by side: incremental, total, incremental; all break.

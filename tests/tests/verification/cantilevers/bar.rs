@@ -114,6 +114,7 @@ impl Bar {
                 criteria: None,
                 strengthening_from_1_s: None,
                 strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
+                contact_beside: false,
             }]),
             ..Bonds::default()
         };

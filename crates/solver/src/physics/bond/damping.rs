@@ -90,70 +90,78 @@ pub fn damping_forces(
     length_m: f64,
     ends: &[EndMotion; 2],
 ) -> DampingForces {
-    let triple = |v: &Vector3<f64>| Vec3(v.x, v.y, v.z);
-    let vector = |t: Vec3<f64>| Vector3::new(t.0, t.1, t.2);
-    let motions = ends.map(|end| [triple(&end.velocity_m_s), triple(&end.spin_rad_s)]);
-    let (force_on_b, torques) = resistance(coefficients, *levers_m, triple(c), length_m, motions);
+    let motions = ends.map(|end| [Vec3::from(end.velocity_m_s), Vec3::from(end.spin_rad_s)]);
+    let apart = Vec3::from(length_m * c);
+    let (force_on_b, torques) = resistance(coefficients, *levers_m, apart, motions);
     DampingForces {
-        force_on_b: vector(force_on_b),
-        torques: torques.map(vector),
+        force_on_b: force_on_b.into(),
+        torques: torques.map(Vector3::from),
     }
 }
 
-/// As [`damping_forces`], for one bond or several at once whose ends have these velocities, m/s,
-/// and spins, rad/s: force on the second end, N, and torques on both, N m.
+/// As [`damping_forces`], for one bond or several at once, with the vector `apart` from the first
+/// end to the second, m, and ends of these velocities, m/s, and spins, rad/s: force on the second
+/// end, N, and torques on both, N m.
 #[inline(always)]
 pub fn resistance<T: Number>(
     coefficients: &DampingCoefficients<T>,
     levers_m: [T; 2],
-    c: Vec3<T>,
-    length_m: T,
+    apart: Vec3<T>,
     motions: [[Vec3<T>; 2]; 2],
 ) -> (Vec3<T>, [Vec3<T>; 2]) {
-    let RelativeMotion {
-        arms_m: [arm_a, arm_b],
-        velocity_m_s,
-        spin_rad_s,
-    } = relative_motion(levers_m, c, length_m, motions);
-    let force = split(coefficients.normal, coefficients.shear, velocity_m_s, c);
-    let moment = split(coefficients.torsion, coefficients.bending, spin_rad_s, c);
-    (
-        -force,
-        [moment + arm_a.cross(force), arm_b.cross(force) - moment],
-    )
+    let moved = relative_motion(levers_m, apart, motions);
+    let per_square = apart.square().inverse();
+    let DampingCoefficients {
+        normal,
+        shear,
+        torsion,
+        bending,
+    } = *coefficients;
+    let force = split(normal, shear, moved.velocity_m_s, apart, per_square);
+    let moment = split(torsion, bending, moved.spin_rad_s, apart, per_square);
+    let torque = apart.cross(force);
+    let on_a = torque * moved.share;
+    (-force, [moment + on_a, torque - on_a - moment])
 }
 
 /// Motion of the second end of a bond relative to the first at the contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RelativeMotion<T> {
-    /// From the first centre to the contact point, and from there to the second centre, m.
-    pub(crate) arms_m: [Vec3<T>; 2],
+    /// Part of the bond between its first end and the contact point.
+    pub(crate) share: T,
     /// m/s.
     pub(crate) velocity_m_s: Vec3<T>,
     /// rad/s.
     pub(crate) spin_rad_s: Vec3<T>,
 }
 
-/// The relative motion of two ends with these velocities, m/s, and spins, rad/s, of a bond that is
-/// `length_m` long along the unit vector `c`; the contact point divides it like the levers.
+/// The relative motion of two ends with these velocities, m/s, and spins, rad/s, which are `apart`,
+/// m; the contact point divides the bond like the levers.
 #[inline(always)]
 pub(crate) fn relative_motion<T: Number>(
     [lever_a, lever_b]: [T; 2],
-    c: Vec3<T>,
-    length_m: T,
+    apart: Vec3<T>,
     [[velocity_a, spin_a], [velocity_b, spin_b]]: [[Vec3<T>; 2]; 2],
 ) -> RelativeMotion<T> {
-    let scale = length_m / (lever_a + lever_b);
-    let (arm_a, arm_b) = (c * (scale * lever_a), c * (scale * lever_b));
+    let share = lever_a / (lever_a + lever_b);
+    let spin_rad_s = spin_b - spin_a;
+    let turning = spin_b - spin_rad_s * share;
     RelativeMotion {
-        arms_m: [arm_a, arm_b],
-        velocity_m_s: velocity_b - velocity_a - spin_a.cross(arm_a) - spin_b.cross(arm_b),
-        spin_rad_s: spin_b - spin_a,
+        share,
+        velocity_m_s: velocity_b - velocity_a - turning.cross(apart),
+        spin_rad_s,
     }
 }
 
-/// `along` times the part of a vector along `c` plus `across` times the rest.
+/// `along` times the part of a vector along a bond plus `across` times the rest; `per_square` is one
+/// over the square of the length of the bond.
 #[inline(always)]
-fn split<T: Number>(along: T, across: T, vector: Vec3<T>, c: Vec3<T>) -> Vec3<T> {
-    vector * across + c * ((along - across) * vector.dot(c))
+fn split<T: Number>(
+    along: T,
+    across: T,
+    vector: Vec3<T>,
+    apart: Vec3<T>,
+    per_square: T,
+) -> Vec3<T> {
+    vector * across + apart * ((along - across) * vector.dot(apart) * per_square)
 }

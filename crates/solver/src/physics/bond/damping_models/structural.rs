@@ -29,8 +29,9 @@ pub fn structural_forces(
     ends: &[EndMotion; 2],
 ) -> DampingForces {
     let motions = ends.map(|end| [Vec3::from(end.velocity_m_s), Vec3::from(end.spin_rad_s)]);
-    let moved = relative_motion(*levers_m, Vec3::from(*c), length_m, motions);
-    let [arm_a, arm_b] = moved.arms_m.map(Vector3::from);
+    let apart = length_m * c;
+    let moved = relative_motion(*levers_m, Vec3::from(apart), motions);
+    let arm_a = moved.share * apart;
     let force = resisting(c, moved.velocity_m_s.into(), load.normal_n, load.shear_n);
     let moment = resisting(
         c,
@@ -41,7 +42,10 @@ pub fn structural_forces(
     let (force, moment) = (gamma * force, gamma * moment);
     DampingForces {
         force_on_b: -force,
-        torques: [moment + arm_a.cross(&force), arm_b.cross(&force) - moment],
+        torques: [
+            moment + arm_a.cross(&force),
+            (apart - arm_a).cross(&force) - moment,
+        ],
     }
 }
 
