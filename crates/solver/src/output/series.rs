@@ -6,7 +6,7 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 
 /// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 18] = [
+pub(super) const ENERGIES: [&str; 19] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
@@ -14,6 +14,7 @@ pub(super) const ENERGIES: [&str; 18] = [
     "support_work_j",
     "wall_work_j",
     "bond_damping_j",
+    "structural_damping_j",
     "local_damping_j",
     "contact_damping_j",
     "friction_j",
@@ -80,6 +81,7 @@ pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64
         balance.support_work_j,
         balance.wall_work_j,
         balance.bond_damping_j,
+        balance.structural_damping_j,
         balance.local_damping_j,
         balance.contact_damping_j,
         balance.friction_j,

@@ -146,8 +146,10 @@ pub struct Balance {
     pub support_work_j: f64,
     /// Work done by walls, J.
     pub wall_work_j: f64,
-    /// Dissipated by bond damping, J.
+    /// Dissipated by viscous damping of bonds, J.
     pub bond_damping_j: f64,
+    /// Dissipated by structural damping of bonds, J.
+    pub structural_damping_j: f64,
     /// Dissipated by particle damping, J.
     pub local_damping_j: f64,
     /// Elastic energy of contacts, J.
@@ -217,7 +219,8 @@ fn powers(state: &State) -> Work {
             &particles.motions,
         ),
         supports: 0.0,
-        bond_damping: -(power_w(viscous, particles) + power_w(structural, particles)),
+        bond_damping: -power_w(viscous, particles),
+        structural_damping: -power_w(structural, particles),
         particle_damping: -power_w(on_particles, particles),
     }
 }
@@ -344,7 +347,7 @@ pub fn balance(state: &mut State) -> Balance {
     let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
 
     let work = &ledger.work;
-    let gone = work.bond_damping
+    let gone = (work.bond_damping + work.structural_damping)
         + work.particle_damping
         + contact_damping
         + friction
@@ -384,6 +387,7 @@ pub fn balance(state: &mut State) -> Balance {
         support_work_j: work.supports,
         wall_work_j: wall_work,
         bond_damping_j: work.bond_damping,
+        structural_damping_j: work.structural_damping,
         local_damping_j: work.particle_damping,
         contact_elastic_j: contact_elastic,
         contact_damping_j: contact_damping,

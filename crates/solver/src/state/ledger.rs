@@ -58,6 +58,7 @@ pub(crate) struct Work {
     pub(crate) loads: f64,
     pub(crate) supports: f64,
     pub(crate) bond_damping: f64,
+    pub(crate) structural_damping: f64,
     pub(crate) particle_damping: f64,
 }
 
@@ -169,6 +170,7 @@ impl Work {
         self.loads += factor * other.loads;
         self.supports += factor * other.supports;
         self.bond_damping += factor * other.bond_damping;
+        self.structural_damping += factor * other.structural_damping;
         self.particle_damping += factor * other.particle_damping;
     }
 }

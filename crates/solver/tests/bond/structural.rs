@@ -161,7 +161,7 @@ fn a_flying_spinning_pair_keeps_its_momenta() {
                 now.angular_momentum_error
             );
             assert!(now.energy_error.abs() < 1e-6, "{}", now.energy_error);
-            lost_j = now.bond_damping_j;
+            lost_j = now.structural_damping_j;
             advance(&mut state);
         }
         assert!(lost_j > 0.0);
