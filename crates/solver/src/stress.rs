@@ -6,6 +6,7 @@
 
 pub(crate) mod adhesion;
 pub(crate) mod bars;
+mod beside;
 pub(crate) mod bonded;
 pub(crate) mod breakage;
 pub(crate) mod bridges;

@@ -6,8 +6,8 @@ use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
 use super::{
-    adhesion, bars, breakage, bridges, daughters, families, impact, joints, limit_map, long,
-    own_steps, softening, swap, yielding, zones,
+    adhesion, bars, beside, breakage, bridges, daughters, families, impact, joints, limit_map,
+    long, own_steps, softening, swap, yielding, zones,
 };
 
 /// A case of the suite.
@@ -32,7 +32,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 25] = [
+pub const CASES: [Case; 26] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -72,6 +72,11 @@ pub const CASES: [Case; 25] = [
         name: "yielding",
         extreme: "bonds that flow under up to 1e4 times the energy at which they yield",
         members: |_| Ok(yielding::yielding()),
+    },
+    Case {
+        name: "beside",
+        extreme: "contacts beside bonds, up to a million times softer or harder than these",
+        members: |_| Ok(beside::beside()),
     },
     Case {
         name: "joints",
