@@ -370,7 +370,7 @@ impl Probe {
             }
             (Quantity::BulkDensity, None) => bulk::heap_density_kg_m3(&own, up(state)),
             (_, Some(region)) => bulk::mass_within_kg(&own, region),
-            (_, None) => own.iter().map(|sphere| sphere.mass_kg).sum(),
+            (_, None) => 0.0 + own.iter().map(|sphere| sphere.mass_kg).sum::<f64>(),
         }
     }
 
@@ -410,7 +410,7 @@ impl Probe {
         } else if self.measure.quantity == Quantity::MixingIndex {
             let within = self.measure.within.as_deref().unwrap_or_default();
             Some(format!(
-                "{name} has no value: the region \"{within}\" has nothing of one of the two"
+                "{name} has no value: the region \"{within}\" has nothing of one of the two, or cell_size is so small that no cell has two spheres"
             ))
         } else if matches!(
             self.measure.quantity,

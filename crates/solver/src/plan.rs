@@ -31,6 +31,7 @@ use dem_io::body::mass::BodyMass;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Integrator, Quantity, Scene};
 
+use crate::physics::chebyshev::{MOST, limit};
 use crate::stages::ledger::opened;
 use crate::stages::population::apply_topology_change;
 use crate::state::State;
@@ -163,6 +164,7 @@ pub fn plan(
     warnings.extend(doubts(scene, &state));
     state.ledger = opened(&state);
     let step = first_step(scene, &bodies, &mut state, allow_any_step)?;
+    refuse_endless_damping(scene, &state)?;
     let arriving = arriving_as_clusters(&state);
     let forecast = forecast(
         scene,
@@ -203,6 +205,22 @@ fn refuse_damped_clumps(scene: &Scene, state: &State) -> Result<()> {
         format!("{}: run.local_damping", scene.source),
         "it has no effect on clumps",
         "remove it, or start bodies as \"bonded\"",
+    ))
+}
+
+/// Refuses damping of bonds so strong that a step would take very many passes over them.
+fn refuse_endless_damping(scene: &Scene, state: &State) -> Result<()> {
+    let rate = state.time_step_s * state.damping_rate_1_s;
+    let most = limit(MOST);
+    if rate <= most {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("{}: damping of [bonds]", scene.source),
+        format!(
+            "it slows a particle down {rate:.1e} times in a step, and at most {most:.1e} can be computed"
+        ),
+        "write a smaller damping_ratio or damping_coefficient; above some 10, damping_ratio makes a bond stiff rather than damped",
     ))
 }
 

@@ -2,6 +2,7 @@
 //! Lanczos' method on the real forces.
 
 use dem_io::random::uniform;
+use dem_scene::Hold;
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
@@ -437,7 +438,8 @@ pub(super) fn inverse_mass_roots(state: &State) -> Field {
     for support in (state.supports.iter()).filter(|support| support.end_s.is_infinite()) {
         for held in &support.held {
             for (root, hold) in roots[held.particle as usize].iter_mut().zip(support.holds) {
-                if hold.is_some() {
+                // The end of a bar moves with the force on it.
+                if hold.is_some_and(|hold| !matches!(hold, Hold::Bar { .. })) {
                     *root = 0.0;
                 }
             }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 use super::spheres::Sphere;
 use crate::state::regions::Region;
@@ -19,23 +20,22 @@ const COLUMN: f64 = 0.5;
 /// Mass of the part of some spheres that is in a region, kg.
 pub(super) fn mass_within_kg(spheres: &[Sphere], region: &Region) -> f64 {
     let points = points_of_ball();
-    let masses = spheres
-        .iter()
-        .map(|s| s.mass_kg * part_within(s, region, &points));
-    masses.sum()
+    let mass = |s: &Sphere| s.mass_kg * part_within(s, region, &points);
+    let masses: Vec<f64> = spheres.par_iter().map(mass).collect();
+    0.0 + masses.iter().sum::<f64>()
 }
 
 /// The part of a sphere that is in a region.
 fn part_within(sphere: &Sphere, region: &Region, points: &[Vector3<f64>]) -> f64 {
-    if !region
-        .bounds()
-        .is_near(&sphere.place_m.into(), sphere.radius_m)
-    {
+    let (place, radius_m) = (sphere.place_m.into(), sphere.radius_m);
+    if !region.bounds().is_near(&place, radius_m) {
         return 0.0;
     }
-    let is_in = |point: &&Vector3<f64>| {
-        region.contains((sphere.place_m + sphere.radius_m * **point).into())
-    };
+    if !region.cuts(place, radius_m) {
+        return f64::from(u8::from(region.contains(place)));
+    }
+    let is_in =
+        |point: &&Vector3<f64>| region.contains((sphere.place_m + radius_m * **point).into());
     points.iter().filter(is_in).count() as f64 / points.len() as f64
 }
 
@@ -89,7 +89,7 @@ pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
 /// mixture: (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the first
 /// set among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a random
 /// mixture, sr^2 = s0^2 / n, for the mean number n of spheres in a cell. NaN if the region has
-/// nothing of one of them. Spheres count where their centres are.
+/// nothing of one of them, or no more than one sphere in each cell. Spheres count where their centres are.
 pub(super) fn lacey_index(sets: [&[Sphere]; 2], region: &Region, cell_m: f64) -> f64 {
     let low = Vector3::from(region.bounds().low);
     let mut cells: BTreeMap<[i64; 3], [f64; 2]> = BTreeMap::new();
@@ -102,6 +102,9 @@ pub(super) fn lacey_index(sets: [&[Sphere]; 2], region: &Region, cell_m: f64) ->
         }
     }
     let mean_count = count / cells.len() as f64;
+    if mean_count <= 1.0 {
+        return f64::NAN;
+    }
     let mass_kg = |[a, b]: &[f64; 2]| a + b;
     let all_kg: f64 = cells.values().map(mass_kg).sum();
     let first_kg: f64 = cells.values().map(|[a, _]| a).sum();

@@ -93,6 +93,9 @@ impl Chebyshev {
     }
 }
 
+/// Most stages of a run: more would hardly come to an end.
+pub const MOST: usize = 1000;
+
 /// Largest eigenvalue for which so many stages are stable.
 pub fn limit(count: usize) -> f64 {
     let at = shift(count);

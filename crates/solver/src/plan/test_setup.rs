@@ -280,35 +280,55 @@ fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
     pivot + turned * (Vector3::from(point_m) - pivot)
 }
 
-/// Refuses walls that load by moving away from the body. It is not known where the surface of an
-/// STL file would meet the body.
+/// Refuses walls that load by moving away from the body, and a transmission bar that is not behind
+/// it.
 fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<()> {
+    let behind_m = |name: &String| {
+        let place = middle_of(scene.walls.get(name)?)?;
+        Some((place - middle).dot(&Vector3::from(test.direction)))
+    };
     for name in &test.crosshead {
-        let Some(wall) = scene.walls.get(name) else {
-            continue;
-        };
-        let place = match &wall.shape {
-            WallShape::Plane { point_m, .. } => placed(wall, *point_m),
-            WallShape::Box { min, max } => 0.5 * (placed(wall, *min) + placed(wall, *max)),
-            WallShape::Cylinder { from_m, to_m, .. } => {
-                0.5 * (placed(wall, *from_m) + placed(wall, *to_m))
-            }
-            WallShape::Stl { .. } => continue,
-        };
-        let ahead_m = (middle - place).dot(&Vector3::from(test.direction));
-        if ahead_m <= 0.0 {
+        if let Some(behind_m) = behind_m(name).filter(|behind_m| *behind_m >= 0.0) {
             return Err(Diagnostic::input(
                 format!("{}: [test]", scene.source),
                 format!(
                     "the wall '{name}' moves away from the body '{}', whose middle lies {} mm behind it",
                     test.body,
-                    significant(-1e3 * ahead_m, 3)
+                    significant(1e3 * behind_m, 3)
                 ),
                 "turn direction round, or name the walls that press in moves",
             ));
         }
     }
-    Ok(())
+    let Some(bars) = &test.bars else {
+        return Ok(());
+    };
+    match behind_m(&bars.transmission) {
+        Some(behind_m) if behind_m <= 0.0 => Err(Diagnostic::input(
+            format!("{}: test.transmission_bar", scene.source),
+            format!(
+                "the wall '{}' is not behind the body '{}', but {} mm before its middle along direction",
+                bars.transmission,
+                test.body,
+                significant(-1e3 * behind_m, 3)
+            ),
+            "name the wall on the far side of the body",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// The middle of a wall. None: it is not known where the surface of an STL file would meet the
+/// body.
+fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
+    Some(match &wall.shape {
+        WallShape::Plane { point_m, .. } => placed(wall, *point_m),
+        WallShape::Box { min, max } => 0.5 * (placed(wall, *min) + placed(wall, *max)),
+        WallShape::Cylinder { from_m, to_m, .. } => {
+            0.5 * (placed(wall, *from_m) + placed(wall, *to_m))
+        }
+        WallShape::Stl { .. } => return None,
+    })
 }
 
 /// A disc: its axis is the one of x, y and z, perpendicular to the load, along which it is

@@ -131,7 +131,7 @@ fn predict(state: &mut State) {
             forces.kick(i, motion);
         });
     });
-    predict_held(state, &mut predicted);
+    predict_held(state, half_s, &mut predicted);
     predict_rigid_parts(state, &[], &mut predicted);
     state.scratch.predicted[0] = predicted;
 }
@@ -162,7 +162,7 @@ fn go_on<const N: usize>(
             }
         });
     });
-    predict_held(state, &mut next);
+    predict_held(state, 0.0, &mut next);
     predict_rigid_parts(state, impulses, &mut next);
     state.scratch.predicted = [start, next];
 }

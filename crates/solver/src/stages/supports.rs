@@ -162,7 +162,8 @@ impl Moving<'_> {
 
 /// Sets held degrees of freedom of predicted motions to what the support prescribes at the time of
 /// the poses; those that it lets go of now had their velocity until now.
-pub(super) fn predict_held(state: &State, predicted: &mut [Motion]) {
+/// Those at the end of a bar move together, and the bar acts on them for `bar_s`.
+pub(super) fn predict_held(state: &State, bar_s: f64, predicted: &mut [Motion]) {
     let steps_s = state.steps_s();
     for support in &state.supports {
         let phase = support.phase(state.time_s, steps_s);
@@ -173,9 +174,15 @@ pub(super) fn predict_held(state: &State, predicted: &mut [Motion]) {
             SupportPhase::Holds => prescribed(support, state.time_s, state.time_step_s),
             _ => [None; 6],
         };
+        for (k, hold) in support.holds.iter().enumerate() {
+            if let (SupportPhase::Holds, Some(Hold::Bar { .. })) = (phase, hold) {
+                predict_bar(support, [state.time_s, bar_s], k, predicted);
+            }
+        }
+        let is_bar = |k: usize| matches!(support.holds[k], Some(Hold::Bar { .. }));
         for held in &support.held {
             let motion = &mut predicted[held.particle as usize];
-            for k in (0..6).filter(|&k| support.holds[k].is_some()) {
+            for k in (0..6).filter(|&k| support.holds[k].is_some() && !is_bar(k)) {
                 let before = held.before[k];
                 let after = prescribed[k].unwrap_or(before);
                 // A support that moves from the start has done so since just before it.
@@ -189,6 +196,35 @@ pub(super) fn predict_held(state: &State, predicted: &mut [Motion]) {
                 }
             }
         }
+    }
+}
+
+/// Gives the particles at the end of a bar their common velocity along axis `k`, after the bar has
+/// acted on them for a time.
+fn predict_bar(
+    support: &GroupSupport,
+    [time_s, bar_s]: [f64; 2],
+    k: usize,
+    predicted: &mut [Motion],
+) {
+    let Some(Hold::Bar {
+        impedance_n_s_m,
+        incident_m_s,
+    }) = support.holds[k]
+    else {
+        return;
+    };
+    let (mut mass_kg, mut momentum) = (0.0, 0.0);
+    for held in &support.held {
+        let motion = &predicted[held.particle as usize];
+        mass_kg += 1.0 / motion.inverse_mass;
+        momentum += motion.velocity_m_s[k] / motion.inverse_mass;
+    }
+    let wave_m_s = incident_m_s * factor_at(&support.factor, time_s);
+    let impulse = bar_s * impedance_n_s_m;
+    let now_m_s = (momentum + 2.0 * impulse * wave_m_s) / (mass_kg + impulse);
+    for held in &support.held {
+        predicted[held.particle as usize].velocity_m_s[k] = now_m_s;
     }
 }
 

@@ -69,6 +69,39 @@ impl Region {
         }
     }
 
+    /// Whether its border may cut a ball, m: false only for balls wholly inside or outside.
+    pub fn cuts(&self, place_m: [f64; 3], ball_m: f64) -> bool {
+        let place = Vector3::from(place_m);
+        match self {
+            Self::Box(Bounds { low, high }) => (0..3).any(|k| {
+                let ends = [low[k] - place_m[k], high[k] - place_m[k]];
+                ends.iter().any(|end| end.abs() < ball_m)
+            }),
+            Self::Sphere { centre_m, radius_m } => {
+                let apart_m = (place - Vector3::from(*centre_m)).norm();
+                (apart_m - radius_m).abs() < ball_m
+            }
+            Self::Cylinder {
+                from_m,
+                to_m,
+                radius_m,
+            } => {
+                let axis = Vector3::from(*to_m) - Vector3::from(*from_m);
+                let (length_m, along) = (axis.norm(), axis.normalize());
+                let way = place - Vector3::from(*from_m);
+                let height_m = way.dot(&along);
+                let apart_m = (way - height_m * along).norm();
+                [height_m, height_m - length_m, apart_m - radius_m]
+                    .iter()
+                    .any(|left| left.abs() < ball_m)
+            }
+            Self::Inside(triangles, _) => triangles.iter().any(|corners| {
+                let near = Bounds::of(*corners);
+                near.is_near(&place_m, ball_m)
+            }),
+        }
+    }
+
     /// Its volume, m3.
     pub fn volume_m3(&self) -> f64 {
         match self {

@@ -133,7 +133,10 @@ fn fail(
     }
     let law = bonds.rules[bonds.rule_of(at)].flat_joint;
     let count = law.map_or(0, |law| law.count());
-    let Some(law) = law.filter(|_| stored.failed.len() == count) else {
+    // Bonds with more elements in the same file lengthen the list of each.
+    let (own, surplus) = stored.failed.split_at(count.min(stored.failed.len()));
+    let fits = own.len() == count && !surplus.contains(&true);
+    let Some(law) = law.filter(|_| fits) else {
         return Err(Diagnostic::input(
             "",
             format!(
@@ -154,7 +157,7 @@ fn fail(
         ));
     };
     let mut elements = elements_from(&law, bonds.radius_m(at), &direction, &edge);
-    let failed = in_order(stored.failed.clone(), &law, is_reversed);
+    let failed = in_order(own.to_vec(), &law, is_reversed);
     for (element, failed) in elements.iter_mut().zip(failed) {
         element.is_bonded = !failed;
     }
