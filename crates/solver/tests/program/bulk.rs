@@ -21,7 +21,7 @@ fn slope(bench: &Bench, column: &str, [from, to]: [f64; 2]) -> f64 {
 fn beads_leave_a_silo_as_beverloo_says() {
     // W = 0.58 rho sqrt(g) (D - k d)^(5/2) with k = 1.4 for spheres (Beverloo et al. 1961), for two
     // holes; the constants of the law are known to a tenth.
-    for hole_m in [0.022, 0.03] {
+    for hole_m in [0.018, 0.022] {
         let bench = Bench::new();
         let scale = format!("walls.floor.scale={}", hole_m * 100.0);
         let scene = scene_of_data("silo.toml");

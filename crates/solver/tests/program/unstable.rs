@@ -7,14 +7,14 @@ use super::{Bench, good};
 #[test]
 fn a_step_above_the_limit_is_refused_unless_forced() {
     let bench = Bench::new();
-    let step = ["--set", "run.time_step=20 us", "--output", "out"];
+    let step = ["--set", "run.time_step=21 us", "--output", "out"];
     let said = bench.bad(
         &good("bodies.toml"),
         &[&step[..], &["--set", "run.end_time=20 ms"]].concat(),
         2,
     );
     assert!(
-        said.contains("run.time_step: 2.0000e-5 s is above the largest stable step of 1.9")
+        said.contains("run.time_step: 2.1000e-5 s is above the largest stable step of 2.0")
             && said.contains("--force-step"),
         "{said}"
     );
