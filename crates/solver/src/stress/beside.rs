@@ -45,7 +45,7 @@ measures.out = {{ of = \"right\", quantity = \"displacement_x\", statistic = \"l
 output.series = {:e}
 ",
         -SPEED_M_S,
-        1e-4 * end_s
+        1e-5 * end_s
     );
     let [pressed_m, pulled_m] = [pressed_1_s, pulled_1_s].map(|rate| SPEED_M_S / rate);
     Member {

@@ -174,8 +174,8 @@ impl Block {
         let tensile_pa = STRENGTHS_PA[usize::from(self.is_tilted)];
         let shear_pa = 2.0 * tensile_pa;
         // What a restored cluster loses is known as well as leapfrog knows the energy of its fastest
-        // motions: to (w dt)^2/4 of it.
-        let fraction = if self.restores { 0.2 } else { 0.9 };
+        // motions: to (w dt)^2/4 of it. So is what contacts and broken bonds take.
+        let fraction = if self.restores { 0.2 } else { 0.45 };
         let mut scene = format!(
             "version = 1
 run = {{ end_time = \"4 ms\", safety_factor = {fraction} }}

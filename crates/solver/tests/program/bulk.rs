@@ -31,7 +31,7 @@ fn beads_leave_a_silo_as_beverloo_says() {
             "walls.slide.table=[[\"0.3 s\", 0], [\"0.35 s\", 1]]",
             "run.end_time=\"0.75 s\"",
         ];
-        let mut options = vec!["--output", "out"];
+        let mut options = vec!["--quiet", "--output", "out"];
         options.extend(settings.iter().flat_map(|setting| ["--set", setting]));
         bench.good(&scene, &options);
         let found = -slope(&bench, "mass_inside_kg", [0.45, 0.75]);

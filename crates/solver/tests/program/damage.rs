@@ -20,7 +20,7 @@ fn fall(bench: &Bench, body: &[&str], folder: &str) -> Value {
 }
 
 /// The fall that breaks the body in two.
-const LAST: usize = 7;
+const LAST: usize = 6;
 
 /// The mass fraction of the largest fragment after each fall of the largest fragment of the fall
 /// before; `mended`: its damage is taken away in between.

@@ -239,7 +239,7 @@ young_modulus = "1 MPa"
 poisson_ratio = 0.3
 [bonds.stiff]
 model = "timoshenko"
-young_modulus = "400 MPa"
+young_modulus = "1600 MPa"
 poisson_ratio = 0.3
 [bodies.a]
 material = "m"
