@@ -490,7 +490,8 @@ def case_feed(program, folder):
     runs = Runs("feed", feed(), program, folder)
     for ranks, dump in runs.lammps.items():
         counts = [len(d.rows[-1]) for d in (runs.ours, dump)]
-        yield ranks, "inlets: spheres that came", *counts, relative(counts[1], counts[0]), 0.01
+        # dem-run draws each body, two rods to a pebble: 230 spheres to two standard deviations.
+        yield ranks, "inlets: spheres that came", *counts, relative(counts[1], counts[0]), 0.08
         a, b = (sum(row["z"] for row in d.rows[-1].values()) / len(d.rows[-1]) for d in (runs.ours, dump))
         yield ranks, "mean height of the filling, mm", 1e3 * a, 1e3 * b, relative(b, a), 0.05
 

@@ -265,7 +265,7 @@ fn flat_sided_shapes_have_their_exact_volume() {
 fn rings_around_a_hole_have_its_area() {
     let side = PI / 36.0;
     let polygon = |radius: f64| 36.0 * radius * radius * side.sin();
-    for (name, outer, height) in [("tube.stl", 5.3, 20.0), ("orifice.stl", 50.0, 1.0)] {
+    for (name, outer, height) in [("tube.stl", 5.3, 20.0), ("orifice.stl", 20.0, 1.0)] {
         let exact = height * (polygon(outer) - PI * 25.0);
         let facets = facets(name);
         assert!(

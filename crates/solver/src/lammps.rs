@@ -11,6 +11,7 @@ mod clumps;
 mod contacts;
 mod data;
 pub(crate) mod dump;
+mod duration;
 mod feeds;
 pub(crate) mod files;
 mod forces;
@@ -57,7 +58,7 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
     let walls = walls::walls(scene, plan, &feeds)?;
     let forces = forces::forces(scene, plan)?;
     let molecules = molecules::molecules(plan);
-    let steps = input::steps(scene, plan);
+    let steps = duration::steps(scene, plan);
     let input = input::Input {
         scene,
         plan,

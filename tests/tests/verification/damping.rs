@@ -325,7 +325,8 @@ fn booked(modes: &[Mode], damping: &str) -> String {
         while state.time_s * mode.omega_rad_s() < 100.0 {
             step(&mut state);
         }
-        let taken = balance(&mut state).bond_damping_j / start_j;
+        let balance = balance(&mut state);
+        let taken = (balance.bond_damping_j + balance.structural_damping_j) / start_j;
         cases.push(Case::new(mode.name(), taken, 1.0, STEP * STEP));
     }
     compared("mode", "", &cases)

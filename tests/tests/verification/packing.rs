@@ -72,7 +72,7 @@ fn shapes() -> [Shape; 3] {
         },
         Shape {
             name: "disc",
-            diameters_m: [4e-3, 6e-3],
+            diameters_m: [4e-3, 6.1e-3],
             box_m: [
                 [-radius, -0.5 * thickness, -radius],
                 [radius, 0.5 * thickness, radius],

@@ -12,7 +12,7 @@ use dem_io::Result;
 use dem_io::body::mass::volume_m3;
 use dem_scene::Scene;
 
-use super::input::{step_s, steps};
+use super::duration::{step_s, steps};
 use super::words::{numbers, refused};
 use crate::geometry::Bounds;
 use crate::plan::Plan;

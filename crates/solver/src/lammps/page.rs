@@ -6,8 +6,9 @@ use dem_io::text::counted;
 
 use super::bonds::CLASS_WIDTH;
 use super::clumps::has_bodies;
+use super::duration::{step_s, steps};
 use super::files::{BONDS, BROKEN, FRAMES};
-use super::input::{Input, step_s, steps};
+use super::input::Input;
 
 /// The page as Markdown.
 pub(super) fn page(input: &Input<'_>) -> String {

@@ -61,9 +61,9 @@ pub(crate) fn tube() -> Mesh {
     flat_ring(5.3, [0.0, 20.0])
 }
 
-/// A round plate of 100 mm, 1 mm thick, with its top on z = 0 and a hole of 10 mm.
+/// A round plate of 40 mm, 1 mm thick, with its top on z = 0 and a hole of 10 mm.
 pub(crate) fn orifice() -> Mesh {
-    flat_ring(50.0, [-1.0, 0.0])
+    flat_ring(20.0, [-1.0, 0.0])
 }
 
 /// A ring between two heights around a hole of 10 mm: polygons of 72 corners with the area of the

@@ -49,11 +49,7 @@ pub(super) fn tuples(array: &Array, values: Values<'_>, counts: Counts) -> Resul
     })?;
     let [before, lines, after] = [counts.cells_before, counts.lines, counts.cells_after];
     let cells = before.saturating_add(lines).saturating_add(after);
-    let each = if cells == 0 {
-        0
-    } else {
-        all.len() as u64 / cells
-    };
+    let each = (all.len() as u64).checked_div(cells).unwrap_or(0);
     check_count(
         all.len() as u64,
         u128::from(each) * u128::from(cells),
