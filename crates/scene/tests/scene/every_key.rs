@@ -34,7 +34,7 @@ fn collect(
             None => format!("{names}.*"),
         };
         let of_key = known.unwrap_or(&schema["additionalProperties"]);
-        let keys = [keys, &[key.clone()]].concat();
+        let keys = [keys, std::slice::from_ref(key)].concat();
         if let Some(inner) = value.as_object() {
             let choices = of_key["anyOf"].as_array().into_iter().flatten();
             for choice in choices

@@ -79,7 +79,7 @@ pub(super) fn write(
             });
         writeln!(out, "{low:e} {high:e} {axis}lo {axis}hi")?;
     }
-    if p.len() == 0 {
+    if p.is_empty() {
         return Ok(());
     }
     let (order, densities) = (by_id(plan), densities(plan));
