@@ -26,6 +26,8 @@ const COHESION_PA: f64 = 0.5e6;
 /// Its friction angle, degrees.
 const FRICTION_DEG: f64 = 35.0;
 const VON_MISES_PA: f64 = 1.1e6;
+/// Tensile strength that cuts Mohr-Coulomb off before its tip at c/tan(phi), Pa.
+const CUT_OFF_PA: f64 = 0.35e6;
 
 /// Number of steps in which a load rises to its final value. A bond breaks at the first step at
 /// which it carries more than its strength: at most one load step late.
@@ -59,6 +61,7 @@ enum Criterion {
     Compression,
     Shear,
     MohrCoulomb,
+    CutOff,
     VonMises,
 }
 
@@ -70,6 +73,12 @@ impl Criterion {
             Self::Shear => format!("shear_strength = {SHEAR_PA:e}"),
             Self::MohrCoulomb => {
                 format!("cohesion = {COHESION_PA:e}, friction_angle = \"{FRICTION_DEG} deg\"")
+            }
+            Self::CutOff => {
+                format!(
+                    "{}, tensile_strength = {CUT_OFF_PA:e}",
+                    Self::MohrCoulomb.key()
+                )
             }
             Self::VonMises => format!(
                 "von_mises_strength = {VON_MISES_PA:e}, equivalent_stress = \"axial-in-tension\""
@@ -83,6 +92,7 @@ impl Criterion {
             Self::Compression => "compressive strength",
             Self::Shear => "shear strength",
             Self::MohrCoulomb => "Mohr-Coulomb",
+            Self::CutOff => "Mohr-Coulomb, cut off",
             Self::VonMises => "equivalent stress",
         }
     }
@@ -96,6 +106,10 @@ impl Criterion {
             Self::Shear => sheared / SHEAR_PA,
             Self::MohrCoulomb => {
                 (sheared + s.axial * FRICTION_DEG.to_radians().tan()) / COHESION_PA
+            }
+            Self::CutOff => {
+                let pulled = (s.bending + s.axial) / CUT_OFF_PA;
+                pulled.max(Self::MohrCoulomb.used(s))
             }
             Self::VonMises => {
                 let pulled = s.axial.max(0.0) + s.bending;
@@ -249,7 +263,7 @@ const LOADS: [(&str, Stresses); 11] = [
 ];
 
 /// The loads with which each criterion is tested.
-const TRIED: [(Criterion, &[&str]); 5] = [
+const TRIED: [(Criterion, &[&str]); 6] = [
     (
         Criterion::Tension,
         &["tension", "bending", "tension and bending", "all"],
@@ -268,6 +282,17 @@ const TRIED: [(Criterion, &[&str]); 5] = [
             "shear",
             "torsion",
             "tension",
+            "compression and shear",
+            "tension and torsion",
+            "all",
+        ],
+    ),
+    (
+        Criterion::CutOff,
+        &[
+            "tension",
+            "bending",
+            "shear",
             "compression and shear",
             "tension and torsion",
             "all",
@@ -529,6 +554,178 @@ fn by_energy() -> String {
     compared("bonds", "J/m2", &cases)
 }
 
+/// A bar of 13 x 2 x 3 touching spheres of 1 mm, of which the middle of the upper side is pressed
+/// down by 0.4 mm while both ends of the lower side are held, in 0.1 s. Returns the largest load, N,
+/// the most that bonds store, J, what breakage takes in all, J, and the largest fall of the load between
+/// two of 200 rows over the largest load.
+fn bent(fracture_energy: &str) -> [f64; 4] {
+    const SIDES: [usize; 3] = [13, 2, 3];
+    const ROWS: usize = 200;
+    const DOWN_M: f64 = 0.4e-3;
+    const END_S: f64 = 0.1;
+    let [nx, ny, nz] = SIDES;
+    let number = |[x, y, z]: [usize; 3]| x + nx * (y + ny * z);
+    let (mut spheres, mut pairs) = (Vec::new(), Vec::new());
+    for i in 0..nx * ny * nz {
+        let place = [i % nx, i / nx % ny, i / nx / ny];
+        let [x, y, z] = place.map(|k| 2.0 * RADIUS_M * k as f64);
+        spheres.push(format!("[{x:e}, {y:e}, {z:e}, {RADIUS_M:e}]"));
+        for axis in (0..3).filter(|axis| place[*axis] + 1 < SIDES[*axis]) {
+            let mut next = place;
+            next[axis] += 1;
+            pairs.push(format!("[{i}, {}]", number(next)));
+        }
+    }
+    let ends = [0, nx - 1].map(|x| [0, 1].map(|y| number([x, y, 0])));
+    let middle = [0, 1].map(|y| number([nx / 2, y, nz - 1]));
+    let mut state = started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = {END_S}, safety_factor = 0.5, local_damping = 0.2 }}
+        materials.stone = {{ density = 2500 }}
+        bodies.bar = {{ particles = [{}], bond_list = [{}], material = "stone", bonds = "glue" }}
+        groups.ends = {{ particles = {:?} }}
+        groups.middle = {{ particles = {middle:?} }}
+        bonds.glue = {{ young_modulus = 1e9, poisson_ratio = {POISSON:e}, failure = {{ {}{fracture_energy} }} }}
+        supports.ends = {{ group = "ends", fixed = ["z"] }}
+        supports.middle = {{ group = "middle", fixed = ["x", "y"], displacement = {{ z = {:e} }}, ramp = {END_S} }}
+        "#,
+        spheres.join(", "),
+        pairs.join(", "),
+        ends.as_flattened(),
+        Criterion::Tension.key(),
+        -DOWN_M
+    ));
+    let (mut loads_n, mut stored_j) = (vec![0.0_f64], 0.0_f64);
+    let (mut work_j, mut way_m, mut taken_j) = (0.0, 0.0, 0.0);
+    for row in 1..=ROWS {
+        while state.time_s < END_S * row as f64 / ROWS as f64 {
+            step(&mut state);
+        }
+        interact(&mut state);
+        let now = balance(&mut state);
+        let moved_m = DOWN_M * state.time_s / END_S;
+        // The mean load since the last row.
+        loads_n.push((now.support_work_j - work_j) / (moved_m - way_m));
+        stored_j = stored_j.max(now.elastic_j());
+        taken_j = now.bond_breakage_j + now.bond_damage_j;
+        (work_j, way_m) = (now.support_work_j, moved_m);
+        advance(&mut state);
+    }
+    let largest_n = loads_n.iter().copied().fold(0.0, f64::max);
+    let falls = loads_n.windows(2).map(|two| two[0] - two[1]);
+    let fall = falls.fold(0.0, f64::max) / largest_n;
+    [largest_n, stored_j, taken_j, fall]
+}
+
+/// Bending without and with fracture energy. A crack that takes more than the bar stores follows
+/// the displacement; one that takes less runs by itself.
+fn by_bending() -> String {
+    let mut table = "| fracture energy, J/m2 | largest load, N | most stored, mJ | breakage takes, mJ | largest fall between two rows |\n|---|---|---|---|---|\n".to_owned();
+    for energy_j_m2 in [0.0, 10.0, 20.0, 40.0, 80.0] {
+        let key = match energy_j_m2 {
+            0.0 => String::new(),
+            energy => format!(", fracture_energy = {energy}"),
+        };
+        let [largest_n, stored_j, taken_j, fall] = bent(&key);
+        if energy_j_m2 == 0.0 {
+            assert!(
+                fall > 0.9 && taken_j < stored_j,
+                "{fall} {taken_j} {stored_j}"
+            );
+        }
+        if energy_j_m2 >= 40.0 {
+            assert!(
+                fall < 0.1 && taken_j > stored_j,
+                "{fall} {taken_j} {stored_j}"
+            );
+        }
+        let name = match energy_j_m2 {
+            0.0 => "none: brittle".to_owned(),
+            energy => energy.to_string(),
+        };
+        table += &format!(
+            "| {name} | {largest_n:.2} | {:.3} | {:.3} | {:.0} % |\n",
+            1e3 * stored_j,
+            1e3 * taken_j,
+            100.0 * fall
+        );
+    }
+    table.trim_end().to_owned()
+}
+
+/// Way of a sphere that slides past another, m.
+const WAY_M: f64 = 3e-6;
+
+/// Two touching spheres that a load presses together while one slides past the other: the shear
+/// force at which their Mohr-Coulomb bond breaks, and that afterwards, N.
+fn sheared_under(pressure_pa: f64, friction: f64) -> [f64; 2] {
+    const YOUNG_PA: f64 = 1e10;
+    let press_n = pressure_pa * area_m2();
+    let mut state = started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = 0.07, safety_factor = 0.5 }}
+        materials.stone = {{ density = 2500, young_modulus = 1e10, poisson_ratio = {POISSON:e} }}
+        contacts.stone-stone = {{ restitution = 0.1, friction = {friction} }}
+        bodies.pair = {{ particles = [[0, 0, 0, {RADIUS_M:e}], [{:e}, 0, 0, {RADIUS_M:e}]], bond_list = [[0, 1]], material = "stone", bonds = "glue" }}
+        groups.left = {{ particles = [0] }}
+        groups.right = {{ particles = [1] }}
+        bonds.glue = {{ young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, damping = {{ damping_ratio = {DAMPING} }}, failure = {{ {} }} }}
+        supports.left = {{ group = "left", fixed = true }}
+        supports.right = {{ group = "right", fixed = ["z", "rx", "ry", "rz"], displacement = {{ y = {WAY_M:e} }}, table = [[0.01, 0], [0.04, 1], [0.07, 2]] }}
+        loads.press = {{ group = "right", force = [{:e}, 0, 0], ramp = 0.005 }}
+        "#,
+        2.0 * RADIUS_M,
+        Criterion::MohrCoulomb.key(),
+        -press_n
+    ));
+    let (mut broke_n, mut work_j, mut way_m, mut last_n) = (f64::NAN, 0.0, 0.0, 0.0);
+    for row in 1..=2000 {
+        let until_s = 0.01 + 0.03 * f64::from(row) / 2000.0;
+        while state.time_s < until_s {
+            step(&mut state);
+        }
+        interact(&mut state);
+        let now = balance(&mut state);
+        let moved_m = WAY_M * ((state.time_s - 0.01) / 0.03).max(0.0);
+        let shear_n = (now.support_work_j - work_j) / (moved_m - way_m);
+        if state.broken_count > 0 && broke_n.is_nan() {
+            broke_n = last_n;
+        }
+        (work_j, way_m, last_n) = (now.support_work_j, moved_m, shear_n);
+        advance(&mut state);
+    }
+    [broke_n, last_n]
+}
+
+/// Friction after a break under pressure is that of the contact.
+fn residual() -> String {
+    let mut cases = Vec::new();
+    for (pressure_pa, friction) in [(0.2e6, 0.3), (0.2e6, 0.6), (1.0e6, 0.3)] {
+        let press_n = pressure_pa * area_m2();
+        let strength_pa = COHESION_PA + pressure_pa * FRICTION_DEG.to_radians().tan();
+        let [broke_n, left_n] = sheared_under(pressure_pa, friction);
+        let what = format!("{:.1} MPa, friction {friction}", 1e-6 * pressure_pa);
+        // The load is known from row to row.
+        cases.push(Case::new(
+            format!("{what}: breaks at, N"),
+            broke_n,
+            strength_pa * area_m2(),
+            0.01,
+        ));
+        // The way across tilts the contact, by this at the end.
+        let tilt = WAY_M / (2.0 * RADIUS_M);
+        cases.push(Case::new(
+            format!("{what}: slides at, N"),
+            left_n,
+            press_n * (friction - tilt) / (1.0 + friction * tilt),
+            1e-3,
+        ));
+    }
+    compared("pressure", "", &cases)
+}
+
 /// Gamma function, by Stirling's series.
 fn gamma(x: f64) -> f64 {
     let y = x + 12.0;
@@ -641,6 +838,8 @@ fn the_page_shows_what_the_solver_gives() {
                 ("by displacement", by_displacement()),
                 ("by load", by_load()),
                 ("by energy", by_energy()),
+                ("by bending", by_bending()),
+                ("residual", residual()),
                 ("rates", rates),
                 ("rates from 1.1", from),
                 ("scatter", scatter()),

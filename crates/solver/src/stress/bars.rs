@@ -19,7 +19,7 @@ const CONTACT_N_M: f64 = YOUNG_PA * PI * RADIUS_M / 2.0;
 const ENERGY: f64 = 1e-2;
 
 /// A row of five spheres, in a pulse of ten of its own lengths.
-fn member(ratio: f64, kind: &str) -> Member {
+fn member(ratio: f64, kind: &str, damping_ratio: f64) -> Member {
     let mass_kg = DENSITY_KG_M3 * 4.0 / 3.0 * PI * RADIUS_M.powi(3);
     let impedance_n_s_m = ratio * (CONTACT_N_M * mass_kg).sqrt();
     // Z = sqrt(E rho) A of bars of steel.
@@ -36,7 +36,7 @@ fn member(ratio: f64, kind: &str) -> Member {
 run = {{}}
 materials.m = {{ density = {DENSITY_KG_M3:e}, young_modulus = {YOUNG_PA:e}, poisson_ratio = 0.3 }}
 contacts.m-m = {{ law = \"linear\", normal_stiffness = {CONTACT_N_M:e}, restitution = 1, friction = 0 }}
-bonds.b = {{ young_modulus = {YOUNG_PA:e}, poisson_ratio = 0.3 }}
+bonds.b = {{ young_modulus = {YOUNG_PA:e}, poisson_ratio = 0.3, damping = {{ damping_ratio = {damping_ratio} }} }}
 bodies.row = {{ particles = [[0, 0, 0, 1e-3], [0, 0, 2e-3, 1e-3], [0, 0, 4e-3, 1e-3], [0, 0, 6e-3, 1e-3], [0, 0, 8e-3, 1e-3]], bond_list = [[0, 1], [1, 2], [2, 3], [3, 4]], material = \"m\", bonds = \"b\" }}
 groups = {{ low = {{ particles = [0] }}, high = {{ particles = [4] }} }}
 walls.above = {{ plane = {{ point = [0, 0, 9e-3], normal = [0, 0, -1] }}, material = \"m\" }}
@@ -47,18 +47,22 @@ output = {{ series = 1e-5 }}
         names[0], names[1]
     );
     Member {
-        what: format!("{kind}, Z of {ratio:e} of the row"),
+        what: format!("{kind}, Z of {ratio:e} of the row, damping_ratio = {damping_ratio}"),
         trial: Trial::of(text),
         way: ObservationMethod::Run,
         prediction: Prediction::Ends(vec![Shown::at_most(Quantity::EnergyError, ENERGY)]),
     }
 }
 
-/// All impedances, for walls and for grips.
+/// All impedances, for walls and for grips; some with bonds of ten times the critical damping.
 pub(super) fn bars() -> Vec<Member> {
     let ratios = [1e-6, 1e-3, 0.1, 1.0, 10.0, 1e3, 1e6];
     let both = ["hopkinson-pressure", "hopkinson-tension"];
-    both.iter()
-        .flat_map(|kind| ratios.map(|ratio| member(ratio, kind)))
-        .collect()
+    let undamped = both
+        .iter()
+        .flat_map(|kind| ratios.map(|ratio| member(ratio, kind, 0.0)));
+    let damped = both
+        .iter()
+        .flat_map(|kind| [1e-3, 1.0, 1e3].map(|ratio| member(ratio, kind, 10.0)));
+    undamped.chain(damped).collect()
 }

@@ -57,7 +57,7 @@ fn nothing_is_missing() {
         ("impact", [42, 0, 3]),
         ("adhesion", [12, 0, 0]),
         ("bridges", [12, 0, 0]),
-        ("bars", [14, 0, 0]),
+        ("bars", [20, 0, 0]),
         ("mesh-wall", [4, 1, 1]),
         ("coordinates", [4, 1, 0]),
         ("size", [8, 0, 0]),
