@@ -56,7 +56,8 @@ def bar():
     return f'material = "steel"\nbonds = "steel"\nparticles = {particles(places, 0.2)}\nbond_list = [{bonds}]\n'
 
 
-# Initial motions of particles of the free bar that excite one mode and leave it where it is: particles, key, value.
+# Initial motions of particles of the free bar that excite one mode and leave it where it is:
+# particles, key, value.
 MODES = {
     "bending": [([5], "velocity", '[0, "0.11 m/s", 0]'), ([0, 10], "velocity", '[0, "-0.055 m/s", 0]')],
     "second": [

@@ -23,7 +23,8 @@ pub struct NamedArray<'a> {
     pub values: Values<'a>,
 }
 
-/// The values of an array: a number, a vector or small numbers for each point or cell, found by its index.
+/// The values of an array: a number, a vector or small numbers for each point or cell, found by its
+/// index.
 #[derive(Clone, Copy)]
 pub enum Values<'a> {
     /// Numbers.

@@ -9,8 +9,8 @@ use dem_io::diagnostic::Result;
 const TABLES: [&str; 4] = ["inlets", "outlets", "replacement", "sleep"];
 
 /// Refuses what does not go together with contacts beside bonds: bodies that come, go, sleep or are
-/// rigid, liquid bridges, adhesion, static equilibria, and overlaps that are not kept as they were when the
-/// bonds were made.
+/// rigid, liquid bridges, adhesion, static equilibria, and overlaps that are not kept as they were
+/// when the bonds were made.
 pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     let mut beside = None;
     for (_, bond) in root.named("bonds")? {

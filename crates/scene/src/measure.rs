@@ -348,11 +348,15 @@ pub(super) fn read(
     let cell_size_m = only_for(
         &table,
         "cell_size",
-        quantity,
-        Quantity::MixingIndex,
-        "10 mm",
+        [quantity, Quantity::MixingIndex],
+        ["there is no cell_size", "\"10 mm\""],
     )?;
-    let limit = limit(&table, quantity)?;
+    let limit = only_for(
+        &table,
+        "limit",
+        [quantity, Quantity::FractionBelowDynamicUtilisation],
+        ["nothing says below which utilisation", "0.5"],
+    )?;
     let dimension = quantity.dimension();
     let reference = table.read_by("reference", |field| field.quantity(dimension))?;
     let tolerance = table.read("tolerance")?;
@@ -472,22 +476,22 @@ fn within(
     }
 }
 
-/// A number that one quantity requires, and that is refused otherwise.
+/// A number that one quantity requires, and that is refused otherwise. `missing`: what is not known
+/// without it; `example`: a value of it.
 fn only_for(
     table: &Table<'_>,
     key: &str,
-    quantity: Quantity,
-    one: Quantity,
-    example: &str,
+    [quantity, one]: [Quantity; 2],
+    [missing, example]: [&str; 2],
 ) -> Result<Option<f64>> {
     match (quantity == one, table.get(key)) {
         (true, None) => {
             let problem = format!(
-                "{}.quantity is \"{}\", but there is no {key}",
+                "{}.quantity is \"{}\", but {missing}",
                 table.path,
                 one.name()
             );
-            Err(table.refuse(problem, format!("add {key} = \"{example}\"")))
+            Err(table.refuse(problem, format!("add {key} = {example}")))
         }
         (false, Some(field)) => {
             let problem = format!(
@@ -495,35 +499,10 @@ fn only_for(
                 field.path,
                 quantity.name()
             );
-            Err(field.refuse(problem, format!("remove it, or ask for \"{}\"", one.name())))
-        }
-        _ => table.read(key),
-    }
-}
-
-/// The dynamic utilisation below which bonds count: required if such bonds are counted, refused
-/// otherwise.
-fn limit(table: &Table<'_>, quantity: Quantity) -> Result<Option<f64>> {
-    let counted = Quantity::FractionBelowDynamicUtilisation;
-    match (quantity == counted, table.get("limit")) {
-        (true, None) => {
-            let problem = format!(
-                "{}.quantity is \"{}\", but nothing says below which utilisation",
-                table.path,
-                counted.name()
-            );
-            Err(table.refuse(problem, "add limit = 0.5"))
-        }
-        (false, Some(field)) => {
-            let problem = format!(
-                "{} cannot be combined with the quantity \"{}\"",
-                field.path,
-                quantity.name()
-            );
-            let remedy = format!("remove it, or ask for \"{}\"", counted.name());
+            let remedy = format!("remove it, or ask for \"{}\"", one.name());
             Err(field.refuse(problem, remedy))
         }
-        _ => table.read("limit"),
+        _ => table.read(key),
     }
 }
 

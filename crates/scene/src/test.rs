@@ -128,8 +128,8 @@ pub struct Test {
     pub rate_m_s: Option<f64>,
     /// `periods` of the body's lowest frequency, 20 unless given. At least 1.
     pub periods: f64,
-    /// `rate_check`: the test is also done at twice the rate. True unless given; false for a dynamic
-    /// test.
+    /// `rate_check`: the test is also done at twice the rate. True unless given; false for a
+    /// dynamic test.
     pub rate_check: bool,
     /// `bars`, `striker` and `transmission_bar` of a split-Hopkinson test.
     pub bars: Option<Bars>,

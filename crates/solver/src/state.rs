@@ -191,8 +191,8 @@ impl State {
         scratch.particle_resistance = vec![Wrench::default(); resistances];
     }
 
-    /// The lists of damping forces: viscous and structural of bonds, and on particles; each with one
-    /// for each particle, or empty.
+    /// The lists of damping forces: viscous and structural of bonds, and on particles; each with
+    /// one for each particle, or empty.
     pub(crate) fn resistances(&self) -> [&[Wrench]; 3] {
         [
             &self.scratch.bond_resistance,

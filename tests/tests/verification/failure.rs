@@ -555,9 +555,9 @@ fn by_energy() -> String {
 }
 
 /// A bar of 13 x 2 x 3 touching spheres of 1 mm, of which the middle of the upper side is pressed
-/// down by 0.4 mm while both ends of the lower side are held, in 0.1 s. Returns the largest load, N,
-/// the most that bonds store, J, what breakage takes in all, J, and the largest fall of the load between
-/// two of 200 rows over the largest load.
+/// down by 0.4 mm while both ends of the lower side are held, in 0.1 s. Returns the largest load,
+/// N, the most that bonds store, J, what breakage takes in all, J, and the largest fall of the load
+/// between two of 200 rows over the largest load.
 fn bent(fracture_energy: &str) -> [f64; 4] {
     const SIDES: [usize; 3] = [13, 2, 3];
     const ROWS: usize = 200;

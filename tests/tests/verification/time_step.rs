@@ -244,8 +244,8 @@ const STEPS: usize = 20_000;
 ///
 /// With r = omega dt and b = 2/(1 + R), where R is the decay of velocities by damping in a step,
 /// about exp(-2 zeta r), a step multiplies that mode by a root of b q^2 + (r^2 - 2) q + 2 - b = 0,
-/// which is -1 at r = 2. Beyond it by a fraction s, its logarithm is 2 sqrt(2 s) without damping, and
-/// 4 s/(b - 1) = 4 s/tanh(2 zeta) with it.
+/// which is -1 at r = 2. Beyond it by a fraction s, its logarithm is 2 sqrt(2 s) without damping,
+/// and 4 s/(b - 1) = 4 s/tanh(2 zeta) with it.
 fn late(damping: f64) -> f64 {
     let in_a_step = 1e6_f64.ln() / STEPS as f64;
     let late = if damping == 0.0 {

@@ -2,7 +2,8 @@
 //!
 //! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius_m`,
 //! cell data `bond_radius_m`, `initial_length_m` and, if bonds are damaged, `damage`, or what
-//! [`super::histories`] names if they have yielded or are flat joints with failed elements; field data:
+//! [`super::histories`] names if they have yielded or are flat joints with failed elements; field
+//! data:
 //! `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
 //! encoding see [`crate::vtk`].
 

@@ -63,8 +63,8 @@ proptest! {
     }
 }
 
-/// Before and after spheres have moved, each has all triangles in its list that it could touch after
-/// a further move of half the skin.
+/// Before and after spheres have moved, each has all triangles in its list that it could touch
+/// after a further move of half the skin.
 #[test]
 fn lists_of_the_wall_hold_the_triangles_within_reach() {
     const ENLARGE: f64 = 1.25;

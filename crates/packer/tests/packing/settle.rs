@@ -119,8 +119,8 @@ fn where_there_is_no_room_spheres_are_taken_out() {
     );
 }
 
-/// Before any is taken out for its overlap, some are left out evenly. The mean size is off by no more
-/// than chance allows.
+/// Before any is taken out for its overlap, some are left out evenly. The mean size is off by no
+/// more than chance allows.
 #[test]
 fn where_there_is_little_room_spheres_are_left_out_evenly() {
     let (facets, mut balls, boundary) =

@@ -13,8 +13,8 @@ use dem_laboratory::theory::ON_PINS;
 
 /// Time that a test with bars takes, in ends of its pulse.
 const AFTER_PULSE: f64 = 1.5;
-/// Longest time of a drop-weight test, in times that the weight takes for the stroke at the velocity
-/// of the impact.
+/// Longest time of a drop-weight test, in times that the weight takes for the stroke at the
+/// velocity of the impact.
 const LONGEST_FALL: f64 = 20.0;
 
 /// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets get a

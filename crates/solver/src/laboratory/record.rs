@@ -82,8 +82,8 @@ pub struct Record {
     open: (Row, u64),
     /// Largest load of a row, N.
     largest_n: f64,
-    /// Whether bonds had broken when the load of a row was below half of that, before the end of the
-    /// pulse of a test with bars.
+    /// Whether bonds had broken when the load of a row was below half of that, before the end of
+    /// the pulse of a test with bars.
     pub fell: bool,
     /// Energies of a dynamic test.
     pub works: Works,

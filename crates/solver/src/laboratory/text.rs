@@ -10,8 +10,8 @@ use super::files::percent;
 
 /// Smallest change at half the rate that is reported.
 const MUCH: f64 = 0.02;
-/// Largest difference of the forces on both ends of a specimen over their mean, at the largest load,
-/// at which it counts as in equilibrium.
+/// Largest difference of the forces on both ends of a specimen over their mean, at the largest
+/// load, at which it counts as in equilibrium.
 const APART: f64 = 0.1;
 /// The test without a strength.
 const DROP: &str = "drop-weight";

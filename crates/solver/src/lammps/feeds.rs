@@ -13,7 +13,7 @@ use dem_io::body::mass::volume_m3;
 use dem_scene::Scene;
 
 use super::duration::{step_s, steps};
-use super::words::{numbers, refused};
+use super::words::{block, cylinder, numbers, refused};
 use crate::geometry::Bounds;
 use crate::plan::Plan;
 use crate::state::clumps::Template;
@@ -108,7 +108,7 @@ pub(super) fn feeds(scene: &Scene, plan: &Plan) -> Result<Vec<Feed>> {
                 every,
                 count,
                 region: region.clone(),
-                room: bounds.grown(template.scale.max(1.0) * template.reach_m),
+                room: bounds.grown(template.largest_reach_m()),
                 velocity_m_s: inlet.velocity_m_s,
                 seed: (plan.state.model.rules.seed % 1_000_000) + number as u64,
             });
@@ -146,8 +146,8 @@ fn refuse_body(
     Ok(())
 }
 
-/// First step, steps from one body to the next, and number of bodies, for a share of an inlet. None:
-/// no body comes during the run.
+/// First step, steps from one body to the next, and number of bodies, for a share of an inlet.
+/// None: no body comes during the run.
 fn times(scene: &Scene, plan: &Plan, inlet: &Inlet, share: f64, per_s: f64) -> Option<[u64; 3]> {
     let step_s = step_s(scene, plan);
     let [start_s, end_s] = inlet.between_s;
@@ -170,10 +170,7 @@ fn region(scene: &Scene, part: &str, plan: &Plan, inlet: &Inlet) -> Result<(Stri
         Err(refused(scene, format!("{part}.region"), why, remedy))
     };
     let words = match region {
-        Region::Box(Bounds { low, high }) => {
-            let pairs: Vec<f64> = (0..3).flat_map(|k| [low[k], high[k]]).collect();
-            format!("block {}", numbers(&pairs))
-        }
+        Region::Box(Bounds { low, high }) => block([*low, *high]),
         Region::Sphere { centre_m, radius_m } => {
             format!("sphere {} {radius_m:e}", numbers(centre_m))
         }
@@ -181,21 +178,10 @@ fn region(scene: &Scene, part: &str, plan: &Plan, inlet: &Inlet) -> Result<(Stri
             from_m,
             to_m,
             radius_m,
-        } => {
-            let differs = |k: &usize| from_m[*k] != to_m[*k];
-            let axes: Vec<usize> = (0..3).filter(differs).collect();
-            let &[axis] = axes.as_slice() else {
-                return refuse("the region cylinder is along an axis, and this one is not");
-            };
-            let across: Vec<f64> = (0..3).filter(|k| *k != axis).map(|k| from_m[k]).collect();
-            let ends = [from_m[axis].min(to_m[axis]), from_m[axis].max(to_m[axis])];
-            format!(
-                "cylinder {} {} {radius_m:e} {}",
-                ["x", "y", "z"][axis],
-                numbers(&across),
-                numbers(&ends)
-            )
-        }
+        } => match cylinder([*from_m, *to_m], *radius_m) {
+            Some(words) => words,
+            None => return refuse("the region cylinder is along an axis, and this one is not"),
+        },
         Region::Inside(..) => return refuse("a region of LAMMPS has no triangles"),
     };
     Ok((words, bounds))

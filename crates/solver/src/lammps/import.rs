@@ -22,7 +22,8 @@ use serde_json::json;
 use super::dump::{Dump, Section};
 use super::files::{BONDS, DATA, FRAMES, MANIFEST, Manifest};
 
-/// The particles and bonds of an export, from its data file, and those fed by now. Particles in the order of their ids.
+/// The particles and bonds of an export, from its data file, and those fed by now. Particles in the
+/// order of their ids.
 #[derive(Debug, Default)]
 struct Exported {
     /// Ids in LAMMPS, from 1, ascending.

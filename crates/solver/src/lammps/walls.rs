@@ -9,14 +9,11 @@ use dem_scene::{Factor, Scene, WallMotion};
 use super::contacts::law_in_words;
 use super::feeds::Feed;
 use super::forces::formula;
-use super::words::{numbers, refused};
+use super::words::{self, ALONG, block, numbers, refused};
 use crate::geometry::{Shape, SolidBox};
 use crate::plan::Plan;
 use crate::plan::contacts::NO_KIND;
 use crate::state::walls::Wall;
-
-/// Cosine from which a direction counts as that of an axis.
-const ALONG: f64 = 1.0 - 1e-12;
 
 /// A wall in the words of LAMMPS.
 #[derive(Debug, Clone)]
@@ -89,15 +86,12 @@ fn region(scene: &Scene, part: &str, wall: &Wall) -> Result<String> {
             ))
         }
         Shape::Box(solid) => {
-            let [low, high] = corners(scene, part, wall, solid)?;
-            let pairs: Vec<f64> = (0..3).flat_map(|k| [low[k], high[k]]).collect();
-            Ok(format!("block {} side out", numbers(&pairs)))
+            let corners = corners(scene, part, wall, solid)?;
+            Ok(format!("{} side out", block(corners)))
         }
         Shape::Cylinder(cylinder) => {
-            let [from, to] = cylinder.ends_m().map(|end| frame.to_space(end));
-            let along = [0, 1, 2].map(|k| to[k] - from[k]);
-            let length = along.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let Some(axis) = (0..3).find(|&k| along[k].abs() >= ALONG * length) else {
+            let ends_m = cylinder.ends_m().map(|end| frame.to_space(end));
+            let Some(region) = words::cylinder(ends_m, cylinder.radius_m()) else {
                 return Err(refused(
                     scene,
                     part,
@@ -105,15 +99,7 @@ fn region(scene: &Scene, part: &str, wall: &Wall) -> Result<String> {
                     "turn the scene, or run it with dem-run",
                 ));
             };
-            let across: Vec<f64> = (0..3).filter(|k| *k != axis).map(|k| from[k]).collect();
-            let ends = [from[axis].min(to[axis]), from[axis].max(to[axis])];
-            Ok(format!(
-                "cylinder {} {} {:e} {} side out",
-                ["x", "y", "z"][axis],
-                numbers(&across),
-                cylinder.radius_m(),
-                numbers(&ends)
-            ))
+            Ok(format!("{region} side out"))
         }
         Shape::Mesh(_) => Err(refused(
             scene,

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::spheres::Sphere;
+use super::spheres::{Sphere, across};
 use crate::state::regions::Region;
 
 /// Points of a sphere that a border cuts: its part on one side is known to some thousandths.
@@ -39,8 +39,8 @@ fn part_within(sphere: &Sphere, region: &Region, points: &[Vector3<f64>]) -> f64
     points.iter().filter(is_in).count() as f64 / points.len() as f64
 }
 
-/// Points spread evenly through a ball of radius 1: shells of equal volume along a spiral, turned by
-/// the golden ratio from point to point, at depths in the order of the van der Corput sequence.
+/// Points spread evenly through a ball of radius 1: shells of equal volume along a spiral, turned
+/// by the golden ratio from point to point, at depths in the order of the van der Corput sequence.
 fn points_of_ball() -> Vec<Vector3<f64>> {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let point = |n: usize| {
@@ -53,12 +53,11 @@ fn points_of_ball() -> Vec<Vector3<f64>> {
     (0..POINTS).map(point).collect()
 }
 
-/// Mass of some spheres over the volume under their surface, kg/m3: that of columns along `up`, from
-/// the lowest point of all to the highest point in each column. Columns are half a mean diameter
-/// wide. NaN if there are none.
+/// Mass of some spheres over the volume under their surface, kg/m3: that of columns along `up`,
+/// from the lowest point of all to the highest point in each column. Columns are half a mean
+/// diameter wide. NaN if there are none.
 pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
-    let aside = up.cross(&Vector3::ith(up.iamin(), 1.0)).normalize();
-    let across = up.cross(&aside);
+    let [aside, across] = across(&up);
     let mean_m = spheres.iter().map(|s| s.radius_m).sum::<f64>() / spheres.len() as f64;
     let width_m = 2.0 * COLUMN * mean_m;
     let mut tops: BTreeMap<[i64; 2], f64> = BTreeMap::new();
@@ -85,11 +84,12 @@ pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
     spheres.iter().map(|s| s.mass_kg).sum::<f64>() / volume_m3
 }
 
-/// Lacey's index (Lacey 1954) of the mixture of two sets in a region, 0 for sets apart and 1 for a random
-/// mixture: (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the first
-/// set among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a random
-/// mixture, sr^2 = s0^2 / n, for the mean number n of spheres in a cell. NaN if the region has
-/// nothing of one of them, or no more than one sphere in each cell. Spheres count where their centres are.
+/// Lacey's index (Lacey 1954) of the mixture of two sets in a region, 0 for sets apart and 1 for a
+/// random mixture: (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the
+/// first set among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a
+/// random mixture, sr^2 = s0^2 / n, for the mean number n of spheres in a cell. NaN if the region
+/// has nothing of one of them, or no more than one sphere in each cell. Spheres count where their
+/// centres are.
 pub(super) fn lacey_index(sets: [&[Sphere]; 2], region: &Region, cell_m: f64) -> f64 {
     let low = Vector3::from(region.bounds().low);
     let mut cells: BTreeMap<[i64; 3], [f64; 2]> = BTreeMap::new();

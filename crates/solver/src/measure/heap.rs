@@ -65,8 +65,7 @@ pub(super) fn angle_of_repose_deg(spheres: &[spheres::Sphere], up: Vector3<f64>)
 
 /// The spheres, along axes of which one points up.
 fn turned(spheres: &[spheres::Sphere], up: &Vector3<f64>) -> Vec<Sphere> {
-    let aside = up.cross(&Vector3::ith(up.iamin(), 1.0)).normalize();
-    let across = up.cross(&aside);
+    let [aside, across] = spheres::across(up);
     let turned = |sphere: &spheres::Sphere| Sphere {
         mass_kg: sphere.mass_kg,
         radius_m: sphere.radius_m,

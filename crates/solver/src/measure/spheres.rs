@@ -16,6 +16,12 @@ pub(super) struct Sphere {
     pub(super) place_m: Vector3<f64>,
 }
 
+/// Two directions across another and across each other, all of length 1.
+pub(super) fn across(up: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    let aside = up.cross(&Vector3::ith(up.iamin(), 1.0)).normalize();
+    [aside, up.cross(&aside)]
+}
+
 /// All spheres of a set. Those of clumps have the masses that they have as particles.
 pub(super) fn spheres(members: &Members, state: &State) -> Vec<Sphere> {
     let p = &state.particles;

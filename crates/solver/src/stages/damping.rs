@@ -1,8 +1,9 @@
 //! Viscous forces of damped bonds on the particles.
 //!
-//! Velocities are known half a step before the forces (leapfrog). The kick is therefore split (Strang
-//! 1968): half of it by all other forces F, then the decay of velocities by damping alone over the
-//! step, then the other half by F. With the step dt, and G = dt M^-1 C at the present positions,
+//! Velocities are known half a step before the forces (leapfrog). The kick is therefore split
+//! (Strang 1968): half of it by all other forces F, then the decay of velocities by damping alone
+//! over the step, then the other half by F. With the step dt, and G = dt M^-1 C at the present
+//! positions,
 //!
 //!   w = v_(n-1/2) + dt/2 M^-1 F_n,   v_(n+1/2) = R(G) w + dt/2 M^-1 F_n,
 //!
@@ -136,8 +137,8 @@ fn predict(state: &mut State) {
     state.scratch.predicted[0] = predicted;
 }
 
-/// Multiplies impulses of damping by a factor, adds multiples of others, and sets the motions of the
-/// next stage: those predicted, with these impulses.
+/// Multiplies impulses of damping by a factor, adds multiples of others, and sets the motions of
+/// the next stage: those predicted, with these impulses.
 fn go_on<const N: usize>(
     state: &mut State,
     impulses: &mut [Wrench],
@@ -167,8 +168,8 @@ fn go_on<const N: usize>(
     state.scratch.predicted = [start, next];
 }
 
-/// A wrench times a factor, plus multiples of those of particle `i` in lists. What counts 0 times is
-/// not read: it may be of another step.
+/// A wrench times a factor, plus multiples of those of particle `i` in lists. What counts 0 times
+/// is not read: it may be of another step.
 #[inline(always)]
 fn sum<const N: usize>(
     wrench: &Wrench,

@@ -123,7 +123,7 @@ fn next_body(
     };
     let template = &state.clumps.templates[which as usize];
     let region = &state.model.rules.regions[inlet.region];
-    let reach_m = template.reach_m * template.scale.max(1.0);
+    let reach_m = template.largest_reach_m();
     for _ in 0..TRIES {
         come.tries += 1;
         let attempt = come.tries;
@@ -162,7 +162,7 @@ fn next_body(
 
 /// Whether a sphere of a clump touches a wall.
 fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
-    let reach_m = template.reach_m * template.scale.max(1.0);
+    let reach_m = template.largest_reach_m();
     if !wall.bounds_in_space().is_near(&clump.place_m, reach_m) {
         return false;
     }
@@ -207,11 +207,8 @@ struct There {
 impl There {
     /// What is near the region of an inlet.
     fn around(inlet: &Inlet, state: &State) -> Self {
-        let templates = &state.clumps.templates;
-        let reaches = inlet.templates.iter().map(|(of, _)| {
-            let template = &templates[*of as usize];
-            template.reach_m * template.scale.max(1.0)
-        });
+        let fed = inlet.templates.iter();
+        let reaches = fed.map(|(of, _)| state.clumps.templates[*of as usize].largest_reach_m());
         let reach_m = reaches.fold(0.0, f64::max);
         let room = state.model.rules.regions[inlet.region].bounds();
         let free = &state.particles.poses[..state.particles.free];
@@ -219,8 +216,7 @@ impl There {
             .zip(free)
             .filter(|(_, pose)| room.is_near(&pose.place().into(), reach_m + pose.radius_m()));
         let clumps = (0..).zip(&state.clumps.all).filter(|(_, clump)| {
-            let template = state.clumps.template(clump);
-            let own_m = template.reach_m * template.scale.max(1.0);
+            let own_m = state.clumps.template(clump).largest_reach_m();
             room.is_near(&clump.place_m, reach_m + own_m)
         });
         Self {
@@ -243,8 +239,7 @@ fn is_taken(
         (other - place).norm_squared() < (reach_m + reach).powi(2)
     };
     let around = |clump: &Clump| {
-        let template = state.clumps.template(clump);
-        let reach = template.reach_m * template.scale.max(1.0);
+        let reach = state.clumps.template(clump).largest_reach_m();
         near(clump.place_m.into(), reach)
     };
     // Inner spheres of a clump are not in the scene.

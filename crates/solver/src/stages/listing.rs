@@ -199,7 +199,7 @@ fn reached_of(wall: &Wall, contacts: &Contacts, clumps: &Clumps, due: &Due) -> V
     for &at in &due.clumps {
         let (clump, reference) = (&clumps.all[at], &references.clumps[at]);
         let template = clumps.template(clump);
-        let reach_m = template.reach_m * template.scale.max(1.0);
+        let reach_m = template.largest_reach_m();
         let around_m = reach_m + reference.allowance_m + wall.skin_left_m;
         if is_reached(reference.place_m, around_m) {
             some.extend(clumps.spheres_of(clump).map(|i| i as u32));

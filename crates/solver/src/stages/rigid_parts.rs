@@ -107,8 +107,8 @@ pub(super) fn predict_rigid_parts(state: &State, impulses: &[Wrench], predicted:
     }
 }
 
-/// Sums the forces on a part. Each sphere gets the motion of the part, and a wrench that accelerates
-/// it, together with its damping of bonds, as the part is accelerated.
+/// Sums the forces on a part. Each sphere gets the motion of the part, and a wrench that
+/// accelerates it, together with its damping of bonds, as the part is accelerated.
 fn gather(part: &mut RigidPart, particles: &mut Particles, resisting: [&[Wrench]; 2]) {
     let centre = Vector3::from(part.place_m);
     let [viscous, structural] = resisting;

@@ -109,7 +109,7 @@ fn speeds_m_s(state: &State) -> Vec<Option<f64>> {
     }
     for clump in state.clumps.all.iter().filter(|clump| !clump.asleep) {
         let template = state.clumps.template(clump);
-        let reach_m = template.reach_m * template.scale.max(1.0);
+        let reach_m = template.largest_reach_m();
         let turning_m_s = clump.spin_rad_s(template).norm() * reach_m;
         note(clump.cluster, norm(clump.velocity_m_s) + turning_m_s);
     }

@@ -2,8 +2,8 @@
 //!
 //! The force jumps where a mode reverses, so that displacements are of first order in the step
 //! whichever velocities decide on its sign. With those of half a step ago the limit of the step is
-//! exact: in the fastest mode at its limit, x, -x, x, they oppose the force, while those at the time
-//! of the forces nearly vanish, and slower modes decide.
+//! exact: in the fastest mode at its limit, x, -x, x, they oppose the force, while those at the
+//! time of the forces nearly vanish, and slower modes decide.
 
 use nalgebra::Vector3;
 

@@ -175,8 +175,16 @@ pub(super) fn predict_held(state: &State, bar_s: f64, predicted: &mut [Motion]) 
             _ => [None; 6],
         };
         for (k, hold) in support.holds.iter().enumerate() {
-            if let (SupportPhase::Holds, Some(Hold::Bar { .. })) = (phase, hold) {
-                predict_bar(support, [state.time_s, bar_s], k, predicted);
+            if let (
+                SupportPhase::Holds,
+                Some(Hold::Bar {
+                    impedance_n_s_m,
+                    incident_m_s,
+                }),
+            ) = (phase, hold)
+            {
+                let wave_m_s = incident_m_s * factor_at(&support.factor, state.time_s);
+                predict_bar(support, k, [bar_s * impedance_n_s_m, wave_m_s], predicted);
             }
         }
         let is_bar = |k: usize| matches!(support.holds[k], Some(Hold::Bar { .. }));
@@ -200,28 +208,19 @@ pub(super) fn predict_held(state: &State, bar_s: f64, predicted: &mut [Motion]) 
 }
 
 /// Gives the particles at the end of a bar their common velocity along axis `k`, after the bar has
-/// acted on them for a time.
+/// acted on them. `impulse`: its impedance times the time for which it has, kg.
 fn predict_bar(
     support: &GroupSupport,
-    [time_s, bar_s]: [f64; 2],
     k: usize,
+    [impulse, wave_m_s]: [f64; 2],
     predicted: &mut [Motion],
 ) {
-    let Some(Hold::Bar {
-        impedance_n_s_m,
-        incident_m_s,
-    }) = support.holds[k]
-    else {
-        return;
-    };
     let (mut mass_kg, mut momentum) = (0.0, 0.0);
     for held in &support.held {
         let motion = &predicted[held.particle as usize];
         mass_kg += 1.0 / motion.inverse_mass;
         momentum += motion.velocity_m_s[k] / motion.inverse_mass;
     }
-    let wave_m_s = incident_m_s * factor_at(&support.factor, time_s);
-    let impulse = bar_s * impedance_n_s_m;
     let now_m_s = (momentum + 2.0 * impulse * wave_m_s) / (mass_kg + impulse);
     for held in &support.held {
         predicted[held.particle as usize].velocity_m_s[k] = now_m_s;

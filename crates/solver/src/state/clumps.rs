@@ -102,6 +102,14 @@ pub struct Template {
     pub bonds_of_file: Vec<u32>,
 }
 
+impl Template {
+    /// Largest distance of a point from the centre of mass, as a clump or as the cluster that it
+    /// can become, m.
+    pub(crate) fn largest_reach_m(&self) -> f64 {
+        self.reach_m * self.scale.max(1.0)
+    }
+}
+
 /// A rigid clump. Like those of particles, velocity and angular momentum are half a step before or
 /// after its position.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

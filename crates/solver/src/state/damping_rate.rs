@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 use super::bonds::Bonds;
 use super::particles::{Motion, Particles};
 
-/// Bonds may become longer by so much, and change their directions as much, before the rate is found
-/// again.
+/// Bonds may become longer by so much, and change their directions as much, before the rate is
+/// found again.
 const MORE: f64 = 1.05;
 
 /// An upper bound of the largest eigenvalue of the viscous damping of bonds over mass, 1/s; 0

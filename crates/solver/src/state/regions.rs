@@ -45,10 +45,8 @@ impl Region {
                 to_m,
                 radius_m,
             } => {
-                let axis = Vector3::from(*to_m) - Vector3::from(*from_m);
-                let way = Vector3::from(point_m) - Vector3::from(*from_m);
-                let along = way.dot(&axis) / axis.norm_squared();
-                (0.0..=1.0).contains(&along) && (way - along * axis).norm() <= *radius_m
+                let [along, apart_m] = beside_axis([*from_m, *to_m], point_m);
+                (0.0..=1.0).contains(&along) && apart_m <= *radius_m
             }
             Self::Inside(triangles, bounds) => {
                 is_in(bounds, point_m) && turns(triangles, &point_m.into()) > 0.5
@@ -71,14 +69,13 @@ impl Region {
 
     /// Whether its border may cut a ball, m: false only for balls wholly inside or outside.
     pub fn cuts(&self, place_m: [f64; 3], ball_m: f64) -> bool {
-        let place = Vector3::from(place_m);
         match self {
             Self::Box(Bounds { low, high }) => (0..3).any(|k| {
                 let ends = [low[k] - place_m[k], high[k] - place_m[k]];
                 ends.iter().any(|end| end.abs() < ball_m)
             }),
             Self::Sphere { centre_m, radius_m } => {
-                let apart_m = (place - Vector3::from(*centre_m)).norm();
+                let apart_m = (Vector3::from(place_m) - Vector3::from(*centre_m)).norm();
                 (apart_m - radius_m).abs() < ball_m
             }
             Self::Cylinder {
@@ -86,14 +83,15 @@ impl Region {
                 to_m,
                 radius_m,
             } => {
-                let axis = Vector3::from(*to_m) - Vector3::from(*from_m);
-                let (length_m, along) = (axis.norm(), axis.normalize());
-                let way = place - Vector3::from(*from_m);
-                let height_m = way.dot(&along);
-                let apart_m = (way - height_m * along).norm();
-                [height_m, height_m - length_m, apart_m - radius_m]
-                    .iter()
-                    .any(|left| left.abs() < ball_m)
+                let [along, apart_m] = beside_axis([*from_m, *to_m], place_m);
+                let length_m = (Vector3::from(*to_m) - Vector3::from(*from_m)).norm();
+                [
+                    along * length_m,
+                    (along - 1.0) * length_m,
+                    apart_m - radius_m,
+                ]
+                .iter()
+                .any(|left| left.abs() < ball_m)
             }
             Self::Inside(triangles, _) => triangles.iter().any(|corners| {
                 let near = Bounds::of(*corners);
@@ -133,6 +131,15 @@ impl Region {
         let point = [0, 1, 2].map(|k| low[k] + fraction[k] * (high[k] - low[k]));
         self.contains(point).then_some(point)
     }
+}
+
+/// Where a point is beside an axis from one end, m, to the other: the fraction of the way along it,
+/// and the distance from it, m.
+fn beside_axis([from_m, to_m]: [[f64; 3]; 2], point_m: [f64; 3]) -> [f64; 2] {
+    let axis = Vector3::from(to_m) - Vector3::from(from_m);
+    let way = Vector3::from(point_m) - Vector3::from(from_m);
+    let along = way.dot(&axis) / axis.norm_squared();
+    [along, (way - along * axis).norm()]
 }
 
 fn is_in(bounds: &Bounds, point: [f64; 3]) -> bool {

@@ -22,8 +22,8 @@ pub struct Scratch {
     /// Motions of the free particles at the time of their poses without damping of bonds, and in a
     /// stage of it. Length 0 or free particles.
     pub predicted: [Vec<Motion>; 2],
-    /// Impulses of the damping of bonds after the last stage but one and the last, N s and N m s; its
-    /// forces in the first stage, N and N m. Length as `bond_resistance`.
+    /// Impulses of the damping of bonds after the last stage but one and the last, N s and N m s;
+    /// its forces in the first stage, N and N m. Length as `bond_resistance`.
     pub damping_stages: [Vec<Wrench>; 3],
     /// For each chunk of free particles the distance that the fastest of them moved in the last
     /// drift, m.

@@ -27,8 +27,8 @@ const REST_STEP_S: f64 = 0.05;
 /// oscillate about the elongation at which the bond holds them on their circle, up to twice that.
 /// With damping, they reach it, and the dashpot along the bond carries nothing. That state is known
 /// in closed form as leapfrog steps it: a rotation by theta in each step needs the force
-/// 2 (1 - cos theta) m r/dt^2 and has the angular momentum m r^2 sin(theta)/dt about the centre. The
-/// spheres turn by theta as well, with the speed r theta/dt at the contact point, and the shear
+/// 2 (1 - cos theta) m r/dt^2 and has the angular momentum m r^2 sin(theta)/dt about the centre.
+/// The spheres turn by theta as well, with the speed r theta/dt at the contact point, and the shear
 /// spring holds against the dashpot of the difference.
 ///
 /// # Errors

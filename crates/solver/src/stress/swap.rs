@@ -173,8 +173,8 @@ impl Block {
         let top_m = height_m + 2.0 * (RADIUS_M * scale + gap_m);
         let tensile_pa = STRENGTHS_PA[usize::from(self.is_tilted)];
         let shear_pa = 2.0 * tensile_pa;
-        // What a restored cluster loses is known as well as leapfrog knows the energy of its fastest
-        // motions: to (w dt)^2/4 of it. So is what contacts and broken bonds take.
+        // What a restored cluster loses is known as well as leapfrog knows the energy of its
+        // fastest motions: to (w dt)^2/4 of it. So is what contacts and broken bonds take.
         let fraction = if self.restores { 0.2 } else { 0.45 };
         let mut scene = format!(
             "version = 1

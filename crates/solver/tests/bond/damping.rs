@@ -280,7 +280,8 @@ fn grows(k: &DMatrix<f64>, c: &DMatrix<f64>) -> bool {
 }
 
 /// The largest stable step of a network whose damping is not proportional to its stiffness is that
-/// without damping, 2 over the root of the largest eigenvalue of M^-1 K, however strong the damping.
+/// without damping, 2 over the root of the largest eigenvalue of M^-1 K, however strong the
+/// damping.
 #[test]
 fn a_damped_chain_is_stable_up_to_the_undamped_limit() {
     let pair = pair_of_steel();

@@ -170,8 +170,8 @@ fn a_row_between_two_bars() {
     }
 }
 
-/// A row that breaks has a strength and a dynamic increase factor; a run that was cut in two goes on
-/// to the same bits.
+/// A row that breaks has a strength and a dynamic increase factor; a run that was cut in two goes
+/// on to the same bits.
 #[test]
 fn a_row_that_breaks_is_the_same_after_a_break_of_the_run() {
     let bench = Bench::new();
@@ -195,8 +195,8 @@ fn a_row_that_breaks_is_the_same_after_a_break_of_the_run() {
     };
     go(&["--set", "run.end_time=\"30 us\""]);
     let resumed = go(&["--resume"]);
-    // Rows of the test stand as far apart as the end of the run says, so that figures read from them
-    // differ; the run itself does not.
+    // Rows of the test stand as far apart as the end of the run says, so that figures read from
+    // them differ; the run itself does not.
     for part in ["steps", "balance", "broken_bonds", "fragments"] {
         assert_eq!(resumed[part], whole[part], "{part}");
     }

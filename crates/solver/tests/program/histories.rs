@@ -170,13 +170,7 @@ fn plastic_bending_turns_with_the_body() {
             &pair(&turned(axis, degrees), ELASTIC_PLASTIC, fixed),
         );
         let plastic = state.bonds.plastics[0];
-        let entry: Vec<f64> = axis
-            .trim_matches(['[', ']'])
-            .split(", ")
-            .map(|x| x.parse().unwrap())
-            .collect();
-        let about = nalgebra::Unit::new_normalize(Vector3::from_row_slice(&entry));
-        let rotation = nalgebra::UnitQuaternion::from_axis_angle(&about, degrees.to_radians());
+        let rotation = rotation(axis, degrees);
         // The particle that is first in the file may be the second of the bond.
         let along = Vector3::from(state.bonds.blocks[0].direction.map(|column| column[0]));
         let sign = (rotation * Vector3::x()).dot(&along).signum();
@@ -213,6 +207,17 @@ fn plastic_bending_turns_with_the_body() {
     assert!(on > 1.2 * back, "{on} {back}");
 }
 
+/// The rotation of a body [`turned`] like this.
+fn rotation(axis: &str, degrees: f64) -> nalgebra::UnitQuaternion<f64> {
+    let entries: Vec<f64> = axis
+        .trim_matches(['[', ']'])
+        .split(", ")
+        .map(|x| x.parse().unwrap())
+        .collect();
+    let about = nalgebra::Unit::new_normalize(Vector3::from_row_slice(&entries));
+    nalgebra::UnitQuaternion::from_axis_angle(&about, degrees.to_radians())
+}
+
 const JOINT: &str = "model = \"flat-joint\", radial_elements = 2, circumferential_elements = 9, failure = { tensile_strength = 1e5, cohesion = 1e6, friction_angle = 0 }";
 
 /// Bends a flat joint until some of its elements have failed, and returns the body.
@@ -234,13 +239,7 @@ fn failed_elements_turn_with_the_body() {
     for (axis, degrees) in TURNS {
         let state = state(&bench, &pair(&turned(axis, degrees), JOINT, "fixed = true"));
         let joint = &state.bonds.joints[0];
-        let entry: Vec<f64> = axis
-            .trim_matches(['[', ']'])
-            .split(", ")
-            .map(|x| x.parse().unwrap())
-            .collect();
-        let about = nalgebra::Unit::new_normalize(Vector3::from_row_slice(&entry));
-        let rotation = nalgebra::UnitQuaternion::from_axis_angle(&about, degrees.to_radians());
+        let rotation = rotation(axis, degrees);
         let gone = joint.elements.iter().filter(|element| !element.is_bonded);
         let middle: Vector3<f64> = gone.map(|element| Vector3::from(element.place_m)).sum();
         let middle = rotation.inverse() * middle;

@@ -50,8 +50,8 @@ fn undamped_limits_are_those_of_the_reference() {
     }
 }
 
-/// Largest eigenvalue of the damping of bonds over mass, 1/s, by power iteration over the bonds, one
-/// by one.
+/// Largest eigenvalue of the damping of bonds over mass, 1/s, by power iteration over the bonds,
+/// one by one.
 fn damping_1_s(state: &State) -> f64 {
     let (bonds, p) = (&state.bonds, &state.particles);
     let root = |i: usize, k: usize| {

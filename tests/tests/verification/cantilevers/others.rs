@@ -61,7 +61,8 @@ fn elongation(ratio: f64) -> Case {
 
 /// The top of a triangle of touching spheres, whose other two are held, under a load along x or y.
 /// Pins turn freely, but slide with the stiffness k_s = k_n/(2 (1 + nu)): down, the top is held by
-/// 2 (k_n sin^2 60 + k_s cos^2 60); across, it turns until no pin slides, and 2 k_n cos^2 60 is left.
+/// 2 (k_n sin^2 60 + k_s cos^2 60); across, it turns until no pin slides, and 2 k_n cos^2 60 is
+/// left.
 fn triangle(axis: usize) -> Case {
     let height_m = 3.0_f64.sqrt() * RADIUS_M;
     let load_n = STRAIN * YOUNG_PA * PI * RADIUS_M * RADIUS_M;

@@ -20,9 +20,9 @@ const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
 /// their places, and what is left only has to decay.
 const LAST_DAMPING: f64 = 0.1;
 const NEARLY_DONE: f64 = 0.03;
-/// Fraction of its radius that a sphere moves at the wall until it is measured again: a plane stands
-/// for the wall for so long, until and after overlaps are nearly done. At an edge the distance is
-/// off by half the square of this at most.
+/// Fraction of its radius that a sphere moves at the wall until it is measured again: a plane
+/// stands for the wall for so long, until and after overlaps are nearly done. At an edge the
+/// distance is off by half the square of this at most.
 const PLANE_LASTS: [f64; 2] = [0.1, 0.02];
 /// Velocity that a unit of force gives per step to a sphere of few neighbours; 1.5 times this value
 /// makes the dynamics unstable.

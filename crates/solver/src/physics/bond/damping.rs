@@ -153,8 +153,8 @@ pub(crate) fn relative_motion<T: Number>(
     }
 }
 
-/// `along` times the part of a vector along a bond plus `across` times the rest; `per_square` is one
-/// over the square of the length of the bond.
+/// `along` times the part of a vector along a bond plus `across` times the rest; `per_square` is
+/// one over the square of the length of the bond.
 #[inline(always)]
 fn split<T: Number>(
     along: T,

@@ -12,8 +12,8 @@ use super::{Linearised, linearised};
 use crate::physics::number::Number;
 use serde::Serialize;
 
-/// Rounds that find the overlap of an impact with a liquid bridge, each of which at least halves the
-/// logarithm of what is off.
+/// Rounds that find the overlap of an impact with a liquid bridge, each of which at least halves
+/// the logarithm of what is off.
 const ROUNDS: usize = 40;
 
 /// Normal law of a pair of materials.
@@ -105,8 +105,9 @@ impl ContactKind {
         law.normal_n_m(overlap_m.max(0.0), effective_radius_m)
     }
 
-    /// Largest overlap of an impact at a speed, m/s, without damping, m. The work of a liquid bridge,
-    /// which pulls with its largest force while the ends overlap, adds to the kinetic energy.
+    /// Largest overlap of an impact at a speed, m/s, without damping, m. The work of a liquid
+    /// bridge, which pulls with its largest force while the ends overlap, adds to the kinetic
+    /// energy.
     pub fn overlap_at_impact_m(
         &self,
         effective_radius_m: f64,

@@ -1,8 +1,8 @@
 //! Pendular liquid bridges: two wet ends that have touched are pulled together by the surface
 //! tension of the liquid between them, until the bridge ruptures.
 //!
-//! - Willett et al. 2000, eq. 12: F = 2 pi R gamma cos(theta)/(1 + 1.05 x + 2.5 x^2), with the gap s
-//!   of the surfaces and x = s sqrt(R/V) (there 2.1 and 10, for half the gap). It fits their
+//! - Willett et al. 2000, eq. 12: F = 2 pi R gamma cos(theta)/(1 + 1.05 x + 2.5 x^2), with the gap
+//!   s of the surfaces and x = s sqrt(R/V) (there 2.1 and 10, for half the gap). It fits their
 //!   numerical solutions for small volumes, V/R^3 up to about 0.001.
 //! - R is Derjaguin's radius 2 R_a R_b/(R_a + R_b) = 2 R*; at a wall twice that of the sphere.
 //! - Ends that overlap attract each other as at a gap of 0: F = 4 pi R* gamma cos(theta).

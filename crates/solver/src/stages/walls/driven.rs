@@ -7,9 +7,9 @@ use crate::state::walls::Wall;
 /// Velocity of the end of a bar along `direction` in the coming step of `dt`, s.
 ///
 /// In a bar of impedance Z the incident wave moves particles at `wave_m_s` = v_I, the reflected one
-/// at v - v_I, and the force at the end is F = Z v_I - Z (v - v_I) = Z (2 v_I - v). The transmission
-/// bar, with v_I = 0 and `direction` away from the body, gives F = -Z v, that is Z v against the
-/// body.
+/// at v - v_I, and the force at the end is F = Z v_I - Z (v - v_I) = Z (2 v_I - v). The
+/// transmission bar, with v_I = 0 and `direction` away from the body, gives F = -Z v, that is Z v
+/// against the body.
 ///
 /// With the force of this moment, v = 2 v_I - F/Z would make a particle on a spring k unstable from
 /// k dt = 2 Z on. So the force includes its change by the change of velocity, k dt (v - v')/2 with
