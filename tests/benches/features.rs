@@ -9,18 +9,23 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+mod page;
+
 use dem_io::Body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::stages::bonds::BONDS;
-use dem_run::stages::breakage::{FAILURE, RATES, SCATTER};
+use dem_run::stages::breakage::{FAILURE, FRICTION, RATES, SCATTER};
 use dem_run::stages::contacts::CONTACTS;
 use dem_run::stages::damping::BOND_DAMPING;
+use dem_run::stages::flat_joints::FLAT_JOINTS;
 use dem_run::stages::incremental::HISTORIES;
 use dem_run::stages::loads::LOADS;
 use dem_run::stages::motion::{GRAVITY, PARTICLE_DAMPING};
+use dem_run::stages::plasticity::PLASTICITY;
 use dem_run::stages::stage::Stage;
+use dem_run::stages::structural::STRUCTURAL_DAMPING;
 use dem_run::stages::supports::SUPPORTS;
 use dem_run::stages::walls::WALLS;
 use dem_run::state::State;
@@ -60,7 +65,7 @@ const CASE: Case = Case {
 const MEETS: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0.3 }\n";
 const FLOOR: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0.3 }\n[walls.floor]\nplane = { point = [0, 0, -1e-4], normal = [0, 0, 1] }\nmaterial = \"stuff\"\n";
 
-const CASES: [Case; 12] = [
+const CASES: [Case; 17] = [
     CASE,
     Case {
         name: "bond history",
@@ -75,9 +80,41 @@ const CASES: [Case; 12] = [
         ..CASE
     },
     Case {
+        name: "structural damping",
+        stage: STRUCTURAL_DAMPING,
+        bonds: "damping = { structural_damping = 0.1 }",
+        ..CASE
+    },
+    Case {
+        name: "elasto-plastic bonds",
+        stage: PLASTICITY,
+        bonds: "plasticity = { normal_yield_strength = 1e12, bending_yield_strength = 1e12 }",
+        ..CASE
+    },
+    Case {
+        name: "flat joints, 2 x 6 elements",
+        stage: FLAT_JOINTS,
+        bonds: "model = \"flat-joint\"\nradial_elements = 2\ncircumferential_elements = 6\nfailure = { tensile_strength = 1e12 }",
+        ..CASE
+    },
+    Case {
         name: "failure",
         stage: FAILURE,
         bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\" }",
+        ..CASE
+    },
+    Case {
+        name: "fracture energy",
+        beside: "failure",
+        stage: FAILURE,
+        bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\", fracture_energy = 1e12 }",
+        ..CASE
+    },
+    Case {
+        name: "friction of bonds",
+        beside: "failure",
+        stage: FRICTION,
+        bonds: "failure = { cohesion = 1e12, friction_angle = \"35 deg\" }",
         ..CASE
     },
     Case {
@@ -192,17 +229,18 @@ fn main() {
             times.push(time_ns(state));
         }
     }
-    println!(
-        "A free, turning body of {} particles and {} bonds on one thread: {:.3} ms per step, {:.1} ns per bond.\n",
+    let mut table = Table::new();
+    table.row(&format!(
+        "A free, rotating body of {} particles and {} bonds on one thread: {:.3} ms per step, {:.1} ns per bond.\n",
         states[0].particles.len(),
         states[0].bonds.len(),
         1e-6 * median(times[0].clone()),
         median(times[0].clone()) / states[0].bonds.len() as f64,
-    );
-    println!(
+    ));
+    table.row(
         "| feature | compared with | when absent: items, bytes | when present: items per step | bytes per item | ns per item | step |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    table.row("|---|---|---|---|---|---|---|");
     for (at, case) in CASES.iter().enumerate().skip(1) {
         let beside = CASES.iter().position(|other| other.name == case.beside);
         let base = beside.expect("one of the cases");
@@ -221,7 +259,7 @@ fn main() {
             states[base].scratch.clock.done(number_of(&case.stage)),
             (case.stage.bytes)(&states[base]) as u64,
         ];
-        println!(
+        table.row(&format!(
             "| {} | {} | {}, {} | {items:.0} | {} | {} | {ratio:.2} |",
             case.name,
             case.beside,
@@ -237,8 +275,9 @@ fn main() {
             } else {
                 "-".to_owned()
             },
-        );
+        ));
     }
+    table.write("features");
 }
 
 /// The bending sample of spheres of these diameters.

@@ -105,6 +105,9 @@ pub struct State {
     pub previous_time_step_s: f64,
     /// Upper bound of the largest eigenvalue of the viscous damping of bonds over mass, 1/s.
     pub damping_rate_1_s: f64,
+    /// Viscous damping forces of bonds in the last step, one for each free particle. Empty: no bond
+    /// has any.
+    pub bond_resistance: Vec<Wrench>,
     /// Largest speed of a particle in the previous step, plus that of a wall if there are contacts,
     /// m/s.
     pub fastest_m_s: f64,
@@ -155,6 +158,7 @@ impl State {
             time_step_s,
             previous_time_step_s: 0.0,
             damping_rate_1_s: 0.0,
+            bond_resistance: Vec::new(),
             fastest_m_s: 0.0,
             broken_count: 0,
             broken_by_cause: CauseCounts::default(),
@@ -182,9 +186,15 @@ impl State {
         let structural = any(|rule| rule.structural_damping > 0.0);
         let structural = if structural { free } else { 0 };
         self.damping_rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
+        self.bond_resistance = vec![Wrench::default(); damped];
         let scratch = &mut self.scratch;
-        scratch.bond_resistance = vec![Wrench::default(); damped];
         scratch.structural_resistance = vec![Wrench::default(); structural];
+        scratch.bond_counts = vec![0; structural];
+        if structural > 0 {
+            for &end in self.bonds.ends.as_flattened() {
+                scratch.bond_counts[end as usize] += 1;
+            }
+        }
         scratch.damping_stages = std::array::from_fn(|_| vec![Wrench::default(); damped]);
         let is_damped = self.model.particle_damping > 0.0;
         let resistances = if is_damped { self.particles.len() } else { 0 };
@@ -195,7 +205,7 @@ impl State {
     /// one for each particle, or empty.
     pub(crate) fn resistances(&self) -> [&[Wrench]; 3] {
         [
-            &self.scratch.bond_resistance,
+            &self.bond_resistance,
             &self.scratch.structural_resistance,
             &self.scratch.particle_resistance,
         ]
@@ -263,8 +273,13 @@ impl State {
         self.rigid_parts.number(self.particles.free, &self.bonds);
         // Bonds that broke since it was found still count.
         let damping_rate_1_s = self.damping_rate_1_s;
+        let bond_resistance = std::mem::take(&mut self.bond_resistance);
         self.divide();
         self.damping_rate_1_s = damping_rate_1_s;
+        if bond_resistance.len() != self.bond_resistance.len() {
+            return None;
+        }
+        self.bond_resistance = bond_resistance;
         self.particles.wrenches = vec![Wrench::default(); self.particles.len()];
         if let Some(clusters) = &mut self.clusters {
             clusters.rebuild(&self.bonds)?;

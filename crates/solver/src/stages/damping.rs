@@ -11,11 +11,24 @@
 //! ([`Chebyshev`]), as many as keep R between 0 and 1. The error is of second order in the step in
 //! any network of bonds, damping only ever takes energy, and each stage keeps momenta.
 //!
-//! With symmetric K and C the scheme is stable up to the same step as without damping of bonds:
+//! Where damping is weak, one stage is enough: that of velocities at the time of the forces,
+//!
+//!   D_n = -C (v_(n-1/2) + dt/2 M^-1 (F_n + D_(n-1))),
+//!
+//! predicted with the damping of the last step, which is of second order too.
+//!
+//! **Stability.** With symmetric K and C the scheme is stable up to the same step as without damping of bonds:
 //! with B = (1 + R)/2 and A = dt^2 M^-1 K, z^n u is a solution if (z - 1)^2 B^-1 u + z A u +
 //! 2 (z - 1) (B^-1 - 1) u = 0. With the quadratic forms a of A and b of B^-1 in u, of norm 1,
 //! b z^2 + (a - 2) z + 2 - b = 0: |z| is at most 1 if b is at least 1 and a at most 4, and z = -1
-//! where A has the eigenvalue 4. Dashpots of contacts, which F contains with the velocity of half a
+//! where A has the eigenvalue 4. With one stage, z^n u is a solution only if a equals minus a mean
+//! over the eigenvalues g of G, with weights of u, of
+//!
+//!   f(z, g) = (z - 1) (2 z^2 + (3 g - 2) z - g) / (z (2 z + g - z g)).
+//!
+//! For g below 1, f has no pole outside the unit circle, and its imaginary part has the sign of that
+//! of z there, as it has on the circle (where it is at least g |Im z|); for real z it is positive
+//! beyond 1 and below -4 beyond -1. So a between 0 and 4 leaves no z outside. Dashpots of contacts, which F contains with the velocity of half a
 //! step ago, change the last condition alone: see [`crate::check::limit`].
 
 use rayon::prelude::*;
@@ -30,10 +43,13 @@ use super::supports::predict_held;
 use crate::physics::chebyshev::Chebyshev;
 use crate::state::State;
 use crate::state::particles::{Motion, Wrench};
-use crate::state::scratch::Scratch;
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const BOND_DAMPING_NS: f64 = 19.3;
+
+/// Largest eigenvalue of G up to which damping takes one stage. It is stable below 1; here the
+/// fastest decay, 0.64 in a step, is still near exp(-1/2) = 0.61.
+pub const WEAK: f64 = 0.5;
 
 /// Damping of bonds.
 pub const BOND_DAMPING: Stage = Stage {
@@ -47,20 +63,14 @@ pub const BOND_DAMPING: Stage = Stage {
         )
     },
     bytes: |state| {
-        let Scratch {
-            bond_resistance,
-            damping_stages,
-            predicted,
-            ..
-        } = &state.scratch;
-        let stages = damping_stages.iter().map(|stage| size_of_val(&stage[..]));
+        if state.bond_resistance.is_empty() {
+            return size_of_val(&state.bonds.damping[..]);
+        }
+        let stages = state.scratch.damping_stages.iter();
         size_of_val(&state.bonds.damping[..])
-            + size_of_val(&bond_resistance[..])
-            + stages.sum::<usize>()
-            + predicted
-                .iter()
-                .map(|motions| size_of_val(&motions[..]))
-                .sum::<usize>()
+            + size_of_val(&state.bond_resistance[..])
+            + stages.map(|stage| size_of_val(&stage[..])).sum::<usize>()
+            + bytes_of_predicted(state)
     },
     saving: |state| {
         let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
@@ -72,16 +82,35 @@ pub const BOND_DAMPING: Stage = Stage {
     },
 };
 
+/// Memory of predicted motions.
+pub(super) fn bytes_of_predicted(state: &State) -> usize {
+    let predicted = state.scratch.predicted.iter();
+    predicted.map(|motions| size_of_val(&motions[..])).sum()
+}
+
 /// Sets the damping forces of bonds: those that, over the kick, have the impulse of its damping.
 /// Returns the number of bonds computed, in one stage.
 pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
-    if state.scratch.bond_resistance.is_empty() {
+    if state.bond_resistance.is_empty() {
         return 0;
     }
+    if state.kick_s() * state.damping_rate_1_s <= WEAK {
+        predict(state, Prediction::AsDampedBefore);
+        let mut force = std::mem::take(&mut state.bond_resistance);
+        damp(state, 0, &mut force);
+        state.bond_resistance = force;
+    } else {
+        damp_in_stages(state);
+    }
+    let partitions = state.scratch.partitions.iter();
+    partitions.map(|partition| partition.computed.damped).sum()
+}
+
+fn damp_in_stages(state: &mut State) {
     let kick_s = state.kick_s();
     let stages = Chebyshev::covering(kick_s * state.damping_rate_1_s);
-    predict(state);
-    let mut force = std::mem::take(&mut state.scratch.bond_resistance);
+    predict(state, Prediction::Undamped);
+    let mut force = std::mem::take(&mut state.bond_resistance);
     let [mut before, mut now, mut first] = std::mem::take(&mut state.scratch.damping_stages);
     damp(state, 0, &mut first);
     go_on(state, &mut now, 0.0, [(stages.first * kick_s, &first)]);
@@ -110,19 +139,30 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
             });
         }
     }
-    state.scratch.bond_resistance = force;
+    state.bond_resistance = force;
     state.scratch.damping_stages = [before, now, first];
-    let partitions = state.scratch.partitions.iter();
-    partitions.map(|partition| partition.computed.damped).sum()
 }
 
-/// Predicts the motions of the free particles at the time of their poses, without damping of bonds.
-fn predict(state: &mut State) {
+/// Which viscous damping of bonds a prediction counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Prediction {
+    /// None.
+    Undamped,
+    /// That of the last step.
+    AsDampedBefore,
+}
+
+/// Predicts the motions of the free particles at the time of their poses.
+pub(super) fn predict(state: &mut State, prediction: Prediction) {
     let half_s = 0.5 * state.previous_time_step_s;
     let mut predicted = std::mem::take(&mut state.scratch.predicted[0]);
     let p = &state.particles;
-    let [_, structural, on_particles] = state.resistances();
-    let resisting = [&[], structural, on_particles];
+    let [viscous, structural, on_particles] = state.resistances();
+    let viscous = match prediction {
+        Prediction::Undamped => &[],
+        Prediction::AsDampedBefore => viscous,
+    };
+    let resisting = [viscous, structural, on_particles];
     let forces = Forces::of(p, resisting, state.model.gravity_m_s2, half_s);
     predicted.resize(p.free, Motion::default());
     let chunks = predicted.par_chunks_mut(CHUNK).enumerate();
@@ -133,7 +173,7 @@ fn predict(state: &mut State) {
         });
     });
     predict_held(state, half_s, &mut predicted);
-    predict_rigid_parts(state, &[], &mut predicted);
+    predict_rigid_parts(state, viscous, &[], &mut predicted);
     state.scratch.predicted[0] = predicted;
 }
 
@@ -164,7 +204,7 @@ fn go_on<const N: usize>(
         });
     });
     predict_held(state, 0.0, &mut next);
-    predict_rigid_parts(state, impulses, &mut next);
+    predict_rigid_parts(state, &[], impulses, &mut next);
     state.scratch.predicted = [start, next];
 }
 

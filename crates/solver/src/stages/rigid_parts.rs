@@ -41,7 +41,7 @@ pub(crate) const RIGID_PARTS: Stage = Stage {
 pub(crate) fn gather_rigid_parts(state: &mut State) -> usize {
     take_broken_impulses(state);
     let scratch = &state.scratch;
-    let resisting = [&scratch.bond_resistance[..], &scratch.structural_resistance];
+    let resisting = [&state.bond_resistance[..], &scratch.structural_resistance];
     let particles = &mut state.particles;
     for part in &mut state.rigid_parts.all {
         gather(part, particles, resisting);
@@ -87,14 +87,20 @@ fn forces_on(part: &RigidPart, poses: &[Pose], lists: [&[Wrench]; 3]) -> [Vector
 }
 
 /// Gives the spheres of rigid parts the motions of the parts at the time of their poses: predicted
-/// from the forces without viscous damping, and these impulses, one for each particle, or none.
-pub(super) fn predict_rigid_parts(state: &State, impulses: &[Wrench], predicted: &mut [Motion]) {
+/// from the forces with this viscous damping of bonds, and these impulses; each one for each
+/// particle, or none.
+pub(super) fn predict_rigid_parts(
+    state: &State,
+    viscous: &[Wrench],
+    impulses: &[Wrench],
+    predicted: &mut [Motion],
+) {
     let half_s = 0.5 * state.previous_time_step_s;
     let gravity = Vector3::from(state.model.gravity_m_s2);
     let (poses, wrenches) = (&state.particles.poses, &state.particles.wrenches);
     for part in &state.rigid_parts.all {
         let structural = &state.scratch.structural_resistance[..];
-        let [force, torque] = forces_on(part, poses, [wrenches, structural, &[]]);
+        let [force, torque] = forces_on(part, poses, [wrenches, structural, viscous]);
         let [push, twist] = forces_on(part, poses, [impulses, &[], &[]]);
         let velocity = half_s * (force / part.mass_kg + gravity) + push / part.mass_kg;
         let angular = half_s * torque + twist;

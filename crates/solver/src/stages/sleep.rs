@@ -227,7 +227,7 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
                 [p.poses[i].place().into(), motion.velocity_m_s, own],
             );
             let resisting = [
-                &mut state.scratch.bond_resistance,
+                &mut state.bond_resistance,
                 &mut state.scratch.structural_resistance,
                 &mut state.scratch.particle_resistance,
             ];

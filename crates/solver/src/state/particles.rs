@@ -84,7 +84,7 @@ impl Motion {
 }
 
 /// Force and torque on a particle.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[repr(align(64))]
 pub struct Wrench {
     /// Force, N: x, y, z and an unused fourth number.

@@ -13,17 +13,18 @@ pub struct Scratch {
     pub threads: usize,
     /// Division of particles and bonds among threads.
     pub partitions: Vec<Partition>,
-    /// Viscous damping forces of bonds. Empty: no bond has any.
-    pub bond_resistance: Vec<Wrench>,
     /// Structural damping forces of bonds. Empty: no bond has any.
     pub structural_resistance: Vec<Wrench>,
+    /// The number of bonds of each free particle, broken ones included. Empty: no bond has
+    /// structural damping.
+    pub bond_counts: Vec<u32>,
     /// Damping forces on particles. Empty: none.
     pub particle_resistance: Vec<Wrench>,
     /// Motions of the free particles at the time of their poses without damping of bonds, and in a
     /// stage of it. Length 0 or free particles.
     pub predicted: [Vec<Motion>; 2],
     /// Impulses of the damping of bonds after the last stage but one and the last, N s and N m s;
-    /// its forces in the first stage, N and N m. Length as `bond_resistance`.
+    /// its forces in the first stage, N and N m. Length as [`super::State::bond_resistance`].
     pub damping_stages: [Vec<Wrench>; 3],
     /// For each chunk of free particles the distance that the fastest of them moved in the last
     /// drift, m.

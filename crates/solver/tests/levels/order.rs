@@ -42,7 +42,8 @@ fn error(text: &str, steps: u32, damping_ratio: f64) -> (f64, Vec<u8>) {
 }
 
 /// Half the step, a quarter of the error. The hard pair has the level 0, and 1 and 2 with smaller
-/// steps; so has the soft one while it is near.
+/// steps; so has the soft one while it is near: its steps then are the same in all runs, so that
+/// where they change the error of damping may fall a little faster.
 fn has_second_order(text: &str, is_near_first: bool, damping_ratio: f64) {
     let errors = [0, 1, 2].map(|halved| error(text, 5120 << halved, damping_ratio));
     for (halved, (error, seen)) in (0..).zip(&errors) {
@@ -55,7 +56,8 @@ fn has_second_order(text: &str, is_near_first: bool, damping_ratio: f64) {
     }
     for two in errors.windows(2) {
         let order = (two[0].0 / two[1].0).log2();
-        assert!((order - 2.0).abs() < 0.1, "{order}: {errors:?}");
+        let most = if is_near_first { 2.4 } else { 2.1 };
+        assert!((1.9..most).contains(&order), "{order}: {errors:?}");
     }
     assert!(errors[0].0 < 0.1, "{errors:?}");
 }
