@@ -1,0 +1,115 @@
+//! Studies that examples run, and tables of them.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+use super::{Failed, Programs, output, root};
+
+/// A run of a study.
+pub(crate) struct Run {
+    /// Its folder.
+    pub(crate) folder: PathBuf,
+    /// The words for its value on each axis.
+    pub(crate) settings: Vec<String>,
+    /// Processor time, s, if the study measures it, or time by the clock.
+    pub(crate) time_s: f64,
+    /// Its `summary.json`.
+    pub(crate) summary: Value,
+}
+
+/// Runs a study of `data/studies`, or keeps its complete runs, and returns all in its order.
+pub(crate) fn runs(study: &str, folder: &Path, resume: bool) -> Result<Vec<Run>, Failed> {
+    let mut command = Command::new(Programs::build()?.dem_run);
+    command.args(["sweep", &format!("data/studies/{study}.toml")]);
+    command.args(["--json", "--quiet", "--output"]).arg(folder);
+    command.arg(if resume { "--resume" } else { "--force" });
+    let table: Value = serde_json::from_slice(&output(&mut command)?)?;
+    let rows = table["runs"].as_array().ok_or("the study has no runs")?;
+    rows.iter().map(|row| run_of(row, folder)).collect()
+}
+
+fn run_of(row: &Value, folder: &Path) -> Result<Run, Failed> {
+    if let Some(why) = row["failed"].as_str() {
+        return Err(why.into());
+    }
+    let number = row["number"].as_u64().unwrap_or_default();
+    let folder = folder.join(format!("runs/{number:04}-1"));
+    let summary = serde_json::from_slice(&std::fs::read(folder.join("summary.json"))?)?;
+    let words = row["settings"].as_array().into_iter().flatten();
+    Ok(Run {
+        folder,
+        settings: words
+            .map(|word| word.as_str().unwrap_or_default().to_owned())
+            .collect(),
+        time_s: row["time_s"].as_f64().unwrap_or(f64::NAN),
+        summary,
+    })
+}
+
+impl Run {
+    /// A figure of its test; not a number if it has none.
+    pub(crate) fn figure(&self, name: &str) -> f64 {
+        let figures = self.summary["test"]["results"].as_array();
+        let mut figures = figures.into_iter().flatten();
+        let found = figures.find(|figure| figure["name"] == name);
+        let value = found.and_then(|figure| figure["value"].as_f64());
+        value.unwrap_or(f64::NAN)
+    }
+
+    /// An entry of its energy balance, J.
+    pub(crate) fn balance_j(&self, name: &str) -> f64 {
+        self.summary["balance"][name].as_f64().unwrap_or(f64::NAN)
+    }
+
+    /// Columns of one of its tables, row by row.
+    pub(crate) fn columns(&self, file: &str, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Failed> {
+        let text = std::fs::read_to_string(self.folder.join(file))?;
+        let mut lines = text.lines();
+        let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+        let at = |name: &str| head.iter().position(|other| *other == name);
+        let (Some(x), Some(y)) = (at(names[0]), at(names[1])) else {
+            return Err(format!("{file} has no {names:?}").into());
+        };
+        let of_line = |line: &str| -> Result<[f64; 2], Failed> {
+            let cells: Vec<&str> = line.split(',').collect();
+            Ok([cells[x].parse()?, cells[y].parse()?])
+        };
+        lines.map(of_line).collect()
+    }
+}
+
+/// A table, row by row.
+#[derive(Default)]
+pub(crate) struct Table(String);
+
+impl Table {
+    /// An empty one with this head.
+    pub(crate) fn new(cells: &[&str]) -> Self {
+        let mut table = Self::default();
+        table.row(&cells.iter().map(|&cell| cell.to_owned()).collect::<Vec<_>>());
+        table.0 += &format!("|{}\n", "---|".repeat(cells.len()));
+        table
+    }
+
+    /// Adds a row.
+    pub(crate) fn row(&mut self, cells: &[String]) {
+        self.0 += &format!("| {} |\n", cells.join(" | "));
+    }
+
+    /// Prints it, and writes it into a page, between the line `<!-- table: NAME -->` and the end of
+    /// that table.
+    pub(crate) fn write(&self, page: &str, name: &str) -> Result<(), Failed> {
+        print!("{}", self.0);
+        let page = root().join(page);
+        let text = std::fs::read_to_string(&page)?;
+        let begin = format!("<!-- table: {name} -->\n");
+        let (before, after) = text.split_once(&begin).ok_or("the page has no such table")?;
+        let end = "<!-- end of table -->";
+        let (_, after) = after.split_once(end).ok_or("the table does not end")?;
+        let rows = &self.0;
+        std::fs::write(&page, format!("{before}{begin}{rows}{end}{after}"))?;
+        Ok(())
+    }
+}
