@@ -11,6 +11,7 @@ mod points;
 mod report;
 mod text;
 mod thickness;
+mod unshaped;
 mod warnings;
 
 use self::bonded_packing::mean_diameter;
@@ -22,6 +23,7 @@ pub use self::fabric::{Fabric, chi_squared_5_exceeds};
 pub use self::pieces::Pieces;
 pub use self::report::Report;
 pub use self::thickness::Thinnest;
+pub use self::unshaped::BondQuality;
 use self::warnings::warnings;
 use dem_io::Result;
 

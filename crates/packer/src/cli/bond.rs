@@ -1,0 +1,47 @@
+//! `dem-pack bond`: bonds for the spheres of a file.
+
+use super::arguments::BondCommand;
+use crate::bond_spheres::bond_spheres;
+use dem_io::body::{body_summary, files::body_files, read_body, write_body};
+use dem_io::standard_output::write_standard_output;
+use dem_io::text::visible;
+use dem_io::write_target::{need_folder_of, refuse_to_replace};
+use dem_io::{Diagnostic, Result};
+use std::path::Path;
+
+/// Bonds the spheres of the file, writes the body and describes it.
+///
+/// # Errors
+/// A file that holds no spheres, or holds bonds that are not to be replaced; as [`bond_spheres`]; a
+/// body that cannot be written.
+pub(super) fn bond(command: &BondCommand) -> Result<()> {
+    let settings = command.bonds.checked()?;
+    let (from, to) = (&command.spheres, &command.output);
+    let files = body_files(to)?;
+    files.iter().try_for_each(|file| need_folder_of(file))?;
+    refuse_to_replace(&files, &body_files(from)?)?;
+    let mut spheres = read_body(from)?;
+    let place = from.display().to_string();
+    if !spheres.bonds.is_empty() && !command.replace {
+        return Err(Diagnostic::input(
+            place,
+            format!(
+                "the spheres are bonded already, by {} bonds",
+                spheres.bonds.len()
+            ),
+            "--replace bonds them anew",
+        ));
+    }
+    spheres.about = command.about(spheres.about)?;
+    spheres.about.source.get_or_insert_with(|| place.clone());
+    let (body, quality) = bond_spheres(&spheres, &settings).map_err(|e| e.within(&place))?;
+    write_body(&body, to)?;
+    if command.quiet || to == Path::new("-") {
+        return Ok(());
+    }
+    write_standard_output(|out| {
+        let name = to.display().to_string();
+        writeln!(out, "{} -> {}", visible(&place), visible(&name))?;
+        write!(out, "{}{}", body_summary(&body), quality.line())
+    })
+}
