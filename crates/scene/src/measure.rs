@@ -133,6 +133,9 @@ pub struct Measure {
     /// `absolute_tolerance`: largest difference from `reference`, which it needs, in the quantity's
     /// unit.
     pub absolute_tolerance: Option<f64>,
+    /// `end_run_above`: value, in the quantity's unit, above which the run ends at the next row of
+    /// the time series.
+    pub end_run_above: Option<f64>,
 }
 
 /// Every quantity and its name in a scene.
@@ -325,6 +328,11 @@ pub(super) static MEASURE: Schema = Schema {
             "Difference from `reference` above which the run warns. Requires a `reference`.",
         )
         .positive(),
+        Key::new(
+            "end_run_above",
+            Kind::Measured,
+            "The run ends, before its end time, at the first row of the time series with a larger value.",
+        ),
     ],
 };
 
@@ -391,6 +399,7 @@ pub(super) fn read(
         reference,
         tolerance,
         absolute_tolerance,
+        end_run_above: table.read_by("end_run_above", |field| field.quantity(dimension))?,
     })
 }
 
@@ -574,4 +583,7 @@ pub(super) fn list(measure: &Measure, listing: &mut Listing) {
     listing.text("reference", in_unit(measure.reference));
     listing.value("tolerance", &measure.tolerance);
     listing.text("absolute_tolerance", in_unit(measure.absolute_tolerance));
+    if measure.end_run_above.is_some() {
+        listing.text("end_run_above", in_unit(measure.end_run_above));
+    }
 }
