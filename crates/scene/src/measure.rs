@@ -66,6 +66,9 @@ pub enum Quantity {
     /// "bulk_density": mass of its part in the region `within` over the volume of the region;
     /// without a region mass over the volume under the surface of the group, kg/m3.
     BulkDensity,
+    /// "bulking_factor": volume that the body takes as a bulk over that of its shape: its solid
+    /// density (mass over volume of the shape) over its bulk density.
+    BulkingFactor,
     /// "mixing_index" of Lacey, of the group and that of `with`, in cells of `cell_size` in the
     /// region `within`.
     MixingIndex,
@@ -139,7 +142,7 @@ pub struct Measure {
 }
 
 /// Every quantity and its name in a scene.
-pub(super) const QUANTITIES: [(&str, Quantity); 51] = [
+pub(super) const QUANTITIES: [(&str, Quantity); 52] = [
     ("position_x", Quantity::Position(0)),
     ("position_y", Quantity::Position(1)),
     ("position_z", Quantity::Position(2)),
@@ -183,6 +186,7 @@ pub(super) const QUANTITIES: [(&str, Quantity); 51] = [
     ("angle_of_repose", Quantity::AngleOfRepose),
     ("mass", Quantity::Mass),
     ("bulk_density", Quantity::BulkDensity),
+    ("bulking_factor", Quantity::BulkingFactor),
     ("mixing_index", Quantity::MixingIndex),
     ("force_x", Quantity::Force(0)),
     ("force_y", Quantity::Force(1)),
@@ -246,6 +250,7 @@ impl Quantity {
             | Self::LargestDynamicUtilisation
             | Self::FractionBelowDynamicUtilisation
             | Self::Count
+            | Self::BulkingFactor
             | Self::MixingIndex
             | Self::MassFractionOfLargest => &NUMBER,
         }
@@ -298,7 +303,7 @@ pub(super) static MEASURE: Schema = Schema {
         Key::text(
             "within",
             "a name in [regions]",
-            "Region to which `mass`, `bulk_density` or `mixing_index` is restricted; spheres that its border cuts count in part. Required for `mixing_index`.",
+            "Region to which `mass`, `bulk_density`, `bulking_factor` or `mixing_index` is restricted; spheres that its border cuts count in part. Required for `mixing_index`.",
         ),
         Key::quantity(
             "cell_size",
@@ -462,7 +467,12 @@ fn within(
     quantity: Quantity,
     regions: &BTreeMap<String, Region>,
 ) -> Result<Option<String>> {
-    let bulk = [Quantity::Mass, Quantity::BulkDensity, Quantity::MixingIndex];
+    let bulk = [
+        Quantity::Mass,
+        Quantity::BulkDensity,
+        Quantity::BulkingFactor,
+        Quantity::MixingIndex,
+    ];
     let name = quantity.name();
     match table.get("within") {
         None if quantity == Quantity::MixingIndex => {

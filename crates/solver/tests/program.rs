@@ -18,6 +18,7 @@ mod discharge;
 mod disk;
 mod dynamic;
 mod dynamic_tests;
+mod ends;
 mod histories;
 mod inputs;
 mod interrupted;
