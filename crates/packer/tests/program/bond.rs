@@ -149,7 +149,7 @@ fn what_cannot_be_bonded_is_refused() {
         (&["empty.txt"], "the body has no particles"),
         (&["bare.csv"], "radius_m"),
         (&["none.vtp"], "there is no such file"),
-        (&["x.stl"], "this is a shape, not a body"),
+        (&["x.stl"], "'.stl' is not the ending of a body"),
         (&["near.vtp", "-o", "none/x.vtp"], "none"),
     ] {
         let output = bond(
