@@ -38,7 +38,9 @@ pub use bonds::{
 };
 pub use density::DensitySearch;
 pub use pack::{PackHistory, PackSettings, Packing, Progress, pack};
-pub use quality::{BondQuality, Contacts, Fabric, Fraction, Layer, Pieces, Report, Thinnest};
+pub use quality::{
+    BondQuality, Contacts, Fabric, Fraction, Layer, Pieces, Report, Thinnest, bond_fabric,
+};
 pub use sizes::{Basis, Fit, Sizes, ks_distance_by_mass, ks_distance_by_number};
 pub use spheres::Spheres;
 

@@ -19,7 +19,7 @@ pub use self::bonded_packing::{BondedPacking, DEFAULT_GAP_LIMIT, depth_needed};
 use self::checks::{Checks, interior_depth};
 pub use self::contacts::Contacts;
 pub use self::densities::{Fraction, Layer};
-pub use self::fabric::{Fabric, chi_squared_5_exceeds};
+pub use self::fabric::{Fabric, chi_squared_5_exceeds, of as bond_fabric};
 pub use self::pieces::Pieces;
 pub use self::report::Report;
 pub use self::thickness::Thinnest;
