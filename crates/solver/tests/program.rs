@@ -29,6 +29,7 @@ mod masses;
 mod names;
 mod new;
 mod pictures;
+mod pressing;
 mod random;
 mod results;
 mod resume;
