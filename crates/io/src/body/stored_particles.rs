@@ -46,7 +46,7 @@ impl StoredParticles {
         let loose = self.loose();
         if loose.is_empty() {
             let problem = format!("none of the {} spheres is loose", self.radii.len());
-            let remedy = "a single fragment is taken with --id or --largest";
+            let remedy = "dem-run fragment takes a fragment with its bonds: --id or --largest";
             return Err(Diagnostic::input("", problem, remedy));
         }
         let density = |densities: &Vec<f64>| common_density(loose.iter().map(|&i| densities[i]));

@@ -78,8 +78,8 @@ pub(super) enum Command {
 
 #[derive(Debug, Args)]
 pub(super) struct BondCommand {
-    /// The spheres: a body (.vtp, .data, .csv, .txt), a frame of a run (.vtp), or - for a .vtp on
-    /// standard input
+    /// The spheres: a body (.vtp, .data, .csv, .txt), a frame of a run (.vtp), whose loose spheres
+    /// are taken, or - for a .vtp on standard input
     pub(super) spheres: PathBuf,
     /// The body to write: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
     #[arg(short, long, value_name = "FILE", default_value = "-")]

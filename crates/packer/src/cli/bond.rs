@@ -2,11 +2,11 @@
 
 use super::arguments::BondCommand;
 use crate::bond_spheres::bond_spheres;
-use dem_io::body::{body_summary, files::body_files, read_body, write_body};
+use dem_io::body::{body_summary, files::body_files, read_body, read_particles, write_body};
 use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
-use dem_io::{Diagnostic, Result};
+use dem_io::{Body, Diagnostic, Result};
 use std::path::Path;
 
 /// Bonds the spheres of the file, writes the body and describes it.
@@ -20,8 +20,8 @@ pub(super) fn bond(command: &BondCommand) -> Result<()> {
     let files = body_files(to)?;
     files.iter().try_for_each(|file| need_folder_of(file))?;
     refuse_to_replace(&files, &body_files(from)?)?;
-    let mut spheres = read_body(from)?;
     let place = from.display().to_string();
+    let mut spheres = spheres_of(from)?;
     if !spheres.bonds.is_empty() && !command.replace {
         return Err(Diagnostic::input(
             place,
@@ -44,4 +44,15 @@ pub(super) fn bond(command: &BondCommand) -> Result<()> {
         writeln!(out, "{} -> {}", visible(&place), visible(&name))?;
         write!(out, "{}{}", body_summary(&body), quality.line())
     })
+}
+
+/// A body, or the loose spheres of a frame of a run.
+fn spheres_of(file: &Path) -> Result<Body> {
+    match read_particles(file) {
+        Ok(frame) => frame
+            .loose_spheres()
+            .map_err(|e| e.within(&file.display().to_string())),
+        // No frame.
+        Err(_) => read_body(file),
+    }
 }

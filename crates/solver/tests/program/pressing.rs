@@ -3,7 +3,9 @@
 
 use super::{Bench, dem_run, scene_of_data};
 use crate::helpers::mass_in_box_kg;
+use clap::Parser;
 use dem_io::body::{body_summary, read_body, read_particles, write_body};
+use dem_pack::cli::Arguments;
 use dem_pack::{BondSettings, bond_spheres};
 use serde_json::Value;
 
@@ -65,8 +67,23 @@ fn a_mould_is_pressed_to_a_density_and_its_body_breaks() {
     let counted = mass_kg / (4.0 * half_m * half_m * height_m);
     assert!((counted / found - 1.0).abs() < 2e-3, "{counted} {found}");
 
+    // dem-pack takes the frame as well.
+    let frame = bench.path(&format!("out/frames/{last}"));
+    let (frame, direct) = (frame.display().to_string(), bench.path("direct.vtp"));
+    let words = [
+        "dem-pack",
+        "bond",
+        &frame,
+        "--quiet",
+        "-o",
+        &direct.display().to_string(),
+    ];
+    dem_pack::cli::run(&Arguments::try_parse_from(words).unwrap()).unwrap();
+    let direct = read_body(&direct).unwrap();
+
     let (body, quality) = bond_spheres(&spheres, &BondSettings::default()).unwrap();
     assert!(quality.fabric.is_some());
+    assert!(direct.bonds == body.bonds && direct.bond_lengths == body.bond_lengths);
     assert_eq!(body_summary(&body).pieces, 1);
     write_body(&body, &bench.path("pressed.vtp")).unwrap();
     let broken = bench.write("drop.toml", DROP);
