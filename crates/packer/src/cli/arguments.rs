@@ -102,7 +102,8 @@ pub(super) struct BondCommand {
 }
 
 impl BondCommand {
-    /// The body that the file `body` and the options make: its density and the volume of its shape.
+    /// What is known of the body: `given` by its file, with the density and the volume of the
+    /// options, if there are any.
     ///
     /// # Errors
     /// A density or a volume that is not positive.
