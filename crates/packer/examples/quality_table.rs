@@ -18,7 +18,7 @@ use std::time::Instant;
 use dem_io::body::vtp;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
 use dem_io::{Diagnostic, Result};
-use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
+use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_plots::{Axis, Marks, Plot, Point};
 
 /// Values of `--densify` in the first table.
@@ -390,9 +390,10 @@ fn settings(diameter: &str, densify: Option<f64>, seed: u64) -> Result<BodySetti
             densify,
             seed_point_m: None,
         },
-        bond_range: 1.001,
-        bonds_per_particle: None,
-        bond_radius_factor: 1.0,
+        bonds: BondSettings {
+            range: 1.001,
+            ..BondSettings::default()
+        },
         particle_density_kg_m3: None,
         solid_density_kg_m3: None,
     })

@@ -1,6 +1,6 @@
 //! A bonded body from a surface: spheres, bonds, and a report of how good they are.
 
-use crate::bonds::{bond_lengths, bond_radii, bond_range_for, centre_distance, find_bonds};
+use crate::bonds::{BondSettings, bond_lengths, bond_radii, centre_distance, find_bonds};
 use crate::density::{DensitySearch, pack_to_density};
 use crate::geometry::boundary::Boundary;
 use crate::geometry::depth_map::DepthMap;
@@ -28,12 +28,8 @@ const SPHERES_PER_TASK: usize = 256;
 pub struct BodySettings {
     /// Settings of the sphere packing.
     pub packing: PackSettings,
-    /// Bonds join pairs with distance <= this * (R_a + R_b), unless `bonds_per_particle` is given.
-    pub bond_range: f64,
-    /// Target number of bonds per particle, for which the bond range is chosen.
-    pub bonds_per_particle: Option<f64>,
-    /// Bond radius / smaller particle radius.
-    pub bond_radius_factor: f64,
+    /// Which spheres are bonded, and how.
+    pub bonds: BondSettings,
     /// Density of the particles' material, kg/m3.
     pub particle_density_kg_m3: Option<f64>,
     /// Target mass of the particles / volume of the shape, kg/m3, for which the overlap is chosen.
@@ -41,14 +37,11 @@ pub struct BodySettings {
 }
 
 impl BodySettings {
-    /// The program's defaults: bonds between spheres up to 1.1 times the sum of their radii apart,
-    /// as thick as the smaller of the two.
+    /// With the program's default bonds.
     pub fn new(packing: PackSettings) -> Self {
         Self {
             packing,
-            bond_range: 1.1,
-            bonds_per_particle: None,
-            bond_radius_factor: 1.0,
+            bonds: BondSettings::default(),
             particle_density_kg_m3: None,
             solid_density_kg_m3: None,
         }
@@ -181,10 +174,7 @@ fn make<'a, Q>(
         let clear = wall_distance[a as usize] + wall_distance[b as usize];
         clear <= centre_distance(spheres, a, b) && crosses_surface(&solid.boundary, p, q)
     };
-    let bond_range = match settings.bonds_per_particle {
-        Some(wanted) => bond_range_for(spheres, wanted, &crosses)?,
-        None => settings.bond_range,
-    };
+    let bond_range = settings.bonds.range_for(spheres, &crosses)?;
     let bonds = find_bonds(spheres, bond_range, &crosses)?;
     seconds.bonds = started.elapsed().as_secs_f64();
 
@@ -278,7 +268,7 @@ impl Made<'_> {
             |lengths: Vec<f64>| lengths.into_iter().map(|l| l * surface.unit_m).collect();
         let bonds = &self.bonds;
         Body {
-            bond_radii: in_metres(bond_radii(spheres, bonds, settings.bond_radius_factor)),
+            bond_radii: in_metres(bond_radii(spheres, bonds, settings.bonds.radius_factor)),
             bond_lengths: in_metres(bond_lengths(spheres, bonds)),
             bond_damages: Vec::new(),
             bond_plastics: Vec::new(),

@@ -17,6 +17,42 @@ pub type CrossesSurface<'a> = &'a (dyn Fn(u32, u32) -> bool + Sync);
 pub(crate) const LARGEST_BOND_RANGE: f64 = 2.0;
 /// Bonds per particle of a well bonded body (Platzer 2022: 377,052 bonds of 77,487 spheres, 4.87).
 pub(crate) const WELL_BONDED: f64 = 5.0;
+/// Which spheres are bonded, and how thick the bonds are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondSettings {
+    /// Bonds join pairs with distance <= this * (R_a + R_b), unless `per_particle` is given.
+    pub range: f64,
+    /// Target number of bonds per particle, for which the bond range is chosen.
+    pub per_particle: Option<f64>,
+    /// Bond radius / smaller particle radius.
+    pub radius_factor: f64,
+}
+
+impl Default for BondSettings {
+    /// The program's defaults: bonds between spheres up to 1.1 times the sum of their radii apart,
+    /// as thick as the smaller of the two.
+    fn default() -> Self {
+        Self {
+            range: 1.1,
+            per_particle: None,
+            radius_factor: 1.0,
+        }
+    }
+}
+
+impl BondSettings {
+    /// The bond range that is given, or that gives the wanted number of bonds.
+    ///
+    /// # Errors
+    /// As [`bond_range_for`].
+    pub(crate) fn range_for(&self, spheres: &Spheres, crosses: CrossesSurface) -> Result<f64> {
+        match self.per_particle {
+            Some(wanted) => bond_range_for(spheres, wanted, crosses),
+            None => Ok(self.range),
+        }
+    }
+}
+
 /// Number of spheres whose neighbours are counted to suggest a bond range: enough to know the
 /// number of bonds to 1 %.
 const SPHERES_TO_ADVISE: usize = 5000;

@@ -1,12 +1,14 @@
 //! The command line of dem-pack.
 
 mod arguments;
+mod bond;
 mod recipe;
 mod report;
 mod shape;
 
 pub use self::arguments::{Arguments, RENAMED};
 use self::arguments::{Command, PackArguments, Reading};
+use self::bond::bond;
 pub use self::recipe::Recipe;
 use self::report::{summary_text, surface_summary, surface_text};
 use self::shape::{check_unit_of_diameter, read_surface};
@@ -58,6 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<()> {
             refuse_to_replace(&body_files(to)?, &body_files(from)?)?;
             write_body(&read_body(from)?, to)
         }
+        Some(Command::Bond(command)) => bond(command),
         Some(Command::Completions { shell }) => print_completions(*shell, Arguments::command()),
         Some(Command::Man) => print_man_page(Arguments::command()),
         None => pack_command(&arguments.pack),

@@ -18,6 +18,7 @@
 //! ```
 
 mod body;
+mod bond_spheres;
 mod bonds;
 pub mod cli;
 mod density;
@@ -31,10 +32,15 @@ mod sizes;
 mod spheres;
 
 pub use body::{BodyReport, BodySettings, StageSeconds, make_body, make_body_only};
-pub use bonds::{CrossesSurface, bond_lengths, bond_radii, bond_range_for, find_bonds};
+pub use bond_spheres::bond_spheres;
+pub use bonds::{
+    BondSettings, CrossesSurface, bond_lengths, bond_radii, bond_range_for, find_bonds,
+};
 pub use density::DensitySearch;
 pub use pack::{PackHistory, PackSettings, Packing, Progress, pack};
-pub use quality::{Contacts, Fabric, Fraction, Layer, Pieces, Report, Thinnest};
+pub use quality::{
+    BondQuality, Contacts, Fabric, Fraction, Layer, Pieces, Report, Thinnest, bond_fabric,
+};
 pub use sizes::{Basis, Fit, Sizes, ks_distance_by_mass, ks_distance_by_number};
 pub use spheres::Spheres;
 

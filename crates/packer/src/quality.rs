@@ -11,6 +11,7 @@ mod points;
 mod report;
 mod text;
 mod thickness;
+mod unshaped;
 mod warnings;
 
 use self::bonded_packing::mean_diameter;
@@ -18,10 +19,11 @@ pub use self::bonded_packing::{BondedPacking, DEFAULT_GAP_LIMIT, depth_needed};
 use self::checks::{Checks, interior_depth};
 pub use self::contacts::Contacts;
 pub use self::densities::{Fraction, Layer};
-pub use self::fabric::{Fabric, chi_squared_5_exceeds};
+pub use self::fabric::{Fabric, chi_squared_5_exceeds, of as bond_fabric};
 pub use self::pieces::Pieces;
 pub use self::report::Report;
 pub use self::thickness::Thinnest;
+pub use self::unshaped::BondQuality;
 use self::warnings::warnings;
 use dem_io::Result;
 

@@ -2,6 +2,7 @@
 //! output.
 
 mod bad_input;
+mod bond;
 mod bonds;
 mod command_line;
 mod density;

@@ -66,6 +66,9 @@ pub enum Quantity {
     /// "bulk_density": mass of its part in the region `within` over the volume of the region;
     /// without a region mass over the volume under the surface of the group, kg/m3.
     BulkDensity,
+    /// "bulking_factor": volume that the body takes as a bulk over that of its shape: its solid
+    /// density (mass over volume of the shape) over its bulk density.
+    BulkingFactor,
     /// "mixing_index" of Lacey, of the group and that of `with`, in cells of `cell_size` in the
     /// region `within`.
     MixingIndex,
@@ -133,10 +136,13 @@ pub struct Measure {
     /// `absolute_tolerance`: largest difference from `reference`, which it needs, in the quantity's
     /// unit.
     pub absolute_tolerance: Option<f64>,
+    /// `end_run_above`: value, in the quantity's unit, above which the run ends at the next row of
+    /// the time series.
+    pub end_run_above: Option<f64>,
 }
 
 /// Every quantity and its name in a scene.
-pub(super) const QUANTITIES: [(&str, Quantity); 51] = [
+pub(super) const QUANTITIES: [(&str, Quantity); 52] = [
     ("position_x", Quantity::Position(0)),
     ("position_y", Quantity::Position(1)),
     ("position_z", Quantity::Position(2)),
@@ -180,6 +186,7 @@ pub(super) const QUANTITIES: [(&str, Quantity); 51] = [
     ("angle_of_repose", Quantity::AngleOfRepose),
     ("mass", Quantity::Mass),
     ("bulk_density", Quantity::BulkDensity),
+    ("bulking_factor", Quantity::BulkingFactor),
     ("mixing_index", Quantity::MixingIndex),
     ("force_x", Quantity::Force(0)),
     ("force_y", Quantity::Force(1)),
@@ -243,6 +250,7 @@ impl Quantity {
             | Self::LargestDynamicUtilisation
             | Self::FractionBelowDynamicUtilisation
             | Self::Count
+            | Self::BulkingFactor
             | Self::MixingIndex
             | Self::MassFractionOfLargest => &NUMBER,
         }
@@ -295,7 +303,7 @@ pub(super) static MEASURE: Schema = Schema {
         Key::text(
             "within",
             "a name in [regions]",
-            "Region to which `mass`, `bulk_density` or `mixing_index` is restricted; spheres that its border cuts count in part. Required for `mixing_index`.",
+            "Region to which `mass`, `bulk_density`, `bulking_factor` or `mixing_index` is restricted; spheres that its border cuts count in part. Required for `mixing_index`.",
         ),
         Key::quantity(
             "cell_size",
@@ -325,6 +333,11 @@ pub(super) static MEASURE: Schema = Schema {
             "Difference from `reference` above which the run warns. Requires a `reference`.",
         )
         .positive(),
+        Key::new(
+            "end_run_above",
+            Kind::Measured,
+            "The run ends, before its end time, at the first row of the time series with a larger value.",
+        ),
     ],
 };
 
@@ -391,6 +404,7 @@ pub(super) fn read(
         reference,
         tolerance,
         absolute_tolerance,
+        end_run_above: table.read_by("end_run_above", |field| field.quantity(dimension))?,
     })
 }
 
@@ -453,7 +467,12 @@ fn within(
     quantity: Quantity,
     regions: &BTreeMap<String, Region>,
 ) -> Result<Option<String>> {
-    let bulk = [Quantity::Mass, Quantity::BulkDensity, Quantity::MixingIndex];
+    let bulk = [
+        Quantity::Mass,
+        Quantity::BulkDensity,
+        Quantity::BulkingFactor,
+        Quantity::MixingIndex,
+    ];
     let name = quantity.name();
     match table.get("within") {
         None if quantity == Quantity::MixingIndex => {
@@ -574,4 +593,7 @@ pub(super) fn list(measure: &Measure, listing: &mut Listing) {
     listing.text("reference", in_unit(measure.reference));
     listing.value("tolerance", &measure.tolerance);
     listing.text("absolute_tolerance", in_unit(measure.absolute_tolerance));
+    if measure.end_run_above.is_some() {
+        listing.text("end_run_above", in_unit(measure.end_run_above));
+    }
 }

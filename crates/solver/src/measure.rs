@@ -47,6 +47,8 @@ pub struct Probe {
     walls: [Option<usize>; 2],
     /// The region to which it is restricted: number in the rules of the state.
     region: Option<usize>,
+    /// Mass over the volume of the shape of the body that it measures, kg/m3. NaN if not known.
+    solid_density_kg_m3: f64,
     /// Initial positions of the bodies of the scene. Empty if not needed.
     starts: Arc<Starts>,
     /// Initial centre of mass of its particles, m. NaN if not needed.
@@ -133,6 +135,9 @@ pub fn probes(scene: &dem_scene::Scene, plan: &Plan) -> Vec<Probe> {
             walls: [wall_number(scene, &measure.of), with_wall],
             region: (measure.within.as_ref())
                 .and_then(|name| scene.regions.keys().position(|region| region == name)),
+            solid_density_kg_m3: (plan.masses.get(&measure.of))
+                .and_then(|mass| mass.solid_density_kg_m3)
+                .unwrap_or(f64::NAN),
             starts: Arc::clone(&starts),
             start: Vector3::repeat(f64::NAN),
             turned_before: BTreeMap::new(),
@@ -334,7 +339,10 @@ impl Probe {
             Quantity::AngleOfRepose => {
                 heap::angle_of_repose_deg(&spheres(members, state), up(state))
             }
-            Quantity::Mass | Quantity::BulkDensity | Quantity::MixingIndex => self.in_bulk(state),
+            Quantity::Mass
+            | Quantity::BulkDensity
+            | Quantity::BulkingFactor
+            | Quantity::MixingIndex => self.in_bulk(state),
             // Torque of the particles on the wall.
             Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.total_load()[1][at(k)]),
             Quantity::Count => {
@@ -359,16 +367,21 @@ impl Probe {
     fn in_bulk(&self, state: &State) -> f64 {
         let own = spheres(&self.members, state);
         let region = self.region.map(|at| &state.model.rules.regions[at]);
+        let density = || match region {
+            Some(region) => bulk::mass_within_kg(&own, region) / region.volume_m3(),
+            None => bulk::heap_density_kg_m3(&own, up(state)),
+        };
         match (self.measure.quantity, region) {
+            (Quantity::BulkDensity, _) => density(),
+            (Quantity::BulkingFactor, _) => match density() {
+                0.0 => f64::NAN,
+                density => self.solid_density_kg_m3 / density,
+            },
             (Quantity::MixingIndex, Some(region)) => {
                 let others = self.with.as_ref().map(|with| spheres(with, state));
                 let cell_m = self.measure.cell_size_m.unwrap_or(f64::NAN);
                 bulk::lacey_index([&own, &others.unwrap_or_default()], region, cell_m)
             }
-            (Quantity::BulkDensity, Some(region)) => {
-                bulk::mass_within_kg(&own, region) / region.volume_m3()
-            }
-            (Quantity::BulkDensity, None) => bulk::heap_density_kg_m3(&own, up(state)),
             (_, Some(region)) => bulk::mass_within_kg(&own, region),
             (_, None) => 0.0 + own.iter().map(|sphere| sphere.mass_kg).sum::<f64>(),
         }
@@ -411,6 +424,11 @@ impl Probe {
             let within = self.measure.within.as_deref().unwrap_or_default();
             Some(format!(
                 "{name} has no value: the region \"{within}\" has nothing of one of the two, or cell_size is so small that no cell has two spheres"
+            ))
+        } else if self.measure.quantity == Quantity::BulkingFactor {
+            let within = self.measure.within.as_deref().unwrap_or_default();
+            Some(format!(
+                "{name} has no value: the region \"{within}\" has nothing of \"{of}\""
             ))
         } else if matches!(
             self.measure.quantity,

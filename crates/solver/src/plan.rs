@@ -158,7 +158,7 @@ pub fn plan(
     refuse_damped_clumps(scene, &state)?;
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     place_zones(scene, &bodies, &mut state)?;
-    refuse_valueless(scene, &groups, &state)?;
+    refuse_valueless(scene, &groups, &state, &masses)?;
     let mut warnings = masses::warnings(scene, &about);
     warnings.extend(masses::light(scene));
     warnings.extend(doubts(scene, &state));

@@ -1,5 +1,6 @@
 //! Helpers for several subjects: scenes from texts, their bodies, and random numbers.
 
+use dem_io::Body;
 use dem_scene::Scene;
 use dem_scene::scene_from_text;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -50,4 +51,27 @@ impl Random {
             }
         }
     }
+}
+
+/// Mass of the parts of the spheres of a body in a box, given by its corners, kg: counted by cubes
+/// of a fortieth of each sphere's diameter.
+pub(crate) fn mass_in_box_kg(body: &Body, density_kg_m3: f64, [low, high]: [[f64; 3]; 2]) -> f64 {
+    const STEPS: i32 = 40;
+    let is_in = |p: [f64; 3]| (0..3).all(|k| (low[k]..high[k]).contains(&p[k]));
+    let middle = |i: i32| (f64::from(2 * i + 1) / f64::from(STEPS)) - 1.0;
+    let mut cubes = Vec::new();
+    for i in 0..STEPS.pow(3) {
+        let p = [i % STEPS, i / STEPS % STEPS, i / STEPS / STEPS].map(middle);
+        if p.iter().map(|x| x * x).sum::<f64>() <= 1.0 {
+            cubes.push(p);
+        }
+    }
+    let part = |centre: &[f64; 3], radius: f64| {
+        let place = |p: &[f64; 3]| [0, 1, 2].map(|k| centre[k] + radius * p[k]);
+        cubes.iter().filter(|p| is_in(place(p))).count() as f64 / cubes.len() as f64
+    };
+    let spheres = body.positions.iter().zip(&body.radii);
+    let masses = spheres
+        .map(|(p, &r)| part(p, r) * density_kg_m3 * 4.0 / 3.0 * std::f64::consts::PI * r.powi(3));
+    masses.sum()
 }

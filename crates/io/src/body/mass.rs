@@ -16,6 +16,8 @@ pub struct BodyMass {
     /// Mass of its spheres, kg. Overlaps count twice, except for a clump whose mass is that of the
     /// union of its spheres.
     pub mass_kg: f64,
+    /// Mass over the volume of its shape, kg/m3, if that volume is known: its solid density.
+    pub solid_density_kg_m3: Option<f64>,
     /// The density with which its shape is filled for the comparison, kg/m3, if known.
     pub fill_density_kg_m3: Option<f64>,
     /// Mass of its shape filled with that density, kg, if its volume is known.
@@ -43,6 +45,7 @@ impl BodyMass {
         let shape_mass_kg = filled.map(|(density, volume)| density * volume);
         Self {
             mass_kg,
+            solid_density_kg_m3: shape_volume_m3.map(|volume| mass_kg / volume),
             fill_density_kg_m3,
             shape_mass_kg,
             difference_percent: shape_mass_kg.map(|shape| 100.0 * (mass_kg / shape - 1.0)),
@@ -52,7 +55,7 @@ impl BodyMass {
         }
     }
 
-    /// Two human-readable lines: mass, and that of its filled shape; centre and principal moments.
+    /// Two human-readable lines: mass, that of its filled shape, and solid density; centre and principal moments.
     pub fn lines(&self) -> [String; 2] {
         let mut mass = format!("{} kg", significant(self.mass_kg, 4));
         if let (Some(density), Some(shape), Some(percent)) = (
@@ -66,6 +69,9 @@ impl BodyMass {
                 significant(shape, 4),
                 percent_text(percent)
             );
+        }
+        if let Some(solid) = self.solid_density_kg_m3 {
+            mass += &format!("; solid density {} kg/m3", significant(solid, 4));
         }
         let moments = self.principal_moments_kg_m2;
         let centre = format!(

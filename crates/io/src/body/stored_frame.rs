@@ -123,9 +123,9 @@ impl StoredFrame {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)
             .collect();
-        let Some(&first) = members.first() else {
+        if members.is_empty() {
             return Err(self.unknown(id));
-        };
+        }
         let mut number_of = vec![u32::MAX; self.clusters.len()];
         for (number, &i) in (0..).zip(&members) {
             number_of[i] = number;
@@ -144,8 +144,6 @@ impl StoredFrame {
             let joint = self.joints.get(*bond);
             joint.is_some_and(|joint| joint.failed.contains(&true))
         };
-        let density = self.densities_kg_m3[first];
-        let is_same = |i: &usize| (self.densities_kg_m3[*i] / density - 1.0).abs() <= SAME_DENSITY;
         Body::from_parts(Parts {
             positions: members.iter().map(|&i| self.positions[i]).collect(),
             radii: members.iter().map(|&i| self.radii[i]).collect(),
@@ -174,10 +172,9 @@ impl StoredFrame {
                 Vec::new()
             },
             about: About {
-                particle_density_kg_m3: members
-                    .iter()
-                    .all(is_same)
-                    .then(|| without_rounding(density)),
+                particle_density_kg_m3: common_density(
+                    members.iter().map(|&i| self.densities_kg_m3[i]),
+                ),
                 ..About::default()
             },
         })
@@ -203,6 +200,15 @@ impl StoredFrame {
             format!("the heaviest are {}", named.join(", ")),
         )
     }
+}
+
+/// The density of some particles, kg/m3. None if they differ, or if there are none.
+pub(super) fn common_density(mut densities_kg_m3: impl Iterator<Item = f64>) -> Option<f64> {
+    let first = densities_kg_m3.next()?;
+    let is_same = |density: f64| (density / first - 1.0).abs() <= SAME_DENSITY;
+    densities_kg_m3
+        .all(is_same)
+        .then(|| without_rounding(first))
 }
 
 /// A density rounded to 12 digits, without the rounding errors of its computation from a mass.

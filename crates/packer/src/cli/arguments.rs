@@ -1,14 +1,15 @@
 //! Arguments as typed, and the settings that they give.
 
 use crate::body::BodySettings;
-use crate::bonds::LARGEST_BOND_RANGE;
+use crate::bonds::{BondSettings, LARGEST_BOND_RANGE};
 use crate::density::LARGEST_OVERLAP;
 use crate::pack::PackSettings;
 use crate::pack::shrink::SHRINK_RANGE;
 use crate::sizes::{Basis, Sizes};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use dem_io::body::About;
 use dem_io::program::{Shell, parsed};
-use dem_io::units::{density_kg_m3, length_m, significant};
+use dem_io::units::{VOLUME, density_kg_m3, length_m, quantity, significant};
 use dem_io::{Diagnostic, Result};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -64,6 +65,8 @@ pub(super) enum Command {
         /// The file to write
         to: PathBuf,
     },
+    /// Bond the spheres of a file: a packing without bonds, or a frame of a run
+    Bond(BondCommand),
     /// Print a script that completes dem-pack's options in a shell
     Completions {
         /// Which shell
@@ -71,6 +74,52 @@ pub(super) enum Command {
     },
     /// Print the man page
     Man,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct BondCommand {
+    /// The spheres: a body (.vtp, .data, .csv, .txt), a frame of a run (.vtp), whose loose spheres
+    /// are taken, or - for a .vtp on standard input
+    pub(super) spheres: PathBuf,
+    /// The body to write: .vtp, .data (LAMMPS), .csv, .txt; standard output if not given
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    pub(super) output: PathBuf,
+    #[command(flatten)]
+    pub(super) bonds: BondArguments,
+    /// Replace the bonds that the file already has
+    #[arg(long, help_heading = "Bonds")]
+    pub(super) replace: bool,
+    /// Density of the particles' material (kg/m3 unless given); that of the file if not given
+    #[arg(long, allow_hyphen_values = true, help_heading = "Body")]
+    pub(super) particle_density: Option<String>,
+    /// Volume of the shape that the spheres fill (m3 unless given), such as 36cm3; that of the file
+    /// if not given
+    #[arg(long, allow_hyphen_values = true, help_heading = "Body")]
+    pub(super) shape_volume: Option<String>,
+    /// Only print errors
+    #[arg(short, long)]
+    pub(super) quiet: bool,
+}
+
+impl BondCommand {
+    /// What is known of the body: `given` by its file, with the density and the volume of the
+    /// options, if there are any.
+    ///
+    /// # Errors
+    /// A density or a volume that is not positive.
+    pub(super) fn about(&self, given: About) -> Result<About> {
+        let density = checked_density("--particle-density", &self.particle_density)?;
+        let volume = self
+            .shape_volume
+            .as_deref()
+            .map(checked_volume)
+            .transpose()?;
+        Ok(About {
+            particle_density_kg_m3: density.or(given.particle_density_kg_m3),
+            shape_volume_m3: volume.or(given.shape_volume_m3),
+            ..given
+        })
+    }
 }
 
 #[derive(Debug, Args)]
@@ -170,6 +219,36 @@ pub(super) struct PackArguments {
     )]
     pub(super) densify: Option<f64>,
 
+    #[command(flatten)]
+    pub(super) bonds: BondArguments,
+
+    /// Number of threads; the result is the same for any
+    #[arg(long, help_heading = "Running")]
+    pub(super) threads: Option<usize>,
+    /// Print the report as JSON on standard output (the body then needs --output)
+    #[arg(long, requires = "output", help_heading = "Running")]
+    pub(super) json: bool,
+    /// Only print errors: no progress, and no report, which is not computed; --json is still
+    /// printed
+    #[arg(short, long, help_heading = "Running")]
+    pub(super) quiet: bool,
+}
+
+impl Arguments {
+    /// The arguments of a command line, the first of which is the name of the program. Help and
+    /// version are printed, and the process ends.
+    ///
+    /// # Errors
+    /// Arguments that cannot be parsed, on one line.
+    pub fn parsed(given: impl Iterator<Item = OsString>) -> Result<Self> {
+        let given: Vec<OsString> = given.collect();
+        parsed("dem-pack", &given, &RENAMED)
+    }
+}
+
+/// Which spheres are bonded, and how thick the bonds are.
+#[derive(Debug, Args)]
+pub(super) struct BondArguments {
     /// Bond pairs whose centres are nearer than this times the sum of their radii
     #[arg(
         long,
@@ -194,28 +273,39 @@ pub(super) struct PackArguments {
         help_heading = "Bonds"
     )]
     pub(super) bond_radius: f64,
-
-    /// Number of threads; the result is the same for any
-    #[arg(long, help_heading = "Running")]
-    pub(super) threads: Option<usize>,
-    /// Print the report as JSON on standard output (the body then needs --output)
-    #[arg(long, requires = "output", help_heading = "Running")]
-    pub(super) json: bool,
-    /// Only print errors: no progress, and no report, which is not computed; --json is still
-    /// printed
-    #[arg(short, long, help_heading = "Running")]
-    pub(super) quiet: bool,
 }
 
-impl Arguments {
-    /// The arguments of a command line, the first of which is the name of the program. Help and
-    /// version are printed, and the process ends.
-    ///
-    /// # Errors
-    /// Arguments that cannot be parsed, on one line.
-    pub fn parsed(given: impl Iterator<Item = OsString>) -> Result<Self> {
-        let given: Vec<OsString> = given.collect();
-        parsed("dem-pack", &given, &RENAMED)
+impl BondArguments {
+    /// The settings, with every value checked.
+    pub(super) fn checked(&self) -> Result<BondSettings> {
+        check_range(
+            "--bond-radius",
+            self.bond_radius,
+            f64::MIN_POSITIVE,
+            10.0,
+            "1 is usual",
+        )?;
+        check_range(
+            "--bond-range",
+            self.bond_range,
+            f64::MIN_POSITIVE,
+            LARGEST_BOND_RANGE * (1.0 + f64::EPSILON),
+            "1.0 to 1.2 is usual",
+        )?;
+        if let Some(wanted) = self.bonds_per_particle
+            && !(wanted > 0.0 && wanted.is_finite())
+        {
+            return Err(Diagnostic::input(
+                "--bonds-per-particle",
+                format!("{wanted} is not a positive number"),
+                "4 to 6 is usual",
+            ));
+        }
+        Ok(BondSettings {
+            range: self.bond_range,
+            per_particle: self.bonds_per_particle,
+            radius_factor: self.bond_radius,
+        })
     }
 }
 
@@ -250,29 +340,6 @@ impl PackArguments {
                 "0.03 to 0.06 is usual, 0 is the bare front",
             ));
         }
-        check_range(
-            "--bond-radius",
-            self.bond_radius,
-            f64::MIN_POSITIVE,
-            10.0,
-            "1 is usual",
-        )?;
-        check_range(
-            "--bond-range",
-            self.bond_range,
-            f64::MIN_POSITIVE,
-            LARGEST_BOND_RANGE * (1.0 + f64::EPSILON),
-            "1.0 to 1.2 is usual",
-        )?;
-        if let Some(wanted) = self.bonds_per_particle
-            && !(wanted > 0.0 && wanted.is_finite())
-        {
-            return Err(Diagnostic::input(
-                "--bonds-per-particle",
-                format!("{wanted} is not a positive number"),
-                "4 to 6 is usual",
-            ));
-        }
         Ok(BodySettings {
             packing: PackSettings {
                 sizes,
@@ -281,9 +348,7 @@ impl PackArguments {
                 densify: self.densify,
                 seed_point_m: self.seed_point.as_deref().map(parse_point).transpose()?,
             },
-            bond_range: self.bond_range,
-            bonds_per_particle: self.bonds_per_particle,
-            bond_radius_factor: self.bond_radius,
+            bonds: self.bonds.checked()?,
             particle_density_kg_m3: checked_density("--particle-density", &self.particle_density)?,
             solid_density_kg_m3: checked_density("--solid-density", &self.solid_density)?,
         })
@@ -317,6 +382,20 @@ fn checked_density(option: &str, text: &Option<String>) -> Result<Option<f64>> {
         ));
     }
     Ok(Some(value))
+}
+
+fn checked_volume(text: &str) -> Result<f64> {
+    const OPTION: &str = "--shape-volume";
+    let value = quantity(text, &VOLUME).map_err(|e| e.within(OPTION))?;
+    if value <= 0.0 {
+        let problem = format!("{value} m3 is not positive");
+        return Err(Diagnostic::input(
+            OPTION,
+            problem,
+            "give a volume such as 36cm3",
+        ));
+    }
+    Ok(value)
 }
 
 fn parse_point(text: &str) -> Result<[f64; 3]> {

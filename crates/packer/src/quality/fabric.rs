@@ -39,7 +39,7 @@ pub struct Fabric {
 /// None if no end counts.
 ///
 /// Counting only bonds with both ends in a region would favour directions along its border.
-pub(super) fn of(
+pub fn of(
     spheres: &Spheres,
     bonds: &[[u32; 2]],
     counts: impl Fn(u32) -> bool + Sync,

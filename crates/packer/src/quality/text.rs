@@ -173,7 +173,8 @@ fn fit(fit: &Fit) -> String {
     )
 }
 
-fn fabric(fabric: &Fabric) -> String {
+/// The eigenvalues of a fabric, and whether chance explains them.
+pub(super) fn fabric(fabric: &Fabric) -> String {
     let [a, b, c] = fabric.eigenvalues;
     let verdict = if fabric.chance < RARE {
         "anisotropic"

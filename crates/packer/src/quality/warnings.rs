@@ -1,6 +1,7 @@
 //! Warnings about a packing before it is used, with advice.
 
 use super::checks::{Checks, ENOUGH_BONDS};
+use super::pieces::Pieces;
 use crate::bonds::WELL_BONDED;
 use dem_io::units::{show_length, significant};
 
@@ -42,26 +43,38 @@ pub(super) fn warnings(checks: &Checks, parts: usize) -> Vec<String> {
             show_length(significant_down(thinnest.thickness_m / ENOUGH_ACROSS)),
         ));
     }
-    let pieces = &checks.pieces;
-    if pieces.count > parts.max(1) {
-        warnings.push(format!(
-            "the body is in {} pieces: {} of {} particles are not bonded to the largest; a larger --bond-range or smaller \
-             particles join them",
-            pieces.count, pieces.outside_largest, checks.particles
-        ));
-    }
+    warnings.extend(pieces_warning(&checks.pieces, parts, checks.particles));
     if checks.particles > 1 && checks.bonds_per_particle < ENOUGH_BONDS {
-        let advice = match checks.advised_bond_range {
-            Some(radius) => format!("--bond-range {radius} gives {WELL_BONDED}"),
-            None => "use smaller particles".to_owned(),
-        };
-        warnings.push(format!(
-            "{} bonds per particle, fewer than {ENOUGH_BONDS} are hardly rigid; {advice}",
-            significant(checks.bonds_per_particle, 3)
+        warnings.push(few_bonds_warning(
+            checks.bonds_per_particle,
+            checks.advised_bond_range,
         ));
     }
     warnings.extend(statistical_warnings(checks));
     warnings
+}
+
+/// A warning about more pieces than the shape has parts.
+pub(super) fn pieces_warning(pieces: &Pieces, parts: usize, particles: usize) -> Option<String> {
+    (pieces.count > parts.max(1)).then(|| {
+        format!(
+            "the body is in {} pieces: {} of {particles} particles are not bonded to the largest; a larger --bond-range or smaller \
+             particles join them",
+            pieces.count, pieces.outside_largest
+        )
+    })
+}
+
+/// The warning about a body with fewer bonds than make it rigid, and the bond range to advise.
+pub(super) fn few_bonds_warning(bonds_per_particle: f64, advised_range: Option<f64>) -> String {
+    let advice = match advised_range {
+        Some(range) => format!("--bond-range {range} gives {WELL_BONDED}"),
+        None => "use smaller particles".to_owned(),
+    };
+    format!(
+        "{} bonds per particle, fewer than {ENOUGH_BONDS} are hardly rigid; {advice}",
+        significant(bonds_per_particle, 3)
+    )
 }
 
 /// Warnings about deviations that chance does not explain: sizes, and directions of bonds.

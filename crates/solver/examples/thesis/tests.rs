@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use dem_io::Body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
+use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use serde_json::Value;
 
 use super::bench::{root, scene};
@@ -99,7 +99,10 @@ fn packed(sample: &Sample) -> Body {
         ..PackSettings::new(Sizes::parse(value("--diameter"), Basis::Number).unwrap())
     };
     let settings = BodySettings {
-        bond_range: value("--bond-range").parse().unwrap(),
+        bonds: BondSettings {
+            range: value("--bond-range").parse().unwrap(),
+            ..BondSettings::default()
+        },
         ..BodySettings::new(packing)
     };
     make_body(&surface, &settings, &|_, _| Ok(())).unwrap().0

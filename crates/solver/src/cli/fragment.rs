@@ -1,11 +1,12 @@
-//! `dem-run fragment`: a fragment of a frame as a body.
+//! `dem-run fragment`: a fragment of a frame, or all its loose spheres, as a body.
 
 use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 use dem_io::body::files::body_files;
+use dem_io::body::mass::of_named_density;
 use dem_io::body::write_body;
-use dem_io::body::{StoredFragment, read_frame};
+use dem_io::body::{StoredFragment, read_frame, read_particles};
 use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::units::significant;
@@ -17,11 +18,11 @@ use dem_scene::read_scene;
 use serde_json::Value;
 
 use super::all_fragments::write_all;
-use super::fragment_body::fragment_body;
+use super::fragment_body::{fragment_body, name_origin};
 use crate::run::snapshot::Snapshot;
 
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("fragment").required(true).args(["id", "largest", "all"])))]
+#[command(group(ArgGroup::new("fragment").required(true).args(["id", "largest", "loose", "all"])))]
 pub(super) struct FragmentArguments {
     /// The folder of results of a run
     results: PathBuf,
@@ -31,6 +32,9 @@ pub(super) struct FragmentArguments {
     /// Take the heaviest fragment
     #[arg(long)]
     largest: bool,
+    /// Take all loose spheres together, as one body without bonds, which dem-pack bond bonds
+    #[arg(long)]
+    loose: bool,
     /// Take every fragment, each as a file of its own: fragment_000007.vtp and so on, in the folder
     /// that --output names
     #[arg(long)]
@@ -74,6 +78,9 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     }
     let path = frame_path(&arguments.results, arguments.frame)?;
     refuse_overwriting(&arguments.results, output)?;
+    if arguments.loose {
+        return write_loose(&path, output, arguments.quiet);
+    }
     let frame = read_frame(&path)?;
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let fragments = frame.fragments();
@@ -97,6 +104,32 @@ pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
             body.positions.len(),
             body.bonds.len(),
             significant(mass_kg, 4)
+        )
+    })
+}
+
+/// Writes the loose spheres of the frame in this file as a body, and describes it.
+fn write_loose(path: &Path, output: &Path, quiet: bool) -> Result<()> {
+    let frame = read_particles(path)?;
+    let within = |error: Diagnostic| error.within(&path.display().to_string());
+    let mut body = frame.loose_spheres().map_err(within)?;
+    name_origin(&mut body, path, "loose spheres");
+    write_body(&body, output)?;
+    if quiet || output == Path::new("-") {
+        return Ok(());
+    }
+    let mass = match of_named_density(&body) {
+        Some(mass) => format!("{} kg", significant(mass.mass_kg, 4)),
+        None => "whose densities differ or are not known".to_owned(),
+    };
+    write_standard_output(|out| {
+        writeln!(
+            out,
+            "loose spheres at {} s -> {}: {} of {} particles, {mass}",
+            significant(frame.time_s, 6),
+            visible(&output.display().to_string()),
+            body.positions.len(),
+            frame.positions.len(),
         )
     })
 }

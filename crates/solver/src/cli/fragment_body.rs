@@ -11,7 +11,12 @@ use dem_io::{Body, Result};
 /// The frame has no such fragment.
 pub(super) fn fragment_body(frame: &StoredFrame, path: &Path, id: u32) -> Result<Body> {
     let mut body = frame.body(id)?;
-    body.about.program = Some(concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned());
-    body.about.source = Some(format!("{}: fragment {id}", path.display()));
+    name_origin(&mut body, path, &format!("fragment {id}"));
     Ok(body)
+}
+
+/// Says in a body that this program took it from the frame in this file, and which part of it.
+pub(super) fn name_origin(body: &mut Body, path: &Path, part: &str) {
+    body.about.program = Some(concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned());
+    body.about.source = Some(format!("{}: {part}", path.display()));
 }

@@ -11,7 +11,7 @@ use crate::plan::masses;
 use crate::run::statics::StaticsEstimate;
 
 /// Keys and tables that have no effect in such a scene.
-const UNUSED: &str = "run.rest_energy_ratio, run.time_step, run.safety_factor, run.adaptive, run.local_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
+const UNUSED: &str = "run.rest_energy_ratio, end_run_above of measures, run.time_step, run.safety_factor, run.adaptive, run.local_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";
 
 /// Prints what will be solved, as text or as JSON. `state_bytes` is the memory of the arrays of the
 /// state.

@@ -93,6 +93,9 @@ fn different(input: &Input<'_>) -> Vec<String> {
     if scene.run.rest_energy_ratio.is_some() {
         lines.push("`run.rest_energy_ratio`: the run goes on to `end_time`.".to_owned());
     }
+    if scene.measures.values().any(|m| m.end_run_above.is_some()) {
+        lines.push("`end_run_above` of measures: the run goes on to `end_time`.".to_owned());
+    }
     if input.plan.is_adaptive {
         lines.push("The time step stays that of the start.".to_owned());
     }

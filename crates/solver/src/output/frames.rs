@@ -118,6 +118,9 @@ impl FrameOrder {
             arrays.push(counts(FRAGMENT_ID, &cluster));
             arrays.push(scalars(DENSITY, &density));
             arrays.push(scalars("fragment_mass_kg", &mass));
+        } else if state.bonds.is_empty() {
+            // With this array the loose spheres can be taken as a body of known density.
+            arrays.push(scalars(DENSITY, &density));
         }
         self.append(state, &arrays, walls, files)
     }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use dem_io::body::mass::BodyMass;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Measure, Quantity, Scene};
 
@@ -11,7 +12,7 @@ use crate::state::State;
 pub(crate) const FEWEST_IN_HEAP: usize = 50;
 
 /// Refuses a force or a contact if nothing can touch, a contact between two groups with common
-/// particles, and a slope of a heap of few particles.
+/// particles, a slope of a heap of few particles, and bulking of what has no shape.
 ///
 /// # Errors
 /// Names the measure.
@@ -19,6 +20,7 @@ pub(super) fn refuse_valueless(
     scene: &Scene,
     groups: &BTreeMap<String, Vec<u32>>,
     state: &State,
+    masses: &BTreeMap<String, BodyMass>,
 ) -> Result<()> {
     for (name, measure) in &scene.measures {
         let refuse = |problem: String, remedy: &str| {
@@ -34,6 +36,17 @@ pub(super) fn refuse_valueless(
                     quantity.name()
                 ),
                 "say in [contacts] how materials meet, or ask for a reaction of supports",
+            );
+        }
+        let has_shape = || {
+            masses
+                .get(of)
+                .is_some_and(|mass| mass.solid_density_kg_m3.is_some())
+        };
+        if quantity == Quantity::BulkingFactor && !has_shape() {
+            return refuse(
+                format!("\"{of}\" is no body with a shape of known volume"),
+                "name one body in \"of\", whose file says its shape_volume_m3 (a .vtp of dem-pack)",
             );
         }
         if let Some(with) = &measure.with

@@ -16,7 +16,7 @@ use super::fragments::write_fragments;
 use super::limits::{CHECK_EVERY_STEPS, tunnelling};
 use super::schedule::{due, next};
 use super::settings::SoFar;
-use crate::measure::{read_probes, renumber as renumber_probes};
+use crate::measure::{Probe, read_probes, renumber as renumber_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::series;
 use crate::stages::clumps::place_all;
@@ -87,7 +87,7 @@ impl Run<'_> {
         if due.any() {
             place_all(&self.state.clumps, &mut self.state.particles);
         }
-        let mut rests = false;
+        let (mut rests, mut exceeded) = (false, false);
         let mut balanced = None;
         if due.needs_balance() {
             let balance = balance(&mut self.state);
@@ -108,18 +108,24 @@ impl Run<'_> {
             }
             if due.row || rests {
                 self.write_row(&balance, tell)?;
+                exceeded = self.progress.exceeded.is_some() && !due.end && !rests;
+            }
+            if exceeded {
+                self.find_last_pieces()?;
             }
             balanced = Some(balance);
         }
-        self.write_frame(due, rests)?;
+        let ends_early = rests || exceeded;
+        self.write_frame(due, ends_early)?;
         self.plan_checkpoint(due);
-        if let (true, Some(balance)) = (due.end || rests, balanced) {
-            self.progress.rested = !due.end;
+        if let (true, Some(balance)) = (due.end || ends_early, balanced) {
+            self.progress.rested = rests && !due.end;
             self.progress.test_ended = over;
             let by = match (due.end, &self.watch) {
                 (true, Some(watch)) => watch.ended_by(over),
                 (true, None) => "end time",
-                (false, _) => "rest",
+                (false, _) if rests => "rest",
+                (false, _) => "measure",
             };
             let problem = None;
             return Ok(Some(Ended {
@@ -220,6 +226,7 @@ impl Run<'_> {
         let state = &self.state;
         self.progress.next_row = next(state, self.schedule.row_s);
         let values = read_probes(&mut self.probes, state, balance);
+        self.progress.exceeded = exceeded(&self.probes, &values);
         if let Some(files) = &mut self.files {
             let row = series::row(state, balance, &values);
             files.series.append(state.time_s, &row)?;
@@ -232,22 +239,22 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Writes frame, picture and fragments if they are due.
-    fn write_frame(&mut self, due: Due, rests: bool) -> Result<()> {
+    /// Writes frame, picture and fragments if they are due, or if the run ends early.
+    fn write_frame(&mut self, due: Due, ends_early: bool) -> Result<()> {
         let (state, progress) = (&self.state, &mut self.progress);
         let Some(files) = &mut self.files else {
             return Ok(());
         };
-        if due.frame || rests {
+        if due.frame || ends_early {
             progress.next_frame = self.schedule.frame_s.map_or(0, |s| next(state, s));
             files.order.write(state, &files.walls, &mut files.frames)?;
         }
         if let Some(pictures) = &mut files.pictures
-            && (due.end || rests || due.picture)
+            && (due.end || ends_early || due.picture)
         {
             pictures.take(state, &self.bodies)?;
         }
-        if due.frame || rests || (due.row && progress.has_new_fragments(state)) {
+        if due.frame || ends_early || (due.row && progress.has_new_fragments(state)) {
             write_fragments(state, progress, files)?;
         }
         Ok(())
@@ -323,6 +330,14 @@ impl Run<'_> {
             problem,
         }
     }
+}
+
+/// The first measure with a value above that at which it ends the run, and that value.
+fn exceeded(probes: &[Probe], values: &[f64]) -> Option<(String, f64)> {
+    probes.iter().zip(values).find_map(|(probe, &value)| {
+        let limit = probe.measure.end_run_above?;
+        (value > limit).then(|| (probe.name.clone(), limit))
+    })
 }
 
 /// Adds the time since then, if any, to the stage of work that few steps need.

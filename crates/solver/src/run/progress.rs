@@ -56,6 +56,8 @@ pub struct Progress {
     pub(super) calm_since_s: Option<f64>,
     /// Whether it has ended at rest.
     pub(super) rested: bool,
+    /// The measure that has ended it, and the value that it had to exceed.
+    pub(super) exceeded: Option<(String, f64)>,
     /// Record of a laboratory test.
     pub(super) test: Record,
     /// Whether it has ended before its end time: the body broke, or the weight came to its end.
@@ -90,6 +92,11 @@ fn last_change_s(state: &State) -> f64 {
     let let_go = let_go.filter(|end_s| end_s.is_finite());
     let ends = loads.chain(supports).map(end).chain(of_walls).chain(let_go);
     ends.fold(0.0, f64::max)
+}
+
+/// The value above which a measure of this name ends the run.
+fn ends_run_above(scene: &Scene, name: &str) -> Option<f64> {
+    scene.measures.get(name)?.end_run_above
 }
 
 impl Progress {
@@ -158,6 +165,14 @@ impl Progress {
                 "set a smaller run.rest_energy_ratio",
             ));
         }
+        if let Some((name, value)) = &self.exceeded
+            && ends_run_above(scene, name) == Some(*value)
+        {
+            return Some((
+                format!("measures.{name} has ended this run at {before_s:.6e} s"),
+                "set a larger end_run_above of this measure",
+            ));
+        }
         self.test_ended.then(|| {
             let what = if self.test.fell {
                 "the body of this test has broken"
@@ -193,6 +208,7 @@ impl Progress {
             self.calm_since_s = None;
         }
         self.rested = false;
+        self.exceeded = None;
         if rhythm != self.rhythm {
             self.next_row = first_after(before_s, rhythm.row_s);
             self.next_frame = rhythm.frame_s.map_or(0, |s| first_after(before_s, s));

@@ -90,7 +90,7 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Checks that a scene is the one of the run, except for settings that may change: end time,
-    /// time step, output, and paths of the files of its bodies.
+    /// values of measures that end it, time step, output, and paths of the files of its bodies.
     ///
     /// # Errors
     /// Names the differences.
@@ -102,7 +102,10 @@ impl<'a> Snapshot<'a> {
                 "run.time_step",
                 "run.safety_factor",
             ];
-            RUN.contains(&key) || key.starts_with("output") || key.ends_with(".file")
+            RUN.contains(&key)
+                || key.starts_with("output")
+                || key.ends_with(".file")
+                || key.ends_with(".end_run_above")
         };
         let values = |text: &str| -> BTreeMap<String, String> {
             text.lines()

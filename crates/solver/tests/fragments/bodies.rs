@@ -195,3 +195,65 @@ fn what_cannot_be_written_is_told() {
         assert_eq!(fragment(here, options).status.code(), Some(2));
     }
 }
+
+#[test]
+fn all_loose_spheres_are_one_body() {
+    // The spheres that have lost all their bonds, as the list of fragments says.
+    let (parent, _, _) = burst();
+    let folder = parent.path();
+    let said = good(folder, &["--loose", "-o", "loose.vtp"]);
+    let loose = read_body(&folder.join("loose.vtp")).unwrap();
+    let last = dem_results::folder::frames_in(&folder.join("out")).unwrap();
+    let path = dem_results::folder::frame_in(&folder.join("out"), *last.last().unwrap());
+    let frame = read_frame(&path).unwrap();
+    let single: Vec<_> = frame
+        .fragments()
+        .into_iter()
+        .filter(|f| f.particles == 1)
+        .collect();
+    assert!(single.len() > 1 && single.len() < frame.radii.len());
+    assert_eq!(loose.radii.len(), single.len());
+    assert!(loose.bonds.is_empty());
+    assert!(
+        said.contains(&format!(
+            "{} of {} particles",
+            single.len(),
+            frame.radii.len()
+        )),
+        "{said}"
+    );
+    let mass = dem_io::body::mass::of_named_density(&loose).unwrap();
+    let wanted_kg: f64 = single.iter().map(|fragment| fragment.mass_kg).sum();
+    assert!((mass.mass_kg / wanted_kg - 1.0).abs() < 1e-12);
+    let mut centre = [0.0; 3];
+    for fragment in &single {
+        let i = frame
+            .clusters
+            .iter()
+            .position(|id| *id == fragment.id)
+            .unwrap();
+        assert!(loose.positions.contains(&frame.positions[i]));
+        for k in 0..3 {
+            centre[k] += fragment.mass_kg * frame.positions[i][k] / wanted_kg;
+        }
+    }
+    for k in 0..3 {
+        assert!((mass.centre_m[k] - centre[k]).abs() < 1e-12, "{centre:?}");
+    }
+    let source = loose.about.source.unwrap();
+    assert!(source.ends_with(": loose spheres"), "{source}");
+}
+
+#[test]
+fn a_frame_without_loose_spheres_is_refused() {
+    let (folder, _, _) = burst();
+    let said = bad(
+        folder.path(),
+        &["--loose", "--frame", "0", "-o", "loose.vtp"],
+    );
+    assert!(
+        said.contains("spheres is loose") && said.contains("--largest"),
+        "{said}"
+    );
+    assert!(!folder.path().join("loose.vtp").exists());
+}

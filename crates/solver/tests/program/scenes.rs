@@ -144,7 +144,7 @@ fn every_good_scene_of_the_corpus_runs() {
 /// End time of each scene for a test without false alarms, and the shape and diameters of its body
 /// if it needs one. Laboratory tests, which have no end time of their own, load within one period
 /// of the body.
-const SHORT: [[&str; 4]; 29] = [
+const SHORT: [[&str; 4]; 32] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -165,9 +165,12 @@ const SHORT: [[&str; 4]; 29] = [
     ["jaw-crusher", "0.1 s", "", ""],
     ["lifted-cylinder", "30 ms", "", ""],
     ["one-cake", "60 ms", "", ""],
+    ["pour-box", "20 ms", "", ""],
+    ["press-mould", "20 ms", "", ""],
     ["repeated-drops", "3 ms", "", ""],
     ["roll-crusher", "0.2 s", "", ""],
     ["shatter", "5 ms", "", ""],
+    ["shatter-box", "20 ms", "", ""],
     ["silo", "20 ms", "", ""],
     ["spinning-bar", "50 ms", "", ""],
     ["stalk-cut", "0.5 ms", "", ""],

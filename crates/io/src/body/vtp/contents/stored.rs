@@ -76,6 +76,7 @@ impl Contents {
             radii: self.radii.ok_or_else(|| missing(frame::RADIUS))?,
             velocities_m_s: velocities.as_chunks().0.to_vec(),
             fragments: of_frame.clusters,
+            densities_kg_m3: of_frame.densities,
             bonds: self.parts.bonds,
             bond_radii: bond_radii.ok_or_else(|| missing(frame::BOND_RADIUS))?,
             broken: broken.into_iter().map(|broken| broken != 0.0).collect(),

@@ -1,0 +1,151 @@
+//! The table of doc/bulk.md: from a poured density to the density of the particles, to the overlap
+//! of a body, and back by shattering it (Platzer 2022, 3.1.1 and 4.5.1.5). From the folder of the
+//! clone:
+//!
+//! ```sh
+//! cargo build --release && cargo run --release -p dem-run --example bulk_route
+//! ```
+//!
+//! Takes some ten minutes.
+#![allow(clippy::print_stdout, reason = "it prints a table")]
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use dem_io::body::mass::of_named_density;
+use dem_io::body::write_body;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
+use serde_json::Value;
+
+type Failed = Box<dyn Error>;
+
+/// Densities of the material as a laboratory measures them, kg/m3: poured, and solid.
+const BULK_KG_M3: f64 = 1200.0;
+const SOLID_KG_M3: f64 = 1800.0;
+/// Density of the particles with which the first pouring is run, kg/m3.
+const TRIAL_KG_M3: f64 = 2050.0;
+/// Diameters, as those of data/scenes/pour-box.toml.
+const DIAMETERS: &str = "3.5mm..5mm";
+const SEEDS: [u64; 3] = [1, 2, 3];
+
+fn main() -> Result<(), Failed> {
+    let folder = std::env::temp_dir().join("bulk-route");
+    std::fs::create_dir_all(&folder)?;
+    println!(
+        "| seed | poured, at 2050 kg/m3 | particle density | overlap | solid density | shattered: bulk density | off | bulking factor |\n\
+         |---|---|---|---|---|---|---|---|"
+    );
+    let (mut poured, mut back) = (Vec::new(), Vec::new());
+    for seed in SEEDS {
+        let set = [format!("run.seed={seed}")];
+        let bulk = run(
+            "pour-box",
+            &set,
+            None,
+            &folder.join(format!("poured-{seed}")),
+        )?;
+        poured.push(value(&bulk, "bulk_density")?);
+    }
+    // The particle density of the material: the mean of all pourings.
+    let poured_kg_m3 = poured.iter().sum::<f64>() / poured.len() as f64;
+    let particle_kg_m3 = TRIAL_KG_M3 * BULK_KG_M3 / poured_kg_m3;
+    for (seed, poured_kg_m3) in SEEDS.into_iter().zip(poured) {
+        let file = folder.join(format!("bar-{seed}.vtp"));
+        let (overlap, solid_kg_m3) = pack(seed, particle_kg_m3, &file)?;
+        let set = [format!("materials.cake.density={particle_kg_m3}")];
+        let out = folder.join(format!("shattered-{seed}"));
+        let bulk = run("shatter-box", &set, Some(&file), &out)?;
+        let [bulk_kg_m3, factor] =
+            ["bulk_density", "bulking_factor"].map(|name| value(&bulk, name));
+        let bulk_kg_m3 = bulk_kg_m3?;
+        println!(
+            "| {seed} | {poured_kg_m3:.0} kg/m3 | {particle_kg_m3:.0} kg/m3 | {overlap:.3} | {solid_kg_m3:.0} kg/m3 | {bulk_kg_m3:.0} kg/m3 | {:+.1} % | {:.3} |",
+            100.0 * (bulk_kg_m3 / BULK_KG_M3 - 1.0),
+            factor?
+        );
+        back.push(bulk_kg_m3);
+    }
+    let mean = back.iter().sum::<f64>() / back.len() as f64;
+    let off = 100.0 * (mean / BULK_KG_M3 - 1.0);
+    println!(
+        "| mean | {poured_kg_m3:.0} kg/m3 | {particle_kg_m3:.0} kg/m3 | | | {mean:.0} kg/m3 | {off:+.1} % | |"
+    );
+
+    // The same body, which breaks where it lies.
+    let set = [
+        format!("materials.cake.density={particle_kg_m3}"),
+        "bodies.bar.position=[0,0,\"0.1 mm\"]".to_owned(),
+        "regions.bed.box.max=[\"15 mm\",\"15 mm\",\"15 mm\"]".to_owned(),
+        "regions.bed.box.min=[\"-15 mm\",\"-15 mm\",\"6 mm\"]".to_owned(),
+    ];
+    let file = folder.join(format!("bar-{}.vtp", SEEDS[0]));
+    let lying = run("shatter-box", &set, Some(&file), &folder.join("lying"))?;
+    println!(
+        "\nBroken on the floor, below the bars: {:.0} kg/m3.",
+        value(&lying, "bulk_density")?
+    );
+    Ok(())
+}
+
+/// Packs the bar so that it has the solid density. Returns its overlap and its solid density, kg/m3.
+fn pack(seed: u64, particle_kg_m3: f64, file: &Path) -> Result<(f64, f64), Failed> {
+    let stl = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/shapes/bar.stl");
+    let reading = ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    let surface = surface_from_stl(&std::fs::read(stl)?, "bar.stl", reading)?;
+    let settings = BodySettings {
+        bonds: BondSettings {
+            range: 1.0,
+            ..BondSettings::default()
+        },
+        particle_density_kg_m3: Some(particle_kg_m3),
+        solid_density_kg_m3: Some(SOLID_KG_M3),
+        ..BodySettings::new(PackSettings {
+            seed,
+            ..PackSettings::new(Sizes::parse(DIAMETERS, Basis::Number)?)
+        })
+    };
+    let (body, made) = make_body(&surface, &settings, &|_, _| Ok(()))?;
+    write_body(&body, file)?;
+    let solid = of_named_density(&body).and_then(|mass| mass.solid_density_kg_m3);
+    Ok((made.quality.overlap, solid.ok_or("no density")?))
+}
+
+/// Runs a scene of data/scenes, with another bar if one is given. Returns its summary.
+fn run(scene: &str, set: &[String], bar: Option<&Path>, out: &PathBuf) -> Result<Value, Failed> {
+    let release = std::env::current_exe()?;
+    let release = release.parent().and_then(Path::parent).ok_or("no folder")?;
+    let mut run = Command::new(release.join("dem-run"));
+    run.arg(format!("data/scenes/{scene}.toml"));
+    run.args([
+        "--quiet",
+        "--force",
+        "--set",
+        "output.pictures=\"10 s\"",
+        "--output",
+    ])
+    .arg(out);
+    set.iter().for_each(|set| {
+        run.args(["--set", set]);
+    });
+    if let Some(bar) = bar {
+        run.arg("--body").arg(format!("bar={}", bar.display()));
+    }
+    let output = run.output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into());
+    }
+    Ok(serde_json::from_slice(&std::fs::read(
+        out.join("summary.json"),
+    )?)?)
+}
+
+fn value(summary: &Value, measure: &str) -> Result<f64, Failed> {
+    let value = summary["measures"][measure]["value"].as_f64();
+    Ok(value.ok_or("no value of a measure in summary.json")?)
+}

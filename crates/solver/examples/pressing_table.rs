@@ -1,0 +1,315 @@
+//! The table of doc/pressing.md, and its plot `doc/pressing-density.svg`: the bar of
+//! `data/shapes/bar.stl` filled by the front of dem-pack, and by filling a mould and pressing. From
+//! the folder of the clone:
+//!
+//! ```sh
+//! cargo build --release && cargo run --release -p dem-run --example pressing_table
+//! ```
+//!
+//! Takes a few minutes, on one thread.
+#![allow(clippy::print_stdout, reason = "it prints a table")]
+
+use std::error::Error;
+use std::path::Path;
+use std::process::Command;
+
+use dem_io::Body;
+use dem_io::body::mass::volume_m3;
+use dem_io::body::read_particles;
+use dem_io::surface::{ReadSettings, surface_from_stl};
+use dem_pack::{
+    Basis, BodySettings, BondSettings, Fabric, PackSettings, Sizes, Spheres, bond_fabric,
+    bond_spheres, make_body,
+};
+use dem_plots::{Axis, Line, Plot};
+use dem_results::folder::{frame_in, frames_in};
+use serde_json::Value;
+
+type Failed = Box<dyn Error>;
+
+/// The bar: 30 mm x 30 mm around the z axis, 60 mm high.
+const HALF_WIDTH_M: f64 = 15e-3;
+const HEIGHT_M: f64 = 60e-3;
+const LAYERS: usize = 5;
+const PARTICLE_DENSITY_KG_M3: f64 = 2050.0;
+const SOLID_DENSITY_KG_M3: f64 = 1650.0;
+/// Spheres as in data/scenes/press-mould.toml, and twice as large.
+const COARSER: [f64; 2] = [2.0, 1.0];
+/// Spheres that are fed if they are twice as large: those of the scene over 8.
+const COARSE_COUNT: usize = 237;
+/// Radii of the scene, mm, by the name of the body.
+const RADII_MM: [(&str, f64); 5] = [
+    ("a", 1.5),
+    ("b", 1.625),
+    ("c", 1.75),
+    ("d", 1.875),
+    ("e", 2.0),
+];
+
+/// A body, and what it took to make it.
+struct Made {
+    way: &'static str,
+    body: Body,
+    /// Processor time, s.
+    processor_s: f64,
+    /// Height of the body, m.
+    height_m: f64,
+}
+
+fn main() -> Result<(), Failed> {
+    let mut lines = Vec::new();
+    println!(
+        "| way | spheres | processor time | slower | density, lowest to highest fifth | stands out of the wall: mean, largest | \
+         overlap of neighbours: mean, scatter, largest | bonds per particle | fabric inside |\n\
+         |---|---|---|---|---|---|---|---|---|"
+    );
+    for coarser in COARSER {
+        let pressed = pressed(coarser)?;
+        let front = front(coarser)?;
+        for made in [&front, &pressed] {
+            println!("{}", row(made, front.processor_s));
+        }
+        if coarser == 1.0 {
+            lines.extend([&front, &pressed].map(line));
+        }
+    }
+    let plot = Plot {
+        title: "Solid density over the height".to_owned(),
+        x: Axis::of("height (mm)"),
+        y: Axis::of("mass of the spheres over volume of the shape (kg/m3)"),
+        lines,
+        ..Plot::default()
+    };
+    let doc = concat!(env!("CARGO_MANIFEST_DIR"), "/../../doc");
+    std::fs::write(format!("{doc}/pressing-density.svg"), plot.svg().file())?;
+    Ok(())
+}
+
+/// The bar by the front of dem-pack, with the overlap that gives the density, on one thread.
+fn front(coarser: f64) -> Result<Made, Failed> {
+    let stl = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/shapes/bar.stl");
+    let reading = ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    let surface = surface_from_stl(&std::fs::read(stl)?, "bar.stl", reading)?;
+    let sizes = format!("{}mm..{}mm", 3.0 * coarser, 4.0 * coarser);
+    let settings = BodySettings {
+        bonds: touching(),
+        particle_density_kg_m3: Some(PARTICLE_DENSITY_KG_M3),
+        solid_density_kg_m3: Some(SOLID_DENSITY_KG_M3),
+        ..BodySettings::new(PackSettings::new(Sizes::parse(&sizes, Basis::Number)?))
+    };
+    let began_s = processor_time_s();
+    let made = dem_pack::cli::thread_pool(Some(1))?
+        .install(|| make_body(&surface, &settings, &|_, _| Ok(())))?;
+    Ok(Made {
+        way: "front",
+        processor_s: processor_time_s() - began_s,
+        height_m: HEIGHT_M,
+        body: made.0,
+    })
+}
+
+/// The bar by the scene that fills and presses, on one thread.
+fn pressed(coarser: f64) -> Result<Made, Failed> {
+    let release = std::env::current_exe()?;
+    let release = release.parent().and_then(Path::parent).ok_or("no folder")?;
+    let folder = std::env::temp_dir().join(format!("pressing-table-{coarser}"));
+    let mut run = Command::new(release.join("dem-run"));
+    run.args([
+        "data/scenes/press-mould.toml",
+        "--threads",
+        "1",
+        "--quiet",
+        "--force",
+    ]);
+    run.args(["--set", "output.pictures=\"10 s\"", "--output"])
+        .arg(&folder);
+    if coarser != 1.0 {
+        for (name, radius_mm) in RADII_MM {
+            let radius_mm = coarser * radius_mm;
+            run.arg("--set");
+            run.arg(format!(
+                "bodies.{name}.particles=[[0,0,0,\"{radius_mm} mm\"]]"
+            ));
+        }
+        run.args(["--set", &format!("inlets.fill.count={COARSE_COUNT}")]);
+        run.args(["--set", "inlets.fill.rate=\"800 /s\""]);
+    }
+    let output = run.output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into());
+    }
+    let summary: Value = serde_json::from_slice(&std::fs::read(folder.join("summary.json"))?)?;
+    if summary["ended_by"] != "measure" {
+        return Err("the density was not met".into());
+    }
+    let number = |value: &Value| value.as_f64().ok_or("no number in summary.json");
+    let last = *frames_in(&folder)?.last().ok_or("no frame")?;
+    let began_s = processor_time_s();
+    let spheres = read_particles(&frame_in(&folder, last))?.loose_spheres()?;
+    let (body, _) = bond_spheres(&spheres, &touching())?;
+    Ok(Made {
+        way: "filled and pressed",
+        processor_s: number(&summary["processor_s"])? + processor_time_s() - began_s,
+        height_m: 130e-3 + number(&summary["measures"]["plunger"]["value"])?,
+        body,
+    })
+}
+
+/// Processor time of this program, s.
+#[cfg(unix)]
+fn processor_time_s() -> f64 {
+    let spent = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    spent.tv_sec as f64 + 1e-9 * spent.tv_nsec as f64
+}
+
+/// Not known.
+#[cfg(not(unix))]
+fn processor_time_s() -> f64 {
+    f64::NAN
+}
+
+/// Bonds between spheres that overlap.
+fn touching() -> BondSettings {
+    BondSettings {
+        range: 1.0,
+        ..BondSettings::default()
+    }
+}
+
+fn row(made: &Made, front_s: f64) -> String {
+    let densities = densities_kg_m3(made, LAYERS).map(|density| format!("{density:.0}"));
+    let densities: Vec<String> = densities.collect();
+    let out = Spread::of(outside(made));
+    let neighbours = Spread::of(overlaps(&made.body));
+    let per_particle = made.body.bonds.len() as f64 / made.body.radii.len() as f64;
+    format!(
+        "| {} | {} | {:.1} s | {:.0} | {} kg/m3 | {:.3}, {:.3} of a radius | {:.3}, {:.3}, {:.3} of a radius | {per_particle:.2} | {} |",
+        made.way,
+        made.body.radii.len(),
+        made.processor_s,
+        made.processor_s / front_s,
+        densities.join(", "),
+        out.mean,
+        out.largest,
+        neighbours.mean,
+        neighbours.scatter,
+        neighbours.largest,
+        fabric_text(made),
+    )
+}
+
+/// Mean, standard deviation and largest of some values.
+struct Spread {
+    mean: f64,
+    scatter: f64,
+    largest: f64,
+}
+
+impl Spread {
+    fn of(values: Vec<f64>) -> Self {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let variance = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count;
+        Self {
+            mean,
+            scatter: variance.sqrt(),
+            largest: values.iter().copied().fold(0.0, f64::max),
+        }
+    }
+}
+
+/// Density of each layer of the bar from below: mass of the parts of the spheres between its two
+/// planes over its volume, kg/m3. What stands out of the walls counts; what stands out below or
+/// above counts to the lowest or the highest layer.
+fn densities_kg_m3(made: &Made, layers: usize) -> impl Iterator<Item = f64> + '_ {
+    let layer_m = made.height_m / layers as f64;
+    let layer_m3 = 4.0 * HALF_WIDTH_M * HALF_WIDTH_M * layer_m;
+    (0..layers).map(move |layer| {
+        let low_m = if layer == 0 {
+            f64::NEG_INFINITY
+        } else {
+            layer as f64 * layer_m
+        };
+        let high_m = if layer + 1 == layers {
+            f64::INFINITY
+        } else {
+            (layer + 1) as f64 * layer_m
+        };
+        let spheres = made.body.positions.iter().zip(&made.body.radii);
+        let volumes = spheres.map(|(place, radius)| {
+            below_m3(*radius, high_m - place[2]) - below_m3(*radius, low_m - place[2])
+        });
+        PARTICLE_DENSITY_KG_M3 * volumes.sum::<f64>() / layer_m3
+    })
+}
+
+/// Volume of the part of a sphere below a plane at this height above its centre, m3.
+fn below_m3(radius_m: f64, height_m: f64) -> f64 {
+    let rise_m = height_m.clamp(-radius_m, radius_m) + radius_m;
+    let cap_m3 = std::f64::consts::PI * rise_m * rise_m * (radius_m - rise_m / 3.0);
+    cap_m3.min(volume_m3(radius_m))
+}
+
+/// How far the spheres that reach a wall, floor or top stand out of it, in radii.
+fn outside(made: &Made) -> Vec<f64> {
+    let spheres = made.body.positions.iter().zip(&made.body.radii);
+    let out = spheres.map(|([x, y, z], r)| (r - depth_m(made, [*x, *y, *z])) / r);
+    // Spheres of a packing that touch the wall stay a little apart from it.
+    out.filter(|out| *out > -0.02)
+        .map(|out| out.max(0.0))
+        .collect()
+}
+
+/// Distance of a point to the nearest face of the bar, m.
+fn depth_m(made: &Made, [x, y, z]: [f64; 3]) -> f64 {
+    let aside = HALF_WIDTH_M - x.abs().max(y.abs());
+    aside.min(z).min(made.height_m - z)
+}
+
+/// Overlaps of bonded spheres, in radii of the smaller one.
+fn overlaps(body: &Body) -> Vec<f64> {
+    let bonds = body.bonds.iter().zip(&body.bond_lengths);
+    bonds
+        .map(|(&[a, b], length_m)| {
+            let [a, b] = [a, b].map(|i| body.radii[i as usize]);
+            (a + b - length_m) / a.min(b)
+        })
+        .collect()
+}
+
+/// The fabric of the bonds deeper than a largest diameter.
+fn fabric_text(made: &Made) -> String {
+    let body = &made.body;
+    let spheres = Spheres {
+        positions: body.positions.clone(),
+        radii: body.radii.clone(),
+    };
+    let largest_m = body.radii.iter().copied().fold(0.0, f64::max);
+    let is_inside = |i: u32| depth_m(made, body.positions[i as usize]) > 2.0 * largest_m;
+    match bond_fabric(&spheres, &body.bonds, is_inside) {
+        Some(Fabric {
+            eigenvalues: [a, b, c],
+            chance,
+            ..
+        }) => format!("{a:.3} {b:.3} {c:.3}, p = {chance:.2}"),
+        None => "-".to_owned(),
+    }
+}
+
+/// The density over the height, in ten layers.
+fn line(made: &Made) -> Line {
+    let layers = 2 * LAYERS;
+    let middle_mm = |layer: usize| 1e3 * made.height_m * (layer as f64 + 0.5) / layers as f64;
+    let points = densities_kg_m3(made, layers).enumerate();
+    Line {
+        name: made.way.to_owned(),
+        points: points
+            .map(|(layer, density)| [middle_mm(layer), density])
+            .collect(),
+        ..Line::default()
+    }
+}

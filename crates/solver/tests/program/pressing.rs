@@ -1,0 +1,125 @@
+//! A body by filling a mould and pressing (Platzer 2022, 3.2.1): the density is met, and the
+//! spheres become a body that a scene loads and breaks.
+
+use super::{Bench, dem_run, scene_of_data};
+use crate::helpers::mass_in_box_kg;
+use clap::Parser;
+use dem_io::body::{body_summary, read_body, read_particles, write_body};
+use dem_pack::cli::Arguments;
+use dem_pack::{BondSettings, bond_spheres};
+use serde_json::Value;
+
+/// Half of the bar's width and its height, m.
+const BODY_M: [f64; 2] = [15e-3, 60e-3];
+
+/// The scene with spheres twice as large.
+fn pressed() -> Bench {
+    let bench = Bench::new();
+    let radii_mm = [("a", 3.0), ("b", 3.25), ("c", 3.5), ("d", 3.75), ("e", 4.0)];
+    let mut set: Vec<String> = radii_mm
+        .map(|(name, r)| format!("bodies.{name}.particles=[[0,0,0,\"{r} mm\"]]"))
+        .into();
+    let more = [
+        "inlets.fill.count=237",
+        "inlets.fill.rate=800",
+        "output.pictures=10",
+    ];
+    set.extend(more.map(str::to_owned));
+    let mut options = vec!["--quiet", "--output", "out"];
+    options.extend(set.iter().flat_map(|set| ["--set", set]));
+    bench.good(&scene_of_data("press-mould.toml"), &options);
+    bench
+}
+
+#[test]
+fn a_mould_is_pressed_to_a_density_and_its_body_breaks() {
+    let bench = pressed();
+    let summary = std::fs::read(bench.path("out/summary.json")).unwrap();
+    let summary: Value = serde_json::from_slice(&summary).unwrap();
+    assert_eq!(summary["ended_by"], "measure");
+    let found = summary["measures"]["solid_density"]["value"]
+        .as_f64()
+        .unwrap();
+    // The plunger moves 0.1 mm between two rows.
+    assert!((1650.0..1650.0 * 1.003).contains(&found), "{found}");
+
+    let output = dem_run()
+        .current_dir(bench.path(""))
+        .args(["fragment", "out", "--loose", "-o", "spheres.vtp"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && output.stderr.is_empty());
+    assert!(said.contains("237 of 237 particles, 0.09027 kg"), "{said}");
+    let spheres = read_body(&bench.path("spheres.vtp")).unwrap();
+    assert_eq!(spheres.about.particle_density_kg_m3, Some(2050.0));
+    let frames = dem_testing::names_in(&bench.path("out/frames"));
+    let last = frames
+        .iter()
+        .rfind(|name| name.starts_with("frame_"))
+        .unwrap();
+    let frame = read_particles(&bench.path(&format!("out/frames/{last}"))).unwrap();
+    assert!(spheres.positions == frame.positions && spheres.radii == frame.radii);
+    // The density, counted by fine steps over the volume of each sphere.
+    let [half_m, height_m] = BODY_M;
+    let body_box = [[-half_m, -half_m, 0.0], [half_m, half_m, height_m]];
+    let mass_kg = mass_in_box_kg(&spheres, 2050.0, body_box);
+    let counted = mass_kg / (4.0 * half_m * half_m * height_m);
+    assert!((counted / found - 1.0).abs() < 2e-3, "{counted} {found}");
+
+    // dem-pack takes the frame as well.
+    let frame = bench.path(&format!("out/frames/{last}"));
+    let (frame, direct) = (frame.display().to_string(), bench.path("direct.vtp"));
+    let words = [
+        "dem-pack",
+        "bond",
+        &frame,
+        "--quiet",
+        "-o",
+        &direct.display().to_string(),
+    ];
+    dem_pack::cli::run(&Arguments::try_parse_from(words).unwrap()).unwrap();
+    let direct = read_body(&direct).unwrap();
+
+    let (body, quality) = bond_spheres(&spheres, &BondSettings::default()).unwrap();
+    assert!(quality.fabric.is_some());
+    assert!(direct.bonds == body.bonds && direct.bond_lengths == body.bond_lengths);
+    assert_eq!(body_summary(&body).pieces, 1);
+    write_body(&body, &bench.path("pressed.vtp")).unwrap();
+    let broken = bench.write("drop.toml", DROP);
+    let said = bench.good(&broken, &["--json", "--quiet"]);
+    let summary: Value = serde_json::from_str(&said).unwrap();
+    let value = |name: &str| summary["measures"][name]["value"].as_f64().unwrap();
+    assert_eq!(value("at_start"), 0.0);
+    assert!(value("broken") > 0.2 * body.bonds.len() as f64, "{summary}");
+}
+
+/// The body at rest on its bonds, which then strikes a plate.
+const DROP: &str = r#"version = 1
+[run]
+end_time = "5 ms"
+[materials.cake]
+density = "2050 kg/m3"
+shear_modulus = "2 MPa"
+[contacts]
+cake-cake = { restitution = 0.3, friction = 0.3 }
+[bonds.cake]
+young_modulus = "5 MPa"
+poisson_ratio = 0.3
+failure = { tensile_strength = "20 kPa", shear_strength = "20 kPa" }
+[bodies.bar]
+file = "pressed.vtp"
+material = "cake"
+bonds = "cake"
+velocity = [0, 0, "-5 m/s"]
+[walls.plate]
+plane = { point = [0, 0, "-1.5 mm"], normal = [0, 0, 1] }
+material = "cake"
+[measures.at_start]
+of = "bar"
+quantity = "elastic_energy"
+statistic = "smallest"
+[measures.broken]
+of = "bar"
+quantity = "broken_bonds"
+"#;
