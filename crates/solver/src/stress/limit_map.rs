@@ -127,6 +127,12 @@ pub fn map() -> Result<Vec<Member>> {
     ] {
         members.push(of("timoshenko", "total", damping, "0")?);
     }
+    members.push(of(
+        "parallel",
+        "incremental",
+        "normal_damping_ratio = 3, shear_damping_ratio = 1, torsion_damping_ratio = 0.1, bending_damping_ratio = 0.3",
+        "0",
+    )?);
     for eta in ["0", "0.3"] {
         members.push(of(
             "flat-joint",
