@@ -472,7 +472,10 @@ fn sums_of_clumps(state: &State) -> (f64, [Vector3<f64>; 3]) {
         angular += kg * at.cross(&v) + Vector3::from(clump.angular_momentum);
     }
     let centre = moment / mass_kg;
-    (mass_kg, [centre, momentum, angular - centre.cross(&momentum)])
+    (
+        mass_kg,
+        [centre, momentum, angular - centre.cross(&momentum)],
+    )
 }
 
 /// What five daughters have in common with the sphere that they replace, which flies and spins.
@@ -487,11 +490,20 @@ fn kept_by_daughters() -> String {
     let (found_kg, found) = sums_of_clumps(&state);
     let spin = wanted[2].norm();
     let sizes = [RADIUS_M, wanted[1].norm(), spin];
-    let names = ["centre, m", "momentum, N s", "angular momentum about the centre, N m s"];
+    let names = [
+        "centre, m",
+        "momentum, N s",
+        "angular momentum about the centre, N m s",
+    ];
     let mut cases = vec![Case::new("mass, kg", found_kg, wanted_kg, 1e-12)];
     for (k, name) in names.into_iter().enumerate() {
         let off = (found[k] - wanted[k]).norm();
-        cases.push(Case::of_scale(format!("change of the {name}"), [off, 0.0], sizes[k], 1e-12));
+        cases.push(Case::of_scale(
+            format!("change of the {name}"),
+            [off, 0.0],
+            sizes[k],
+            1e-12,
+        ));
     }
     compared("sum", "", &cases)
 }

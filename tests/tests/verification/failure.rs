@@ -493,14 +493,22 @@ fn of_one_bond(criterion: Criterion, axis: &str, energy_j_m2: f64, way_m: f64) -
 
 /// Energy to break a bond of this model whose ends are rotated against each other about this axis
 /// by an angle, rad, J/m2.
-fn of_one_rotated(model: &str, criterion: Criterion, axis: &str, energy_j_m2: f64, angle: f64) -> f64 {
+fn of_one_rotated(
+    model: &str,
+    criterion: Criterion,
+    axis: &str,
+    energy_j_m2: f64,
+    angle: f64,
+) -> f64 {
     let others = if axis == "rx" {
         r#""x", "y", "z", "ry", "rz""#
     } else {
         r#""x", "y", "z", "rx", "ry""#
     };
     let end = |side: &str, angle: f64| {
-        format!("supports.{side} = {{ group = \"{side}\", fixed = [{others}], displacement = {{ {axis} = {angle:e} }}, ramp = 1 }}\n")
+        format!(
+            "supports.{side} = {{ group = \"{side}\", fixed = [{others}], displacement = {{ {axis} = {angle:e} }}, ramp = 1 }}\n"
+        )
     };
     let more = end("left", -0.5 * angle) + &end("right", 0.5 * angle);
     let run = format!("end_time = 1, time_step = {:e}", 1.0 / STEPS);
@@ -537,8 +545,19 @@ fn by_mode() -> String {
     let parts = |found: f64| found / ENERGY_J_M2;
     for model in ["parallel", "timoshenko"] {
         let edge = 2.0 * ENERGY_J_M2 / RADIUS_M;
-        let found = of_one_rotated(model, Criterion::Tension, "rz", ENERGY_J_M2, 1.01 * edge / TENSION_PA);
-        cases.push(Case::new(format!("{model}, bent"), parts(found), 0.25, 2.0 / STEPS));
+        let found = of_one_rotated(
+            model,
+            Criterion::Tension,
+            "rz",
+            ENERGY_J_M2,
+            1.01 * edge / TENSION_PA,
+        );
+        cases.push(Case::new(
+            format!("{model}, bent"),
+            parts(found),
+            0.25,
+            2.0 / STEPS,
+        ));
         let wanted = match model {
             "parallel" => 0.5,
             _ => 0.25 * RADIUS_M * RADIUS_M * shear / torsion,
@@ -547,7 +566,12 @@ fn by_mode() -> String {
         let moment = SHEAR_PA * 2.0 * second_moment_m4() / RADIUS_M;
         let angle = 2.0 * wanted * ENERGY_J_M2 * area_m2() / moment;
         let found = of_one_rotated(model, Criterion::Shear, "rx", ENERGY_J_M2, 1.01 * angle);
-        cases.push(Case::new(format!("{model}, twisted"), parts(found), wanted, 2.0 / STEPS));
+        cases.push(Case::new(
+            format!("{model}, twisted"),
+            parts(found),
+            wanted,
+            2.0 / STEPS,
+        ));
     }
     let wanted = normal / (3.0 * shear);
     let slid_m = 2.0 * wanted * ENERGY_J_M2 * 3.0_f64.sqrt() / VON_MISES_PA;
@@ -585,7 +609,10 @@ fn by_cycle() -> String {
         "#
     );
     let run = format!("end_time = 12, time_step = {:e}", 1.0 / STEPS);
-    let failure = format!("{}, fracture_energy = {ENERGY_J_M2:e}", Criterion::Tension.key());
+    let failure = format!(
+        "{}, fracture_energy = {ENERGY_J_M2:e}",
+        Criterion::Tension.key()
+    );
     let mut state = bond(&failure, &run, &more);
     let (mut cases, mut largest) = (Vec::new(), 0.0_f64);
     for (second, opening) in (1..).zip(openings) {
@@ -681,7 +708,11 @@ fn of_a_block(across: usize, energy_j_m2: f64) -> f64 {
         }
     }
     while state.broken_count < (across * across) as u64 {
-        assert!(state.time_s < 50e-3, "{across}: {} broken", state.broken_count);
+        assert!(
+            state.time_s < 50e-3,
+            "{across}: {} broken",
+            state.broken_count
+        );
         interact(&mut state);
         if state.broken_count == (across * across) as u64 {
             break;

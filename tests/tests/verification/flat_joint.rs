@@ -168,8 +168,18 @@ fn pulled(strength_pa: f64) -> [Case; 2] {
     let bound = 1.5 * 1e-6 / RAMP_S;
     let what = |what: &str| format!("tension: {what}");
     [
-        Case::new(what("stress at failure, MPa"), 1e-6 * stress_pa, 1e-6 * strength_pa, bound),
-        Case::new(what("energy released, uJ"), 1e6 * released_j, 1e6 * stored_j, 2.0 * bound),
+        Case::new(
+            what("stress at failure, MPa"),
+            1e-6 * stress_pa,
+            1e-6 * strength_pa,
+            bound,
+        ),
+        Case::new(
+            what("energy released, uJ"),
+            1e6 * released_j,
+            1e6 * stored_j,
+            2.0 * bound,
+        ),
     ]
 }
 
@@ -177,8 +187,10 @@ fn pulled(strength_pa: f64) -> [Case; 2] {
 fn bent(strength_pa: f64, rings: u32, sectors: u32) -> Case {
     let half = PI / f64::from(sectors);
     let k = f64::from(rings - 1);
-    let centroid_m = 2.0 / 3.0 * (3.0 * k * k + 3.0 * k + 1.0) / (2.0 * k + 1.0)
-        / f64::from(rings) * half.sin() / half * RADIUS_M;
+    let centroid_m = 2.0 / 3.0 * (3.0 * k * k + 3.0 * k + 1.0) / (2.0 * k + 1.0) / f64::from(rings)
+        * half.sin()
+        / half
+        * RADIUS_M;
     // The axis of an element is half a sector off those of the bond, or on one.
     let farthest = |sector: u32| ((2.0 * f64::from(sector) + 1.0) * half).cos().abs();
     let across = (0..sectors).map(farthest).fold(0.0, f64::max);
@@ -186,9 +198,12 @@ fn bent(strength_pa: f64, rings: u32, sectors: u32) -> Case {
     let end = 1.5 * wanted;
     let others = r#""x", "y", "z", "rx", "ry""#;
     let keys = format!(", failure = {{ tensile_strength = {strength_pa:e} }}");
-    let more = rotated("left", others, "rz", -0.5 * end) + &rotated("right", others, "rz", 0.5 * end);
+    let more =
+        rotated("left", others, "rz", -0.5 * end) + &rotated("right", others, "rz", 0.5 * end);
     let mut state = pair(rings, sectors, &keys, &more);
-    until(&mut state, |state| state.bonds.joints[0].failed_fraction() > 0.0);
+    until(&mut state, |state| {
+        state.bonds.joints[0].failed_fraction() > 0.0
+    });
     assert_eq!(state.broken_count, 0);
     let found = end * state.time_s / RAMP_S;
     let what = format!("bending, {rings} x {sectors}: angle of the first failure, mrad");
@@ -221,15 +236,16 @@ fn twisted(pressure_pa: f64, friction: f64) -> Vec<Case> {
     let area_m2 = PI * RADIUS_M * RADIUS_M;
     let shear_pa_m = YOUNG_PA / LENGTH_M / (2.0 * (1.0 + POISSON));
     let centroid_m = |inner: f64, outer: f64| {
-        2.0 / 3.0 * (outer.powi(3) - inner.powi(3)) / (outer.powi(2) - inner.powi(2))
-            * half.sin() / half * RADIUS_M
+        2.0 / 3.0 * (outer.powi(3) - inner.powi(3)) / (outer.powi(2) - inner.powi(2)) * half.sin()
+            / half
+            * RADIUS_M
     };
     let (inside_m, outside_m) = (centroid_m(0.0, 0.5), centroid_m(0.5, 1.0));
     let turned = angle * (state.time_s - 0.5 * RAMP_S) / (0.5 * RAMP_S);
     let fails_at = COHESION_PA / (shear_pa_m * outside_m);
     let rubs_pa = friction * pressure_pa;
-    let torque_n_m = area_m2
-        * (0.25 * inside_m * inside_m * shear_pa_m * turned + 0.75 * outside_m * rubs_pa);
+    let torque_n_m =
+        area_m2 * (0.25 * inside_m * inside_m * shear_pa_m * turned + 0.75 * outside_m * rubs_pa);
     let load = state.bonds.forces(0, &state.particles.poses).load;
     let now = balance(&mut state);
     // The faces slide at once by what the stress falls.
@@ -237,13 +253,33 @@ fn twisted(pressure_pa: f64, friction: f64) -> Vec<Case> {
     let slid_m = outside_m * (turned - fails_at) + falls_pa / shear_pa_m;
     let rubbed_j = 0.75 * area_m2 * rubs_pa * slid_m;
     let released_j = 0.75 * area_m2 / (2.0 * shear_pa_m) * falls_pa.powi(2);
-    let what = |what: &str| format!("torsion, {} kPa, friction {friction}: {what}", 1e-3 * pressure_pa);
+    let what = |what: &str| {
+        format!(
+            "torsion, {} kPa, friction {friction}: {what}",
+            1e-3 * pressure_pa
+        )
+    };
     // The element fails up to a step of the angle late.
     let late = 2.0 * 1e-6 / RAMP_S * angle / fails_at;
     vec![
-        Case::new(what("torque, N mm"), 1e3 * load.torsion_n_m, 1e3 * torque_n_m, 1e-4),
-        Case::new(what("friction, uJ"), 1e6 * now.friction_j, 1e6 * rubbed_j, 3.0 * late),
-        Case::new(what("released, uJ"), 1e6 * now.bond_breakage_j, 1e6 * released_j, 3.0 * late),
+        Case::new(
+            what("torque, N mm"),
+            1e3 * load.torsion_n_m,
+            1e3 * torque_n_m,
+            1e-4,
+        ),
+        Case::new(
+            what("friction, uJ"),
+            1e6 * now.friction_j,
+            1e6 * rubbed_j,
+            3.0 * late,
+        ),
+        Case::new(
+            what("released, uJ"),
+            1e6 * now.bond_breakage_j,
+            1e6 * released_j,
+            3.0 * late,
+        ),
     ]
 }
 

@@ -72,7 +72,11 @@ pub(crate) fn swaps() -> Vec<Member> {
             members.push(block.member(format!("{what}, clump spheres x {scale}"), more));
         };
         add("replaced", upright.clone(), freed(scale));
-        add("replaced by the force of a contact", by_force(&upright), whole());
+        add(
+            "replaced by the force of a contact",
+            by_force(&upright),
+            whole(),
+        );
         add("restored and replaced again", restored(&upright), whole());
         add("fed", fed(&upright), whole());
         add("softening", softens.clone(), damaged());
@@ -111,7 +115,12 @@ fn freed(scale: f64) -> Vec<Shown> {
     let mut shown = whole();
     let off_j = 0.03 * stored_j;
     let ends_j = [-gone_j - off_j, -gone_j + off_j];
-    shown.push(Shown::between(Quantity::FlowEnergy, "J", ends_j[0], ends_j[1]));
+    shown.push(Shown::between(
+        Quantity::FlowEnergy,
+        "J",
+        ends_j[0],
+        ends_j[1],
+    ));
     shown
 }
 

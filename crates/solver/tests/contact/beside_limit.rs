@@ -48,10 +48,16 @@ fn a_pressed_pair_has_the_limit_of_both_stiffnesses() {
     let stiffness_n_m = state.bonds.normal(0) + HARDER * BOND_N_M;
     let expected_s = 2.0 / (2.0 * stiffness_n_m * state.particles.motions[0].inverse_mass).sqrt();
     let pressed_s = limit_s(true, 1e-5);
-    assert!((pressed_s / expected_s - 1.0).abs() < 1e-6, "{pressed_s:e} {expected_s:e}");
+    assert!(
+        (pressed_s / expected_s - 1.0).abs() < 1e-6,
+        "{pressed_s:e} {expected_s:e}"
+    );
     let of_bond_s = limit_s(false, 1e-5);
     assert!(of_bond_s > 5.0 * pressed_s, "{of_bond_s:e}");
-    assert_eq!(limit_s(true, -1e-5).to_bits(), limit_s(false, -1e-5).to_bits());
+    assert_eq!(
+        limit_s(true, -1e-5).to_bits(),
+        limit_s(false, -1e-5).to_bits()
+    );
 }
 
 /// The automatic step is below that limit before anything is pressed, also where bodies have steps

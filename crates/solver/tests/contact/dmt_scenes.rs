@@ -61,7 +61,12 @@ fn cloud(seed: u64) -> State {
         let place = [0, 1, 2].map(|k| 2.1 * RADIUS_M * centre[k] + jitter[k]);
         let own = random.point(0.01);
         let velocity = [0, 1, 2].map(|k| own[k] - 0.03 * centre[k]);
-        write!(text, "{}", ball(&format!("b{k}"), RADIUS_M, place, velocity)).unwrap();
+        write!(
+            text,
+            "{}",
+            ball(&format!("b{k}"), RADIUS_M, place, velocity)
+        )
+        .unwrap();
     }
     planned(&text)
 }
@@ -92,7 +97,9 @@ fn stuck(state: &State) -> usize {
     let histories = &state.contacts.as_ref().unwrap().histories;
     let within = 0.0..2.0 * at_rest_m(0.5 * RADIUS_M, 0.0);
     let overlaps = histories.iter().map(|history| history.overlap_m());
-    overlaps.filter(|overlap_m| *overlap_m > 0.0 && within.contains(overlap_m)).count()
+    overlaps
+        .filter(|overlap_m| *overlap_m > 0.0 && within.contains(overlap_m))
+        .count()
 }
 
 #[test]
@@ -192,7 +199,10 @@ fn what_hangs_by_adhesion_sleeps_and_wakes() {
             let overlap_m = RADIUS_M + state.particles.poses[0].place().z;
             assert!((overlap_m / hanging_m - 1.0).abs() < 1e-2, "{overlap_m:e}");
             let down_n = state.walls[0].total_load()[0][2];
-            assert!((down_n / -WEIGHT_N - 1.0).abs() < 1e-2, "{down_n:e} {WEIGHT_N:e}");
+            assert!(
+                (down_n / -WEIGHT_N - 1.0).abs() < 1e-2,
+                "{down_n:e} {WEIGHT_N:e}"
+            );
         }
         slept |= sleeps;
         if slept && state.particles.asleep.is_empty() && state.time_s > 0.0195 {

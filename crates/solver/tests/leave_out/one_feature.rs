@@ -305,13 +305,20 @@ fn of_what_others_have() {
     let plain = scene("", "", "", &touching);
     let sticky = "materials.dust = { density = 2500, young_modulus = 1e7 }\n";
     let law = format!("dust-stuff = {{ restitution = 0.5{ADHESION} }}\n");
-    let with_law = scene("", "", "", &touching.replace(MEETS, &format!("{MEETS}{law}")))
-        .replace("bonds.stiff", &format!("{sticky}bonds.stiff"));
+    let with_law = scene(
+        "",
+        "",
+        "",
+        &touching.replace(MEETS, &format!("{MEETS}{law}")),
+    )
+    .replace("bonds.stiff", &format!("{sticky}bonds.stiff"));
     same("adhesion of other materials", &plain, &with_law);
     let relaxed = format!("relaxation.min_overlap = 0\n{touching}");
     let plain = scene("", "", "", &relaxed);
-    let beside = "bonds.loose = { young_modulus = 1e7, poisson_ratio = 0.25, contact_beside_bond = true }\n";
-    let with_key = scene("", "", "", &relaxed).replace("[bodies.row]", &format!("{beside}[bodies.row]"));
+    let beside =
+        "bonds.loose = { young_modulus = 1e7, poisson_ratio = 0.25, contact_beside_bond = true }\n";
+    let with_key =
+        scene("", "", "", &relaxed).replace("[bodies.row]", &format!("{beside}[bodies.row]"));
     same("contacts beside other bonds", &plain, &with_key);
 }
 
