@@ -2,7 +2,7 @@
 
 use dem_run::check::limit::limit;
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::ledger::{balance, opened};
+use dem_run::stages::ledger::balance;
 use dem_run::state::State;
 use dem_run::step::{advance, interact};
 use dem_scene::read_bodies;
@@ -69,11 +69,15 @@ fn a_hard_contact_limits_the_steps_of_its_body() {
 bodies.stiff = { particles = [[0, 0.1, 0, 1e-3], [2e-3, 0.1, 0, 1e-3]], bond_list = [[0, 1]], material = \"m\", bonds = \"stiff\" }
 ";
     for (run, more) in [("", ""), (", steps_by_body = true", stiff)] {
-        let Plan { mut state, .. } = planned(run, true, more);
+        let moves = "[groups]
+left = { body = \"pair\", particles = [0] }
+right = { body = \"pair\", particles = [1] }
+[initial]
+left = { group = \"left\", velocity = [0.01, 0, 0] }
+right = { group = \"right\", velocity = [-0.01, 0, 0] }
+";
+        let Plan { mut state, .. } = planned(run, true, &format!("{more}{moves}"));
         assert_eq!(state.levels.is_some(), !more.is_empty());
-        state.particles.motions[0].velocity_m_s[0] = 0.01;
-        state.particles.motions[1].velocity_m_s[0] = -0.01;
-        state.ledger = opened(&mut state);
         let energy_j = 1e-4 / state.particles.motions[0].inverse_mass;
         let mut highest = 0;
         let (mut largest, mut nearest_m) = (0.0_f64, LENGTH_M);
@@ -91,4 +95,24 @@ bodies.stiff = { particles = [[0, 0.1, 0, 1e-3], [2e-3, 0.1, 0, 1e-3]], bond_lis
             assert!(highest > 0);
         }
     }
+}
+
+/// Nothing moves at the start: the step allows for a linear contact all the same, and for a load
+/// that presses it later.
+#[test]
+fn a_load_may_press_a_hard_contact() {
+    let load = "groups.right = { particles = [1] }
+groups.left = { particles = [0] }
+supports.left = { group = \"left\", fixed = true }
+loads.press = { group = \"right\", force = [-0.01, 0, 0], ramp = 1e-3 }
+";
+    let [with, without] = [true, false].map(|beside| planned("", beside, load));
+    assert!(with.step.step_s < 0.2 * without.step.step_s);
+    let mut state = with.state;
+    while state.time_s < 0.01 {
+        interact(&mut state);
+        assert!(balance(&mut state).energy_error.abs() < 0.05);
+        advance(&mut state);
+    }
+    assert!(state.particles.poses[1].place().x < LENGTH_M);
 }
