@@ -150,8 +150,8 @@ pub(super) static BOND: Schema = Schema {
         Key::new(
             "model",
             Kind::Word(|| words_of(&models(None, 0.0, JointElements::default()))),
-            "Model of the bond: a beam; `pin`, which resists neither torsion nor bending; or `flat-joint`, whose section consists \
-             of elements that fail one by one.",
+            "Model of the bond: a beam; `pin`, which resists neither torsion nor bending; `rojek`, two segments in series, each \
+             as thick in proportion as its sphere; or `flat-joint`, whose section consists of elements that fail one by one.",
         )
         .or_word("timoshenko"),
         Key::number(
@@ -326,8 +326,10 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
     if let Some(field) = table.get("plasticity") {
         check_plasticity(&field, &kind)?;
     }
-    if let BondModel::FlatJoint { .. } = kind.model {
-        check_flat_joint(&table, &kind)?;
+    match kind.model {
+        BondModel::FlatJoint { .. } => check_flat_joint(&table, &kind)?,
+        BondModel::Pin { .. } => check_pin(&table, &kind.damping)?,
+        _ => {}
     }
     if let (Some(field), Formulation::Incremental) = (table.get("formulation"), kind.formulation)
         && kind.failure.fracture_energy_j_m2.is_some()
@@ -490,6 +492,24 @@ fn check_plasticity(field: &Field<'_>, kind: &BondKind) -> Result<()> {
         return Ok(());
     };
     Err(field.refuse(format!("{} {problem}", field.path), remedy))
+}
+
+/// Whether a pin, which has no moments, has no damping of them.
+fn check_pin(table: &Table<'_>, damping: &BondDamping) -> Result<()> {
+    let of_moments = [
+        ("torsion_damping_ratio", damping.torsion_damping_ratio),
+        ("bending_damping_ratio", damping.bending_damping_ratio),
+        ("torque_factor", damping.torque_factor),
+    ];
+    let given = of_moments.into_iter().find(|(_, value)| *value > 0.0);
+    if let (Some(field), Some((name, _))) = (table.get("damping"), given) {
+        let problem = format!(
+            "{}.{name} has no effect on the model \"pin\", which has no moments",
+            field.path
+        );
+        return Err(field.refuse(problem, "remove it, or take another model"));
+    }
+    Ok(())
 }
 
 /// Whether a flat joint has none of the keys that act on a section as a whole, and friction only

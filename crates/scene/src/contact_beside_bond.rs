@@ -24,15 +24,19 @@ pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     let Some(beside) = beside else {
         return Ok(());
     };
+    if run.integrator == Integrator::Static {
+        let problem = format!(
+            "{} has no part in run.integrator = \"static\", in which bonds alone act between bonded ends",
+            beside.path
+        );
+        let remedy = "remove it, or write run.integrator = \"leapfrog\"";
+        return Err(beside.refuse(problem, remedy));
+    }
     if root.get("contacts").is_none() {
         let problem = format!("{} needs a contact law", beside.path);
         return Err(beside.refuse(problem, "add the pair of its material to [contacts]"));
     }
     let mut found: Vec<Field<'_>> = root.given(&TABLES).map(|(_, field)| field).collect();
-    if let Some(table) = root.get("run") {
-        let is_static = run.integrator == Integrator::Static;
-        found.extend(Table::any(&table)?.get("integrator").filter(|_| is_static));
-    }
     for (_, body) in root.named("bodies")? {
         let body = Table::any(&body)?;
         found.extend(body.get("start_as").filter(|field| field.is("clump")));

@@ -97,10 +97,10 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         supports: &supports,
     };
     let test = root.read_by("test", |field| test::read(&field, &known))?;
+    contact_beside_bond::refuse_others(&root, &run)?;
     if run.integrator == Integrator::Static {
         statics::refuse_what_moves(&root)?;
     }
-    contact_beside_bond::refuse_others(&root, &run)?;
     if run.steps_by_body {
         steps_by_body::refuse_others(&root, &run)?;
     }

@@ -237,14 +237,19 @@ impl Key {
         self.limits.contains(&value)
     }
 
-    /// "more than 0 m"; empty without limits.
+    /// "more than 0 m", angles in degrees; empty without limits.
     pub(super) fn limits_in_words(&self) -> String {
-        let low = match self.limits.0 {
+        let (shown, unit): (fn(f64) -> f64, _) = match self.unit() {
+            "rad" => (f64::to_degrees, "deg"),
+            si => (|limit| limit, si),
+        };
+        let (low, high) = (self.limits.0.map(shown), self.limits.1.map(shown));
+        let low = match low {
             Excluded(low) => Some(format!("more than {low}")),
             Included(low) => Some(format!("at least {low}")),
             Unbounded => None,
         };
-        let high = match self.limits.1 {
+        let high = match high {
             Excluded(high) => Some(format!("less than {high}")),
             Included(high) => Some(format!("at most {high}")),
             Unbounded => None,
@@ -254,7 +259,7 @@ impl Key {
         if words.is_empty() {
             return words;
         }
-        format!("{words} {}", self.unit()).trim_end().to_owned()
+        format!("{words} {unit}").trim_end().to_owned()
     }
 
     /// The dimension of its numbers; that of plain numbers if it has none.

@@ -13,6 +13,7 @@ pub(crate) mod bridges;
 pub mod cases;
 pub(crate) mod daughters;
 pub(crate) mod families;
+mod friction;
 pub mod impact;
 pub(crate) mod joints;
 pub mod limit_map;

@@ -1,8 +1,10 @@
 //! Contact laws compared with an independent implementation and closed forms, and their invariants.
 
 mod beside_bond;
+mod beside_limit;
 mod books;
 mod dmt;
+mod dmt_scenes;
 mod documented;
 mod hertz;
 mod impact;

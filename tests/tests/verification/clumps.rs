@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use dem_run::step::exchange;
 use dem_run::{State, step};
 use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
 
@@ -428,6 +429,128 @@ fn impacts() -> String {
     compared("impact on", "J/kg", &cases)
 }
 
+/// A sphere that daughters replace by this rule, with further keys of the sphere.
+fn to_be_replaced(rule: &str, more: &str) -> State {
+    let daughters = [
+        ("halves", "[[0, 0, 0, 1], [2, 0.1, 0, 0.8]]"),
+        (
+            "pieces",
+            "[[0, 0, 0, 1], [2, 0.1, 0, 0.8], [0.9, 1.4, 0.2, 0.6], [1, 0.3, 1.5, 0.7], [0.8, -1.2, -0.4, 0.5]]",
+        ),
+    ];
+    let named = daughters.iter().filter(|(name, _)| rule.contains(name));
+    let named = named.map(|(name, spheres)| {
+        format!("bodies.{name} = {{ particles = {spheres}, material = \"stone\" }}\n")
+    });
+    let named: String = named.collect();
+    started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = "1 s", time_step = 2e-6, seed = 1 }}
+        materials.stone = {{ density = {DENSITY_KG_M3:e}, young_modulus = "100 MPa", poisson_ratio = 0.25 }}
+        materials.anvil.rigid = true
+        contacts.stone-stone = {{ restitution = 0.5 }}
+        contacts.stone-anvil = {{ restitution = 0.5 }}
+        bodies.ball = {{ particles = [[0, 0, 0, {RADIUS_M:e}]], material = "stone", start_as = "clump", {more} }}
+        {named}
+        walls.plate = {{ plane = {{ point = [0, 0, -5.01e-3], normal = [0, 0, 1] }}, material = "anvil" }}
+        replacement.ball.daughters = {{ {rule} }}
+        "#
+    ))
+}
+
+/// Mass, centre, momentum and angular momentum about the centre of all clumps.
+fn sums_of_clumps(state: &State) -> (f64, [Vector3<f64>; 3]) {
+    let zero = Vector3::zeros();
+    let (mut mass_kg, mut moment, mut momentum, mut angular) = (0.0, zero, zero, zero);
+    for clump in &state.clumps.all {
+        let kg = state.clumps.template(clump).mass_kg;
+        let [at, v] = [clump.place_m, clump.velocity_m_s].map(Vector3::from);
+        mass_kg += kg;
+        moment += kg * at;
+        momentum += kg * v;
+        angular += kg * at.cross(&v) + Vector3::from(clump.angular_momentum);
+    }
+    let centre = moment / mass_kg;
+    (
+        mass_kg,
+        [centre, momentum, angular - centre.cross(&momentum)],
+    )
+}
+
+/// What five daughters have in common with the sphere that they replace, which flies and spins.
+fn kept_by_daughters() -> String {
+    let rule = r#"classes = [{ from = 10, body = "pieces" }], energy = "all-impacts""#;
+    let motion = "velocity = [3, -2, 1], angular_velocity = [300, 200, -500]";
+    let mut state = to_be_replaced(rule, motion);
+    state.clumps.all[0].intake.before_j = 100.0 * sphere_kg();
+    let (wanted_kg, wanted) = sums_of_clumps(&state);
+    exchange(&mut state);
+    assert_eq!(state.clumps.all.len(), 5);
+    let (found_kg, found) = sums_of_clumps(&state);
+    let spin = wanted[2].norm();
+    let sizes = [RADIUS_M, wanted[1].norm(), spin];
+    let names = [
+        "centre, m",
+        "momentum, N s",
+        "angular momentum about the centre, N m s",
+    ];
+    let mut cases = vec![Case::new("mass, kg", found_kg, wanted_kg, 1e-12)];
+    for (k, name) in names.into_iter().enumerate() {
+        let off = (found[k] - wanted[k]).norm();
+        cases.push(Case::of_scale(
+            format!("change of the {name}"),
+            [off, 0.0],
+            sizes[k],
+            1e-12,
+        ));
+    }
+    compared("sum", "", &cases)
+}
+
+/// Spheres that hit the plate, with the energy over mass of the impact, J/kg: the number of pieces.
+fn by_class() -> String {
+    let rule = r#"classes = [{ from = 2, body = "halves" }, { from = 10, body = "pieces" }]"#;
+    let cases = [(1.9_f64, 1.0), (2.1, 2.0), (9.5, 2.0), (10.5, 5.0)].map(|(j_kg, wanted)| {
+        let motion = format!("velocity = [0, 0, {:e}]", -(2.0 * j_kg).sqrt());
+        let mut state = to_be_replaced(rule, &motion);
+        while state.time_s < 3e-3 {
+            step(&mut state);
+        }
+        let pieces = state.clumps.all.len() as f64;
+        Case::new(format!("{j_kg} J/kg"), pieces, wanted, 1e-9)
+    });
+    compared("energy of the impact", "", &cases)
+}
+
+/// Fraction of 2000 spheres of the same energy that are replaced, with scattered strengths. Bounds
+/// are three standard deviations of so many draws.
+fn by_scatter() -> String {
+    const COUNT: u32 = 2000;
+    let mut cases = Vec::new();
+    for modulus in [2.0, 6.0] {
+        let rule = format!(
+            r#"classes = [{{ from = 10, body = "halves" }}], energy = "all-impacts", weibull_modulus = {modulus}"#
+        );
+        let start = to_be_replaced(&rule, "velocity = [0, 0, 0]");
+        for j_kg in [6.0_f64, 9.0, 12.0] {
+            let is_replaced = |first_id: &u32| {
+                let mut state = start.clone();
+                state.clumps.all[0].first_id = *first_id;
+                state.clumps.all[0].intake.before_j = j_kg * sphere_kg();
+                exchange(&mut state);
+                state.clumps.all.len() > 1
+            };
+            let found = (0..COUNT).filter(is_replaced).count() as f64 / f64::from(COUNT);
+            let wanted = 1.0 - (-(j_kg / 10.0).powf(modulus)).exp();
+            let bound = 3.0 * (wanted * (1.0 - wanted) / f64::from(COUNT)).sqrt();
+            let what = format!("modulus {modulus}, {j_kg} J/kg");
+            cases.push(Case::of_scale(what, [found, wanted], 1.0, bound));
+        }
+    }
+    compared("strengths", "", &cases)
+}
+
 /// The page of clumps equals the results of the solver.
 #[test]
 fn the_page_shows_what_the_solver_gives() {
@@ -440,6 +563,9 @@ fn the_page_shows_what_the_solver_gives() {
                 ("periods", asymmetric()),
                 ("squeezes", squeezed()),
                 ("impacts", impacts()),
+                ("kept by daughters", kept_by_daughters()),
+                ("classes", by_class()),
+                ("scatter", by_scatter()),
                 ("sums", sums),
                 ("places", places),
             ],

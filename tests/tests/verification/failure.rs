@@ -140,6 +140,11 @@ fn shear_stiffness_n_m() -> f64 {
 /// Two spheres and their Timoshenko bond along x; `failure` are its failure keys, `more` is added
 /// for the spheres "left" and "right".
 fn bond(failure: &str, run: &str, more: &str) -> State {
+    bond_of("timoshenko", failure, run, more)
+}
+
+/// The same of another model.
+fn bond_of(model: &str, failure: &str, run: &str, more: &str) -> State {
     started(&format!(
         r#"
         version = 1
@@ -148,7 +153,7 @@ fn bond(failure: &str, run: &str, more: &str) -> State {
         bodies.rod = {{ particles = [[0, 0, 0, {RADIUS_M:e}], [{LENGTH_M:e}, 0, 0, {RADIUS_M:e}]], bond_list = [[0, 1]], material = "stone", bonds = "glue" }}
         groups.left = {{ particles = [0] }}
         groups.right = {{ particles = [1] }}
-        bonds.glue = {{ model = "timoshenko", young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, failure = {{ {failure} }}, damping = {{ damping_ratio = {DAMPING} }} }}
+        bonds.glue = {{ model = "{model}", young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, failure = {{ {failure} }}, damping = {{ damping_ratio = {DAMPING} }} }}
         {more}
         "#
     ))
@@ -468,22 +473,169 @@ fn energy_to_break_j_m2(mut state: State, end_s: f64) -> f64 {
     f64::NAN
 }
 
-/// Energy to break a bond whose end is moved along this axis, J/m2.
+/// Energy to break a Timoshenko bond whose end is moved along this axis, J/m2.
 fn of_one_bond(criterion: Criterion, axis: &str, energy_j_m2: f64, way_m: f64) -> f64 {
+    let others = if axis == "x" {
+        r#""y", "z", "rx", "ry", "rz""#
+    } else {
+        r#""x", "z", "rx", "ry", "rz""#
+    };
     let more = format!(
         r#"
         supports.left = {{ group = "left", fixed = true }}
-        supports.right = {{ group = "right", fixed = [{}"rx", "ry", "rz"], displacement = {{ {axis} = {way_m:e} }}, ramp = 1 }}
-        "#,
-        if axis == "x" {
-            "\"y\", \"z\", "
-        } else {
-            "\"x\", \"z\", "
-        }
+        supports.right = {{ group = "right", fixed = [{others}], displacement = {{ {axis} = {way_m:e} }}, ramp = 1 }}
+        "#
     );
     let run = format!("end_time = 1, time_step = {:e}", 1.0 / STEPS);
     let failure = format!("{}, fracture_energy = {energy_j_m2:e}", criterion.key());
     energy_to_break_j_m2(bond(&failure, &run, &more), 1.0)
+}
+
+/// Energy to break a bond of this model whose ends are rotated against each other about this axis
+/// by an angle, rad, J/m2.
+fn of_one_rotated(
+    model: &str,
+    criterion: Criterion,
+    axis: &str,
+    energy_j_m2: f64,
+    angle: f64,
+) -> f64 {
+    let others = if axis == "rx" {
+        r#""x", "y", "z", "ry", "rz""#
+    } else {
+        r#""x", "y", "z", "rx", "ry""#
+    };
+    let end = |side: &str, angle: f64| {
+        format!(
+            "supports.{side} = {{ group = \"{side}\", fixed = [{others}], displacement = {{ {axis} = {angle:e} }}, ramp = 1 }}\n"
+        )
+    };
+    let more = end("left", -0.5 * angle) + &end("right", 0.5 * angle);
+    let run = format!("end_time = 1, time_step = {:e}", 1.0 / STEPS);
+    let failure = format!("{}, fracture_energy = {energy_j_m2:e}", criterion.key());
+    energy_to_break_j_m2(bond_of(model, &failure, &run, &more), 1.0)
+}
+
+/// Energy to break a bond that is pulled at a strain rate with strengthening, J/m2.
+fn of_one_pulled_fast(rate_1_s: f64, energy_j_m2: f64) -> f64 {
+    let speed = rate_1_s * LENGTH_M;
+    let more = format!(
+        r#"
+        supports.left = {{ group = "left", fixed = true }}
+        supports.right = {{ group = "right", fixed = ["y", "z", "rx", "ry", "rz"], velocity = {{ x = {speed:e} }} }}
+        "#
+    );
+    let end_s = 1.01 * dynamic_increase_factor(rate_1_s) * 2.0 * energy_j_m2 / TENSION_PA / speed;
+    let run = format!("end_time = {end_s:e}, time_step = {:e}", end_s / STEPS);
+    let failure = format!(
+        "{}, rate_strengthening = 1e-9, fracture_energy = {energy_j_m2:e}",
+        Criterion::Tension.key()
+    );
+    energy_to_break_j_m2(bond(&failure, &run, &more), end_s)
+}
+
+/// What bonds take that are only bent or twisted, sheared by the equivalent stress, or pulled fast,
+/// over the fracture energy.
+fn by_mode() -> String {
+    const ENERGY_J_M2: f64 = 0.02;
+    let shear = shear_stiffness_n_m();
+    let normal = YOUNG_PA * area_m2() / LENGTH_M;
+    let torsion = 2.0 * shear_modulus_pa() * second_moment_m4() / LENGTH_M;
+    let mut cases = Vec::new();
+    let parts = |found: f64| found / ENERGY_J_M2;
+    for model in ["parallel", "timoshenko"] {
+        let edge = 2.0 * ENERGY_J_M2 / RADIUS_M;
+        let found = of_one_rotated(
+            model,
+            Criterion::Tension,
+            "rz",
+            ENERGY_J_M2,
+            1.01 * edge / TENSION_PA,
+        );
+        cases.push(Case::new(
+            format!("{model}, bent"),
+            parts(found),
+            0.25,
+            2.0 / STEPS,
+        ));
+        let wanted = match model {
+            "parallel" => 0.5,
+            _ => 0.25 * RADIUS_M * RADIUS_M * shear / torsion,
+        };
+        // The moment over the angle is that of the wanted part: 2 G_f A over moment times it.
+        let moment = SHEAR_PA * 2.0 * second_moment_m4() / RADIUS_M;
+        let angle = 2.0 * wanted * ENERGY_J_M2 * area_m2() / moment;
+        let found = of_one_rotated(model, Criterion::Shear, "rx", ENERGY_J_M2, 1.01 * angle);
+        cases.push(Case::new(
+            format!("{model}, twisted"),
+            parts(found),
+            wanted,
+            2.0 / STEPS,
+        ));
+    }
+    let wanted = normal / (3.0 * shear);
+    let slid_m = 2.0 * wanted * ENERGY_J_M2 * 3.0_f64.sqrt() / VON_MISES_PA;
+    let found = of_one_bond(Criterion::VonMises, "y", ENERGY_J_M2, 1.01 * slid_m);
+    let strain = slid_m / LENGTH_M;
+    let stretched = 0.5 * YOUNG_PA * strain * strain / VON_MISES_PA;
+    let bound = 1.0 / STEPS + strain + stretched;
+    let what = "timoshenko, sheared by the equivalent stress";
+    cases.push(Case::new(what, parts(found), wanted, bound));
+    for rate_1_s in [1e-2, 1.0, 10.0] {
+        let found = of_one_pulled_fast(rate_1_s, ENERGY_J_M2);
+        let factor = dynamic_increase_factor(rate_1_s);
+        let what = format!("timoshenko, pulled at {rate_1_s}/s");
+        cases.push(Case::new(what, parts(found), factor * factor, 1e-3));
+    }
+    compared("bond", "", &cases)
+}
+
+/// A bond that is opened, closed, pressed and opened again, as in fig. 7 c of Platzer 2022: its
+/// stress over its strength at the end of each way.
+fn by_cycle() -> String {
+    const ENERGY_J_M2: f64 = 0.02;
+    let strength_m = TENSION_PA * LENGTH_M / YOUNG_PA;
+    let ratio = 2.0 * ENERGY_J_M2 / TENSION_PA / strength_m;
+    // Openings, in multiples of that at the strength, one each second.
+    let openings = [0.5, 1.0, 4.0, 2.0, 0.0, -2.0, 2.0, 4.0, 10.0, 5.0, 13.0];
+    let mut table = "[0, 0]".to_owned();
+    for (second, opening) in (1..).zip(openings) {
+        table += &format!(", [{second}, {opening}]");
+    }
+    let more = format!(
+        r#"
+        supports.left = {{ group = "left", fixed = true }}
+        supports.right = {{ group = "right", fixed = ["y", "z", "rx", "ry", "rz"], displacement = {{ x = {strength_m:e} }}, table = [{table}] }}
+        "#
+    );
+    let run = format!("end_time = 12, time_step = {:e}", 1.0 / STEPS);
+    let failure = format!(
+        "{}, fracture_energy = {ENERGY_J_M2:e}",
+        Criterion::Tension.key()
+    );
+    let mut state = bond(&failure, &run, &more);
+    let (mut cases, mut largest) = (Vec::new(), 0.0_f64);
+    for (second, opening) in (1..).zip(openings) {
+        while state.time_s < f64::from(second) - 0.5 / STEPS {
+            step(&mut state);
+        }
+        interact(&mut state);
+        largest = largest.max(opening);
+        let damage = if largest > 1.0 {
+            ratio * (largest - 1.0) / (largest * (ratio - 1.0))
+        } else {
+            0.0
+        };
+        let kept = if opening < 0.0 { 1.0 } else { 1.0 - damage };
+        let load_n = state.bonds.forces(0, &state.particles.poses).load.normal_n;
+        let stress = load_n / area_m2() / TENSION_PA;
+        let what = format!("{opening} times that at the strength");
+        let bound = 1e-6 * ratio;
+        cases.push(Case::of_scale(what, [stress, kept * opening], 1.0, bound).rounding(1e-8));
+        advance(&mut state);
+    }
+    assert_eq!(state.broken_count, 0);
+    compared("opening", "", &cases)
 }
 
 /// Energy to break a bar of so many bonds, J/m2.
@@ -513,6 +665,95 @@ fn of_a_bar(bonds: u32, energy_j_m2: f64) -> f64 {
         Criterion::Tension.key(),
     ));
     energy_to_break_j_m2(state, 50e-3)
+}
+
+/// Energy to part a bar of 4 mm x 4 mm x 16 mm that consists of `across` x `across` touching
+/// spheres in each layer, over the section of the bonds of a layer, J/m2. In the middle layer of
+/// bonds the strengths are 0.9 to 0.94 times those of the others; there it parts.
+fn of_a_block(across: usize, energy_j_m2: f64) -> f64 {
+    const SIDE_M: f64 = 4e-3;
+    let (pitch_m, long) = (SIDE_M / across as f64, 4 * across);
+    let sides = [long, across, across];
+    let (spheres, pairs, number) = lattice(sides, pitch_m);
+    let layer = |x: usize| -> Vec<usize> {
+        let all = (0..across * across).map(|k| number([x, k % across, k / across]));
+        all.collect()
+    };
+    let mut state = started(&format!(
+        r#"
+        version = 1
+        run = {{ end_time = 50e-3, safety_factor = 0.5, local_damping = 0.2 }}
+        materials.stone = {{ density = 2500 }}
+        bodies.bar = {{ particles = [{}], bond_list = [{}], material = "stone", bonds = "glue" }}
+        groups.left = {{ particles = {:?} }}
+        groups.right = {{ particles = {:?} }}
+        bonds.glue = {{ young_modulus = 1e9, poisson_ratio = {POISSON:e}, failure = {{ {}, fracture_energy = {energy_j_m2:e} }} }}
+        supports.left = {{ group = "left", fixed = true }}
+        supports.right = {{ group = "right", fixed = ["y", "z", "rx", "ry", "rz"], velocity = {{ x = 2e-3 }} }}
+        "#,
+        spheres.join(", "),
+        pairs.join(", "),
+        layer(0),
+        layer(long - 1),
+        Criterion::Tension.key(),
+    ));
+    let middle = layer(long / 2 - 1);
+    state.bonds.strength_factors = vec![1.0; state.bonds.len()];
+    for at in 0..state.bonds.len() {
+        let [a, b] = state.bonds.ends[at].map(|end| end as usize);
+        if let (Some(k), true) = (middle.iter().position(|i| *i == a), b == a + 1) {
+            let factor = 0.9 + 0.01 * (3 * k % 5) as f64;
+            state.bonds.strength_factors[at] = factor;
+            state.bonds.damages[at].strength_factor = factor;
+        }
+    }
+    while state.broken_count < (across * across) as u64 {
+        assert!(
+            state.time_s < 50e-3,
+            "{across}: {} broken",
+            state.broken_count
+        );
+        interact(&mut state);
+        if state.broken_count == (across * across) as u64 {
+            break;
+        }
+        advance(&mut state);
+    }
+    let now = balance(&mut state);
+    let left_j = now.kinetic_j + now.elastic_j() + now.local_damping_j;
+    let area_m2 = (across * across) as f64 * 0.25 * PI * pitch_m * pitch_m;
+    (now.support_work_j - left_j) / area_m2
+}
+
+/// Three sizes of spheres.
+fn by_block() -> String {
+    let cases = [1, 2, 4].map(|across| {
+        let what = format!("{across} x {across}");
+        Case::new(what, of_a_block(across, 20.0), 20.0, 0.02)
+    });
+    compared("spheres across", "J/m2", &cases)
+}
+
+/// Touching spheres on a cubic grid, those along each of its edges bonded, and the number of the
+/// one at a place.
+fn lattice(
+    sides: [usize; 3],
+    pitch_m: f64,
+) -> (Vec<String>, Vec<String>, impl Fn([usize; 3]) -> usize) {
+    let [nx, ny, nz] = sides;
+    let number = move |[x, y, z]: [usize; 3]| x + nx * (y + ny * z);
+    let (mut spheres, mut pairs) = (Vec::new(), Vec::new());
+    for i in 0..nx * ny * nz {
+        let place = [i % nx, i / nx % ny, i / nx / ny];
+        let [x, y, z] = place.map(|k| pitch_m * k as f64);
+        spheres.push(format!("[{x:e}, {y:e}, {z:e}, {:e}]", 0.5 * pitch_m));
+        for axis in (0..3).filter(|axis| place[*axis] + 1 < sides[*axis]) {
+            let mut next = place;
+            next[axis] += 1;
+            pairs.push(format!("[{i}, {}]", number(next)));
+        }
+    }
+    (spheres, pairs, number)
 }
 
 fn by_energy() -> String {
@@ -563,19 +804,8 @@ fn bent(fracture_energy: &str) -> [f64; 4] {
     const ROWS: usize = 200;
     const DOWN_M: f64 = 0.4e-3;
     const END_S: f64 = 0.1;
-    let [nx, ny, nz] = SIDES;
-    let number = |[x, y, z]: [usize; 3]| x + nx * (y + ny * z);
-    let (mut spheres, mut pairs) = (Vec::new(), Vec::new());
-    for i in 0..nx * ny * nz {
-        let place = [i % nx, i / nx % ny, i / nx / ny];
-        let [x, y, z] = place.map(|k| 2.0 * RADIUS_M * k as f64);
-        spheres.push(format!("[{x:e}, {y:e}, {z:e}, {RADIUS_M:e}]"));
-        for axis in (0..3).filter(|axis| place[*axis] + 1 < SIDES[*axis]) {
-            let mut next = place;
-            next[axis] += 1;
-            pairs.push(format!("[{i}, {}]", number(next)));
-        }
-    }
+    let [nx, _, nz] = SIDES;
+    let (spheres, pairs, number) = lattice(SIDES, 2.0 * RADIUS_M);
     let ends = [0, nx - 1].map(|x| [0, 1].map(|y| number([x, y, 0])));
     let middle = [0, 1].map(|y| number([nx / 2, y, nz - 1]));
     let mut state = started(&format!(
@@ -838,6 +1068,9 @@ fn the_page_shows_what_the_solver_gives() {
                 ("by displacement", by_displacement()),
                 ("by load", by_load()),
                 ("by energy", by_energy()),
+                ("by mode", by_mode()),
+                ("by cycle", by_cycle()),
+                ("by block", by_block()),
                 ("by bending", by_bending()),
                 ("residual", residual()),
                 ("rates", rates),

@@ -363,7 +363,8 @@ impl StiffestContacts {
 /// Contribution of the first impact at a speed, m/s, to the largest eigenvalues of stiffness and
 /// damping over mass, 1/s2 and 1/s, if a single particle meets a wall or another of its size; and
 /// its [rate](largest_contact_rate_1_s2), 1/s2. A particle pushed by a body behind it may overlap
-/// more.
+/// more. With contacts beside bonds something presses at any speed, as loads and supports do: the
+/// stiffness of a linear law counts in full, and that of Hertz's law from no overlap on.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     at_impact_of(state, speed_m_s, None)
 }
@@ -375,11 +376,17 @@ pub(crate) fn at_impact_of(state: &State, speed_m_s: f64, only: Option<usize>) -
     };
     let p = &state.particles;
     let materials = contacts.model.kind_of.len().isqrt();
+    let least_m = if state.bonds.rules.iter().any(|rule| rule.contact_beside) {
+        f64::MIN_POSITIVE
+    } else {
+        0.0
+    };
     let mut largest = [0.0_f64; 3];
     let mut take = |kind: &ContactKind, i: usize, inverse_kg: f64, at_wall: bool| {
         let n = Vector3::x();
         let radius_m = p.poses[i].radius_m();
         let overlap_m = overlap_at_impact_m(kind, radius_m, inverse_kg, speed_m_s, at_wall);
+        let overlap_m = overlap_m.max(least_m);
         let touch = if at_wall {
             wall_contact(p, i, &n, overlap_m)
         } else {

@@ -43,8 +43,8 @@ pub(crate) fn compute_flat_joints(state: &mut State) -> usize {
     )
 }
 
-/// Lets elements fail and slide. What that takes is released in steps in which elements of the
-/// joint fail, and friction in all others.
+/// Lets elements fail and slide. What that takes is friction, except for what elements that fail
+/// release beyond it.
 fn change_elements(state: &mut State) {
     let drift_s = state.previous_time_step_s;
     let (bonds, particles) = (&mut state.bonds, &state.particles);
@@ -56,7 +56,8 @@ fn change_elements(state: &mut State) {
         .collect();
     for (at, change, spent_j) in changes {
         if change.failed.is_some() {
-            state.ledger.released_j += spent_j;
+            state.ledger.released_j += spent_j - change.friction_j;
+            state.ledger.joint_friction_j += change.friction_j;
         } else {
             state.ledger.joint_friction_j += spent_j;
         }

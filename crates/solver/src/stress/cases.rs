@@ -6,8 +6,8 @@ use dem_io::{Diagnostic, Result};
 
 use super::prediction::Member;
 use super::{
-    adhesion, bars, beside, breakage, bridges, daughters, families, impact, joints, limit_map,
-    long, own_steps, softening, swap, yielding, zones,
+    adhesion, bars, beside, breakage, bridges, daughters, families, friction, impact, joints,
+    limit_map, long, own_steps, softening, swap, yielding, zones,
 };
 
 /// A case of the suite.
@@ -32,7 +32,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 26] = [
+pub const CASES: [Case; 27] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -77,6 +77,11 @@ pub const CASES: [Case; 26] = [
         name: "beside",
         extreme: "contacts beside bonds, up to a million times softer or harder than these",
         members: |_| Ok(beside::beside()),
+    },
+    Case {
+        name: "friction",
+        extreme: "bonds sheared under 0.01 to 100 times their cohesion, and their friction after the break",
+        members: |_| Ok(friction::friction()),
     },
     Case {
         name: "joints",

@@ -23,6 +23,7 @@ pub(crate) fn daughters() -> Vec<Member> {
         ("halves of halves", "two", again, false, None),
         ("again, fed", "two", again, true, None),
         ("bonded", "glued", "", false, Some(1)),
+        ("bonded, breaking", "weak", "", false, None),
         (
             "all impacts, scattered",
             "five",
@@ -37,6 +38,9 @@ pub(crate) fn daughters() -> Vec<Member> {
             Shown::at_most(Quantity::MomentumError, MOMENTUM_ERROR),
         ];
         shown.extend(pieces.map(|pieces| Shown::count(Quantity::Fragments, pieces)));
+        if class == "weak" {
+            shown.push(Shown::between(Quantity::BrokenBonds, "", 1.0, 6.0));
+        }
         Member {
             what: what.to_owned(),
             trial: Trial::of(scene(class, more, is_fed)),
@@ -61,6 +65,10 @@ fn scene(class: &str, more: &str, is_fed: bool) -> String {
             "particles = [[0, 0, 0, 1], [1.6, 0, 0, 1], [0.8, 1.4, 0, 1], [0.8, 0.5, 1.3, 1]]\nbond_list = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]\nbonds = \"glue\""
         }
     };
+    let failure = match class {
+        "weak" => ", failure = { tensile_strength = \"0.5 MPa\", shear_strength = \"0.5 MPa\" }",
+        _ => "",
+    };
     let (position, feed) = if is_fed {
         let [from_m, to_m] = [middle_m - 1e-9, middle_m + 1e-9];
         let feed = format!(
@@ -82,7 +90,7 @@ count = 1
 run.end_time = \"3 ms\"
 materials.rock = {{ density = 2500, young_modulus = \"100 MPa\" }}
 contacts.rock-rock = {{ restitution = 0.5, friction = 0.3 }}
-bonds.glue = {{ young_modulus = \"100 MPa\", poisson_ratio = 0.25, damping = {{ damping_ratio = 0.1 }} }}
+bonds.glue = {{ young_modulus = \"100 MPa\", poisson_ratio = 0.25, damping = {{ damping_ratio = 0.1 }}{failure} }}
 walls.below = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"rock\" }}
 walls.above = {{ plane = {{ point = [0, 0, {top_m}], normal = [0, 0, -1] }}, material = \"rock\", velocity = [0, 0, -0.5] }}
 [bodies.ball]

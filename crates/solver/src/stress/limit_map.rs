@@ -2,8 +2,8 @@
 //! disturbance grows.
 //!
 //! Neither the program's limit nor its watchdog is used: the scene's state is stepped as it is, and
-//! its energy is observed. Both must agree to a hundredth for all entries of the map: six bond
-//! models with damping from none to ten times the critical value.
+//! its energy is observed. Both must agree to a hundredth for all entries of the map: seven bond
+//! models with damping from none to ten times the critical value, and the flat joint.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -87,8 +87,8 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
     Ok(false)
 }
 
-/// The map: six models in both formulations, with no, light, critical and very high damping; also
-/// other types of damping.
+/// The map: seven models in both formulations, with no, light, critical and very high damping, and
+/// the flat joint, which has only the total one; also other types of damping.
 ///
 /// # Errors
 /// Those of [`Trial::planned`].
@@ -127,6 +127,12 @@ pub fn map() -> Result<Vec<Member>> {
     ] {
         members.push(of("timoshenko", "total", damping, "0")?);
     }
+    members.push(of(
+        "parallel",
+        "incremental",
+        "normal_damping_ratio = 3, shear_damping_ratio = 1, torsion_damping_ratio = 0.1, bending_damping_ratio = 0.3",
+        "0",
+    )?);
     for eta in ["0", "0.3"] {
         members.push(of(
             "flat-joint",

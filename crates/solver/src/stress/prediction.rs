@@ -68,6 +68,13 @@ pub enum Quantity {
     BrokenBonds,
     /// Energy that damaged bonds have lost.
     BondDamage,
+    /// Energy of bodies that came, less that of those that went, and what swaps of their forms
+    /// added.
+    FlowEnergy,
+    /// Clumps that bonded clusters replaced.
+    Replaced,
+    /// Clusters that became clumps again.
+    Restored,
     /// Fragments at the end.
     Fragments,
     /// Spheres that were released from rigid parts.
@@ -138,6 +145,9 @@ impl Quantity {
             Self::AngularMomentumError => "angular momentum error",
             Self::BrokenBonds => "broken bonds",
             Self::BondDamage => "bond damage",
+            Self::FlowEnergy => "flow energy",
+            Self::Replaced => "replaced clumps",
+            Self::Restored => "restored clumps",
             Self::Fragments => "fragments",
             Self::Released => "released spheres",
             Self::Rejoined => "rejoined spheres",
@@ -161,12 +171,15 @@ impl Quantity {
                 let fragments = summary.fragments.as_ref();
                 fragments.map_or(f64::NAN, |fragments| fragments.count as f64)
             }
-            Self::Released | Self::Rejoined => {
-                let moved = summary.population.as_ref().map(|population| match self {
+            Self::FlowEnergy => summary.balance.flow_energy_j,
+            Self::Replaced | Self::Restored | Self::Released | Self::Rejoined => {
+                let counted = summary.population.as_ref().map(|population| match self {
+                    Self::Replaced => u64::from(population.replaced),
+                    Self::Restored => u64::from(population.restored),
                     Self::Released => population.released,
                     _ => population.rejoined,
                 });
-                moved.map_or(f64::NAN, |spheres| spheres as f64)
+                counted.map_or(f64::NAN, |count| count as f64)
             }
             Self::LargestStep => f64::NAN,
         }

@@ -18,7 +18,10 @@ pub(crate) fn softening() -> Vec<Member> {
     let mut members = Vec::new();
     for young_modulus_pa in [1e6, 1e12] {
         for ratio in [1.5, 100.0, 1e4] {
-            members.push(flying_apart(young_modulus_pa, ratio));
+            members.push(flying_apart(young_modulus_pa, ratio, &TENSION));
+        }
+        for criterion in [&MOHR_COULOMB, &VON_MISES] {
+            members.push(flying_apart(young_modulus_pa, 100.0, criterion));
         }
     }
     members.push(rattling());
@@ -26,23 +29,56 @@ pub(crate) fn softening() -> Vec<Member> {
     members
 }
 
-fn flying_apart(young_modulus_pa: f64, ratio: f64) -> Member {
+/// A strength that axial tension alone reaches at the same stress as the others.
+struct Criterion {
+    name: &'static str,
+    /// Its key, to be followed by the strength, and keys that go with it.
+    keys: [&'static str; 2],
+    /// Normal stiffness over that by which its opening is reckoned.
+    softer: f64,
+}
+
+const TENSION: Criterion = Criterion {
+    name: "tensile strength",
+    keys: ["tensile_strength", ""],
+    softer: 1.0,
+};
+const VON_MISES: Criterion = Criterion {
+    name: "equivalent stress",
+    keys: ["von_mises_strength", ""],
+    softer: 1.0,
+};
+/// Tension times the tangent is the shear stress at which it fails; openings are those of shear.
+const MOHR_COULOMB: Criterion = Criterion {
+    name: "Mohr-Coulomb",
+    keys: ["cohesion", ", friction_angle = \"45 deg\""],
+    softer: STIFFNESS_RATIO,
+};
+/// Normal over shear stiffness of the bond.
+const STIFFNESS_RATIO: f64 = 2.5;
+
+fn flying_apart(young_modulus_pa: f64, ratio: f64, criterion: &Criterion) -> Member {
     let length_m = 2.0 * RADIUS_M;
     let strength_pa = STRAIN * young_modulus_pa;
-    let energy_j_m2 = 0.5 * ratio * strength_pa * STRAIN * length_m;
-    let energy_j = energy_j_m2 * PI * RADIUS_M * RADIUS_M;
+    let broken_m = ratio * STRAIN * length_m;
+    let energy_j = 0.5 * strength_pa * broken_m * PI * RADIUS_M * RADIUS_M;
     // Of each sphere.
     let speed_m_s = (EXCESS * energy_j / mass_kg()).sqrt();
-    let broken_m = 2.0 * energy_j_m2 / strength_pa;
     let step_s = 0.5 * broken_m / speed_m_s / STEPS;
+    // That of its own opening, of which tension takes a part.
+    let energy_j_m2 = criterion.softer * 0.5 * strength_pa * broken_m;
+    let [key, more] = criterion.keys;
     let bonds = format!(
-        "young_modulus = {young_modulus_pa:e}, failure = {{ tensile_strength = {strength_pa:e}, fracture_energy = {energy_j_m2:e} }}"
+        "model = \"parallel\", stiffness_ratio = {STIFFNESS_RATIO}, young_modulus = {young_modulus_pa:e}, failure = {{ {key} = {strength_pa:e}{more}, fracture_energy = {energy_j_m2:e} }}"
     );
     let measures = "measures.kinetic_energy = { quantity = \"kinetic_energy\" }";
     let times_s = [4.0 * STEPS * step_s, step_s];
     let left_j = (EXCESS - 1.0) * energy_j;
     Member {
-        what: format!("{young_modulus_pa:e} Pa, opening ratio {ratio:e}"),
+        what: format!(
+            "{young_modulus_pa:e} Pa, {}, opening ratio {ratio:e}",
+            criterion.name
+        ),
         trial: bonded::flying_apart(times_s, &bonds, speed_m_s, measures),
         way: ObservationMethod::Run,
         // One step at the strength: up to it the force is taken for half a step.

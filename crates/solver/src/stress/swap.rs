@@ -16,6 +16,15 @@ const ENERGY_ERROR: f64 = 1e-3;
 /// The same for the momentum.
 const MOMENTUM_ERROR: f64 = 1e-10;
 
+/// Young's modulus, Pa, and Poisson's ratio of spheres and bonds.
+const YOUNG_PA: f64 = 1e9;
+const POISSON: f64 = 0.25;
+/// Stress of the first trigger, Pa.
+const STRESS_PA: f64 = 1e6;
+/// The stress of the block, or the force of one of its contacts.
+const TRIGGERS: [&str; 2] = ["principal_stress = \"1 MPa\"", "contact_force = \"2 N\""];
+/// More swaps than there are steps.
+const MOST_SWAPS: f64 = 1e5;
 /// Tensile strength of the bonds of an upright block, whose columns are only pressed, and of a
 /// tilted one, whose bonds bend and shear beyond it, Pa; the shear strength is twice as large.
 const STRENGTHS_PA: [f64; 2] = [2e6, 0.4e6];
@@ -39,6 +48,7 @@ pub(crate) fn swaps() -> Vec<Member> {
             failure: String::new(),
             restores: false,
             is_fed: false,
+            when: TRIGGERS[0],
         };
         let tilted = |failure: &str| Block {
             is_tilted: true,
@@ -54,10 +64,19 @@ pub(crate) fn swaps() -> Vec<Member> {
             is_fed: true,
             ..block.clone()
         };
+        let by_force = |block: &Block| Block {
+            when: TRIGGERS[1],
+            ..block.clone()
+        };
         let mut add = |what: &str, block: Block, more: Vec<Shown>| {
             members.push(block.member(format!("{what}, clump spheres x {scale}"), more));
         };
-        add("replaced", upright.clone(), whole());
+        add("replaced", upright.clone(), freed(scale));
+        add(
+            "replaced by the force of a contact",
+            by_force(&upright),
+            whole(),
+        );
         add("restored and replaced again", restored(&upright), whole());
         add("fed", fed(&upright), whole());
         add("softening", softens.clone(), damaged());
@@ -78,6 +97,31 @@ fn whole() -> Vec<Shown> {
         Shown::count(Quantity::BrokenBonds, 0),
         Shown::count(Quantity::Fragments, 1),
     ]
+}
+
+/// The same, and what the contacts of larger clump spheres have stored at the swap, which is gone
+/// with their overlap: Hertz's energy of 18 contacts at the stress of the trigger. Spheres of the
+/// same size go on pressing, and nothing is gone. The trigger is seen up to a step late.
+fn freed(scale: f64) -> Vec<Shown> {
+    let radius_m = scale * RADIUS_M;
+    let volume_m3 = (EDGE * EDGE * EDGE) as f64 * 4.0 / 3.0 * PI * RADIUS_M.powi(3);
+    let hertz = 4.0 / 3.0 * YOUNG_PA / (2.0 * (1.0 - POISSON * POISSON)) * radius_m.sqrt();
+    let contacts = (2 * EDGE * EDGE) as f64;
+    let arm_m = (EDGE - 1) as f64 * RADIUS_M + radius_m;
+    let force_n = STRESS_PA * volume_m3 / (contacts * arm_m);
+    let overlap_m = (force_n / hertz).powf(2.0 / 3.0);
+    let stored_j = contacts * 0.4 * force_n * overlap_m;
+    let gone_j = if scale > 1.0 { stored_j } else { 0.0 };
+    let mut shown = whole();
+    let off_j = 0.03 * stored_j;
+    let ends_j = [-gone_j - off_j, -gone_j + off_j];
+    shown.push(Shown::between(
+        Quantity::FlowEnergy,
+        "J",
+        ends_j[0],
+        ends_j[1],
+    ));
+    shown
 }
 
 /// Bonds take up to all of their fracture energy, and at least a hundredth of it, and hold.
@@ -126,11 +170,21 @@ struct Block {
     failure: String,
     restores: bool,
     is_fed: bool,
+    /// Its trigger.
+    when: &'static str,
 }
 
 impl Block {
+    /// It is replaced once, or at least twice if it is restored.
     fn member(&self, what: String, more: Vec<Shown>) -> Member {
         let mut shown = vec![Shown::at_most(Quantity::MomentumError, MOMENTUM_ERROR)];
+        if self.restores {
+            shown.push(Shown::between(Quantity::Replaced, "", 2.0, MOST_SWAPS));
+            shown.push(Shown::between(Quantity::Restored, "", 1.0, MOST_SWAPS));
+        } else {
+            shown.push(Shown::count(Quantity::Replaced, 1));
+            shown.push(Shown::count(Quantity::Restored, 0));
+        }
         shown.extend(more);
         Member {
             what,
@@ -179,9 +233,9 @@ impl Block {
         let mut scene = format!(
             "version = 1
 run = {{ end_time = \"4 ms\", safety_factor = {fraction} }}
-materials.rock = {{ density = 2500, young_modulus = \"1 GPa\" }}
+materials.rock = {{ density = 2500, young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON} }}
 contacts.rock-rock = {{ restitution = 0.5, friction = 0.3 }}
-bonds.rock = {{ young_modulus = \"1 GPa\", poisson_ratio = 0.25, damping = {{ damping_ratio = 0.1 }}, failure = {{ tensile_strength = {tensile_pa}, shear_strength = {shear_pa}{failure} }} }}
+bonds.rock = {{ young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON}, damping = {{ damping_ratio = 0.1 }}, failure = {{ tensile_strength = {tensile_pa}, shear_strength = {shear_pa}{failure} }} }}
 walls.below = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"rock\" }}
 walls.above = {{ plane = {{ point = [0, 0, {top_m}], normal = [0, 0, -1] }}, material = \"rock\", velocity = [0, 0, -0.05] }}
 [bodies.block]
@@ -193,10 +247,11 @@ start_as = \"clump\"
 clump.scale = {scale}
 {position}
 [replacement.block]
-when = {{ principal_stress = \"1 MPa\" }}
+when = {{ {} }}
 ",
             particles.join(", "),
-            bonds.join(", ")
+            bonds.join(", "),
+            self.when
         );
         if self.restores {
             scene += "restore = { leaves = \"far\", min_particles = 2, strain_energy = \"1e6 J/kg\", fluctuation_velocity = \"100 m/s\" }

@@ -370,14 +370,16 @@ fn a_ring_that_has_failed_rubs_under_pressure() {
     let last_pa = friction * pressure_pa;
     let first_pa = last_pa * fails_at / angle;
     let stored = 0.75 * area / (2.0 * shear_pa_m) * (last_pa.powi(2) - first_pa.powi(2));
-    let work = 0.5 * full / angle * (angle * angle - fails_at * fails_at) - stored;
+    // At once: the stress falls from the cohesion to the friction, and the faces slide by it.
+    let falls_pa = cohesion_pa - first_pa;
+    let at_once = 0.75 * area / shear_pa_m * first_pa * falls_pa;
+    let work = 0.5 * full / angle * (angle * angle - fails_at * fails_at) - stored + at_once;
     assert!(
         (now.friction_j / work - 1.0).abs() < 5e-3,
         "{} {work}",
         now.friction_j
     );
-    // At once: the stress falls from the cohesion to the friction.
-    let released = 0.75 * area / (2.0 * shear_pa_m) * (cohesion_pa.powi(2) - first_pa.powi(2));
+    let released = 0.75 * area / (2.0 * shear_pa_m) * falls_pa.powi(2);
     assert!(
         (now.bond_breakage_j / released - 1.0).abs() < 5e-3,
         "{} {released}",

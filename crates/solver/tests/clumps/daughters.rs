@@ -449,10 +449,12 @@ fn thousands_of_replacements_create_no_energy_and_lose_no_mass() {
     let text = std::fs::read_to_string(path).unwrap();
     let mut state = planned(&text).state;
     let broken = |state: &State| state.population.by_daughters.iter().sum::<u32>();
-    let (mut largest, mut steps) = (0.0_f64, 0);
+    // The energy may fall by what contacts lose that end while they press, and never rises.
+    let (mut fallen, mut risen, mut steps) = (0.0_f64, 0.0_f64, 0);
     while broken(&state) < 2000 {
         if steps % 50 == 0 {
-            largest = largest.max(step_and_balance(&mut state).energy_error.abs());
+            let error = step_and_balance(&mut state).energy_error;
+            (fallen, risen) = (fallen.max(-error), risen.max(error));
         } else {
             dem_run::step::step(&mut state);
         }
@@ -460,12 +462,12 @@ fn thousands_of_replacements_create_no_energy_and_lose_no_mass() {
     }
     let now = step_and_balance(&mut state);
     eprintln!(
-        "{} replaced in {steps} steps, {} spheres left; energy error {largest:.2e} at most, momentum {:.1e}",
+        "{} replaced in {steps} steps, {} spheres left; energy error -{fallen:.2e} to {risen:.2e}, momentum {:.1e}",
         broken(&state),
         state.clumps.all.len(),
         now.momentum_error
     );
-    assert!(largest < 1e-3, "{largest}");
+    assert!(fallen < 1e-3 && risen < 1e-9, "{fallen} {risen}");
     assert!(
         now.particle_breakage_j > 0.0 && now.momentum_error < 1e-10,
         "{now:?}"

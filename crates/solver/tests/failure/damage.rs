@@ -10,7 +10,7 @@ use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
 use dem_run::state::bonds::BondRule;
 use dem_run::state::particles::Particles;
-use dem_run::step::{advance, interact};
+use dem_run::step::{advance, interact, step};
 use dem_scene::{Factor, Hold};
 use proptest::prelude::*;
 
@@ -212,6 +212,89 @@ fn a_bar_takes_the_same_energy_at_any_resolution() {
             assert_eq!(state.broken_count, 1);
         }
     });
+}
+
+/// A bar of 4 mm x 4 mm x 16 mm of 1 x 1, 2 x 2 and 4 x 4 touching spheres in each layer, pulled
+/// apart in its weakest layer: the bonds of a layer have the same section in all, and the crack
+/// takes the fracture energy of that section.
+#[test]
+fn a_crack_takes_the_same_energy_for_any_size_of_spheres() {
+    on_one_thread(|| {
+        let energy_j_m2 = 20.0;
+        for across in [1, 2, 4] {
+            let (mut state, weakest) = weak_bar(across, energy_j_m2);
+            let count = weakest.len() as u64;
+            while state.broken_count < count {
+                assert!(state.time_s < 50e-3, "{across}: it does not part");
+                step(&mut state);
+            }
+            interact(&mut state);
+            for at in 0..state.bonds.len() {
+                let is_weak = weakest.contains(&at);
+                assert_eq!(state.bonds.is_broken(at), is_weak, "{across}: {at}");
+                assert!(is_weak || state.bonds.damage(at) == 0.0, "{across}: {at}");
+            }
+            let area_m2 = PI * (2e-3_f64).powi(2);
+            let spent = spent_j(&mut state) / (energy_j_m2 * area_m2);
+            assert!((spent - 1.0).abs() < 2e-3, "{across}: {spent}");
+            let error = balance(&mut state).energy_error;
+            assert!(error.abs() < 1e-5, "{across}: {error}");
+        }
+    });
+}
+
+/// That bar, held at its left and pulled at its right end, and the numbers of its weakest bonds.
+fn weak_bar(across: usize, energy_j_m2: f64) -> (State, Vec<usize>) {
+    let (length_m, long) = (4e-3 / across as f64, 4 * across);
+    let sides = [long, across, across];
+    let number = |[x, y, z]: [usize; 3]| (x + long * (y + across * z)) as u32;
+    let (mut particles, mut pairs) = (Particles::default(), Vec::new());
+    for i in 0..long * across * across {
+        let place = [i % long, i / long % across, i / long / across];
+        particles.push_sphere(place.map(|k| length_m * k as f64), 0.5 * length_m, 2500.0);
+        for axis in (0..3).filter(|axis| place[*axis] + 1 < sides[*axis]) {
+            let mut next = place;
+            next[axis] += 1;
+            pairs.push([i as u32, number(next)]);
+        }
+    }
+    let layer = |x: usize| {
+        let places = (0..across * across).map(move |k| [x, k % across, k / across]);
+        places.map(number).collect::<Vec<u32>>()
+    };
+    let bonding = Bonding {
+        radius_factor: 1.0,
+        model: BondModel::Timoshenko,
+        young_modulus_pa: YOUNG_PA,
+        rule: BondRule {
+            criteria: Some(TENSION),
+            fracture_energy_j_m2: Some(energy_j_m2),
+            ..ELASTIC
+        },
+    };
+    let mut state = body(particles, &pairs, &bonding, 1e-9);
+    let middle = layer(long / 2 - 1);
+    let is_weak = |[a, b]: [u32; 2]| middle.contains(&a) && b == a + 1;
+    let all = 0..pairs.len();
+    let weakest: Vec<usize> = all.filter(|&at| is_weak(state.bonds.ends[at])).collect();
+    state.bonds.strength_factors = vec![1.0; pairs.len()];
+    for &at in &weakest {
+        state.bonds.strength_factors[at] = 0.95;
+    }
+    state.bonds.damages = (0..pairs.len())
+        .map(|at| Damage::none(&state.bonds.stiffness(at), state.bonds.strength_factors[at]))
+        .collect();
+    state.time_step_s = 0.5 * limit(&mut state).step_s;
+    let speed = 4e-3;
+    hold(&mut state, layer(0).into_iter(), 0.0);
+    hold(&mut state, layer(long - 1).into_iter(), speed);
+    for i in 0..state.particles.len() {
+        let part = (i % long) as f64 / (long - 1) as f64;
+        state.particles.motions[i].velocity_m_s[0] = speed * part;
+    }
+    damp(&mut state, 0.2);
+    state.ledger = opened(&state);
+    (state, weakest)
 }
 
 /// A row that is shaken so that all its bonds are damaged.

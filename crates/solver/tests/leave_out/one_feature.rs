@@ -2,6 +2,8 @@
 //! requirements of every such scene.
 
 use super::{busy, go, planned, stored};
+use dem_run::state::State;
+use dem_run::step::{number_of, stages};
 
 /// Moving spheres in a row, bonded to their neighbours unless `apart`; with further lines for the
 /// body.
@@ -29,6 +31,7 @@ bonds.stiff = {{ young_modulus = 1e7, poisson_ratio = 0.25{bonds} }}
 }
 
 const MEETS: &str = "[contacts]\nstuff-stuff = { restitution = 0.5, friction = 0.3 }\n";
+const ADHESION: &str = ", law = \"dmt\", work_of_adhesion = 0.05";
 const FREE: [&str; 2] = ["bond forces", "motion"];
 const RIGID: [&str; 2] = ["rigid clumps", "motion"];
 
@@ -228,6 +231,36 @@ fn of_what_touches() {
         &with(&touches, &["rolling friction"]),
         &touches,
     );
+    expect(
+        "adhesion, which is a law of contacts and no stage",
+        &scene("", "", "", &other(0.02, ADHESION)),
+        &touches,
+        &touches,
+    );
+    expect(
+        "adhesion that nothing touches",
+        &scene("", "", "", &other(1.0, ADHESION)),
+        &searches,
+        &searches,
+    );
+    let beside = "[relaxation]\nmin_overlap = 0\n";
+    expect(
+        "contacts beside bonds that nothing presses",
+        &scene(
+            "",
+            ", contact_beside_bond = true",
+            "",
+            &format!("{MEETS}{beside}"),
+        ),
+        &searches,
+        &touches,
+    );
+    expect(
+        "none beside bonds: one body that cannot break meets nothing",
+        &scene("", "", "", &format!("{MEETS}{beside}")),
+        &FREE,
+        &FREE,
+    );
     let wet = ", liquid_bridge = { surface_tension = \"73 mN/m\", volume = \"1 mm3\" }";
     expect(
         "liquid that nothing touches",
@@ -263,6 +296,49 @@ fn of_what_touches() {
         .copied()
         .collect();
     expect("pieces that part while they overlap", &tears, &all, &stores);
+}
+
+/// Laws of other materials and keys of other bonds: with the same step, the same bits, items and
+/// bytes.
+#[test]
+fn of_what_others_have() {
+    let touching = format!("{MEETS}{}", row("other", 0.02, ""));
+    let step = ", time_step = 1e-4";
+    let plain = scene(step, "", "", &touching);
+    let sticky = "materials.dust = { density = 2500, young_modulus = 1e7 }\n";
+    let law = format!("dust-stuff = {{ restitution = 0.5{ADHESION} }}\n");
+    let with_law = scene(
+        step,
+        "",
+        "",
+        &touching.replace(MEETS, &format!("{MEETS}{law}")),
+    )
+    .replace("bonds.stiff", &format!("{sticky}bonds.stiff"));
+    same("adhesion of other materials", &plain, &with_law);
+    let relaxed = format!("relaxation.min_overlap = 0\n{touching}");
+    let plain = scene(step, "", "", &relaxed);
+    let beside =
+        "bonds.loose = { young_modulus = 1e7, poisson_ratio = 0.25, contact_beside_bond = true }\n";
+    let with_key =
+        scene(step, "", "", &relaxed).replace("[bodies.row]", &format!("{beside}[bodies.row]"));
+    same("contacts beside other bonds", &plain, &with_key);
+}
+
+/// Compares the bits, the items of all stages and their bytes of two scenes.
+fn same(name: &str, one: &str, other: &str) {
+    let [one, other] = [one, other].map(|text| {
+        let (_, mut plan) = planned(text);
+        go(&mut plan.state, 300);
+        plan.state
+    });
+    assert!(one.particles.poses == other.particles.poses, "{name}");
+    assert!(one.particles.motions == other.particles.motions, "{name}");
+    for stage in stages() {
+        let done = |state: &State| state.scratch.clock.done(number_of(stage));
+        assert_eq!(done(&one), done(&other), "{name}: {}", stage.name);
+        let bytes = |state: &State| (stage.bytes)(state);
+        assert_eq!(bytes(&one), bytes(&other), "{name}: {}", stage.name);
+    }
 }
 
 #[test]

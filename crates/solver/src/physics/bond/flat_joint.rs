@@ -270,6 +270,8 @@ pub struct Change {
     pub failed: Option<Cause>,
     /// Whether failed elements slid under pressure.
     pub slid: bool,
+    /// Work of friction on them: the limit of their shear stress times area and sliding, J.
+    pub friction_j: f64,
 }
 
 /// Failure and sliding of elements between these ends. None: nothing changes.
@@ -293,7 +295,7 @@ pub fn change(
             .filter(|_| element.is_bonded)
             .and_then(|strengths| strengths.reached(stress, shear));
         now.is_bonded &= failed.is_none();
-        let mut slid = false;
+        let (mut slid, mut friction_j) = (false, 0.0);
         if !now.is_bonded {
             let limit = friction * -stress;
             if stress >= 0.0 {
@@ -301,6 +303,8 @@ pub fn change(
             } else if shear > limit {
                 now.slip_m = (sliding - elastic * (limit / shear)).into();
                 slid = true;
+                let way_m = (shear - limit) / stiffness.shear_pa_m;
+                friction_j = element.area_m2 * limit * way_m;
             }
         }
         if now == *element {
@@ -310,10 +314,12 @@ pub fn change(
             elements: elements.to_vec(),
             failed: None,
             slid: false,
+            friction_j: 0.0,
         });
         change.elements[i] = now;
         change.failed = failed.or(change.failed);
         change.slid |= slid;
+        change.friction_j += friction_j;
     }
     change
 }
