@@ -4,6 +4,7 @@
 //! writes the results; `watch` connects these to a run.
 
 pub(crate) mod arrange;
+pub mod confined;
 pub mod crack;
 pub mod dynamic;
 pub mod evaluate;

@@ -177,7 +177,11 @@ pub fn plan(
     leave_out(&stages, &mut state);
     let test = scene.test.as_ref().map(|test| {
         let particles = particles_of(&groups, &test.body);
-        setup(scene, test, &state, particles, tested_m3)
+        let driven: &[u32] = match test.kind.has_residual() {
+            true => particles_of(&groups, &test.crosshead[0]),
+            false => &[],
+        };
+        setup(scene, test, &state, particles, driven, tested_m3)
     });
     let test = test.transpose()?;
     Ok(Plan {

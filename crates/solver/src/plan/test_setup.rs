@@ -20,6 +20,31 @@ const ROUND: f64 = 1.25;
 /// this fraction of the diameter.
 const NEAR_DIAMETER: f64 = 0.1;
 
+/// A wall that keeps a pressure on a side of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Side {
+    /// Number of the wall in the state.
+    pub wall: usize,
+    /// Unit vector towards the body. Length 3.
+    pub inwards: [f64; 3],
+    /// Area of the side, m2.
+    pub area_m2: f64,
+    /// Size of the body between this wall and the opposite one, m.
+    pub apart_m: f64,
+}
+
+impl Side {
+    /// Coordinate of the wall towards the body, m.
+    pub(crate) fn place_m(&self, state: &State) -> f64 {
+        Vector3::from(state.walls[self.wall].frame.position_m).dot(&Vector3::from(self.inwards))
+    }
+
+    /// Force of the wall on the body, N.
+    pub(crate) fn force_n(&self, state: &State) -> f64 {
+        Vector3::from(state.walls[self.wall].push.force_n).dot(&Vector3::from(self.inwards))
+    }
+}
+
 /// Initial arrangement of a test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
@@ -43,10 +68,13 @@ pub struct Setup {
     pub gauge_m: f64,
     /// Mean radius of the particles, m.
     pub mean_radius_m: f64,
+    /// The walls on the sides of a triaxial test.
+    pub sides: Vec<Side>,
 }
 
 /// Determines the arrangement from walls and body. `particles`: those of the tested body, in a
-/// state before the first step. `volume_m3`: of the body's shape, if known.
+/// state before the first step; `driven`: those of them that a direct shear test moves. `volume_m3`:
+/// of the body's shape, if known.
 ///
 /// # Errors
 /// Pins that are not cylinders, or not the number that the test needs; skewed pins; a body that is
@@ -56,8 +84,10 @@ pub fn setup(
     test: &Test,
     state: &State,
     particles: &[u32],
+    driven: &[u32],
     volume_m3: Option<f64>,
 ) -> Result<Setup> {
+    let extent_of = |axis: &Vector3<f64>, some: &[u32]| extent(state, some, axis);
     let extent = |axis: &Vector3<f64>| extent(state, particles, axis);
     let direction = Vector3::from(test.direction);
     let radii = particles
@@ -72,18 +102,28 @@ pub fn setup(
         | TestType::HopkinsonPressure
         | TestType::HopkinsonTension
         | TestType::DropWeight => Ok(bar(test, direction, volume_m3, extent)),
+        TestType::DogBone => Ok(dog_bone(bar(test, direction, volume_m3, extent))),
+        TestType::TriaxialCompression => Ok(Setup {
+            sides: sides(scene, test, extent),
+            ..bar(test, direction, volume_m3, extent)
+        }),
+        TestType::DirectShear => Ok(sheared(test, extent, |axis| extent_of(axis, driven))),
     };
     let place = || format!("{}: [test]", scene.source);
     let found = found.and_then(|found| fits_the_load(test, found, mass_kg(state, particles)));
     let found = found.map_err(|(problem, remedy)| Diagnostic::input(place(), problem, remedy))?;
-    if !test.kind.pulls() {
+    if !test.kind.grips() {
         all_come_nearer(scene, test, Vector3::from(found.middle_m))?;
     }
     let mut setup = Setup {
         mean_radius_m,
         ..found
     };
-    choose_measured(&mut setup, state, particles);
+    if test.kind == TestType::DirectShear {
+        setup.crack_within_m = 4.0 * mean_radius_m;
+    } else {
+        choose_measured(&mut setup, state, particles);
+    }
     Ok(setup)
 }
 
@@ -131,7 +171,7 @@ fn mass_kg(state: &State, particles: &[u32]) -> f64 {
 }
 
 /// Smallest and largest coordinate of the body along an axis, m.
-fn extent(state: &State, particles: &[u32], axis: &Vector3<f64>) -> [f64; 2] {
+pub(crate) fn extent(state: &State, particles: &[u32], axis: &Vector3<f64>) -> [f64; 2] {
     particles
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &i| {
@@ -257,6 +297,7 @@ fn beam(
         resting: Vec::new(),
         gauge_m: 0.0,
         mean_radius_m: 0.0,
+        sides: Vec::new(),
     })
 }
 
@@ -375,6 +416,7 @@ fn disc(
         resting: Vec::new(),
         gauge_m: 0.0,
         mean_radius_m: 0.0,
+        sides: Vec::new(),
     })
 }
 
@@ -405,6 +447,78 @@ fn bar(
         resting: Vec::new(),
         gauge_m: 0.0,
         mean_radius_m: 0.0,
+        sides: Vec::new(),
+    }
+}
+
+/// A dog bone: the crack belongs into its neck, whose length and section are given.
+fn dog_bone(bar: Setup) -> Setup {
+    let crack_within_m = match bar.specimen {
+        Specimen::Bar { length_m, .. } => 0.5 * length_m,
+        _ => bar.crack_within_m,
+    };
+    Setup {
+        crack_within_m,
+        ..bar
+    }
+}
+
+/// The walls on the sides of a triaxial test.
+fn sides(scene: &Scene, test: &Test, extent: impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<Side> {
+    let extent_m = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| extent(&axis));
+    let confining = |name: &String| {
+        let confinement = test.confinement.as_ref();
+        confinement.is_some_and(|confinement| confinement.walls.contains(name))
+    };
+    let walls = scene.walls.iter().enumerate();
+    let side = |(wall, (_, of)): (usize, (&String, &Wall))| match of.shape {
+        WallShape::Plane { normal, .. } => Some(Side {
+            wall,
+            inwards: normal,
+            area_m2: side_m2(&extent_m, normal),
+            apart_m: size(extent(&Vector3::from(normal))),
+        }),
+        _ => None,
+    };
+    walls
+        .filter(|(_, (name, _))| confining(name))
+        .filter_map(side)
+        .collect()
+}
+
+/// Area of the box around a body, square to one of its axes, m2.
+pub(crate) fn side_m2(extent_m: &[[f64; 2]; 3], normal: [f64; 3]) -> f64 {
+    let sides = (0..3).filter(|k| normal[*k].abs() < 0.5);
+    sides.map(|k| size(extent_m[k])).product()
+}
+
+/// A body whose driven half slides along the other one. The plane between them is where the driven
+/// half ends; its crack has two mean diameters on both sides of it.
+fn sheared(
+    test: &Test,
+    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
+    driven: impl Fn(&Vector3<f64>) -> [f64; 2],
+) -> Setup {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let normal = (test.normal_stress.as_ref()).map_or([0.0; 3], |normal| normal.direction);
+    let along = Vector3::from(normal);
+    let all = axes.map(|axis| extent(&axis));
+    let mut centre: Vector3<f64> = axes.iter().map(|axis| middle(extent(axis)) * axis).sum();
+    centre += (driven(&along)[1] - centre.dot(&along)) * along;
+    Setup {
+        specimen: Specimen::Bar {
+            length_m: test.length_m.unwrap_or_else(|| size(extent(&along))),
+            area_m2: test.area_m2.unwrap_or_else(|| side_m2(&all, normal)),
+        },
+        direction: test.direction,
+        along: normal,
+        middle_m: centre.into(),
+        crack_within_m: 0.0,
+        moving: Vec::new(),
+        resting: Vec::new(),
+        gauge_m: 0.0,
+        mean_radius_m: 0.0,
+        sides: Vec::new(),
     }
 }
 
