@@ -6,6 +6,7 @@
 pub(crate) mod arrange;
 pub mod confined;
 pub mod crack;
+pub mod disc_stress;
 pub mod dynamic;
 pub mod evaluate;
 pub mod files;

@@ -1,6 +1,7 @@
 //! Results of tests under pressure: triaxial compression and direct shear.
 
 use dem_laboratory::Line;
+use dem_laboratory::theory::PEAK_AXIAL_STRESS;
 use dem_scene::Test;
 
 use super::evaluate::{Figure, elastic_range, peak};
@@ -9,8 +10,6 @@ use crate::plan::test_setup::Setup;
 
 /// Ratio of the lateral strain to the axial one, with the sign reversed.
 pub const POISSON_RATIO: &str = "Poisson's ratio";
-/// Largest principal stress at the largest load, Pa: the strength and the confining pressure.
-pub const AXIAL_STRESS: &str = "axial stress at failure";
 /// Stress that is left at the end of the stroke, Pa.
 pub const RESIDUAL: &str = "residual strength";
 /// Largest deviation of a lateral pressure from the one wanted, up to the largest load.
@@ -50,7 +49,7 @@ pub(super) fn figures(test: &Test, setup: &Setup, rows: &[Row]) -> Vec<Figure> {
         let strength_pa = peak(rows).map(|row| stress(row.load_n()));
         add(POISSON_RATIO, poisson_ratio(setup, rows), "");
         let axial_pa = strength_pa.map(|strength| strength + confinement.pressure_pa);
-        add(AXIAL_STRESS, axial_pa.filter(|_| has_passed_its_peak(rows)), "Pa");
+        add(PEAK_AXIAL_STRESS, axial_pa.filter(|_| has_passed_its_peak(rows)), "Pa");
         add(RESIDUAL, residual_pa, "Pa");
         add(PRESSURE_OFF, pressure_off(setup, confinement.pressure_pa, rows), "");
     }

@@ -4,13 +4,14 @@
 use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
-use super::confined::{self, AXIAL_STRESS, POISSON_RATIO, PRESSURE_OFF, RESIDUAL, RESIDUAL_FRICTION};
+use super::confined::{self, POISSON_RATIO, PRESSURE_OFF, RESIDUAL, RESIDUAL_FRICTION};
+use super::disc_stress::{self, ACROSS, ALONG};
 use super::pieces::Pieces;
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use dem_laboratory::theory::Beam;
-use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_modulus_pa, disc_stress_pa};
+use dem_laboratory::theory::{KAPPA, PEAK_AXIAL_STRESS, bar_stress_pa, disc_modulus_pa, disc_stress_pa};
 use dem_laboratory::{Line, Specimen, TestType, area_between};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
@@ -251,6 +252,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
         measured.add(LARGEST_FORCE, largest, "N", None);
     }
     (measured.figures).extend(confined::figures(test, setup, rows));
+    (measured.figures).extend(disc_stress::figures(setup, &record.disc));
     let points = rows.iter().map(|row| [row.travel_m - play_m, row.load_n()]);
     let curve: Vec<[f64; 2]> = points.collect();
     let wanted = measured_curve(test, &setup.specimen);
@@ -495,7 +497,7 @@ const APART: &str = "area between the curves";
 pub const STRENGTH: &str = "strength";
 
 /// Names of all results of quasi-static tests; each test has some of them.
-pub const RESULTS: [&str; 16] = [
+pub const RESULTS: [&str; 18] = [
     STIFFNESS,
     SPECIMEN_STIFFNESS,
     EQ_18,
@@ -508,10 +510,12 @@ pub const RESULTS: [&str; 16] = [
     TRAVEL_AT_FAILURE,
     APART,
     POISSON_RATIO,
-    AXIAL_STRESS,
+    PEAK_AXIAL_STRESS,
     RESIDUAL,
     RESIDUAL_FRICTION,
     PRESSURE_OFF,
+    ACROSS,
+    ALONG,
 ];
 
 /// Required bond parameters. Stresses and strains are proportional to modulus and strength of the

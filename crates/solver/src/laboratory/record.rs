@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::arrange::support_of;
+use super::disc_stress::DiscStress;
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::{Setup, Side};
 use crate::stages::supports::velocity_at_kick;
@@ -92,6 +93,8 @@ pub struct Record {
     pub fell: bool,
     /// Energies of a dynamic test.
     pub works: Works,
+    /// Stress along the loaded diameter of a disc at the largest load before a bond broke.
+    pub disc: DiscStress,
 }
 
 /// Numbers of walls and supports in a state.
@@ -192,6 +195,16 @@ impl Loading {
         loading.start_m = loading.place_m(setup, state);
         loading.apart_m = apart_m(setup, state);
         loading
+    }
+
+    /// Force of the moving side and reaction of the resting one, N.
+    fn forces_n(&self, setup: &Setup, state: &State) -> [f64; 2] {
+        let force_n = self.moving.force_n(setup, state) - self.confining_n;
+        if self.resting == Holders::default() {
+            return [force_n; 2];
+        }
+        let resting_n = -self.resting.force_n(setup, state);
+        [force_n, resting_n - self.weight_n - self.confining_n]
     }
 
     /// Deflection or elongation of the body between the measured points, m.
@@ -300,13 +313,9 @@ impl Record {
         let (sum, steps) = &mut self.open;
         sum.time_s += state.time_s;
         sum.travel_m += loading.place_m(setup, state) - loading.start_m;
-        let force_n = loading.moving.force_n(setup, state) - loading.confining_n;
+        let [force_n, reaction_n] = loading.forces_n(setup, state);
         sum.force_n += force_n;
-        sum.reaction_n += if loading.resting == Holders::default() {
-            force_n
-        } else {
-            -loading.resting.force_n(setup, state) - loading.weight_n - loading.confining_n
-        };
+        sum.reaction_n += reaction_n;
         sum.deflection_m += loading.deflection_m(setup, state);
         for (sum, (side, start_m)) in sum.sides_n.iter_mut().zip(&loading.sides) {
             *sum += side.force_n(state);
@@ -343,6 +352,10 @@ impl Record {
         self.open = Default::default();
         self.rows.push(row);
         self.largest_n = self.largest_n.max(row.load_n());
+        if self.broken.is_empty() && loading.dynamic.is_none() && !setup.strip.is_empty() {
+            let [force_n, reaction_n] = loading.forces_n(setup, state);
+            (self.disc).follow(f64::midpoint(force_n, reaction_n), setup, state);
+        }
         let falls = !self.broken.is_empty() && row.load_n() < BROKEN * self.largest_n;
         match &loading.dynamic {
             None => {

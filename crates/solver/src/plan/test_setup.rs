@@ -19,6 +19,8 @@ const ROUND: f64 = 1.25;
 /// A disc has split in two if the mean distance of the crack from the loaded diameter is at most
 /// this fraction of the diameter.
 const NEAR_DIAMETER: f64 = 0.1;
+/// Largest number of slabs along the loaded diameter.
+const MOST_SLABS: usize = 20;
 
 /// A wall that keeps a pressure on a side of a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +45,17 @@ impl Side {
     pub(crate) fn force_n(&self, state: &State) -> f64 {
         Vector3::from(state.walls[self.wall].push.force_n).dot(&Vector3::from(self.inwards))
     }
+}
+
+/// A particle near the loaded diameter of a disc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InSlab {
+    /// Its number in the state.
+    pub particle: u32,
+    /// Its slab along the diameter, in the direction of the load.
+    pub slab: usize,
+    /// Its share of the volume of the disc, m3.
+    pub volume_m3: f64,
 }
 
 /// Initial arrangement of a test.
@@ -70,6 +83,10 @@ pub struct Setup {
     pub mean_radius_m: f64,
     /// The walls on the sides of a triaxial test.
     pub sides: Vec<Side>,
+    /// The particles along the loaded diameter of a disc.
+    pub strip: Vec<InSlab>,
+    /// Number of slabs of equal height into which they fall.
+    pub slabs: usize,
 }
 
 /// Determines the arrangement from walls and body. `particles`: those of the tested body, in a
@@ -124,6 +141,7 @@ pub fn setup(
     } else {
         choose_measured(&mut setup, state, particles);
     }
+    choose_strip(&mut setup, state, particles);
     Ok(setup)
 }
 
@@ -298,6 +316,8 @@ fn beam(
         gauge_m: 0.0,
         mean_radius_m: 0.0,
         sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
     })
 }
 
@@ -417,6 +437,8 @@ fn disc(
         gauge_m: 0.0,
         mean_radius_m: 0.0,
         sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
     })
 }
 
@@ -448,6 +470,8 @@ fn bar(
         gauge_m: 0.0,
         mean_radius_m: 0.0,
         sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
     }
 }
 
@@ -519,6 +543,39 @@ fn sheared(
         gauge_m: 0.0,
         mean_radius_m: 0.0,
         sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
+    }
+}
+
+/// Chooses the particles within a twentieth of the diameter of a disc, or a mean diameter of the
+/// particles, on both sides of the loaded diameter, and divides it into slabs of at least that mean
+/// diameter.
+fn choose_strip(setup: &mut Setup, state: &State, particles: &[u32]) {
+    let Specimen::Disc {
+        diameter_m,
+        thickness_m,
+    } = setup.specimen
+    else {
+        return;
+    };
+    let fits = (diameter_m / (2.0 * setup.mean_radius_m)) as usize;
+    setup.slabs = fits.clamp(1, MOST_SLABS);
+    let half_m = (0.05 * diameter_m).max(2.0 * setup.mean_radius_m);
+    let cubed = |i: u32| state.particles.poses[i as usize].radius_m().powi(3);
+    let volume_m3 = 0.25 * std::f64::consts::PI * diameter_m * diameter_m * thickness_m;
+    let share = volume_m3 / particles.iter().map(|&i| cubed(i)).sum::<f64>();
+    let [along, direction] = [setup.along, setup.direction].map(Vector3::from);
+    for &i in particles {
+        let offset = state.particles.poses[i as usize].place() - Vector3::from(setup.middle_m);
+        let at = (offset.dot(&direction) / diameter_m + 0.5) * setup.slabs as f64;
+        if offset.dot(&along).abs() < half_m && at >= 0.0 {
+            setup.strip.push(InSlab {
+                particle: i,
+                slab: (at as usize).min(setup.slabs - 1),
+                volume_m3: share * cubed(i),
+            });
+        }
     }
 }
 
