@@ -70,7 +70,8 @@ fn poisson_ratio(setup: &Setup, rows: &[Row]) -> Option<f64> {
     let rows = elastic_range(rows)?;
     let strains: Vec<f64> = rows.iter().map(|row| -row.deflection_m / setup.gauge_m).collect();
     let widenings: Vec<f64> = rows.iter().map(|row| row.widening).collect();
-    Some(Line::fitted(&strains, &widenings).slope.abs())
+    let ratio = Line::fitted(&strains, &widenings).slope.abs();
+    ratio.is_finite().then_some(ratio)
 }
 
 /// Largest deviation of a lateral pressure from `pressure_pa`, over it, from the beginning of the

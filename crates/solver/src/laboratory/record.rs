@@ -38,8 +38,8 @@ pub struct Row {
     pub speeds_m_s: [f64; 3],
     /// Force of each wall on the sides of a triaxial test, N; 0 where there is none.
     pub sides_n: [f64; 4],
-    /// Strain across such a body from the motion of these walls, the mean of its sides, positive
-    /// where it widens.
+    /// Strain across the middle of such a body, the mean of its sides, positive where it widens. Not
+    /// a number where there are no particles to measure it.
     pub widening: f64,
 }
 
@@ -321,7 +321,7 @@ impl Record {
             *sum += side.force_n(state);
             // Two opposite walls move apart for each strain.
             let pairs = 0.5 * loading.sides.len() as f64;
-            widening += (start_m - side.place_m(state)) / (side.apart_m * pairs);
+            widening += (start_m - side.place_m(state)) / (side.gauge_m * pairs);
         }
         sum.widening += widening;
         if let Some(dynamic) = &loading.dynamic {

@@ -31,14 +31,19 @@ pub struct Side {
     pub inwards: [f64; 3],
     /// Area of the side, m2.
     pub area_m2: f64,
-    /// Size of the body between this wall and the opposite one, m.
-    pub apart_m: f64,
+    /// Particles halfway between the middle of the body and this wall, at half its height, whose
+    /// mean displacement is that of the side.
+    pub near: Vec<u32>,
+    /// Distance of their mean from that of the opposite side, m; 0: the side is not measured.
+    pub gauge_m: f64,
 }
 
 impl Side {
-    /// Coordinate of the wall towards the body, m.
+    /// Mean coordinate of the particles near it, towards the middle of the body, m.
     pub(crate) fn place_m(&self, state: &State) -> f64 {
-        Vector3::from(state.walls[self.wall].frame.position_m).dot(&Vector3::from(self.inwards))
+        let places = self.near.iter().map(|&i| state.particles.poses[i as usize].place());
+        let sum: f64 = places.map(|place| place.dot(&Vector3::from(self.inwards))).sum();
+        sum / self.near.len().max(1) as f64
     }
 
     /// Force of the wall on the body, N.
@@ -90,8 +95,8 @@ pub struct Setup {
 }
 
 /// Determines the arrangement from walls and body. `particles`: those of the tested body, in a
-/// state before the first step; `driven`: those of them that a direct shear test moves. `volume_m3`:
-/// of the body's shape, if known.
+/// state before the first step; `halves`: those that a direct shear test drives, and those
+/// that supports hold. `volume_m3`: of the body's shape, if known.
 ///
 /// # Errors
 /// Pins that are not cylinders, or not the number that the test needs; skewed pins; a body that is
@@ -101,10 +106,9 @@ pub fn setup(
     test: &Test,
     state: &State,
     particles: &[u32],
-    driven: &[u32],
+    halves: &[Vec<u32>; 2],
     volume_m3: Option<f64>,
 ) -> Result<Setup> {
-    let extent_of = |axis: &Vector3<f64>, some: &[u32]| extent(state, some, axis);
     let extent = |axis: &Vector3<f64>| extent(state, particles, axis);
     let direction = Vector3::from(test.direction);
     let radii = particles
@@ -121,10 +125,10 @@ pub fn setup(
         | TestType::DropWeight => Ok(bar(test, direction, volume_m3, extent)),
         TestType::DogBone => Ok(dog_bone(bar(test, direction, volume_m3, extent))),
         TestType::TriaxialCompression => Ok(Setup {
-            sides: sides(scene, test, extent),
+            sides: sides(scene, test, state, particles),
             ..bar(test, direction, volume_m3, extent)
         }),
-        TestType::DirectShear => Ok(sheared(test, extent, |axis| extent_of(axis, driven))),
+        TestType::DirectShear => sheared(test, state, extent, halves),
     };
     let place = || format!("{}: [test]", scene.source);
     let found = found.and_then(|found| fits_the_load(test, found, mass_kg(state, particles)));
@@ -137,7 +141,8 @@ pub fn setup(
         ..found
     };
     if test.kind == TestType::DirectShear {
-        setup.crack_within_m = 4.0 * mean_radius_m;
+        // It is as wide as the particles that break off.
+        setup.crack_within_m += 4.0 * mean_radius_m;
     } else {
         choose_measured(&mut setup, state, particles);
     }
@@ -488,8 +493,9 @@ fn dog_bone(bar: Setup) -> Setup {
 }
 
 /// The walls on the sides of a triaxial test.
-fn sides(scene: &Scene, test: &Test, extent: impl Fn(&Vector3<f64>) -> [f64; 2]) -> Vec<Side> {
-    let extent_m = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| extent(&axis));
+fn sides(scene: &Scene, test: &Test, state: &State, particles: &[u32]) -> Vec<Side> {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let extent_m = axes.map(|axis| extent(state, particles, &axis));
     let confining = |name: &String| {
         let confinement = test.confinement.as_ref();
         confinement.is_some_and(|confinement| confinement.walls.contains(name))
@@ -500,14 +506,51 @@ fn sides(scene: &Scene, test: &Test, extent: impl Fn(&Vector3<f64>) -> [f64; 2])
             wall,
             inwards: normal,
             area_m2: side_m2(&extent_m, normal),
-            apart_m: size(extent(&Vector3::from(normal))),
+            near: near_side(state, particles, [test.direction, normal].map(Vector3::from)),
+            gauge_m: 0.0,
         }),
         _ => None,
     };
-    walls
-        .filter(|(_, (name, _))| confining(name))
-        .filter_map(side)
-        .collect()
+    let walls = walls.filter(|(_, (name, _))| confining(name));
+    let mut sides: Vec<Side> = walls.filter_map(side).collect();
+    let places: Vec<[f64; 3]> = (sides.iter())
+        .map(|side| side.inwards.map(|c| c * side.place_m(state)))
+        .collect();
+    for at in 0..sides.len() {
+        let inwards = sides[at].inwards;
+        let is_opposite = |other: &&Side| (0..3).all(|k| other.inwards[k] == -inwards[k]);
+        let measured = |side: &Side| !side.near.is_empty();
+        let other = sides.iter().position(|other| is_opposite(&other) && measured(other));
+        if let Some(other) = other.filter(|_| measured(&sides[at])) {
+            let apart = Vector3::from(places[other]) - Vector3::from(places[at]);
+            sides[at].gauge_m = apart.norm();
+        }
+    }
+    sides
+}
+
+/// The particles of a body in its middle half along `direction` that are halfway between its middle
+/// and the side from which `inwards` points.
+fn near_side(
+    state: &State,
+    particles: &[u32],
+    [direction, inwards]: [Vector3<f64>; 2],
+) -> Vec<u32> {
+    let of = |axis: &Vector3<f64>| {
+        let ends = extent(state, particles, axis);
+        (middle(ends), size(ends))
+    };
+    let ((middle_m, height_m), (centre_m, width_m)) = (of(&direction), of(&inwards));
+    let radii = particles.iter().map(|&i| state.particles.poses[i as usize].radius_m());
+    let largest_m = radii.fold(0.0, f64::max);
+    let spot_m = (0.05 * width_m).max(2.0 * largest_m);
+    let is_near = |i: &u32| {
+        let place = state.particles.poses[*i as usize].place();
+        let from_side_m = place.dot(&inwards) - centre_m + 0.5 * GAUGE * width_m;
+        let from_middle_m = place.dot(&direction) - middle_m;
+        from_side_m.abs() < spot_m && from_middle_m.abs() < 0.5 * GAUGE * height_m
+    };
+    particles.iter().copied().filter(is_near).collect()
 }
 
 /// Area of the box around a body, square to one of its axes, m2.
@@ -516,20 +559,27 @@ pub(crate) fn side_m2(extent_m: &[[f64; 2]; 3], normal: [f64; 3]) -> f64 {
     sides.map(|k| size(extent_m[k])).product()
 }
 
-/// A body whose driven half slides along the other one. The plane between them is where the driven
-/// half ends; its crack has two mean diameters on both sides of it.
+/// A body whose driven half slides along the held one. The crack belongs between the two.
 fn sheared(
     test: &Test,
+    state: &State,
     extent: impl Fn(&Vector3<f64>) -> [f64; 2],
-    driven: impl Fn(&Vector3<f64>) -> [f64; 2],
-) -> Setup {
+    halves: &[Vec<u32>; 2],
+) -> std::result::Result<Setup, Refusal> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let normal = (test.normal_stress.as_ref()).map_or([0.0; 3], |normal| normal.direction);
     let along = Vector3::from(normal);
     let all = axes.map(|axis| extent(&axis));
     let mut centre: Vector3<f64> = axes.iter().map(|axis| middle(extent(axis)) * axis).sum();
-    centre += (driven(&along)[1] - centre.dot(&along)) * along;
-    Setup {
+    let [[_, driven_m], [held_m, _]] = (halves.each_ref()).map(|half| self::extent(state, half, &along));
+    if halves[1].is_empty() {
+        return Err((
+            "no support holds the half of the body that is not driven".to_owned(),
+            "add [supports.NAME] with group = its particles and fixed = true",
+        ));
+    }
+    centre += (middle([driven_m, held_m]) - centre.dot(&along)) * along;
+    Ok(Setup {
         specimen: Specimen::Bar {
             length_m: test.length_m.unwrap_or_else(|| size(extent(&along))),
             area_m2: test.area_m2.unwrap_or_else(|| side_m2(&all, normal)),
@@ -537,7 +587,7 @@ fn sheared(
         direction: test.direction,
         along: normal,
         middle_m: centre.into(),
-        crack_within_m: 0.0,
+        crack_within_m: 0.5 * (held_m - driven_m).max(0.0),
         moving: Vec::new(),
         resting: Vec::new(),
         gauge_m: 0.0,
@@ -545,7 +595,7 @@ fn sheared(
         sides: Vec::new(),
         strip: Vec::new(),
         slabs: 0,
-    }
+    })
 }
 
 /// Chooses the particles within a twentieth of the diameter of a disc, or a mean diameter of the
