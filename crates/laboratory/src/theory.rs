@@ -143,8 +143,7 @@ pub fn plane_of_weakness_pa(
 ) -> f64 {
     let friction = friction_angle_rad.tan();
     let resistance = 2.0 * (cohesion_pa + confining_pa * friction);
-    confining_pa
-        + resistance / ((1.0 - friction / angle_rad.tan()) * (2.0 * angle_rad).sin())
+    confining_pa + resistance / ((1.0 - friction / angle_rad.tan()) * (2.0 * angle_rad).sin())
 }
 
 /// Stress in a disc of this diameter and thickness under two opposite forces, Pa, on the loaded

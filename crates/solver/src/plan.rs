@@ -182,7 +182,9 @@ pub fn plan(
             supports.partition(|support| test.crosshead.contains(&support.group));
         let halves = [driven, held].map(|supports| -> Vec<u32> {
             let all = supports.iter();
-            all.flat_map(|support| particles_of(&groups, &support.group)).copied().collect()
+            all.flat_map(|support| particles_of(&groups, &support.group))
+                .copied()
+                .collect()
         });
         setup(scene, test, &state, particles, &halves, tested_m3)
     });

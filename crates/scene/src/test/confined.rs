@@ -59,14 +59,25 @@ pub(super) fn confinement(
                 "{} is \"{name}\", which is no plane along the direction of the test and square to an axis",
                 item.path
             );
-            let remedy = "write plane = { point, normal }, with the normal towards the body along x, y or z";
+            let remedy =
+                "write plane = { point, normal }, with the normal towards the body along x, y or z";
             return Err(item.refuse(problem, remedy));
         }
         walls.push(name);
         normals.push(normal);
     }
-    let opposite = |a: &[f64; 3]| normals.iter().filter(|b| dot(*a, **b) < SQUARE - 1.0).count();
-    let same = |a: &[f64; 3]| normals.iter().filter(|b| dot(*a, **b) > 1.0 - SQUARE).count();
+    let opposite = |a: &[f64; 3]| {
+        normals
+            .iter()
+            .filter(|b| dot(*a, **b) < SQUARE - 1.0)
+            .count()
+    };
+    let same = |a: &[f64; 3]| {
+        normals
+            .iter()
+            .filter(|b| dot(*a, **b) > 1.0 - SQUARE)
+            .count()
+    };
     if normals.is_empty() || normals.iter().any(|n| opposite(n) != 1 || same(n) != 1) {
         let limit = "two or four planes, in opposite pairs";
         return Err(field.wrong(limit, "name a wall on each of two opposite sides"));

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use dem_io::{Body, Diagnostic, Result};
 use dem_laboratory::TestType;
 use dem_scene::{
-    Bars, Confinement, Factor, Hold, Load, NormalStress, Scene, Support, Test, WallMotion, WallShape,
-    Weight,
+    Bars, Confinement, Factor, Hold, Load, NormalStress, Scene, Support, Test, WallMotion,
+    WallShape, Weight,
 };
 use nalgebra::Vector3;
 
@@ -170,7 +170,9 @@ fn press(
     if normal.stress_pa == 0.0 {
         return Ok(());
     }
-    let area_m2 = test.area_m2.unwrap_or_else(|| side_m2(&body.extent_m, normal.direction));
+    let area_m2 = test
+        .area_m2
+        .unwrap_or_else(|| side_m2(&body.extent_m, normal.direction));
     for name in &test.crosshead {
         let share = normal.stress_pa * area_m2 / test.crosshead.len() as f64;
         let load = Load {

@@ -44,19 +44,33 @@ pub(super) fn figures(test: &Test, setup: &Setup, rows: &[Row]) -> Vec<Figure> {
         found.extend(value.map(|value| Figure::new(name, value, unit, None)));
     };
     let stress = |force_n: f64| setup.specimen.stress_pa(force_n);
-    let residual_pa = residual_n(rows).filter(|_| has_passed_its_peak(rows)).map(stress);
+    let residual_pa = residual_n(rows)
+        .filter(|_| has_passed_its_peak(rows))
+        .map(stress);
     if let Some(confinement) = &test.confinement {
         let strength_pa = peak(rows).map(|row| stress(row.load_n()));
         add(POISSON_RATIO, poisson_ratio(setup, rows), "");
         let axial_pa = strength_pa.map(|strength| strength + confinement.pressure_pa);
-        add(PEAK_AXIAL_STRESS, axial_pa.filter(|_| has_passed_its_peak(rows)), "Pa");
+        add(
+            PEAK_AXIAL_STRESS,
+            axial_pa.filter(|_| has_passed_its_peak(rows)),
+            "Pa",
+        );
         add(RESIDUAL, residual_pa, "Pa");
-        add(PRESSURE_OFF, pressure_off(setup, confinement.pressure_pa, rows), "");
+        add(
+            PRESSURE_OFF,
+            pressure_off(setup, confinement.pressure_pa, rows),
+            "",
+        );
     }
     if let Some(normal) = &test.normal_stress {
         add(RESIDUAL, residual_pa, "Pa");
         let ratio = residual_pa.map(|residual| residual / normal.stress_pa);
-        add(RESIDUAL_FRICTION, ratio.filter(|ratio| ratio.is_finite()), "");
+        add(
+            RESIDUAL_FRICTION,
+            ratio.filter(|ratio| ratio.is_finite()),
+            "",
+        );
     }
     found
 }
@@ -68,7 +82,10 @@ fn poisson_ratio(setup: &Setup, rows: &[Row]) -> Option<f64> {
         return None;
     }
     let rows = elastic_range(rows)?;
-    let strains: Vec<f64> = rows.iter().map(|row| -row.deflection_m / setup.gauge_m).collect();
+    let strains: Vec<f64> = rows
+        .iter()
+        .map(|row| -row.deflection_m / setup.gauge_m)
+        .collect();
     let widenings: Vec<f64> = rows.iter().map(|row| row.widening).collect();
     let ratio = Line::fitted(&strains, &widenings).slope.abs();
     ratio.is_finite().then_some(ratio)
@@ -79,7 +96,9 @@ fn poisson_ratio(setup: &Setup, rows: &[Row]) -> Option<f64> {
 fn pressure_off(setup: &Setup, pressure_pa: f64, rows: &[Row]) -> Option<f64> {
     let from_s = elastic_range(rows)?.first()?.time_s;
     let to_s = peak(rows)?.time_s;
-    let during = rows.iter().filter(|row| row.time_s >= from_s && row.time_s <= to_s);
+    let during = rows
+        .iter()
+        .filter(|row| row.time_s >= from_s && row.time_s <= to_s);
     let off = |row: &Row| {
         let sides = setup.sides.iter().zip(row.sides_n);
         let off = sides.map(|(side, force_n)| (force_n / side.area_m2 / pressure_pa - 1.0).abs());

@@ -139,7 +139,9 @@ pub(super) fn figures(setup: &Setup, found: &DiscStress) -> Vec<Figure> {
         return Vec::new();
     };
     let mean = |name: &str, which: usize, within_m: f64| {
-        let inside = slabs.iter().filter(|slab| slab.from_centre_m.abs() <= within_m);
+        let inside = slabs
+            .iter()
+            .filter(|slab| slab.from_centre_m.abs() <= within_m);
         let inside: Vec<&Slab> = inside.collect();
         let sum = |of: &dyn Fn(&Slab) -> f64| inside.iter().map(|slab| of(slab)).sum::<f64>();
         let count = inside.len() as f64;
@@ -160,7 +162,11 @@ pub(super) fn table(slabs: &[Slab]) -> String {
     for slab in slabs {
         let ([x, y], [theory_x, theory_y]) = (slab.stress_pa, slab.theory_pa);
         // Writing to a string cannot fail.
-        let _ = writeln!(out, "{:e},{x:e},{y:e},{theory_x:e},{theory_y:e}", slab.from_centre_m);
+        let _ = writeln!(
+            out,
+            "{:e},{x:e},{y:e},{theory_x:e},{theory_y:e}",
+            slab.from_centre_m
+        );
     }
     out
 }
@@ -169,7 +175,10 @@ pub(super) fn table(slabs: &[Slab]) -> String {
 pub(super) fn plot(slabs: &[Slab], load_n: f64) -> Plot {
     let line = |name: &str, dashed: bool, of: &dyn Fn(&Slab) -> f64| Line {
         name: name.to_owned(),
-        points: slabs.iter().map(|slab| [slab.from_centre_m, of(slab)]).collect(),
+        points: slabs
+            .iter()
+            .map(|slab| [slab.from_centre_m, of(slab)])
+            .collect(),
         dashed,
     };
     Plot {

@@ -11,7 +11,9 @@ use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use dem_laboratory::theory::Beam;
-use dem_laboratory::theory::{KAPPA, PEAK_AXIAL_STRESS, bar_stress_pa, disc_modulus_pa, disc_stress_pa};
+use dem_laboratory::theory::{
+    KAPPA, PEAK_AXIAL_STRESS, bar_stress_pa, disc_modulus_pa, disc_stress_pa,
+};
 use dem_laboratory::{Line, Specimen, TestType, area_between};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins

@@ -41,8 +41,13 @@ pub struct Side {
 impl Side {
     /// Mean coordinate of the particles near it, towards the middle of the body, m.
     pub(crate) fn place_m(&self, state: &State) -> f64 {
-        let places = self.near.iter().map(|&i| state.particles.poses[i as usize].place());
-        let sum: f64 = places.map(|place| place.dot(&Vector3::from(self.inwards))).sum();
+        let places = self
+            .near
+            .iter()
+            .map(|&i| state.particles.poses[i as usize].place());
+        let sum: f64 = places
+            .map(|place| place.dot(&Vector3::from(self.inwards)))
+            .sum();
         sum / self.near.len().max(1) as f64
     }
 
@@ -506,7 +511,11 @@ fn sides(scene: &Scene, test: &Test, state: &State, particles: &[u32]) -> Vec<Si
             wall,
             inwards: normal,
             area_m2: side_m2(&extent_m, normal),
-            near: near_side(state, particles, [test.direction, normal].map(Vector3::from)),
+            near: near_side(
+                state,
+                particles,
+                [test.direction, normal].map(Vector3::from),
+            ),
             gauge_m: 0.0,
         }),
         _ => None,
@@ -520,7 +529,9 @@ fn sides(scene: &Scene, test: &Test, state: &State, particles: &[u32]) -> Vec<Si
         let inwards = sides[at].inwards;
         let is_opposite = |other: &&Side| (0..3).all(|k| other.inwards[k] == -inwards[k]);
         let measured = |side: &Side| !side.near.is_empty();
-        let other = sides.iter().position(|other| is_opposite(&other) && measured(other));
+        let other = sides
+            .iter()
+            .position(|other| is_opposite(&other) && measured(other));
         if let Some(other) = other.filter(|_| measured(&sides[at])) {
             let apart = Vector3::from(places[other]) - Vector3::from(places[at]);
             sides[at].gauge_m = apart.norm();
@@ -541,7 +552,9 @@ fn near_side(
         (middle(ends), size(ends))
     };
     let ((middle_m, height_m), (centre_m, width_m)) = (of(&direction), of(&inwards));
-    let radii = particles.iter().map(|&i| state.particles.poses[i as usize].radius_m());
+    let radii = particles
+        .iter()
+        .map(|&i| state.particles.poses[i as usize].radius_m());
     let largest_m = radii.fold(0.0, f64::max);
     let spot_m = (0.05 * width_m).max(2.0 * largest_m);
     let is_near = |i: &u32| {
@@ -571,7 +584,8 @@ fn sheared(
     let along = Vector3::from(normal);
     let all = axes.map(|axis| extent(&axis));
     let mut centre: Vector3<f64> = axes.iter().map(|axis| middle(extent(axis)) * axis).sum();
-    let [[_, driven_m], [held_m, _]] = (halves.each_ref()).map(|half| self::extent(state, half, &along));
+    let [[_, driven_m], [held_m, _]] =
+        (halves.each_ref()).map(|half| self::extent(state, half, &along));
     if halves[1].is_empty() {
         return Err((
             "no support holds the half of the body that is not driven".to_owned(),
