@@ -90,7 +90,7 @@ fn planes(places: &[Place], named: &[(&str, usize, f64)]) -> String {
         let mut normal = [0.0; 3];
         normal[*axis] = *towards;
         format!(
-            "walls.{name} = {{ plane = {{ point = {point:?}, normal = {normal:?} }}, material = \"rock\" }}\n"
+            "[walls.{name}]\nplane = {{ point = {point:?}, normal = {normal:?} }}\nmaterial = \"rock\"\n"
         )
     };
     named.iter().map(plane).collect()
@@ -310,9 +310,11 @@ fn sheared(folder: &Path) -> (String, String) {
     let area_m2 = 9.0 * PI * RADIUS_M.powi(2);
     let rest = format!(
         r#"
-        groups.lower = {{ particles = {:?} }}
-        groups.upper = {{ particles = {:?} }}
-        supports.lower = {{ group = "lower", fixed = true }}
+        [groups]
+        lower = {{ particles = {:?} }}
+        upper = {{ particles = {:?} }}
+        [supports]
+        lower = {{ group = "lower", fixed = true }}
         [test]
         type = "direct-shear"
         crosshead = ["upper"]
@@ -383,9 +385,11 @@ fn dog_bone(folder: &Path) -> String {
     let rest = |length_mm: f64| {
         format!(
             r#"
-            groups.low = {{ particles = {:?} }}
-            groups.high = {{ particles = {:?} }}
-            supports.low = {{ group = "low", fixed = ["z"] }}
+            [groups]
+            low = {{ particles = {:?} }}
+            high = {{ particles = {:?} }}
+            [supports]
+            low = {{ group = "low", fixed = ["z"] }}
             [test]
             type = "dog-bone"
             crosshead = ["high"]
@@ -445,7 +449,14 @@ fn disc(spheres: usize, bounds: [f64; 2], folder: &Path) -> Vec<Case> {
             (-reach..=reach).map(|i| [DIAMETER_M * i as f64 + shift_m, 0.0, row_m * j as f64]);
         places.extend(row.filter(|[x, _, z]| x.hypot(*z) <= radius_m - RADIUS_M * 0.999));
     }
-    let walls = planes(&places, &[("below", 2, 1.0), ("above", 2, -1.0)]);
+    // Narrow jaws press one sphere, or two, as a force in a point would.
+    let half_m = 1.2 * RADIUS_M;
+    let high_m = places.iter().map(|place| place[2]).fold(0.0, f64::max) + RADIUS_M;
+    let jaw = |name: &str, low_m: f64| {
+        let [min, max] = [[-half_m, -half_m, low_m], [half_m, half_m, low_m + RADIUS_M]];
+        format!("[walls.{name}]\nbox = {{ min = {min:?}, max = {max:?} }}\nmaterial = \"rock\"\n")
+    };
+    let walls = jaw("below", -high_m - RADIUS_M) + &jaw("above", high_m);
     let rest = format!(
         r#"
         {walls}
@@ -488,8 +499,8 @@ fn laboratory_tests_are_as_on_the_page() {
     let (peaks, triaxial_line) = plane_of_weakness(folder);
     std::fs::remove_dir_all(folder.join("study-sweep")).unwrap();
     let (sheared, shear_line) = sheared(folder);
-    let mut discs = disc(15, [0.15, 0.15], folder);
-    discs.extend(disc(31, [0.1, 0.1], folder));
+    let mut discs = disc(15, [0.1, 0.1], folder);
+    discs.extend(disc(31, [0.05, 0.05], folder));
     let tables = [
         ("elastic", compared("body", "", &elastic)),
         ("peaks", peaks),
