@@ -138,6 +138,9 @@ pub fn setup(
     let place = || format!("{}: [test]", scene.source);
     let found = found.and_then(|found| fits_the_load(test, found, mass_kg(state, particles)));
     let found = found.map_err(|(problem, remedy)| Diagnostic::input(place(), problem, remedy))?;
+    if matches!(test.kind, TestType::DogBone | TestType::HopkinsonTension) {
+        pulls_apart(scene, test, state, halves)?;
+    }
     if !test.kind.grips() {
         all_come_nearer(scene, test, Vector3::from(found.middle_m))?;
     }
@@ -387,6 +390,36 @@ fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<(
         )),
         _ => Ok(()),
     }
+}
+
+/// Refuses a group that is pulled towards the one that is held, or that ends in the other bar.
+fn pulls_apart(scene: &Scene, test: &Test, state: &State, halves: &[Vec<u32>; 2]) -> Result<()> {
+    let direction = Vector3::from(test.direction);
+    let [pulled_m, held_m] = (halves.each_ref()).map(|half| middle(extent(state, half, &direction)));
+    if halves[1].is_empty() || pulled_m > held_m {
+        return Ok(());
+    }
+    let (problem, remedy) = match &test.bars {
+        Some(bars) => (
+            format!(
+                "the incident bar pulls '{}' towards '{}', the end of the transmission bar, {} before it",
+                test.crosshead.join(", "),
+                bars.transmission,
+                show_length(held_m - pulled_m)
+            ),
+            "exchange crosshead and transmission_bar, or turn direction round",
+        ),
+        None => (
+            format!(
+                "the test pulls '{}' towards what is held, {} before it",
+                test.crosshead.join(", "),
+                show_length(held_m - pulled_m)
+            ),
+            "turn direction round, or name the group at the other end as the crosshead",
+        ),
+    };
+    let place = format!("{}: [test]", scene.source);
+    Err(Diagnostic::input(place, problem, remedy))
 }
 
 /// The middle of a wall. None: it is not known where the surface of an STL file would meet the

@@ -60,6 +60,9 @@ pub(crate) fn setup(specimen: Specimen) -> Setup {
         resting: vec![1],
         gauge_m: 0.05,
         mean_radius_m: 0.001,
+        sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
     }
 }
 

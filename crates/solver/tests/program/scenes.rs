@@ -144,7 +144,7 @@ fn every_good_scene_of_the_corpus_runs() {
 /// End time of each scene for a test without false alarms, and the shape and diameters of its body
 /// if it needs one. Laboratory tests, which have no end time of their own, load within one period
 /// of the body.
-const SHORT: [[&str; 4]; 29] = [
+const SHORT: [[&str; 4]; 32] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -153,6 +153,8 @@ const SHORT: [[&str; 4]; 29] = [
     ["chute-bonded", "20 ms", "", ""],
     ["clamped", "2 ms", "bending-sample", "5mm..7mm"],
     ["compression", "", "bar", "4mm..6mm"],
+    ["direct-shear", "20 us", "", ""],
+    ["dog-bone", "20 us", "", ""],
     ["drop-flat", "10 ms", "", ""],
     ["drop-height", "3 ms", "", ""],
     ["drop-inclined", "5 ms", "", ""],
@@ -173,6 +175,7 @@ const SHORT: [[&str; 4]; 29] = [
     ["stalk-cut", "0.5 ms", "", ""],
     ["tension", "", "bar", "4mm..6mm"],
     ["three-point-bending", "", "bending-sample", "5mm..7mm"],
+    ["triaxial-compression", "20 us", "", ""],
     ["wet-heap", "50 ms", "", ""],
 ];
 
