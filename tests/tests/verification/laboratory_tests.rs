@@ -456,7 +456,10 @@ fn disc(spheres: usize, folder: &Path) -> Vec<Case> {
     let half_m = 1.2 * RADIUS_M;
     let high_m = places.iter().map(|place| place[2]).fold(0.0, f64::max) + RADIUS_M;
     let jaw = |name: &str, low_m: f64| {
-        let [min, max] = [[-half_m, -half_m, low_m], [half_m, half_m, low_m + RADIUS_M]];
+        let [min, max] = [
+            [-half_m, -half_m, low_m],
+            [half_m, half_m, low_m + RADIUS_M],
+        ];
         format!("[walls.{name}]\nbox = {{ min = {min:?}, max = {max:?} }}\nmaterial = \"rock\"\n")
     };
     let walls = jaw("below", -high_m - RADIUS_M) + &jaw("above", high_m);

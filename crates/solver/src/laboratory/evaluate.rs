@@ -126,8 +126,13 @@ pub struct TestResult {
 impl TestResult {
     /// Whether the test was dynamic.
     pub fn is_dynamic(&self) -> bool {
+        self.test_type().is_some_and(TestType::is_dynamic)
+    }
+
+    /// Its type.
+    pub(super) fn test_type(&self) -> Option<TestType> {
         let found = TestType::NAMES.iter().find(|(name, _)| *name == self.kind);
-        found.is_some_and(|(_, kind)| kind.is_dynamic())
+        found.map(|(_, kind)| *kind)
     }
 
     /// The value of a figure.

@@ -64,7 +64,7 @@ impl TestResult {
     /// A crack elsewhere than where the test requires it.
     fn misplaced_crack(&self) -> Option<String> {
         let crack = self.crack.as_ref()?;
-        if self.kind != TestType::DogBone.name() {
+        if self.test_type() != Some(TestType::DogBone) {
             let said = "the crack is outside the region that the test requires";
             return (!crack.is_within).then(|| said.to_owned());
         }
@@ -80,7 +80,8 @@ impl TestResult {
     /// A test under pressure without a peak, and a pressure that was not kept.
     fn doubts_of_pressure(&self) -> Vec<String> {
         let mut doubts = Vec::new();
-        if self.has_residual() && !self.broken && self.target_strength_pa.is_none() {
+        let has_residual = self.test_type().is_some_and(TestType::has_residual);
+        if has_residual && !self.broken && self.target_strength_pa.is_none() {
             doubts.push(
                 "the stress did not fall below 95 % of its largest by the end of the stroke, so there is no strength: take a longer stroke (test.stroke)"
                     .to_owned(),
@@ -95,11 +96,6 @@ impl TestResult {
             ));
         }
         doubts
-    }
-
-    fn has_residual(&self) -> bool {
-        let found = TestType::NAMES.iter().find(|(name, _)| *name == self.kind);
-        found.is_some_and(|(_, kind)| kind.has_residual())
     }
 
     /// The same for a dynamic test.

@@ -395,7 +395,8 @@ fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<(
 /// Refuses a group that is pulled towards the one that is held, or that ends in the other bar.
 fn pulls_apart(scene: &Scene, test: &Test, state: &State, halves: &[Vec<u32>; 2]) -> Result<()> {
     let direction = Vector3::from(test.direction);
-    let [pulled_m, held_m] = (halves.each_ref()).map(|half| middle(extent(state, half, &direction)));
+    let [pulled_m, held_m] =
+        (halves.each_ref()).map(|half| middle(extent(state, half, &direction)));
     if halves[1].is_empty() || pulled_m > held_m {
         return Ok(());
     }

@@ -36,6 +36,8 @@ pub(crate) fn test(kind: TestType) -> Test {
         rate_check: false,
         bars: None,
         weight: None,
+        confinement: None,
+        normal_stress: None,
         young_modulus_pa: Some(MODULUS),
         poisson_ratio: 0.3,
         strength_pa: Some(STRENGTH),
