@@ -9,6 +9,7 @@ mod damping;
 mod dynamic_tests;
 mod failure;
 mod flat_joint;
+mod laboratory_tests;
 mod packing;
 mod page;
 mod plasticity;

@@ -20,6 +20,13 @@ pub enum TestType {
     Compression,
     /// A body is gripped at its ends and pulled.
     Tension,
+    /// A body with wide ends and a narrow neck is gripped at its ends and pulled.
+    DogBone,
+    /// A body is pressed along its length while walls around it keep a pressure on its sides.
+    TriaxialCompression,
+    /// One half of a body is slid along the other under a constant force that presses them
+    /// together.
+    DirectShear,
     /// A body is pressed between two long bars, into one of which a striker sends a pulse.
     HopkinsonPressure,
     /// A body is pulled by two long bars, into one of which a striker sends a pulse.
@@ -76,12 +83,15 @@ pub enum Specimen {
 
 impl TestType {
     /// All types with their names.
-    pub const NAMES: [(&'static str, Self); 9] = [
+    pub const NAMES: [(&'static str, Self); 12] = [
         ("four-point-bending", Self::FourPointBending),
         ("three-point-bending", Self::ThreePointBending),
         ("brazilian-disc", Self::BrazilianDisc),
         ("compression", Self::Compression),
         ("tension", Self::Tension),
+        ("dog-bone", Self::DogBone),
+        ("triaxial-compression", Self::TriaxialCompression),
+        ("direct-shear", Self::DirectShear),
         ("hopkinson-pressure", Self::HopkinsonPressure),
         ("hopkinson-tension", Self::HopkinsonTension),
         ("hopkinson-disc", Self::HopkinsonDisc),
@@ -107,9 +117,18 @@ impl TestType {
         self.has_bars() || self == Self::DropWeight
     }
 
-    /// Whether groups of particles are gripped and pulled.
-    pub fn pulls(self) -> bool {
-        matches!(self, Self::Tension | Self::HopkinsonTension)
+    /// Whether groups of particles are gripped and moved.
+    pub fn grips(self) -> bool {
+        matches!(
+            self,
+            Self::Tension | Self::DogBone | Self::HopkinsonTension | Self::DirectShear
+        )
+    }
+
+    /// Whether the stress that is left after the peak is a result: the test goes on to the end of
+    /// its stroke.
+    pub fn has_residual(self) -> bool {
+        matches!(self, Self::TriaxialCompression | Self::DirectShear)
     }
 
     /// Names of the dimensions that it needs.
@@ -120,6 +139,9 @@ impl TestType {
             Self::BrazilianDisc | Self::HopkinsonDisc => &["width", "height"],
             Self::Compression
             | Self::Tension
+            | Self::DogBone
+            | Self::TriaxialCompression
+            | Self::DirectShear
             | Self::HopkinsonPressure
             | Self::HopkinsonTension
             | Self::DropWeight => &["length", "area"],
@@ -245,6 +267,9 @@ impl Specimen {
             }),
             TestType::Compression
             | TestType::Tension
+            | TestType::DogBone
+            | TestType::TriaxialCompression
+            | TestType::DirectShear
             | TestType::HopkinsonPressure
             | TestType::HopkinsonTension
             | TestType::DropWeight => Ok(Self::Bar {

@@ -117,6 +117,51 @@ pub fn bar_stress_pa(force_n: f64, area_m2: f64) -> f64 {
     force_n / area_m2
 }
 
+/// Result of a triaxial test: its largest principal stress at failure.
+pub const PEAK_AXIAL_STRESS: &str = "axial stress at failure";
+/// Result of a direct shear test: its largest shear stress.
+pub const PEAK_SHEAR_STRESS: &str = "strength";
+
+/// Cohesion, Pa, and friction angle, rad, of a material whose largest principal stress at failure is
+/// `intercept_pa` without confining pressure and rises by `slope` with it: sigma_1 = sigma_3
+/// tan²(45° + phi/2) + 2 c tan(45° + phi/2) (Mohr and Coulomb; Jaeger, Cook and Zimmerman 2007,
+/// section 4.5).
+pub fn mohr_coulomb_of_peaks(slope: f64, intercept_pa: f64) -> (f64, f64) {
+    let root = slope.sqrt();
+    let angle_rad = 2.0 * root.atan() - std::f64::consts::FRAC_PI_2;
+    (0.5 * intercept_pa / root, angle_rad)
+}
+
+/// Largest principal stress, Pa, at which a plane of weakness slides whose normal is inclined by
+/// `angle_rad` to it: sigma_1 = sigma_3 + 2 (c + sigma_3 tan phi)/((1 - tan phi cot beta) sin 2 beta)
+/// (Jaeger, Cook and Zimmerman 2007, section 4.8).
+pub fn plane_of_weakness_pa(
+    cohesion_pa: f64,
+    friction_angle_rad: f64,
+    angle_rad: f64,
+    confining_pa: f64,
+) -> f64 {
+    let friction = friction_angle_rad.tan();
+    let resistance = 2.0 * (cohesion_pa + confining_pa * friction);
+    confining_pa + resistance / ((1.0 - friction / angle_rad.tan()) * (2.0 * angle_rad).sin())
+}
+
+/// Stress in a disc of this diameter and thickness under two opposite forces, Pa, on the loaded
+/// diameter at a distance from the centre, m: across the diameter and along it, positive in tension.
+/// 2 F/(pi D t), and -2 F/(pi t) (2/(D - 2 y) + 2/(D + 2 y) - 1/D) (Timoshenko and Goodier 1970,
+/// article 41).
+pub fn disc_diameter_pa(
+    force_n: f64,
+    diameter_m: f64,
+    thickness_m: f64,
+    from_centre_m: f64,
+) -> [f64; 2] {
+    let scale = 2.0 * force_n / (std::f64::consts::PI * thickness_m);
+    let (d, y) = (diameter_m, from_centre_m);
+    let along = 2.0 / (d - 2.0 * y) + 2.0 / (d + 2.0 * y) - 1.0 / d;
+    [scale / d, -scale * along]
+}
+
 /// Ratio of the first frequency of a beam supported at its ends to that of the same free beam:
 /// (pi/4.7300)^2.
 pub const ON_PINS: f64 = 0.441_133_4;

@@ -20,11 +20,12 @@ pub(crate) use time::add_time;
 use values::{number, text, texts};
 
 /// Plots that come first, in this order.
-const FIRST_PLOTS: [&str; 10] = [
+const FIRST_PLOTS: [&str; 11] = [
     "bar-signals",
     "stress-strain",
     "force-time",
     "force-displacement",
+    "disc-stress",
     "crack",
     "fragment_sizes",
     "discharged_mass",

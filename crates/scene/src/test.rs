@@ -1,7 +1,9 @@
 //! `[test]`: a laboratory test, quasi-static or dynamic.
 
+mod confined;
 mod dynamic;
 
+pub use confined::{Confinement, NormalStress};
 pub use dynamic::{Bars, Weight};
 
 use std::collections::BTreeMap;
@@ -33,14 +35,14 @@ pub(super) static TEST: Schema = Schema {
         Key::text("body", "a name in [bodies]", "Body under test.").otherwise("the only one"),
         Key::new(
             "crosshead",
-            Kind::List(&Kind::Text("a name in [walls], for tension in [groups]")),
-            "Walls that load the body and have no other motion; for tension, groups that are gripped and pulled.",
+            Kind::List(&Kind::Text("a name in [walls], for tension and direct shear in [groups]")),
+            "Walls that load the body and have no other motion; for tension, groups that are gripped and pulled; for direct shear, the half of the body that is driven.",
         )
         .required("[\"NAME\"], walls that load the body"),
         Key::new(
             "direction",
             Kind::Direction("a direction"),
-            "Direction of loading; for tension along x, y or z. Its length does not matter.",
+            "Direction of loading; for tension, direct shear and triaxial compression along x, y or z. Its length does not matter.",
         )
         .required("[0, 0, -1], in which they move"),
         Key::quantity(
@@ -89,12 +91,38 @@ pub(super) static TEST: Schema = Schema {
             .sometimes_required("{ length = \"200 mm\", velocity = \"10 m/s\" }"),
         Key::table("weight", &dynamic::WEIGHT, "The weight of a drop-weight test: the crosshead.")
             .sometimes_required("{ mass = \"5 kg\", height = \"0.5 m\" }"),
+        Key::new(
+            "lateral_walls",
+            Kind::List(&Kind::Text("a name in [walls]")),
+            "Planes on the sides of a triaxial test, in one or two opposite pairs, without another motion.",
+        )
+        .sometimes_required("[\"left\", \"right\", \"front\", \"back\"]"),
+        Key::quantity(
+            "confining_pressure",
+            &STRESS,
+            "Pressure that these walls keep on the sides of the body.",
+        )
+        .positive()
+        .sometimes_required("\"1 MPa\""),
+        Key::quantity(
+            "normal_stress",
+            &STRESS,
+            "Stress on the plane of a direct shear test, kept constant: the driven half is pressed with it times the area.",
+        )
+        .not_negative()
+        .sometimes_required("\"50 kPa\""),
+        Key::new(
+            "normal",
+            Kind::Direction("a direction"),
+            "Direction in which the driven half is pressed, square to `direction`, along x, y or z. Its length does not matter.",
+        )
+        .sometimes_required("[0, 0, -1]"),
         size("support_span", "Distance between the supports of a beam."),
         size("loading_span", "Distance between the two loading pins."),
         size("width", "Width of a beam, or thickness of a disc."),
         size("height", "Height of a beam, or diameter of a disc."),
-        size("length", "Length of a body that is pressed or pulled."),
-        Key::quantity("area", &AREA, "Area of its cross-section.")
+        size("length", "Length of a body that is pressed or pulled; of a dog bone, that of its neck, which is required."),
+        Key::quantity("area", &AREA, "Area of its cross-section, or of the shear plane; of a dog bone, that of its neck, which is required.")
             .positive()
             .otherwise(MEASURED),
     ],
@@ -135,6 +163,10 @@ pub struct Test {
     pub bars: Option<Bars>,
     /// `weight` of a drop-weight test.
     pub weight: Option<Weight>,
+    /// `lateral_walls` and `confining_pressure` of a triaxial test.
+    pub confinement: Option<Confinement>,
+    /// `normal_stress` and `normal` of a direct shear test.
+    pub normal_stress: Option<NormalStress>,
     /// `young_modulus`: target modulus of the entire body, Pa. None: not compared.
     pub young_modulus_pa: Option<f64>,
     /// `poisson_ratio` of the entire body, for its shear in bending; 0.3 unless given.
@@ -185,26 +217,26 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
     refuse_dimensions(&table, kind)?;
     refuse_others(&table, kind)?;
     refuse_run(&table, kind, known.run)?;
-    let pulls = kind.pulls();
-    let example = if pulls {
+    let grips = kind.grips();
+    let example = if grips {
         "[\"NAME\"], groups that are pulled"
     } else {
         "[\"NAME\"], walls that load the body"
     };
     let field = table.need_such("crosshead", example)?;
-    let crosshead = all_moved(&field, pulls, known)?;
+    let crosshead = all_moved(&field, grips, known)?;
     if kind.is_dynamic() && crosshead.len() > 1 {
         let limit = format!("one name, as a {} test has one", kind.name());
         return Err(field.wrong(&limit, "remove the others"));
     }
     let direction: [f64; 3] = table.read("direction")?;
-    if pulls && direction.iter().filter(|c| **c != 0.0).count() != 1 {
+    if grips && !confined::is_along_an_axis(direction) {
         let remedy = "write [1, 0, 0], [0, 1, 0], [0, 0, 1] or the opposite";
         let along = table.need("direction")?;
         return Err(along.wrong("along x, y or z, as what a support moves", remedy));
     }
     let bars = if kind.has_bars() {
-        let behind = transmission(&table, &crosshead, pulls, known)?;
+        let behind = transmission(&table, &crosshead, grips, known)?;
         Some(dynamic::bars(&table, behind)?)
     } else {
         None
@@ -212,6 +244,16 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
     let weight = (kind == TestType::DropWeight)
         .then(|| dynamic::weight(&table, direction, known.run))
         .transpose()?;
+    let confinement = (kind == TestType::TriaxialCompression)
+        .then(|| confined::confinement(&table, &crosshead, direction, known))
+        .transpose()?;
+    let normal_stress = (kind == TestType::DirectShear)
+        .then(|| confined::normal_stress(&table, direction))
+        .transpose()?;
+    if kind == TestType::DogBone {
+        table.need_such("length", "\"20 mm\", that of the neck")?;
+        table.need_such("area", "\"100 mm2\", that of the neck")?;
+    }
     let measured = measured(&table, kind, known.folder)?;
     let of_material = measured.as_ref().map(|measured| &measured.material);
     let modulus = of_material.and_then(|material| material.young_modulus_pa);
@@ -233,6 +275,8 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
         rate_check: !kind.is_dynamic() && table.read("rate_check")?,
         bars,
         weight,
+        confinement,
+        normal_stress,
         young_modulus_pa: given_modulus.or(modulus.map(|modulus| modulus.mean)),
         poisson_ratio: table.read("poisson_ratio")?,
         strength_pa: given_strength.or(strength),
@@ -258,6 +302,12 @@ pub(super) fn list(test: &Test, listing: &mut Listing) {
     }
     if let Some(weight) = &test.weight {
         dynamic::list_weight(weight, listing);
+    }
+    if let Some(confinement) = &test.confinement {
+        confined::list_confinement(confinement, listing);
+    }
+    if let Some(normal) = &test.normal_stress {
+        confined::list_normal_stress(normal, listing);
     }
     if !test.kind.is_dynamic() {
         listing.value("rate", &test.rate_m_s);
@@ -345,6 +395,12 @@ fn refuse_others(table: &Table<'_>, kind: TestType) -> Result<()> {
     if kind != TestType::DropWeight {
         others.push("weight");
     }
+    if kind != TestType::TriaxialCompression {
+        others.extend(["lateral_walls", "confining_pressure"]);
+    }
+    if kind != TestType::DirectShear {
+        others.extend(["normal_stress", "normal"]);
+    }
     match table.given(&others).next() {
         Some((_, field)) => {
             let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
@@ -354,14 +410,16 @@ fn refuse_others(table: &Table<'_>, kind: TestType) -> Result<()> {
     }
 }
 
-/// Refuses settings of the run with which bars and weights cannot move.
+/// Refuses settings of the run with which bars and weights, or walls that keep a pressure, cannot
+/// move, and of which a test takes none of its loads.
 fn refuse_run(table: &Table<'_>, kind: TestType, run: &Run) -> Result<()> {
     let key = match (run.integrator, run.steps_by_body) {
         (Integrator::Static, _) => "run.integrator = \"static\"",
         (_, true) => "run.steps_by_body",
         _ => return Ok(()),
     };
-    if !kind.is_dynamic() {
+    let has_no_statics = kind.has_residual() && run.integrator == Integrator::Static;
+    if !kind.is_dynamic() && !has_no_statics {
         return Ok(());
     }
     let problem = format!("a {} test cannot be combined with {key}", kind.name());
@@ -372,11 +430,11 @@ fn refuse_run(table: &Table<'_>, kind: TestType, run: &Run) -> Result<()> {
 fn transmission(
     table: &Table<'_>,
     crosshead: &[String],
-    pulls: bool,
+    grips: bool,
     known: &Known<'_>,
 ) -> Result<String> {
     let field = table.need("transmission_bar")?;
-    let name = moved(&field, pulls, known)?;
+    let name = moved(&field, grips, known)?;
     if crosshead.contains(&name) {
         let problem = format!("{} is \"{name}\", which is the crosshead", field.path);
         return Err(field.refuse(problem, "name what the body rests on"));
@@ -407,10 +465,10 @@ fn body(table: &Table<'_>, known: &Known<'_>) -> Result<String> {
 }
 
 /// The objects named by `crosshead`, each once.
-fn all_moved(field: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<Vec<String>> {
+fn all_moved(field: &Field<'_>, grips: bool, known: &Known<'_>) -> Result<Vec<String>> {
     let mut moves: Vec<String> = Vec::new();
     for item in field.items()? {
-        let name = moved(&item, pulls, known)?;
+        let name = moved(&item, grips, known)?;
         if moves.contains(&name) {
             let problem = format!("{} is \"{name}\", which is in the list already", item.path);
             return Err(item.refuse(problem, "remove one of them"));
@@ -421,9 +479,9 @@ fn all_moved(field: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<Vec<St
 }
 
 /// The object named by an item of `crosshead`: a fixed wall, or a group without a support.
-fn moved(item: &Field<'_>, pulls: bool, known: &Known<'_>) -> Result<String> {
+fn moved(item: &Field<'_>, grips: bool, known: &Known<'_>) -> Result<String> {
     let name = item.text()?;
-    if pulls {
+    if grips {
         if !known.groups.contains_key(name) {
             let problem = format!("{} is \"{name}\", but no group has this name", item.path);
             let names = known.groups.keys().map(String::as_str);

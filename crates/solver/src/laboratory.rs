@@ -4,7 +4,9 @@
 //! writes the results; `watch` connects these to a run.
 
 pub(crate) mod arrange;
+pub mod confined;
 pub mod crack;
+pub mod disc_stress;
 pub mod dynamic;
 pub mod evaluate;
 pub mod files;

@@ -177,7 +177,16 @@ pub fn plan(
     leave_out(&stages, &mut state);
     let test = scene.test.as_ref().map(|test| {
         let particles = particles_of(&groups, &test.body);
-        setup(scene, test, &state, particles, tested_m3)
+        let supports = scene.supports.values();
+        let (driven, held): (Vec<_>, Vec<_>) =
+            supports.partition(|support| test.crosshead.contains(&support.group));
+        let halves = [driven, held].map(|supports| -> Vec<u32> {
+            let all = supports.iter();
+            all.flat_map(|support| particles_of(&groups, &support.group))
+                .copied()
+                .collect()
+        });
+        setup(scene, test, &state, particles, &halves, tested_m3)
     });
     let test = test.transpose()?;
     Ok(Plan {

@@ -3,6 +3,7 @@
 use dem_scene::study::Average;
 use serde::Serialize;
 
+use super::failure_line::FailureLine;
 use super::response::Response;
 use super::row::Row;
 use super::search::Search;
@@ -42,6 +43,9 @@ pub struct SweepTable {
     pub responses: Vec<Response>,
     /// The search for a value, once for each case.
     pub find: Option<Search>,
+    /// Cohesion and friction angle. None: the study does not vary the pressure of a test.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure_line: Option<FailureLine>,
     /// Notes on the results.
     pub notes: Vec<String>,
 }

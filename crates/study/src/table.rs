@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use dem_scene::study::{Axis, RunTime, Study};
 
 use super::expand::Run;
+use super::failure_line::FailureLine;
 use super::front::{Point, front};
 use super::judge::{in_words, judge};
 use super::median::median;
@@ -81,6 +82,8 @@ impl SweepTable {
             notes.extend(of_search);
             Some(search)
         });
+        let failure_line = FailureLine::of(study, &rows);
+        notes.extend(failure_line.as_ref().map(FailureLine::note));
         let unit = |at: usize| {
             let done = of_runs.iter().flatten().next();
             done.map_or(String::new(), |done| done.readings[at].unit.clone())
@@ -112,6 +115,7 @@ impl SweepTable {
             runs: rows,
             responses,
             find,
+            failure_line,
             notes,
         }
     }

@@ -21,10 +21,11 @@ pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
 pub(super) const TEST_CURVE: &str = "force-displacement.csv";
 pub(super) const BAR_SIGNALS: &str = "bar-signals.csv";
+pub(super) const DISC_STRESS: &str = "disc-stress.csv";
 pub(super) const CHECKPOINT: &str = "checkpoint.dem";
 pub(super) const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 15] = [
+pub(super) const SINGLE_FILES: [&str; 16] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -36,6 +37,7 @@ pub(super) const SINGLE_FILES: [&str; 15] = [
     REPORT,
     TEST_CURVE,
     BAR_SIGNALS,
+    DISC_STRESS,
     FILM_STRIP,
     FILM,
     CHECKPOINT,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::names::{
-    BAR_SIGNALS, CHECKPOINT, DISCHARGE, DISTRIBUTION, ENDED, EVENTS, FILM, FILM_STRIP,
+    BAR_SIGNALS, CHECKPOINT, DISC_STRESS, DISCHARGE, DISTRIBUTION, ENDED, EVENTS, FILM, FILM_STRIP,
     FRAGMENT_TREE, FRAGMENTS, INDEX, PICTURES, PLOTS, REPORT, SCENE, SERIES, SUMMARY, TEST_CURVE,
     fixed_walls_name, frame_in, walls_in,
 };
@@ -137,5 +137,10 @@ impl ResultsFolder {
     /// The pulses of a split-Hopkinson test: `bar-signals.csv`.
     pub fn bar_signals(&self) -> PathBuf {
         self.path.join(BAR_SIGNALS)
+    }
+
+    /// The stress over the loaded diameter of a disc: `disc-stress.csv`.
+    pub fn disc_stress(&self) -> PathBuf {
+        self.path.join(DISC_STRESS)
     }
 }

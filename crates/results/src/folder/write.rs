@@ -62,6 +62,15 @@ impl ResultsFolder {
         write_file(&self.bar_signals(), |out| out.write_all(csv.as_bytes()))
     }
 
+    /// Writes the stress over the loaded diameter of a disc to `disc-stress.csv`, replacing an
+    /// earlier one.
+    ///
+    /// # Errors
+    /// No permission, full disk, a file or folder in the way (all exit code 1).
+    pub fn write_disc_stress(&self, csv: &str) -> Result<()> {
+        write_file(&self.disc_stress(), |out| out.write_all(csv.as_bytes()))
+    }
+
     /// Writes a plot to `plots/NAME.svg`, replacing an earlier one. `svg`: the text of an SVG file.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Scene, scene_from_text, set_text};
 
 use super::choice::SceneText;
-use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
+use crate::laboratory::arrange::{arrange, tested_body};
 use crate::laboratory::evaluate::{
     BY_TRAVEL, EQ_18, FAILURE_FORCE, LARGEST_FORCE, MODULUS, STIFFNESS, STRENGTH, TestResult,
 };
@@ -114,13 +114,13 @@ impl Bench<'_> {
         let scene = scene_from_text(text, source, &overrides)?;
         let mut bodies = self.others.clone();
         bodies.insert(self.body.to_owned(), self.packings[at].clone());
-        let lowest_hz = lowest_in_test_hz(&scene, &bodies, self.threads)?;
-        let scene = match lowest_hz {
-            Some(lowest_hz) => arrange(&scene, lowest_hz, faster)?,
+        let tested = tested_body(&scene, &bodies, self.threads)?;
+        let scene = match &tested {
+            Some(tested) => arrange(&scene, tested, faster)?,
             None => scene,
         };
         let plan = plan(&scene, bodies, self.threads, self.force_step)?;
-        Ok((scene, plan, lowest_hz))
+        Ok((scene, plan, tested.map(|body| body.lowest_frequency_hz)))
     }
 
     /// First factors: that on the modulus of the bonds from the stiffness of `packings` packings

@@ -8,7 +8,7 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_laboratory::Specimen;
 use dem_scene::Scene;
 
-use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
+use crate::laboratory::arrange::{arrange, tested_body};
 use crate::laboratory::evaluate::{
     BY_TRAVEL, EQ_18, STIFFNESS, STRENGTH, measured_curve, stiffness_of_curve,
 };
@@ -49,8 +49,8 @@ pub(crate) fn prospect(
     };
     let mut bodies = others.clone();
     bodies.insert(body.to_owned(), packing.clone());
-    if let Some(lowest_hz) = lowest_in_test_hz(scene, &bodies, threads)? {
-        let scene = arrange(scene, lowest_hz, 1.0)?;
+    if let Some(body) = tested_body(scene, &bodies, threads)? {
+        let scene = arrange(scene, &body, 1.0)?;
         prospect.specimen = plan(&scene, bodies, threads, true)?
             .test
             .map(|setup| setup.specimen);

@@ -16,7 +16,7 @@ use super::pool::in_pool;
 use super::scene_arguments::SceneArguments;
 use super::statics;
 use super::trial::Trial;
-use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
+use crate::laboratory::arrange::{arrange, tested_body};
 use crate::output::pictures::View;
 use crate::plan::masses;
 use crate::plan::{Plan, PlannedStage, plan};
@@ -44,8 +44,8 @@ pub(super) fn check_scene(
     }
     in_pool(arguments.threads, |threads| {
         let (scene, bodies) = arguments.read()?;
-        let scene = match lowest_in_test_hz(&scene, &bodies, threads)? {
-            Some(lowest_hz) => arrange(&scene, lowest_hz, 1.0)?,
+        let scene = match tested_body(&scene, &bodies, threads)? {
+            Some(body) => arrange(&scene, &body, 1.0)?,
             None => scene,
         };
         let mut plan = plan(&scene, bodies, threads, arguments.force_step)

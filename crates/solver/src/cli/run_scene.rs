@@ -21,7 +21,7 @@ use super::as_run;
 use super::progress::ShownProgress;
 use super::scene_arguments::SceneArguments;
 use crate::interrupt::Interrupt;
-use crate::laboratory::arrange::{arrange, lowest_in_test_hz};
+use crate::laboratory::arrange::{arrange, tested_body};
 use crate::laboratory::watch::TestSettings;
 use crate::output::summary::Unfinished;
 use crate::plan::{Plan, plan};
@@ -220,21 +220,21 @@ fn arranged(
     bodies: &BTreeMap<String, Body>,
     threads: usize,
 ) -> Result<(Scene, Option<TestSettings>, Option<AtTwiceTheRate>)> {
-    let Some(lowest_frequency_hz) = lowest_in_test_hz(&scene, bodies, threads)? else {
+    let Some(body) = tested_body(&scene, bodies, threads)? else {
         return Ok((scene, None, None));
     };
     let test = TestSettings {
-        lowest_frequency_hz,
+        lowest_frequency_hz: body.lowest_frequency_hz,
         at_twice_the_rate: None,
     };
     let checked = (scene.test.as_ref()).is_some_and(|test| test.rate_check);
     let twice = if checked && scene.run.integrator == Integrator::Leapfrog {
-        let scene = arrange(&scene, lowest_frequency_hz, 2.0)?;
+        let scene = arrange(&scene, &body, 2.0)?;
         Some((scene, bodies.clone(), test.clone()))
     } else {
         None
     };
-    let scene = arrange(&scene, lowest_frequency_hz, 1.0)?;
+    let scene = arrange(&scene, &body, 1.0)?;
     Ok((scene, Some(test), twice))
 }
 

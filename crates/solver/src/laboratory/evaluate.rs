@@ -4,12 +4,16 @@
 use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
+use super::confined::{self, POISSON_RATIO, PRESSURE_OFF, RESIDUAL, RESIDUAL_FRICTION};
+use super::disc_stress::{self, ACROSS, ALONG};
 use super::pieces::Pieces;
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::Setup;
 use dem_laboratory::theory::Beam;
-use dem_laboratory::theory::{KAPPA, bar_stress_pa, disc_modulus_pa, disc_stress_pa};
+use dem_laboratory::theory::{
+    KAPPA, PEAK_AXIAL_STRESS, bar_stress_pa, disc_modulus_pa, disc_stress_pa,
+};
 use dem_laboratory::{Line, Specimen, TestType, area_between};
 
 /// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
@@ -122,8 +126,13 @@ pub struct TestResult {
 impl TestResult {
     /// Whether the test was dynamic.
     pub fn is_dynamic(&self) -> bool {
+        self.test_type().is_some_and(TestType::is_dynamic)
+    }
+
+    /// Its type.
+    pub(super) fn test_type(&self) -> Option<TestType> {
         let found = TestType::NAMES.iter().find(|(name, _)| *name == self.kind);
-        found.is_some_and(|(_, kind)| kind.is_dynamic())
+        found.map(|(_, kind)| *kind)
     }
 
     /// The value of a figure.
@@ -187,15 +196,7 @@ pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
 /// The slope of the load over a displacement `way`, between 20 % and 60 % of the largest load, by
 /// least squares. None: too few rows.
 pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
-    let peak = peak(rows)?;
-    let up_to = |fraction: f64| {
-        rows.iter()
-            .position(|row| row.load_n() >= fraction * peak.load_n())
-    };
-    let elastic = &rows[up_to(SLOPE[0])?..up_to(SLOPE[1])?];
-    if elastic.len() < FEWEST_ROWS {
-        return None;
-    }
+    let elastic = elastic_range(rows)?;
     let (ways_m, loads_n): (Vec<f64>, Vec<f64>) =
         elastic.iter().map(|row| (way(row), row.load_n())).unzip();
     let line = Line::fitted(&ways_m, &loads_n);
@@ -203,6 +204,17 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
         stiffness_n_m: line.slope,
         start_m: line.zero(),
     })
+}
+
+/// The rows between 20 % and 60 % of the largest load. None: too few for a slope.
+pub(super) fn elastic_range(rows: &[Row]) -> Option<&[Row]> {
+    let peak = peak(rows)?;
+    let up_to = |fraction: f64| {
+        rows.iter()
+            .position(|row| row.load_n() >= fraction * peak.load_n())
+    };
+    let elastic = &rows[up_to(SLOPE[0])?..up_to(SLOPE[1])?];
+    (elastic.len() >= FEWEST_ROWS).then_some(elastic)
 }
 
 /// Travel at which the line fitted to the load over the travel has no load, m: play until
@@ -246,6 +258,8 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     if !evidence.broken {
         measured.add(LARGEST_FORCE, largest, "N", None);
     }
+    (measured.figures).extend(confined::figures(test, setup, rows));
+    (measured.figures).extend(disc_stress::figures(setup, &record.disc));
     let points = rows.iter().map(|row| [row.travel_m - play_m, row.load_n()]);
     let curve: Vec<[f64; 2]> = points.collect();
     let wanted = measured_curve(test, &setup.specimen);
@@ -358,7 +372,7 @@ impl Measured {
                 stiffness_of_curve(test, &setup.specimen),
             ),
             Specimen::Bar { length_m, area_m2 } => {
-                measured.bar(length_m, area_m2, setup.gauge_m);
+                measured.bar(test.kind, [length_m, setup.gauge_m], area_m2);
             }
         }
         measured
@@ -436,19 +450,23 @@ impl Measured {
         self.add(STRENGTH, self.failure_n.map(stress), "Pa", self.strength_pa);
     }
 
-    fn bar(&mut self, length_m: f64, area_m2: f64, gauge_m: f64) {
+    /// Of a bar, the neck of a dog bone or a sheared body with this length and gauge length, m.
+    fn bar(&mut self, kind: TestType, [length_m, gauge_m]: [f64; 2], area_m2: f64) {
         self.dimension("length", length_m, "m");
         self.dimension("area", area_m2, "m2");
-        self.dimension("gauge length", gauge_m, "m");
-        let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / length_m);
-        self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
-        let of_length = |k: f64| k * length_m / area_m2;
-        self.add(
-            BY_TRAVEL,
-            self.stiffness_n_m.map(of_length),
-            "Pa",
-            self.modulus_pa,
-        );
+        if kind != TestType::DirectShear {
+            self.dimension("gauge length", gauge_m, "m");
+        }
+        // The wide ends of a dog bone and the halves of a sheared body yield as well.
+        if matches!(kind, TestType::DogBone | TestType::DirectShear) {
+            self.add(STIFFNESS, self.stiffness_n_m, "N/m", None);
+        } else {
+            let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / length_m);
+            self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
+            let of_length = |k: f64| k * length_m / area_m2;
+            let by_travel_pa = self.stiffness_n_m.map(of_length);
+            self.add(BY_TRAVEL, by_travel_pa, "Pa", self.modulus_pa);
+        }
         let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / gauge_m);
         // In compression, the measured points approach each other.
         let of_body = self.of_body_n_m.map(f64::abs);
@@ -486,7 +504,7 @@ const APART: &str = "area between the curves";
 pub const STRENGTH: &str = "strength";
 
 /// Names of all results of quasi-static tests; each test has some of them.
-pub const RESULTS: [&str; 11] = [
+pub const RESULTS: [&str; 18] = [
     STIFFNESS,
     SPECIMEN_STIFFNESS,
     EQ_18,
@@ -498,6 +516,13 @@ pub const RESULTS: [&str; 11] = [
     STRENGTH,
     TRAVEL_AT_FAILURE,
     APART,
+    POISSON_RATIO,
+    PEAK_AXIAL_STRESS,
+    RESIDUAL,
+    RESIDUAL_FRICTION,
+    PRESSURE_OFF,
+    ACROSS,
+    ALONG,
 ];
 
 /// Required bond parameters. Stresses and strains are proportional to modulus and strength of the

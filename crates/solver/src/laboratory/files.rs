@@ -9,6 +9,7 @@ use dem_results::ResultsFolder;
 use dem_scene::{Bars, Test};
 
 use super::crack::{CrackPicture, crack_map};
+use super::disc_stress::{self, slabs};
 use super::dynamic::{BarSignal, bar_signals, stress_strain};
 use super::evaluate::{
     FAILURE_FORCE, Figure, TestResult, measured_curve, peak, play_m, rows_of, slope,
@@ -32,7 +33,7 @@ pub struct TestFiles<'a> {
 
 /// Writes `plots/force-displacement.svg`, `plots/crack.svg` and `force-displacement.csv`; of a test
 /// with bars also `bar-signals.csv` and plots of the pulses, forces and stress; of a weight the
-/// force over time.
+/// force over time, of a disc between plates the stress over its loaded diameter.
 ///
 /// # Errors
 /// Those of the files.
@@ -63,6 +64,12 @@ pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Resul
             folder.write_plot(name, &plot.svg().file())?;
         }
         folder.write_bar_signals(&signals_csv(files.record, bars))?;
+    }
+    let slabs = slabs(files.picture.setup, &files.record.disc);
+    if !slabs.is_empty() {
+        let plot = disc_stress::plot(&slabs, files.record.disc.load_n);
+        folder.write_plot("disc-stress", &plot.svg().file())?;
+        folder.write_disc_stress(&disc_stress::table(&slabs))?;
     }
     folder.write_test_curve(&curve_csv(files.record, play_m))
 }

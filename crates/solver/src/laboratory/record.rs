@@ -5,8 +5,9 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::arrange::support_of;
+use super::disc_stress::DiscStress;
 use crate::physics::bond::failure::Cause;
-use crate::plan::test_setup::Setup;
+use crate::plan::test_setup::{Setup, Side};
 use crate::stages::supports::velocity_at_kick;
 use crate::state::State;
 use crate::state::loads::factor_at;
@@ -35,6 +36,11 @@ pub struct Row {
     /// Of a dynamic test: velocities along the direction of the moving walls and supports, and of
     /// the others, and that of the incident pulse, m/s. Otherwise 0.
     pub speeds_m_s: [f64; 3],
+    /// Force of each wall on the sides of a triaxial test, N; 0 where there is none.
+    pub sides_n: [f64; 4],
+    /// Strain across the middle of such a body, the mean of its sides, positive where it widens. Not
+    /// a number where there are no particles to measure it.
+    pub widening: f64,
 }
 
 /// Energies of a dynamic test so far.
@@ -87,6 +93,8 @@ pub struct Record {
     pub fell: bool,
     /// Energies of a dynamic test.
     pub works: Works,
+    /// Stress along the loaded diameter of a disc at the largest load before a bond broke.
+    pub disc: DiscStress,
 }
 
 /// Numbers of walls and supports in a state.
@@ -115,6 +123,12 @@ pub struct Loading {
     apart_m: f64,
     /// What a dynamic test moves. None: the test is quasi-static.
     dynamic: Option<Dynamic>,
+    /// The walls that keep a pressure on the sides of the body, and where they started, m.
+    sides: Vec<(Side, f64)>,
+    /// Force of the confining pressure on the section of the body, N, which is no part of the load.
+    confining_n: f64,
+    /// The test goes on after the body has broken.
+    has_residual: bool,
 }
 
 /// What a dynamic test moves.
@@ -148,8 +162,17 @@ impl Loading {
         // The end of a drop-weight test is far off: its stroke gives the time of the impact.
         let impact_s = (test.weight.as_ref()).map(|weight| test.stroke_m / weight.velocity_m_s);
         let end_s = impact_s.unwrap_or(f64::INFINITY).min(scene.run.end_time_s);
+        let sides = setup.sides.iter().map(|side| {
+            let start_m = side.place_m(state);
+            (side.clone(), start_m)
+        });
+        let section_n = |pressure_pa: f64| pressure_pa / setup.specimen.stress_pa(1.0);
         Self {
             dynamic: bars.or_else(weight),
+            sides: sides.collect(),
+            confining_n: (test.confinement.as_ref())
+                .map_or(0.0, |confinement| section_n(confinement.pressure_pa)),
+            has_residual: test.kind.has_residual(),
             ..Self::of(moving, resting, setup, state, end_s)
         }
     }
@@ -165,10 +188,23 @@ impl Loading {
             start_m: 0.0,
             apart_m: 0.0,
             dynamic: None,
+            sides: Vec::new(),
+            confining_n: 0.0,
+            has_residual: false,
         };
         loading.start_m = loading.place_m(setup, state);
         loading.apart_m = apart_m(setup, state);
         loading
+    }
+
+    /// Force of the moving side and reaction of the resting one, N.
+    fn forces_n(&self, setup: &Setup, state: &State) -> [f64; 2] {
+        let force_n = self.moving.force_n(setup, state) - self.confining_n;
+        if self.resting == Holders::default() {
+            return [force_n; 2];
+        }
+        let resting_n = -self.resting.force_n(setup, state);
+        [force_n, resting_n - self.weight_n - self.confining_n]
     }
 
     /// Deflection or elongation of the body between the measured points, m.
@@ -273,17 +309,21 @@ impl Record {
                 cause: broken.cause,
             });
         }
+        let mut widening = 0.0;
         let (sum, steps) = &mut self.open;
         sum.time_s += state.time_s;
         sum.travel_m += loading.place_m(setup, state) - loading.start_m;
-        let force_n = loading.moving.force_n(setup, state);
+        let [force_n, reaction_n] = loading.forces_n(setup, state);
         sum.force_n += force_n;
-        sum.reaction_n += if loading.resting == Holders::default() {
-            force_n
-        } else {
-            -loading.resting.force_n(setup, state) - loading.weight_n
-        };
+        sum.reaction_n += reaction_n;
         sum.deflection_m += loading.deflection_m(setup, state);
+        for (sum, (side, start_m)) in sum.sides_n.iter_mut().zip(&loading.sides) {
+            *sum += side.force_n(state);
+            // Two opposite walls move apart for each strain.
+            let pairs = 0.5 * loading.sides.len() as f64;
+            widening += (start_m - side.place_m(state)) / (side.gauge_m * pairs);
+        }
+        sum.widening += widening;
         if let Some(dynamic) = &loading.dynamic {
             let speeds_m_s = loading.speeds_m_s(setup, state);
             let resting_n = -loading.resting.force_n(setup, state);
@@ -306,15 +346,21 @@ impl Record {
             reaction_n: fraction * sum.reaction_n,
             deflection_m: fraction * sum.deflection_m,
             speeds_m_s: sum.speeds_m_s.map(|sum| fraction * sum),
+            sides_n: sum.sides_n.map(|sum| fraction * sum),
+            widening: fraction * sum.widening,
         };
         self.open = Default::default();
         self.rows.push(row);
         self.largest_n = self.largest_n.max(row.load_n());
+        if self.broken.is_empty() && loading.dynamic.is_none() && !setup.strip.is_empty() {
+            let [force_n, reaction_n] = loading.forces_n(setup, state);
+            (self.disc).follow(f64::midpoint(force_n, reaction_n), setup, state);
+        }
         let falls = !self.broken.is_empty() && row.load_n() < BROKEN * self.largest_n;
         match &loading.dynamic {
             None => {
                 self.fell |= falls;
-                self.fell
+                self.fell && !loading.has_residual
             }
             Some(Dynamic::Bars(bars)) => {
                 self.fell |= falls && row.time_s < bars.pulse_s();
@@ -353,6 +399,11 @@ fn mean(rows: &[Row]) -> Row {
             let speeds = rows.iter().map(|row| row.speeds_m_s[k]);
             fraction * speeds.sum::<f64>()
         }),
+        sides_n: [0, 1, 2, 3].map(|k| {
+            let forces = rows.iter().map(|row| row.sides_n[k]);
+            fraction * forces.sum::<f64>()
+        }),
+        widening: of(|row| row.widening),
     }
 }
 

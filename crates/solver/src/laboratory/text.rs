@@ -3,7 +3,9 @@
 use std::fmt;
 
 use dem_io::units::{show_quantity, significant};
+use dem_laboratory::TestType;
 
+use super::confined::PRESSURE_OFF;
 use super::dynamic::{EQUILIBRIUM, UNBOOKED};
 use super::evaluate::{Figure, STIFFNESS, TestResult};
 use super::files::percent;
@@ -13,6 +15,10 @@ const MUCH: f64 = 0.02;
 /// Largest difference of the forces on both ends of a specimen over their mean, at the largest
 /// load, at which it counts as in equilibrium.
 const APART: f64 = 0.1;
+/// Largest deviation of a lateral pressure that counts as constant.
+const UNSTEADY: f64 = 0.01;
+/// Share of the broken bonds outside the neck of a dog bone above which it failed there.
+const MOSTLY: f64 = 0.5;
 /// The test without a strength.
 const DROP: &str = "drop-weight";
 
@@ -41,9 +47,8 @@ impl TestResult {
                     .to_owned(),
             );
         }
-        if self.crack.as_ref().is_some_and(|crack| !crack.is_within) {
-            doubts.push("the crack is outside the region that the test requires".to_owned());
-        }
+        doubts.extend(self.misplaced_crack());
+        doubts.extend(self.doubts_of_pressure());
         for figure in &self.half_the_rate_changes {
             if figure.value.abs() > MUCH {
                 doubts.push(format!(
@@ -52,6 +57,43 @@ impl TestResult {
                     percent(figure.value)
                 ));
             }
+        }
+        doubts
+    }
+
+    /// A crack elsewhere than where the test requires it.
+    fn misplaced_crack(&self) -> Option<String> {
+        let crack = self.crack.as_ref()?;
+        if self.test_type() != Some(TestType::DogBone) {
+            let said = "the crack is outside the region that the test requires";
+            return (!crack.is_within).then(|| said.to_owned());
+        }
+        let outside = 1.0 - crack.fraction_within;
+        (outside > MOSTLY).then(|| {
+            format!(
+                "the body fails outside the neck, as {:.0} % of the broken bonds do: the test does not give the strength of the material; hold more of its ends (the groups in test.crosshead and [supports]), or make the neck narrower",
+                100.0 * outside
+            )
+        })
+    }
+
+    /// A test under pressure without a peak, and a pressure that was not kept.
+    fn doubts_of_pressure(&self) -> Vec<String> {
+        let mut doubts = Vec::new();
+        let has_residual = self.test_type().is_some_and(TestType::has_residual);
+        if has_residual && !self.broken && self.target_strength_pa.is_none() {
+            doubts.push(
+                "the stress did not fall below 95 % of its largest by the end of the stroke, so there is no strength: take a longer stroke (test.stroke)"
+                    .to_owned(),
+            );
+        }
+        let off = self.figure(PRESSURE_OFF).unwrap_or(0.0);
+        if off > UNSTEADY {
+            doubts.push(format!(
+                "the lateral pressure deviated by up to {} before the peak (at most {:.0} %): take more periods (test.periods) or damp the body (run.local_damping)",
+                percent(off),
+                100.0 * UNSTEADY
+            ));
         }
         doubts
     }

@@ -4,9 +4,10 @@ use dem_io::Result;
 use dem_results::ResultsFolder;
 use dem_scene::{Scene, Test};
 
+use super::confined::has_passed_its_peak;
 use super::crack::{CrackPicture, Sphere};
 use super::dynamic::evaluate_dynamic;
-use super::evaluate::{TestInput, TestResult, evaluate};
+use super::evaluate::{TestInput, TestResult, evaluate, rows_of};
 use super::files::{TestFiles, write_test};
 use super::pieces::Pieces;
 use super::record::{Loading, Record};
@@ -75,6 +76,13 @@ impl<'a> Watch<'a> {
         record.note(&self.setup, &self.loading, state)
     }
 
+    /// Whether bonds have broken and the stress has passed its peak, in a test that goes on then.
+    fn has_passed_its_peak(&self, record: &Record) -> bool {
+        let rows = rows_of(record, self.settings.lowest_frequency_hz);
+        let goes_on = self.test.kind.has_residual() && !record.broken.is_empty();
+        goes_on && has_passed_its_peak(&rows)
+    }
+
     /// Its result, written to `folder` if there is one.
     ///
     /// # Errors
@@ -103,7 +111,7 @@ impl<'a> Watch<'a> {
             places_m: &places,
             bonds: kind.and_then(|name| self.scene.bonds.get(name)),
             lowest_frequency_hz: self.settings.lowest_frequency_hz,
-            broken: record.fell,
+            broken: record.fell || self.has_passed_its_peak(record),
             pieces: Pieces::of(state, &self.test.body),
             all_bonds: state.bonds.len(),
         };

@@ -19,6 +19,54 @@ const ROUND: f64 = 1.25;
 /// A disc has split in two if the mean distance of the crack from the loaded diameter is at most
 /// this fraction of the diameter.
 const NEAR_DIAMETER: f64 = 0.1;
+/// Largest number of slabs along the loaded diameter.
+const MOST_SLABS: usize = 20;
+
+/// A wall that keeps a pressure on a side of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Side {
+    /// Number of the wall in the state.
+    pub wall: usize,
+    /// Unit vector towards the body. Length 3.
+    pub inwards: [f64; 3],
+    /// Area of the side, m2.
+    pub area_m2: f64,
+    /// Particles halfway between the middle of the body and this wall, at half its height, whose
+    /// mean displacement is that of the side.
+    pub near: Vec<u32>,
+    /// Distance of their mean from that of the opposite side, m; 0: the side is not measured.
+    pub gauge_m: f64,
+}
+
+impl Side {
+    /// Mean coordinate of the particles near it, towards the middle of the body, m.
+    pub(crate) fn place_m(&self, state: &State) -> f64 {
+        let places = self
+            .near
+            .iter()
+            .map(|&i| state.particles.poses[i as usize].place());
+        let sum: f64 = places
+            .map(|place| place.dot(&Vector3::from(self.inwards)))
+            .sum();
+        sum / self.near.len().max(1) as f64
+    }
+
+    /// Force of the wall on the body, N.
+    pub(crate) fn force_n(&self, state: &State) -> f64 {
+        Vector3::from(state.walls[self.wall].push.force_n).dot(&Vector3::from(self.inwards))
+    }
+}
+
+/// A particle near the loaded diameter of a disc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InSlab {
+    /// Its number in the state.
+    pub particle: u32,
+    /// Its slab along the diameter, in the direction of the load.
+    pub slab: usize,
+    /// Its share of the volume of the disc, m3.
+    pub volume_m3: f64,
+}
 
 /// Initial arrangement of a test.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,10 +91,17 @@ pub struct Setup {
     pub gauge_m: f64,
     /// Mean radius of the particles, m.
     pub mean_radius_m: f64,
+    /// The walls on the sides of a triaxial test.
+    pub sides: Vec<Side>,
+    /// The particles along the loaded diameter of a disc.
+    pub strip: Vec<InSlab>,
+    /// Number of slabs of equal height into which they fall.
+    pub slabs: usize,
 }
 
 /// Determines the arrangement from walls and body. `particles`: those of the tested body, in a
-/// state before the first step. `volume_m3`: of the body's shape, if known.
+/// state before the first step; `halves`: those that a direct shear test drives, and those
+/// that supports hold. `volume_m3`: of the body's shape, if known.
 ///
 /// # Errors
 /// Pins that are not cylinders, or not the number that the test needs; skewed pins; a body that is
@@ -56,6 +111,7 @@ pub fn setup(
     test: &Test,
     state: &State,
     particles: &[u32],
+    halves: &[Vec<u32>; 2],
     volume_m3: Option<f64>,
 ) -> Result<Setup> {
     let extent = |axis: &Vector3<f64>| extent(state, particles, axis);
@@ -72,18 +128,33 @@ pub fn setup(
         | TestType::HopkinsonPressure
         | TestType::HopkinsonTension
         | TestType::DropWeight => Ok(bar(test, direction, volume_m3, extent)),
+        TestType::DogBone => Ok(dog_bone(bar(test, direction, volume_m3, extent))),
+        TestType::TriaxialCompression => Ok(Setup {
+            sides: sides(scene, test, state, particles),
+            ..bar(test, direction, volume_m3, extent)
+        }),
+        TestType::DirectShear => sheared(test, state, extent, halves),
     };
     let place = || format!("{}: [test]", scene.source);
     let found = found.and_then(|found| fits_the_load(test, found, mass_kg(state, particles)));
     let found = found.map_err(|(problem, remedy)| Diagnostic::input(place(), problem, remedy))?;
-    if !test.kind.pulls() {
+    if matches!(test.kind, TestType::DogBone | TestType::HopkinsonTension) {
+        pulls_apart(scene, test, state, halves)?;
+    }
+    if !test.kind.grips() {
         all_come_nearer(scene, test, Vector3::from(found.middle_m))?;
     }
     let mut setup = Setup {
         mean_radius_m,
         ..found
     };
-    choose_measured(&mut setup, state, particles);
+    if test.kind == TestType::DirectShear {
+        // It is as wide as the particles that break off.
+        setup.crack_within_m += 4.0 * mean_radius_m;
+    } else {
+        choose_measured(&mut setup, state, particles);
+    }
+    choose_strip(&mut setup, state, particles);
     Ok(setup)
 }
 
@@ -131,7 +202,7 @@ fn mass_kg(state: &State, particles: &[u32]) -> f64 {
 }
 
 /// Smallest and largest coordinate of the body along an axis, m.
-fn extent(state: &State, particles: &[u32], axis: &Vector3<f64>) -> [f64; 2] {
+pub(crate) fn extent(state: &State, particles: &[u32], axis: &Vector3<f64>) -> [f64; 2] {
     particles
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &i| {
@@ -257,6 +328,9 @@ fn beam(
         resting: Vec::new(),
         gauge_m: 0.0,
         mean_radius_m: 0.0,
+        sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
     })
 }
 
@@ -318,6 +392,37 @@ fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<(
     }
 }
 
+/// Refuses a group that is pulled towards the one that is held, or that ends in the other bar.
+fn pulls_apart(scene: &Scene, test: &Test, state: &State, halves: &[Vec<u32>; 2]) -> Result<()> {
+    let direction = Vector3::from(test.direction);
+    let [pulled_m, held_m] =
+        (halves.each_ref()).map(|half| middle(extent(state, half, &direction)));
+    if halves[1].is_empty() || pulled_m > held_m {
+        return Ok(());
+    }
+    let (problem, remedy) = match &test.bars {
+        Some(bars) => (
+            format!(
+                "the incident bar pulls '{}' towards '{}', the end of the transmission bar, {} before it",
+                test.crosshead.join(", "),
+                bars.transmission,
+                show_length(held_m - pulled_m)
+            ),
+            "exchange crosshead and transmission_bar, or turn direction round",
+        ),
+        None => (
+            format!(
+                "the test pulls '{}' towards what is held, {} before it",
+                test.crosshead.join(", "),
+                show_length(held_m - pulled_m)
+            ),
+            "turn direction round, or name the group at the other end as the crosshead",
+        ),
+    };
+    let place = format!("{}: [test]", scene.source);
+    Err(Diagnostic::input(place, problem, remedy))
+}
+
 /// The middle of a wall. None: it is not known where the surface of an STL file would meet the
 /// body.
 fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
@@ -375,6 +480,9 @@ fn disc(
         resting: Vec::new(),
         gauge_m: 0.0,
         mean_radius_m: 0.0,
+        sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
     })
 }
 
@@ -405,6 +513,167 @@ fn bar(
         resting: Vec::new(),
         gauge_m: 0.0,
         mean_radius_m: 0.0,
+        sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
+    }
+}
+
+/// A dog bone: the crack belongs into its neck, whose length and section are given.
+fn dog_bone(bar: Setup) -> Setup {
+    let crack_within_m = match bar.specimen {
+        Specimen::Bar { length_m, .. } => 0.5 * length_m,
+        _ => bar.crack_within_m,
+    };
+    Setup {
+        crack_within_m,
+        ..bar
+    }
+}
+
+/// The walls on the sides of a triaxial test.
+fn sides(scene: &Scene, test: &Test, state: &State, particles: &[u32]) -> Vec<Side> {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let extent_m = axes.map(|axis| extent(state, particles, &axis));
+    let confining = |name: &String| {
+        let confinement = test.confinement.as_ref();
+        confinement.is_some_and(|confinement| confinement.walls.contains(name))
+    };
+    let walls = scene.walls.iter().enumerate();
+    let side = |(wall, (_, of)): (usize, (&String, &Wall))| match of.shape {
+        WallShape::Plane { normal, .. } => Some(Side {
+            wall,
+            inwards: normal,
+            area_m2: side_m2(&extent_m, normal),
+            near: near_side(
+                state,
+                particles,
+                [test.direction, normal].map(Vector3::from),
+            ),
+            gauge_m: 0.0,
+        }),
+        _ => None,
+    };
+    let walls = walls.filter(|(_, (name, _))| confining(name));
+    let mut sides: Vec<Side> = walls.filter_map(side).collect();
+    let places: Vec<[f64; 3]> = (sides.iter())
+        .map(|side| side.inwards.map(|c| c * side.place_m(state)))
+        .collect();
+    for at in 0..sides.len() {
+        let inwards = sides[at].inwards;
+        let is_opposite = |other: &&Side| (0..3).all(|k| other.inwards[k] == -inwards[k]);
+        let measured = |side: &Side| !side.near.is_empty();
+        let other = sides
+            .iter()
+            .position(|other| is_opposite(&other) && measured(other));
+        if let Some(other) = other.filter(|_| measured(&sides[at])) {
+            let apart = Vector3::from(places[other]) - Vector3::from(places[at]);
+            sides[at].gauge_m = apart.norm();
+        }
+    }
+    sides
+}
+
+/// The particles of a body in its middle half along `direction` that are halfway between its middle
+/// and the side from which `inwards` points.
+fn near_side(
+    state: &State,
+    particles: &[u32],
+    [direction, inwards]: [Vector3<f64>; 2],
+) -> Vec<u32> {
+    let of = |axis: &Vector3<f64>| {
+        let ends = extent(state, particles, axis);
+        (middle(ends), size(ends))
+    };
+    let ((middle_m, height_m), (centre_m, width_m)) = (of(&direction), of(&inwards));
+    let radii = particles
+        .iter()
+        .map(|&i| state.particles.poses[i as usize].radius_m());
+    let largest_m = radii.fold(0.0, f64::max);
+    let spot_m = (0.05 * width_m).max(2.0 * largest_m);
+    let is_near = |i: &u32| {
+        let place = state.particles.poses[*i as usize].place();
+        let from_side_m = place.dot(&inwards) - centre_m + 0.5 * GAUGE * width_m;
+        let from_middle_m = place.dot(&direction) - middle_m;
+        from_side_m.abs() < spot_m && from_middle_m.abs() < 0.5 * GAUGE * height_m
+    };
+    particles.iter().copied().filter(is_near).collect()
+}
+
+/// Area of the box around a body, square to one of its axes, m2.
+pub(crate) fn side_m2(extent_m: &[[f64; 2]; 3], normal: [f64; 3]) -> f64 {
+    let sides = (0..3).filter(|k| normal[*k].abs() < 0.5);
+    sides.map(|k| size(extent_m[k])).product()
+}
+
+/// A body whose driven half slides along the held one. The crack belongs between the two.
+fn sheared(
+    test: &Test,
+    state: &State,
+    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
+    halves: &[Vec<u32>; 2],
+) -> std::result::Result<Setup, Refusal> {
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    let normal = (test.normal_stress.as_ref()).map_or([0.0; 3], |normal| normal.direction);
+    let along = Vector3::from(normal);
+    let all = axes.map(|axis| extent(&axis));
+    let mut centre: Vector3<f64> = axes.iter().map(|axis| middle(extent(axis)) * axis).sum();
+    let [[_, driven_m], [held_m, _]] =
+        (halves.each_ref()).map(|half| self::extent(state, half, &along));
+    if halves[1].is_empty() {
+        return Err((
+            "no support holds the half of the body that is not driven".to_owned(),
+            "add [supports.NAME] with group = its particles and fixed = true",
+        ));
+    }
+    centre += (middle([driven_m, held_m]) - centre.dot(&along)) * along;
+    Ok(Setup {
+        specimen: Specimen::Bar {
+            length_m: test.length_m.unwrap_or_else(|| size(extent(&along))),
+            area_m2: test.area_m2.unwrap_or_else(|| side_m2(&all, normal)),
+        },
+        direction: test.direction,
+        along: normal,
+        middle_m: centre.into(),
+        crack_within_m: 0.5 * (held_m - driven_m).max(0.0),
+        moving: Vec::new(),
+        resting: Vec::new(),
+        gauge_m: 0.0,
+        mean_radius_m: 0.0,
+        sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
+    })
+}
+
+/// Chooses the particles within a twentieth of the diameter of a disc, or a mean diameter of the
+/// particles, on both sides of the loaded diameter, and divides it into slabs of at least that mean
+/// diameter.
+fn choose_strip(setup: &mut Setup, state: &State, particles: &[u32]) {
+    let Specimen::Disc {
+        diameter_m,
+        thickness_m,
+    } = setup.specimen
+    else {
+        return;
+    };
+    let fits = (diameter_m / (2.0 * setup.mean_radius_m)) as usize;
+    setup.slabs = fits.clamp(1, MOST_SLABS);
+    let half_m = (0.05 * diameter_m).max(2.0 * setup.mean_radius_m);
+    let cubed = |i: u32| state.particles.poses[i as usize].radius_m().powi(3);
+    let volume_m3 = 0.25 * std::f64::consts::PI * diameter_m * diameter_m * thickness_m;
+    let share = volume_m3 / particles.iter().map(|&i| cubed(i)).sum::<f64>();
+    let [along, direction] = [setup.along, setup.direction].map(Vector3::from);
+    for &i in particles {
+        let offset = state.particles.poses[i as usize].place() - Vector3::from(setup.middle_m);
+        let at = (offset.dot(&direction) / diameter_m + 0.5) * setup.slabs as f64;
+        if offset.dot(&along).abs() < half_m && at >= 0.0 {
+            setup.strip.push(InSlab {
+                particle: i,
+                slab: (at as usize).min(setup.slabs - 1),
+                volume_m3: share * cubed(i),
+            });
+        }
     }
 }
 

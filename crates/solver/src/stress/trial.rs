@@ -10,7 +10,7 @@ use dem_scene::scene_from_text;
 use dem_scene::{Scene, read_bodies};
 use tempfile::TempDir;
 
-use crate::laboratory::arrange::arrange;
+use crate::laboratory::arrange::{TestedBody, arrange};
 use crate::output::summary::Summary;
 use crate::plan::{Plan, plan};
 use crate::run::{RunSettings, run};
@@ -65,8 +65,12 @@ impl Trial {
             write_file(&file(name), |out| out.write_all(text.as_bytes()))?;
         }
         let scene = scene_from_text(&self.scene, &file("scene.toml").display().to_string(), &[])?;
-        // Bars and weights need no frequency, and no case has another test.
-        let scene = arrange(&scene, 1.0, 1.0)?;
+        // Bars and weights need nothing of the body, and no case has another test.
+        let body = TestedBody {
+            lowest_frequency_hz: 1.0,
+            extent_m: [[0.0; 2]; 3],
+        };
+        let scene = arrange(&scene, &body, 1.0)?;
         let bodies = read_bodies(&scene)?;
         let threads = rayon::current_num_threads();
         let plan = plan(&scene, bodies, threads, self.force_step)?;

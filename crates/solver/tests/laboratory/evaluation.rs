@@ -36,6 +36,8 @@ pub(crate) fn test(kind: TestType) -> Test {
         rate_check: false,
         bars: None,
         weight: None,
+        confinement: None,
+        normal_stress: None,
         young_modulus_pa: Some(MODULUS),
         poisson_ratio: 0.3,
         strength_pa: Some(STRENGTH),
@@ -60,6 +62,9 @@ pub(crate) fn setup(specimen: Specimen) -> Setup {
         resting: vec![1],
         gauge_m: 0.05,
         mean_radius_m: 0.001,
+        sides: Vec::new(),
+        strip: Vec::new(),
+        slabs: 0,
     }
 }
 

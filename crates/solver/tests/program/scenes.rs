@@ -153,6 +153,8 @@ const SHORT: [[&str; 4]; 32] = [
     ["chute-bonded", "20 ms", "", ""],
     ["clamped", "2 ms", "bending-sample", "5mm..7mm"],
     ["compression", "", "bar", "4mm..6mm"],
+    ["direct-shear", "20 us", "", ""],
+    ["dog-bone", "20 us", "", ""],
     ["drop-flat", "10 ms", "", ""],
     ["drop-height", "3 ms", "", ""],
     ["drop-inclined", "5 ms", "", ""],
@@ -176,6 +178,7 @@ const SHORT: [[&str; 4]; 32] = [
     ["stalk-cut", "0.5 ms", "", ""],
     ["tension", "", "bar", "4mm..6mm"],
     ["three-point-bending", "", "bending-sample", "5mm..7mm"],
+    ["triaxial-compression", "20 us", "", ""],
     ["wet-heap", "50 ms", "", ""],
 ];
 

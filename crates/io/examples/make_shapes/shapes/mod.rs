@@ -21,6 +21,7 @@ pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
         ),
         ("c-shape", round::c_shape()),
         ("disc", round::disc()),
+        ("dog-bone", round::dog_bone()),
         ("filter-cake", cake::filter_cake()),
         ("hollow-pair", hollow_pair()),
         ("infinity-knot", round::infinity_knot()),

@@ -131,6 +131,19 @@ pub(crate) fn stalk() -> Mesh {
     stalk
 }
 
+/// A dog bone: 80 mm long, upright on z = 0, round, with ends 25 mm across and 15 mm long, a neck
+/// 15 mm across and 24 mm long in the middle, and smooth fillets of 13 mm between them.
+pub(crate) fn dog_bone() -> Mesh {
+    const SEGMENTS: u32 = 80;
+    let mut bone = round_bar(1.0, 40.0, 48, SEGMENTS);
+    for [x, y, z] in &mut bone.vertices {
+        let along_fillet = ((y.abs() - 12.0) / 13.0).clamp(0.0, 1.0);
+        let radius = 7.5 + 2.5 * (1.0 - (0.5 * TAU * along_fillet).cos());
+        [*x, *y, *z] = [radius * *z, radius * *x, *y + 40.0];
+    }
+    bone
+}
+
 /// A round bar around the origin, with its axis along y, divided into segments along it.
 fn round_bar(radius: f64, half_length: f64, sides: u32, segments: u32) -> Mesh {
     let mut mesh = Mesh::default();
