@@ -1,7 +1,5 @@
 //! The two programs, for examples that run them.
 
-pub(crate) mod study;
-
 use std::error::Error;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::{Failed, Programs, output, root};
+use crate::programs::{Failed, Programs, output, root};
 
 /// A run of a study.
 pub(crate) struct Run {
@@ -88,7 +88,12 @@ impl Table {
     /// An empty one with this head.
     pub(crate) fn new(cells: &[&str]) -> Self {
         let mut table = Self::default();
-        table.row(&cells.iter().map(|&cell| cell.to_owned()).collect::<Vec<_>>());
+        table.row(
+            &cells
+                .iter()
+                .map(|&cell| cell.to_owned())
+                .collect::<Vec<_>>(),
+        );
         table.0 += &format!("|{}\n", "---|".repeat(cells.len()));
         table
     }
@@ -105,7 +110,9 @@ impl Table {
         let page = root().join(page);
         let text = std::fs::read_to_string(&page)?;
         let begin = format!("<!-- table: {name} -->\n");
-        let (before, after) = text.split_once(&begin).ok_or("the page has no such table")?;
+        let (before, after) = text
+            .split_once(&begin)
+            .ok_or("the page has no such table")?;
         let end = "<!-- end of table -->";
         let (_, after) = after.split_once(end).ok_or("the table does not end")?;
         let rows = &self.0;
