@@ -76,7 +76,7 @@ fn main() -> Result<(), Failed> {
     let plot = Plot {
         title: "Solid density over the height".to_owned(),
         x: Axis::of("height (mm)"),
-        y: Axis::of("mass of the spheres over volume of the shape (kg/m3)"),
+        y: Axis::of("solid density (kg/m3)"),
         lines,
         ..Plot::default()
     };

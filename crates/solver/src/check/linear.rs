@@ -22,6 +22,10 @@ use crate::state::walls::{Wall, WallContact};
 /// multiple of 1/m for a sphere.
 const WITH_ROTATION: f64 = 3.5;
 
+/// Overlap over radius of a contact that hardly presses: far above rounding, and with Hertz's law
+/// far below the stiffness of any bond.
+const LEAST_OVERLAP: f64 = 1e-9;
+
 /// A linearised contact.
 #[derive(Debug, Clone, Copy)]
 pub struct LinearContact {
@@ -376,17 +380,14 @@ pub(crate) fn at_impact_of(state: &State, speed_m_s: f64, only: Option<usize>) -
     };
     let p = &state.particles;
     let materials = contacts.model.kind_of.len().isqrt();
-    let least_m = if state.bonds.rules.iter().any(|rule| rule.contact_beside) {
-        f64::MIN_POSITIVE
-    } else {
-        0.0
-    };
+    let is_beside = state.bonds.rules.iter().any(|rule| rule.contact_beside);
+    let least = if is_beside { LEAST_OVERLAP } else { 0.0 };
     let mut largest = [0.0_f64; 3];
     let mut take = |kind: &ContactKind, i: usize, inverse_kg: f64, at_wall: bool| {
         let n = Vector3::x();
         let radius_m = p.poses[i].radius_m();
         let overlap_m = overlap_at_impact_m(kind, radius_m, inverse_kg, speed_m_s, at_wall);
-        let overlap_m = overlap_m.max(least_m);
+        let overlap_m = overlap_m.max(least * radius_m);
         let touch = if at_wall {
             wall_contact(p, i, &n, overlap_m)
         } else {

@@ -66,7 +66,7 @@ fn scene(class: &str, more: &str, is_fed: bool) -> String {
         }
     };
     let failure = match class {
-        "weak" => ", failure = { tensile_strength = \"0.5 MPa\", shear_strength = \"0.5 MPa\" }",
+        "weak" => ", failure = { tensile_strength = \"20 kPa\", shear_strength = \"20 kPa\" }",
         _ => "",
     };
     let (position, feed) = if is_fed {

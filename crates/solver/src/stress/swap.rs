@@ -49,6 +49,7 @@ pub(crate) fn swaps() -> Vec<Member> {
             restores: false,
             is_fed: false,
             when: TRIGGERS[0],
+            restitution: 0.5,
         };
         let tilted = |failure: &str| Block {
             is_tilted: true,
@@ -71,7 +72,12 @@ pub(crate) fn swaps() -> Vec<Member> {
         let mut add = |what: &str, block: Block, more: Vec<Shown>| {
             members.push(block.member(format!("{what}, clump spheres x {scale}"), more));
         };
-        add("replaced", upright.clone(), freed(scale));
+        let undamped = Block {
+            restitution: 1.0,
+            ..upright.clone()
+        };
+        add("replaced", upright.clone(), whole());
+        add("replaced without damping", undamped, freed(scale));
         add(
             "replaced by the force of a contact",
             by_force(&upright),
@@ -101,7 +107,8 @@ fn whole() -> Vec<Shown> {
 
 /// The same, and what the contacts of larger clump spheres have stored at the swap, which is gone
 /// with their overlap: Hertz's energy of 18 contacts at the stress of the trigger. Spheres of the
-/// same size go on pressing, and nothing is gone. The trigger is seen up to a step late.
+/// same size go on pressing, and nothing is gone. The trigger is seen up to a step late. Without
+/// damping, since the stress counts the force of dashpots, too.
 fn freed(scale: f64) -> Vec<Shown> {
     let radius_m = scale * RADIUS_M;
     let volume_m3 = (EDGE * EDGE * EDGE) as f64 * 4.0 / 3.0 * PI * RADIUS_M.powi(3);
@@ -172,6 +179,7 @@ struct Block {
     is_fed: bool,
     /// Its trigger.
     when: &'static str,
+    restitution: f64,
 }
 
 impl Block {
@@ -204,7 +212,12 @@ impl Block {
     }
 
     fn scene(&self) -> String {
-        let Self { scale, failure, .. } = self;
+        let Self {
+            scale,
+            failure,
+            restitution,
+            ..
+        } = self;
         let mut particles = Vec::new();
         let mut bonds = Vec::new();
         for n in 0..EDGE * EDGE * EDGE {
@@ -234,7 +247,7 @@ impl Block {
             "version = 1
 run = {{ end_time = \"4 ms\", safety_factor = {fraction} }}
 materials.rock = {{ density = 2500, young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON} }}
-contacts.rock-rock = {{ restitution = 0.5, friction = 0.3 }}
+contacts.rock-rock = {{ restitution = {restitution}, friction = 0.3 }}
 bonds.rock = {{ young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON}, damping = {{ damping_ratio = 0.1 }}, failure = {{ tensile_strength = {tensile_pa}, shear_strength = {shear_pa}{failure} }} }}
 walls.below = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"rock\" }}
 walls.above = {{ plane = {{ point = [0, 0, {top_m}], normal = [0, 0, -1] }}, material = \"rock\", velocity = [0, 0, -0.05] }}

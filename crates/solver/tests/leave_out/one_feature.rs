@@ -258,8 +258,8 @@ fn of_what_touches() {
     expect(
         "none beside bonds: one body that cannot break meets nothing",
         &scene("", "", "", &format!("{MEETS}{beside}")),
-        &FREE,
-        &FREE,
+        &searches,
+        &searches,
     );
     let wet = ", liquid_bridge = { surface_tension = \"73 mN/m\", volume = \"1 mm3\" }";
     expect(
@@ -315,7 +315,7 @@ fn of_what_others_have() {
     )
     .replace("bonds.stiff", &format!("{sticky}bonds.stiff"));
     same("adhesion of other materials", &plain, &with_law);
-    let relaxed = format!("relaxation.min_overlap = 0\n{touching}");
+    let relaxed = format!("[relaxation]\nmin_overlap = 0\n{touching}");
     let plain = scene(step, "", "", &relaxed);
     let beside =
         "bonds.loose = { young_modulus = 1e7, poisson_ratio = 0.25, contact_beside_bond = true }\n";

@@ -50,7 +50,7 @@ fn nothing_is_missing() {
         ("beside", [7, 0, 0]),
         ("friction", [9, 0, 0]),
         ("joints", [7, 0, 0]),
-        ("swap", [18, 0, 0]),
+        ("swap", [20, 0, 0]),
         ("daughters", [8, 0, 0]),
         ("zones", [8, 0, 0]),
         ("one-particle", [5, 0, 0]),
