@@ -245,7 +245,11 @@ pub(super) fn read(field: &Field<'_>, known: &Known<'_>) -> Result<Test> {
         .then(|| dynamic::weight(&table, direction, known.run))
         .transpose()?;
     let confinement = (kind == TestType::TriaxialCompression)
-        .then(|| confined::confinement(&table, &crosshead, direction, known))
+        .then(|| {
+            let field = table.need("lateral_walls")?;
+            let names = all_moved(&field, false, known)?;
+            confined::confinement(&table, names, &crosshead, direction, known.walls)
+        })
         .transpose()?;
     let normal_stress = (kind == TestType::DirectShear)
         .then(|| confined::normal_stress(&table, direction))

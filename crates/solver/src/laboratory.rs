@@ -6,9 +6,11 @@
 pub(crate) mod arrange;
 pub mod confined;
 pub mod crack;
+pub mod curve;
 pub mod disc_stress;
 pub mod dynamic;
 pub mod evaluate;
+pub mod figure;
 pub mod files;
 pub mod pieces;
 pub mod record;

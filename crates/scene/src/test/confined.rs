@@ -1,11 +1,11 @@
 //! What holds the body of a shear test besides its crosshead: walls that keep a pressure on its
 //! sides, or a force that presses its halves together.
 
-use super::Known;
 use crate::listing::Listing;
 use crate::table::Table;
-use crate::wall::WallShape;
+use crate::wall::{Wall, WallShape};
 use dem_io::diagnostic::Result;
+use std::collections::BTreeMap;
 
 /// Largest cosine between directions that are square to each other.
 const SQUARE: f64 = 1e-6;
@@ -29,11 +29,13 @@ pub struct NormalStress {
     pub direction: [f64; 3],
 }
 
+/// `names`: of the lateral walls, which are in `walls`.
 pub(super) fn confinement(
     test: &Table<'_>,
+    names: Vec<String>,
     crosshead: &[String],
     direction: [f64; 3],
-    known: &Known<'_>,
+    walls: &BTreeMap<String, Wall>,
 ) -> Result<Confinement> {
     let field = test.need("lateral_walls")?;
     if !is_along_an_axis(direction) {
@@ -41,15 +43,13 @@ pub(super) fn confinement(
         let along = test.need("direction")?;
         return Err(along.wrong("along x, y or z, as the sides are square to it", remedy));
     }
-    let mut walls: Vec<String> = Vec::new();
     let mut normals: Vec<[f64; 3]> = Vec::new();
-    for item in field.items()? {
-        let name = super::moved(&item, false, known)?;
-        if walls.contains(&name) || crosshead.contains(&name) {
-            let problem = format!("{} is \"{name}\", which is named already", item.path);
+    for (item, name) in field.items()?.into_iter().zip(&names) {
+        if crosshead.contains(name) {
+            let problem = format!("{} is \"{name}\", which is the crosshead", item.path);
             return Err(item.refuse(problem, "name each wall once"));
         }
-        let wall = &known.walls[&name];
+        let wall = &walls[name];
         let normal = match wall.shape {
             WallShape::Plane { normal, .. } if wall.rotation_rad == [0.0; 3] => normal,
             _ => [0.0; 3],
@@ -63,7 +63,6 @@ pub(super) fn confinement(
                 "write plane = { point, normal }, with the normal towards the body along x, y or z";
             return Err(item.refuse(problem, remedy));
         }
-        walls.push(name);
         normals.push(normal);
     }
     let opposite = |a: &[f64; 3]| {
@@ -83,7 +82,7 @@ pub(super) fn confinement(
         return Err(field.wrong(limit, "name a wall on each of two opposite sides"));
     }
     Ok(Confinement {
-        walls,
+        walls: names,
         pressure_pa: test.read("confining_pressure")?,
     })
 }

@@ -4,7 +4,8 @@ use dem_laboratory::Line;
 use dem_laboratory::theory::PEAK_AXIAL_STRESS;
 use dem_scene::Test;
 
-use super::evaluate::{Figure, elastic_range, peak};
+use super::curve::{elastic_range, peak};
+use super::figure::Figure;
 use super::record::Row;
 use crate::plan::test_setup::Setup;
 

@@ -8,7 +8,7 @@ use dem_plots::{Axis, Line, Plot};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::evaluate::Figure;
+use super::figure::Figure;
 use crate::plan::test_setup::Setup;
 use crate::stages::contacts::pair_force_n;
 use crate::stages::walls::touch_force_n;

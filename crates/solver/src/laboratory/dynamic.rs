@@ -9,10 +9,11 @@
 use dem_laboratory::Specimen;
 use dem_scene::{Bars, Weight};
 
+use super::curve::rows_of;
 use super::evaluate::{
-    FAILURE_FORCE, Figure, LARGEST_FORCE, STRENGTH, TestInput, TestResult, first_broken, rows_of,
-    without_figures,
+    FAILURE_FORCE, LARGEST_FORCE, STRENGTH, TestInput, TestResult, first_broken, without_figures,
 };
+use super::figure::Figure;
 use super::record::{Record, Row};
 use crate::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 

@@ -5,7 +5,9 @@ use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
 use super::confined::{self, POISSON_RATIO, PRESSURE_OFF, RESIDUAL, RESIDUAL_FRICTION};
+use super::curve::{peak, play_m, rows_of, slope};
 use super::disc_stress::{self, ACROSS, ALONG};
+use super::figure::Figure;
 use super::pieces::Pieces;
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
@@ -14,42 +16,7 @@ use dem_laboratory::theory::Beam;
 use dem_laboratory::theory::{
     KAPPA, PEAK_AXIAL_STRESS, bar_stress_pa, disc_modulus_pa, disc_stress_pa,
 };
-use dem_laboratory::{Line, Specimen, TestType, area_between};
-
-/// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
-/// settle into the surface; above, bonds break.
-const SLOPE: [f64; 2] = [0.2, 0.6];
-/// Time over which loads are averaged, in periods of the lowest frequency.
-const WINDOW: f64 = 0.05;
-/// Smallest number of rows for a slope.
-const FEWEST_ROWS: usize = 3;
-
-/// A number of a test, and its expected value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Figure {
-    /// Its name.
-    pub name: String,
-    /// Value in `unit`.
-    pub value: f64,
-    /// SI unit; empty for plain numbers.
-    pub unit: String,
-    /// Expected value.
-    pub theory: Option<f64>,
-    /// (value - theory)/|theory|.
-    pub error: Option<f64>,
-}
-
-impl Figure {
-    pub(super) fn new(name: &str, value: f64, unit: &str, theory: Option<f64>) -> Self {
-        Self {
-            name: name.to_owned(),
-            value,
-            unit: unit.to_owned(),
-            theory,
-            error: theory.map(|theory| (value - theory) / theory.abs()),
-        }
-    }
-}
+use dem_laboratory::{Specimen, TestType, area_between};
 
 /// The first bond that broke.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -176,56 +143,6 @@ pub struct TestInput<'a> {
     pub all_bonds: usize,
     /// Pieces of the body at the end. None: it cannot break.
     pub pieces: Option<Pieces>,
-}
-
-/// Ratio of load to displacement in the elastic part of a test.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slope {
-    /// N/m.
-    pub stiffness_n_m: f64,
-    /// Displacement at which the fitted line has no load: play until everything touches, m.
-    pub start_m: f64,
-}
-
-/// The rows used in the evaluation of a test: means over a twentieth of the lowest period, which
-/// remove faster oscillations.
-pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
-    record.smoothed(WINDOW / lowest_frequency_hz)
-}
-
-/// The slope of the load over a displacement `way`, between 20 % and 60 % of the largest load, by
-/// least squares. None: too few rows.
-pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
-    let elastic = elastic_range(rows)?;
-    let (ways_m, loads_n): (Vec<f64>, Vec<f64>) =
-        elastic.iter().map(|row| (way(row), row.load_n())).unzip();
-    let line = Line::fitted(&ways_m, &loads_n);
-    line.slope.is_finite().then(|| Slope {
-        stiffness_n_m: line.slope,
-        start_m: line.zero(),
-    })
-}
-
-/// The rows between 20 % and 60 % of the largest load. None: too few for a slope.
-pub(super) fn elastic_range(rows: &[Row]) -> Option<&[Row]> {
-    let peak = peak(rows)?;
-    let up_to = |fraction: f64| {
-        rows.iter()
-            .position(|row| row.load_n() >= fraction * peak.load_n())
-    };
-    let elastic = &rows[up_to(SLOPE[0])?..up_to(SLOPE[1])?];
-    (elastic.len() >= FEWEST_ROWS).then_some(elastic)
-}
-
-/// Travel at which the line fitted to the load over the travel has no load, m: play until
-/// everything touches. 0 without a line.
-pub(crate) fn play_m(rows: &[Row]) -> f64 {
-    slope(rows, |row| row.travel_m).map_or(0.0, |slope| slope.start_m)
-}
-
-/// The row with the largest load.
-pub fn peak(rows: &[Row]) -> Option<&Row> {
-    rows.iter().max_by(|a, b| a.load_n().total_cmp(&b.load_n()))
 }
 
 /// Evaluates a quasi-static test. Figures that cannot be determined from its record are omitted.

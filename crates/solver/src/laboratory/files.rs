@@ -9,11 +9,11 @@ use dem_results::ResultsFolder;
 use dem_scene::{Bars, Test};
 
 use super::crack::{CrackPicture, crack_map};
+use super::curve::{peak, play_m, rows_of, slope};
 use super::disc_stress::{self, slabs};
 use super::dynamic::{BarSignal, bar_signals, stress_strain};
-use super::evaluate::{
-    FAILURE_FORCE, Figure, TestResult, measured_curve, peak, play_m, rows_of, slope,
-};
+use super::evaluate::{FAILURE_FORCE, TestResult, measured_curve};
+use super::figure::Figure;
 use super::record::{Record, Row};
 
 /// Content of the files of a test.

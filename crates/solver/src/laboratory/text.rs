@@ -7,7 +7,8 @@ use dem_laboratory::TestType;
 
 use super::confined::PRESSURE_OFF;
 use super::dynamic::{EQUILIBRIUM, UNBOOKED};
-use super::evaluate::{Figure, STIFFNESS, TestResult};
+use super::evaluate::{STIFFNESS, TestResult};
+use super::figure::Figure;
 use super::files::percent;
 
 /// Smallest change at half the rate that is reported.

@@ -6,8 +6,9 @@ use dem_scene::{Scene, Test};
 
 use super::confined::has_passed_its_peak;
 use super::crack::{CrackPicture, Sphere};
+use super::curve::rows_of;
 use super::dynamic::evaluate_dynamic;
-use super::evaluate::{TestInput, TestResult, evaluate, rows_of};
+use super::evaluate::{TestInput, TestResult, evaluate};
 use super::files::{TestFiles, write_test};
 use super::pieces::Pieces;
 use super::record::{Loading, Record};

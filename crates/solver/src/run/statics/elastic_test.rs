@@ -6,7 +6,8 @@ use dem_scene::Scene;
 
 use super::newton::{Cause, Equilibrium};
 use super::press::{NotPressed, press};
-use crate::laboratory::evaluate::{Figure, TestResult, elastic_figures};
+use crate::laboratory::evaluate::{TestResult, elastic_figures};
+use crate::laboratory::figure::Figure;
 use crate::laboratory::record::{Loading, Row};
 use crate::plan::test_setup::Setup;
 use crate::state::State;
