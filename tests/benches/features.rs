@@ -9,27 +9,18 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
+#[allow(dead_code, reason = "other benchmarks use the rest")]
 mod page;
 
 use dem_io::Body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
+use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
-use dem_run::stages::bonds::BONDS;
-use dem_run::stages::breakage::{FAILURE, FRICTION, RATES, SCATTER};
-use dem_run::stages::contacts::CONTACTS;
-use dem_run::stages::damping::BOND_DAMPING;
-use dem_run::stages::flat_joints::FLAT_JOINTS;
-use dem_run::stages::incremental::HISTORIES;
-use dem_run::stages::loads::LOADS;
-use dem_run::stages::motion::{GRAVITY, PARTICLE_DAMPING};
-use dem_run::stages::plasticity::PLASTICITY;
 use dem_run::stages::stage::Stage;
-use dem_run::stages::structural::STRUCTURAL_DAMPING;
-use dem_run::stages::supports::SUPPORTS;
-use dem_run::stages::walls::WALLS;
 use dem_run::state::State;
-use dem_run::step::{number_of, step};
+use dem_run::step::{number_of, stages, step};
+
+use self::page::Table;
 
 const SHAPE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -43,12 +34,12 @@ const STEPS: u32 = 60;
 /// The reference of other cases: a free, rotating body without any feature.
 const PLAIN: &str = "a free body";
 
-/// A scene: its name, its reference, its additional feature, and its text in place of run, bonds
+/// A scene: its name, its reference, the stage of its additional feature, and its text in place of run, bonds
 /// and tables.
 struct Case {
     name: &'static str,
     beside: &'static str,
-    stage: Stage,
+    stage: &'static str,
     run: &'static str,
     bonds: &'static str,
     tables: &'static str,
@@ -57,7 +48,7 @@ struct Case {
 const CASE: Case = Case {
     name: PLAIN,
     beside: PLAIN,
-    stage: BONDS,
+    stage: "bond forces",
     run: "",
     bonds: "",
     tables: "",
@@ -69,102 +60,102 @@ const CASES: [Case; 17] = [
     CASE,
     Case {
         name: "bond history",
-        stage: HISTORIES,
+        stage: "bond history",
         bonds: "formulation = \"incremental\"",
         ..CASE
     },
     Case {
         name: "bond damping",
-        stage: BOND_DAMPING,
+        stage: "bond damping",
         bonds: "damping = { damping_ratio = 0.1 }",
         ..CASE
     },
     Case {
         name: "structural damping",
-        stage: STRUCTURAL_DAMPING,
+        stage: "structural damping",
         bonds: "damping = { structural_damping = 0.1 }",
         ..CASE
     },
     Case {
         name: "elasto-plastic bonds",
-        stage: PLASTICITY,
+        stage: "elasto-plastic bonds",
         bonds: "plasticity = { normal_yield_strength = 1e12, bending_yield_strength = 1e12 }",
         ..CASE
     },
     Case {
         name: "flat joints, 2 x 6 elements",
-        stage: FLAT_JOINTS,
+        stage: "flat joints",
         bonds: "model = \"flat-joint\"\nradial_elements = 2\ncircumferential_elements = 6\nfailure = { tensile_strength = 1e12 }",
         ..CASE
     },
     Case {
         name: "failure",
-        stage: FAILURE,
+        stage: "failure",
         bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\" }",
         ..CASE
     },
     Case {
         name: "fracture energy",
         beside: "failure",
-        stage: FAILURE,
+        stage: "failure",
         bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\", fracture_energy = 1e12 }",
         ..CASE
     },
     Case {
         name: "friction of bonds",
         beside: "failure",
-        stage: FRICTION,
+        stage: "friction of bonds",
         bonds: "failure = { cohesion = 1e12, friction_angle = \"35 deg\" }",
         ..CASE
     },
     Case {
         name: "strength scatter",
         beside: "failure",
-        stage: SCATTER,
+        stage: "strength scatter",
         bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\", weibull_modulus = 5 }",
         ..CASE
     },
     Case {
         name: "rate strengthening",
         beside: "failure",
-        stage: RATES,
+        stage: "rate strengthening",
         bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\", rate_strengthening = true }",
         ..CASE
     },
     Case {
         name: "local damping",
-        stage: PARTICLE_DAMPING,
+        stage: "local damping",
         run: ", local_damping = 0.1",
         ..CASE
     },
     Case {
         name: "gravity",
-        stage: GRAVITY,
+        stage: "gravity",
         run: ", gravity = [0, 0, -9.81]",
         ..CASE
     },
     Case {
         name: "loads",
-        stage: LOADS,
+        stage: "loads",
         tables: "[loads.push]\ngroup = \"cake\"\nforce = [0, 0, 1e-3]\n",
         ..CASE
     },
     Case {
         name: "supports",
-        stage: SUPPORTS,
+        stage: "supports",
         tables: "[supports.hold]\ngroup = \"cake\"\nfixed = [\"x\"]\n",
         ..CASE
     },
     Case {
         name: "walls",
-        stage: WALLS,
+        stage: "walls",
         tables: FLOOR,
         ..CASE
     },
     Case {
         name: "particle contacts",
         beside: "failure",
-        stage: CONTACTS,
+        stage: "particle contacts",
         bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\" }",
         tables: MEETS,
         ..CASE
@@ -254,10 +245,12 @@ fn main() {
         );
         let ratio = median(pairs.map(|(with, without)| with / without).collect());
         let steps = states[at].steps as f64;
-        let items = states[at].scratch.clock.done(number_of(&case.stage)) as f64 / steps;
+        let named = |stage: &&&Stage| stage.name == case.stage;
+        let stage = stages().iter().find(named).expect("a stage");
+        let items = states[at].scratch.clock.done(number_of(stage)) as f64 / steps;
         let absent = [
-            states[base].scratch.clock.done(number_of(&case.stage)),
-            (case.stage.bytes)(&states[base]) as u64,
+            states[base].scratch.clock.done(number_of(stage)),
+            (stage.bytes)(&states[base]) as u64,
         ];
         table.row(&format!(
             "| {} | {} | {}, {} | {items:.0} | {} | {} | {ratio:.2} |",
@@ -266,7 +259,7 @@ fn main() {
             absent[0],
             absent[1],
             if items > 0.0 {
-                format!("{:.0}", (case.stage.bytes)(&states[at]) as f64 / items)
+                format!("{:.0}", (stage.bytes)(&states[at]) as f64 / items)
             } else {
                 "-".to_owned()
             },
@@ -297,9 +290,7 @@ fn packed(diameters: &str) -> Body {
             densify: None,
             seed_point_m: None,
         },
-        bond_range: 1.1,
-        bonds_per_particle: None,
-        bond_radius_factor: 1.0,
+        bonds: BondSettings::default(),
         particle_density_kg_m3: None,
         solid_density_kg_m3: None,
     };

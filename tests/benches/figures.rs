@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use dem_io::Body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
+use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::state::State;
 use dem_run::state::bonds::BLOCK;
@@ -308,13 +308,15 @@ fn packed(stl: &[u8], diameters: &str, overlap: f64, bonds: Option<f64>) -> Body
             overlap,
             ..PackSettings::new(sizes)
         },
-        bond_range: if bonds.is_some() || overlap > 0.0 {
-            1.1
-        } else {
-            1.0
+        bonds: BondSettings {
+            range: if bonds.is_some() || overlap > 0.0 {
+                1.1
+            } else {
+                1.0
+            },
+            per_particle: bonds,
+            ..BondSettings::default()
         },
-        bonds_per_particle: bonds,
-        bond_radius_factor: 1.0,
         particle_density_kg_m3: None,
         solid_density_kg_m3: None,
     };

@@ -21,7 +21,7 @@ use criterion::{
 use dem_io::Body;
 use dem_io::body::vtp;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
-use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
+use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use rayon::ThreadPool;
 
 const SAMPLES: usize = 10;
@@ -149,9 +149,7 @@ fn bare(diameter: &str) -> BodySettings {
             densify: Some(0.0),
             seed_point_m: None,
         },
-        bond_range: 1.1,
-        bonds_per_particle: None,
-        bond_radius_factor: 1.0,
+        bonds: BondSettings::default(),
         particle_density_kg_m3: None,
         solid_density_kg_m3: None,
     }

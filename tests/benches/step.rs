@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use dem_io::Body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
-use dem_pack::{Basis, BodySettings, PackSettings, Sizes, make_body};
+use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::stages::bonds::bond_wrenches;
 use dem_run::state::State;
@@ -66,9 +66,10 @@ fn packed(diameters: &str) -> Body {
             densify: Some(0.0),
             seed_point_m: None,
         },
-        bond_range: 1.1,
-        bonds_per_particle: Some(4.87),
-        bond_radius_factor: 1.0,
+        bonds: BondSettings {
+            per_particle: Some(4.87),
+            ..BondSettings::default()
+        },
         particle_density_kg_m3: None,
         solid_density_kg_m3: None,
     };
