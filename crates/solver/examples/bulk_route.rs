@@ -37,37 +37,35 @@ fn main() -> Result<(), Failed> {
         "| seed | poured, at 2050 kg/m3 | particle density | overlap | solid density | shattered: bulk density | off | bulking factor |\n\
          |---|---|---|---|---|---|---|---|"
     );
-    let (mut poured, mut back) = (Vec::new(), Vec::new());
-    for seed in SEEDS {
+    let poured = at_once(|seed| {
         let set = [format!("run.seed={seed}")];
-        let bulk = run(
-            "pour-box",
-            &set,
-            None,
-            &folder.join(format!("poured-{seed}")),
-        )?;
-        poured.push(value(&bulk, "bulk_density")?);
-    }
+        let out = folder.join(format!("poured-{seed}"));
+        value(&run("pour-box", &set, None, &out)?, "bulk_density")
+    })?;
     // The particle density of the material: the mean of all pourings.
     let poured_kg_m3 = poured.iter().sum::<f64>() / poured.len() as f64;
     let particle_kg_m3 = TRIAL_KG_M3 * BULK_KG_M3 / poured_kg_m3;
-    for (seed, poured_kg_m3) in SEEDS.into_iter().zip(poured) {
+    let shattered = at_once(|seed| {
         let file = folder.join(format!("bar-{seed}.vtp"));
         let (overlap, solid_kg_m3) = pack(seed, particle_kg_m3, &file)?;
         let set = [format!("materials.cake.density={particle_kg_m3}")];
         let out = folder.join(format!("shattered-{seed}"));
         let bulk = run("shatter-box", &set, Some(&file), &out)?;
-        let [bulk_kg_m3, factor] =
-            ["bulk_density", "bulking_factor"].map(|name| value(&bulk, name));
-        let bulk_kg_m3 = bulk_kg_m3?;
+        let [bulk_kg_m3, factor] = [
+            value(&bulk, "bulk_density")?,
+            value(&bulk, "bulking_factor")?,
+        ];
+        Ok([overlap, solid_kg_m3, bulk_kg_m3, factor])
+    })?;
+    for ((seed, poured_kg_m3), of_seed) in SEEDS.iter().zip(&poured).zip(&shattered) {
+        let [overlap, solid_kg_m3, bulk_kg_m3, factor] = of_seed;
         println!(
-            "| {seed} | {poured_kg_m3:.0} kg/m3 | {particle_kg_m3:.0} kg/m3 | {overlap:.3} | {solid_kg_m3:.0} kg/m3 | {bulk_kg_m3:.0} kg/m3 | {:+.1} % | {:.3} |",
+            "| {seed} | {poured_kg_m3:.0} kg/m3 | {particle_kg_m3:.0} kg/m3 | {overlap:.3} | {solid_kg_m3:.0} kg/m3 | {bulk_kg_m3:.0} kg/m3 | {:+.1} % | {factor:.3} |",
             100.0 * (bulk_kg_m3 / BULK_KG_M3 - 1.0),
-            factor?
         );
-        back.push(bulk_kg_m3);
     }
-    let mean = back.iter().sum::<f64>() / back.len() as f64;
+    let back = shattered.iter().map(|[_, _, bulk_kg_m3, _]| bulk_kg_m3);
+    let mean = back.sum::<f64>() / SEEDS.len() as f64;
     let off = 100.0 * (mean / BULK_KG_M3 - 1.0);
     println!(
         "| mean | {poured_kg_m3:.0} kg/m3 | {particle_kg_m3:.0} kg/m3 | | | {mean:.0} kg/m3 | {off:+.1} % | |"
@@ -87,6 +85,24 @@ fn main() -> Result<(), Failed> {
         value(&lying, "bulk_density")?
     );
     Ok(())
+}
+
+/// The results of some work for each seed, all at once.
+fn at_once<T: Send>(work: impl Fn(u64) -> Result<T, Failed> + Sync) -> Result<Vec<T>, Failed> {
+    let done: Vec<Result<T, String>> = std::thread::scope(|scope| {
+        let work = &work;
+        let spawn = |seed| scope.spawn(move || work(seed).map_err(|error| error.to_string()));
+        let threads: Vec<_> = SEEDS.map(spawn).into();
+        let join = |thread: std::thread::ScopedJoinHandle<'_, Result<T, String>>| {
+            thread
+                .join()
+                .unwrap_or_else(|_| Err("a thread failed".to_owned()))
+        };
+        threads.into_iter().map(join).collect()
+    });
+    done.into_iter()
+        .map(|result| result.map_err(Failed::from))
+        .collect()
 }
 
 /// Packs the bar so that it has the solid density. Returns its overlap and its solid density, kg/m3.

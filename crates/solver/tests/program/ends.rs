@@ -18,7 +18,7 @@ material = "m"
 [measures.speed]
 of = "ball"
 quantity = "velocity"
-end_run_above = "2 m/s"
+end_run_above = "2.1 m/s"
 [output]
 series = "50 ms"
 frames = "0.4 s"
@@ -36,7 +36,7 @@ fn a_run_ends_at_the_first_row_above_the_value() {
     assert!(said.contains("ended by measure"), "{said}");
     let ended = summary(&bench);
     assert_eq!(ended["ended_by"], "measure");
-    // 2 m/s are reached at 0.2 s, and exceeded at the row of 0.25 s.
+    // 2.1 m/s are exceeded at the row of 0.25 s.
     let [time_s, speed] = [&ended["simulated_s"], &ended["measures"]["speed"]["value"]];
     let [time_s, speed] = [time_s, speed].map(|value| value.as_f64().unwrap());
     assert!(

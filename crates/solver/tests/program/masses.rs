@@ -45,7 +45,7 @@ fn json(bench: &Bench, arguments: &[&str]) -> Value {
 #[test]
 fn mass_of_spheres_and_of_the_shape() {
     let bench = bench(&[], Some(SHAPE_M3));
-    let mass = "row 8.587e-5 kg; its shape filled with 2050 kg/m3 would weigh 0.0001025 kg (-16 %)";
+    let mass = "row 8.587e-5 kg; its shape filled with 2050 kg/m3 would weigh 0.0001025 kg (-16 %); solid density 1717 kg/m3";
     let centre = "  centre 9 mm, 0 m, 0 m; principal moments 3.435e-11, 2.868e-9, 2.868e-9 kg m2";
     let [text, _] = said(&bench, &["check", "scene.toml"]);
     let lines = format!("mass           {mass}\n               {centre}\n");
