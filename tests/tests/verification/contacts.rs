@@ -625,7 +625,7 @@ fn adhesion() -> String {
         for times in [1.0, 3.0] {
             let [found_n, wanted_n, bound] = parted(work_j_m2, times * FINE_M);
             let what = format!(
-                "{name}: pull-off force from a sphere of {} mm, uN",
+                "{name}: pull-off force from a sphere of {:.1} mm, uN",
                 0.1 * times
             );
             cases.push(Case::new(what, 1e6 * found_n, 1e6 * wanted_n, bound));

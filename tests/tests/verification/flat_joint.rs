@@ -137,7 +137,10 @@ fn by_opening() -> String {
     compared("half angle of contact, degrees", "", &cases)
 }
 
-/// Steps and time until a joint has done what `done` asks for.
+/// The way of a support over that at which a joint fails.
+const BEYOND: f64 = 1.53;
+
+/// Steps until a joint has done what `done` asks for.
 fn until(state: &mut State, done: impl Fn(&State) -> bool) {
     loop {
         interact(state);
@@ -151,7 +154,7 @@ fn until(state: &mut State, done: impl Fn(&State) -> bool) {
 
 /// A joint that is pulled apart: the stress at which all its elements fail, and what that releases.
 fn pulled(strength_pa: f64) -> [Case; 2] {
-    let end_m = 1.5 * strength_pa / YOUNG_PA * LENGTH_M;
+    let end_m = BEYOND * strength_pa / YOUNG_PA * LENGTH_M;
     let keys = format!(", failure = {{ tensile_strength = {strength_pa:e} }}");
     let more = format!(
         "supports.left = {{ group = \"left\", fixed = true }}
@@ -165,7 +168,7 @@ fn pulled(strength_pa: f64) -> [Case; 2] {
     let stored_j = 0.5 * strength_pa * strength_pa / YOUNG_PA * volume_m3;
     let released_j = balance(&mut state).bond_breakage_j;
     // A step of the displacement.
-    let bound = 1.5 * 1e-6 / RAMP_S;
+    let bound = BEYOND * 1e-6 / RAMP_S;
     let what = |what: &str| format!("tension: {what}");
     [
         Case::new(
@@ -195,7 +198,7 @@ fn bent(strength_pa: f64, rings: u32, sectors: u32) -> Case {
     let farthest = |sector: u32| ((2.0 * f64::from(sector) + 1.0) * half).cos().abs();
     let across = (0..sectors).map(farthest).fold(0.0, f64::max);
     let wanted = strength_pa / (YOUNG_PA / LENGTH_M) / (centroid_m * across);
-    let end = 1.5 * wanted;
+    let end = BEYOND * wanted;
     let others = r#""x", "y", "z", "rx", "ry""#;
     let keys = format!(", failure = {{ tensile_strength = {strength_pa:e} }}");
     let more =
@@ -207,7 +210,7 @@ fn bent(strength_pa: f64, rings: u32, sectors: u32) -> Case {
     assert_eq!(state.broken_count, 0);
     let found = end * state.time_s / RAMP_S;
     let what = format!("bending, {rings} x {sectors}: angle of the first failure, mrad");
-    Case::new(what, 1e3 * found, 1e3 * wanted, 1.5 * 1e-6 / RAMP_S)
+    Case::new(what, 1e3 * found, 1e3 * wanted, BEYOND * 1e-6 / RAMP_S)
 }
 
 /// A joint of two rings of eight elements that is pressed and twisted until the outer ring has
