@@ -39,7 +39,7 @@ pub(crate) fn daughters() -> Vec<Member> {
         ];
         shown.extend(pieces.map(|pieces| Shown::count(Quantity::Fragments, pieces)));
         if class == "weak" {
-            shown.push(Shown::between(Quantity::BrokenBonds, "", 1.0, 6.0));
+            shown.push(Shown::count(Quantity::BrokenBonds, 6));
         }
         Member {
             what: what.to_owned(),
@@ -66,7 +66,7 @@ fn scene(class: &str, more: &str, is_fed: bool) -> String {
         }
     };
     let failure = match class {
-        "weak" => ", failure = { tensile_strength = \"20 kPa\", shear_strength = \"20 kPa\" }",
+        "weak" => ", failure = { tensile_strength = \"2 kPa\", shear_strength = \"2 kPa\" }",
         _ => "",
     };
     let (position, feed) = if is_fed {

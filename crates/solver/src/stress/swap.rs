@@ -23,8 +23,8 @@ const POISSON: f64 = 0.25;
 const STRESS_PA: f64 = 1e6;
 /// The stress of the block, or the force of one of its contacts.
 const TRIGGERS: [&str; 2] = ["principal_stress = \"1 MPa\"", "contact_force = \"2 N\""];
-/// More swaps than there are steps.
-const MOST_SWAPS: f64 = 1e5;
+/// More swaps than any of the runs makes.
+const MOST_SWAPS: f64 = 100.0;
 /// Tensile strength of the bonds of an upright block, whose columns are only pressed, and of a
 /// tilted one, whose bonds bend and shear beyond it, Pa; the shear strength is twice as large.
 const STRENGTHS_PA: [f64; 2] = [2e6, 0.4e6];
