@@ -1,5 +1,6 @@
-//! `crumble._crumble`: what the Python package needs from the crates. `package/crumble/_crumble.pyi`
-//! describes it; users see the functions of `package/crumble/__init__.py`.
+//! `crumble._crumble`: what the Python package needs from the crates.
+//! `package/crumble/_crumble.pyi` describes it; users see the functions of
+//! `package/crumble/__init__.py`.
 
 mod arrays;
 mod body;
@@ -71,8 +72,8 @@ fn time_s(py: Python<'_>, text: &str) -> PyResult<f64> {
     quantity(text, &TIME).map_err(|error| python_error(py, &error))
 }
 
-/// The program `dem-pack` or `dem-run` with these arguments. `command` is what starts it: a file and
-/// its first arguments. Returns the exit code.
+/// The program `dem-pack` or `dem-run` with these arguments. `command` is what starts it: a file
+/// and its first arguments. Returns the exit code.
 #[pyfunction]
 fn program(py: Python<'_>, name: &str, command: Vec<String>, arguments: Vec<OsString>) -> u8 {
     if let Some((file, first)) = command.split_first() {

@@ -34,8 +34,8 @@ const STEPS: u32 = 60;
 /// The reference of other cases: a free, rotating body without any feature.
 const PLAIN: &str = "a free body";
 
-/// A scene: its name, its reference, the stage of its additional feature, and its text in place of run, bonds
-/// and tables.
+/// A scene: its name, its reference, the stage of its additional feature, and its text in place of
+/// run, bonds and tables.
 struct Case {
     name: &'static str,
     beside: &'static str,

@@ -22,7 +22,7 @@ pub mod vtp;
 pub use files::{read_body, read_frame, read_particles, read_walls, write_body};
 pub use histories::{JointBond, PlasticBond};
 pub use parts::{About, Body};
-pub use stored_frame::{StoredFragment, StoredFrame};
+pub use stored_frame::{NO_FRAME, StoredFragment, StoredFrame};
 pub use stored_particles::StoredParticles;
 pub use stored_walls::StoredWalls;
 pub use summary::{BodySummary, body_summary};

@@ -98,8 +98,8 @@ pub fn disc_stress_pa(force_n: f64, diameter_m: f64, thickness_m: f64) -> f64 {
 
 /// Young's modulus of a disc from the approach of two points of its loaded diameter, Pa:
 /// E = 2 k/(pi t) [2 ln((D + G)/(D - G)) - (1 - nu) G/D] for a force of k per approach, N/m, of two
-/// points at G/2 on both sides of the centre, m. It is the integral of the strain under two opposite
-/// point loads, in plane stress (Timoshenko and Goodier 1970, article 41).
+/// points at G/2 on both sides of the centre, m. It is the integral of the strain under two
+/// opposite point loads, in plane stress (Timoshenko and Goodier 1970, article 41).
 pub fn disc_modulus_pa(
     stiffness_n_m: f64,
     diameter_m: f64,
@@ -122,10 +122,10 @@ pub const PEAK_AXIAL_STRESS: &str = "axial stress at failure";
 /// Result of a direct shear test: its largest shear stress.
 pub const PEAK_SHEAR_STRESS: &str = "strength";
 
-/// Cohesion, Pa, and friction angle, rad, of a material whose largest principal stress at failure is
-/// `intercept_pa` without confining pressure and rises by `slope` with it: sigma_1 = sigma_3
-/// tan²(45° + phi/2) + 2 c tan(45° + phi/2) (Mohr and Coulomb; Jaeger, Cook and Zimmerman 2007,
-/// section 4.5).
+/// Cohesion, Pa, and friction angle, rad, of a material whose largest principal stress at failure
+/// is `intercept_pa` without confining pressure and rises by `slope` with it:
+/// sigma_1 = sigma_3 tan²(45° + phi/2) + 2 c tan(45° + phi/2) (Mohr and Coulomb; Jaeger, Cook and
+/// Zimmerman 2007, section 4.5).
 pub fn mohr_coulomb_of_peaks(slope: f64, intercept_pa: f64) -> (f64, f64) {
     let root = slope.sqrt();
     let angle_rad = 2.0 * root.atan() - std::f64::consts::FRAC_PI_2;
@@ -133,8 +133,8 @@ pub fn mohr_coulomb_of_peaks(slope: f64, intercept_pa: f64) -> (f64, f64) {
 }
 
 /// Largest principal stress, Pa, at which a plane of weakness slides whose normal is inclined by
-/// `angle_rad` to it: sigma_1 = sigma_3 + 2 (c + sigma_3 tan phi)/((1 - tan phi cot beta) sin 2 beta)
-/// (Jaeger, Cook and Zimmerman 2007, section 4.8).
+/// `angle_rad` to it: sigma_1 = sigma_3 + 2 (c + sigma_3 tan phi)/((1 - tan phi cot beta) sin 2
+/// beta) (Jaeger, Cook and Zimmerman 2007, section 4.8).
 pub fn plane_of_weakness_pa(
     cohesion_pa: f64,
     friction_angle_rad: f64,
@@ -147,7 +147,8 @@ pub fn plane_of_weakness_pa(
 }
 
 /// Stress in a disc of this diameter and thickness under two opposite forces, Pa, on the loaded
-/// diameter at a distance from the centre, m: across the diameter and along it, positive in tension.
+/// diameter at a distance from the centre, m: across the diameter and along it, positive in
+/// tension.
 /// 2 F/(pi D t), and -2 F/(pi t) (2/(D - 2 y) + 2/(D + 2 y) - 1/D) (Timoshenko and Goodier 1970,
 /// article 41).
 pub fn disc_diameter_pa(

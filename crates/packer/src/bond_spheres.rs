@@ -44,7 +44,8 @@ pub fn bond_spheres(spheres: &Body, settings: &BondSettings) -> Result<(Body, Bo
     Ok((body, quality))
 }
 
-/// The message that no pair is within the bond range, with the nearest one if another range bonds it.
+/// The message that no pair is within the bond range, with the nearest one if another range bonds
+/// it.
 fn none_near(spheres: &Spheres, range: f64) -> Diagnostic {
     let count = spheres.radii.len();
     let problem = match count {

@@ -181,9 +181,9 @@ impl Search {
 
 /// Packs with the overlap that gives `wanted_kg_m3` for particles of `particle_kg_m3`, and sets it
 /// in `settings`. Two packings of nearly the same overlap differ by chance, so the search continues
-/// around the root of their median until one is near enough, and keeps the nearest of all. The front
-/// predicts the density well, so most tries end after it. The times in the history of the packing
-/// are the sums over all tries.
+/// around the root of their median until one is near enough, and keeps the nearest of all. The
+/// front predicts the density well, so most tries end after it. The times in the history of the
+/// packing are the sums over all tries.
 ///
 /// # Errors
 /// As [`crate::pack::pack`]; a density that no overlap from 0 to below 1 gives.
@@ -244,9 +244,9 @@ pub(crate) fn pack_to_density(
     Ok((packing, found))
 }
 
-/// The next overlap to try: a Newton step on the median of the tries near the target, so that chance
-/// counts less, or else on the nearest one. The fraction filled in r_gen hardly changes, so the
-/// density is proportional to (1 + overlap)^3.
+/// The next overlap to try: a Newton step on the median of the tries near the target, so that
+/// chance counts less, or else on the nearest one. The fraction filled in r_gen hardly changes, so
+/// the density is proportional to (1 + overlap)^3.
 pub fn next_overlap(tries: &[Try], target: f64) -> f64 {
     let off = |t: &Try| (t.filled / target - 1.0).abs();
     let least = tries.iter().map(off).fold(f64::INFINITY, f64::min);
@@ -267,7 +267,8 @@ pub fn next_overlap(tries: &[Try], target: f64) -> f64 {
 /// (1 + overlap)^3 times as large.
 pub const USUAL_FRACTION: f64 = 0.59;
 
-/// Overlap at which spheres that fill the fraction `reduced` with their reduced radii fill `target`.
+/// Overlap at which spheres that fill the fraction `reduced` with their reduced radii fill
+/// `target`.
 pub fn overlap_for(target: f64, reduced: f64) -> f64 {
     (target / reduced).cbrt() - 1.0
 }

@@ -1,7 +1,8 @@
 //! Pictures of spheres and surfaces, drawn without other programs, and films of them.
 //!
 //! [`Camera`] defines the view, [`render()`] draws [`Ball`]s and [`Surface`]s into an [`Image`],
-//! [`label`] writes the time and a scale into it, [`png_file`], [`film`] and [`animation`] make files.
+//! [`label`] writes the time and a scale into it, [`png_file`], [`film`] and [`animation`] make
+//! files.
 //!
 //! Equal input gives equal bytes. Nothing here panics: values that are not finite are ignored.
 

@@ -3,7 +3,8 @@
 //!
 //! [`picture`] draws its frames again from any side.
 //!
-//! The page is made from the folder of the results alone, so that it can be written again at any time.
+//! The page is made from the folder of the results alone, so that it can be written again at any
+//! time.
 
 mod folder;
 mod home;

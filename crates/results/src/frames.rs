@@ -2,7 +2,8 @@
 //! their times, `frames.pvd`.
 //!
 //! Points = particles (Float64, m), lines = bonds, any point and cell data; the time, `TimeValue`
-//! (s), and the names of the bodies, `body_names`, as field data. For the encoding see [`dem_io::vtk`].
+//! (s), and the names of the bodies, `body_names`, as field data. For the encoding see
+//! [`dem_io::vtk`].
 
 use std::io::{self, Write};
 

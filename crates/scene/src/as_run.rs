@@ -15,8 +15,8 @@ use dem_io::diagnostic::Result;
 type Entries = Vec<(String, Node)>;
 
 /// The text of a scene in the folder `to` that is `scene`, which was read from `text` with
-/// `overrides`; the bodies of `scene` may have other files by now. Read in that folder, it gives the
-/// same scene without the folder of its output. Standard input stays "-".
+/// `overrides`; the bodies of `scene` may have other files by now. Read in that folder, it gives
+/// the same scene without the folder of its output. Standard input stays "-".
 ///
 /// # Errors
 /// As for reading the scene's text.

@@ -163,8 +163,8 @@ pub(super) fn read(
     })
 }
 
-/// Refuses daughters that are the particle itself, of another material, or have a place, a motion or
-/// a mass of their own: these are the parent's.
+/// Refuses daughters that are the particle itself, of another material, or have a place, a motion
+/// or a mass of their own: these are the parent's.
 fn check_body(
     named: &Field<'_>,
     body: &str,

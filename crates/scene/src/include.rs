@@ -62,8 +62,8 @@ pub(super) fn folder_of(source: &str) -> &Path {
     Path::new(source).parent().unwrap_or(Path::new(""))
 }
 
-/// Adds the tables of the included files. A table that is there already is replaced by one of a file
-/// that `--set` names, and refused otherwise.
+/// Adds the tables of the included files. A table that is there already is replaced by one of a
+/// file that `--set` names, and refused otherwise.
 fn include(document: &mut Document, folder: &Path) -> Result<Vec<PathBuf>> {
     let Some(field) = Table::root(document, &SCENE)?.get(INCLUDE) else {
         return Ok(Vec::new());

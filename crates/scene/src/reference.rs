@@ -24,8 +24,8 @@ pub fn files() -> [(&'static str, String); 4] {
     ]
 }
 
-/// The table of a scene, such as `output`, that has this key. None: there is no such key, or only in
-/// tables that have names.
+/// The table of a scene, such as `output`, that has this key. None: there is no such key, or only
+/// in tables that have names.
 pub fn table_of(key: &str) -> Option<&'static str> {
     let tables = SCENE.keys.iter();
     let mut having = tables.filter(|table| match &table.kind {

@@ -49,8 +49,8 @@ fn main() -> Result<(), Failed> {
     }
 }
 
-/// Load and travel at the peak of a curve (travel, m; load, N), the travel until half of the load is
-/// left, and the work until the end, J.
+/// Load and travel at the peak of a curve (travel, m; load, N), the travel until half of the load
+/// is left, and the work until the end, J.
 fn peak(curve: &[[f64; 2]]) -> ([f64; 2], f64, f64) {
     let highest = (curve.iter().enumerate()).max_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
     let (at, [travel_m, load_n]) = highest.map_or((0, [0.0; 2]), |(at, point)| (at, *point));

@@ -105,7 +105,8 @@ fn at_once<T: Send>(work: impl Fn(u64) -> Result<T, Failed> + Sync) -> Result<Ve
         .collect()
 }
 
-/// Packs the bar so that it has the solid density. Returns its overlap and its solid density, kg/m3.
+/// Packs the bar so that it has the solid density. Returns its overlap and its solid density,
+/// kg/m3.
 fn pack(seed: u64, particle_kg_m3: f64, file: &Path) -> Result<(f64, f64), Failed> {
     let stl = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/shapes/bar.stl");
     let reading = ReadSettings {

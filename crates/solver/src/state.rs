@@ -189,12 +189,6 @@ impl State {
         self.bond_resistance = vec![Wrench::default(); damped];
         let scratch = &mut self.scratch;
         scratch.structural_resistance = vec![Wrench::default(); structural];
-        scratch.bond_counts = vec![0; structural];
-        if structural > 0 {
-            for &end in self.bonds.ends.as_flattened() {
-                scratch.bond_counts[end as usize] += 1;
-            }
-        }
         scratch.damping_stages = std::array::from_fn(|_| vec![Wrench::default(); damped]);
         let is_damped = self.model.particle_damping > 0.0;
         let resistances = if is_damped { self.particles.len() } else { 0 };

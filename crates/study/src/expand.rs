@@ -95,8 +95,8 @@ pub fn runs(study: &Study, yes: bool) -> Result<Vec<Run>> {
         .collect())
 }
 
-/// The runs of a search so far: number k of the points of each case, before number k + 1 of any. The
-/// number of a run depends neither on the other cases nor on the order in which they get on.
+/// The runs of a search so far: number k of the points of each case, before number k + 1 of any.
+/// The number of a run depends neither on the other cases nor on the order in which they get on.
 fn runs_of_search(study: &Study, find: &Find, lengths: &[usize]) -> Vec<Run> {
     let cases = study.cases();
     let others: usize = lengths[1..].iter().product();

@@ -24,8 +24,8 @@ pub struct FailureLine {
 impl FailureLine {
     /// For a study that varies the confining pressure of triaxial tests and measures the axial
     /// stress at failure, or varies the normal stress of shear tests and measures the strength;
-    /// nothing else varies but the axis that is averaged over. None: another study, or strengths
-    /// at fewer than two pressures.
+    /// nothing else varies but the axis that is averaged over. None: another study, strengths at
+    /// fewer than two pressures, or strengths that do not rise with the pressure from above 0.
     pub(crate) fn of(study: &Study, rows: &[Row]) -> Option<Self> {
         let axes = || study.axes.iter().enumerate();
         let is_other = |at: usize| Some(at) != study.average_over;
@@ -51,6 +51,9 @@ impl FailureLine {
         }
         let line = Line::fitted(&pressures, &strengths);
         let intercept_pa = line.at_x0 - line.slope * line.x0;
+        if !(line.slope > 0.0 && intercept_pa > 0.0) {
+            return None;
+        }
         let (cohesion_pa, angle_rad) = if is_triaxial {
             mohr_coulomb_of_peaks(line.slope, intercept_pa)
         } else {
@@ -66,13 +69,17 @@ impl FailureLine {
 
     /// As a sentence.
     pub(crate) fn note(&self) -> String {
-        format!(
-            "cohesion {} and friction angle {} degrees, from the line through {} strengths, which deviate from it by {}",
+        let line = format!(
+            "cohesion {} and friction angle {} degrees, from the line through {} strengths",
             show_quantity(self.cohesion_pa, "Pa"),
             significant(self.friction_angle_deg, 4),
             self.peaks,
-            show_quantity(self.residual_pa, "Pa")
-        )
+        );
+        if self.peaks < 3 {
+            return line;
+        }
+        let off = show_quantity(self.residual_pa, "Pa");
+        format!("{line}, which deviate from it by {off}")
     }
 }
 

@@ -1,5 +1,5 @@
-//! `[find]`: the value of a parameter at which the mean or median of a measure has a given value, by
-//! bisection, once for each case.
+//! `[find]`: the value of a parameter at which the mean or median of a measure has a given value,
+//! by bisection, once for each case.
 
 use dem_io::units::significant;
 use dem_scene::study::{Average, Find, Study};
@@ -41,8 +41,8 @@ pub struct SearchCase {
     pub choice: Vec<usize>,
     /// Its values in words: `bonds.cake.model parallel`. Empty for the only case.
     pub settings: String,
-    /// Points tried, ascending, in the unit of the parameter, with the mean or median of the measure
-    /// there.
+    /// Points tried, ascending, in the unit of the parameter, with the mean or median of the
+    /// measure there.
     pub tried: Vec<[f64; 2]>,
     /// The result.
     pub result: SearchResult,
@@ -81,8 +81,8 @@ pub enum Step {
     Wait,
 }
 
-/// The step after the points tried so far, `[place, mean or median - value]`, the two ends first and
-/// then in the order of trial; None for a point without values.
+/// The step after the points tried so far, `[place, mean or median - value]`, the two ends first
+/// and then in the order of trial; None for a point without values.
 pub fn next_step(find: &Find, points: &[Option<[f64; 2]>]) -> Step {
     let Some(points) = points.iter().copied().collect::<Option<Vec<[f64; 2]>>>() else {
         return Step::Wait;

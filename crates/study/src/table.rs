@@ -243,8 +243,8 @@ fn mark_front(rows: &mut [Row], measure: usize) {
     }
 }
 
-/// Sentences on the runs whose verdict is doubtful, if there are any: their number, and each kind of
-/// warning once, with the number of its runs.
+/// Sentences on the runs whose verdict is doubtful, if there are any: their number, and each kind
+/// of warning once, with the number of its runs.
 fn doubtful(runs: &[Run], of_runs: &[Option<&Done>]) -> Vec<String> {
     let done = runs.iter().zip(of_runs);
     let done = done.filter_map(|(run, done)| Some((run.number, done.as_ref()?)));

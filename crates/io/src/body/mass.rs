@@ -55,7 +55,8 @@ impl BodyMass {
         }
     }
 
-    /// Two human-readable lines: mass, that of its filled shape, and solid density; centre and principal moments.
+    /// Two human-readable lines: mass, that of its filled shape, and solid density; centre and
+    /// principal moments.
     pub fn lines(&self) -> [String; 2] {
         let mut mass = format!("{} kg", significant(self.mass_kg, 4));
         if let (Some(density), Some(shape), Some(percent)) = (

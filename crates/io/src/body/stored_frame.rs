@@ -13,6 +13,9 @@ pub const RADIUS: &str = "radius_m";
 pub const DENSITY: &str = "density_kg_m3";
 /// Particle array: id of the fragment.
 pub const FRAGMENT_ID: &str = "fragment_id";
+
+/// How the problem begins with a file of particles that is no frame.
+pub const NO_FRAME: &str = "this is no frame of a run";
 /// Particle array: number of the body in [`BODY_NAMES`].
 pub const BODY: &str = "body";
 /// Particle array: a number that follows a particle through a run.

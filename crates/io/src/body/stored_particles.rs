@@ -37,8 +37,8 @@ pub struct StoredParticles {
 
 impl StoredParticles {
     /// All loose spheres as one body without bonds, at their positions, in the order of the frame:
-    /// those that are a fragment of their own or, in a run in which nothing can break, those without
-    /// a bond. Velocities are lost. The density is that of the spheres, unless they differ.
+    /// those that are a fragment of their own or, in a run in which nothing can break, those
+    /// without a bond. Velocities are lost. The density is that of the spheres, unless they differ.
     ///
     /// # Errors
     /// There are none; they are no valid body.

@@ -2,7 +2,9 @@
 
 use super::arguments::BondCommand;
 use crate::bond_spheres::bond_spheres;
-use dem_io::body::{body_summary, files::body_files, read_body, read_particles, write_body};
+use dem_io::body::{
+    NO_FRAME, body_summary, files::body_files, read_body, read_particles, write_body,
+};
 use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
@@ -48,11 +50,14 @@ pub(super) fn bond(command: &BondCommand) -> Result<()> {
 
 /// A body, or the loose spheres of a frame of a run.
 fn spheres_of(file: &Path) -> Result<Body> {
+    if file.extension().is_none_or(|ending| ending != "vtp") {
+        return read_body(file);
+    }
     match read_particles(file) {
         Ok(frame) => frame
             .loose_spheres()
             .map_err(|e| e.within(&file.display().to_string())),
-        // No frame.
-        Err(_) => read_body(file),
+        Err(error) if error.problem.starts_with(NO_FRAME) => read_body(file),
+        Err(error) => Err(error),
     }
 }

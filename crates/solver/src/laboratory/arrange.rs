@@ -40,7 +40,8 @@ pub(crate) struct TestedBody {
 /// A scene whose test has its rate, times `faster`: walls in `moves` get a velocity, sets get a
 /// moving support, the run gets its end. A scene without a test stays as it is. The velocity rises
 /// uniformly during the first period of the body in the test, which leaves the lowest mode at rest.
-/// A confining pressure and a normal stress rise before that, in a quarter of the time of the stroke.
+/// A confining pressure and a normal stress rise before that, in a quarter of the time of the
+/// stroke.
 ///
 /// # Errors
 /// A support or a load with the name of one of the test's.

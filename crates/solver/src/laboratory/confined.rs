@@ -88,7 +88,7 @@ fn poisson_ratio(setup: &Setup, rows: &[Row]) -> Option<f64> {
         .map(|row| -row.deflection_m / setup.gauge_m)
         .collect();
     let widenings: Vec<f64> = rows.iter().map(|row| row.widening).collect();
-    let ratio = Line::fitted(&strains, &widenings).slope.abs();
+    let ratio = Line::fitted(&strains, &widenings).slope;
     ratio.is_finite().then_some(ratio)
 }
 

@@ -38,8 +38,8 @@ pub struct Row {
     pub speeds_m_s: [f64; 3],
     /// Force of each wall on the sides of a triaxial test, N; 0 where there is none.
     pub sides_n: [f64; 4],
-    /// Strain across the middle of such a body, the mean of its sides, positive where it widens. Not
-    /// a number where there are no particles to measure it.
+    /// Strain across the middle of such a body, the mean of its sides, positive where it widens.
+    /// Not a number where there are no particles to measure it.
     pub widening: f64,
 }
 

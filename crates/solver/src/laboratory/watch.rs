@@ -112,7 +112,10 @@ impl<'a> Watch<'a> {
             places_m: &places,
             bonds: kind.and_then(|name| self.scene.bonds.get(name)),
             lowest_frequency_hz: self.settings.lowest_frequency_hz,
-            broken: record.fell || self.has_passed_its_peak(record),
+            broken: match self.test.kind.has_residual() {
+                true => self.has_passed_its_peak(record),
+                false => record.fell,
+            },
             pieces: Pieces::of(state, &self.test.body),
             all_bonds: state.bonds.len(),
         };

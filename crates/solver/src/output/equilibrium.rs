@@ -3,8 +3,8 @@
 use dem_io::units::significant;
 use serde::Serialize;
 
-/// Smallest ratio of residual to the largest bond force that is reported; and for a laboratory test,
-/// whose walls can open and whose equilibria are found for its stiffness.
+/// Smallest ratio of residual to the largest bond force that is reported; and for a laboratory
+/// test, whose walls can open and whose equilibria are found for its stiffness.
 const LARGE_RESIDUALS: [f64; 2] = [1e-6, 1e-3];
 
 /// Data on an equilibrium.

@@ -122,8 +122,8 @@ impl Patch {
     }
 }
 
-/// Velocity of the surface of a wall at a point, m/s: the mean of the step before and after, and the
-/// motion of a belt.
+/// Velocity of the surface of a wall at a point, m/s: the mean of the step before and after, and
+/// the motion of a belt.
 fn velocity_of(wall: &Wall) -> impl Fn(Vector3<f64>) -> [f64; 3] {
     let mean = |[before, next]: [[f64; 3]; 2]| 0.5 * (Vector3::from(before) + Vector3::from(next));
     let (velocity, spin) = (mean(wall.velocities_m_s), mean(wall.spins_rad_s));

@@ -385,7 +385,8 @@ fn place_bonds(
     Ok(())
 }
 
-/// Adds the elements of the bonds from `first` on, which follow this rule, if there are flat joints.
+/// Adds the elements of the bonds from `first` on, which follow this rule, if there are flat
+/// joints.
 fn add_joints(bonds: &mut Bonds, first: usize, rule: usize) {
     if bonds.rules.iter().all(|rule| rule.flat_joint.is_none()) {
         return;

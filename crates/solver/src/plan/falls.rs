@@ -88,9 +88,9 @@ fn spheres(entry: &BodyEntry, body: &Body) -> Spheres {
         .collect()
 }
 
-/// The way from the start, m, negative upwards, on which the first sphere touches the shape when all
-/// come from above it, and the cosine between the vertical and the wall's normal there. None: all
-/// fall past.
+/// The way from the start, m, negative upwards, on which the first sphere touches the shape when
+/// all come from above it, and the cosine between the vertical and the wall's normal there. None:
+/// all fall past.
 fn way_to(
     shape: &Shape,
     frame: &Frame,

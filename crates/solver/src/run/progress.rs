@@ -62,8 +62,8 @@ pub struct Progress {
     pub(super) test: Record,
     /// Whether it has ended before its end time: the body broke, or the weight came to its end.
     pub(super) test_ended: bool,
-    /// Lines of `events.csv` and `discharge.csv` of what happened between the last output of the run
-    /// and its checkpoint: only a run that is continued shows them.
+    /// Lines of `events.csv` and `discharge.csv` of what happened between the last output of the
+    /// run and its checkpoint: only a run that is continued shows them.
     pub(super) after_end: [String; 2],
     /// Quantities monitored besides the measures.
     pub(super) seen: Seen,

@@ -17,19 +17,23 @@
 //!
 //! predicted with the damping of the last step, which is of second order too.
 //!
-//! **Stability.** With symmetric K and C the scheme is stable up to the same step as without damping of bonds:
-//! with B = (1 + R)/2 and A = dt^2 M^-1 K, z^n u is a solution if (z - 1)^2 B^-1 u + z A u +
-//! 2 (z - 1) (B^-1 - 1) u = 0. With the quadratic forms a of A and b of B^-1 in u, of norm 1,
-//! b z^2 + (a - 2) z + 2 - b = 0: |z| is at most 1 if b is at least 1 and a at most 4, and z = -1
-//! where A has the eigenvalue 4. With one stage, z^n u is a solution only if a equals minus a mean
+//! **Stability.** With symmetric K and C the scheme is stable up to the same step as without
+//! damping of bonds. With B = (1 + R)/2 and A = dt^2 M^-1 K, z^n u is a solution if
+//!
+//!   (z - 1)^2 B^-1 u + z A u + 2 (z - 1) (B^-1 - 1) u = 0.
+//!
+//! With the quadratic forms a of A and b of B^-1 in u, of norm 1, b z^2 + (a - 2) z + 2 - b = 0:
+//! |z| is at most 1 if b is at least 1 and a at most 4, and z = -1 where A has the eigenvalue 4.
+//! With one stage, z^n u is a solution only if a equals minus a mean
 //! over the eigenvalues g of G, with weights of u, of
 //!
 //!   f(z, g) = (z - 1) (2 z^2 + (3 g - 2) z - g) / (z (2 z + g - z g)).
 //!
-//! For g below 1, f has no pole outside the unit circle, and its imaginary part has the sign of that
-//! of z there, as it has on the circle (where it is at least g |Im z|); for real z it is positive
-//! beyond 1 and below -4 beyond -1. So a between 0 and 4 leaves no z outside. Dashpots of contacts, which F contains with the velocity of half a
-//! step ago, change the last condition alone: see [`crate::check::limit`].
+//! For g below 1, f has no pole outside the unit circle, and its imaginary part has the sign of
+//! that of z there, as it has on the circle (where it is at least g |Im z|); for real z it is
+//! positive beyond 1 and below -4 beyond -1. So a between 0 and 4 leaves no z outside. Dashpots of
+//! contacts, which F contains with the velocity of half a step ago, change the last condition
+//! alone: see [`crate::check::limit`].
 
 use rayon::prelude::*;
 
@@ -63,14 +67,14 @@ pub const BOND_DAMPING: Stage = Stage {
         )
     },
     bytes: |state| {
-        if state.bond_resistance.is_empty() {
-            return size_of_val(&state.bonds.damping[..]);
-        }
         let stages = state.scratch.damping_stages.iter();
+        let predicted = state.scratch.predicted.iter();
         size_of_val(&state.bonds.damping[..])
             + size_of_val(&state.bond_resistance[..])
             + stages.map(|stage| size_of_val(&stage[..])).sum::<usize>()
-            + bytes_of_predicted(state)
+            + predicted
+                .map(|motions| size_of_val(&motions[..]))
+                .sum::<usize>()
     },
     saving: |state| {
         let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
@@ -81,12 +85,6 @@ pub const BOND_DAMPING: Stage = Stage {
         })
     },
 };
-
-/// Memory of predicted motions.
-pub(super) fn bytes_of_predicted(state: &State) -> usize {
-    let predicted = state.scratch.predicted.iter();
-    predicted.map(|motions| size_of_val(&motions[..])).sum()
-}
 
 /// Sets the damping forces of bonds: those that, over the kick, have the impulse of its damping.
 /// Returns the number of bonds computed, in one stage.
@@ -145,7 +143,7 @@ fn damp_in_stages(state: &mut State) {
 
 /// Which viscous damping of bonds a prediction counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Prediction {
+enum Prediction {
     /// None.
     Undamped,
     /// That of the last step.
@@ -153,7 +151,7 @@ pub(super) enum Prediction {
 }
 
 /// Predicts the motions of the free particles at the time of their poses.
-pub(super) fn predict(state: &mut State, prediction: Prediction) {
+fn predict(state: &mut State, prediction: Prediction) {
     let half_s = 0.5 * state.previous_time_step_s;
     let mut predicted = std::mem::take(&mut state.scratch.predicted[0]);
     let p = &state.particles;

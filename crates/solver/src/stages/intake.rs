@@ -5,9 +5,9 @@
 //! that is its own in Hertz's contact (Johnson 1985, section 4.2), so of the elastic energy as
 //! well. Equal materials take half each; next to a rigid wall a particle takes all.
 //!
-//! An impact begins when something touches the particle and ends when nothing touches it. Its energy
-//! is the largest value that the sum of the work had since it began: for a single normal impact,
-//! the kinetic energy of the relative motion, times the share.
+//! An impact begins when something touches the particle and ends when nothing touches it. Its
+//! energy is the largest value that the sum of the work had since it began: for a single normal
+//! impact, the kinetic energy of the relative motion, times the share.
 
 use nalgebra::Vector3;
 

@@ -3,10 +3,10 @@
 //! blade).
 //!
 //! Spheres that the region reaches are released with the velocity and spin that they have in their
-//! part: momenta and kinetic energy stay. Spheres that it has left join a part one by one, once they
-//! are quiet: momenta stay, and the kinetic energy that they lose is recorded. Bonds keep their
-//! strain: within a part it is constant, and its energy counts. Spheres that are held or loaded are
-//! always bonded.
+//! part: momenta and kinetic energy stay. Spheres that it has left join a part one by one, once
+//! they are quiet: momenta stay, and the kinetic energy that they lose is recorded. Bonds keep
+//! their strain: within a part it is constant, and its energy counts. Spheres that are held or
+//! loaded are always bonded.
 
 use dem_io::disjoint::{find, join};
 

@@ -324,7 +324,8 @@ impl Bonds {
         }
     }
 
-    /// Whether bond `at`, broken or not, softened or failed in part before: its opening is no strain.
+    /// Whether bond `at`, broken or not, softened or failed in part before: its opening is no
+    /// strain.
     pub(crate) fn was_damaged(&self, at: usize) -> bool {
         let softened = self.damages.get(at).is_some_and(|known| known.damage > 0.0);
         softened || self.failed_fraction(at) > 0.0

@@ -135,8 +135,8 @@ impl Particles {
         self.poses.is_empty()
     }
 
-    /// The number that stands for particle `i` throughout a run, while bodies are added, removed and
-    /// replaced: bodies are numbered one after the other as they come, each in the order of its
+    /// The number that stands for particle `i` throughout a run, while bodies are added, removed
+    /// and replaced: bodies are numbered one after the other as they come, each in the order of its
     /// file.
     pub fn id(&self, i: usize) -> u32 {
         self.ids.get(i).copied().unwrap_or(i as u32)

@@ -1,9 +1,10 @@
 //! Division of particles and bonds among threads.
 //!
 //! A partition is a range of particles. It computes every bond that has an end in its range, in the
-//! order of the bonds; bonds across the border of two partitions are computed by both. Broken bonds,
-//! bonds of sleeping bodies and bonds within rigid parts belong to no partition. So no two threads
-//! write to the same place, and the order of every sum is the same for any number of partitions.
+//! order of the bonds; bonds across the border of two partitions are computed by both. Broken
+//! bonds, bonds of sleeping bodies and bonds within rigid parts belong to no partition. So no two
+//! threads write to the same place, and the order of every sum is the same for any number of
+//! partitions.
 
 use std::ops::Range;
 

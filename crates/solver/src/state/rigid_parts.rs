@@ -59,8 +59,8 @@ pub struct RigidParts {
     pub rejoined: u64,
 }
 
-/// Mass properties of some particles with these motions, and the velocity, m/s, and angular momentum
-/// about the centre of mass, kg m2/s, of a rigid body with their momenta.
+/// Mass properties of some particles with these motions, and the velocity, m/s, and angular
+/// momentum about the centre of mass, kg m2/s, of a rigid body with their momenta.
 pub(crate) fn as_rigid(
     members: &[u32],
     poses: &[Pose],

@@ -15,9 +15,6 @@ pub struct Scratch {
     pub partitions: Vec<Partition>,
     /// Structural damping forces of bonds. Empty: no bond has any.
     pub structural_resistance: Vec<Wrench>,
-    /// The number of bonds of each free particle, broken ones included. Empty: no bond has
-    /// structural damping.
-    pub bond_counts: Vec<u32>,
     /// Damping forces on particles. Empty: none.
     pub particle_resistance: Vec<Wrench>,
     /// Motions of the free particles at the time of their poses without damping of bonds, and in a

@@ -1,5 +1,5 @@
-//! Frames, measures and time series at known strain rates: a row of three spheres of which each bond
-//! is pulled at its own rate, in closed form; and the numbers of what is in a scene.
+//! Frames, measures and time series at known strain rates: a row of three spheres of which each
+//! bond is pulled at its own rate, in closed form; and the numbers of what is in a scene.
 
 use std::fs;
 use std::path::Path;
@@ -11,8 +11,8 @@ use super::{Bench, good, names_in, numbers, table};
 /// Young's modulus over tensile strength of the bonds.
 const PER_STRENGTH: f64 = 1e3;
 
-/// Three spheres in a row, 2 mm apart. The first bond is pulled at 10/s, the second at 1/s; a fourth
-/// and a fifth sphere have a bond without strengthening, pulled at 10/s.
+/// Three spheres in a row, 2 mm apart. The first bond is pulled at 10/s, the second at 1/s; a
+/// fourth and a fifth sphere have a bond without strengthening, pulled at 10/s.
 const ROW: &str = r#"version = 1
 [run]
 end_time = "10 us"

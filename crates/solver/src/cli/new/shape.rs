@@ -19,7 +19,8 @@ pub(super) fn cylinder(radius: f64, height: f64) -> Vec<[[f64; 3]; 3]> {
     prism(&(0..CORNERS).map(corner).collect::<Vec<_>>(), height)
 }
 
-/// The prism from z = 0 to `height` on a convex polygon, anticlockwise: facets with outward normals.
+/// The prism from z = 0 to `height` on a convex polygon, anticlockwise: facets with outward
+/// normals.
 fn prism(polygon: &[[f64; 2]], height: f64) -> Vec<[[f64; 3]; 3]> {
     let low = |k: usize| {
         let [x, y] = polygon[k % polygon.len()];

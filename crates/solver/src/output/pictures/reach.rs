@@ -5,14 +5,14 @@ use nalgebra::Vector3;
 use crate::geometry::{Bounds, Shape};
 use crate::state::State;
 
-/// Planes at the sides are reached if they are not further from where bodies land than this multiple
-/// of the way there and the size of the inlet.
+/// Planes at the sides are reached if they are not further from where bodies land than this
+/// multiple of the way there and the size of the inlet.
 const SIDE: f64 = 3.0;
 /// Points of a path.
 const POINTS: u32 = 8;
 
-/// Where fed bodies go: points of their paths, and the largest distance along gravity that they fall
-/// until they reach a plane.
+/// Where fed bodies go: points of their paths, and the largest distance along gravity that they
+/// fall until they reach a plane.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Reach {
     /// m. Shape n x 3.
@@ -34,8 +34,8 @@ impl Solid {
 }
 
 impl Reach {
-    /// From each corner of each inlet on a parabola to the first plane; from there sideways, at right
-    /// angles to gravity, to planes nearby.
+    /// From each corner of each inlet on a parabola to the first plane; from there sideways, at
+    /// right angles to gravity, to planes nearby.
     pub(crate) fn of(state: &State) -> Self {
         let model = &state.model;
         let gravity = Vector3::from(model.gravity_m_s2);
@@ -72,8 +72,8 @@ impl Reach {
         reach
     }
 
-    /// Where outlets take fed bodies, m: of each region its part within the `scene`, or else its side
-    /// towards the scene. Regions of outlets are often far larger than the scene. Shape n x 3.
+    /// Where outlets take fed bodies, m: of each region its part within the `scene`, or else its
+    /// side towards the scene. Regions of outlets are often far larger than the scene. Shape n x 3.
     pub(crate) fn outlets(state: &State, scene: &Bounds) -> Vec<[f64; 3]> {
         let rules = &state.model.rules;
         if rules.inlets.is_empty() {
@@ -89,8 +89,8 @@ impl Reach {
             .collect()
     }
 
-    /// The box within which all outlets leave bodies: the common part of the regions outside of which
-    /// bodies are taken.
+    /// The box within which all outlets leave bodies: the common part of the regions outside of
+    /// which bodies are taken.
     pub(crate) fn within(state: &State) -> Bounds {
         let rules = &state.model.rules;
         let everywhere = Bounds {
@@ -143,8 +143,8 @@ fn time_to(
     (height_m > 0.0 && time_s > 0.0 && time_s.is_finite()).then_some(time_s)
 }
 
-/// The nearest points of planes to either side of a landing, no further than `near_m`, along the axes
-/// of space without their part along gravity.
+/// The nearest points of planes to either side of a landing, no further than `near_m`, along the
+/// axes of space without their part along gravity.
 fn sides(
     solids: &[Solid],
     landing: Vector3<f64>,

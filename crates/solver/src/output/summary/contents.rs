@@ -30,8 +30,8 @@ pub struct Summary {
     pub scene: String,
     /// Program and version.
     pub program: String,
-    /// Reason for its end: "end time", "rest", "measure" (one with `end_run_above`), or for a laboratory test "breakage", "end of the
-    /// stroke" or, if it is dynamic, "end of the test".
+    /// Reason for its end: "end time", "rest", "measure" (one with `end_run_above`), or for a
+    /// laboratory test "breakage", "end of the stroke" or, if it is dynamic, "end of the test".
     pub ended_by: String,
     /// The problem, if it did not reach its end: `ended_by` is "instability" or "interruption".
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,8 +1,8 @@
 //! Elasto-plastic bonds: each mode is elastic up to its yield strength and then flows, with linear
 //! hardening or without.
 //!
-//! Source: Platzer 2022, 2.2.1.3, which names the behaviour (after Nguyen et al. 2021); the law of a
-//! mode is that of the text books, with the kinematic hardening of Prager. With F the force of a
+//! Source: Platzer 2022, 2.2.1.3, which names the behaviour (after Nguyen et al. 2021); the law of
+//! a mode is that of the text books, with the kinematic hardening of Prager. With F the force of a
 //! mode, k its stiffness, u its deformation and u_p the plastic part of it:
 //!
 //! F = k (u - u_p), |F - H u_p| <= F_y, H = k h/(1 - h).

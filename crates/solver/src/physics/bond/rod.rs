@@ -61,8 +61,8 @@ impl Rod {
         self.young_modulus_pa * self.area_m2() / self.shape.length_m
     }
 
-    /// Levers of which the longer one, of this length, m, is at the larger sphere. The other is what
-    /// remains, so that their sum is the length to the last bit.
+    /// Levers of which the longer one, of this length, m, is at the larger sphere. The other is
+    /// what remains, so that their sum is the length to the last bit.
     pub(crate) fn levers_m(&self, longer_m: f64) -> [f64; 2] {
         let shorter_m = self.shape.length_m - longer_m;
         let [radius_a, radius_b] = self.shape.end_radii_m;

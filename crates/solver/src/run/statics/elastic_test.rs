@@ -56,8 +56,8 @@ impl ElasticTest {
     }
 }
 
-/// Stiffness and moduli of the test of a scene, from equilibria at loads of 0.2, 0.4 and 0.6 of that
-/// at which the body has the strength given in the scene, or of that at the end of the stroke.
+/// Stiffness and moduli of the test of a scene, from equilibria at loads of 0.2, 0.4 and 0.6 of
+/// that at which the body has the strength given in the scene, or of that at the end of the stroke.
 /// `state`: of the scene with its test arranged, before the first step.
 ///
 /// # Errors

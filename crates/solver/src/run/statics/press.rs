@@ -104,8 +104,8 @@ struct Press<'a> {
     gripped: Vec<(u32, [f64; 6])>,
     matrix: Matrix,
     factor: Factor,
-    /// Stiffness of the ground spring of every particle, N/m, and where these and the springs across
-    /// contacts are without force: the equilibrium before.
+    /// Stiffness of the ground spring of every particle, N/m, and where these and the springs
+    /// across contacts are without force: the equilibrium before.
     ground_n_m: f64,
     places: Vec<Vector3<f64>>,
     /// Travel, as a fraction of the stroke, and poses of the equilibrium before the last.

@@ -1,7 +1,7 @@
 //! The data of a .vtp file as a frame of a run, its particles or its walls.
 
 use super::{Contents, OfFrame};
-use crate::body::stored_frame::{self as frame, StoredFrame};
+use crate::body::stored_frame::{self as frame, NO_FRAME, StoredFrame};
 use crate::body::stored_particles::StoredParticles;
 use crate::body::stored_walls::StoredWalls;
 use crate::body::vtp::decode::DAMAGED;
@@ -58,7 +58,7 @@ impl Contents {
         self.check_counts()?;
         self.check_bond_ends()?;
         let missing = |name: &str| {
-            let problem = format!("this is no frame of a run: there is no array '{name}'");
+            let problem = format!("{NO_FRAME}: there is no array '{name}'");
             Diagnostic::input("", problem, "run the scene again with this program")
         };
         let of_frame = self.of_frame;

@@ -9,24 +9,20 @@
 //! moves as a rigid body is not damped, and momentum and angular momentum are untouched. A mode
 //! loses the same fraction of its amplitude in every cycle, whatever its frequency: it moves
 //! outwards with the stiffness (1 + gamma) k and back with (1 - gamma) k, so that half a cycle
-//! multiplies its speed by sqrt((1 - gamma)/(1 + gamma)). Like dry friction it can hold a load.
+//! multiplies its speed by sqrt((1 - gamma)/(1 + gamma)).
 
 use nalgebra::Vector3;
 
 use crate::physics::bond::BondLoad;
-use crate::physics::bond::damping::{
-    DampingCoefficients, DampingForces, EndMotion, relative_motion,
-};
+use crate::physics::bond::damping::{DampingForces, EndMotion, relative_motion};
 use crate::physics::number::Vec3;
 
 /// Structural damping, by this gamma, of a bond under this load that is now `length_m` long along
 /// the unit vector `c` from a to b; levers as in
-/// [`damping_forces`](crate::physics::bond::damping::damping_forces). Each mode resists at most as
-/// much as the dashpots `most`, which is less than the fraction of its load where it is slow.
+/// [`damping_forces`](crate::physics::bond::damping::damping_forces).
 pub fn structural_forces(
     gamma: f64,
     load: &BondLoad,
-    most: &DampingCoefficients,
     levers_m: &[f64; 2],
     c: &Vector3<f64>,
     length_m: f64,
@@ -36,18 +32,14 @@ pub fn structural_forces(
     let apart = length_m * c;
     let moved = relative_motion(*levers_m, Vec3::from(apart), motions);
     let arm_a = moved.share * apart;
-    let force = resisting(
-        c,
-        moved.velocity_m_s.into(),
-        [gamma * load.normal_n, gamma * load.shear_n],
-        [most.normal, most.shear],
-    );
+    let force = resisting(c, moved.velocity_m_s.into(), load.normal_n, load.shear_n);
     let moment = resisting(
         c,
         moved.spin_rad_s.into(),
-        [gamma * load.torsion_n_m, gamma * load.bending_n_m],
-        [most.torsion, most.bending],
+        load.torsion_n_m,
+        load.bending_n_m,
     );
+    let (force, moment) = (gamma * force, gamma * moment);
     DampingForces {
         force_on_b: -force,
         torques: [
@@ -57,18 +49,11 @@ pub fn structural_forces(
     }
 }
 
-/// Friction along `c` and across it in the direction of the motion there, or what the dashpots
-/// resist if that is less.
-fn resisting(
-    c: &Vector3<f64>,
-    motion: Vector3<f64>,
-    friction: [f64; 2],
-    most: [f64; 2],
-) -> Vector3<f64> {
+/// The magnitudes of loads along and across `c`, each with the direction of the motion there.
+fn resisting(c: &Vector3<f64>, motion: Vector3<f64>, along: f64, across: f64) -> Vector3<f64> {
     let speed = motion.dot(c);
     let sideways = motion - c * speed;
-    let along = friction[0].abs().min(most[0] * speed.abs());
-    let across = friction[1].min(most[1] * sideways.norm());
+    let sign = if speed == 0.0 { 0.0 } else { speed.signum() };
     let side = sideways.try_normalize(0.0).unwrap_or_default();
-    c * along.copysign(speed) + side * across
+    c * (along.abs() * sign) + side * across
 }
