@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use dem_io::Body;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
-use dem_pack::{Basis, BodyReport, BodySettings, PackSettings, Sizes, make_body};
+use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use nalgebra::Vector3;
 
 use super::page::{assert_shown, filled, on_one_thread};
@@ -137,7 +137,10 @@ fn packed(shape: Shape, overlap: f64, settle: Option<f64>) -> Packed {
         ..PackSettings::new(sizes)
     };
     let settings = BodySettings {
-        bond_range: BONDING,
+        bonds: BondSettings {
+            range: BONDING,
+            ..BondSettings::default()
+        },
         particle_density_kg_m3: Some(DENSITY_KG_M3),
         ..BodySettings::new(packing)
     };
