@@ -105,7 +105,7 @@ impl Mode {
         } else {
             1.0
         };
-        1e-4 * moved * self.omega_rad_s()
+        1e-5 * moved * self.omega_rad_s()
     }
 
     /// Initial condition of two free spheres: opposite velocities or spins.

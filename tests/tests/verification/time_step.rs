@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use dem_run::stages::damping::WEAK;
 use dem_run::{Plan, step};
 
 use super::page::{assert_shown, filled, on_one_thread};
@@ -245,11 +246,16 @@ const STEPS: usize = 20_000;
 /// With r = omega dt and b = 2/(1 + R), where R is the decay of velocities by damping in a step,
 /// about exp(-2 zeta r), a step multiplies that mode by a root of b q^2 + (r^2 - 2) q + 2 - b = 0,
 /// which is -1 at r = 2. Beyond it by a fraction s, its logarithm is 2 sqrt(2 s) without damping,
-/// and 4 s/(b - 1) = 4 s/tanh(2 zeta) with it.
+/// and 4 s/(b - 1) = 4 s/tanh(2 zeta) with it. Damping in one stage, with g = 4 zeta, has
+/// r^2 + f(q, g) = 0 (stages/damping.rs), where f(-1) = -4 and f'(-1) = g/(1 - g): the logarithm
+/// is 8 s (1 - g)/g.
 fn late(damping: f64) -> f64 {
     let in_a_step = 1e6_f64.ln() / STEPS as f64;
+    let in_one_stage = 4.0 * damping;
     let late = if damping == 0.0 {
         in_a_step * in_a_step / 8.0
+    } else if in_one_stage <= WEAK {
+        in_a_step * in_one_stage / (8.0 * (1.0 - in_one_stage))
     } else {
         0.25 * in_a_step * (2.0 * damping).tanh()
     };

@@ -304,7 +304,8 @@ fn the_report_says_what_body_and_shape_weigh() {
     let mass = line(&text, "mass ");
     assert!(
         mass.contains(" kg; its shape filled with 2050 kg/m3 would weigh ")
-            && mass.ends_with(" %)"),
+            && mass.contains(" %); solid density ")
+            && mass.ends_with(" kg/m3"),
         "{mass}"
     );
     assert!(

@@ -166,7 +166,7 @@ fn check_says_what_is_solved() {
         "holds          11 particles, 10 bonds\n",
         "solves         equilibrium under what acts at 4 s: 60 unknowns, 6 freedoms held; no time steps\n",
         "by             Newton's method; Cholesky, ",
-        "not used       run.rest_energy_ratio, run.time_step, ",
+        "not used       run.rest_energy_ratio, end_run_above of measures, run.time_step, ",
         "memory         about ",
     ] {
         assert!(said.contains(part), "'{part}' is not in\n{said}");
