@@ -97,8 +97,8 @@ const CASES: [Case; 17] = [
     Case {
         name: "fracture energy",
         beside: "failure",
-        stage: "failure",
-        bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\", fracture_energy = 1e12 }",
+        stage: "damage of bonds",
+        bonds: "failure = { von_mises_strength = 1e12, equivalent_stress = \"axial-in-tension\", fracture_energy = 1e20 }",
         ..CASE
     },
     Case {

@@ -49,7 +49,7 @@ use crate::state::State;
 use crate::state::particles::{Motion, Wrench};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
-const BOND_DAMPING_NS: f64 = 19.3;
+const BOND_DAMPING_NS: f64 = 57.2;
 
 /// Largest eigenvalue of G up to which damping takes one stage. It is stable below 1; here the
 /// fastest decay, 0.64 in a step, is still near exp(-1/2) = 0.61.
