@@ -233,12 +233,12 @@ fn all_loose_spheres_are_one_body() {
             .position(|id| *id == fragment.id)
             .unwrap();
         assert!(loose.positions.contains(&frame.positions[i]));
-        for k in 0..3 {
-            centre[k] += fragment.mass_kg * frame.positions[i][k] / wanted_kg;
+        for (sum_m, place_m) in centre.iter_mut().zip(frame.positions[i]) {
+            *sum_m += fragment.mass_kg * place_m / wanted_kg;
         }
     }
-    for k in 0..3 {
-        assert!((mass.centre_m[k] - centre[k]).abs() < 1e-12, "{centre:?}");
+    for (found_m, wanted_m) in mass.centre_m.iter().zip(centre) {
+        assert!((found_m - wanted_m).abs() < 1e-12, "{centre:?}");
     }
     let source = loose.about.source.unwrap();
     assert!(source.ends_with(": loose spheres"), "{source}");
