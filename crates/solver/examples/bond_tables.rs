@@ -49,8 +49,8 @@ fn main() -> Result<(), Failed> {
     }
 }
 
-/// Load and travel at the peak of a curve (travel, m; load, N), the travel until half of the load
-/// is left, and the work until the end, J.
+/// Load and travel at the peak of a curve (travel from where the fitted line has no load, m; load,
+/// N), the travel until half of the load is left, and the work until the end, J.
 fn peak(curve: &[[f64; 2]]) -> ([f64; 2], f64, f64) {
     let highest = (curve.iter().enumerate()).max_by(|(_, a), (_, b)| a[1].total_cmp(&b[1]));
     let (at, [travel_m, load_n]) = highest.map_or((0, [0.0; 2]), |(at, point)| (at, *point));
@@ -78,7 +78,7 @@ fn failure(runs: &[Run]) -> Result<(), Failed> {
     ]);
     let mut lines = Vec::new();
     for run in runs {
-        let curve = run.columns("force-displacement.csv", ["travel_m", "load_n"])?;
+        let curve = run.columns("force-displacement.csv", ["displacement_m", "load_n"])?;
         let (found, further_m, work_j) = peak(&curve);
         let off = [0, 1].map(|k| format!("{:+.0} %", 100.0 * (found[k] / MEASURED[k] - 1.0)));
         let broken_j = run.balance_j("bond_damage_j") + run.balance_j("bond_breakage_j");
