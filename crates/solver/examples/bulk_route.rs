@@ -1,17 +1,25 @@
-//! The table of doc/bulk.md: from a poured density to the density of the particles, to the overlap
+//! Writes the table of doc/bulk.md: from a poured density to the density of the particles, to the overlap
 //! of a body, and back by shattering it (Platzer 2022, 3.1.1 and 4.5.1.5). From the folder of the
 //! clone:
 //!
 //! ```sh
-//! cargo build --release && cargo run --release -p dem-run --example bulk_route
+//! cargo run --release -p dem-run --example bulk_route
 //! ```
 //!
-//! Takes some ten minutes.
-#![allow(clippy::print_stdout, reason = "it prints a table")]
+//! Builds the program and takes some ten minutes. Results are in `target/bulk-route`.
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "it prints a table, and how far it is"
+)]
 
-use std::error::Error;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+#[allow(dead_code, reason = "other examples use the rest")]
+mod programs;
+#[allow(dead_code, reason = "other examples use the rest")]
+#[path = "programs/study.rs"]
+mod study;
+
+use std::path::Path;
 
 use dem_io::body::mass::of_named_density;
 use dem_io::body::write_body;
@@ -19,7 +27,8 @@ use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use serde_json::Value;
 
-type Failed = Box<dyn Error>;
+use programs::{Failed, Programs, results};
+use study::{Table, run_scene};
 
 /// Densities of the material as a laboratory measures them, kg/m3: poured, and solid.
 const BULK_KG_M3: f64 = 1200.0;
@@ -31,15 +40,26 @@ const DIAMETERS: &str = "3.5mm..5mm";
 const SEEDS: [u64; 3] = [1, 2, 3];
 
 fn main() -> Result<(), Failed> {
-    let folder = std::env::temp_dir().join("bulk-route");
-    std::fs::create_dir_all(&folder)?;
-    println!(
-        "| seed | poured, at 2050 kg/m3 | particle density | overlap | solid density | shattered: bulk density | off | bulking factor |\n\
-         |---|---|---|---|---|---|---|---|"
-    );
+    let folder = results("bulk-route")?;
+    let dem_run = Programs::build()?.dem_run;
+    let run = |scene: &str, set: &[String], bar: Option<&Path>, out: &str| {
+        let mut options: Vec<String> = set.iter().map(|set| format!("--set={set}")).collect();
+        options.extend(bar.map(|bar| format!("--body=bar={}", bar.display())));
+        run_scene(&dem_run, scene, &options, &folder.join(out))
+    };
+    let mut table = Table::new(&[
+        "seed",
+        "poured, at 2050 kg/m3",
+        "particle density",
+        "overlap",
+        "solid density",
+        "shattered: bulk density",
+        "off",
+        "bulking factor",
+    ]);
     let poured = at_once(|seed| {
         let set = [format!("run.seed={seed}")];
-        let out = folder.join(format!("poured-{seed}"));
+        let out = format!("poured-{seed}");
         value(&run("pour-box", &set, None, &out)?, "bulk_density")
     })?;
     // The particle density of the material: the mean of all pourings.
@@ -49,7 +69,7 @@ fn main() -> Result<(), Failed> {
         let file = folder.join(format!("bar-{seed}.vtp"));
         let (overlap, solid_kg_m3) = pack(seed, particle_kg_m3, &file)?;
         let set = [format!("materials.cake.density={particle_kg_m3}")];
-        let out = folder.join(format!("shattered-{seed}"));
+        let out = format!("shattered-{seed}");
         let bulk = run("shatter-box", &set, Some(&file), &out)?;
         let [bulk_kg_m3, factor] = [
             value(&bulk, "bulk_density")?,
@@ -59,17 +79,31 @@ fn main() -> Result<(), Failed> {
     })?;
     for ((seed, poured_kg_m3), of_seed) in SEEDS.iter().zip(&poured).zip(&shattered) {
         let [overlap, solid_kg_m3, bulk_kg_m3, factor] = of_seed;
-        println!(
-            "| {seed} | {poured_kg_m3:.0} kg/m3 | {particle_kg_m3:.0} kg/m3 | {overlap:.3} | {solid_kg_m3:.0} kg/m3 | {bulk_kg_m3:.0} kg/m3 | {:+.1} % | {factor:.3} |",
-            100.0 * (bulk_kg_m3 / BULK_KG_M3 - 1.0),
-        );
+        table.row(&[
+            seed.to_string(),
+            format!("{poured_kg_m3:.0} kg/m3"),
+            format!("{particle_kg_m3:.0} kg/m3"),
+            format!("{overlap:.3}"),
+            format!("{solid_kg_m3:.0} kg/m3"),
+            format!("{bulk_kg_m3:.0} kg/m3"),
+            format!("{:+.1} %", 100.0 * (bulk_kg_m3 / BULK_KG_M3 - 1.0)),
+            format!("{factor:.3}"),
+        ]);
     }
     let back = shattered.iter().map(|[_, _, bulk_kg_m3, _]| bulk_kg_m3);
     let mean = back.sum::<f64>() / SEEDS.len() as f64;
     let off = 100.0 * (mean / BULK_KG_M3 - 1.0);
-    println!(
-        "| mean | {poured_kg_m3:.0} kg/m3 | {particle_kg_m3:.0} kg/m3 | | | {mean:.0} kg/m3 | {off:+.1} % | |"
-    );
+    table.row(&[
+        "mean".to_owned(),
+        format!("{poured_kg_m3:.0} kg/m3"),
+        format!("{particle_kg_m3:.0} kg/m3"),
+        String::new(),
+        String::new(),
+        format!("{mean:.0} kg/m3"),
+        format!("{off:+.1} %"),
+        String::new(),
+    ]);
+    table.write("doc/bulk.md", "bulk_route")?;
 
     // The same body, which breaks where it lies.
     let set = [
@@ -79,7 +113,7 @@ fn main() -> Result<(), Failed> {
         "regions.bed.box.min=[\"-15 mm\",\"-15 mm\",\"6 mm\"]".to_owned(),
     ];
     let file = folder.join(format!("bar-{}.vtp", SEEDS[0]));
-    let lying = run("shatter-box", &set, Some(&file), &folder.join("lying"))?;
+    let lying = run("shatter-box", &set, Some(&file), "lying")?;
     println!(
         "\nBroken on the floor, below the bars: {:.0} kg/m3.",
         value(&lying, "bulk_density")?
@@ -131,35 +165,6 @@ fn pack(seed: u64, particle_kg_m3: f64, file: &Path) -> Result<(f64, f64), Faile
     write_body(&body, file)?;
     let solid = of_named_density(&body).and_then(|mass| mass.solid_density_kg_m3);
     Ok((made.quality.overlap, solid.ok_or("no density")?))
-}
-
-/// Runs a scene of data/scenes, with another bar if one is given. Returns its summary.
-fn run(scene: &str, set: &[String], bar: Option<&Path>, out: &PathBuf) -> Result<Value, Failed> {
-    let release = std::env::current_exe()?;
-    let release = release.parent().and_then(Path::parent).ok_or("no folder")?;
-    let mut run = Command::new(release.join("dem-run"));
-    run.arg(format!("data/scenes/{scene}.toml"));
-    run.args([
-        "--quiet",
-        "--force",
-        "--set",
-        "output.pictures=\"10 s\"",
-        "--output",
-    ])
-    .arg(out);
-    set.iter().for_each(|set| {
-        run.args(["--set", set]);
-    });
-    if let Some(bar) = bar {
-        run.arg("--body").arg(format!("bar={}", bar.display()));
-    }
-    let output = run.output()?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into());
-    }
-    Ok(serde_json::from_slice(&std::fs::read(
-        out.join("summary.json"),
-    )?)?)
 }
 
 fn value(summary: &Value, measure: &str) -> Result<f64, Failed> {

@@ -1,17 +1,24 @@
-//! The table of doc/pressing.md, and its plot `doc/pressing-density.svg`: the bar of
+//! Writes the table of doc/pressing.md, and its plot `doc/pressing-density.svg`: the bar of
 //! `data/shapes/bar.stl` filled by the front of dem-pack, and by filling a mould and pressing. From
 //! the folder of the clone:
 //!
 //! ```sh
-//! cargo build --release && cargo run --release -p dem-run --example pressing_table
+//! cargo run --release -p dem-run --example pressing_table
 //! ```
 //!
-//! Takes a few minutes, on one thread.
-#![allow(clippy::print_stdout, reason = "it prints a table")]
+//! Builds the program and takes a few minutes, on one thread. Results are in
+//! `target/pressing-table`.
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "it prints a table, and how far it is"
+)]
 
-use std::error::Error;
-use std::path::Path;
-use std::process::Command;
+#[allow(dead_code, reason = "other examples use the rest")]
+mod programs;
+#[allow(dead_code, reason = "other examples use the rest")]
+#[path = "programs/study.rs"]
+mod study;
 
 use dem_io::Body;
 use dem_io::body::mass::volume_m3;
@@ -25,7 +32,8 @@ use dem_plots::{Axis, Line, Plot};
 use dem_results::folder::{frame_in, frames_in};
 use serde_json::Value;
 
-type Failed = Box<dyn Error>;
+use programs::{Failed, Programs, results, root};
+use study::{Table, run_scene};
 
 /// The bar: 30 mm x 30 mm around the z axis, 60 mm high.
 const HALF_WIDTH_M: f64 = 15e-3;
@@ -58,16 +66,22 @@ struct Made {
 
 fn main() -> Result<(), Failed> {
     let mut lines = Vec::new();
-    println!(
-        "| way | spheres | processor time | slower | density, lowest to highest fifth | stands out of the wall: mean, largest | \
-         overlap of neighbours: mean, scatter, largest | bonds per particle | fabric inside |\n\
-         |---|---|---|---|---|---|---|---|---|"
-    );
+    let mut table = Table::new(&[
+        "way",
+        "spheres",
+        "processor time",
+        "slower",
+        "density, lowest to highest fifth",
+        "stands out of the wall: mean, largest",
+        "overlap of neighbours: mean, scatter, largest",
+        "bonds per particle",
+        "fabric inside",
+    ]);
     for coarser in COARSER {
         let pressed = pressed(coarser)?;
         let front = front(coarser)?;
         for made in [&front, &pressed] {
-            println!("{}", row(made, front.processor_s));
+            table.row(&row(made, front.processor_s));
         }
         if coarser == 1.0 {
             lines.extend([&front, &pressed].map(line));
@@ -80,9 +94,8 @@ fn main() -> Result<(), Failed> {
         lines,
         ..Plot::default()
     };
-    let doc = concat!(env!("CARGO_MANIFEST_DIR"), "/../../doc");
-    std::fs::write(format!("{doc}/pressing-density.svg"), plot.svg().file())?;
-    Ok(())
+    std::fs::write(root().join("doc/pressing-density.svg"), plot.svg().file())?;
+    table.write("doc/pressing.md", "pressing_table")
 }
 
 /// The bar by the front of dem-pack, with the overlap that gives the density, on one thread.
@@ -114,35 +127,18 @@ fn front(coarser: f64) -> Result<Made, Failed> {
 
 /// The bar by the scene that fills and presses, on one thread.
 fn pressed(coarser: f64) -> Result<Made, Failed> {
-    let release = std::env::current_exe()?;
-    let release = release.parent().and_then(Path::parent).ok_or("no folder")?;
-    let folder = std::env::temp_dir().join(format!("pressing-table-{coarser}"));
-    let mut run = Command::new(release.join("dem-run"));
-    run.args([
-        "data/scenes/press-mould.toml",
-        "--threads",
-        "1",
-        "--quiet",
-        "--force",
-    ]);
-    run.args(["--set", "output.pictures=\"10 s\"", "--output"])
-        .arg(&folder);
+    let folder = results("pressing-table")?.join(coarser.to_string());
+    let mut options = vec!["--threads=1".to_owned()];
     if coarser != 1.0 {
-        for (name, radius_mm) in RADII_MM {
+        options.extend(RADII_MM.map(|(name, radius_mm)| {
             let radius_mm = coarser * radius_mm;
-            run.arg("--set");
-            run.arg(format!(
-                "bodies.{name}.particles=[[0,0,0,\"{radius_mm} mm\"]]"
-            ));
-        }
-        run.args(["--set", &format!("inlets.fill.count={COARSE_COUNT}")]);
-        run.args(["--set", "inlets.fill.rate=\"800 /s\""]);
+            format!("--set=bodies.{name}.particles=[[0,0,0,\"{radius_mm} mm\"]]")
+        }));
+        options.push(format!("--set=inlets.fill.count={COARSE_COUNT}"));
+        options.push("--set=inlets.fill.rate=\"800 /s\"".to_owned());
     }
-    let output = run.output()?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into());
-    }
-    let summary: Value = serde_json::from_slice(&std::fs::read(folder.join("summary.json"))?)?;
+    let dem_run = Programs::build()?.dem_run;
+    let summary = run_scene(&dem_run, "press-mould", &options, &folder)?;
     if summary["ended_by"] != "measure" {
         return Err("the density was not met".into());
     }
@@ -180,26 +176,26 @@ fn touching() -> BondSettings {
     }
 }
 
-fn row(made: &Made, front_s: f64) -> String {
+fn row(made: &Made, front_s: f64) -> [String; 9] {
     let densities = densities_kg_m3(made, LAYERS).map(|density| format!("{density:.0}"));
     let densities: Vec<String> = densities.collect();
     let out = Spread::of(outside(made));
     let neighbours = Spread::of(overlaps(&made.body));
     let per_particle = made.body.bonds.len() as f64 / made.body.radii.len() as f64;
-    format!(
-        "| {} | {} | {:.1} s | {:.0} | {} kg/m3 | {:.3}, {:.3} of a radius | {:.3}, {:.3}, {:.3} of a radius | {per_particle:.2} | {} |",
-        made.way,
-        made.body.radii.len(),
-        made.processor_s,
-        made.processor_s / front_s,
-        densities.join(", "),
-        out.mean,
-        out.largest,
-        neighbours.mean,
-        neighbours.scatter,
-        neighbours.largest,
+    [
+        made.way.to_owned(),
+        made.body.radii.len().to_string(),
+        format!("{:.1} s", made.processor_s),
+        format!("{:.0}", made.processor_s / front_s),
+        format!("{} kg/m3", densities.join(", ")),
+        format!("{:.3}, {:.3} of a radius", out.mean, out.largest),
+        format!(
+            "{:.3}, {:.3}, {:.3} of a radius",
+            neighbours.mean, neighbours.scatter, neighbours.largest
+        ),
+        format!("{per_particle:.2}"),
         fabric_text(made),
-    )
+    ]
 }
 
 /// Mean, standard deviation and largest of some values.

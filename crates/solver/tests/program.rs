@@ -57,6 +57,14 @@ use dem_testing::names_in;
 use serde_json::Value;
 use tempfile::TempDir;
 
+/// The last frame of the results in a folder.
+fn last_frame(results: &Path) -> PathBuf {
+    let names = names_in(&results.join("frames"));
+    let mut frames = names.iter().rev();
+    let last = frames.find(|name| name.starts_with("frame_")).unwrap();
+    results.join("frames").join(last)
+}
+
 fn dem_run() -> Command {
     Command::new(env!("CARGO_BIN_EXE_dem-run"))
 }

@@ -99,6 +99,39 @@ fn planes(places: &[Place], named: &[(&str, usize, f64)]) -> String {
     named.iter().map(plane).collect()
 }
 
+/// Plates above and below, walls on both sides along these axes, and the triaxial test with them,
+/// with this pressure, area and [stroke, periods].
+fn triaxial(
+    places: &[Place],
+    sides: &[usize],
+    pressure: &str,
+    area_m2: f64,
+    [stroke, periods]: [&str; 2],
+) -> String {
+    const SIDES: [[&str; 2]; 2] = [["left", "right"], ["front", "back"]];
+    let mut named = vec![("below", 2, 1.0), ("above", 2, -1.0)];
+    for &axis in sides {
+        named.extend([(SIDES[axis][0], axis, 1.0), (SIDES[axis][1], axis, -1.0)]);
+    }
+    let lateral: Vec<&str> = named[2..].iter().map(|(name, _, _)| *name).collect();
+    format!(
+        r#"
+        {}
+        [test]
+        type = "triaxial-compression"
+        crosshead = ["above"]
+        direction = [0, 0, -1]
+        lateral_walls = {lateral:?}
+        confining_pressure = "{pressure}"
+        area = {area_m2:e}
+        stroke = "{stroke}"
+        periods = {periods}
+        rate_check = false
+        "#,
+        planes(places, &named)
+    )
+}
+
 fn run(folder: &Path, scene: &str) -> Value {
     std::fs::write(folder.join("scene.toml"), scene).unwrap();
     answer(folder, &["scene.toml", "--json", "--quiet"])
@@ -152,32 +185,7 @@ fn cubic(cells: usize, folder: &Path) -> Vec<Case> {
         |[i, j]: &&[usize; 2]| (places[*i][2] - middle_m) * (places[*j][2] - middle_m) < 0.0;
     let cut = bonds.iter().filter(is_cut).count() as f64;
     let area_m2 = cut / 8.0 * (2.0 * half_m).powi(2);
-    let walls = planes(
-        &places,
-        &[
-            ("below", 2, 1.0),
-            ("above", 2, -1.0),
-            ("left", 0, 1.0),
-            ("right", 0, -1.0),
-            ("front", 1, 1.0),
-            ("back", 1, -1.0),
-        ],
-    );
-    let rest = format!(
-        r#"
-        {walls}
-        [test]
-        type = "triaxial-compression"
-        crosshead = ["above"]
-        direction = [0, 0, -1]
-        lateral_walls = ["left", "right", "front", "back"]
-        confining_pressure = "1 MPa"
-        area = {area_m2:e}
-        stroke = "0.2 um"
-        periods = 40
-        rate_check = false
-        "#
-    );
+    let rest = triaxial(&places, &[0, 1], "1 MPa", area_m2, ["0.2 um", "40"]);
     // As stiff as the bonds, so that the plates press the ends evenly.
     let stiff =
         "law = \"linear\", normal_stiffness = \"1000 MN/m\", restitution = 0.5, friction = 0";
@@ -229,31 +237,8 @@ fn plane_of_weakness(folder: &Path) -> (String, String) {
     // on one plane.
     let [high_m, deep_m] = [far_m, aside_m].map(|half| 2.0 * (half + RADIUS_M));
     let side_m2 = high_m * deep_m;
-    let walls = planes(
-        &places,
-        &[
-            ("below", 2, 1.0),
-            ("above", 2, -1.0),
-            ("left", 0, 1.0),
-            ("right", 0, -1.0),
-        ],
-    );
-    let rest = format!(
-        r#"
-        {walls}
-        [test]
-        type = "triaxial-compression"
-        crosshead = ["above"]
-        direction = [0, 0, -1]
-        lateral_walls = ["left", "right"]
-        confining_pressure = "20 kPa"
-        area = {:e}
-        stroke = "1.5 um"
-        periods = 100
-        rate_check = false
-        "#,
-        side_m2 / angle.tan()
-    );
+    let area_m2 = side_m2 / angle.tan();
+    let rest = triaxial(&places, &[0], "20 kPa", area_m2, ["1.5 um", "100"]);
     let text = scene(&places, &bonds, &contact(0.0), &mohr_coulomb(), &rest);
     let pressures = [20e3, 50e3, 100e3];
     let named = ["20 kPa", "50 kPa", "100 kPa"];

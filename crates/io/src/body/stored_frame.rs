@@ -13,9 +13,6 @@ pub const RADIUS: &str = "radius_m";
 pub const DENSITY: &str = "density_kg_m3";
 /// Particle array: id of the fragment.
 pub const FRAGMENT_ID: &str = "fragment_id";
-
-/// How the problem begins with a file of particles that is no frame.
-pub const NO_FRAME: &str = "this is no frame of a run";
 /// Particle array: number of the body in [`BODY_NAMES`].
 pub const BODY: &str = "body";
 /// Particle array: a number that follows a particle through a run.
@@ -37,6 +34,8 @@ pub const BODY_NAMES: &str = "body_names";
 /// Field: simulated time, s.
 pub const TIME: &str = "TimeValue";
 
+/// How the problem begins with a file of particles that is no frame.
+pub const NO_FRAME: &str = "this is no frame of a run";
 /// Largest relative difference between densities of one material, due to rounding.
 const SAME_DENSITY: f64 = 1e-12;
 

@@ -1,4 +1,4 @@
-//! Studies that examples run, and tables of them.
+//! Studies and scenes that examples run, and tables of them.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -36,7 +36,7 @@ fn run_of(row: &Value, folder: &Path) -> Result<Run, Failed> {
     }
     let number = row["number"].as_u64().unwrap_or_default();
     let folder = folder.join(format!("runs/{number:04}-1"));
-    let summary = serde_json::from_slice(&std::fs::read(folder.join("summary.json"))?)?;
+    let summary = summary_in(&folder)?;
     let words = row["settings"].as_array().into_iter().flatten();
     Ok(Run {
         folder,
@@ -46,6 +46,27 @@ fn run_of(row: &Value, folder: &Path) -> Result<Run, Failed> {
         time_s: row["time_s"].as_f64().unwrap_or(f64::NAN),
         summary,
     })
+}
+
+/// The `summary.json` of a run.
+fn summary_in(folder: &Path) -> Result<Value, Failed> {
+    let bytes = std::fs::read(folder.join("summary.json"))?;
+    Ok(serde_json::from_slice(&bytes)?)
+}
+
+/// Runs a scene of `data/scenes` with these options and hardly any pictures. Returns its summary.
+pub(crate) fn run_scene(
+    dem_run: &Path,
+    scene: &str,
+    options: &[String],
+    folder: &Path,
+) -> Result<Value, Failed> {
+    let mut command = Command::new(dem_run);
+    command.arg(format!("data/scenes/{scene}.toml"));
+    command.args(["--quiet", "--force", "--set", "output.pictures=\"10 s\""]);
+    command.args(options).arg("--output").arg(folder);
+    output(&mut command)?;
+    summary_in(folder)
 }
 
 impl Run {

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use super::figure::Figure;
 use crate::plan::test_setup::Setup;
-use crate::stages::contacts::pair_force_n;
-use crate::stages::walls::touch_force_n;
+use crate::stages::contacts::{self, pair_force_n};
+use crate::stages::walls::{self, touch_force_n};
 use crate::state::State;
 
 /// Stress across the loaded diameter, the mean of its middle half, Pa.
@@ -79,10 +79,7 @@ fn moments_n_m(state: &State) -> Vec<Matrix3<f64>> {
     let touching = contacts.pairs.iter().zip(&contacts.histories);
     for (&[a, b], history) in touching.filter(|(_, history)| history.overlap_m() > 0.0) {
         let force_n = pair_force_n(contacts, p, [a, b], history);
-        let [radius_a, radius_b] = [a, b].map(|i| p.poses[i as usize].radius_m());
-        let apart = place(b) - place(a);
-        let lever = 0.5 * (1.0 + (radius_a - radius_b) / apart.norm());
-        let point = place(a) + lever * apart;
+        let point = contacts::touch_point_m(&p.poses[a as usize], &p.poses[b as usize]);
         add(a, -force_n, point);
         add(b, force_n, point);
     }
@@ -90,9 +87,7 @@ fn moments_n_m(state: &State) -> Vec<Matrix3<f64>> {
         let touching = wall.touching.iter();
         for touch in touching.filter(|touch| touch.history.overlap_m() > 0.0) {
             let force_n = touch_force_n(wall, contacts, p, touch);
-            let lever_m = p.poses[touch.particle as usize].radius_m() - touch.history.overlap_m();
-            let point = place(touch.particle) - lever_m * Vector3::from(touch.normal);
-            add(touch.particle, force_n, point);
+            add(touch.particle, force_n, walls::touch_point_m(p, touch));
         }
     }
     moments

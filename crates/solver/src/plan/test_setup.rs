@@ -99,6 +99,32 @@ pub struct Setup {
     pub slabs: usize,
 }
 
+impl Setup {
+    /// An arrangement without the particles that are chosen for measurements.
+    fn of(
+        specimen: Specimen,
+        direction: [f64; 3],
+        along: [f64; 3],
+        middle_m: [f64; 3],
+        crack_within_m: f64,
+    ) -> Self {
+        Self {
+            specimen,
+            direction,
+            along,
+            middle_m,
+            crack_within_m,
+            moving: Vec::new(),
+            resting: Vec::new(),
+            gauge_m: 0.0,
+            mean_radius_m: 0.0,
+            sides: Vec::new(),
+            strip: Vec::new(),
+            slabs: 0,
+        }
+    }
+}
+
 /// Determines the arrangement from walls and body. `particles`: those of the tested body, in a
 /// state before the first step; `halves`: those that a direct shear test drives, and those
 /// that supports hold. `volume_m3`: of the body's shape, if known.
@@ -318,20 +344,13 @@ fn beam(
     } else {
         0.5 * beam.height_m
     };
-    Ok(Setup {
-        specimen: Specimen::Beam(beam),
-        direction: test.direction,
-        along: along.into(),
-        middle_m: centre.into(),
+    Ok(Setup::of(
+        Specimen::Beam(beam),
+        test.direction,
+        along.into(),
+        centre.into(),
         crack_within_m,
-        moving: Vec::new(),
-        resting: Vec::new(),
-        gauge_m: 0.0,
-        mean_radius_m: 0.0,
-        sides: Vec::new(),
-        strip: Vec::new(),
-        slabs: 0,
-    })
+    ))
 }
 
 /// Middle of a pin and unit vector along it.
@@ -467,23 +486,16 @@ fn disc(
     let centre = middle(extent(&along)) * along
         + middle(extent(&axis)) * axis
         + middle(extent(&direction)) * direction;
-    Ok(Setup {
-        specimen: Specimen::Disc {
+    Ok(Setup::of(
+        Specimen::Disc {
             diameter_m,
             thickness_m: test.width_m.unwrap_or_else(|| size(extent(&axis))),
         },
-        direction: test.direction,
-        along: along.into(),
-        middle_m: centre.into(),
-        crack_within_m: NEAR_DIAMETER * diameter_m,
-        moving: Vec::new(),
-        resting: Vec::new(),
-        gauge_m: 0.0,
-        mean_radius_m: 0.0,
-        sides: Vec::new(),
-        strip: Vec::new(),
-        slabs: 0,
-    })
+        test.direction,
+        along.into(),
+        centre.into(),
+        NEAR_DIAMETER * diameter_m,
+    ))
 }
 
 /// A bar along the load.
@@ -503,20 +515,13 @@ fn bar(
         .or(volume_m3.map(|volume| volume / of_body_m))
         .unwrap_or_else(sides);
     let centre: Vector3<f64> = axes.iter().map(|axis| middle(extent(axis)) * axis).sum();
-    Setup {
-        specimen: Specimen::Bar { length_m, area_m2 },
-        direction: test.direction,
-        along: test.direction,
-        middle_m: centre.into(),
-        crack_within_m: 0.5 * GAUGE * length_m,
-        moving: Vec::new(),
-        resting: Vec::new(),
-        gauge_m: 0.0,
-        mean_radius_m: 0.0,
-        sides: Vec::new(),
-        strip: Vec::new(),
-        slabs: 0,
-    }
+    Setup::of(
+        Specimen::Bar { length_m, area_m2 },
+        test.direction,
+        test.direction,
+        centre.into(),
+        0.5 * GAUGE * length_m,
+    )
 }
 
 /// A dog bone: the crack belongs into its neck, whose length and section are given.
@@ -627,23 +632,16 @@ fn sheared(
         ));
     }
     centre += (middle([driven_m, held_m]) - centre.dot(&along)) * along;
-    Ok(Setup {
-        specimen: Specimen::Bar {
+    Ok(Setup::of(
+        Specimen::Bar {
             length_m: test.length_m.unwrap_or_else(|| size(extent(&along))),
             area_m2: test.area_m2.unwrap_or_else(|| side_m2(&all, normal)),
         },
-        direction: test.direction,
-        along: normal,
-        middle_m: centre.into(),
-        crack_within_m: 0.5 * (held_m - driven_m).max(0.0),
-        moving: Vec::new(),
-        resting: Vec::new(),
-        gauge_m: 0.0,
-        mean_radius_m: 0.0,
-        sides: Vec::new(),
-        strip: Vec::new(),
-        slabs: 0,
-    })
+        test.direction,
+        normal,
+        centre.into(),
+        0.5 * (held_m - driven_m).max(0.0),
+    ))
 }
 
 /// Chooses the particles within a twentieth of the diameter of a disc, or a mean diameter of the

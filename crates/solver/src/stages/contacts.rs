@@ -6,7 +6,9 @@ mod input;
 mod stored;
 
 pub(super) use self::beside::list_beside;
-pub use self::stored::{contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n};
+pub use self::stored::{
+    contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n, touch_point_m,
+};
 
 pub(in crate::stages) use self::stored::{StoredEnergy, StoredForce};
 

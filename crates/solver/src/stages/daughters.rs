@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::clumps::kick_one;
-use super::contacts::pair_force_n;
+use super::contacts::{pair_force_n, touch_point_m};
 use super::population::apply_topology_change;
 use super::walls::{relax_touches, surface_velocity_m_s, touch_force_n};
 use crate::physics::bond::scatter::{body_key, strength_factor};
@@ -332,10 +332,7 @@ fn end_contacts(state: &mut State, due: &[Due]) -> f64 {
         let (kept, sign) = kept;
         let force_n = sign * pair_force_n(contacts, p, [a, b], history);
         let [one, other] = [a, b].map(|i| &p.poses[i as usize]);
-        let apart = other.place() - one.place();
-        let distance_m = apart.norm();
-        let lever_m = 0.5 * (distance_m + one.radius_m() - other.radius_m());
-        let point = one.place() + lever_m / distance_m * apart;
+        let point = touch_point_m(one, other);
         gained_j += kept_back_j(state, kept, &force_n, &point, half_s);
     }
     for wall in &mut state.walls {

@@ -3,8 +3,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::contacts::pair_force_n;
-use super::walls::touch_force_n;
+use super::contacts::{self, pair_force_n};
+use super::walls::{self, touch_force_n};
 use crate::state::State;
 use crate::state::contacts::Contacts;
 
@@ -65,10 +65,7 @@ fn of_pairs(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) -> usi
         read += 1;
         let force_n = pair_force_n(contacts, p, pair, history);
         let [a, b] = pair.map(|i| &p.poses[i as usize]);
-        let apart = b.place() - a.place();
-        let distance_m = apart.norm();
-        let lever_m = 0.5 * (distance_m + a.radius_m() - b.radius_m());
-        let point = a.place() + lever_m / distance_m * apart;
+        let point = contacts::touch_point_m(a, b);
         for (clump, sign) in clumps.into_iter().zip([-1.0, 1.0]) {
             if let Some(clump) = clump {
                 let centre = Vector3::from(state.clumps.all[clump].place_m);
@@ -89,9 +86,7 @@ fn of_walls(state: &State, contacts: &Contacts, squeezes: &mut [Squeeze]) -> usi
             };
             read += 1;
             let force_n = touch_force_n(wall, contacts, p, touch);
-            let pose = &p.poses[touch.particle as usize];
-            let lever_m = pose.radius_m() - touch.history.overlap_m();
-            let point = pose.place() - lever_m * Vector3::from(touch.normal);
+            let point = walls::touch_point_m(p, touch);
             let centre = Vector3::from(state.clumps.all[clump].place_m);
             squeezes[clump].add(force_n, point - centre);
         }

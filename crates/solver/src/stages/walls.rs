@@ -326,6 +326,13 @@ pub(crate) fn touch_energy_j(
     kind.with(|number| number, StoredEnergy { touch, history })
 }
 
+/// Where a wall touches a particle in a recorded contact, m.
+pub(crate) fn touch_point_m(particles: &Particles, touch: &WallContact) -> Vector3<f64> {
+    let pose = &particles.poses[touch.particle as usize];
+    let lever_m = pose.radius_m() - touch.history.overlap_m();
+    pose.place() - lever_m * Vector3::from(touch.normal)
+}
+
 /// Force of a wall on a particle in a recorded contact, N.
 pub(crate) fn touch_force_n(
     wall: &Wall,

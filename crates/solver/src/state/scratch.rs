@@ -17,8 +17,8 @@ pub struct Scratch {
     pub structural_resistance: Vec<Wrench>,
     /// Damping forces on particles. Empty: none.
     pub particle_resistance: Vec<Wrench>,
-    /// Motions of the free particles at the time of their poses without damping of bonds, and in a
-    /// stage of it. Length 0 or free particles.
+    /// Motions of the free particles at the time of their poses, without viscous damping of bonds
+    /// or with that of the last step, and in a stage of it. Length 0 or free particles.
     pub predicted: [Vec<Motion>; 2],
     /// Impulses of the damping of bonds after the last stage but one and the last, N s and N m s;
     /// its forces in the first stage, N and N m. Length as [`super::State::bond_resistance`].

@@ -1,6 +1,6 @@
 //! Bulk behaviour of scenes that a user runs, against laws that others have measured.
 
-use super::{Bench, dem_pack, root, scene_of_data, table};
+use super::{Bench, dem_pack, last_frame, root, scene_of_data, table};
 use crate::helpers::mass_in_box_kg;
 use dem_io::body::mass::of_named_density;
 use dem_io::body::{read_body, read_particles};
@@ -111,12 +111,8 @@ fn a_poured_density_gives_particle_density_and_overlap_and_comes_back_by_shatter
 
     // All of it is still there; the bulking factor follows from the mass in the region, counted
     // without the program.
-    let frames = dem_testing::names_in(&bench.path("out/frames"));
-    let last = frames
-        .iter()
-        .rfind(|name| name.starts_with("frame_"))
-        .unwrap();
-    let frame = read_particles(&bench.path(&format!("out/frames/{last}"))).unwrap();
+    let last = last_frame(&bench.path("out"));
+    let frame = read_particles(&last).unwrap();
     let spheres = frame.loose_spheres().unwrap();
     assert_eq!(spheres.radii.len(), body.radii.len());
     let kept = of_named_density(&spheres).unwrap().mass_kg;

@@ -1,7 +1,7 @@
 //! A body by filling a mould and pressing (Platzer 2022, 3.2.1): the density is met, and the
 //! spheres become a body that a scene loads and breaks.
 
-use super::{Bench, dem_run, scene_of_data};
+use super::{Bench, dem_run, last_frame, scene_of_data};
 use crate::helpers::mass_in_box_kg;
 use clap::Parser;
 use dem_io::body::{body_summary, read_body, read_particles, write_body};
@@ -53,12 +53,8 @@ fn a_mould_is_pressed_to_a_density_and_its_body_breaks() {
     assert!(said.contains("237 of 237 particles, 0.09027 kg"), "{said}");
     let spheres = read_body(&bench.path("spheres.vtp")).unwrap();
     assert_eq!(spheres.about.particle_density_kg_m3, Some(2050.0));
-    let frames = dem_testing::names_in(&bench.path("out/frames"));
-    let last = frames
-        .iter()
-        .rfind(|name| name.starts_with("frame_"))
-        .unwrap();
-    let frame = read_particles(&bench.path(&format!("out/frames/{last}"))).unwrap();
+    let last = last_frame(&bench.path("out"));
+    let frame = read_particles(&last).unwrap();
     assert!(spheres.positions == frame.positions && spheres.radii == frame.radii);
     // The density, counted by fine steps over the volume of each sphere.
     let [half_m, height_m] = BODY_M;
@@ -68,8 +64,7 @@ fn a_mould_is_pressed_to_a_density_and_its_body_breaks() {
     assert!((counted / found - 1.0).abs() < 2e-3, "{counted} {found}");
 
     // dem-pack takes the frame as well.
-    let frame = bench.path(&format!("out/frames/{last}"));
-    let (frame, direct) = (frame.display().to_string(), bench.path("direct.vtp"));
+    let (frame, direct) = (last.display().to_string(), bench.path("direct.vtp"));
     let words = [
         "dem-pack",
         "bond",

@@ -47,6 +47,14 @@ pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -
     kind.with(|number| number, StoredEnergy { touch, history })
 }
 
+/// Where two particles touch, m: in the middle of their overlap, on the line between their centres.
+pub fn touch_point_m(one: &Pose, other: &Pose) -> Vector3<f64> {
+    let apart = other.place() - one.place();
+    let distance_m = apart.norm();
+    let lever_m = 0.5 * (distance_m + one.radius_m() - other.radius_m());
+    one.place() + lever_m / distance_m * apart
+}
+
 /// Force of a contact on the second of a pair, N, from its history.
 pub fn pair_force_n(
     contacts: &Contacts,
