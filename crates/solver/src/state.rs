@@ -182,27 +182,23 @@ impl State {
         let free = self.particles.free;
         self.divide_bonds();
         let any = |is_so: fn(&BondRule) -> bool| self.bonds.rules.iter().any(is_so);
-        let damped = if any(|rule| rule.damped) { free } else { 0 };
+        let damped = if any(BondRule::is_damped) { free } else { 0 };
         let structural = any(|rule| rule.structural_damping > 0.0);
-        let structural = if structural { free } else { 0 };
+        let structural = if structural { self.bonds.len() } else { 0 };
         self.damping_rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
         self.bond_resistance = vec![Wrench::default(); damped];
         let scratch = &mut self.scratch;
-        scratch.structural_resistance = vec![Wrench::default(); structural];
+        scratch.damping_now = vec![[0.0; 4]; structural];
         scratch.damping_stages = std::array::from_fn(|_| vec![Wrench::default(); damped]);
         let is_damped = self.model.particle_damping > 0.0;
         let resistances = if is_damped { self.particles.len() } else { 0 };
         scratch.particle_resistance = vec![Wrench::default(); resistances];
     }
 
-    /// The lists of damping forces: viscous and structural of bonds, and on particles; each with
-    /// one for each particle, or empty.
-    pub(crate) fn resistances(&self) -> [&[Wrench]; 3] {
-        [
-            &self.bond_resistance,
-            &self.scratch.structural_resistance,
-            &self.scratch.particle_resistance,
-        ]
+    /// The lists of damping forces: of bonds, and on particles; each with one for each particle, or
+    /// empty.
+    pub(crate) fn resistances(&self) -> [&[Wrench]; 2] {
+        [&self.bond_resistance, &self.scratch.particle_resistance]
     }
 
     /// Raises the bound of damping if bonds have become longer.

@@ -54,7 +54,7 @@ impl Search {
 pub struct Limit {
     /// Largest stable step, s. Infinite where nothing vibrates.
     pub step_s: f64,
-    /// The same without damping of contacts and particles and without structural damping, s.
+    /// The same without damping of contacts and particles, s.
     pub undamped_step_s: f64,
     /// Largest circular frequency, rad/s.
     pub omega_rad_s: f64,
@@ -81,9 +81,7 @@ pub struct Bound {
 /// matter: see [`crate::stages::damping`].
 ///
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always
-/// against its force, which damping of particles raises by a fraction: K counts 1 + gamma
-/// times. In the same way the stiffness of each bond counts 1 + gamma times for its structural
-/// damping.
+/// against its force, which damping of particles raises by a fraction: K counts 1 + gamma times.
 ///
 /// Bonds of the incremental formulation count with the stiffness of the total one, which is the
 /// same. Contacts count at the overlap that they have, stuck. Afterwards no wrench acts on any
@@ -111,15 +109,7 @@ fn with_all_bonds<T>(state: &mut State, found: impl FnOnce(&mut State) -> T) -> 
 fn limit_of_bonded(state: &mut State) -> Limit {
     let contacts = &linear_contacts(state);
     let damaged = undamage(&mut state.bonds);
-    let (undamped, of_undamped) =
-        largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
-    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
-    let (k, iterations) = if unstiffened.is_some() {
-        let (k, more) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
-        (k, of_undamped + more)
-    } else {
-        (undamped, of_undamped)
-    };
+    let (k, iterations) = largest_eigenvalue(state, contacts, Weights::STIFFNESS, Search::Fine);
     let stiffer = stiffer_by_damping(state);
     let (c, of_damping) = if contacts.is_empty() {
         (0.0, 0)
@@ -133,8 +123,8 @@ fn limit_of_bonded(state: &mut State) -> Limit {
     };
     let of_particles = Limit {
         step_s,
-        undamped_step_s: safe_step(undamped, 0.0),
-        omega_rad_s: undamped.sqrt(),
+        undamped_step_s: safe_step(k, 0.0),
+        omega_rad_s: k.sqrt(),
         damping_1_s: c,
         iterations,
         all_iterations: iterations + of_damping + of_both,
@@ -143,7 +133,6 @@ fn limit_of_bonded(state: &mut State) -> Limit {
         step_s: of_particles.bound().with_more(clump_rates(state, contacts)),
         ..of_particles
     };
-    restore_stiffness(&mut state.bonds, unstiffened);
     restore_stiffness(&mut state.bonds, damaged);
     clear_trial_wrenches(state);
     limit
@@ -160,9 +149,7 @@ fn bound_near_of_bonded(state: &mut State, step_s: f64) -> Bound {
     let contacts = &linear_contacts(state);
     let both = Weights::of_step(stiffer_by_damping(state), step_s);
     let damaged = undamage(&mut state.bonds);
-    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
     let (value, _) = largest_eigenvalue(state, contacts, both, Search::Rough);
-    restore_stiffness(&mut state.bonds, unstiffened);
     restore_stiffness(&mut state.bonds, damaged);
     let is_damped = !contacts.is_empty();
     let of_particles = Bound {
@@ -200,26 +187,7 @@ fn undamage(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
     Some(before)
 }
 
-/// Makes bonds with structural damping stiffer by its gamma. Returns what they were; None: there
-/// are none.
-pub(super) fn stiffen_by_structural_damping(bonds: &mut Bonds) -> Option<Vec<BondBlock>> {
-    let gamma = |rule: &BondRule| rule.structural_damping;
-    if bonds.rules.iter().all(|rule| gamma(rule) == 0.0) {
-        return None;
-    }
-    let before = bonds.blocks.clone();
-    for (rule, run) in bonds.runs(0..bonds.len()).collect::<Vec<_>>() {
-        let stiffer = 1.0 + gamma(&bonds.rules[rule]);
-        for at in run {
-            let (block, lane) = (&mut bonds.blocks[at / BLOCK], at % BLOCK);
-            block.normal[lane] *= stiffer;
-            block.shear[lane] *= stiffer;
-        }
-    }
-    Some(before)
-}
-
-pub(super) fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>>) {
+fn restore_stiffness(bonds: &mut Bonds, before: Option<Vec<BondBlock>>) {
     if let Some(blocks) = before {
         bonds.blocks = blocks;
     }

@@ -5,7 +5,6 @@ use dem_io::random::uniform;
 
 use super::limit::{
     Field, ITERATIONS, add_stiffness_times, clear_trial_wrenches, inverse_mass_roots, largest_ritz,
-    restore_stiffness, stiffen_by_structural_damping,
 };
 use crate::state::State;
 
@@ -18,9 +17,7 @@ const EVERY: usize = 5;
 /// What counts is said at [`super::limit::limit`]. `body_of`: the number of the body of each
 /// particle; bodies are not joined by bonds. Afterwards no wrench acts on any particle.
 pub(crate) fn own_eigenvalues(state: &mut State, body_of: &[u32]) -> Vec<f64> {
-    let unstiffened = stiffen_by_structural_damping(&mut state.bonds);
     let found = largest_eigenvalues(state, body_of);
-    restore_stiffness(&mut state.bonds, unstiffened);
     clear_trial_wrenches(state);
     found
 }

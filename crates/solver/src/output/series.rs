@@ -6,7 +6,7 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 
 /// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 19] = [
+pub(super) const ENERGIES: [&str; 20] = [
     "kinetic_energy_j",
     "elastic_energy_j",
     "gravity_energy_j",
@@ -16,6 +16,7 @@ pub(super) const ENERGIES: [&str; 19] = [
     "bond_damping_j",
     "structural_damping_j",
     "local_damping_j",
+    "adhesion_j",
     "contact_damping_j",
     "friction_j",
     "bond_breakage_j",
@@ -83,6 +84,7 @@ pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64
         balance.bond_damping_j,
         balance.structural_damping_j,
         balance.local_damping_j,
+        balance.adhesion_j,
         balance.contact_damping_j,
         balance.friction_j,
         balance.bond_breakage_j,

@@ -579,5 +579,5 @@ fn damping(
     let all = coefficients
         .into_iter()
         .fold(DampingCoefficients::default(), Add::add);
-    [all.normal, all.shear, all.torsion, all.bending]
+    all.into()
 }

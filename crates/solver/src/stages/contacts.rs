@@ -6,6 +6,7 @@ mod input;
 mod stored;
 
 pub(super) use self::beside::list_beside;
+pub(crate) use self::stored::pairs_adhesion_j;
 pub use self::stored::{
     contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n, touch_point_m,
 };

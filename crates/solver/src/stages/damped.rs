@@ -1,4 +1,4 @@
-//! Viscous damping forces of bonds, several bonds at once.
+//! Viscous forces of bonds, several bonds at once.
 
 use crate::physics::bond::damping::{DampingCoefficients, resistance};
 use crate::physics::number::Vec3;
@@ -11,10 +11,11 @@ use crate::state::bonds::{BLOCK, BondBlock, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Partition};
 
-/// Sets `damping` (one for each particle) to the viscous forces of the bonds between ends with
-/// these motions.
+/// Sets `damping` (one for each particle) to the viscous forces of the bonds, with these
+/// coefficients (one for each bond: see [`Bonds::damping`]), between ends with these motions.
 pub(crate) fn damping_wrenches(
     bonds: &Bonds,
+    coefficients: &[[f64; 4]],
     poses: &[Pose],
     motions: &[Motion],
     partitions: &mut [Partition],
@@ -26,10 +27,11 @@ pub(crate) fn damping_wrenches(
         }
         partition.computed.damped = 0;
         for Batch { rule, which } in &partition.batches {
-            if bonds.rules[*rule].damped {
+            if bonds.rules[*rule].is_damped() {
                 partition.computed.damped += which.count();
                 with_lanes(BatchWork {
                     bonds,
+                    coefficients,
                     poses,
                     motions,
                     partition,
@@ -44,6 +46,7 @@ pub(crate) fn damping_wrenches(
 /// The work on the bonds of one batch of a partition.
 struct BatchWork<'a> {
     bonds: &'a Bonds,
+    coefficients: &'a [[f64; 4]],
     poses: &'a [Pose],
     motions: &'a [Motion],
     partition: &'a Partition,
@@ -105,7 +108,7 @@ impl BatchWork<'_> {
                 ],
             ];
             let [normal, shear, torsion, bending] =
-                T::columns(proof, |lane| self.bonds.damping[at[lane]]);
+                T::columns(proof, |lane| self.coefficients[at[lane]]);
             let coefficients = DampingCoefficients {
                 normal,
                 shear,

@@ -1,4 +1,5 @@
-//! Viscous forces of damped bonds on the particles.
+//! Forces of damped bonds on the particles: viscous, and those of structural damping, which a
+//! viscous force stands for in each step ([`super::structural`]).
 //!
 //! Velocities are known half a step before the forces (leapfrog). The kick is therefore split
 //! (Strang 1968): half of it by all other forces F, then the decay of velocities by damping alone
@@ -34,11 +35,17 @@
 //! positive beyond 1 and below -4 beyond -1. So a between 0 and 4 leaves no z outside. Dashpots of
 //! contacts, which F contains with the velocity of half a step ago, change the last condition
 //! alone: see [`crate::check::limit`].
+//!
+//! With coefficients that change from step to step, as those of structural damping, the first proof
+//! fails, but not its result: with the synchronous velocities v_n, the other forces keep
+//! v M v + x K (1 - A/4) x, which has no negative part up to the undamped limit, and R only lowers
+//! v M v.
 
 use rayon::prelude::*;
 
 use super::bonds::any_bond;
 use super::chunks::CHUNK;
+use super::chunks::ordered_sum;
 use super::damped::damping_wrenches;
 use super::motion::{Forces, for_each_awake};
 use super::rigid_parts::predict_rigid_parts;
@@ -46,6 +53,7 @@ use super::stage::{Need, Saving, Stage};
 use super::supports::predict_held;
 use crate::physics::chebyshev::Chebyshev;
 use crate::state::State;
+use crate::state::bonds::BondRule;
 use crate::state::particles::{Motion, Wrench};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
@@ -61,7 +69,7 @@ pub const BOND_DAMPING: Stage = Stage {
     within: None,
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.damped),
+            any_bond(state, BondRule::is_damped),
             || "bonds are damped".to_owned(),
             "no bond is damped: no relative velocities",
         )
@@ -93,13 +101,14 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
         return 0;
     }
     if state.kick_s() * state.damping_rate_1_s <= WEAK {
-        predict(state, Prediction::AsDampedBefore);
+        predict_as_damped_before(state);
         let mut force = std::mem::take(&mut state.bond_resistance);
         damp(state, 0, &mut force);
         state.bond_resistance = force;
     } else {
         damp_in_stages(state);
     }
+    state.scratch.structural_share = structural_share(state);
     let partitions = state.scratch.partitions.iter();
     partitions.map(|partition| partition.computed.damped).sum()
 }
@@ -141,7 +150,7 @@ fn damp_in_stages(state: &mut State) {
     state.scratch.damping_stages = [before, now, first];
 }
 
-/// Which viscous damping of bonds a prediction counts.
+/// Which damping of bonds a prediction counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Prediction {
     /// None.
@@ -150,17 +159,57 @@ enum Prediction {
     AsDampedBefore,
 }
 
+/// Predicts the motions of the free particles at the time of their poses, with the damping of bonds
+/// of the last step.
+pub(super) fn predict_as_damped_before(state: &mut State) {
+    predict(state, Prediction::AsDampedBefore);
+}
+
+/// Part of what damping of bonds takes in this step that structural damping takes: all but what the
+/// viscous forces take in the middle of the decay.
+fn structural_share(state: &mut State) -> f64 {
+    if state.scratch.damping_now.is_empty() {
+        return 0.0;
+    }
+    if state.bonds.damping.is_empty() {
+        return 1.0;
+    }
+    let half_s = 0.5 * state.kick_s();
+    predict(state, Prediction::Undamped);
+    let of_bonds = std::mem::take(&mut state.bond_resistance);
+    let mut viscous = std::mem::take(&mut state.scratch.damping_stages[0]);
+    go_on(state, &mut viscous, 0.0, [(half_s, &of_bonds)]);
+    let with_structural = std::mem::take(&mut state.scratch.damping_now);
+    damp(state, 1, &mut viscous);
+    state.scratch.damping_now = with_structural;
+    let motions = &state.scratch.predicted[1];
+    let asleep = |i: usize| state.particles.sleeps(i);
+    let [all_w, viscous_w] = [&of_bonds, &viscous].map(|list| {
+        ordered_sum(list.len(), |i| match asleep(i) {
+            true => 0.0,
+            false => -motions[i].power_w(&list[i]),
+        })
+    });
+    state.bond_resistance = of_bonds;
+    state.scratch.damping_stages[0] = viscous;
+    if all_w > 0.0 {
+        (1.0 - viscous_w / all_w).clamp(0.0, 1.0)
+    } else {
+        0.0
+    }
+}
+
 /// Predicts the motions of the free particles at the time of their poses.
 fn predict(state: &mut State, prediction: Prediction) {
     let half_s = 0.5 * state.previous_time_step_s;
     let mut predicted = std::mem::take(&mut state.scratch.predicted[0]);
     let p = &state.particles;
-    let [viscous, structural, on_particles] = state.resistances();
-    let viscous = match prediction {
+    let [of_bonds, on_particles] = state.resistances();
+    let of_bonds = match prediction {
         Prediction::Undamped => &[],
-        Prediction::AsDampedBefore => viscous,
+        Prediction::AsDampedBefore => of_bonds,
     };
-    let resisting = [viscous, structural, on_particles];
+    let resisting = [of_bonds, on_particles];
     let forces = Forces::of(p, resisting, state.model.gravity_m_s2, half_s);
     predicted.resize(p.free, Motion::default());
     let chunks = predicted.par_chunks_mut(CHUNK).enumerate();
@@ -171,7 +220,7 @@ fn predict(state: &mut State, prediction: Prediction) {
         });
     });
     predict_held(state, half_s, &mut predicted);
-    predict_rigid_parts(state, viscous, &[], &mut predicted);
+    predict_rigid_parts(state, of_bonds, &[], &mut predicted);
     state.scratch.predicted[0] = predicted;
 }
 
@@ -238,8 +287,13 @@ fn add_multiple(sum: &mut Wrench, factor: f64, wrench: &Wrench) {
 /// Sets `forces` to the damping of bonds between ends with the motions of this stage.
 fn damp(state: &mut State, stage: usize, forces: &mut [Wrench]) {
     let scratch = &mut state.scratch;
+    let coefficients = match scratch.damping_now.is_empty() {
+        true => &state.bonds.damping,
+        false => &scratch.damping_now,
+    };
     damping_wrenches(
         &state.bonds,
+        coefficients,
         &state.particles.poses,
         &scratch.predicted[stage],
         &mut scratch.partitions,

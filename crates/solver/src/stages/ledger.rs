@@ -9,11 +9,12 @@ use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::contact::law::ContactKind;
 use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::synchronous;
-use crate::stages::contacts::{elastic_energy_j, lost_j};
+use crate::stages::contacts::{elastic_energy_j, lost_j, pairs_adhesion_j};
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::power_w;
 use crate::stages::supports::reactions_work_j;
 use crate::stages::totals::{elastic_energy, kinetic_energy, momenta, synchronous_motions_of_free};
+use crate::stages::walls::touches_adhesion_j;
 use crate::state::State;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
@@ -154,6 +155,8 @@ pub struct Balance {
     pub local_damping_j: f64,
     /// Elastic energy of contacts, J.
     pub contact_elastic_j: f64,
+    /// Energy of the attraction of ends that touch, J: below 0.
+    pub adhesion_j: f64,
     /// Dissipated by contact damping, J.
     pub contact_damping_j: f64,
     /// Dissipated by friction of contacts, sliding and rolling, and of failed elements of flat
@@ -210,7 +213,9 @@ fn wall_power_w(wall: &Wall, push: &WallLoad, step: usize) -> f64 {
 /// Powers of loads and damping, W.
 fn powers(state: &State) -> Work {
     let particles = &state.particles;
-    let [viscous, structural, on_particles] = state.resistances();
+    let [of_bonds, on_particles] = state.resistances();
+    let of_bonds_w = -power_w(of_bonds, particles);
+    let structural = state.scratch.structural_share;
     Work {
         loads: loads_power_w(
             &state.loads,
@@ -219,8 +224,8 @@ fn powers(state: &State) -> Work {
             &particles.motions,
         ),
         supports: 0.0,
-        bond_damping: -power_w(viscous, particles),
-        structural_damping: -power_w(structural, particles),
+        bond_damping: (1.0 - structural) * of_bonds_w,
+        structural_damping: structural * of_bonds_w,
         particle_damping: -power_w(on_particles, particles),
     }
 }
@@ -315,6 +320,24 @@ fn resultant(wrenches: &[Wrench], poses: &[Pose], about_m: [f64; 3]) -> [[f64; 3
     [[fx, fy, fz], [mx, my, mz]]
 }
 
+/// Part of the energy of all contacts that is adhesion, J: below 0.
+fn adhesion_j(state: &State) -> f64 {
+    let Some(contacts) = &state.contacts else {
+        return 0.0;
+    };
+    let (p, sleep) = (&state.particles, state.sleep.as_ref());
+    let awake = contacts.pairs.iter().zip(&contacts.histories);
+    let frozen = sleep.iter().flat_map(|sleep| &sleep.pairs);
+    let frozen = frozen.map(|kept| (&kept.pair, &kept.history));
+    let of_walls = state.walls.iter().enumerate().map(|(number, wall)| {
+        let frozen = sleep.iter().flat_map(|sleep| &sleep.touches);
+        let frozen = frozen.filter(|kept| kept.wall == number);
+        let touches = wall.touching.iter().chain(frozen.map(|kept| &kept.touch));
+        touches_adhesion_j(wall, contacts, p, touches)
+    });
+    pairs_adhesion_j(contacts, p, awake.chain(frozen)) + of_walls.sum::<f64>()
+}
+
 /// The ledger between the two halves of a step, `interact` and `advance`. Records the largest
 /// energies and momenta.
 pub fn balance(state: &mut State) -> Balance {
@@ -338,6 +361,7 @@ pub fn balance(state: &mut State) -> Balance {
         contact_damping += wall.damping_j;
     }
     contact_elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
+    let adhesion = adhesion_j(state);
     friction += state.ledger.joint_friction_j;
     let bridges_j = bridges_energy_j(state);
     let bridges_lost_j = state.bridges.as_ref().map_or(0.0, |bridges| bridges.lost_j);
@@ -389,7 +413,8 @@ pub fn balance(state: &mut State) -> Balance {
         bond_damping_j: work.bond_damping,
         structural_damping_j: work.structural_damping,
         local_damping_j: work.particle_damping,
-        contact_elastic_j: contact_elastic,
+        contact_elastic_j: contact_elastic - adhesion,
+        adhesion_j: adhesion,
         contact_damping_j: contact_damping,
         friction_j: friction,
         bond_breakage_j: ledger.released_j,

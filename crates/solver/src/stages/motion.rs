@@ -113,7 +113,7 @@ pub(crate) fn drift_particles(state: &mut State) -> usize {
 pub(super) struct Forces<'a> {
     wrenches: &'a [Wrench],
     /// Each with one for each particle, or empty.
-    resisting: [&'a [Wrench]; 3],
+    resisting: [&'a [Wrench]; 2],
     gravity_m_s2: [f64; 3],
     kick_s: f64,
 }
@@ -122,7 +122,7 @@ impl<'a> Forces<'a> {
     /// All forces on particles, with these resisting ones: see [`State::resistances`].
     pub(super) fn of(
         particles: &'a Particles,
-        resisting: [&'a [Wrench]; 3],
+        resisting: [&'a [Wrench]; 2],
         gravity_m_s2: [f64; 3],
         kick_s: f64,
     ) -> Self {
@@ -347,12 +347,6 @@ pub fn power_w(wrenches: &[Wrench], particles: &Particles) -> f64 {
         if particles.sleeps(i) {
             return 0.0;
         }
-        let (wrench, motion) = (&wrenches[i], &particles.motions[i]);
-        (0..3)
-            .map(|k| {
-                wrench.force_n[k] * motion.velocity_m_s[k]
-                    + wrench.torque_n_m[k] * motion.spin_rad_s[k]
-            })
-            .sum()
+        particles.motions[i].power_w(&wrenches[i])
     })
 }

@@ -40,11 +40,9 @@ pub(crate) const RIGID_PARTS: Stage = Stage {
 /// move as the parts do. Returns the number of their spheres.
 pub(crate) fn gather_rigid_parts(state: &mut State) -> usize {
     take_broken_impulses(state);
-    let scratch = &state.scratch;
-    let resisting = [&state.bond_resistance[..], &scratch.structural_resistance];
     let particles = &mut state.particles;
     for part in &mut state.rigid_parts.all {
-        gather(part, particles, resisting);
+        gather(part, particles, &state.bond_resistance);
     }
     spheres(&state.rigid_parts)
 }
@@ -71,7 +69,7 @@ fn take_broken_impulses(state: &mut State) {
 
 /// Force on a part, N, and torque about its centre of mass, N m, of all `lists` of wrenches, each
 /// with one for each particle, or empty. Or impulses, N s and N m s.
-fn forces_on(part: &RigidPart, poses: &[Pose], lists: [&[Wrench]; 3]) -> [Vector3<f64>; 2] {
+fn forces_on(part: &RigidPart, poses: &[Pose], lists: [&[Wrench]; 2]) -> [Vector3<f64>; 2] {
     let centre = Vector3::from(part.place_m);
     let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
     for &i in &part.members {
@@ -87,11 +85,11 @@ fn forces_on(part: &RigidPart, poses: &[Pose], lists: [&[Wrench]; 3]) -> [Vector
 }
 
 /// Gives the spheres of rigid parts the motions of the parts at the time of their poses: predicted
-/// from the forces with this viscous damping of bonds, and these impulses; each one for each
+/// from the forces with this damping of bonds, and these impulses; each one for each
 /// particle, or none.
 pub(super) fn predict_rigid_parts(
     state: &State,
-    viscous: &[Wrench],
+    of_bonds: &[Wrench],
     impulses: &[Wrench],
     predicted: &mut [Motion],
 ) {
@@ -99,9 +97,8 @@ pub(super) fn predict_rigid_parts(
     let gravity = Vector3::from(state.model.gravity_m_s2);
     let (poses, wrenches) = (&state.particles.poses, &state.particles.wrenches);
     for part in &state.rigid_parts.all {
-        let structural = &state.scratch.structural_resistance[..];
-        let [force, torque] = forces_on(part, poses, [wrenches, structural, viscous]);
-        let [push, twist] = forces_on(part, poses, [impulses, &[], &[]]);
+        let [force, torque] = forces_on(part, poses, [wrenches, of_bonds]);
+        let [push, twist] = forces_on(part, poses, [impulses, &[]]);
         let velocity = half_s * (force / part.mass_kg + gravity) + push / part.mass_kg;
         let angular = half_s * torque + twist;
         let now = RigidPart {
@@ -115,10 +112,9 @@ pub(super) fn predict_rigid_parts(
 
 /// Sums the forces on a part. Each sphere gets the motion of the part, and a wrench that
 /// accelerates it, together with its damping of bonds, as the part is accelerated.
-fn gather(part: &mut RigidPart, particles: &mut Particles, resisting: [&[Wrench]; 2]) {
+fn gather(part: &mut RigidPart, particles: &mut Particles, of_bonds: &[Wrench]) {
     let centre = Vector3::from(part.place_m);
-    let [viscous, structural] = resisting;
-    let lists = [&particles.wrenches[..], viscous, structural];
+    let lists = [&particles.wrenches[..], of_bonds];
     let [force, torque] = forces_on(part, &particles.poses, lists);
     part.set_motions(&particles.poses, &mut particles.motions);
     let (faster, spun) = (force / part.mass_kg, part.spun_by(&torque));
@@ -130,7 +126,7 @@ fn gather(part: &mut RigidPart, particles: &mut Particles, resisting: [&[Wrench]
             &(sphere.mass_kg * (faster + spun.cross(&arm))),
             &(sphere.inertia_kg_m2 * spun),
         );
-        for resists in resisting.iter().filter_map(|list| list.get(i)) {
+        if let Some(resists) = of_bonds.get(i) {
             wrench.add(&-vector(resists.force_n), &-vector(resists.torque_n_m));
         }
         particles.wrenches[i] = wrench;

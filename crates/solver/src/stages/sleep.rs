@@ -228,12 +228,11 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
             );
             let resisting = [
                 &mut state.bond_resistance,
-                &mut state.scratch.structural_resistance,
                 &mut state.scratch.particle_resistance,
             ];
             for wrench in resisting.into_iter().filter_map(|list| list.get_mut(i)) {
                 // The dissipation by damping in the next half step has already been recorded.
-                let power_w = power_w(wrench, &motion.velocity_m_s, &motion.spin_rad_s);
+                let power_w = motion.power_w(wrench);
                 state.ledger.gain(-half_s * power_w);
                 *wrench = Wrench::default();
             }
@@ -272,13 +271,6 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
         contacts.search_all();
     }
     count_sleepers(state);
-}
-
-/// Power of a wrench, W.
-fn power_w(wrench: &Wrench, velocity_m_s: &[f64; 3], spin_rad_s: &[f64; 3]) -> f64 {
-    (0..3)
-        .map(|k| wrench.force_n[k] * velocity_m_s[k] + wrench.torque_n_m[k] * spin_rad_s[k])
-        .sum()
 }
 
 /// Sleeping clusters near an awake particle, by the list of pairs, or near a moving wall.

@@ -1,21 +1,21 @@
-//! Structural damping forces of bonds on the particles, from the velocities half a step ago.
+//! Structural damping of bonds: the coefficients of the dashpots that resist as it does.
 //!
-//! The force jumps where a mode reverses, so that displacements are of first order in the step
-//! whichever velocities decide on its sign. With those of half a step ago the limit of the step is
-//! exact: in the fastest mode at its limit, x, -x, x, they oppose the force, while those at the
-//! time of the forces nearly vanish, and slower modes decide.
+//! They hold for one step: [`super::damping`] lets velocities decay with them. They are those of the
+//! motions at the time of the poses, in the middle of the decay, predicted with the damping of the
+//! last step: so that the error is of second order in the step. Since a decay only takes energy,
+//! whatever its coefficients, the largest stable step is that without damping.
 
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 use super::bonds::any_bond;
+use super::chunks::CHUNK;
+use super::damping::predict_as_damped_before;
 use super::stage::{NO_SAVING, Need, Stage};
-use crate::physics::bond::damping::{DampingForces, EndMotion};
-use crate::physics::bond::damping_models::structural_forces;
-use crate::stages::blocks::for_each_partition;
+use crate::physics::bond::damping::{DampingCoefficients, EndMotion};
 use crate::state::State;
 use crate::state::bonds::Bonds;
-use crate::state::particles::{Motion, Pose, Wrench};
-use crate::state::partitions::{BondSelection, Partition};
+use crate::state::particles::{Motion, Particles};
 
 /// Structural damping of bonds.
 pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
@@ -28,93 +28,58 @@ pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
             "not asked for",
         )
     },
-    bytes: |state| size_of_val(&state.scratch.structural_resistance[..]),
+    bytes: |state| size_of_val(&state.scratch.damping_now[..]),
     saving: NO_SAVING,
 };
 
-/// Sets the structural damping forces of bonds. Returns the number of bonds computed.
+/// Sets the coefficients of damping of this step. Returns the number of bonds with structural
+/// damping that may move.
 pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
-    if state.scratch.structural_resistance.is_empty() {
+    if state.scratch.damping_now.is_empty() {
         return 0;
     }
-    let (bonds, p) = (&state.bonds, &state.particles);
-    for_each_partition(
-        &mut state.scratch.partitions,
-        &mut state.scratch.structural_resistance,
-        &|partition, resisting| {
-            of_partition(bonds, &p.poses, &p.motions, partition, resisting);
-        },
-    );
-    let partitions = state.scratch.partitions.iter();
-    partitions
-        .map(|partition| partition.computed.structural)
-        .sum()
-}
-
-fn of_partition(
-    bonds: &Bonds,
-    poses: &[Pose],
-    motions: &[Motion],
-    partition: &mut Partition,
-    resisting: &mut [Wrench],
-) {
-    let Partition {
-        particles: own,
-        batches,
-        awake,
-        computed,
-        ..
-    } = partition;
-    computed.structural = 0;
-    for awake in awake.iter() {
-        resisting[awake.clone()].fill(Wrench::default());
-    }
-    for batch in batches.iter() {
-        let gamma = bonds.rules[batch.rule].structural_damping;
-        if gamma == 0.0 {
-            continue;
-        }
-        computed.structural += batch.which.count();
-        let mut add = |at: usize| {
-            if bonds.is_broken(at) {
-                return;
+    predict_as_damped_before(state);
+    let mut coefficients = std::mem::take(&mut state.scratch.damping_now);
+    let (bonds, particles) = (&state.bonds, &state.particles);
+    let motions = &state.scratch.predicted[0];
+    let chunks = coefficients.par_chunks_mut(CHUNK).enumerate();
+    let computed = chunks.map(|(chunk, coefficients)| {
+        let numbered = (chunk * CHUNK..).zip(coefficients);
+        let resist = |(at, now): (usize, &mut [f64; 4])| {
+            let structural = of_bond(bonds, at, particles, motions);
+            let is_computed = structural.is_some();
+            let structural: [f64; 4] = structural.unwrap_or_default().into();
+            *now = bonds.damping.get(at).copied().unwrap_or_default();
+            for (now, structural) in now.iter_mut().zip(structural) {
+                *now += structural;
             }
-            let DampingForces {
-                force_on_b,
-                torques,
-            } = forces_of(bonds, at, gamma, poses, motions);
-            let on_ends = [-force_on_b, force_on_b];
-            for (end, (force, torque)) in bonds.ends[at].iter().zip(on_ends.iter().zip(&torques)) {
-                let end = *end as usize;
-                if own.contains(&end) {
-                    resisting[end - own.start].add(force, torque);
-                }
-            }
+            usize::from(is_computed)
         };
-        match &batch.which {
-            BondSelection::Own(list) | BondSelection::Border(list) => {
-                list.iter().for_each(|&at| add(at as usize));
-            }
-            BondSelection::Run(range) => range.clone().for_each(&mut add),
-        }
-    }
+        numbered.map(resist).sum::<usize>()
+    });
+    let computed = computed.sum();
+    state.scratch.damping_now = coefficients;
+    computed
 }
 
-fn forces_of(
+/// Coefficients of structural damping of bond `at` with these motions. None: it has none, or sleeps.
+fn of_bond(
     bonds: &Bonds,
     at: usize,
-    gamma: f64,
-    poses: &[Pose],
+    particles: &Particles,
     motions: &[Motion],
-) -> DampingForces {
+) -> Option<DampingCoefficients> {
     let ends = bonds.ends[at].map(|end| end as usize);
+    if particles.sleeps(ends[0]) {
+        return None;
+    }
+    let structural = bonds.structural_damping(at, motions)?;
+    let poses = &particles.poses;
     let apart = poses[ends[1]].place() - poses[ends[0]].place();
-    let length_m = apart.norm();
     let moving = ends.map(|end| EndMotion {
         velocity_m_s: Vector3::from(motions[end].velocity_m_s),
         spin_rad_s: Vector3::from(motions[end].spin_rad_s),
     });
     let load = bonds.forces(at, poses).load;
-    let c = apart / length_m;
-    structural_forces(gamma, &load, &bonds.levers_m(at), &c, length_m, &moving)
+    Some(structural.coefficients(&load, &apart, &moving))
 }

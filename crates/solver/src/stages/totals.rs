@@ -29,7 +29,7 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
 /// The same for free particles only.
 pub fn synchronous_motions_of_free(state: &State) -> Vec<Motion> {
     let p = &state.particles;
-    let [viscous, structural, particles] = state.resistances();
+    let [of_bonds, on_particles] = state.resistances();
     let back = |i: usize| {
         let mut motion = p.motions[i];
         if p.sleeps(i) {
@@ -40,7 +40,7 @@ pub fn synchronous_motions_of_free(state: &State) -> Vec<Motion> {
             half_s * motion.inverse_mass,
             half_s * motion.inverse_inertia,
         );
-        for wrenches in [&p.wrenches, viscous, structural, particles] {
+        for wrenches in [&p.wrenches, of_bonds, on_particles] {
             if let Some(wrench) = wrenches.get(i) {
                 for k in 0..3 {
                     motion.velocity_m_s[k] -= per_mass * wrench.force_n[k];

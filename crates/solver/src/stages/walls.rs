@@ -12,6 +12,7 @@ use self::meeting::{Meeting, Met, Place};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
 use crate::physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
+use crate::physics::contact::law::ContactKind;
 use crate::physics::number::Vec3;
 use crate::physics::rigid::turn;
 use crate::stages::contacts::{StoredEnergy, StoredForce};
@@ -310,6 +311,27 @@ pub(crate) fn wall_contact(
         spin_rad_s: Vec3(0.0, 0.0, 0.0),
     };
     wall_contact_kinematics(&foot, particles.contact_sphere_at_rest(i), 0.0)
+}
+
+/// Part of the energy of recorded contacts of a wall that is adhesion, J: below 0.
+pub(crate) fn touches_adhesion_j<'a>(
+    wall: &Wall,
+    contacts: &Contacts,
+    particles: &Particles,
+    touches: impl Iterator<Item = &'a WallContact>,
+) -> f64 {
+    if !wall.model.kinds.iter().any(ContactKind::attracts) {
+        return 0.0;
+    }
+    let adhesion_j = |touch: &WallContact| {
+        let i = touch.particle as usize;
+        let overlap_m = touch.history.overlap_m();
+        let kind = wall.kind(contacts.materials[i]);
+        let mut touch = wall_contact(particles, i, &touch.normal.into(), overlap_m);
+        touch.overlap_m = overlap_m;
+        kind.adhesion_j(&touch)
+    };
+    touches.map(adhesion_j).sum()
 }
 
 /// Elastic energy of a recorded wall contact, J.

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::physics::bond::criteria::COUNT;
 use crate::physics::bond::damage::{Damage, opening_ratios, screened_factor};
+use crate::physics::bond::damping_models::StructuralDamping;
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::flat_joint::{
     self, ElementStrengths, FlatJoint, FlatJointLaw, JointStiffness,
@@ -53,6 +54,11 @@ pub struct BondRule {
 }
 
 impl BondRule {
+    /// Whether bonds resist relative motion, by coefficients or by structural damping.
+    pub(crate) fn is_damped(&self) -> bool {
+        self.damped || self.structural_damping > 0.0
+    }
+
     /// Whether bonds have a history and are computed one at a time.
     pub(crate) fn is_single(&self) -> bool {
         self.incremental || self.plasticity.is_some() || self.flat_joint.is_some()
@@ -527,6 +533,25 @@ impl Bonds {
             bending,
             levers_m: self.levers_m(at),
         }
+    }
+
+    /// Structural damping of bond `at` between ends of these masses. None: it has none.
+    pub(crate) fn structural_damping(
+        &self,
+        at: usize,
+        motions: &[Motion],
+    ) -> Option<StructuralDamping> {
+        let gamma = self.rules[self.rule_of(at)].structural_damping;
+        if gamma == 0.0 || self.is_broken(at) {
+            return None;
+        }
+        let stiffness = self.stiffness(at);
+        let [a, b] = self.ends[at].map(|end| motions[end as usize].inverse_mass);
+        Some(StructuralDamping {
+            gamma,
+            frequency_rad_s: (stiffness.normal * (a + b)).sqrt(),
+            stiffness,
+        })
     }
 
     /// Forces of bond `at`, which must not be broken, on its ends.

@@ -2,22 +2,23 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
-use super::bonds::Bonds;
+use super::bonds::{BondRule, Bonds};
 use super::particles::{Motion, Particles};
 
 /// Bonds may become longer by so much, and change their directions as much, before the rate is
 /// found again.
 const MORE: f64 = 1.05;
 
-/// An upper bound of the largest eigenvalue of the viscous damping of bonds over mass, 1/s; 0
-/// without any. For two ends joined by a dashpot, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so it is that
+/// An upper bound of the largest eigenvalue of the damping of bonds over mass, 1/s; 0 without any.
+/// Structural damping counts with the largest coefficients that it can have. For two ends joined by a dashpot, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so it is that
 /// of the particle that twice its own dashpots, to ends at rest, slow down most.
 pub(crate) fn damping_rate_1_s(bonds: &Bonds, particles: &Particles) -> f64 {
-    if bonds.damping.is_empty() {
+    if !bonds.rules.iter().any(BondRule::is_damped) {
         return 0.0;
     }
     let mut resistances = vec![Matrix6::zeros(); particles.free];
-    for (at, (ends, damping)) in bonds.ends.iter().zip(&bonds.damping).enumerate() {
+    for (at, ends) in bonds.ends.iter().enumerate() {
+        let damping = &largest_coefficients(bonds, at, particles);
         let levers_m = bonds.levers_m(at);
         let [a, b] = ends.map(|end| &particles.poses[end as usize]);
         let apart = b.place() - a.place();
@@ -30,6 +31,16 @@ pub(crate) fn damping_rate_1_s(bonds: &Bonds, particles: &Particles) -> f64 {
         }
     }
     MORE * (resistances.iter().map(largest_eigenvalue)).fold(0.0, f64::max)
+}
+
+/// Largest coefficients of damping of bond `at`, mode by mode.
+fn largest_coefficients(bonds: &Bonds, at: usize, particles: &Particles) -> [f64; 4] {
+    let viscous = bonds.damping.get(at).copied().unwrap_or_default();
+    let Some(structural) = bonds.structural_damping(at, &particles.motions) else {
+        return viscous;
+    };
+    let structural: [f64; 4] = structural.largest_coefficients().into();
+    std::array::from_fn(|mode| viscous[mode] + structural[mode])
 }
 
 /// Resistance of a dashpot in this direction, with coefficients mode by mode, to the motion of an

@@ -68,6 +68,15 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// Power of a wrench at this motion, W.
+    pub(crate) fn power_w(&self, wrench: &Wrench) -> f64 {
+        (0..3)
+            .map(|k| {
+                wrench.force_n[k] * self.velocity_m_s[k] + wrench.torque_n_m[k] * self.spin_rad_s[k]
+            })
+            .sum()
+    }
+
     /// Velocity x, y, z, m/s, and inverse mass, 1/kg: as in memory.
     #[inline(always)]
     pub(crate) fn velocity_row(&self) -> [f64; 4] {

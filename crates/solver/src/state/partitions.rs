@@ -83,8 +83,6 @@ pub struct Computed {
     pub frictional: usize,
     /// Damping forces.
     pub damped: usize,
-    /// Structural damping forces.
-    pub structural: usize,
 }
 
 impl BondSelection {

@@ -13,8 +13,11 @@ pub struct Scratch {
     pub threads: usize,
     /// Division of particles and bonds among threads.
     pub partitions: Vec<Partition>,
-    /// Structural damping forces of bonds. Empty: no bond has any.
-    pub structural_resistance: Vec<Wrench>,
+    /// Coefficients of damping of bonds in this step, structural damping included: as
+    /// [`super::bonds::Bonds::damping`]. Empty: no bond has structural damping.
+    pub damping_now: Vec<[f64; 4]>,
+    /// Part of what damping of bonds takes in this step that structural damping takes.
+    pub structural_share: f64,
     /// Damping forces on particles. Empty: none.
     pub particle_resistance: Vec<Wrench>,
     /// Motions of the free particles at the time of their poses, without viscous damping of bonds

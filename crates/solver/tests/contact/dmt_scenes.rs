@@ -102,6 +102,26 @@ fn stuck(state: &State) -> usize {
         .count()
 }
 
+/// The energy of the attraction of each pair is - 2 pi w R* d.
+#[test]
+fn adhesion_has_its_own_energy() {
+    let mut state = cloud(2);
+    for _ in 0..2000 {
+        step(&mut state);
+    }
+    let books = step_and_balance(&mut state);
+    let histories = &state.contacts.as_ref().unwrap().histories;
+    let overlaps = histories.iter().map(|history| history.overlap_m());
+    let overlaps_m: f64 = overlaps.filter(|overlap_m| *overlap_m > 0.0).sum();
+    let wanted_j = -2.0 * PI * WORK * 0.5 * RADIUS_M * overlaps_m;
+    assert!(wanted_j < 0.0);
+    assert!(
+        (books.adhesion_j / wanted_j - 1.0).abs() < 1e-9,
+        "{books:?} {wanted_j}"
+    );
+    assert!(books.contact_elastic_j > 0.0 && books.energy_error.abs() < 1e-3);
+}
+
 #[test]
 fn the_bits_do_not_depend_on_partitions_and_threads() {
     let after = |threads: usize| {
@@ -203,6 +223,12 @@ fn what_hangs_by_adhesion_sleeps_and_wakes() {
                 (held_n / WEIGHT_N - 1.0).abs() < 1e-2,
                 "{held_n:e} {WEIGHT_N:e}"
             );
+            let adhesion_j = -2.0 * PI * WORK * RADIUS_M * overlap_m;
+            assert!(
+                (books.adhesion_j / adhesion_j - 1.0).abs() < 1e-9,
+                "{books:?}"
+            );
+            assert!(books.contact_elastic_j > 0.0);
         }
         slept |= sleeps;
         if slept && state.particles.asleep.is_empty() && state.time_s > 0.0195 {

@@ -81,8 +81,8 @@ fn of_bonds() {
     expect(
         "structural damping of bonds",
         &scene("", ", damping = { structural_damping = 0.1 }", "", ""),
-        &with(&FREE, &["structural damping"]),
-        &with(&FREE, &["structural damping"]),
+        &with(&FREE, &["structural damping", "bond damping"]),
+        &with(&FREE, &["structural damping", "bond damping"]),
     );
     expect(
         "failure",

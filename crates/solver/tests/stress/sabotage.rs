@@ -61,17 +61,13 @@ fn a_value_that_is_off_by_little_is_found() {
 
 #[test]
 fn a_limit_without_its_damping_is_found() {
-    for damped in [
-        "timoshenko, structural_damping = 0.5",
-        "timoshenko, damping_ratio = 0, local_damping = 0.5",
-    ] {
-        let map = member("damping", damped);
-        let (_, plan, _) = map.trial.planned().unwrap();
-        let undamped_s = plan.step.limit.undamped_step_s;
-        assert!(undamped_s > 1.2 * plan.step.limit.step_s);
-        let said = wrong(&map, |map| values(map)[0].value = undamped_s);
-        assert_eq!(said, "largest stable step is off");
-    }
+    let damped = "timoshenko, damping_ratio = 0, local_damping = 0.5";
+    let map = member("damping", damped);
+    let (_, plan, _) = map.trial.planned().unwrap();
+    let undamped_s = plan.step.limit.undamped_step_s;
+    assert!(undamped_s > 1.2 * plan.step.limit.step_s);
+    let said = wrong(&map, |map| values(map)[0].value = undamped_s);
+    assert_eq!(said, "largest stable step is off");
 }
 
 #[test]

@@ -21,6 +21,13 @@ pub struct DampingCoefficients<T = f64> {
     pub bending: T,
 }
 
+impl From<DampingCoefficients> for [f64; 4] {
+    /// Normal, shear, torsion, bending.
+    fn from(all: DampingCoefficients) -> Self {
+        [all.normal, all.shear, all.torsion, all.bending]
+    }
+}
+
 impl Add for DampingCoefficients {
     type Output = Self;
 

@@ -8,4 +8,4 @@ mod structural;
 pub use self::chen::{Chen, ChenByMode};
 pub use self::mode_ratios::ModeRatios;
 pub use self::platzer::Platzer;
-pub use self::structural::structural_forces;
+pub use self::structural::{SMOOTHING, StructuralDamping};

@@ -143,6 +143,20 @@ impl ContactKind {
         self.with(|number| number, Elastic(touch))
     }
 
+    /// Energy of the attraction of ends that touch at rest, J: below 0, and part of the energy of
+    /// the contact.
+    pub(crate) fn adhesion_j(&self, touch: &ContactKinematics) -> f64 {
+        match &self.law {
+            Law::DerjaguinMullerToporov(law) => -law.attraction_n(touch) * touch.overlap_m,
+            Law::HertzMindlin(_) | Law::Linear(_) => 0.0,
+        }
+    }
+
+    /// Whether ends that touch attract each other.
+    pub(crate) fn attracts(&self) -> bool {
+        matches!(self.law, Law::DerjaguinMullerToporov(_))
+    }
+
     /// The contact linearised: see [`linearised`].
     pub fn linearised(&self, touch: &ContactKinematics) -> Linearised {
         struct Linearise<'a>(&'a ContactKinematics);

@@ -2,7 +2,7 @@
 
 use crate::physics::contact::NormalLaw;
 use crate::physics::contact::kinematics::{ContactKinematics, contact_kinematics};
-use crate::physics::contact::law::ContactWork;
+use crate::physics::contact::law::{ContactKind, ContactWork};
 use crate::physics::contact::rolling::RollingFriction;
 use crate::stages::chunks::{ordered_sum, ordered_sums};
 use crate::state::contacts::{ContactHistory, Contacts};
@@ -37,14 +37,42 @@ pub fn contact_energy_j(contacts: &Contacts, particles: &Particles, at: usize) -
     if contacts.histories[at] == ContactHistory::default() {
         return 0.0;
     }
-    let kind = &contacts.model.kinds[contacts.kind(contacts.pairs[at])];
-    let ends = contacts.pairs[at].map(|end| end as usize);
-    let history = &contacts.histories[at];
+    let (pair, history) = (contacts.pairs[at], &contacts.histories[at]);
+    let touch = stored_touch(particles, pair, history);
+    let kind = &contacts.model.kinds[contacts.kind(pair)];
+    kind.with(|number| number, StoredEnergy { touch, history })
+}
+
+/// A pair at rest, with the overlap in its history.
+fn stored_touch(
+    particles: &Particles,
+    pair: [u32; 2],
+    history: &ContactHistory,
+) -> ContactKinematics {
+    let ends = pair.map(|end| end as usize);
     let [a, b] = ends.map(|i| particles.poses[i].place());
     let balls = ends.map(|i| particles.contact_sphere_at_rest(i));
     let mut touch = contact_kinematics((b - a).into(), balls, 0.0);
     touch.overlap_m = history.overlap_m();
-    kind.with(|number| number, StoredEnergy { touch, history })
+    touch
+}
+
+/// Part of the energy of these pairs that is adhesion, J: below 0.
+pub(crate) fn pairs_adhesion_j<'a>(
+    contacts: &Contacts,
+    particles: &Particles,
+    pairs: impl Iterator<Item = (&'a [u32; 2], &'a ContactHistory)>,
+) -> f64 {
+    let kinds = &contacts.model.kinds;
+    if !kinds.iter().any(ContactKind::attracts) {
+        return 0.0;
+    }
+    let adhesion_j = |(&pair, history): (&[u32; 2], &ContactHistory)| {
+        let touch = stored_touch(particles, pair, history);
+        kinds[contacts.kind(pair)].adhesion_j(&touch)
+    };
+    let touching = pairs.filter(|(_, history)| **history != ContactHistory::default());
+    touching.map(adhesion_j).sum()
 }
 
 /// Where two particles touch, m: in the middle of their overlap, on the line between their centres.
@@ -62,11 +90,7 @@ pub fn pair_force_n(
     pair: [u32; 2],
     history: &ContactHistory,
 ) -> Vector3<f64> {
-    let ends = pair.map(|end| end as usize);
-    let [a, b] = ends.map(|i| particles.poses[i].place());
-    let balls = ends.map(|i| particles.contact_sphere_at_rest(i));
-    let mut touch = contact_kinematics((b - a).into(), balls, 0.0);
-    touch.overlap_m = history.overlap_m();
+    let touch = stored_touch(particles, pair, history);
     let kind = &contacts.model.kinds[contacts.kind(pair)];
     kind.with(|number| number, StoredForce { touch, history })
 }
