@@ -31,7 +31,9 @@ use dem_io::body::mass::BodyMass;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Integrator, Quantity, Scene};
 
+use crate::check::limit::damping_eigenvalue_1_s;
 use crate::physics::chebyshev::{MOST, limit};
+use crate::stages::damping::WEAK;
 use crate::stages::ledger::opened;
 use crate::stages::population::apply_topology_change;
 use crate::state::State;
@@ -39,6 +41,7 @@ use crate::state::bonds::Bonds;
 use crate::state::clumps::Template;
 use crate::state::clusters::sizes::{Sphere, box_lengths_m};
 use crate::state::clusters::{Clusters, Triggers};
+use crate::state::damping_rate::MORE;
 use crate::state::events::TopologyChange;
 use crate::state::loads::GroupLoad;
 use crate::state::model::NamedBody;
@@ -164,6 +167,7 @@ pub fn plan(
     warnings.extend(doubts(scene, &state));
     state.ledger = opened(&state);
     let step = first_step(scene, &bodies, &mut state, allow_any_step)?;
+    bound_damping(&mut state);
     refuse_endless_damping(scene, &state)?;
     let arriving = arriving_as_clusters(&state);
     let forecast = forecast(
@@ -215,6 +219,21 @@ fn refuse_damped_clumps(scene: &Scene, state: &State) -> Result<()> {
         "it has no effect on clumps",
         "remove it, or start bodies as \"bonded\"",
     ))
+}
+
+/// Where damping takes several passes over the bonds by its bound, finds how fast it is.
+fn bound_damping(state: &mut State) {
+    let mut arriving = arriving_as_clusters(state);
+    let of_arriving = arriving.iter().map(|state| state.damping_rate_1_s);
+    let bound_1_s = of_arriving.fold(state.damping_rate_1_s, f64::max);
+    if state.time_step_s * bound_1_s <= WEAK {
+        return;
+    }
+    let of_arriving = arriving.iter_mut().map(damping_eigenvalue_1_s);
+    let of_arriving = of_arriving.fold(0.0, f64::max);
+    let largest_1_s = MORE * MORE * damping_eigenvalue_1_s(state).max(of_arriving);
+    state.model.damping_rate_1_s = Some(largest_1_s);
+    state.damping_rate_1_s = state.damping_rate_1_s.min(largest_1_s);
 }
 
 /// Refuses damping of bonds so strong that a step would take very many passes over them.

@@ -185,7 +185,8 @@ impl State {
         let damped = if any(BondRule::is_damped) { free } else { 0 };
         let structural = any(|rule| rule.structural_damping > 0.0);
         let structural = if structural { self.bonds.len() } else { 0 };
-        self.damping_rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
+        let rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
+        self.damping_rate_1_s = rate_1_s.min(self.model.damping_rate_1_s.unwrap_or(rate_1_s));
         self.bond_resistance = vec![Wrench::default(); damped];
         let scratch = &mut self.scratch;
         scratch.damping_now = vec![[0.0; 4]; structural];

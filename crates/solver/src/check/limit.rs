@@ -9,9 +9,11 @@ use serde::{Deserialize, Serialize};
 use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
 use crate::physics::rigid::turn;
 use crate::stages::bonds::bond_wrenches;
+use crate::stages::damped::damping_wrenches;
 use crate::stages::plasticity::add_elasto_plastic_wrenches;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
+use crate::state::damping_rate::largest_coefficients;
 use crate::state::particles::{Motion, Pose, Wrench};
 
 /// Iterations at least and at most.
@@ -319,8 +321,60 @@ fn largest_eigenvalue(
         bonds_as_total(state, &displaced);
         state.particles.wrenches.clone()
     });
-    let at_rest = at_rest.as_deref();
-    let mut present = start(&roots);
+    lanczos(&roots, search, |present, image| {
+        if weights.stiffness > 0.0 {
+            add_stiffness_times(
+                state,
+                weights.stiffness,
+                &roots,
+                present,
+                at_rest.as_deref(),
+                &mut displaced,
+                image,
+            );
+        }
+        if !contacts.is_empty() {
+            let motions = motions(present, &roots);
+            let wrenches = &mut state.particles.wrenches;
+            linear_wrenches(contacts, weights, &motions, wrenches);
+            add_forces(-1.0, wrenches, &roots, image);
+        }
+    })
+}
+
+/// The largest eigenvalue of the damping of bonds over mass, 1/s, with the largest coefficients that
+/// structural damping can have; not too small by more than a ten-thousandth. Afterwards no wrench
+/// acts on any particle.
+pub fn damping_eigenvalue_1_s(state: &mut State) -> f64 {
+    with_all_bonds(state, |state| {
+        let roots = inverse_mass_roots(state);
+        let coefficients: Vec<[f64; 4]> = (0..state.bonds.len())
+            .map(|at| largest_coefficients(&state.bonds, at, &state.particles))
+            .collect();
+        let mut wrenches = vec![Wrench::default(); state.particles.free];
+        let (value, _) = lanczos(&roots, Search::Rough, |present, image| {
+            damping_wrenches(
+                &state.bonds,
+                &coefficients,
+                &state.particles.poses,
+                &motions(present, &roots),
+                &mut state.scratch.partitions,
+                &mut wrenches,
+            );
+            add_forces(-1.0, &wrenches, &roots, image);
+        });
+        value
+    })
+}
+
+/// The largest eigenvalue of a symmetric operator of which `add_image` adds the image of a field to
+/// another, an upper bound by the residual, and the iterations needed for it.
+fn lanczos(
+    roots: &Field,
+    search: Search,
+    mut add_image: impl FnMut(&Field, &mut Field),
+) -> (f64, usize) {
+    let mut present = start(roots);
     let mut before: Field = vec![[0.0; 6]; roots.len()];
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
     let mut largest = (0.0, 0.0);
@@ -330,24 +384,7 @@ fn largest_eigenvalue(
         let beta_before = beside.last().copied().unwrap_or(0.0);
         let mut image = before;
         image.iter_mut().flatten().for_each(|f| *f *= -beta_before);
-        if weights.stiffness > 0.0 {
-            let weight = weights.stiffness;
-            add_stiffness_times(
-                state,
-                weight,
-                &roots,
-                &present,
-                at_rest,
-                &mut displaced,
-                &mut image,
-            );
-        }
-        if !contacts.is_empty() {
-            let motions = motions(&present, &roots);
-            let wrenches = &mut state.particles.wrenches;
-            linear_wrenches(contacts, weights, &motions, wrenches);
-            add_forces(-1.0, wrenches, &roots, &mut image);
-        }
+        add_image(&present, &mut image);
         let alpha = dot(&image, &present);
         for (image, present) in image.iter_mut().flatten().zip(present.iter().flatten()) {
             *image -= alpha * present;

@@ -1,4 +1,6 @@
-//! How fast the dashpots of bonds can slow particles down.
+//! How fast the dashpots of bonds can slow particles down: at most by a bound that follows from the
+//! dashpots of each particle, and at most as fast as the plan found for the whole bodies
+//! ([`crate::check::limit::damping_eigenvalue_1_s`]). Bonds that break only lower it.
 
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
@@ -7,7 +9,7 @@ use super::particles::{Motion, Particles};
 
 /// Bonds may become longer by so much, and change their directions as much, before the rate is
 /// found again.
-const MORE: f64 = 1.05;
+pub(crate) const MORE: f64 = 1.05;
 
 /// An upper bound of the largest eigenvalue of the damping of bonds over mass, 1/s; 0 without any.
 /// Structural damping counts with the largest coefficients that it can have. For two ends joined by a dashpot, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so it is that
@@ -34,7 +36,7 @@ pub(crate) fn damping_rate_1_s(bonds: &Bonds, particles: &Particles) -> f64 {
 }
 
 /// Largest coefficients of damping of bond `at`, mode by mode.
-fn largest_coefficients(bonds: &Bonds, at: usize, particles: &Particles) -> [f64; 4] {
+pub(crate) fn largest_coefficients(bonds: &Bonds, at: usize, particles: &Particles) -> [f64; 4] {
     let viscous = bonds.damping.get(at).copied().unwrap_or_default();
     let Some(structural) = bonds.structural_damping(at, &particles.motions) else {
         return viscous;
