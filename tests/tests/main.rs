@@ -6,6 +6,7 @@
     reason = "a test stops where it fails"
 )]
 
+mod allocations;
 mod pipe;
 #[cfg(unix)]
 mod readme;

@@ -13,6 +13,7 @@ pub mod groups;
 pub(crate) mod ledger;
 pub mod levels;
 pub mod loads;
+pub mod meetings;
 pub mod model;
 pub mod order;
 pub mod particles;

@@ -39,8 +39,25 @@ struct Row<'a> {
     spheres: usize,
     /// True if the first sphere is fixed.
     held: bool,
+    damping: Damping,
+}
+
+/// Damping of bonds.
+#[derive(Debug, Clone, Copy)]
+enum Damping {
     /// Damping ratio of each mode of a pair.
-    damping: f64,
+    Viscous(f64),
+    /// Fraction of the load that resists.
+    Structural(f64),
+}
+
+impl Damping {
+    fn keys(self) -> String {
+        match self {
+            Self::Viscous(ratio) => format!("damping_ratio = {ratio:e}, per_mode = true"),
+            Self::Structural(gamma) => format!("structural_damping = {gamma:e}"),
+        }
+    }
 }
 
 impl Row<'_> {
@@ -92,7 +109,7 @@ impl Row<'_> {
             bodies.row = {{ particles = [{}], bond_list = [{}], material = "stone", bonds = "glue" }}
             groups.first = {{ particles = [0] }}
             groups.last = {{ particles = [{}] }}
-            bonds.glue = {{ model = "{}", young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, radius_factor = {:e}, damping = {{ damping_ratio = {:e}, per_mode = true }} }}
+            bonds.glue = {{ model = "{}", young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e}, radius_factor = {:e}, damping = {{ {} }} }}
             {held}
             {more}
             "#,
@@ -101,7 +118,7 @@ impl Row<'_> {
             self.spheres - 1,
             self.model,
             self.radius_factor,
-            self.damping,
+            self.damping.keys(),
         ))
     }
 
@@ -172,7 +189,7 @@ fn pairs() -> String {
                 radius_factor,
                 spheres: 2,
                 held: false,
-                damping: 0.0,
+                damping: Damping::Viscous(0.0),
             };
             let rates = row.pair_rates();
             let highest = rates.iter().copied().fold(0.0, f64::max);
@@ -226,7 +243,7 @@ fn chains() -> String {
                 radius_factor: 0.1,
                 spheres,
                 held,
-                damping: 0.0,
+                damping: Damping::Viscous(0.0),
             };
             let found = row.plan("\"auto\"", "").step.limit.omega_rad_s;
             let ends = if held { "held at one end" } else { "free" };
@@ -248,9 +265,13 @@ const STEPS: usize = 20_000;
 /// which is -1 at r = 2. Beyond it by a fraction s, its logarithm is 2 sqrt(2 s) without damping,
 /// and 4 s/(b - 1) = 4 s/tanh(2 zeta) with it. Damping in one stage, with g = 4 zeta, has
 /// r^2 + f(q, g) = 0 (stages/damping.rs), where f(-1) = -4 and f'(-1) = g/(1 - g): the logarithm
-/// is 8 s (1 - g)/g.
-fn late(damping: f64) -> f64 {
+/// is 8 s (1 - g)/g. Structural damping resists most at reversals, where R is nearly 0: b is at most
+/// 2, and the logarithm at least 4 s.
+fn late(damping: Damping) -> f64 {
     let in_a_step = 1e6_f64.ln() / STEPS as f64;
+    let Damping::Viscous(damping) = damping else {
+        return 0.25 * in_a_step + HALVED;
+    };
     let in_one_stage = 4.0 * damping;
     let late = if damping == 0.0 {
         in_a_step * in_a_step / 8.0
@@ -266,11 +287,13 @@ fn late(damping: f64) -> f64 {
 fn limits() -> [String; 2] {
     let (mut limits, mut observed) = (Vec::new(), Vec::new());
     for (spheres, held, damping) in [
-        (2, false, 0.0),
-        (2, false, 0.1),
-        (2, false, 1.0),
-        (10, false, 0.0),
-        (10, true, 0.0),
+        (2, false, Damping::Viscous(0.0)),
+        (2, false, Damping::Viscous(0.1)),
+        (2, false, Damping::Viscous(1.0)),
+        (2, false, Damping::Structural(0.5)),
+        (10, false, Damping::Viscous(0.0)),
+        (10, false, Damping::Structural(0.9)),
+        (10, true, Damping::Viscous(0.0)),
     ] {
         let row = Row {
             model: "timoshenko",
@@ -283,7 +306,10 @@ fn limits() -> [String; 2] {
         let wanted = 2.0 / omega;
         let found = row.plan("\"auto\"", "").step.limit.step_s;
         let what = format!("{spheres} spheres, {}", if held { "held" } else { "free" });
-        let what = format!("{what}, damping ratio {damping}");
+        let what = match damping {
+            Damping::Viscous(ratio) => format!("{what}, damping ratio {ratio}"),
+            Damping::Structural(gamma) => format!("{what}, structural damping {gamma}"),
+        };
         let case = Case::new(what.clone(), 1e6 * found, 1e6 * wanted, EXACT);
         limits.push(case.rounding(SEARCHED));
         let shown = row.observed(wanted, STEPS) * wanted;

@@ -12,8 +12,10 @@ const EPSILON: f64 = 2.0 / 13.0;
 const FEWEST: usize = 2;
 
 /// Factors of the stages over a unit of time.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Chebyshev {
+    /// The largest eigenvalue for which they were chosen.
+    pub covered: f64,
     /// Of the first rate in the first stage.
     pub first: f64,
     /// Of the other stages.
@@ -60,13 +62,26 @@ impl Polynomial {
 }
 
 impl Chebyshev {
+    /// Those already chosen if they were for this eigenvalue, or else the fewest stages for
+    /// eigenvalues up to `largest`.
+    pub fn for_largest(self, largest: f64) -> Self {
+        if self.covered == largest && !self.others.is_empty() {
+            self
+        } else {
+            Self::covering(largest)
+        }
+    }
+
     /// The fewest stages for eigenvalues up to `largest`, with their limit if that is larger.
     pub fn covering(largest: f64) -> Self {
         let mut count = FEWEST.max((0.5 * largest).max(0.0).sqrt() as usize);
         while limit(count) < largest {
             count += 1;
         }
-        Self::of(count)
+        Self {
+            covered: largest,
+            ..Self::of(count)
+        }
     }
 
     /// So many stages, at least two.
@@ -87,6 +102,7 @@ impl Chebyshev {
             }
         };
         Self {
+            covered: limit(count),
             first: b(1) * scale,
             others: (2..=count).map(stage).collect(),
         }

@@ -115,7 +115,8 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
 
 fn damp_in_stages(state: &mut State) {
     let kick_s = state.kick_s();
-    let stages = Chebyshev::covering(kick_s * state.damping_rate_1_s);
+    let known = std::mem::take(&mut state.scratch.stages);
+    let stages = known.for_largest(kick_s * state.damping_rate_1_s);
     predict(state, Prediction::Undamped);
     let mut force = std::mem::take(&mut state.bond_resistance);
     let [mut before, mut now, mut first] = std::mem::take(&mut state.scratch.damping_stages);
@@ -148,6 +149,7 @@ fn damp_in_stages(state: &mut State) {
     }
     state.bond_resistance = force;
     state.scratch.damping_stages = [before, now, first];
+    state.scratch.stages = stages;
 }
 
 /// Which damping of bonds a prediction counts.

@@ -40,10 +40,11 @@ pub(crate) fn take_in_energy(state: &mut State) -> usize {
     if !state.model.rules.make_daughters() {
         return 0;
     }
-    let powers_w = powers_w(state);
+    let mut powers_w = std::mem::take(&mut state.scratch.powers_w);
+    find_powers_w(state, &mut powers_w);
     let kick_s = state.kick_s();
     let mut touched = 0;
-    for (clump, power_w) in state.clumps.all.iter_mut().zip(powers_w) {
+    for (clump, &power_w) in state.clumps.all.iter_mut().zip(&powers_w) {
         if clump.asleep {
             continue;
         }
@@ -52,6 +53,7 @@ pub(crate) fn take_in_energy(state: &mut State) -> usize {
             .intake
             .advance(power_w.map(|power_w| power_w * kick_s));
     }
+    state.scratch.powers_w = powers_w;
     touched
 }
 
@@ -78,14 +80,15 @@ impl Intake {
     }
 }
 
-/// The power that each clump takes in at the time of the positions, W. None: nothing touches it.
-fn powers_w(state: &State) -> Vec<Option<f64>> {
-    let mut powers_w = vec![None; state.clumps.all.len()];
+/// Sets the power that each clump takes in at the time of the positions, W. None: nothing touches
+/// it.
+fn find_powers_w(state: &State, powers_w: &mut Vec<Option<f64>>) {
+    powers_w.clear();
+    powers_w.resize(state.clumps.all.len(), None);
     if let Some(contacts) = &state.contacts {
-        of_pairs(state, contacts, &mut powers_w);
-        of_walls(state, contacts, &mut powers_w);
+        of_pairs(state, contacts, powers_w);
+        of_walls(state, contacts, powers_w);
     }
-    powers_w
 }
 
 fn of_pairs(state: &State, contacts: &Contacts, powers_w: &mut [Option<f64>]) {

@@ -85,8 +85,8 @@ fn forces_on(part: &RigidPart, poses: &[Pose], lists: [&[Wrench]; 2]) -> [Vector
 }
 
 /// Gives the spheres of rigid parts the motions of the parts at the time of their poses: predicted
-/// from the forces with this damping of bonds, and these impulses; each one for each
-/// particle, or none.
+/// from the forces with this damping of bonds, and these impulses; each one for each particle, or
+/// none.
 pub(super) fn predict_rigid_parts(
     state: &State,
     of_bonds: &[Wrench],
@@ -101,12 +101,11 @@ pub(super) fn predict_rigid_parts(
         let [push, twist] = forces_on(part, poses, [impulses, &[]]);
         let velocity = half_s * (force / part.mass_kg + gravity) + push / part.mass_kg;
         let angular = half_s * torque + twist;
-        let now = RigidPart {
-            velocity_m_s: (Vector3::from(part.velocity_m_s) + velocity).into(),
-            angular_momentum: (Vector3::from(part.angular_momentum) + angular).into(),
-            ..part.clone()
-        };
-        now.set_motions(poses, predicted);
+        let motion = [
+            Vector3::from(part.velocity_m_s) + velocity,
+            Vector3::from(part.angular_momentum) + angular,
+        ];
+        part.set_motions_of(motion, poses, predicted);
     }
 }
 

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use self::driven::{bar_velocity_m_s, weight_velocity_m_s};
-use self::meeting::{Meeting, Met, Place};
+use self::meeting::Place;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
 use crate::physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
@@ -19,6 +19,7 @@ use crate::stages::contacts::{StoredEnergy, StoredForce};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::loads::factor_at;
+use crate::state::meetings::{Meeting, Meetings, Met};
 use crate::state::particles::{Particles, Pose};
 use crate::state::references::Ball;
 use crate::state::walls::{Wall, WallContact, WallLoad};
@@ -47,6 +48,7 @@ pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
             &mut state.walls,
             contacts,
             &mut state.particles,
+            &mut state.scratch.meetings,
             state.previous_time_step_s,
         );
     }
@@ -126,53 +128,72 @@ pub(crate) fn wall_wrenches(
     walls: &mut [Wall],
     contacts: &mut Contacts,
     particles: &mut Particles,
+    meetings: &mut Vec<Meetings>,
     dt: f64,
 ) {
     for wall in walls {
         let place = Place {
             wall,
+            olds: &wall.touching,
             particles,
             materials: &contacts.materials,
             least_overlap: contacts.model.least_overlap,
             dt,
         };
-        let meet = |some: &[u32]| place.meet(&meetings(wall, particles, some));
-        let met: Vec<Vec<Met>> = wall.near.par_chunks(CHUNK).map(meet).collect();
+        let chunks = wall.near.len().div_ceil(CHUNK);
+        if meetings.len() < chunks {
+            meetings.resize_with(chunks, Meetings::default);
+        }
+        let work = wall.near.par_chunks(CHUNK).zip(&mut meetings[..chunks]);
+        work.for_each(|(some, meetings)| {
+            find_meetings(wall, particles, some, meetings);
+            place.meet(&meetings.all, &mut meetings.met);
+        });
         wall.push = WallLoad::default();
         wall.scratch.damping = WallLoad::default();
         wall.scratch.elastic_j = 0.0;
         wall.stiffness_n_m = 0.0;
         wall.touching.clear();
-        for met in met.into_iter().flatten() {
-            book(wall, &met, particles);
+        for met in meetings[..chunks].iter().flat_map(|some| &some.met) {
+            book(wall, met, particles);
         }
     }
 }
 
-/// Where some particles, ascending, touch a wall, or did in the previous step.
-fn meetings<'a>(wall: &'a Wall, particles: &Particles, some: &[u32]) -> Vec<Meeting<'a>> {
+/// Sets where some particles, ascending, touch a wall, or did in the previous step.
+fn find_meetings(wall: &Wall, particles: &Particles, some: &[u32], meetings: &mut Meetings) {
     let to_wall = wall.frame.all_to_wall();
     let bounds = wall.model.shape.bounds();
     let is_solid = matches!(wall.model.shape, Shape::Box(_) | Shape::Cylinder(_));
-    let (mut found, mut touches) = (Vec::new(), Vec::new());
+    let Meetings {
+        touches,
+        all: found,
+        ..
+    } = meetings;
+    found.clear();
     let first = some.first().copied().unwrap_or(0);
-    let first = wall.touching.partition_point(|old| old.particle < first);
-    let mut old = &wall.touching[first..];
+    let mut first = wall.touching.partition_point(|old| old.particle < first);
     for &particle in some {
+        let old = &wall.touching[first..];
         let passed = old.iter().take_while(|old| old.particle < particle);
-        old = &old[passed.count()..];
+        first += passed.count();
+        let old = &wall.touching[first..];
         let own = old.iter().take_while(|old| old.particle == particle);
         let before = &old[..own.count()];
         let pose = &particles.poses[particle as usize];
         let centre = to_wall(pose.place().into());
         touches.clear();
         if bounds.is_near(&centre, pose.radius_m()) {
-            wall.model
-                .shape
-                .touches(centre, pose.radius_m(), &mut touches);
+            wall.model.shape.touches(centre, pose.radius_m(), touches);
         }
         let first_found = found.len();
-        add_meetings(&wall.frame, (particle, pose), &touches, before, &mut found);
+        add_meetings(
+            &wall.frame,
+            (particle, pose),
+            touches,
+            (first, before),
+            found,
+        );
         if is_solid
             && !touches.is_empty()
             && let Some(meeting) = found.get_mut(first_found)
@@ -180,7 +201,6 @@ fn meetings<'a>(wall: &'a Wall, particles: &Particles, some: &[u32]) -> Vec<Meet
             meeting.is_behind = comes_out_behind(meeting, before);
         }
     }
-    found
 }
 
 fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
@@ -205,26 +225,26 @@ fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
 }
 
 /// Adds the `touches` of a particle, given in the wall's frame, and the contacts that have ended.
-fn add_meetings<'a>(
+fn add_meetings(
     frame: &Frame,
     (particle, pose): (u32, &Pose),
     touches: &[Touch],
-    before: &'a [WallContact],
-    found: &mut Vec<Meeting<'a>>,
+    (first, before): (usize, &[WallContact]),
+    found: &mut Vec<Meeting>,
 ) {
     let first_found = found.len();
+    let numbered = |at: usize| Some((first + at) as u32);
     for touch in touches {
         let there = frame.touch_to_space(touch);
         let normal = -Vector3::from(there.normal);
         let old = remembered(before, touches, touch, &normal);
-        found.push(Meeting::new(particle, there, old));
+        found.push(Meeting::new(particle, there, old.and_then(numbered)));
     }
     // The losses of contacts that have ended are still to be recorded.
-    for old in before {
-        let goes_on = |meeting: &Meeting<'_>| {
-            meeting
-                .old
-                .is_some_and(|known| known.feature == old.feature)
+    for (at, old) in before.iter().enumerate() {
+        let goes_on = |meeting: &Meeting| {
+            let known = meeting.old.map(|known| &before[known as usize - first]);
+            known.is_some_and(|known| known.feature == old.feature)
         };
         if !found[first_found..].iter().any(goes_on) {
             let there = Touch {
@@ -233,34 +253,34 @@ fn add_meetings<'a>(
                 normal: old.normal.map(|n| -n),
                 distance_m: pose.radius_m(),
             };
-            found.push(Meeting::new(particle, there, Some(old)));
+            found.push(Meeting::new(particle, there, numbered(at)));
         }
     }
 }
 
 /// Whether a particle touches a solid from the opposite side compared with the previous step: it
 /// went through a solid thinner than itself.
-fn comes_out_behind(meeting: &Meeting<'_>, before: &[WallContact]) -> bool {
+fn comes_out_behind(meeting: &Meeting, before: &[WallContact]) -> bool {
     let normal = -Vector3::from(meeting.there.normal);
     before
         .iter()
         .any(|old| Vector3::from(old.normal).dot(&normal) < 0.0)
 }
 
-/// The history of a contact: that of the same feature. When a sphere slides from one flat part to
-/// the next, it is that of a feature that the sphere no longer touches and whose normal was nearly
-/// the same.
-fn remembered<'a>(
-    before: &'a [WallContact],
+/// Number, in those before, of the contact that a touch continues: that of the same feature. When a
+/// sphere slides from one flat part to the next, it is that of a feature that the sphere no longer
+/// touches and whose normal was nearly the same.
+fn remembered(
+    before: &[WallContact],
     touches: &[Touch],
     touch: &Touch,
     normal: &Vector3<f64>,
-) -> Option<&'a WallContact> {
-    let same = before.iter().find(|old| old.feature == touch.feature);
+) -> Option<usize> {
+    let same = before.iter().position(|old| old.feature == touch.feature);
     same.or_else(|| {
         let left = |old: &&WallContact| touches.iter().all(|t| t.feature != old.feature);
         let alike = |old: &&WallContact| Vector3::from(old.normal).dot(normal) > SAME_WAY;
-        before.iter().filter(left).find(alike)
+        before.iter().position(|old| left(&old) && alike(&old))
     })
 }
 
@@ -280,14 +300,16 @@ pub(crate) fn push_at_rest(
     };
     let place = Place {
         wall,
+        olds: std::slice::from_ref(old),
         particles,
         materials: &contacts.materials,
         least_overlap: contacts.model.least_overlap,
         dt: 0.0,
     };
-    let meeting = Meeting::new(old.particle, there, Some(old));
+    let mut met = Vec::new();
+    place.meet(&[Meeting::new(old.particle, there, Some(0))], &mut met);
     let mut push = WallLoad::default();
-    for met in place.meet(&[meeting]) {
+    for met in met {
         let arm = met.point - Vector3::from(wall.frame.position_m);
         let about_pivot = arm.cross(&met.forces[0]) + met.moments[0];
         push.add(met.forces[0].into(), about_pivot.into(), 0.0);

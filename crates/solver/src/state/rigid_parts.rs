@@ -132,8 +132,19 @@ impl RigidPart {
 
     /// Gives its particles the motion that they have in it.
     pub(crate) fn set_motions(&self, poses: &[Pose], motions: &mut [Motion]) {
-        let (spin, centre) = (self.spin_rad_s(), Vector3::from(self.place_m));
-        let velocity = Vector3::from(self.velocity_m_s);
+        let motion = [self.velocity_m_s, self.angular_momentum].map(Vector3::from);
+        self.set_motions_of(motion, poses, motions);
+    }
+
+    /// The same if this were its velocity, m/s, and its angular momentum, kg m2/s.
+    pub(crate) fn set_motions_of(
+        &self,
+        [velocity, angular]: [Vector3<f64>; 2],
+        poses: &[Pose],
+        motions: &mut [Motion],
+    ) {
+        let spin = spin_rad_s(&self.turned, angular.into(), self.moments_kg_m2);
+        let (spin, centre) = (Vector3::from(spin), Vector3::from(self.place_m));
         for &i in &self.members {
             let arm = poses[i as usize].place() - centre;
             let motion = &mut motions[i as usize];

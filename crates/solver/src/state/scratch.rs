@@ -1,9 +1,11 @@
 //! Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 
 use super::events::Events;
+use super::meetings::Meetings;
 use super::particles::{Motion, Wrench};
 use super::partitions::Partition;
 use crate::clock::StageClock;
+use crate::physics::chebyshev::Chebyshev;
 
 /// Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 /// Contacts, clusters and walls have such parts of their own.
@@ -26,9 +28,15 @@ pub struct Scratch {
     /// Impulses of the damping of bonds after the last stage but one and the last, N s and N m s;
     /// its forces in the first stage, N and N m. Length as [`super::State::bond_resistance`].
     pub damping_stages: [Vec<Wrench>; 3],
+    /// Factors of these stages.
+    pub stages: Chebyshev,
     /// For each chunk of free particles the distance that the fastest of them moved in the last
     /// drift, m.
     pub chunks_moved_m: Vec<f64>,
+    /// Where particles meet a wall: for each chunk of those near it.
+    pub meetings: Vec<Meetings>,
+    /// Power that each clump takes in, W: see `stages/intake.rs`.
+    pub powers_w: Vec<Option<f64>>,
     /// Damaged bonds that have reached their compressive strength.
     pub(crate) crushed: Vec<u32>,
     /// Contacts that triggers have read in this step.

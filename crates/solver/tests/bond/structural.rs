@@ -190,7 +190,6 @@ fn stretches_m(damping: &str, step_rad: f64) -> Vec<f64> {
     }
     let omega = limit(&mut pair(damping, "total", "")).omega_rad_s;
     state.time_step_s = step_rad / omega;
-    state.previous_time_step_s = state.time_step_s;
     let mut found = Vec::new();
     for at in 1..=(10.0 / step_rad).round() as usize {
         step(&mut state);

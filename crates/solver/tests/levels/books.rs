@@ -3,7 +3,7 @@
 use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact};
 
-use super::{CONTACTS, damped, frequency_rad_s, head, levels, pair, parting, planned};
+use super::{CONTACTS, frequency_rad_s, head, levels, pair, parting, planned};
 
 /// Pairs vibrate and fall for 1e5 steps: leapfrog makes the energy of each swing between what it is
 /// and 1/(1 - x^2) times that, with x = half of step times frequency, and nothing drifts.
@@ -48,15 +48,18 @@ fn the_energy_of_a_long_flight_is_kept() {
 /// Pairs bounce on a plate, each with its own steps: what the plate gives and takes is booked.
 #[test]
 fn what_walls_do_is_booked() {
-    for damping_ratio in [0.0, 0.1] {
-        all_is_booked(damping_ratio);
+    for damping in [
+        "damping_ratio = 0",
+        "damping_ratio = 0.1",
+        "structural_damping = 0.3",
+    ] {
+        all_is_booked(damping);
     }
 }
 
-fn all_is_booked(damping_ratio: f64) {
+fn all_is_booked(damping: &str) {
     let text = head("run.end_time = 0.02\nrun.gravity = [0, 0, -9.81]\nrun.safety_factor = 0.2")
-        + &damped("hard", damping_ratio)
-        + &damped("soft", damping_ratio)
+        + &format!("bonds.hard.damping.{damping}\nbonds.soft.damping.{damping}\n")
         + CONTACTS
         + "contacts.hard-steel = { restitution = 0.6, friction = 0.3 }\n\
            contacts.soft-steel = { restitution = 0.6, friction = 0.3 }\n\
@@ -84,6 +87,13 @@ fn all_is_booked(damping_ratio: f64) {
     }
     assert_eq!(touched, [true; 2]);
     assert!(levels(&state)[2] > levels(&state)[0]);
+    interact(&mut state);
+    let taken_j = balance(&mut state).structural_damping_j;
+    assert_eq!(
+        taken_j > 0.0,
+        damping.starts_with("structural"),
+        "{taken_j}"
+    );
     assert!(largest[0] < 2e-3, "{largest:?}");
     assert!(largest[1] < 1e-11 && largest[2] < 1e-11, "{largest:?}");
 }

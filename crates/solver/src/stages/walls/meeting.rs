@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 
-use crate::geometry::Touch;
 use crate::physics::contact::NormalLaw;
 use crate::physics::contact::assembly::{StoredContact, assemble};
 use crate::physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
@@ -13,56 +12,15 @@ use crate::stages::blocks::{rows, vectors};
 use crate::stages::contacts::{contact_sphere, stored_contact};
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::state::contacts::ContactHistory;
+use crate::state::meetings::{Meeting, Met};
 use crate::state::particles::Particles;
 use crate::state::walls::{Wall, WallContact};
-
-/// A particle at a point of a wall.
-pub(super) struct Meeting<'a> {
-    pub(super) particle: u32,
-    /// In space.
-    pub(super) there: Touch,
-    /// The contact that it continues.
-    pub(super) old: Option<&'a WallContact>,
-    /// Whether the particle has gone through a wall thinner than itself.
-    pub(super) is_behind: bool,
-}
-
-impl<'a> Meeting<'a> {
-    pub(super) fn new(particle: u32, there: Touch, old: Option<&'a WallContact>) -> Self {
-        Self {
-            particle,
-            there,
-            old,
-            is_behind: false,
-        }
-    }
-}
-
-/// Interaction of a particle and a wall at one point.
-pub(super) struct Met {
-    pub(super) touch: WallContact,
-    /// Point of contact, m.
-    pub(super) point: Vector3<f64>,
-    /// Velocity of the belt there, m/s.
-    pub(super) belt: Vector3<f64>,
-    /// Force on the particle and its damping part, N.
-    pub(super) forces: [Vector3<f64>; 2],
-    /// Torque on the particle, N m.
-    pub(super) torque: Vector3<f64>,
-    /// Moment of rolling friction on the particle and its damping part, N m.
-    pub(super) moments: [Vector3<f64>; 2],
-    pub(super) elastic_j: f64,
-    /// Energy lost to friction and to damping in the step just made.
-    pub(super) lost_j: [f64; 2],
-    /// Whether the centre of the particle has gone through the surface.
-    pub(super) crossed: bool,
-    /// Stiffness along the normal, N/m.
-    pub(super) stiffness_n_m: f64,
-}
 
 /// A wall and the particles at it.
 pub(super) struct Place<'a> {
     pub(super) wall: &'a Wall,
+    /// The contacts that meetings continue.
+    pub(super) olds: &'a [WallContact],
     pub(super) particles: &'a Particles,
     /// Material of each particle.
     pub(super) materials: &'a [u8],
@@ -72,18 +30,22 @@ pub(super) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// The interactions, in the order of the meetings.
-    pub(super) fn meet(&self, meetings: &[Meeting<'_>]) -> Vec<Met> {
-        let mut found = Vec::with_capacity(meetings.len());
+    /// Sets the interactions, in the order of the meetings.
+    pub(super) fn meet(&self, meetings: &[Meeting], found: &mut Vec<Met>) {
+        found.clear();
         with_most_lanes(MeetingWork {
             place: self,
             meetings,
-            found: &mut found,
+            found,
         });
-        found
     }
 
-    fn kind(&self, meeting: &Meeting<'_>) -> &ContactKind {
+    /// The contact that a meeting continues.
+    fn old(&self, meeting: &Meeting) -> Option<&WallContact> {
+        meeting.old.map(|old| &self.olds[old as usize])
+    }
+
+    fn kind(&self, meeting: &Meeting) -> &ContactKind {
         self.wall.kind(self.materials[meeting.particle as usize])
     }
 }
@@ -91,7 +53,7 @@ impl Place<'_> {
 /// The work on all meetings.
 struct MeetingWork<'a> {
     place: &'a Place<'a>,
-    meetings: &'a [Meeting<'a>],
+    meetings: &'a [Meeting],
     found: &'a mut Vec<Met>,
 }
 
@@ -103,7 +65,7 @@ impl LaneWork for MeetingWork<'_> {
             meetings,
             found,
         } = self;
-        let alike = |a: &Meeting<'_>, b: &Meeting<'_>| std::ptr::eq(place.kind(a), place.kind(b));
+        let alike = |a: &Meeting, b: &Meeting| std::ptr::eq(place.kind(a), place.kind(b));
         for meetings in meetings.chunk_by(alike) {
             let kind = place.kind(&meetings[0]);
             let work = KindWork::<T> {
@@ -122,7 +84,7 @@ impl LaneWork for MeetingWork<'_> {
 struct KindWork<'a, T: Lanes> {
     place: &'a Place<'a>,
     kind: &'a ContactKind,
-    meetings: &'a [Meeting<'a>],
+    meetings: &'a [Meeting],
     found: &'a mut Vec<Met>,
     proof: T::Proof,
 }
@@ -156,7 +118,7 @@ struct Geometry {
 }
 
 impl Place<'_> {
-    fn geometry(&self, meeting: &Meeting<'_>) -> Geometry {
+    fn geometry(&self, meeting: &Meeting) -> Geometry {
         let wall = self.wall;
         let normal = -Vector3::from(meeting.there.normal);
         let pose = &self.particles.poses[meeting.particle as usize];
@@ -168,7 +130,10 @@ impl Place<'_> {
         let belt = Vector3::from(wall.model.surface_velocity_m_s);
         let belt = belt - normal * belt.dot(&normal);
         Geometry {
-            normals: [normal, meeting.old.map_or(normal, |old| old.normal.into())],
+            normals: [
+                normal,
+                self.old(meeting).map_or(normal, |old| old.normal.into()),
+            ],
             point,
             belt,
             velocity: velocity + spin.cross(&arm) + belt,
@@ -176,13 +141,7 @@ impl Place<'_> {
     }
 
     /// Interaction of the particle in a lane.
-    fn met(
-        &self,
-        meeting: &Meeting<'_>,
-        kind: &ContactKind,
-        answers: &Answers,
-        lane: usize,
-    ) -> Met {
+    fn met(&self, meeting: &Meeting, kind: &ContactKind, answers: &Answers, lane: usize) -> Met {
         let vector = |[x, y, z, _]: [f64; 4]| Vector3::new(x, y, z);
         let Geometry {
             normals: [normal, normal_before],
@@ -223,7 +182,7 @@ impl Place<'_> {
         &self,
         proof: T::Proof,
         laws: (&impl NormalLaw<T>, &R),
-        some: &[Meeting<'_>],
+        some: &[Meeting],
     ) -> Answers {
         let meeting = |lane: usize| &some[lane.min(some.len() - 1)];
         let mut geometries = [Geometry::default(); MOST];
@@ -249,7 +208,7 @@ impl Place<'_> {
         );
         let touch = wall_contact_kinematics(&foot, ball, self.dt);
         let none = ContactHistory::default();
-        let history = |lane: usize| meeting(lane).old.map_or(&none, |old| &old.history);
+        let history = |lane: usize| self.old(meeting(lane)).map_or(&none, |old| &old.history);
         let before = stored_contact::<T, R>(proof, history);
         let (law, rolling) = laws;
         let met = assemble(law, rolling, &touch, &before, self.least_overlap, self.dt);

@@ -1,0 +1,68 @@
+//! Where particles meet a wall in a step, and the forces there: kept from step to step for their
+//! memory only.
+
+use nalgebra::Vector3;
+
+use super::walls::WallContact;
+use crate::geometry::Touch;
+
+/// What some of the particles near a wall meet. Valid for one step and one wall.
+#[derive(Debug, Clone, Default)]
+pub struct Meetings {
+    /// Where one particle touches the wall.
+    pub touches: Vec<Touch>,
+    /// In the order of the particles.
+    pub all: Vec<Meeting>,
+    /// The interactions. Length as `all`.
+    pub met: Vec<Met>,
+}
+
+/// A particle at a point of a wall.
+#[derive(Debug, Clone, Copy)]
+pub struct Meeting {
+    /// Its number.
+    pub particle: u32,
+    /// In space.
+    pub there: Touch,
+    /// Number of the contact of the wall that it continues.
+    pub old: Option<u32>,
+    /// Whether the particle has gone through a wall thinner than itself.
+    pub is_behind: bool,
+}
+
+impl Meeting {
+    /// One that has not gone through the wall.
+    pub fn new(particle: u32, there: Touch, old: Option<u32>) -> Self {
+        Self {
+            particle,
+            there,
+            old,
+            is_behind: false,
+        }
+    }
+}
+
+/// Interaction of a particle and a wall at one point.
+#[derive(Debug, Clone, Copy)]
+pub struct Met {
+    /// The contact.
+    pub touch: WallContact,
+    /// Point of contact, m.
+    pub point: Vector3<f64>,
+    /// Velocity of the belt there, m/s.
+    pub belt: Vector3<f64>,
+    /// Force on the particle and its damping part, N.
+    pub forces: [Vector3<f64>; 2],
+    /// Torque on the particle, N m.
+    pub torque: Vector3<f64>,
+    /// Moment of rolling friction on the particle and its damping part, N m.
+    pub moments: [Vector3<f64>; 2],
+    /// Energy stored, J.
+    pub elastic_j: f64,
+    /// Energy lost to friction and to damping in the step just made, J.
+    pub lost_j: [f64; 2],
+    /// Whether the centre of the particle has gone through the surface.
+    pub crossed: bool,
+    /// Stiffness along the normal, N/m.
+    pub stiffness_n_m: f64,
+}
