@@ -167,8 +167,10 @@ pub fn plan(
     warnings.extend(doubts(scene, &state));
     state.ledger = opened(&state);
     let step = first_step(scene, &bodies, &mut state, allow_any_step)?;
-    bound_damping(&mut state);
-    refuse_endless_damping(scene, &state)?;
+    if scene.run.integrator == Integrator::Leapfrog {
+        bound_damping(&mut state);
+        refuse_endless_damping(scene, &state)?;
+    }
     let arriving = arriving_as_clusters(&state);
     let forecast = forecast(
         scene,
@@ -232,7 +234,7 @@ fn bound_damping(state: &mut State) {
     let of_arriving = arriving.iter_mut().map(damping_eigenvalue_1_s);
     let of_arriving = of_arriving.fold(0.0, f64::max);
     let largest_1_s = MORE * MORE * damping_eigenvalue_1_s(state).max(of_arriving);
-    state.model.damping_rate_1_s = Some(largest_1_s);
+    state.most_damping_rate_1_s = largest_1_s;
     state.damping_rate_1_s = state.damping_rate_1_s.min(largest_1_s);
 }
 
@@ -248,7 +250,7 @@ fn refuse_endless_damping(scene: &Scene, state: &State) -> Result<()> {
         format!(
             "it slows a particle down {rate:.1e} times in a step, and at most {most:.1e} can be computed"
         ),
-        "write a smaller damping_ratio or damping_coefficient; above some 10, damping_ratio makes a bond stiff rather than damped",
+        "write a smaller damping_ratio, damping_coefficient or structural_damping, or a smaller time step; above some 10, damping_ratio makes a bond stiff rather than damped",
     ))
 }
 

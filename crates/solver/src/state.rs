@@ -104,9 +104,12 @@ pub struct State {
     pub time_step_s: f64,
     /// The previous step, s; 0 at the start.
     pub previous_time_step_s: f64,
-    /// Upper bound of the largest eigenvalue of the viscous damping of bonds over mass, 1/s.
+    /// Upper bound of the largest eigenvalue of the damping of bonds over mass, 1/s.
     pub damping_rate_1_s: f64,
-    /// Viscous damping forces of bonds in the last step, one for each free particle. Empty: no bond
+    /// That of all bodies that are or may come, while no bond is much longer than at the start, 1/s.
+    /// Infinite: it is not known.
+    pub most_damping_rate_1_s: f64,
+    /// Damping forces of bonds in the last step, one for each free particle. Empty: no bond
     /// has any.
     pub bond_resistance: Vec<Wrench>,
     /// Largest speed of a particle in the previous step, plus that of a wall if there are contacts,
@@ -159,6 +162,7 @@ impl State {
             time_step_s,
             previous_time_step_s: 0.0,
             damping_rate_1_s: 0.0,
+            most_damping_rate_1_s: f64::INFINITY,
             bond_resistance: Vec::new(),
             fastest_m_s: 0.0,
             broken_count: 0,
@@ -187,7 +191,7 @@ impl State {
         let structural = any(|rule| rule.structural_damping > 0.0);
         let structural = if structural { self.bonds.len() } else { 0 };
         let rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
-        self.damping_rate_1_s = rate_1_s.min(self.model.damping_rate_1_s.unwrap_or(rate_1_s));
+        self.damping_rate_1_s = rate_1_s.min(self.most_damping_rate_1_s);
         self.bond_resistance = vec![Wrench::default(); damped];
         let scratch = &mut self.scratch;
         scratch.damping_now = vec![[0.0; 4]; structural];
@@ -207,6 +211,7 @@ impl State {
     pub(crate) fn renew_damping_rate(&mut self) {
         let rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
         self.damping_rate_1_s = self.damping_rate_1_s.max(rate_1_s);
+        self.most_damping_rate_1_s = f64::INFINITY;
     }
 
     /// Divides the work on particles and bonds again.

@@ -329,7 +329,7 @@ fn estimates() -> String {
         radius_factor: 1.0,
         spheres: 10,
         held: false,
-        damping: 0.0,
+        damping: Damping::Viscous(0.0),
     };
     let step = row.plan("\"auto\"", "").step;
     let shear = YOUNG_PA / (2.0 * (1.0 + POISSON));

@@ -8,6 +8,9 @@
 /// How much R stays below 1.
 const EPSILON: f64 = 2.0 / 13.0;
 
+/// Number of choices that are remembered.
+const KNOWN: usize = 16;
+
 /// Fewest stages of second order.
 const FEWEST: usize = 2;
 
@@ -62,14 +65,16 @@ impl Polynomial {
 }
 
 impl Chebyshev {
-    /// Those already chosen if they were for this eigenvalue, or else the fewest stages for
-    /// eigenvalues up to `largest`.
-    pub fn for_largest(self, largest: f64) -> Self {
-        if self.covered == largest && !self.others.is_empty() {
-            self
-        } else {
-            Self::covering(largest)
-        }
+    /// As [`Self::covering`], from those that were chosen before: bodies with steps of their own need
+    /// several.
+    pub fn of_known(known: &mut Vec<Self>, largest: f64) -> &Self {
+        let at = known.iter().position(|known| known.covered == largest);
+        let at = at.unwrap_or_else(|| {
+            known.truncate(KNOWN - 1);
+            known.insert(0, Self::covering(largest));
+            0
+        });
+        &known[at]
     }
 
     /// The fewest stages for eigenvalues up to `largest`, with their limit if that is larger.

@@ -12,6 +12,9 @@ pub(crate) fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f
     sum
 }
 
+/// Largest number of partial sums that are found at the same time.
+const PARTS: usize = 64;
+
 /// Sums of several terms over 0..count, in an order that does not depend on the number of threads.
 pub(crate) fn ordered_sums<const N: usize>(
     count: usize,
@@ -24,12 +27,14 @@ pub(crate) fn ordered_sums<const N: usize>(
     if count <= CHUNK {
         return of_chunk(0);
     }
-    (0..count.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(of_chunk)
-        .collect::<Vec<_>>()
-        .into_iter()
-        .fold([0.0; N], add)
+    let chunks = count.div_ceil(CHUNK);
+    let each = chunks.div_ceil(PARTS);
+    let mut parts = [[0.0; N]; PARTS];
+    parts.par_iter_mut().enumerate().for_each(|(part, sums)| {
+        let own = part * each..chunks.min((part + 1) * each);
+        *sums = own.map(of_chunk).fold([0.0; N], add);
+    });
+    parts.into_iter().fold([0.0; N], add)
 }
 
 fn add<const N: usize>(mut sums: [f64; N], terms: [f64; N]) -> [f64; N] {

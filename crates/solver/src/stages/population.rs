@@ -349,8 +349,13 @@ fn count_anew(
     state.rigid_parts.renumber(particles, REMOVED);
     let free = state.particles.free;
     state.rigid_parts.number(free, &state.bonds);
-    // The next step computes damping forces before it needs them.
+    let resistance = std::mem::take(&mut state.bond_resistance);
     state.divide();
+    for (&now, resistance) in particles.iter().zip(resistance) {
+        if let Some(kept) = state.bond_resistance.get_mut(now as usize) {
+            *kept = resistance;
+        }
+    }
     for wall in &mut state.walls {
         wall.touching.retain_mut(|touch| {
             let before = touch.particle as usize;

@@ -16,6 +16,7 @@ use crate::physics::bond::damping::{DampingCoefficients, EndMotion};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Particles};
+use crate::state::rigid_parts::is_within_part;
 
 /// Structural damping of bonds.
 pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {
@@ -42,11 +43,12 @@ pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
     let mut coefficients = std::mem::take(&mut state.scratch.damping_now);
     let (bonds, particles) = (&state.bonds, &state.particles);
     let motions = &state.scratch.predicted[0];
+    let part_of = &state.rigid_parts.of_particle[..];
     let chunks = coefficients.par_chunks_mut(CHUNK).enumerate();
     let computed = chunks.map(|(chunk, coefficients)| {
         let numbered = (chunk * CHUNK..).zip(coefficients);
         let resist = |(at, now): (usize, &mut [f64; 4])| {
-            let structural = of_bond(bonds, at, particles, motions);
+            let structural = of_bond(bonds, at, part_of, particles, motions);
             let is_computed = structural.is_some();
             let structural: [f64; 4] = structural.unwrap_or_default().into();
             *now = bonds.damping.get(at).copied().unwrap_or_default();
@@ -62,19 +64,21 @@ pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
     computed
 }
 
-/// Coefficients of structural damping of bond `at` with these motions. None: it has none, or sleeps.
+/// Coefficients of structural damping of bond `at` with these motions. None: it has none, sleeps, or
+/// is within a rigid part.
 fn of_bond(
     bonds: &Bonds,
     at: usize,
+    part_of: &[u32],
     particles: &Particles,
     motions: &[Motion],
 ) -> Option<DampingCoefficients> {
     let ends = bonds.ends[at].map(|end| end as usize);
-    if particles.sleeps(ends[0]) {
+    if particles.sleeps(ends[0]) || is_within_part(part_of, bonds.ends[at]) {
         return None;
     }
-    let structural = bonds.structural_damping(at, motions)?;
     let poses = &particles.poses;
+    let structural = bonds.structural_damping(at, bonds.stiffness_now(at, poses), motions)?;
     let apart = poses[ends[1]].place() - poses[ends[0]].place();
     let moving = ends.map(|end| EndMotion {
         velocity_m_s: Vector3::from(motions[end].velocity_m_s),

@@ -535,17 +535,18 @@ impl Bonds {
         }
     }
 
-    /// Structural damping of bond `at` between ends of these masses. None: it has none.
+    /// Structural damping of bond `at` with this stiffness between ends of these masses. None: it
+    /// has none.
     pub(crate) fn structural_damping(
         &self,
         at: usize,
+        stiffness: Stiffness,
         motions: &[Motion],
     ) -> Option<StructuralDamping> {
         let gamma = self.rules[self.rule_of(at)].structural_damping;
         if gamma == 0.0 || self.is_broken(at) {
             return None;
         }
-        let stiffness = self.stiffness(at);
         let [a, b] = self.ends[at].map(|end| motions[end as usize].inverse_mass);
         Some(StructuralDamping {
             gamma,
@@ -569,10 +570,7 @@ impl Bonds {
             let apart = b - a;
             return incremental::bond_forces(&stiffness, &self.histories[at], &apart);
         }
-        let stiffness = Stiffness {
-            normal: self.axial_stiffness(at, poses),
-            ..stiffness
-        };
+        let stiffness = self.stiffness_now(at, poses);
         total::bond_forces(&stiffness, &self.direction(at), &self.ends_of(at, poses))
     }
 
@@ -618,6 +616,14 @@ impl Bonds {
         match self.damages.get(at) {
             Some(known) if known.damage > 0.0 && self.stretch_m(at, poses) < 0.0 => known.normal,
             _ => self.normal(at),
+        }
+    }
+
+    /// Stiffnesses of bond `at` at these poses: see [`Self::axial_stiffness`].
+    pub(crate) fn stiffness_now(&self, at: usize, poses: &[Pose]) -> Stiffness {
+        Stiffness {
+            normal: self.axial_stiffness(at, poses),
+            ..self.stiffness(at)
         }
     }
 

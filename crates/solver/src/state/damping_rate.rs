@@ -38,7 +38,8 @@ pub(crate) fn damping_rate_1_s(bonds: &Bonds, particles: &Particles) -> f64 {
 /// Largest coefficients of damping of bond `at`, mode by mode.
 pub(crate) fn largest_coefficients(bonds: &Bonds, at: usize, particles: &Particles) -> [f64; 4] {
     let viscous = bonds.damping.get(at).copied().unwrap_or_default();
-    let Some(structural) = bonds.structural_damping(at, &particles.motions) else {
+    let undamaged = bonds.undamaged_stiffness(at);
+    let Some(structural) = bonds.structural_damping(at, undamaged, &particles.motions) else {
         return viscous;
     };
     let structural: [f64; 4] = structural.largest_coefficients().into();

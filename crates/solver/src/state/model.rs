@@ -36,10 +36,6 @@ pub struct Model {
     pub gravity_m_s2: [f64; 3],
     /// gamma of Chen et al. 2022, eqs. 11 and 12. 0: none.
     pub particle_damping: f64,
-    /// Largest eigenvalue of the damping of bonds over mass of all bodies that are or may come, while
-    /// no bond is much longer than at the start, 1/s. None: not known.
-    #[serde(skip)]
-    pub damping_rate_1_s: Option<f64>,
     /// Bond rules, in the order of their names.
     pub bond_rules: Arc<[BondRule]>,
     /// Contact model of the particles. None: nothing can touch.

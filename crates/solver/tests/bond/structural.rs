@@ -254,6 +254,16 @@ const GRAVITY_M_S2: f64 = 9.81;
 
 /// A grid of bonded spheres with this structural damping, in a scene with these further lines.
 fn block(gamma: f64, run: &str, more: &str) -> State {
+    block_with(
+        &format!("damping = {{ structural_damping = {gamma} }}"),
+        "",
+        run,
+        more,
+    )
+}
+
+/// The same with these keys of its bonds and of itself.
+fn block_with(bonds: &str, body: &str, run: &str, more: &str) -> State {
     let number = |x: usize, y: usize, z: usize| x + SIDE * (y + SIDE * z);
     let (mut spheres, mut pairs) = (Vec::new(), Vec::new());
     for z in 0..SIDE {
@@ -282,8 +292,8 @@ fn block(gamma: f64, run: &str, more: &str) -> State {
     let (_, plan) = planned(&format!(
         "version = 1
 run = {{ end_time = 1, {run} }}
-bonds.glue = {{ young_modulus = 0.2e6, poisson_ratio = 0.3, damping = {{ structural_damping = {gamma} }} }}
-bodies.block = {{ particles = [{}], bond_list = [{}], material = \"stone\", bonds = \"glue\" }}
+bonds.glue = {{ young_modulus = 0.2e6, poisson_ratio = 0.3, {bonds} }}
+bodies.block = {{ particles = [{}], bond_list = [{}], material = \"stone\", bonds = \"glue\"{body} }}
 {more}
 ",
         spheres.join(", "),
@@ -292,17 +302,17 @@ bodies.block = {{ particles = [{}], bond_list = [{}], material = \"stone\", bond
     plan.state
 }
 
+const FLOOR: &str =
+    "materials.stone = { density = 2000, young_modulus = 15e6, poisson_ratio = 0.3 }
+contacts.stone-stone = { restitution = 1, friction = 0.3 }
+walls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"stone\" }
+initial.block = { group = \"block\", velocity = [0, 0, -1] }
+";
+
 /// The block falls on a floor that hardly stores energy, with this step: the rebound over the fall.
 fn rebound(gamma: f64, step_us: f64) -> f64 {
     let run = format!("time_step = \"{step_us} us\"");
-    let mut state = block(
-        gamma,
-        &run,
-        "materials.stone = { density = 2000, young_modulus = 15e6, poisson_ratio = 0.3 }
-contacts.stone-stone = { restitution = 1, friction = 0.3 }
-walls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"stone\" }
-initial.block = { group = \"block\", velocity = [0, 0, -1] }",
-    );
+    let mut state = block(gamma, &run, FLOOR);
     while state.time_s < 0.05 {
         step(&mut state);
     }
@@ -365,4 +375,127 @@ supports.top = {{ group = \"top\", fixed = true }}",
     let resisting_n = resisting.map(f64::abs).fold(0.0, f64::max);
     let hanging = (SIDE * SIDE * (SIDE - 1)) as f64 / state.particles.motions[0].inverse_mass;
     assert!(resisting_n < 1e-9 * hanging * GRAVITY_M_S2, "{resisting_n}");
+}
+
+/// Beside bonds that soften, break, yield or sum their forces, in a body that is bonded in part, and
+/// beside viscous damping, in an impact: what all of them take is booked, each in its column, and a
+/// run goes on from a checkpoint with the same bits.
+#[test]
+fn what_it_takes_beside_other_models_is_booked_and_resumed() {
+    let damping = "damping = { structural_damping = 0.4 }";
+    let zone = "regions.zone.box = { min = [-1, -1, -1], max = [1, 1, 4.2e-3] }\n";
+    let in_part = ", bonded_within = { region = \"zone\" }";
+    for (name, bonds, body, more) in [
+        ("alone", "", "", ""),
+        ("viscous", ", damping_ratio = 0.2", "", ""),
+        ("failure", "failure = { tensile_strength = 3e3 }", "", ""),
+        (
+            "softening",
+            "failure = { tensile_strength = 3e3, fracture_energy = 0.02 }",
+            "",
+            "",
+        ),
+        (
+            "yield",
+            "plasticity = { normal_yield_strength = 3e3 }",
+            "",
+            "",
+        ),
+        ("history", "formulation = \"incremental\"", "", ""),
+        ("in part", "", in_part, zone),
+    ] {
+        let bonds = match bonds.strip_prefix(", damping") {
+            Some(viscous) => damping.replace(" }", &format!(", damping{viscous} }}")),
+            None if bonds.is_empty() => damping.to_owned(),
+            None => format!("{damping}, {bonds}"),
+        };
+        let more = format!("{FLOOR}{more}");
+        let mut state = block_with(&bonds, body, "time_step = \"2 us\"", &more);
+        let mut largest = [0.0_f64; 2];
+        let mut resumed: Option<State> = None;
+        while state.time_s < 6e-3 {
+            if resumed.is_none() && state.time_s > 3e-3 {
+                let saved = postcard::to_stdvec(&state).unwrap();
+                let copy: State = postcard::from_bytes(&saved).unwrap();
+                resumed = copy.rebuilt(state.model.clone(), 1);
+                assert!(resumed.is_some(), "{name}");
+            }
+            interact(&mut state);
+            let now = balance(&mut state);
+            largest[0] = largest[0].max(now.energy_error.abs());
+            largest[1] = largest[1].max(now.momentum_error);
+            advance(&mut state);
+            if let Some(resumed) = &mut resumed {
+                interact(resumed);
+                balance(resumed);
+                advance(resumed);
+            }
+        }
+        let resumed = resumed.unwrap();
+        assert_eq!(state.particles.motions, resumed.particles.motions, "{name}");
+        assert_eq!(state.ledger, resumed.ledger, "{name}");
+        interact(&mut state);
+        let now = balance(&mut state);
+        assert!(now.structural_damping_j > 0.0, "{name}");
+        assert_eq!(now.bond_damping_j > 0.0, name == "viscous", "{name}");
+        assert_eq!(now.bond_damage_j > 0.0, name == "softening", "{name}");
+        assert_eq!(now.bond_plastic_j > 0.0, name == "yield", "{name}");
+        assert_eq!(state.broken_count > 0, name == "failure", "{name}");
+        assert!(
+            largest[0] < 5e-3 && largest[1] < 1e-10,
+            "{name}: {largest:?}"
+        );
+    }
+}
+
+/// Of a pair with both dampings each takes what the same law takes by Runge and Kutta's method:
+/// x'' = -x - 2 zeta x' - gamma |x| x'/sqrt(x'^2 + (epsilon x)^2).
+#[test]
+fn viscous_and_structural_damping_share_what_they_take() {
+    let (zeta, gamma) = (0.15, 0.3);
+    let rate = |[x, v, ..]: [f64; 4]| {
+        let reversing = v.hypot(SMOOTHING * x);
+        let structural = if reversing > 0.0 {
+            gamma * x.abs() * v / reversing
+        } else {
+            0.0
+        };
+        let viscous = 2.0 * zeta * v;
+        [v, -x - viscous - structural, viscous * v, structural * v]
+    };
+    let mut known = [0.0, 1.0, 0.0, 0.0];
+    let part = 1e-4;
+    for _ in 0..100_000 {
+        let along = |rate: [f64; 4], part: f64| std::array::from_fn(|k| known[k] + part * rate[k]);
+        let first = rate(known);
+        let second = rate(along(first, 0.5 * part));
+        let third = rate(along(second, 0.5 * part));
+        let last = rate(along(third, part));
+        known = std::array::from_fn(|k| {
+            known[k] + part / 6.0 * (first[k] + 2.0 * second[k] + 2.0 * third[k] + last[k])
+        });
+    }
+    let wanted = [known[2], known[3]].map(|taken| taken / 0.5);
+    // 2 eta sqrt(k_n m_red): the damping ratio of stretching.
+    let damping = format!("damping_ratio = {zeta}, structural_damping = {gamma}");
+    let errors = [2e-3, 1e-3].map(|step_rad| {
+        let mut state = pair(&damping, "total", "");
+        for (motion, speed) in state.particles.motions.iter_mut().zip([1e-3, -1e-3]) {
+            motion.velocity_m_s[0] = speed;
+        }
+        let omega = (state.bonds.normal(0) * 2.0 * state.particles.motions[0].inverse_mass).sqrt();
+        state.time_step_s = step_rad / omega;
+        let start_j = 1e-6 / state.particles.motions[0].inverse_mass;
+        for _ in 0..(10.0 / step_rad).round() as usize {
+            step(&mut state);
+        }
+        interact(&mut state);
+        let now = balance(&mut state);
+        let found = [now.bond_damping_j, now.structural_damping_j];
+        [0, 1].map(|k| (found[k] / start_j / wanted[k] - 1.0).abs())
+    });
+    assert!(
+        errors[1].iter().all(|error| *error < 1e-4),
+        "{errors:?} {wanted:?}"
+    );
 }

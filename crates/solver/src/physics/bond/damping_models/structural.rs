@@ -6,7 +6,8 @@
 //! The rule that Chen et al. 2022, eqs. 11 and 12, apply to the motion of particles brakes free
 //! flight and carries a part of the weight. This one acts on the relative motion of two ends: what
 //! moves as a rigid body is not damped, and momentum and angular momentum are untouched. A mode
-//! loses the same fraction of its amplitude in every cycle, whatever its frequency: it moves
+//! loses the same fraction of its amplitude in every cycle, whatever its frequency (but see below):
+//! it moves
 //! outwards with the stiffness (1 + gamma) k and back with (1 - gamma) k, so that half a cycle
 //! multiplies its speed by sqrt((1 - gamma)/(1 + gamma)).
 //!
@@ -33,8 +34,7 @@ pub struct StructuralDamping {
     pub gamma: f64,
     /// Of the bond.
     pub stiffness: Stiffness,
-    /// Circular frequency of the two ends on the normal stiffness of the bond, rad/s; 0 between
-    /// held ends.
+    /// Circular frequency of the two ends on the normal stiffness of the bond, rad/s.
     pub frequency_rad_s: f64,
 }
 
