@@ -98,6 +98,13 @@ fn a_step_takes_no_memory() {
         ),
     ] {
         let found = allocations(&text);
-        assert!(found.iter().all(|&count| count == 0), "{name}: {found:?}");
+        // Where the bonded zone of a body is now, is found once in fifty steps.
+        let looks = if name == "part bonded" {
+            found.len() / 50
+        } else {
+            0
+        };
+        let taking = found.iter().filter(|&&count| count > 0).count();
+        assert!(taking <= looks, "{name}: {found:?}");
     }
 }

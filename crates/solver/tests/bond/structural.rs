@@ -391,7 +391,7 @@ fn what_it_takes_beside_other_models_is_booked_and_resumed() {
         ("failure", "failure = { tensile_strength = 3e3 }", "", ""),
         (
             "softening",
-            "failure = { tensile_strength = 3e3, fracture_energy = 0.02 }",
+            "failure = { tensile_strength = 3e3, fracture_energy = 0.1 }",
             "",
             "",
         ),
