@@ -1,24 +1,33 @@
-//! The table of doc/replacement.md: the chute run in three ways, with several seeds. From the
-//! folder of the clone:
+//! Writes the tables of doc/replacement.md, the first of them into README.md as well: the chute run in
+//! three ways, with several seeds. From the folder of the clone:
 //!
 //! ```sh
-//! cargo build --release && cargo run --release -p dem-run --example replacement_table
+//! cargo run --release -p dem-run --example replacement_table
 //! ```
 //!
-//! Takes a quarter of an hour. One thread and hardly any pictures, so that the steps are compared.
+//! Builds the program and takes a quarter of an hour. One thread and hardly any pictures, so that the
+//! steps are compared. Results are in `target/replacement-table`.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
     reason = "it prints a table, and how far it is"
 )]
 
-use std::error::Error;
+#[allow(dead_code, reason = "other examples use the rest")]
+mod programs;
+#[allow(dead_code, reason = "other examples use the rest")]
+#[path = "programs/study.rs"]
+mod study;
+
 use std::path::Path;
-use std::process::Command;
 
 use dem_scene::study::Pieces;
 use dem_study::masses::{by_chance, distance, masses_kg};
 
+use programs::{Failed, Programs, results};
+use study::{Table, run_scene};
+
+const PAGE: &str = "doc/replacement.md";
 const WAYS: [(&str, &str); 3] = [
     ("chute-bonded", "breakable from the start"),
     ("chute", "clumps until they come to the plate"),
@@ -26,12 +35,10 @@ const WAYS: [(&str, &str); 3] = [
 ];
 const SEEDS: usize = 4;
 
-type Failed = Box<dyn Error>;
-
 /// The recorded data of a run.
 #[derive(Default)]
 struct Run {
-    wall_s: f64,
+    processor_s: f64,
     energy_error: f64,
     left_out: f64,
     /// Masses of the fragments discharged, kg.
@@ -39,91 +46,91 @@ struct Run {
 }
 
 fn main() -> Result<(), Failed> {
-    let own = std::env::current_exe()?;
-    let release = own.parent().and_then(Path::parent).ok_or("no folder")?;
-    let program = &release.join("dem-run");
-    let folder = std::env::temp_dir().join("replacement-table");
-    std::fs::create_dir_all(&folder)?;
+    let program = Programs::build()?.dem_run;
+    let folder = results("replacement-table")?;
     let mut runs: [Vec<Run>; 3] = Default::default();
     // In turn, so that a slowdown of the machine affects all equally.
     for seed in 0..SEEDS {
         for ((name, _), runs) in WAYS.iter().zip(&mut runs) {
-            runs.push(run(
-                program,
-                name,
-                seed,
-                &folder.join(format!("{name}-{seed}")),
-            )?);
-            eprintln!("{name}, seed {seed}: {:.1} s", runs[seed].wall_s);
+            let out = folder.join(format!("{name}-{seed}"));
+            runs.push(run(&program, name, seed, &out)?);
         }
     }
-    println!(
-        "| 2 s of the chute, one thread | time | faster | energy error | bond updates skipped | fragments discharged | mass that left |"
-    );
-    println!("|---|---|---|---|---|---|---|");
-    let times = [0, 1, 2].map(|way| median(runs[way].iter().map(|run| run.wall_s)));
+    for page in ["README.md", PAGE] {
+        times(&runs).write(page, "replacement_table")?;
+    }
+    masses(&runs).write(PAGE, "replacement_table masses")
+}
+
+fn times(runs: &[Vec<Run>; 3]) -> Table {
+    let mut table = Table::new(&[
+        "2 s of the chute, one thread",
+        "processor time",
+        "faster",
+        "energy error",
+        "bond updates skipped",
+        "fragments discharged",
+        "mass discharged",
+    ]);
+    let times = [0, 1, 2].map(|way| median(runs[way].iter().map(|run| run.processor_s)));
     for (way, (name, what)) in WAYS.iter().enumerate() {
         let all = &runs[way];
-        let error = all
-            .iter()
-            .map(|run| run.energy_error.abs())
-            .fold(0.0, f64::max);
-        let left_out = median(all.iter().map(|run| run.left_out));
-        let count = median(all.iter().map(|run| run.masses_kg.len() as f64));
-        let mass_kg = median(all.iter().map(|run| run.masses_kg.iter().sum()));
-        println!(
-            "| `{name}.toml`: {what} | {:.1} s | {:.1} | {error:.1e} | {:.0} % | {count:.0} | {mass_kg:.3} kg |",
-            times[way],
-            times[0] / times[way],
-            100.0 * left_out,
-        );
+        let errors = all.iter().map(|run| run.energy_error.abs());
+        let masses = all.iter().map(|run| run.masses_kg.iter().sum());
+        let skipped = median(all.iter().map(|run| run.left_out));
+        table.row(&[
+            format!("`{name}.toml`: {what}"),
+            format!("{:.1} s", times[way]),
+            format!("{:.1}", times[0] / times[way]),
+            format!("{:.1e}", errors.fold(0.0, f64::max)),
+            format!("{:.0} %", 100.0 * skipped),
+            format!(
+                "{:.0}",
+                median(all.iter().map(|run| run.masses_kg.len() as f64))
+            ),
+            format!("{:.3} kg", median(masses)),
+        ]);
     }
-    println!("\n| distance of the masses (KS) | by number | by mass |\n|---|---|---|");
+    table
+}
+
+fn masses(runs: &[Vec<Run>; 3]) -> Table {
+    let mut table = Table::new(&["distance of the masses (KS)", "by number", "by mass"]);
     for (way, (name, _)) in WAYS.iter().enumerate() {
-        let of_seeds = pairs(&runs[way], &runs[way], |a, b| a < b);
-        println!(
-            "| two seeds of `{name}.toml` | {} | {} |",
-            of_seeds[0], of_seeds[1]
-        );
+        let [number, mass] = pairs(&runs[way], &runs[way], |a, b| a < b);
+        table.row(&[format!("two seeds of `{name}.toml`"), number, mass]);
     }
     for (way, (name, _)) in WAYS.iter().enumerate().skip(1) {
-        let between = pairs(&runs[way], &runs[0], |_, _| true);
-        println!(
-            "| `{name}.toml` and `{}.toml` | {} | {} |",
-            WAYS[0].0, between[0], between[1]
-        );
+        let [number, mass] = pairs(&runs[way], &runs[0], |_, _| true);
+        table.row(&[
+            format!("`{name}.toml` and `{}.toml`", WAYS[0].0),
+            number,
+            mass,
+        ]);
     }
     for (way, (name, _)) in WAYS.iter().enumerate().skip(1) {
         let [a, b] = [way, 0].map(|way| all_masses_kg(&runs[way]));
         let chance = by_chance(a.len(), b.len());
         let [number, mass] = [|_| 1.0, |kg| kg].map(|weight| distance(&a, &b, weight));
-        println!(
-            "| `{name}.toml`, all seeds together | {number:.3} (by chance, in one of twenty cases: {chance:.3}) | {mass:.2} |"
-        );
+        table.row(&[
+            format!("`{name}.toml`, all seeds together"),
+            format!("{number:.3} (by chance, in one of twenty cases: {chance:.3})"),
+            format!("{mass:.2}"),
+        ]);
     }
-    Ok(())
+    table
 }
 
 fn run(program: &Path, name: &str, seed: usize, out: &Path) -> Result<Run, Failed> {
-    let status = Command::new(program)
-        .arg(format!("data/scenes/{name}.toml"))
-        .args(["--threads", "1", "--quiet", "--force", "--output"])
-        .arg(out)
-        .args(["--set", "output.pictures=\"10 s\"", "--set"])
-        .arg(format!("run.seed={seed}"))
-        .output()?;
-    if !status.status.success() {
-        return Err(String::from_utf8_lossy(&status.stderr).into());
-    }
-    let summary: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(out.join("summary.json"))?)?;
+    let seed = format!("run.seed={seed}");
+    let options = ["--threads", "1", "--set", &seed].map(str::to_owned);
+    let summary = run_scene(program, name, &options, out)?;
     let number = |value: &serde_json::Value| value.as_f64().unwrap_or(f64::NAN);
-    let masses_kg = masses_kg(Pieces::Left, out)?;
     Ok(Run {
-        wall_s: number(&summary["wall_s"]),
+        processor_s: number(&summary["processor_s"]),
         energy_error: number(&summary["energy_error"]),
         left_out: number(&summary["population"]["bond_updates_skipped"]),
-        masses_kg,
+        masses_kg: masses_kg(Pieces::Left, out)?,
     })
 }
 
