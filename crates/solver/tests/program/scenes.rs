@@ -169,6 +169,7 @@ const SHORT: [[&str; 4]; 35] = [
     ["one-cake", "60 ms", "", ""],
     ["pour-box", "20 ms", "", ""],
     ["press-mould", "20 ms", "", ""],
+    ["process", "20 ms", "", ""],
     ["repeated-drops", "3 ms", "", ""],
     ["roll-crusher", "0.2 s", "", ""],
     ["shatter", "5 ms", "", ""],
