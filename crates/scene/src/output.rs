@@ -162,11 +162,6 @@ fn sieves_m(field: &Field<'_>) -> Result<Vec<f64>> {
         }
         sieves_m.push(sieve_m);
     }
-    if sieves_m.is_empty() {
-        let problem = format!("{} is empty", field.path);
-        let remedy = "write [\"1 mm\", \"2 mm\"], or leave it out for R 20/3 of ISO 565";
-        return Err(field.refuse(problem, remedy));
-    }
     Ok(sieves_m)
 }
 
