@@ -24,7 +24,7 @@ pub struct FlowRow<'a> {
     /// Name of the outlet. Empty: what inlets have fed.
     pub outlet: &'a str,
     /// Bodies and fragments from the start to the end of the interval.
-    pub pieces: u32,
+    pub pieces: usize,
     /// Their mass, kg.
     pub mass_kg: f64,
     /// Mass in the interval over its duration, kg/s.

@@ -105,17 +105,18 @@ pub(crate) fn flow_rows(state: &State, interval_s: f64, end_s: f64) -> Vec<FlowR
     }
     let count = (end_s / interval_s * (1.0 - 1e-9)).ceil().max(1.0) as u32;
     let mut rows = Vec::new();
+    let mut totals = vec![(0, 0.0); events.len()];
     for number in 0..count {
         let from_s = f64::from(number) * interval_s;
-        let to_s = end_s.min(f64::from(number + 1) * interval_s);
-        for (&(body, outlet), events) in &events {
-            let until = |time_s: f64| {
-                let before = events.iter().take_while(|(at_s, _)| *at_s <= time_s);
-                before.fold((0, 0.0), |(pieces, sum), (_, kg)| (pieces + 1, sum + kg))
-            };
-            // What comes at 0 s belongs to the first interval.
-            let before_kg = if number == 0 { 0.0 } else { until(from_s).1 };
-            let (pieces, mass_kg) = until(to_s);
+        let is_last = number + 1 == count;
+        let to_s = if is_last { end_s } else { from_s + interval_s };
+        for ((&(body, outlet), events), total) in events.iter().zip(&mut totals) {
+            let (mut pieces, mut mass_kg): (usize, f64) = *total;
+            let due = events[pieces..].iter();
+            for (_, kg) in due.take_while(|(time_s, _)| is_last || *time_s <= to_s) {
+                pieces += 1;
+                mass_kg += kg;
+            }
             let outlet = outlet.and_then(|outlet| outlets.get(outlet as usize));
             rows.push(FlowRow {
                 time_s: to_s,
@@ -123,8 +124,9 @@ pub(crate) fn flow_rows(state: &State, interval_s: f64, end_s: f64) -> Vec<FlowR
                 outlet: outlet.map_or("", |outlet| outlet.name.as_str()),
                 pieces,
                 mass_kg,
-                flow_kg_s: (mass_kg - before_kg) / (to_s - from_s),
+                flow_kg_s: (mass_kg - total.1) / (to_s - from_s),
             });
+            *total = (pieces, mass_kg);
         }
     }
     rows
