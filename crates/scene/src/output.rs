@@ -145,7 +145,9 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
         pictures_s: table.read("pictures")?,
         view_from: table.read_by("view", |field| Table::of(&field, &VIEW)?.read("from"))?,
         colour_by: table.read("colour_by")?,
-        sieves_m: table.read_by("sieves", |field| sieves_m(&field))?.unwrap_or_default(),
+        sieves_m: table
+            .read_by("sieves", |field| sieves_m(&field))?
+            .unwrap_or_default(),
         flow_s: table.read("flow")?,
         checkpoint_s: table.read("checkpoint")?,
     })
@@ -157,7 +159,10 @@ fn sieves_m(field: &Field<'_>) -> Result<Vec<f64>> {
     for item in field.items()? {
         let sieve_m = item.positive(&LENGTH)?;
         if let Some(before_m) = sieves_m.last().filter(|before_m| sieve_m <= **before_m) {
-            let limit = format!("more than the opening before it, {}", quantity(*before_m, "m"));
+            let limit = format!(
+                "more than the opening before it, {}",
+                quantity(*before_m, "m")
+            );
             return Err(item.wrong(&limit, "write openings with the smallest first, each once"));
         }
         sieves_m.push(sieve_m);

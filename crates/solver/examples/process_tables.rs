@@ -35,10 +35,7 @@ const PAGE: &str = "doc/process.md";
 const BREAKABLE: [&str; 2] = ["cake", "lump"];
 /// How they are bonded: words, and the text of their `[replacement]`.
 const WAYS: [(&str, &str); 4] = [
-    (
-        "rigid throughout",
-        "{ when = { time = \"1000 s\" } }",
-    ),
+    ("rigid throughout", "{ when = { time = \"1000 s\" } }"),
     (
         "replaced at the plate, and restored behind it",
         "{ when = { enters = \"impact\" }, restore = { leaves = \"impact\", min_particles = 2, strain_energy = \"1 J/kg\", fluctuation_velocity = \"0.2 m/s\" } }",
@@ -59,7 +56,10 @@ const MINUTE: [&str; 3] = [
     "output.frames=\"5 s\"",
 ];
 /// Speeds of the belts, m/s, and lengths of their regions, m.
-const BELTS: [(&str, f64, f64); 2] = [("mass_on_belt", 3.0, 0.7), ("mass_on_product_belt", 0.4, 0.4)];
+const BELTS: [(&str, f64, f64); 2] = [
+    ("mass_on_belt", 3.0, 0.7),
+    ("mass_on_product_belt", 0.4, 0.4),
+];
 /// Steady part of the run, s: whole periods of all inlets.
 const STEADY_S: [f64; 2] = [4.0, 8.0];
 
@@ -143,8 +143,9 @@ fn write_ways(run: Runs<'_>) -> Result<(), Failed> {
             if number == 0 && !has_dif {
                 continue;
             }
-            let mut set: Vec<String> =
-                (BREAKABLE.iter()).map(|body| format!("replacement.{body}={replacement}")).collect();
+            let mut set: Vec<String> = (BREAKABLE.iter())
+                .map(|body| format!("replacement.{body}={replacement}"))
+                .collect();
             if !has_dif {
                 set.push(STATIC.to_owned());
             }
@@ -154,7 +155,10 @@ fn write_ways(run: Runs<'_>) -> Result<(), Failed> {
                 if has_dif { "yes" } else { "no" }.to_owned(),
                 format!("{:.0} s", found.number("/processor_s")),
                 format!("{:.0}", found.number("/broken_bonds")),
-                format!("{:.0}", found.number("/fragments/count") + found.number("/population/discharged")),
+                format!(
+                    "{:.0}",
+                    found.number("/fragments/count") + found.number("/population/discharged")
+                ),
                 found.sizes("cake"),
                 found.sizes("lump"),
                 format!("{:.1e}", found.number("/energy_error")),
@@ -183,7 +187,14 @@ fn write_sizes(dem_pack: &Path, folder: &Path, run: Runs<'_>) -> Result<(), Fail
             let file = folder.join(format!("{body}-{diameters}.vtp"));
             let mut pack = Command::new(dem_pack);
             pack.arg(format!("data/shapes/{shape}.stl"));
-            pack.args(["--diameter", diameters, "--overlap", "0.25", "--bond-range", "1.1"]);
+            pack.args([
+                "--diameter",
+                diameters,
+                "--overlap",
+                "0.25",
+                "--bond-range",
+                "1.1",
+            ]);
             pack.args(["--seed", "3", "--quiet", "-o"]).arg(&file);
             output(&mut pack)?;
             let made = dem_io::body::read_body(&file)?;
@@ -194,7 +205,10 @@ fn write_sizes(dem_pack: &Path, folder: &Path, run: Runs<'_>) -> Result<(), Fail
             let set: &[String] = if has_dif { &[] } else { &[STATIC.to_owned()] };
             let found = run(&format!("size-{diameters}-{has_dif}"), set, &bodies)?;
             table.row(&[
-                diameters.replace("mm..", " mm to ").replace("mm", " mm").replace("  ", " "),
+                diameters
+                    .replace("mm..", " mm to ")
+                    .replace("mm", " mm")
+                    .replace("  ", " "),
                 if has_dif { "yes" } else { "no" }.to_owned(),
                 counts.join(", "),
                 format!("{:.1} us", 1e6 * found.number("/time_step_s")),
@@ -273,17 +287,41 @@ fn write_minute(dem_run: &Path, folder: &Path) -> Result<(), Failed> {
     let run = Run { folder, summary };
     let mut table = Table::new(&["a minute of the process", ""]);
     let mut row = |what: &str, value: String| table.row(&[what.to_owned(), value]);
-    row("time on two cores", format!("{:.1} min", run.number("/wall_s") / 60.0));
-    row("processor time", format!("{:.1} min", run.number("/processor_s") / 60.0));
+    row(
+        "time on two cores",
+        format!("{:.1} min", run.number("/wall_s") / 60.0),
+    );
+    row(
+        "processor time",
+        format!("{:.1} min", run.number("/processor_s") / 60.0),
+    );
     row("steps", format!("{:.0}", run.number("/steps")));
-    row("bodies fed", format!("{:.0}", run.number("/population/fed")));
-    row("bodies and pieces inside at the end", format!("{:.0}", run.number("/fragments/count")));
-    row("pieces discharged", format!("{:.0}", run.number("/population/discharged")));
-    row("bonds broken", format!("{:.0}", run.number("/broken_bonds")));
+    row(
+        "bodies fed",
+        format!("{:.0}", run.number("/population/fed")),
+    );
+    row(
+        "bodies and pieces inside at the end",
+        format!("{:.0}", run.number("/fragments/count")),
+    );
+    row(
+        "pieces discharged",
+        format!("{:.0}", run.number("/population/discharged")),
+    );
+    row(
+        "bonds broken",
+        format!("{:.0}", run.number("/broken_bonds")),
+    );
     row("cake: d10, d50, d80", format!("{} mm", run.sizes("cake")));
     row("lump: d10, d50, d80", format!("{} mm", run.sizes("lump")));
-    row("Lacey's index in the bin at the end", format!("{:.2}", run.number("/measures/mixing/value")));
-    row("energy error", format!("{:.1e}", run.number("/energy_error")));
+    row(
+        "Lacey's index in the bin at the end",
+        format!("{:.2}", run.number("/measures/mixing/value")),
+    );
+    row(
+        "energy error",
+        format!("{:.1e}", run.number("/energy_error")),
+    );
     let missing = run.flow_kg(|flow| flow["missing_kg"].as_f64().unwrap_or(f64::NAN).abs());
     row("fed, less left and inside", format!("{missing:.1e} kg"));
     table.write(PAGE, "process_tables: minute")

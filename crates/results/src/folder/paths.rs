@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::names::{
-    BAR_SIGNALS, CHECKPOINT, DISC_STRESS, DISCHARGE, DISTRIBUTION, ENDED, EVENTS, FILM, FILM_STRIP, FLOW, MIXING,
-    FRAGMENT_TREE, FRAGMENTS, INDEX, PICTURES, PLOTS, REPORT, SCENE, SERIES, SUMMARY, TEST_CURVE,
-    fixed_walls_name, frame_in, walls_in,
+    BAR_SIGNALS, CHECKPOINT, DISC_STRESS, DISCHARGE, DISTRIBUTION, ENDED, EVENTS, FILM, FILM_STRIP,
+    FLOW, FRAGMENT_TREE, FRAGMENTS, INDEX, MIXING, PICTURES, PLOTS, REPORT, SCENE, SERIES, SUMMARY,
+    TEST_CURVE, fixed_walls_name, frame_in, walls_in,
 };
 
 /// The folder to which a run writes. No other run can write to it as long as this or a clone of it

@@ -81,7 +81,9 @@ fn flows_and_mixtures_look_as_documented() {
     write_flows(&path, &[fed, left]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        format!("{FLOW_COLUMNS}\n0.5,\"cake, old\",,3,0.75,1.5\n0.5,\"cake, old\",floor,3,0.75,1.5\n")
+        format!(
+            "{FLOW_COLUMNS}\n0.5,\"cake, old\",,3,0.75,1.5\n0.5,\"cake, old\",floor,3,0.75,1.5\n"
+        )
     );
     let cell = MixingRow {
         measure: "mixing",

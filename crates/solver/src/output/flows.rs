@@ -41,7 +41,10 @@ pub(crate) fn body_flows(
     for (number, flow) in (0..).zip(&mut flows) {
         let name = state.model.body_name(number);
         // Daughters have parents.
-        let mut own = clusters.history.iter().filter(|cluster| cluster.body == number);
+        let mut own = clusters
+            .history
+            .iter()
+            .filter(|cluster| cluster.body == number);
         if !is_fed(state, name) && own.any(|cluster| cluster.parent.is_none()) {
             flow.start_kg = masses.get(name).map_or(0.0, |mass| mass.mass_kg);
         }
@@ -74,7 +77,12 @@ pub(crate) fn body_flows(
 
 /// Whether an inlet feeds bodies of this name: then none is there at the start.
 fn is_fed(state: &State, body: &str) -> bool {
-    let mut fed = state.model.rules.inlets.iter().flat_map(|inlet| &inlet.templates);
+    let mut fed = state
+        .model
+        .rules
+        .inlets
+        .iter()
+        .flat_map(|inlet| &inlet.templates);
     fed.any(|(template, _)| state.clumps.templates[*template as usize].body == body)
 }
 
@@ -97,10 +105,15 @@ pub(crate) fn flow_rows(state: &State, interval_s: f64, end_s: f64) -> Vec<FlowR
     let outlets = &state.model.rules.outlets;
     let mut events: BTreeMap<(u32, Option<u32>), Vec<(f64, f64)>> = BTreeMap::new();
     for (time_s, body, mass_kg) in fed(state) {
-        events.entry((body, None)).or_default().push((time_s, mass_kg));
+        events
+            .entry((body, None))
+            .or_default()
+            .push((time_s, mass_kg));
     }
     for gone in &state.population.discharged {
-        let of = events.entry((gone.size.body, Some(gone.outlet))).or_default();
+        let of = events
+            .entry((gone.size.body, Some(gone.outlet)))
+            .or_default();
         of.push((gone.time_s, gone.size.mass_kg));
     }
     let count = (end_s / interval_s * (1.0 - 1e-9)).ceil().max(1.0) as u32;

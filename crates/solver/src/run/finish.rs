@@ -17,8 +17,8 @@ use super::settings::RunSettings;
 use super::snapshot::fingerprint;
 use crate::laboratory::watch::Watch;
 use crate::measure::{Probe, probes};
-use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use crate::output::flows::flow_rows;
+use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use crate::output::plots::{plots_of_every_run, write_plots};
 use crate::output::sizes::Fragments;
 use crate::output::summary::Summary;
@@ -66,7 +66,10 @@ impl End {
         write_tree(folder, clusters)?;
         write_fragment_plots(folder, state, &fragments, end_s, probes)?;
         let sieves_m = output.map_or(&[][..], |output| &output.sieves_m);
-        write_distribution(&folder.distribution(), &fragments.rows(&state.model, sieves_m))?;
+        write_distribution(
+            &folder.distribution(),
+            &fragments.rows(&state.model, sieves_m),
+        )?;
         if has_flows(state) {
             let interval_s = output.and_then(|output| output.flow_s);
             let rows = flow_rows(state, interval_s.unwrap_or(end_s / 20.0), end_s);

@@ -184,5 +184,8 @@ fn a_distribution_has_the_sieves_that_were_asked_for() {
         [30e-3, 8.0, 1.0],
     ];
     assert_eq!(of("stone", "both"), wanted);
-    assert_eq!(of("lump", "inside")[2..], [[5e-3, 0.0, 0.0], [30e-3, 2.0, 1.0]]);
+    assert_eq!(
+        of("lump", "inside")[2..],
+        [[5e-3, 0.0, 0.0], [30e-3, 2.0, 1.0]]
+    );
 }

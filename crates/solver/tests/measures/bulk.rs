@@ -204,7 +204,12 @@ fn pieces_of_several_spheres_count_as_pieces() {
             if j > 0 {
                 bonds[k].push([sides[k].len() - 1, sides[k].len()]);
             }
-            sides[k].push([8.0 * x + 2.0 * f64::from(j) + 1.0, 2.0 * y + 1.0, 2.0 * z + 1.0, 1.0]);
+            sides[k].push([
+                8.0 * x + 2.0 * f64::from(j) + 1.0,
+                2.0 * y + 1.0,
+                2.0 * z + 1.0,
+                1.0,
+            ]);
         }
     }
     let rest = "[bonds.glue]\nyoung_modulus = 1e6\npoisson_ratio = 0.3\n[regions.room]\nbox = { min = [0, 0, 0], max = [64, 64, 64] }\n[measures.m]\nof = \"a\"\nwith = \"b\"\nquantity = \"mixing_index\"\nwithin = \"room\"\ncell_size = 8\n";

@@ -267,7 +267,10 @@ fn what_is_fed_is_what_left_and_what_is_inside() {
         fed_kg += kg("fed_kg");
         let mut left_kg = 0.0;
         for (outlet, out_kg) in flow["discharged_kg"].as_object().unwrap() {
-            let through = gone.iter().filter(of_body).filter(|row| row["outlet"] == *outlet);
+            let through = gone
+                .iter()
+                .filter(of_body)
+                .filter(|row| row["outlet"] == *outlet);
             let sum_kg = through.fold(0.0, |sum, row| sum + number(row, "mass_kg"));
             assert_eq!(out_kg.as_f64().unwrap(), sum_kg, "{name} through {outlet}");
             left_kg += sum_kg;
@@ -301,7 +304,9 @@ fn what_is_fed_is_what_left_and_what_is_inside() {
     let times: Vec<f64> = flows.iter().map(|row| number(row, "time_s")).collect();
     assert!((times[0] - 0.3).abs() < 1e-12 && (times[times.len() - 1] - 1.0).abs() < 1e-3);
     let sieves = rows(&bench, "distribution.csv");
-    let of_pair = sieves.iter().filter(|row| row["body"] == "pair" && row["location"] == "both");
+    let of_pair = sieves
+        .iter()
+        .filter(|row| row["body"] == "pair" && row["location"] == "both");
     let sieves: Vec<f64> = of_pair.map(|row| number(row, "sieve_m")).collect();
     assert_eq!(sieves, [0.01, 0.015, 0.03]);
     // Written again if it is lost.
