@@ -3,11 +3,11 @@
 //!
 //! ```sh
 //! cargo run --release -p dem-run --example process_tables
-//! cargo run --release -p dem-run --example process_tables -- minute
+//! cargo run --release -p dem-run --example process_tables -- keep
 //! ```
 //!
-//! Builds the programs. The first takes half an hour; the second runs 300 bodies for a minute.
-//! Results are in `target/process`.
+//! Builds the programs and takes half an hour of one core; with `keep`, runs that ended before are
+//! not done again. Results are in `target/process`.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -21,7 +21,7 @@ mod programs;
 mod study;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
 use dem_results::read_series;
@@ -47,21 +47,27 @@ const WAYS: [(&str, &str); 4] = [
     ("bonded from the start", "{ when = { time = 0 } }"),
 ];
 const STATIC: &str = "bonds.cake.failure.rate_strengthening=false";
-/// Diameters of the spheres of cakes and lumps.
-const DIAMETERS: [&str; 3] = ["12mm..15mm", "10mm..12.5mm", "8mm..10mm"];
+/// Diameters of the spheres of cakes and lumps: those of the scene last.
+const DIAMETERS: [&str; 4] = ["15mm..18mm", "12mm..15mm", "10mm..12.5mm", "8mm..10mm"];
+/// Those of the comparison of ways, and of the run with 300 bodies.
+const OF_WAYS: &str = DIAMETERS[1];
+const OF_MINUTE: &str = DIAMETERS[0];
 /// The run with 300 bodies.
-const MINUTE: [&str; 3] = [
+const MINUTE: [&str; 6] = [
     "run.end_time=\"60 s\"",
     "walls.product-belt.surface_velocity=[\"20 mm/s\",0,0]",
+    "measures.mixing.cell_size=\"0.15 m\"",
     "output.frames=\"5 s\"",
+    "output.series=\"0.1 s\"",
+    "output.pictures=\"2 s\"",
 ];
-/// Speeds of the belts, m/s, and lengths of their regions, m.
+/// Its belts: speeds, m/s, and lengths of their regions, m.
 const BELTS: [(&str, f64, f64); 2] = [
     ("mass_on_belt", 3.0, 0.7),
-    ("mass_on_product_belt", 0.4, 0.4),
+    ("mass_on_product_belt", 0.02, 0.4),
 ];
-/// Steady part of the run, s: whole periods of all inlets.
-const STEADY_S: [f64; 2] = [4.0, 8.0];
+/// Its steady part, s: whole periods of all inlets.
+const STEADY_S: [f64; 2] = [46.0, 60.0];
 
 /// A finished run.
 struct Run {
@@ -84,16 +90,25 @@ impl Run {
         ["d10", "d50", "d80"].map(size).join(", ")
     }
 
+    /// Times, s, and values of a column of the time series.
+    fn column(&self, name: &str) -> Result<Vec<(f64, f64)>, Failed> {
+        let series = read_series(&self.folder.join("series.csv"))?;
+        let at = series.columns.iter().position(|column| column == name);
+        let values = &series.values[at.ok_or("no such column")?];
+        Ok(series
+            .times_s
+            .iter()
+            .copied()
+            .zip(values.iter().copied())
+            .collect())
+    }
+
     /// Mean of a measure over the steady part, kg.
     fn mean_of(&self, measure: &str) -> Result<f64, Failed> {
-        let series = read_series(&self.folder.join("series.csv"))?;
-        let column = format!("{measure}_kg");
-        let at = series.columns.iter().position(|name| *name == column);
-        let values = &series.values[at.ok_or("no such measure")?];
+        let rows = self.column(&format!("{measure}_kg"))?.into_iter();
         let [from_s, to_s] = STEADY_S;
-        let rows = series.times_s.iter().zip(values);
-        let steady = rows.filter(|(time_s, _)| (from_s..to_s).contains(*time_s));
-        let steady: Vec<f64> = steady.map(|(_, value)| *value).collect();
+        let steady = rows.filter(|(time_s, _)| (from_s..to_s).contains(time_s));
+        let steady: Vec<f64> = steady.map(|(_, value)| value).collect();
         Ok(steady.iter().sum::<f64>() / steady.len() as f64)
     }
 
@@ -104,30 +119,71 @@ impl Run {
     }
 }
 
-fn main() -> Result<(), Failed> {
-    let folder = results("process")?;
-    let programs = Programs::build()?;
-    let minute = std::env::args().any(|word| word == "minute");
-    if minute {
-        return write_minute(&programs.dem_run, &folder);
-    }
-    let run = |out: &str, set: &[String], bodies: &[String]| -> Result<Run, Failed> {
-        let mut options: Vec<String> = set.iter().map(|set| format!("--set={set}")).collect();
-        options.extend(bodies.iter().map(|body| format!("--body={body}")));
-        options.extend(["--threads", "2"].map(str::to_owned));
-        let folder = folder.join(out);
-        let summary = run_scene(&programs.dem_run, "process", &options, &folder)?;
-        Ok(Run { folder, summary })
-    };
-    write_ways(&run)?;
-    write_sizes(&programs.dem_pack, &folder, &run)?;
-    write_flows(&run("steady", &[], &[])?)
+/// Runs of the scene into the folder of results.
+struct Runs {
+    dem_run: PathBuf,
+    folder: PathBuf,
+    /// Whether runs that ended before are kept.
+    keeps: bool,
 }
 
-/// Runs the scene into a folder, with values and bodies.
-type Runs<'a> = &'a dyn Fn(&str, &[String], &[String]) -> Result<Run, Failed>;
+impl Runs {
+    /// The file of a body of spheres with these diameters.
+    fn body(&self, body: &str, diameters: &str) -> PathBuf {
+        self.folder.join(format!("{body}-{diameters}.vtp"))
+    }
 
-fn write_ways(run: Runs<'_>) -> Result<(), Failed> {
+    /// Runs the scene with these values, and cakes and lumps of spheres with these diameters, on
+    /// one thread.
+    fn run(&self, out: &str, diameters: &str, set: &[String]) -> Result<Run, Failed> {
+        let folder = self.folder.join(out);
+        let before = std::fs::read(folder.join("summary.json")).ok();
+        let before: Option<Value> = before.and_then(|json| serde_json::from_slice(&json).ok());
+        let ended = before.filter(|summary| self.keeps && summary["ended_by"] == "end time");
+        if let Some(summary) = ended {
+            return Ok(Run { folder, summary });
+        }
+        let mut options: Vec<String> = set.iter().map(|set| format!("--set={set}")).collect();
+        for body in BREAKABLE {
+            let file = self.body(body, diameters);
+            options.push(format!("--body={body}={}", file.display()));
+        }
+        options.extend(["--threads", "1"].map(str::to_owned));
+        let summary = run_scene(&self.dem_run, "process", &options, &folder)?;
+        Ok(Run { folder, summary })
+    }
+}
+
+fn main() -> Result<(), Failed> {
+    let programs = Programs::build()?;
+    let runs = Runs {
+        dem_run: programs.dem_run,
+        folder: results("process")?,
+        keeps: std::env::args().any(|word| word == "keep"),
+    };
+    for diameters in DIAMETERS {
+        for (body, shape) in BREAKABLE.iter().zip(["filter-cake", "bar"]) {
+            let file = runs.body(body, diameters);
+            if runs.keeps && file.is_file() {
+                continue;
+            }
+            let mut pack = Command::new(&programs.dem_pack);
+            pack.arg(format!("data/shapes/{shape}.stl"));
+            pack.args(["--diameter", diameters, "--overlap", "0.25"]);
+            pack.args(["--bond-range", "1.1", "--seed", "3", "--quiet", "-o"]);
+            output(pack.arg(&file))?;
+        }
+    }
+    write_ways(&runs)?;
+    write_sizes(&runs)?;
+    let minute = runs.run("minute", OF_MINUTE, &MINUTE.map(str::to_owned))?;
+    write_minute(&minute)?;
+    write_flows(&minute)?;
+    write_mixing(&minute)?;
+    write_sieves(&minute)
+}
+
+fn write_ways(runs: &Runs) -> Result<(), Failed> {
     let mut table = Table::new(&[
         "cakes and lumps are",
         "DIF",
@@ -149,7 +205,7 @@ fn write_ways(run: Runs<'_>) -> Result<(), Failed> {
             if !has_dif {
                 set.push(STATIC.to_owned());
             }
-            let found = run(&format!("way-{number}-{has_dif}"), &set, &[])?;
+            let found = runs.run(&format!("way-{number}-{has_dif}"), OF_WAYS, &set)?;
             table.row(&[
                 (*words).to_owned(),
                 if has_dif { "yes" } else { "no" }.to_owned(),
@@ -168,87 +224,125 @@ fn write_ways(run: Runs<'_>) -> Result<(), Failed> {
     table.write(PAGE, "process_tables: ways")
 }
 
-fn write_sizes(dem_pack: &Path, folder: &Path, run: Runs<'_>) -> Result<(), Failed> {
+fn write_sizes(runs: &Runs) -> Result<(), Failed> {
     let mut table = Table::new(&[
         "spheres",
-        "DIF",
         "of a cake, of a lump",
+        "DIF",
         "time step",
         "processor time",
-        "bonds broken of those",
+        "bonds broken",
         "cake: d10, d50, d80, mm",
         "lump: d10, d50, d80, mm",
-        "Lacey's index at the end",
+        "energy error",
     ]);
     for diameters in DIAMETERS {
-        let mut bodies = Vec::new();
-        let mut counts = Vec::new();
-        for (body, shape) in BREAKABLE.iter().zip(["filter-cake", "bar"]) {
-            let file = folder.join(format!("{body}-{diameters}.vtp"));
-            let mut pack = Command::new(dem_pack);
-            pack.arg(format!("data/shapes/{shape}.stl"));
-            pack.args([
-                "--diameter",
-                diameters,
-                "--overlap",
-                "0.25",
-                "--bond-range",
-                "1.1",
-            ]);
-            pack.args(["--seed", "3", "--quiet", "-o"]).arg(&file);
-            output(&mut pack)?;
-            let made = dem_io::body::read_body(&file)?;
-            counts.push(made.radii.len().to_string());
-            bodies.push(format!("{body}={}", file.display()));
-        }
+        let count = |body: &str| -> Result<String, Failed> {
+            let made = dem_io::body::read_body(&runs.body(body, diameters))?;
+            Ok(made.radii.len().to_string())
+        };
+        let counts = format!("{}, {}", count("cake")?, count("lump")?);
+        let range = diameters.replace("..", " to ").replace("mm", " mm");
         for has_dif in [true, false] {
             let set: &[String] = if has_dif { &[] } else { &[STATIC.to_owned()] };
-            let found = run(&format!("size-{diameters}-{has_dif}"), set, &bodies)?;
+            let found = runs.run(&format!("size-{diameters}-{has_dif}"), diameters, set)?;
             table.row(&[
-                diameters
-                    .replace("mm..", " mm to ")
-                    .replace("mm", " mm")
-                    .replace("  ", " "),
+                range.clone(),
+                counts.clone(),
                 if has_dif { "yes" } else { "no" }.to_owned(),
-                counts.join(", "),
                 format!("{:.1} us", 1e6 * found.number("/time_step_s")),
                 format!("{:.0} s", found.number("/processor_s")),
                 format!("{:.0}", found.number("/broken_bonds")),
                 found.sizes("cake"),
                 found.sizes("lump"),
-                format!("{:.2}", found.number("/measures/mixing/value")),
+                format!("{:.1e}", found.number("/energy_error")),
             ]);
         }
     }
     table.write(PAGE, "process_tables: sizes")
 }
 
+/// Mass flows of its steady part.
 fn write_flows(run: &Run) -> Result<(), Failed> {
-    let fed_kg = run.flow_kg(|flow| flow["fed_kg"].as_f64().unwrap_or(f64::NAN));
     let mut table = Table::new(&["mass flow", "kg/s"]);
-    for body in ["cake", "lump", "rock"] {
-        let mass_kg = run.number(&format!("/bodies/{body}/mass_kg"));
-        table.row(&[
-            format!("fed: {body}, rate of its inlet times its mass"),
-            format!("{:.3}", rate(body) * mass_kg),
-        ]);
-    }
+    let mut row = |what: String, flow_kg_s: f64| table.row(&[what, format!("{flow_kg_s:.3}")]);
+    let mass_kg = |body: &str| run.number(&format!("/bodies/{body}/mass_kg"));
+    let fed = ["cake", "lump", "rock"].map(|body| rate(body) * mass_kg(body));
+    row(
+        "fed: cakes and lumps, rates times masses".to_owned(),
+        fed[0] + fed[1],
+    );
+    row("fed: rock".to_owned(), fed[2]);
     for (measure, speed_m_s, length_m) in BELTS {
         let flow_kg_s = run.mean_of(measure)? / length_m * speed_m_s;
+        let what = format!("`{measure}` over {length_m} m, times {speed_m_s} m/s");
+        row(what, flow_kg_s);
+    }
+    let left = discharged(run)?;
+    for (body, flow_kg_s) in &left {
+        row(format!("discharged through `product`: {body}"), *flow_kg_s);
+    }
+    row(
+        "discharged through `product`, in all".to_owned(),
+        left.values().sum(),
+    );
+    table.write(PAGE, "process_tables: flows")
+}
+
+/// What the bin holds every ten seconds.
+fn write_mixing(run: &Run) -> Result<(), Failed> {
+    let mut table = Table::new(&[
+        "time",
+        "pieces in the scene",
+        "mass in the bin",
+        "Lacey's index",
+    ]);
+    let columns = ["pieces", "mass_in_bin_kg", "mixing"];
+    let [pieces, mass, mixing] = columns.map(|name| run.column(name));
+    let [pieces, mass, mixing] = [pieces?, mass?, mixing?];
+    for number in 1..=6 {
+        let wanted_s = 10.0 * f64::from(number);
+        let at = pieces
+            .iter()
+            .position(|(time_s, _)| *time_s > wanted_s - 0.05);
+        let at = at.ok_or("the run is too short")?;
         table.row(&[
-            format!("`{measure}` over {length_m} m, times {speed_m_s} m/s"),
-            format!("{flow_kg_s:.3}"),
+            format!("{wanted_s:.0} s"),
+            format!("{:.0}", pieces[at].1),
+            format!("{:.1} kg", mass[at].1),
+            format!("{:.2}", mixing[at].1),
         ]);
     }
-    for (body, flow_kg_s) in discharged(run)? {
-        table.row(&[format!("left: {body}"), format!("{flow_kg_s:.3}")]);
+    table.write(PAGE, "process_tables: mixing")
+}
+
+/// Sieve classes of cakes and lumps.
+fn write_sieves(run: &Run) -> Result<(), Failed> {
+    let text = std::fs::read_to_string(run.folder.join("distribution.csv"))?;
+    let mut passing: BTreeMap<(u64, String), String> = BTreeMap::new();
+    for line in text.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [body, location, sieve_m, _, fraction] = cells[..] else {
+            return Err("distribution.csv has other columns".into());
+        };
+        let sieve_um = (1e6 * sieve_m.parse::<f64>()?).round() as u64;
+        let percent = format!("{:.1} %", 100.0 * fraction.parse::<f64>()?);
+        if location == "both" {
+            passing.insert((sieve_um, body.to_owned()), percent);
+        }
     }
-    let missing = run.flow_kg(|flow| flow["missing_kg"].as_f64().unwrap_or(f64::NAN).abs());
-    table.row(&[
-        format!("fed, less left and inside, of {fed_kg:.3} kg"),
-        format!("{missing:.1e} kg"),
-    ]);
-    table.write(PAGE, "process_tables: flows")
+    let mut table = Table::new(&["sieve", "passing: cake", "lump"]);
+    let mut sieves_um: Vec<u64> = passing.keys().map(|(sieve_um, _)| *sieve_um).collect();
+    sieves_um.dedup();
+    for sieve_um in sieves_um {
+        let of = |body: &str| passing.get(&(sieve_um, body.to_owned())).cloned();
+        table.row(&[
+            format!("{} mm", sieve_um as f64 * 1e-3),
+            of("cake").unwrap_or_default(),
+            of("lump").unwrap_or_default(),
+        ]);
+    }
+    table.write(PAGE, "process_tables: sieves")
 }
 
 /// Bodies per second of the inlets of the scene.
@@ -279,20 +373,11 @@ fn discharged(run: &Run) -> Result<BTreeMap<String, f64>, Failed> {
 }
 
 /// The run with 300 bodies.
-fn write_minute(dem_run: &Path, folder: &Path) -> Result<(), Failed> {
-    let mut options: Vec<String> = MINUTE.iter().map(|set| format!("--set={set}")).collect();
-    options.extend(["--threads", "2"].map(str::to_owned));
-    let folder = folder.join("minute");
-    let summary = run_scene(dem_run, "process", &options, &folder)?;
-    let run = Run { folder, summary };
+fn write_minute(run: &Run) -> Result<(), Failed> {
     let mut table = Table::new(&["a minute of the process", ""]);
     let mut row = |what: &str, value: String| table.row(&[what.to_owned(), value]);
     row(
-        "time on two cores",
-        format!("{:.1} min", run.number("/wall_s") / 60.0),
-    );
-    row(
-        "processor time",
+        "processor time, one thread",
         format!("{:.1} min", run.number("/processor_s") / 60.0),
     );
     row("steps", format!("{:.0}", run.number("/steps")));
