@@ -55,7 +55,7 @@ const OF_MINUTE: &str = DIAMETERS[0];
 /// The run with 300 bodies.
 const MINUTE: [&str; 6] = [
     "run.end_time=\"60 s\"",
-    "walls.product-belt.surface_velocity=[\"20 mm/s\",0,0]",
+    "walls.product-belt.surface_velocity=[\"0.1 m/s\",0,0]",
     "measures.mixing.cell_size=\"0.15 m\"",
     "output.frames=\"5 s\"",
     "output.series=\"0.1 s\"",
@@ -64,10 +64,10 @@ const MINUTE: [&str; 6] = [
 /// Its belts: speeds, m/s, and lengths of their regions, m.
 const BELTS: [(&str, f64, f64); 2] = [
     ("mass_on_belt", 3.0, 0.7),
-    ("mass_on_product_belt", 0.02, 0.4),
+    ("mass_on_product_belt", 0.1, 0.4),
 ];
 /// Its steady part, s: whole periods of all inlets.
-const STEADY_S: [f64; 2] = [46.0, 60.0];
+const STEADY_S: [f64; 2] = [20.0, 60.0];
 
 /// A finished run.
 struct Run {
