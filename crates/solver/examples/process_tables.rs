@@ -56,7 +56,7 @@ const OF_MINUTE: &str = DIAMETERS[0];
 const MINUTE: [&str; 6] = [
     "run.end_time=\"60 s\"",
     "walls.product-belt.surface_velocity=[\"0.1 m/s\",0,0]",
-    "measures.mixing.cell_size=\"0.15 m\"",
+    "measures.mixing.cell_size=\"0.3 m\"",
     "output.frames=\"5 s\"",
     "output.series=\"0.1 s\"",
     "output.pictures=\"2 s\"",
@@ -337,7 +337,7 @@ fn write_sieves(run: &Run) -> Result<(), Failed> {
     for sieve_um in sieves_um {
         let of = |body: &str| passing.get(&(sieve_um, body.to_owned())).cloned();
         table.row(&[
-            format!("{} mm", sieve_um as f64 * 1e-3),
+            format!("{:.1} mm", sieve_um as f64 * 1e-3),
             of("cake").unwrap_or_default(),
             of("lump").unwrap_or_default(),
         ]);
@@ -400,7 +400,7 @@ fn write_minute(run: &Run) -> Result<(), Failed> {
     row("cake: d10, d50, d80", format!("{} mm", run.sizes("cake")));
     row("lump: d10, d50, d80", format!("{} mm", run.sizes("lump")));
     row(
-        "Lacey's index in the bin at the end",
+        "Lacey's index at the end",
         format!("{:.2}", run.number("/measures/mixing/value")),
     );
     row(

@@ -94,6 +94,6 @@ fn flows_and_mixtures_look_as_documented() {
     write_mixing(&path, &[cell]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        format!("{MIXING_COLUMNS}\nmixing,0.5,-0.5,1.5,2.0,0.25\n")
+        format!("{MIXING_COLUMNS}\nmixing,0.5,-0.5,1.5,2,0.25\n")
     );
 }

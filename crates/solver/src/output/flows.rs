@@ -99,11 +99,14 @@ fn fed(state: &State) -> Vec<(f64, u32, f64)> {
     come.filter_map(of_body).collect()
 }
 
+/// Numbers of a body and of the outlet through which it has left. None: inlets have fed it.
+type BodyAndOutlet = (u32, Option<u32>);
+
 /// Masses fed and discharged in intervals of `interval_s` up to `end_s`, s: for each body what
 /// inlets have fed, and for each outlet what has left through it.
 pub(crate) fn flow_rows(state: &State, interval_s: f64, end_s: f64) -> Vec<FlowRow<'_>> {
     let outlets = &state.model.rules.outlets;
-    let mut events: BTreeMap<(u32, Option<u32>), Vec<(f64, f64)>> = BTreeMap::new();
+    let mut events: BTreeMap<BodyAndOutlet, Vec<(f64, f64)>> = BTreeMap::new();
     for (time_s, body, mass_kg) in fed(state) {
         events
             .entry((body, None))
