@@ -2,7 +2,7 @@
 //! that wait in an inlet, fly bonded or rigid, are broken, or sleep; alone, and beside ten bonded
 //! bodies that fly. `cargo bench -p dem-tests --bench bodies`, then the largest number of bodies or
 //! nothing (10,000), and `--page FILE` to write it. On one thread, some minutes. With the word
-//! `waiting`, the table of doc/process.md on what a waiting body costs, in time and memory.
+//! `waiting`, what a waiting body costs in time and memory.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
@@ -224,7 +224,6 @@ fn write_waiting() {
         table.row(&format!("| {name} | time of a step |{times} |"));
         table.row(&format!("| | memory |{memory}"));
     }
-    table.write("bodies -- waiting");
 }
 
 fn write_table() {

@@ -174,6 +174,7 @@ fn main() -> Result<(), Failed> {
             output(pack.arg(&file))?;
         }
     }
+    write_waiting(&runs)?;
     write_ways(&runs)?;
     write_sizes(&runs)?;
     let minute = runs.run("minute", OF_MINUTE, &MINUTE.map(str::to_owned))?;
@@ -287,6 +288,69 @@ fn write_flows(run: &Run) -> Result<(), Failed> {
         left.values().sum(),
     );
     table.write(PAGE, "process_tables: flows")
+}
+
+/// What waste rock costs that waits to be fed, or lies on a floor: memory as `dem-run check` tells
+/// it, and processor time of a step. The largest number is checked only.
+fn write_waiting(runs: &Runs) -> Result<(), Failed> {
+    let mut table = Table::new(&[
+        "pieces of waste rock",
+        "wait in an inlet",
+        "",
+        "lie on a floor",
+        "",
+    ]);
+    table.row(&["", "memory", "a step", "memory", "a step"].map(str::to_owned));
+    for count in [10, 100, 1000, 10_000] {
+        let mut cells = vec![count.to_string()];
+        for lies in [false, true] {
+            let file = runs.folder.join(format!("waiting-{count}-{lies}.toml"));
+            std::fs::write(&file, waiting(count, lies))?;
+            let mut check = Command::new(&runs.dem_run);
+            let told = output(check.arg("check").arg(&file).args(["--json", "--quiet"]))?;
+            let told: Value = serde_json::from_slice(&told)?;
+            let bytes = told["memory_bytes"].as_f64().unwrap_or(f64::NAN);
+            cells.push(format!("{:.0} kB", 1e-3 * bytes));
+            if count > 1000 {
+                cells.push("not run".to_owned());
+                continue;
+            }
+            let mut run = Command::new(&runs.dem_run);
+            run.arg(&file).args(["--json", "--quiet", "--threads", "1"]);
+            let told: Value = serde_json::from_slice(&output(&mut run)?)?;
+            let number = |name: &str| told[name].as_f64().unwrap_or(f64::NAN);
+            let step_us = 1e6 * number("processor_s") / number("steps");
+            cells.push(format!("{step_us:.1} us"));
+        }
+        table.row(&cells);
+    }
+    table.write(PAGE, "process_tables: waiting")
+}
+
+/// A scene of so many pieces of waste rock.
+fn waiting(count: usize, lies: bool) -> String {
+    let rock = programs::root().join("data/bodies/waste-rock.vtp");
+    let file = rock.display();
+    let body = format!("file = '{file}'\nmaterial = \"rock\"\nstart_as = \"clump\"\n");
+    let mut text = "version = 1\n\
+         [run]\nend_time = \"0.1 s\"\ngravity = [0, 0, -9.81]\n\
+         [materials.rock]\ndensity = 2700\nshear_modulus = \"10 MPa\"\npoisson_ratio = 0.3\n\
+         [contacts]\nrock-rock = { restitution = 0.3, friction = 0.5 }\n\
+         [walls.floor]\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = \"rock\"\n"
+        .to_owned();
+    if !lies {
+        return text
+            + &format!(
+                "[bodies.rock]\n{body}[regions.gate]\nbox = {{ min = [0, 0, 1], max = [1, 1, 2] }}\n\
+                 [inlets.gate]\nbodies = [\"rock\"]\nregion = \"gate\"\nrate = 1\nstart = \"1 h\"\ncount = {count}\n"
+            );
+    }
+    let side = (count as f64).sqrt().ceil() as usize;
+    for number in 0..count {
+        let [x, y] = [number % side, number / side].map(|n| 0.1 * n as f64);
+        text += &format!("[bodies.rock{number}]\n{body}position = [{x:?}, {y:?}, 0.0227]\n");
+    }
+    text
 }
 
 /// What the bin holds every ten seconds.
