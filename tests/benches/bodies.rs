@@ -1,7 +1,8 @@
 //! The table of doc/performance.md on many bodies: the time of a step over the number of bodies
 //! that wait in an inlet, fly bonded or rigid, are broken, or sleep; alone, and beside ten bonded
 //! bodies that fly. `cargo bench -p dem-tests --bench bodies`, then the largest number of bodies or
-//! nothing (10,000), and `--page FILE` to write it. On one thread, some minutes.
+//! nothing (10,000), and `--page FILE` to write it. On one thread, some minutes. With the word
+//! `waiting`, what a waiting body costs in time and memory.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,
@@ -15,7 +16,7 @@ use std::time::Instant;
 
 use dem_run::plan::plan;
 use dem_run::state::State;
-use dem_run::step::step;
+use dem_run::step::{all_bytes, step};
 
 use self::page::{Table, words};
 
@@ -146,12 +147,17 @@ fn body(text: &mut String, name: &str, bonds: &str, more: &str) {
     .expect("text grows");
 }
 
-/// The state once the bodies do what they are to do.
-fn state(doing: Doing, bodies: usize, flying: usize) -> State {
+/// The state before the first step.
+fn planned(doing: Doing, bodies: usize, flying: usize) -> State {
     let text = scene(doing, bodies, flying);
     let scene = dem_scene::scene_from_text(&text, "bench.toml", &[]).expect("a scene");
     let written = dem_scene::read_bodies(&scene).expect("bodies");
-    let mut state = plan(&scene, written, 1, false).expect("plans").state;
+    plan(&scene, written, 1, false).expect("plans").state
+}
+
+/// The state once the bodies do what they are to do.
+fn state(doing: Doing, bodies: usize, flying: usize) -> State {
+    let mut state = planned(doing, bodies, flying);
     let is_ready = |state: &State| match doing {
         Doing::Asleep => (state.sleep.as_ref()).is_some_and(|sleep| sleep.particles >= 27 * bodies),
         Doing::Broken => state.broken_count as usize == 54 * bodies,
@@ -164,15 +170,28 @@ fn state(doing: Doing, bodies: usize, flying: usize) -> State {
     state
 }
 
+/// Processor time of this thread, s, which other programs do not disturb much. None: the system
+/// does not tell it.
+fn processor_s() -> Option<f64> {
+    let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let spent_ns: f64 = spent.split(' ').next()?.parse().ok()?;
+    Some(1e-9 * spent_ns)
+}
+
 /// Time of a step, us: the median of rounds.
 fn step_us(state: &mut State) -> f64 {
     let mut rounds: Vec<f64> = (0..ROUNDS)
         .map(|_| {
-            let (clock, before) = (Instant::now(), state.steps);
+            let (clock, steps) = (Instant::now(), state.steps);
+            let before_s = processor_s();
             while clock.elapsed().as_secs_f64() < ROUND_S {
                 step(state);
             }
-            1e6 * clock.elapsed().as_secs_f64() / (state.steps - before) as f64
+            let spent_s = processor_s()
+                .zip(before_s)
+                .map(|(after, before)| after - before);
+            let spent_s = spent_s.unwrap_or_else(|| clock.elapsed().as_secs_f64());
+            1e6 * spent_s / (state.steps - steps) as f64
         })
         .collect();
     rounds.sort_by(f64::total_cmp);
@@ -180,8 +199,31 @@ fn step_us(state: &mut State) -> f64 {
 }
 
 fn main() {
+    let waits = words().first().is_some_and(|word| word == "waiting");
+    let write = if waits { write_waiting } else { write_table };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.expect("a thread starts").install(write_table);
+    pool.expect("a thread starts").install(write);
+}
+
+/// What bodies cost that wait: time of a step and memory, over their number. The largest number is
+/// planned only.
+fn write_waiting() {
+    let mut table = Table::new();
+    table.row("| bodies of 27 spheres and 54 bonds | | 10 | 100 | 1000 | 10000, not stepped |");
+    table.row("|---|---|---|---|---|---|");
+    let [few @ .., most] = COUNTS;
+    let kb = |state: &State| format!(" {:.0} kB |", all_bytes(state) as f64 * 1e-3);
+    for (doing, name) in [CASES[0], CASES[2], CASES[1]] {
+        let (mut times, mut memory) = (String::new(), String::new());
+        for count in few {
+            let mut state = state(doing, count, 0);
+            times += &format!(" {:.1} us |", step_us(&mut state));
+            memory += &kb(&state);
+        }
+        memory += &kb(&planned(doing, most, 0));
+        table.row(&format!("| {name} | time of a step |{times} |"));
+        table.row(&format!("| | memory |{memory}"));
+    }
 }
 
 fn write_table() {

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::field::Field;
-use super::listing::Listing;
+use super::listing::{LISTED, Listing};
+use super::numbers::quantity;
 use super::paths::named_path;
 use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
 use dem_io::diagnostic::Result;
-use dem_io::units::TIME;
+use dem_io::units::{LENGTH, TIME};
 
 /// The quantity that colours the particles of pictures. Of a quantity of bonds, a particle has the
 /// largest value of its intact bonds.
@@ -55,6 +56,11 @@ pub struct Output {
     pub view_from: Option<[f64; 3]>,
     /// `colour_by`: the quantity that colours the particles of pictures.
     pub colour_by: ColourBy,
+    /// `sieves`: openings of the sieves of the size distribution, m: positive and ascending. Empty:
+    /// the principal sizes R 20/3 of ISO 565.
+    pub sieves_m: Vec<f64>,
+    /// `flow`: width of the intervals of mass flows. None: a twentieth of the run.
+    pub flow_s: Option<f64>,
     /// `checkpoint`: time between checkpoints. None: only at the end and when interrupted.
     pub checkpoint_s: Option<f64>,
 }
@@ -90,6 +96,19 @@ pub(super) static OUTPUT: Schema = Schema {
             "Quantity that colours the particles of pictures; of a quantity of bonds, a particle has the largest value \
              of its intact bonds.",
         ),
+        Key::new(
+            "sieves",
+            Kind::List(&Kind::Quantity(&LENGTH)),
+            "Openings of the sieves of `distribution.csv`, the smallest first.",
+        )
+        .otherwise("R 20/3 of ISO 565"),
+        Key::quantity(
+            "flow",
+            &TIME,
+            "Width of the intervals of `flow.csv`, in which mass flows are means.",
+        )
+        .positive()
+        .otherwise("a twentieth of the run"),
         Key::quantity(
             "checkpoint",
             &TIME,
@@ -126,8 +145,29 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
         pictures_s: table.read("pictures")?,
         view_from: table.read_by("view", |field| Table::of(&field, &VIEW)?.read("from"))?,
         colour_by: table.read("colour_by")?,
+        sieves_m: table
+            .read_by("sieves", |field| sieves_m(&field))?
+            .unwrap_or_default(),
+        flow_s: table.read("flow")?,
         checkpoint_s: table.read("checkpoint")?,
     })
+}
+
+/// Openings of sieves, m.
+fn sieves_m(field: &Field<'_>) -> Result<Vec<f64>> {
+    let mut sieves_m: Vec<f64> = Vec::new();
+    for item in field.items()? {
+        let sieve_m = item.positive(&LENGTH)?;
+        if let Some(before_m) = sieves_m.last().filter(|before_m| sieve_m <= **before_m) {
+            let limit = format!(
+                "more than the opening before it, {}",
+                quantity(*before_m, "m")
+            );
+            return Err(item.wrong(&limit, "write openings with the smallest first, each once"));
+        }
+        sieves_m.push(sieve_m);
+    }
+    Ok(sieves_m)
 }
 
 pub(super) fn list(output: &Output, listing: &mut Listing) {
@@ -143,5 +183,13 @@ pub(super) fn list(output: &Output, listing: &mut Listing) {
         None => listing.text("view.from", listing.usual("view")),
     }
     listing.value("colour_by", &output.colour_by);
+    if output.sieves_m.is_empty() {
+        listing.text("sieves", listing.usual("sieves"));
+    } else {
+        let shown = output.sieves_m.iter().take(LISTED);
+        let shown: Vec<String> = shown.map(|sieve_m| quantity(*sieve_m, "m")).collect();
+        listing.some("sieves", &shown, output.sieves_m.len());
+    }
+    listing.value("flow", &output.flow_s);
     listing.value("checkpoint", &output.checkpoint_s);
 }

@@ -23,14 +23,17 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clusters::fragments;
 use crate::state::events::Renumbering;
+use crate::state::regions::Region;
 use crate::state::watches::{Seen, Watch, WatchTarget};
 
+use self::bulk::Mixture;
 use self::members::{Members, wall_number};
 use self::spheres::spheres;
 use self::whole::{Motions, Starts, start_centre, starts, turned_before};
 
 pub(crate) use self::bonds::utilisation_under;
 pub use self::bonds::{DynamicUtilisation, bond_utilisation, dynamic_utilisations, load};
+pub use self::bulk::MixedCell;
 pub use crate::state::watches::History;
 
 /// A measure and its particles.
@@ -377,14 +380,32 @@ impl Probe {
                 0.0 => f64::NAN,
                 density => self.solid_density_kg_m3 / density,
             },
-            (Quantity::MixingIndex, Some(region)) => {
-                let others = self.with.as_ref().map(|with| spheres(with, state));
-                let cell_m = self.measure.cell_size_m.unwrap_or(f64::NAN);
-                bulk::lacey_index([&own, &others.unwrap_or_default()], region, cell_m)
-            }
+            (Quantity::MixingIndex, Some(region)) => self.mixture(state, region).lacey_index(),
             (_, Some(region)) => bulk::mass_within_kg(&own, region),
             (_, None) => 0.0 + own.iter().map(|sphere| sphere.mass_kg).sum::<f64>(),
         }
+    }
+
+    /// Its two sets in the cells of a region.
+    fn mixture(&self, state: &State, region: &Region) -> Mixture {
+        let own = spheres(&self.members, state);
+        let others = self.with.as_ref().map(|with| spheres(with, state));
+        let cell_m = self.measure.cell_size_m.unwrap_or(f64::NAN);
+        Mixture::of([&own, &others.unwrap_or_default()], region, cell_m)
+    }
+
+    /// Whether it is a mixing index.
+    pub(crate) fn mixes(&self) -> bool {
+        self.measure.quantity == Quantity::MixingIndex
+    }
+
+    /// What the cells of a mixing index hold. Empty for other quantities.
+    pub fn mixed_cells(&self, state: &State) -> Vec<MixedCell> {
+        let region = self.region.filter(|_| self.mixes());
+        let region = region.map(|at| &state.model.rules.regions[at]);
+        region.map_or(Vec::new(), |region| {
+            self.mixture(state, region).cells().collect()
+        })
     }
 
     /// Value of a quantity of intact bonds at their strain rates.
@@ -423,7 +444,7 @@ impl Probe {
         } else if self.measure.quantity == Quantity::MixingIndex {
             let within = self.measure.within.as_deref().unwrap_or_default();
             Some(format!(
-                "{name} has no value: the region \"{within}\" has nothing of one of the two, or cell_size is so small that no cell has two spheres"
+                "{name} has no value: the region \"{within}\" has nothing of one of the two, or cell_size is so small that no cell has two pieces"
             ))
         } else if self.measure.quantity == Quantity::BulkingFactor {
             let within = self.measure.within.as_deref().unwrap_or_default();

@@ -2,6 +2,7 @@
 //! end.
 
 pub(crate) mod equilibrium;
+pub mod flows;
 pub mod fragments;
 pub(crate) mod frames;
 pub mod pictures;

@@ -327,7 +327,10 @@ fn place_meetings(
     let counts_pieces = scene.measures.values().any(|measure| {
         matches!(
             measure.quantity,
-            Quantity::Count | Quantity::MassFractionOfLargest | Quantity::MassOfLargest
+            Quantity::Count
+                | Quantity::MassFractionOfLargest
+                | Quantity::MassOfLargest
+                | Quantity::MixingIndex
         )
     });
     let has_clumps = !state.clumps.templates.is_empty();

@@ -251,6 +251,6 @@ pub fn number_of(stage: &Stage) -> usize {
 }
 
 /// Bytes of all arrays of a state.
-pub(crate) fn all_bytes(state: &State) -> usize {
+pub fn all_bytes(state: &State) -> usize {
     stages().iter().map(|stage| (stage.bytes)(state)).sum()
 }

@@ -140,6 +140,16 @@ class Results:
         return self.table("distribution")
 
     @cached_property
+    def flow(self) -> pd.DataFrame:
+        """`flow.csv`: mass fed and discharged over time, by body and outlet."""
+        return self.table("flow")
+
+    @cached_property
+    def mixing(self) -> pd.DataFrame:
+        """`mixing.csv`: mass and mass fraction in the cells of mixing indices."""
+        return self.table("mixing")
+
+    @cached_property
     def force_displacement(self) -> pd.DataFrame:
         """`force-displacement.csv`: the curve of a laboratory test."""
         return self.table("force-displacement")

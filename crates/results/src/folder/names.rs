@@ -16,6 +16,8 @@ pub(super) const FRAGMENTS: &str = "fragments.csv";
 pub(super) const FRAGMENT_TREE: &str = "fragment-tree.csv";
 pub(super) const DISCHARGE: &str = "discharge.csv";
 pub(super) const DISTRIBUTION: &str = "distribution.csv";
+pub(super) const FLOW: &str = "flow.csv";
+pub(super) const MIXING: &str = "mixing.csv";
 pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
@@ -25,7 +27,7 @@ pub(super) const DISC_STRESS: &str = "disc-stress.csv";
 pub(super) const CHECKPOINT: &str = "checkpoint.dem";
 pub(super) const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 16] = [
+pub(super) const SINGLE_FILES: [&str; 18] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -33,6 +35,8 @@ pub(super) const SINGLE_FILES: [&str; 16] = [
     FRAGMENT_TREE,
     DISCHARGE,
     DISTRIBUTION,
+    FLOW,
+    MIXING,
     SUMMARY,
     REPORT,
     TEST_CURVE,

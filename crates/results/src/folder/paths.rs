@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::names::{
     BAR_SIGNALS, CHECKPOINT, DISC_STRESS, DISCHARGE, DISTRIBUTION, ENDED, EVENTS, FILM, FILM_STRIP,
-    FRAGMENT_TREE, FRAGMENTS, INDEX, PICTURES, PLOTS, REPORT, SCENE, SERIES, SUMMARY, TEST_CURVE,
-    fixed_walls_name, frame_in, walls_in,
+    FLOW, FRAGMENT_TREE, FRAGMENTS, INDEX, MIXING, PICTURES, PLOTS, REPORT, SCENE, SERIES, SUMMARY,
+    TEST_CURVE, fixed_walls_name, frame_in, walls_in,
 };
 
 /// The folder to which a run writes. No other run can write to it as long as this or a clone of it
@@ -89,6 +89,16 @@ impl ResultsFolder {
     /// The size distribution of all fragments: `distribution.csv`.
     pub fn distribution(&self) -> PathBuf {
         self.path.join(DISTRIBUTION)
+    }
+
+    /// Mass flows over time: `flow.csv`.
+    pub fn flow(&self) -> PathBuf {
+        self.path.join(FLOW)
+    }
+
+    /// The cells of mixtures: `mixing.csv`.
+    pub fn mixing(&self) -> PathBuf {
+        self.path.join(MIXING)
     }
 
     /// Summary: `summary.json`.

@@ -3,7 +3,11 @@
 use std::fs;
 
 use dem_results::discharge::{COLUMNS, DISTRIBUTION_COLUMNS};
-use dem_results::{DischargeFile, DischargeRow, DistributionRow, write_distribution};
+use dem_results::flows::{FLOW_COLUMNS, MIXING_COLUMNS};
+use dem_results::{
+    DischargeFile, DischargeRow, DistributionRow, FlowRow, MixingRow, write_distribution,
+    write_flows, write_mixing,
+};
 use tempfile::tempdir;
 
 fn row(fragment_id: u32, time_s: f64) -> DischargeRow<'static> {
@@ -55,5 +59,41 @@ fn a_distribution_looks_as_documented() {
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
         format!("{DISTRIBUTION_COLUMNS}\ncake,both,0.0014,0.5,0.25\n")
+    );
+}
+
+#[test]
+fn flows_and_mixtures_look_as_documented() {
+    let folder = tempdir().unwrap();
+    let path = folder.path().join("table.csv");
+    let fed = FlowRow {
+        time_s: 0.5,
+        body: "cake, old",
+        outlet: "",
+        pieces: 3,
+        mass_kg: 0.75,
+        flow_kg_s: 1.5,
+    };
+    let left = FlowRow {
+        outlet: "floor",
+        ..fed
+    };
+    write_flows(&path, &[fed, left]).unwrap();
+    assert_eq!(
+        fs::read_to_string(&path).unwrap(),
+        format!(
+            "{FLOW_COLUMNS}\n0.5,\"cake, old\",,3,0.75,1.5\n0.5,\"cake, old\",floor,3,0.75,1.5\n"
+        )
+    );
+    let cell = MixingRow {
+        measure: "mixing",
+        centre_m: [0.5, -0.5, 1.5],
+        mass_kg: 2.0,
+        fraction: 0.25,
+    };
+    write_mixing(&path, &[cell]).unwrap();
+    assert_eq!(
+        fs::read_to_string(&path).unwrap(),
+        format!("{MIXING_COLUMNS}\nmixing,0.5,-0.5,1.5,2,0.25\n")
     );
 }

@@ -69,6 +69,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
         "fragment-tree.csv",
         "discharge.csv",
         "distribution.csv",
+        "flow.csv",
+        "mixing.csv",
         "summary.json",
         "checkpoint.dem",
     ];

@@ -565,6 +565,8 @@ fn measures_and_output() {
     let from = output.view_from.unwrap();
     (0..3).for_each(|k| assert_near(from[k], [0.6, -0.8, 0.0][k]));
     assert_eq!(output.colour_by, ColourBy::DynamicUtilisation);
+    assert_eq!(output.sieves_m, [1e-3, 2e-3, 5e-3]);
+    assert_eq!(output.flow_s, Some(2e-3));
     assert_eq!(output.checkpoint_s, Some(0.1));
 }
 

@@ -84,39 +84,89 @@ pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
     spheres.iter().map(|s| s.mass_kg).sum::<f64>() / volume_m3
 }
 
-/// Lacey's index (Lacey 1954) of the mixture of two sets in a region, 0 for sets apart and 1 for a
-/// random mixture: (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the
-/// first set among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a
-/// random mixture, sr^2 = s0^2 / n, for the mean number n of spheres in a cell. NaN if the region
-/// has nothing of one of them, or no more than one sphere in each cell. Spheres count where their
-/// centres are.
-pub(super) fn lacey_index(sets: [&[Sphere]; 2], region: &Region, cell_m: f64) -> f64 {
-    let low = Vector3::from(region.bounds().low);
-    let mut cells: BTreeMap<[i64; 3], [f64; 2]> = BTreeMap::new();
-    let mut count = 0.0;
-    for (k, spheres) in sets.into_iter().enumerate() {
-        for sphere in spheres.iter().filter(|s| region.contains(s.place_m.into())) {
-            let cell = ((sphere.place_m - low) / cell_m).map(|x| x.floor() as i64);
-            cells.entry(cell.into()).or_default()[k] += sphere.mass_kg;
-            count += 1.0;
+/// What the cubic cells of a region hold of two sets of spheres. Spheres count where their centres
+/// are.
+pub(super) struct Mixture {
+    /// Mass of either set in each cell that is not empty, kg.
+    cells_kg: BTreeMap<[i64; 3], [f64; 2]>,
+    /// Mean mass of the pieces of either set, by mass, kg; of a piece that several cells share, its
+    /// parts in them.
+    piece_kg: [f64; 2],
+    /// Lowest corner of the cell 0, 0, 0, m.
+    low_m: Vector3<f64>,
+    /// Edge of the cells, m.
+    cell_m: f64,
+}
+
+/// A cell of a mixture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MixedCell {
+    /// Its centre, m. Length 3.
+    pub centre_m: [f64; 3],
+    /// Mass of both sets in it, kg.
+    pub mass_kg: f64,
+    /// Mass fraction of the first set.
+    pub fraction: f64,
+}
+
+impl Mixture {
+    /// That of two sets in a region, in cells with this edge, m.
+    pub(super) fn of(sets: [&[Sphere]; 2], region: &Region, cell_m: f64) -> Self {
+        let low_m = Vector3::from(region.bounds().low);
+        let mut cells_kg: BTreeMap<[i64; 3], [f64; 2]> = BTreeMap::new();
+        let piece_kg = [0, 1].map(|k| {
+            let mut parts_kg: BTreeMap<([i64; 3], u32), f64> = BTreeMap::new();
+            let inside = sets[k].iter();
+            for sphere in inside.filter(|s| region.contains(s.place_m.into())) {
+                let cell = ((sphere.place_m - low_m) / cell_m).map(|x| x.floor() as i64);
+                cells_kg.entry(cell.into()).or_default()[k] += sphere.mass_kg;
+                *parts_kg.entry((cell.into(), sphere.piece)).or_default() += sphere.mass_kg;
+            }
+            let squares: f64 = parts_kg.values().map(|kg| kg * kg).sum();
+            squares / parts_kg.values().sum::<f64>()
+        });
+        Self {
+            cells_kg,
+            piece_kg,
+            low_m,
+            cell_m,
         }
     }
-    let mean_count = count / cells.len() as f64;
-    if mean_count <= 1.0 {
-        return f64::NAN;
+
+    /// The cells that are not empty.
+    pub(super) fn cells(&self) -> impl Iterator<Item = MixedCell> {
+        self.cells_kg.iter().map(|(number, [first, second])| {
+            let corner = Vector3::from(number.map(|n| n as f64 + 0.5));
+            let mass_kg = first + second;
+            MixedCell {
+                centre_m: (self.low_m + self.cell_m * corner).into(),
+                mass_kg,
+                fraction: first / mass_kg,
+            }
+        })
     }
-    let mass_kg = |[a, b]: &[f64; 2]| a + b;
-    let all_kg: f64 = cells.values().map(mass_kg).sum();
-    let first_kg: f64 = cells.values().map(|[a, _]| a).sum();
-    let fraction = first_kg / all_kg;
-    let apart = fraction * (1.0 - fraction);
-    let squares = cells.values().map(|cell| {
-        let own = cell[0] / mass_kg(cell);
-        mass_kg(cell) * (own - fraction).powi(2)
-    });
-    let variance = squares.sum::<f64>() / all_kg;
-    if apart <= 0.0 {
-        return f64::NAN;
+
+    /// Lacey's index (Lacey 1954), 0 for sets apart and 1 for a random mixture:
+    /// (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the first set
+    /// among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a random
+    /// mixture of pieces of different mass (Stange 1954): sr^2 = p (1 - p) (p m_b + (1 - p) m_a)/M,
+    /// with the mean mass m_a and m_b of the pieces of either set, by mass, and M of what a cell
+    /// holds. It is s0^2 / n for n equal pieces in each cell. NaN if the region has nothing of one
+    /// of them, or no more than one piece in each cell.
+    pub(super) fn lacey_index(&self) -> f64 {
+        let all_kg: f64 = self.cells().map(|cell| cell.mass_kg).sum();
+        let first_kg: f64 = self.cells_kg.values().map(|[first, _]| first).sum();
+        let fraction = first_kg / all_kg;
+        let apart = fraction * (1.0 - fraction);
+        let squares = (self.cells()).map(|cell| cell.mass_kg * (cell.fraction - fraction).powi(2));
+        let variance = squares.sum::<f64>() / all_kg;
+        let cell_kg = all_kg / self.cells_kg.len() as f64;
+        let piece_kg = fraction * self.piece_kg[1] + (1.0 - fraction) * self.piece_kg[0];
+        let random = apart * piece_kg / cell_kg;
+        // Both are 0 if one is missing; rounding must not make an index of that.
+        if !(apart > 0.0 && piece_kg < (1.0 - 1e-9) * cell_kg) {
+            return f64::NAN;
+        }
+        (apart - variance) / (apart - random)
     }
-    (apart - variance) / (apart - apart / mean_count)
 }

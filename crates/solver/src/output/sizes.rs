@@ -147,13 +147,17 @@ impl Fragments {
         sizes
     }
 
-    /// The rows of the table: for each body and all, for each place, for each sieve.
-    pub fn rows<'a>(&self, model: &'a Model) -> Vec<DistributionRow<'a>> {
+    /// The rows of the table: for each body and all, for each place, for each sieve. `sieves_m`:
+    /// openings, m; if empty, those of [`sieves_m`].
+    pub fn rows<'a>(&self, model: &'a Model, sieves_m: &[f64]) -> Vec<DistributionRow<'a>> {
         let all = self.chosen(None, true, true);
         let (Some(first), Some(last)) = (all.first(), all.last()) else {
             return Vec::new();
         };
-        let sieves_m = sieves_m(first.sieve_m(), last.sieve_m());
+        let sieves_m = match sieves_m {
+            [] => self::sieves_m(first.sieve_m(), last.sieve_m()),
+            given => given.to_vec(),
+        };
         let mut rows = Vec::new();
         for (body, name) in self.groups(model) {
             for (location, discharged, inside) in LOCATIONS {

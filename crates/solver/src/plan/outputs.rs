@@ -8,13 +8,15 @@ use dem_scene::Scene;
 const MOST_FILES: f64 = 1e5;
 /// Largest number of rows of the time series.
 const MOST_ROWS: f64 = 1e7;
+/// Largest number of intervals of mass flows: each is a row for every body and outlet.
+const MOST_INTERVALS: f64 = 1e5;
 /// Largest number of checkpoints: each replaces the one before.
 const MOST_CHECKPOINTS: f64 = 1e6;
 
 /// Refuses intervals of `[output]` with which a run with this step, s, would write too often.
 ///
 /// # Errors
-/// More frames, pictures, rows or checkpoints than a run may write (exit code 2).
+/// More frames, pictures, rows, intervals or checkpoints than a run may write (exit code 2).
 pub(super) fn refuse_endless_output(scene: &Scene, step_s: f64) -> Result<()> {
     let Some(output) = &scene.output else {
         return Ok(());
@@ -30,6 +32,7 @@ pub(super) fn refuse_endless_output(scene: &Scene, step_s: f64) -> Result<()> {
         ("frames", output.frames_s, MOST_FILES, "frames"),
         ("pictures", output.pictures_s, MOST_FILES, "pictures"),
         ("series", output.series_s, MOST_ROWS, "rows"),
+        ("flow", output.flow_s, MOST_INTERVALS, "intervals"),
         (
             "checkpoint",
             output.checkpoint_s,

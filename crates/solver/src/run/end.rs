@@ -12,6 +12,7 @@ use super::past_outlets::past_outlets;
 use crate::laboratory::evaluate::TestResult;
 use crate::machine::{machine, processor_time_s};
 use crate::measure::Probe;
+use crate::output::flows::body_flows;
 use crate::output::fragments::FragmentSummary;
 use crate::output::sizes::Fragments;
 use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
@@ -80,7 +81,7 @@ impl Run<'_> {
         let mut end = End::of(summary)?;
         if let Some(folder) = self.settings.folder {
             let at_end = (&self.state, summary.simulated_s);
-            end.write_tables(folder, at_end, &self.probes)?;
+            end.write_tables(folder, self.scene, at_end, &self.probes)?;
         }
         self.finish_last_step()?;
         if let Some(folder) = self.settings.folder {
@@ -167,6 +168,7 @@ impl Run<'_> {
             sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
             fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
             population: PopulationSummary::of(state),
+            flows: body_flows(state, &self.planned.masses),
             sleep: state.sleep.as_ref().map(SleepSummary::of),
             updates_skipped_by_longer_steps: state.levels.as_ref().map(Levels::updates_skipped),
             steps: state.steps,

@@ -1,10 +1,12 @@
 //! Files that a run writes once it has ended, and their recovery if the run was killed while
 //! writing them.
 
+use std::path::PathBuf;
+
 use dem_io::safe_write::{explain, write_file};
 use dem_io::{Diagnostic, Result, read_input};
 use dem_report::report;
-use dem_results::{ResultsFolder, write_distribution};
+use dem_results::{MixingRow, ResultsFolder, write_distribution, write_flows, write_mixing};
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -15,6 +17,7 @@ use super::settings::RunSettings;
 use super::snapshot::fingerprint;
 use crate::laboratory::watch::Watch;
 use crate::measure::{Probe, probes};
+use crate::output::flows::flow_rows;
 use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use crate::output::plots::{plots_of_every_run, write_plots};
 use crate::output::sizes::Fragments;
@@ -51,18 +54,32 @@ impl End {
     pub(super) fn write_tables(
         &mut self,
         folder: &ResultsFolder,
+        scene: &Scene,
         (state, end_s): (&State, f64),
         probes: &[Probe],
     ) -> Result<()> {
         let Some(clusters) = &state.clusters else {
             return Ok(());
         };
+        let output = scene.output.as_ref();
         let fragments = Fragments::of(state).unwrap_or_default();
         write_tree(folder, clusters)?;
         write_fragment_plots(folder, state, &fragments, end_s, probes)?;
-        write_distribution(&folder.distribution(), &fragments.rows(&state.model))?;
+        let sieves_m = output.map_or(&[][..], |output| &output.sieves_m);
+        write_distribution(
+            &folder.distribution(),
+            &fragments.rows(&state.model, sieves_m),
+        )?;
+        if has_flows(state) {
+            let interval_s = output.and_then(|output| output.flow_s);
+            let rows = flow_rows(state, interval_s.unwrap_or(end_s / 20.0), end_s);
+            write_flows(&folder.flow(), &rows)?;
+        }
+        if probes.iter().any(Probe::mixes) {
+            write_cells(folder, state, probes)?;
+        }
         let plots = FRAGMENT_PLOTS.iter().map(|name| folder.plot(name));
-        let paths = plots.chain([folder.fragment_tree(), folder.distribution()]);
+        let paths = plots.chain(tables(folder, state, probes));
         for path in paths.filter(|path| path.is_file()) {
             let text = read_input(&path, "a file of results")?;
             let name = path.strip_prefix(folder.path()).unwrap_or(&path);
@@ -125,6 +142,37 @@ impl End {
             out.write_all(self.summary.as_bytes())
         })
     }
+}
+
+/// Whether bodies are fed or discharged.
+fn has_flows(state: &State) -> bool {
+    let rules = &state.model.rules;
+    !(rules.inlets.is_empty() && rules.outlets.is_empty())
+}
+
+/// The tables of a run with fragments.
+fn tables(folder: &ResultsFolder, state: &State, probes: &[Probe]) -> Vec<PathBuf> {
+    let mut tables = vec![folder.fragment_tree(), folder.distribution()];
+    tables.extend(has_flows(state).then(|| folder.flow()));
+    tables.extend(probes.iter().any(Probe::mixes).then(|| folder.mixing()));
+    tables
+}
+
+/// Writes the cells of all mixing indices.
+fn write_cells(folder: &ResultsFolder, state: &State, probes: &[Probe]) -> Result<()> {
+    let rows: Vec<MixingRow<'_>> = probes
+        .iter()
+        .flat_map(|probe| {
+            let cells = probe.mixed_cells(state).into_iter();
+            cells.map(|cell| MixingRow {
+                measure: &probe.name,
+                centre_m: cell.centre_m,
+                mass_kg: cell.mass_kg,
+                fraction: cell.fraction,
+            })
+        })
+        .collect();
+    write_mixing(&folder.mixing(), &rows)
 }
 
 /// Result of [`finish`].
@@ -209,7 +257,7 @@ fn missing(
         wanted.extend([folder.film(), folder.film_strip()]);
     }
     if state.clusters.is_some() {
-        wanted.extend([folder.fragment_tree(), folder.distribution()]);
+        wanted.extend(tables(folder, state, probes));
     }
     if has_test {
         wanted.push(folder.test_curve());

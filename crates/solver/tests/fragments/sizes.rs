@@ -138,7 +138,7 @@ fn numbers_of_a_distribution_are_those_counted_by_hand() {
 #[test]
 fn rows_of_a_distribution_add_up() {
     let (fragments, model) = pieces();
-    let rows = fragments.rows(&model);
+    let rows = fragments.rows(&model, &[]);
     let of = |body: &str, location: &str| -> Vec<[f64; 3]> {
         let own = rows
             .iter()
@@ -162,5 +162,30 @@ fn rows_of_a_distribution_add_up() {
         .unwrap();
     assert_eq!(at_4_mm[1], 1.0);
     assert!(of("lump", "discharged").is_empty());
-    assert!(Fragments::default().rows(&model).is_empty());
+    assert!(Fragments::default().rows(&model, &[]).is_empty());
+}
+
+#[test]
+fn a_distribution_has_the_sieves_that_were_asked_for() {
+    let (fragments, model) = pieces();
+    let rows = fragments.rows(&model, &[1e-3, 4e-3, 5e-3, 30e-3]);
+    let of = |body: &str, location: &str| -> Vec<[f64; 3]> {
+        let own = rows
+            .iter()
+            .filter(|row| row.body == body && row.location == location);
+        own.map(|row| [row.sieve_m, row.passing_kg, row.passing_fraction])
+            .collect()
+    };
+    // Of the stone 3 mm 0.5 kg, 4 mm 0.5 kg, 10 mm 2 kg, 30 mm 5 kg.
+    let wanted = [
+        [1e-3, 0.0, 0.0],
+        [4e-3, 1.0, 0.125],
+        [5e-3, 1.0, 0.125],
+        [30e-3, 8.0, 1.0],
+    ];
+    assert_eq!(of("stone", "both"), wanted);
+    assert_eq!(
+        of("lump", "inside")[2..],
+        [[5e-3, 0.0, 0.0], [30e-3, 2.0, 1.0]]
+    );
 }

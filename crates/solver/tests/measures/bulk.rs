@@ -157,4 +157,89 @@ fn laceys_index_is_0_apart_and_1_at_random() {
     let mut random = Random(11);
     let mixed = index(&mut |_| random.within(0.0, 1.0) < 0.3);
     assert!((mixed - 1.0).abs() < 0.01, "{mixed}");
+    // Cells of a chessboard hold one of them each.
+    let is_white = |n: usize| (0..3).map(|k| n / 16_usize.pow(k) % 16 / 4).sum::<usize>() % 2 == 0;
+    assert_near(index(&mut |n| is_white(n)), 0.0, 1e-12);
+    // Spheres of a chessboard are better mixed than at random: s^2 = 0.
+    let is_white = |n: usize| (0..3).map(|k| n / 16_usize.pow(k) % 16).sum::<usize>() % 2 == 0;
+    assert_near(index(&mut |n| is_white(n)), 64.0 / 63.0, 1e-12);
+}
+
+/// Lacey's index of pieces of two masses at random places: large ones of a, 64 times as heavy as
+/// those of b, and as heavy in all.
+fn index_at_random(seed: u64) -> f64 {
+    let mut random = Random(seed);
+    let mut spheres = |count: usize, radius: f64| -> Vec<[f64; 4]> {
+        let mut place = |_| {
+            let [x, y, z] = [0; 3].map(|_| random.within(0.0, 80.0));
+            [x, y, z, radius]
+        };
+        (0..count).map(&mut place).collect()
+    };
+    let (a, b) = (spheres(5000, 0.04), spheres(320_000, 0.01));
+    let rest = "[regions.room]\nbox = { min = [0, 0, 0], max = [80, 80, 80] }\n[measures.m]\nof = \"a\"\nwith = \"b\"\nquantity = \"mixing_index\"\nwithin = \"room\"\ncell_size = 10\n";
+    values(&scene(&a, &b, rest))[0]
+}
+
+#[test]
+fn laceys_index_is_1_for_pieces_of_different_mass_at_random() {
+    // 512 cells, each with some 10 heavy pieces: s^2/sr^2 scatters by sqrt(2/512), sr^2 is
+    // 0.026 s0^2.
+    let found = index_at_random(3);
+    assert!((found - 1.0).abs() < 0.006, "{found}");
+    // With the variance of equal spheres, s0^2 over the 635 in a cell, it would be 0.976.
+}
+
+#[test]
+fn pieces_of_several_spheres_count_as_pieces() {
+    // Rods of four spheres along x, one in each cell of 8 times 2 times 2: with labels at random,
+    // the index is that of pieces, not of spheres.
+    let mut random = Random(17);
+    let mut sides: [Vec<[f64; 4]>; 2] = Default::default();
+    let mut bonds: [Vec<[usize; 2]>; 2] = Default::default();
+    for n in 0..32 * 32 * 8 {
+        let k = usize::from(random.within(0.0, 1.0) < 0.5);
+        let [x, y, z] = [n % 8, n / 8 % 32, n / 256].map(|m| m as f64);
+        for j in 0..4 {
+            if j > 0 {
+                bonds[k].push([sides[k].len() - 1, sides[k].len()]);
+            }
+            sides[k].push([
+                8.0 * x + 2.0 * f64::from(j) + 1.0,
+                2.0 * y + 1.0,
+                2.0 * z + 1.0,
+                1.0,
+            ]);
+        }
+    }
+    let rest = "[bonds.glue]\nyoung_modulus = 1e6\npoisson_ratio = 0.3\n[regions.room]\nbox = { min = [0, 0, 0], max = [64, 64, 64] }\n[measures.m]\nof = \"a\"\nwith = \"b\"\nquantity = \"mixing_index\"\nwithin = \"room\"\ncell_size = 8\n";
+    let mut text = scene(&sides[0], &sides[1], rest);
+    for (name, bonds) in ["a", "b"].iter().zip(&bonds) {
+        let head = format!("[bodies.{name}]\n");
+        let with = format!("{head}bonds = \"glue\"\nbond_list = {bonds:?}\n");
+        text = text.replace(&head, &with);
+    }
+    // 16 rods in each of 512 cells: sr^2 = s0^2/16.
+    let found = values(&text)[0];
+    let scatter = (2.0_f64 / 512.0).sqrt() / 15.0;
+    assert!((found - 1.0).abs() < 3.0 * scatter, "{found}");
+    // Moved by half a cell, each rod is in two cells, as two pieces of half its mass.
+    let moved = text.replace("min = [0, 0, 0], max = [64", "min = [4, 0, 0], max = [68");
+    let found = values(&moved)[0];
+    assert!((found - 1.0).abs() < 6.0 * scatter, "{found}");
+}
+
+#[test]
+fn cells_of_a_mixture_hold_its_mass() {
+    let a = [[0.5, 0.5, 0.5, 0.1], [1.5, 0.5, 0.5, 0.2]];
+    let b = [[1.6, 0.5, 0.5, 0.2], [0.5, 9.0, 0.5, 0.1]];
+    let rest = "[regions.room]\nbox = { min = [0, 0, 0], max = [2, 2, 2] }\n[measures.m]\nof = \"a\"\nwith = \"b\"\nquantity = \"mixing_index\"\nwithin = \"room\"\ncell_size = 1\n";
+    let mut measured = Measured::new(&scene(&a, &b, rest));
+    measured.interact();
+    let cells = measured.probes[0].mixed_cells(&measured.state);
+    let found: Vec<[f64; 3]> = cells.iter().map(|cell| cell.centre_m).collect();
+    assert_eq!(found, [[0.5, 0.5, 0.5], [1.5, 0.5, 0.5]]);
+    assert_near(cells[0].mass_kg, mass(0.1), 1e-12);
+    assert_near(cells[1].mass_kg, 2.0 * mass(0.2), 1e-12);
+    assert_eq!([cells[0].fraction, cells[1].fraction], [1.0, 0.5]);
 }

@@ -223,3 +223,94 @@ output.frames = \"0.1 s\"
     let checked: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(checked["to_be_fed"][0]["bodies"], 4.0);
 }
+
+/// Two bodies that two inlets feed, one of which breaks, and two outlets.
+const TWO: &str = "version = 1
+run = { end_time = \"1 s\", gravity = [0, 0, -9.81], time_step = \"0.1 ms\" }
+materials.stone = { density = 2000, young_modulus = \"1 MPa\" }
+contacts.stone-stone = { restitution = 0.5, friction = 0.3 }
+bonds.glue = { young_modulus = \"1 MPa\", poisson_ratio = 0.3, failure = { tensile_strength = \"1 kPa\", shear_strength = \"1 kPa\" } }
+bodies.pair = { particles = [[0, 0, 0, 0.01], [0.02, 0, 0, 0.007]], bond_list = [[0, 1]], material = \"stone\", bonds = \"glue\", start_as = \"clump\" }
+bodies.pebble = { particles = [[0, 0, 0, 0.013]], material = \"stone\", start_as = \"clump\" }
+bodies.there = { particles = [[0, 0, 0.05, 0.013]], material = \"stone\", start_as = \"clump\" }
+walls.plate = { box = { min = [-0.1, 0.0, -0.1], max = [0.3, 0.1, 0.0] }, material = \"stone\", rotation = { axis = [0, 1, 0], angle = \"20 deg\" } }
+regions.gate = { box = { min = [0, 0, 0.2], max = [0.2, 0.2, 0.3] } }
+regions.side = { box = { min = [0, 0.4, 0.2], max = [0.2, 0.6, 0.3] } }
+regions.bin = { box = { min = [-9, -9, -9], max = [9, 0.3, -0.2] } }
+regions.scene = { box = { min = [-1, -1, -0.4], max = [1, 1, 1] } }
+inlets.pairs = { bodies = [\"pair\"], region = \"gate\", rate = \"20 /s\" }
+inlets.both = { bodies = { pair = 0.3, pebble = 0.7 }, region = \"side\", rate = \"15 /s\" }
+outlets.bin = { inside = \"bin\" }
+outlets.lost = { outside = \"scene\" }
+replacement.pair.when = { impact_energy = \"1e-6 J\" }
+output = { frames = \"0.5 s\", flow = \"0.3 s\", sieves = [\"10 mm\", \"15 mm\", \"30 mm\"] }
+";
+
+#[test]
+fn what_is_fed_is_what_left_and_what_is_inside() {
+    let bench = Bench::new();
+    let scene = bench.write("two.toml", TWO);
+    let options = ["--output", "out", "--json", "--quiet"];
+    let summary: Value = serde_json::from_str(&bench.good(&scene, &options)).unwrap();
+    let gone = rows(&bench, "discharge.csv");
+    let flows = rows(&bench, "flow.csv");
+    let fed = rows(&bench, "events.csv");
+    let mut fed_kg = 0.0;
+    for (name, flow) in summary["flows"].as_object().unwrap() {
+        let kg = |key: &str| flow[key].as_f64().unwrap();
+        let of_body = |row: &&BTreeMap<String, String>| row["body"] == *name;
+        let mass_kg = summary["bodies"][name]["mass_kg"].as_f64().unwrap();
+        let is_fed = name != "there";
+        let count = if is_fed { kg("fed") } else { 0.0 };
+        assert!((kg("fed_kg") - count * mass_kg).abs() < 1e-12 * mass_kg * (count + 1.0));
+        assert_eq!(kg("start_kg"), if is_fed { 0.0 } else { mass_kg });
+        fed_kg += kg("fed_kg");
+        let mut left_kg = 0.0;
+        for (outlet, out_kg) in flow["discharged_kg"].as_object().unwrap() {
+            let through = gone
+                .iter()
+                .filter(of_body)
+                .filter(|row| row["outlet"] == *outlet);
+            let sum_kg = through.fold(0.0, |sum, row| sum + number(row, "mass_kg"));
+            assert_eq!(out_kg.as_f64().unwrap(), sum_kg, "{name} through {outlet}");
+            left_kg += sum_kg;
+            // The last row has all of it, and the flows times their intervals give it.
+            let own = flows.iter().filter(of_body);
+            let own: Vec<_> = own.filter(|row| row["outlet"] == *outlet).collect();
+            assert_eq!(own.is_empty(), sum_kg == 0.0);
+            let mut before_s = 0.0;
+            let mut flown_kg = 0.0;
+            for row in &own {
+                flown_kg += number(row, "flow_kg_s") * (number(row, "time_s") - before_s);
+                before_s = number(row, "time_s");
+                assert!((flown_kg - number(row, "mass_kg")).abs() < 1e-12);
+            }
+            assert!((flown_kg - sum_kg).abs() < 1e-12);
+        }
+        let all_kg = kg("start_kg") + kg("fed_kg");
+        let missing_kg = all_kg - left_kg - kg("inside_kg");
+        assert!(missing_kg.abs() < 1e-12 * all_kg, "{name}: {missing_kg}");
+        assert!(kg("missing_kg").abs() < 1e-12 * all_kg);
+    }
+    let population = &summary["population"];
+    assert!((population["fed_kg"].as_f64().unwrap() / fed_kg - 1.0).abs() < 1e-12);
+    let fed_count = fed.iter().filter(|row| row["event"] == "fed").count();
+    let counted = ["pair", "pebble"].map(|name| summary["flows"][name]["fed"].as_u64().unwrap());
+    assert_eq!(counted.iter().sum::<u64>(), fed_count as u64);
+    // Both inlets and both outlets were at work, and pairs broke.
+    let through = |outlet: &str| gone.iter().any(|row| row["outlet"] == outlet);
+    assert!(through("bin") && through("lost"));
+    assert!(summary["broken_bonds"].as_u64().unwrap() > 0);
+    let times: Vec<f64> = flows.iter().map(|row| number(row, "time_s")).collect();
+    assert!((times[0] - 0.3).abs() < 1e-12 && (times[times.len() - 1] - 1.0).abs() < 1e-3);
+    let sieves = rows(&bench, "distribution.csv");
+    let of_pair = sieves
+        .iter()
+        .filter(|row| row["body"] == "pair" && row["location"] == "both");
+    let sieves: Vec<f64> = of_pair.map(|row| number(row, "sieve_m")).collect();
+    assert_eq!(sieves, [0.01, 0.015, 0.03]);
+    // Written again if it is lost.
+    fs::remove_file(bench.path("out/flow.csv")).unwrap();
+    let said = bench.good(&scene, &["--output", "out", "--resume"]);
+    assert!(said.contains("flow.csv"), "{said}");
+}

@@ -11,6 +11,7 @@ use super::parts::{AdaptiveSummary, PopulationSummary, SleepSummary};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 use crate::output::equilibrium::EquilibriumSummary;
+use crate::output::flows::BodyFlow;
 use crate::output::fragments::FragmentSummary;
 use crate::output::sizes::Sizes;
 use crate::physics::bond::failure::CauseCounts;
@@ -84,6 +85,9 @@ pub struct Summary {
     /// Bodies added, removed and replaced, if any can be.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub population: Option<PopulationSummary>,
+    /// Masses of each body fed, discharged and inside, by name, if any are fed or discharged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flows: Option<BTreeMap<String, BodyFlow>>,
     /// Sleeping bodies, if any can sleep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sleep: Option<SleepSummary>,

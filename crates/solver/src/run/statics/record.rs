@@ -91,6 +91,7 @@ impl AtRest<'_> {
             broken_by_cause: CauseCounts::default(),
             fragments,
             sizes: None,
+            flows: None,
             population: None,
             sleep: None,
             updates_skipped_by_longer_steps: None,
