@@ -21,11 +21,12 @@ pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
 pub(super) const TEST_CURVE: &str = "force-displacement.csv";
 pub(super) const BAR_SIGNALS: &str = "bar-signals.csv";
+pub(super) const GAUGE_SIGNALS: &str = "gauge-signals.csv";
 pub(super) const DISC_STRESS: &str = "disc-stress.csv";
 pub(super) const CHECKPOINT: &str = "checkpoint.dem";
 pub(super) const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 16] = [
+pub(super) const SINGLE_FILES: [&str; 17] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -37,6 +38,7 @@ pub(super) const SINGLE_FILES: [&str; 16] = [
     REPORT,
     TEST_CURVE,
     BAR_SIGNALS,
+    GAUGE_SIGNALS,
     DISC_STRESS,
     FILM_STRIP,
     FILM,
