@@ -184,7 +184,7 @@ const TURNS_1_S: f64 = 2.0;
 const AXIS_M: f64 = 0.2;
 const STEADY_S: [f64; 2] = [1.6, 3.6];
 /// Mass of the spheres of drum.toml, kg.
-const DRUM_KG: f64 = PI / 6.0 * (1920.0 * 2500.0 * 125e-9 + 512.0 * 2000.0 * 1000e-9);
+const DRUM_KG: f64 = PI / 6.0 * (1111.0 * 2500.0 * 216e-9 + 296.0 * 2000.0 * 1728e-9);
 
 fn drum(dem_run: &Path) -> Result<(), Failed> {
     let (_, folder) = run(dem_run, "drum", "scene", &[], &[])?;
@@ -319,7 +319,7 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         ]
     };
     let and = |set: Vec<String>, more: &str| [set, vec![more.to_owned()]].concat();
-    let modulus = "materials.m1.young_modulus=\"100 MPa\"";
+    let modulus = "materials.m1.young_modulus=\"200 MPa\"";
     let cases = [
         ("8 mm", grains(8.0, 1_563)),
         ("5 mm", grains(5.0, 6_400)),
@@ -328,7 +328,7 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
             and(grains(5.0, 6_400), "run.safety_factor=0.45"),
         ),
         ("5 mm, another bed", and(grains(5.0, 6_400), "run.seed=1")),
-        ("5 mm, 100 MPa", and(grains(5.0, 6_400), modulus)),
+        ("5 mm, 200 MPa", and(grains(5.0, 6_400), modulus)),
         ("4 mm", grains(4.0, 12_500)),
     ];
     let mut table = Table::new(&[
@@ -345,7 +345,7 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         let (summary, folder) = run(dem_run, "penetration", &at.to_string(), set, &[])?;
         let series = folder.join("series.csv");
         let heights = columns(&series, ["time_s", "bed_centre_m"])?;
-        let before = heights.iter().rfind(|[t, _]| *t <= 0.5);
+        let before = heights.iter().rfind(|[t, _]| *t <= 0.4);
         let bed_m = 2.0 * before.ok_or("no row before the fall")?[1];
         let bulk_kg_m3 = value(&summary, "bulk_density")?;
         let lowest_m = value(&summary, "ball")?;
