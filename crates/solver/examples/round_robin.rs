@@ -82,99 +82,58 @@ fn beverloo_kg_s(bulk_kg_m3: f64, hole_m: f64, diameter_m: f64) -> f64 {
 /// Diameter of the beads of the silo, m.
 const BEAD_M: f64 = 4e-3;
 
-/// A silo: its name in the table, its settings, the material's density in kg/m3, the width of its
-/// hole, m, and the times between which its flow is read, s.
-struct Silo {
-    name: &'static str,
-    set: Vec<String>,
-    more: &'static [&'static str],
-    density_kg_m3: f64,
-    hole_m: f64,
-    during_s: [f64; 2],
-}
+/// Beads per second of the paper's silo, whose floor is a cone of 45 degrees: the hole, m, the mean
+/// of eight programs for the larger one, and MUSEN and LIGGGHTS for the smaller one.
+const OTHERS: [(f64, f64); 2] = [(0.060, 23_200.0), (0.040, 7_700.0)];
 
 fn silo(dem_run: &Path) -> Result<(), Failed> {
-    let hole = |hole_m: f64| vec![format!("walls.floor.scale={}", 100.0 * hole_m)];
-    let second = |hole_m: f64| {
-        let material = "bodies.bead.material=m2".to_owned();
-        [hole(hole_m), vec![material]].concat()
-    };
-    let small = |name, set, density_kg_m3, hole_m| Silo {
-        name,
-        set,
-        more: &[],
-        density_kg_m3,
-        hole_m,
-        during_s: [0.7, 1.1],
-    };
-    // As wide as the smaller hole of the paper, in a silo half as wide, with a tenth of its beads.
-    let large = [
-        "walls.floor.scale=4",
-        "walls.cylinder.scale=10",
-        "walls.slide.box.min=[\"-25 mm\",\"-25 mm\",\"-4 mm\"]",
-        "walls.slide.box.max=[\"25 mm\",\"25 mm\",\"-0.01 mm\"]",
-        "walls.slide.displacement=[\"100 mm\",0,0]",
-        "regions.gate.cylinder.to=[0,0,\"190 mm\"]",
-        "regions.gate.cylinder.radius=\"45 mm\"",
-        "regions.inside.cylinder.to=[0,0,\"200 mm\"]",
-        "regions.inside.cylinder.radius=\"53 mm\"",
-        "regions.bed.cylinder.radius=\"40 mm\"",
-        "inlets.fill.count=10000",
-        "inlets.fill.rate=40000",
-        "run.end_time=\"1.3 s\"",
-    ];
-    let large = Silo {
-        during_s: [0.7, 1.2],
-        ..small(
-            "M1, 40 mm as in the paper",
-            large.map(str::to_owned).into(),
-            2500.0,
-            0.040,
-        )
-    };
-    let stiff = [
-        "inlets.fill.count=1200",
-        "walls.slide.table=[[\"0.3 s\",0],[\"0.35 s\",1]]",
-        "run.end_time=\"0.75 s\"",
-    ];
-    let short = |name, more| Silo {
-        more,
-        during_s: [0.45, 0.75],
-        ..small(name, stiff.map(str::to_owned).into(), 2500.0, 0.022)
-    };
-    let silos = [
-        small("M1", hole(0.018), 2500.0, 0.018),
-        small("M1", hole(0.022), 2500.0, 0.022),
-        small("M2", second(0.018), 2000.0, 0.018),
-        small("M2", second(0.022), 2000.0, 0.022),
-        short("M1, 1,200 beads", &[]),
-        short("M1, 1,200 beads, 1 GPa", &[STIFF]),
-        large,
+    let silos: [(&str, &str, f64, f64, &[&str]); 5] = [
+        ("M1", "m1", 2500.0, 0.018, &[]),
+        ("M1", "m1", 2500.0, 0.022, &[]),
+        ("M1, 1 GPa", "m1", 2500.0, 0.022, &[STIFF]),
+        ("M2", "m2", 2000.0, 0.018, &[]),
+        ("M2", "m2", 2000.0, 0.022, &[]),
     ];
     let mut table = Table::new(&[
-        "material",
+        "silo",
         "hole",
         "bulk density",
-        "mass flow",
+        "beads per second",
         "Beverloo",
         "off",
-        "beads per second",
     ]);
-    for (at, silo) in silos.iter().enumerate() {
-        let (summary, folder) = run(dem_run, "silo", &at.to_string(), &silo.set, silo.more)?;
-        let bulk_kg_m3 = value(&summary, "bulk_density")?;
-        let flow_kg_s = -slope(&folder, "mass_inside_kg", silo.during_s)?;
-        let law_kg_s = beverloo_kg_s(bulk_kg_m3, silo.hole_m, BEAD_M);
-        let bead_kg = silo.density_kg_m3 * PI / 6.0 * BEAD_M.powi(3);
+    let mut row = |name: &str, hole_m: f64, bulk_kg_m3: f64, density_kg_m3: f64, per_s: f64| {
+        let bead_kg = density_kg_m3 * PI / 6.0 * BEAD_M.powi(3);
+        let law_1_s = beverloo_kg_s(bulk_kg_m3, hole_m, BEAD_M) / bead_kg;
         table.row(&[
-            silo.name.to_owned(),
-            format!("{:.0} mm", 1e3 * silo.hole_m),
+            name.to_owned(),
+            format!("{:.0} mm", 1e3 * hole_m),
             format!("{bulk_kg_m3:.0} kg/m3"),
-            format!("{flow_kg_s:.4} kg/s"),
-            format!("{law_kg_s:.4} kg/s"),
-            format!("{:+.1} %", 100.0 * (flow_kg_s / law_kg_s - 1.0)),
-            format!("{:.0}", flow_kg_s / bead_kg),
+            format!("{per_s:.0}"),
+            format!("{law_1_s:.0}"),
+            format!("{:+.0} %", 100.0 * (per_s / law_1_s - 1.0)),
         ]);
+    };
+    let mut first_kg_m3 = None;
+    for (at, (name, material, density_kg_m3, hole_m, more)) in silos.into_iter().enumerate() {
+        let set = [
+            format!("bodies.bead.material={material}"),
+            format!("walls.floor.scale={}", 100.0 * hole_m),
+            "inlets.fill.count=1200".to_owned(),
+            "walls.slide.table=[[\"0.3 s\",0],[\"0.35 s\",1]]".to_owned(),
+            "run.end_time=\"0.75 s\"".to_owned(),
+        ];
+        let (summary, folder) = run(dem_run, "silo", &at.to_string(), &set, more)?;
+        let bulk_kg_m3 = value(&summary, "bulk_density")?;
+        let first = *first_kg_m3.get_or_insert(bulk_kg_m3);
+        let bead_kg = density_kg_m3 * PI / 6.0 * BEAD_M.powi(3);
+        let flow_kg_s = -slope(&folder, "mass_inside_kg", [0.45, 0.75])?;
+        row(name, hole_m, bulk_kg_m3, density_kg_m3, flow_kg_s / bead_kg);
+        if at + 1 == 5 {
+            for (hole_m, per_s) in OTHERS {
+                row("M1, cone, by others", hole_m, first, 2500.0, per_s);
+            }
+        }
     }
     table.write(PAGE, "round_robin silo")
 }
@@ -182,12 +141,19 @@ fn silo(dem_run: &Path) -> Result<(), Failed> {
 /// Angular velocity of the drum, rad/s, the height of its axis, m, and when its bed is steady, s.
 const TURNS_1_S: f64 = 2.0;
 const AXIS_M: f64 = 0.2;
-const STEADY_S: [f64; 2] = [1.6, 3.6];
-/// Mass of the spheres of drum.toml, kg.
+const STEADY_S: [f64; 2] = [1.6, 5.6];
+/// Masses of M1 and of all spheres of drum.toml, kg.
+const SMALL_KG: f64 = PI / 6.0 * 1111.0 * 2500.0 * 216e-9;
 const DRUM_KG: f64 = PI / 6.0 * (1111.0 * 2500.0 * 216e-9 + 296.0 * 2000.0 * 1728e-9);
 
 fn drum(dem_run: &Path) -> Result<(), Failed> {
-    let (_, folder) = run(dem_run, "drum", "scene", &[], &[])?;
+    let (_, folder) = run(
+        dem_run,
+        "drum",
+        "5 s",
+        &["run.end_time=\"5.6 s\"".to_owned()],
+        &[],
+    )?;
     let rate = |column: &str| slope(&folder, column, STEADY_S);
     let walls = ["drum", "front", "back"];
     let booked_w = walls
@@ -195,8 +161,9 @@ fn drum(dem_run: &Path) -> Result<(), Failed> {
         .map(|wall| rate(&format!("wall_{wall}_work_j")))
         .sum::<Result<f64, Failed>>()?;
     let mean = |column: &str| mean(&folder, column, STEADY_S);
-    let torques = ["torque_n_m", "torque_front_n_m", "torque_back_n_m"].map(mean);
-    let torque_n_m: f64 = torques.into_iter().sum::<Result<f64, Failed>>()?;
+    let torque = |name: &str| Ok::<f64, Failed>(mean(name)?.abs());
+    let ends_n_m = torque("torque_front_n_m")? + torque("torque_back_n_m")?;
+    let torque_n_m = torque("torque_n_m")? + ends_n_m;
     let (x_m, z_m) = (mean("bed_x_m")?, mean("bed_z_m")? - AXIS_M);
     let lost_w = rate("contact_damping_j")? + rate("friction_j")?;
     let kept_w = rate("kinetic_energy_j")? + rate("elastic_energy_j")? + rate("gravity_energy_j")?;
@@ -204,10 +171,7 @@ fn drum(dem_run: &Path) -> Result<(), Failed> {
     let mut table = Table::new(&["power", "", "off"]);
     for (name, power_w) in [
         ("work of the drum on the spheres, booked", booked_w),
-        (
-            "torque on the drum times 2 rad/s",
-            torque_n_m.abs() * TURNS_1_S,
-        ),
+        ("torque on the drum times 2 rad/s", torque_n_m * TURNS_1_S),
         (
             "weight times the offset of its centre times 2 rad/s",
             weight_w,
@@ -228,18 +192,33 @@ fn drum(dem_run: &Path) -> Result<(), Failed> {
     let period_s = period_s(&small_in_zone);
     let mixing = series("mixing_index")?;
     let mut table = Table::new(&["", "here", "reference"]);
-    let angle_deg = x_m.atan2(-z_m).to_degrees();
+    let angle = |x_m: f64| format!("{:.1} degrees", x_m.atan2(-z_m).to_degrees());
     table.row(&[
         "direction of the centre of mass, from the vertical".to_owned(),
-        format!("{angle_deg:.1} degrees"),
-        "20.9 to 32.8 degrees (Jop et al. 2006)".to_owned(),
+        angle(x_m),
+        String::new(),
     ]);
     table.row(&[
-        "period of M1 in zone 2".to_owned(),
-        period_s.map_or("not seen".to_owned(), |period_s| format!("{period_s:.2} s")),
+        "the same without the torque of the end plates".to_owned(),
+        angle(x_m * (1.0 - ends_n_m / torque_n_m)),
+        "20.9 to 32.8 degrees (Jop et al. 2006)".to_owned(),
+    ]);
+    let turning = small_in_zone.iter().filter(|[t, _]| *t >= 0.6);
+    let shares = turning.map(|[_, mass]| 100.0 * mass / SMALL_KG);
+    let (least, most) = shares.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), share| {
+        (least.min(share), most.max(share))
+    });
+    table.row(&[
+        "M1 in zone 2, least and most".to_owned(),
+        format!("{least:.0} % and {most:.0} %"),
+        "0 and 77 % (MUSEN, LIGGGHTS)".to_owned(),
+    ]);
+    table.row(&[
+        "time between its first two maxima".to_owned(),
+        period_s.map_or("not seen".to_owned(), |period_s| format!("{period_s:.1} s")),
         "about 2 s (MUSEN, LIGGGHTS)".to_owned(),
     ]);
-    for time_s in [0.6, 1.6, 2.6, 3.6] {
+    for time_s in [0.6, 1.6, 3.6, 5.6] {
         let at = mixing.iter().rfind(|[t, _]| *t <= time_s + 1e-9);
         table.row(&[
             format!("Lacey's index {:.0} s after the start", time_s - 0.6),
@@ -279,26 +258,23 @@ fn mean(folder: &Path, column: &str, [from_s, to_s]: [f64; 2]) -> Result<f64, Fa
     Ok(values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// Time between the first two minima of a curve that are below a third of its largest value.
+/// Time between the first two maxima of a curve, while the drum turns: each is the largest value
+/// between two falls below half of the largest of all.
 fn period_s(curve: &[[f64; 2]]) -> Option<f64> {
-    let turning: Vec<&[f64; 2]> = curve.iter().filter(|[t, _]| *t >= 0.6).collect();
+    let turning: Vec<[f64; 2]> = curve.iter().copied().filter(|[t, _]| *t >= 0.6).collect();
     let largest = turning.iter().map(|[_, y]| *y).fold(0.0, f64::max);
-    let mut minima: Vec<f64> = Vec::new();
-    let mut lowest: Option<[f64; 2]> = None;
-    for [t, y] in turning {
-        match lowest {
-            _ if *y > largest / 3.0 => minima.extend(lowest.take().map(|[t, _]| t)),
-            Some([_, before]) if before <= *y => {}
-            _ => lowest = Some([*t, *y]),
-        }
-    }
-    Some(minima.get(1)? - minima.first()?)
+    let mut high = turning.split(|[_, y]| *y < 0.5 * largest);
+    let mut next = || {
+        let part = high.find(|part| !part.is_empty())?;
+        part.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1]))
+    };
+    let [first, second] = [next()?, next()?];
+    Some(second[0] - first[0])
 }
 
-/// Radius of the ball, m; height of its centre at which it has 5 m/s, and that speed.
+/// Radius of the ball, m, and the height of its centre at which it has its speed.
 const BALL_M: f64 = 10e-3;
 const FROM_M: f64 = 0.15;
-const SPEED_M_S: f64 = 5.0;
 /// Friction of a bed of smooth spheres, tan 20.9 degrees (Jop et al. 2006).
 const BED_FRICTION: f64 = 0.38;
 
@@ -319,20 +295,24 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         ]
     };
     let and = |set: Vec<String>, more: &str| [set, vec![more.to_owned()]].concat();
-    let modulus = "materials.m1.young_modulus=\"200 MPa\"";
+    let slow = "supports.hold.velocity.z=\"-1.818 m/s\"";
+    let stiff = "materials.m1.young_modulus=\"200 MPa\"";
+    let coarse = || grains(8.0, 1_563);
     let cases = [
-        ("8 mm", grains(8.0, 1_563)),
-        ("5 mm", grains(5.0, 6_400)),
+        ("8 mm", 5.0, coarse()),
         (
-            "5 mm, half the step",
-            and(grains(5.0, 6_400), "run.safety_factor=0.45"),
+            "8 mm, half the step",
+            5.0,
+            and(coarse(), "run.safety_factor=0.45"),
         ),
-        ("5 mm, another bed", and(grains(5.0, 6_400), "run.seed=1")),
-        ("5 mm, 200 MPa", and(grains(5.0, 6_400), modulus)),
-        ("4 mm", grains(4.0, 12_500)),
+        ("8 mm, 200 MPa", 5.0, and(coarse(), stiff)),
+        ("8 mm", 2.5, and(coarse(), slow)),
+        ("6 mm", 5.0, grains(6.0, 3_704)),
+        ("5 mm", 5.0, grains(5.0, 6_400)),
     ];
     let mut table = Table::new(&[
         "spheres",
+        "speed",
         "bed",
         "bulk density",
         "depth",
@@ -341,7 +321,7 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         "displacement of the ball",
     ]);
     let mut lines = Vec::new();
-    for (at, (name, set)) in cases.iter().enumerate() {
+    for (at, (name, speed_m_s, set)) in cases.iter().enumerate() {
         let (summary, folder) = run(dem_run, "penetration", &at.to_string(), set, &[])?;
         let series = folder.join("series.csv");
         let heights = columns(&series, ["time_s", "bed_centre_m"])?;
@@ -350,11 +330,12 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         let bulk_kg_m3 = value(&summary, "bulk_density")?;
         let lowest_m = value(&summary, "ball")?;
         let depth_m = bed_m - (lowest_m - BALL_M);
-        // The ball falls freely to the surface; its whole fall includes the depth.
-        let free_m = SPEED_M_S.powi(2) / (2.0 * GRAVITY_M_S2) + FROM_M - BALL_M - bed_m;
-        let law_m = uehara_m(bulk_kg_m3, free_m + depth_m);
+        // From rest to its lowest place.
+        let fall_m = speed_m_s * speed_m_s / (2.0 * GRAVITY_M_S2) + FROM_M - lowest_m;
+        let law_m = uehara_m(bulk_kg_m3, fall_m);
         table.row(&[
             (*name).to_owned(),
+            format!("{speed_m_s} m/s"),
             format!("{:.1} mm", 1e3 * bed_m),
             format!("{bulk_kg_m3:.0} kg/m3"),
             format!("{:.1} mm", 1e3 * depth_m),
@@ -363,14 +344,14 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
             format!("{:.1} mm", 1e3 * (lowest_m - FROM_M)),
         ]);
         lines.push(Line {
-            name: (*name).to_owned(),
+            name: format!("{name}, {speed_m_s} m/s"),
             points: fall(&series)?,
             ..Line::default()
         });
     }
     table.write(PAGE, "round_robin penetration")?;
     let plot = Plot {
-        title: "the ball below the place where it has 5 m/s".to_owned(),
+        title: "the ball below the place from which it falls at its speed".to_owned(),
         x: Axis::of("time (s)"),
         y: Axis::of("displacement (mm)"),
         lines,
