@@ -42,16 +42,6 @@ impl Case {
         }
     }
 
-    /// Its error, relative to its scale.
-    pub(crate) fn error(&self) -> f64 {
-        (self.computed - self.reference) / self.scale
-    }
-
-    /// The same with another bound; infinite: none.
-    pub(crate) fn within(self, bound: f64) -> Self {
-        Self { bound, ..self }
-    }
-
     /// Sets the limit below which errors are not printed, since their digits depend on the order of
     /// sums.
     pub(crate) fn rounding(self, rounding: f64) -> Self {
@@ -60,6 +50,10 @@ impl Case {
 
     fn keeps_bound(&self) -> bool {
         self.error().abs() <= self.bound
+    }
+
+    fn error(&self) -> f64 {
+        (self.computed - self.reference) / self.scale
     }
 
     fn row(&self) -> String {
@@ -81,11 +75,7 @@ impl Case {
             } else {
                 steady(error, DOUBT, |error| format!("{error:.1e}"))
             },
-            if self.bound.is_finite() {
-                format!("{:.1e}", self.bound)
-            } else {
-                "none".to_owned()
-            },
+            format!("{:.1e}", self.bound),
         ])
     }
 }
