@@ -20,8 +20,9 @@ pub(crate) use time::add_time;
 use values::{number, text, texts};
 
 /// Plots that come first, in this order.
-const FIRST_PLOTS: [&str; 11] = [
+const FIRST_PLOTS: [&str; 12] = [
     "bar-signals",
+    "gauge-signals",
     "stress-strain",
     "force-time",
     "force-displacement",

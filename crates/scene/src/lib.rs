@@ -93,6 +93,6 @@ pub use run::{InitialOverlap, Integrator, Run, SAFETY};
 pub use search::Search;
 pub use sleep::Sleep;
 pub use support::{Hold, Support};
-pub use test::{Bars, Confinement, MeasuredReference, NormalStress, Test, Weight};
+pub use test::{Bars, Confinement, Gauges, MeasuredReference, NormalStress, Test, Weight};
 pub use wall::{Wall, WallMotion, WallShape};
 pub use zone::{Rejoin, Zone};

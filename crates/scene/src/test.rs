@@ -4,7 +4,7 @@ mod confined;
 mod dynamic;
 
 pub use confined::{Confinement, NormalStress};
-pub use dynamic::{Bars, Weight};
+pub use dynamic::{Bars, Gauges, Weight};
 
 use std::collections::BTreeMap;
 use std::ops::Bound::{Included, Unbounded};

@@ -22,7 +22,7 @@ mod programs;
 mod study;
 
 use dem_io::units::significant;
-use dem_plots::{Axis, Line, Plot};
+use dem_plots::{Axis, Line, Marks, Plot, Point};
 use dem_run::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 use programs::{Failed, results, root};
 use study::{Run, Table, runs};
@@ -50,8 +50,12 @@ fn line(name: &str, points: Vec<[f64; 2]>, dashed: bool) -> Line {
     }
 }
 
+/// Largest difference of the forces on both ends over their mean, at the largest load, of a test in
+/// equilibrium: that of the verdict of a run.
+const APART: f64 = 0.1;
+
 /// Strength of the disc over the strain rate, without rate strengthening and with it: the runs of
-/// the study take turns.
+/// the study take turns. A run out of equilibrium measures no strength of the disc, and says so.
 fn rates(runs: &[Run]) -> Result<(), Failed> {
     let mut table = Table::new(&[
         "striker",
@@ -61,36 +65,44 @@ fn rates(runs: &[Run]) -> Result<(), Failed> {
         "over the static one",
         "eq. 20 at this rate",
         "(F_1 - F_2)/F",
+        "in equilibrium",
     ]);
-    let mut curves = [Vec::new(), Vec::new()];
+    let mut marks = ["without rate strengthening", "eq. 20 for the bonds"].map(|name| Marks {
+        name: name.to_owned(),
+        ..Marks::default()
+    });
     for (at, run) in runs.iter().enumerate() {
         let strengthens = at % 2;
         let rate_1_s = run.figure("strain rate");
         let factor = run.figure("dynamic increase factor");
-        curves[strengthens].push([rate_1_s, factor]);
+        let apart = run.figure("force equilibrium");
+        let is_valid = apart.abs() <= APART;
+        marks[strengthens].points.push(Point {
+            at: [rate_1_s, factor],
+            filled: is_valid,
+            ..Point::default()
+        });
         let theory = dynamic_increase_factor(rate_1_s, 0.0);
+        let striker_m_s = run.summary["test"]["rate_m_s"].as_f64();
         table.row(&[
-            format!(
-                "{} m/s",
-                significant(
-                    run.summary["test"]["rate_m_s"].as_f64().unwrap_or(f64::NAN),
-                    3
-                )
-            ),
+            format!("{} m/s", significant(striker_m_s.unwrap_or(f64::NAN), 3)),
             ["off", "on"][strengthens].to_owned(),
             format!("{} /s", significant(rate_1_s, 3)),
             format!("{} MPa", significant(1e-6 * run.figure("strength"), 3)),
             significant(factor, 3),
             significant(theory, 3),
-            format!("{:+.0} %", 100.0 * run.figure("force equilibrium")),
+            format!("{:+.0} %", 100.0 * apart),
+            if is_valid { "yes" } else { "no: not valid" }.to_owned(),
         ]);
     }
-    let [without, with] = curves;
-    let all = without.iter().chain(&with).map(|[rate, _]| *rate);
-    let lowest = all.fold(HIGHEST_1_S, f64::min);
-    let highest = with.iter().map(|[rate, _]| *rate).fold(lowest, f64::max);
-    let rates = (0..=50).map(|i| lowest * (highest / lowest).powf(f64::from(i) / 50.0));
-    let theory = rates.map(|rate| [rate, dynamic_increase_factor(rate, 0.0)]);
+    let all = marks.iter().flat_map(|marks| &marks.points);
+    let rates = all.map(|point| point.at[0]).filter(|rate| rate.is_finite());
+    let [lowest, highest] = rates.fold([HIGHEST_1_S, 0.0], |[low, high], rate| {
+        [rate.min(low), rate.max(high)]
+    });
+    let theory = (0..=50)
+        .map(|i| lowest * (highest / lowest).powf(f64::from(i) / 50.0))
+        .map(|rate| [rate, dynamic_increase_factor(rate, 0.0)]);
     let plot = Plot {
         title: "strength of a disc over its strain rate".to_owned(),
         x: Axis {
@@ -98,11 +110,9 @@ fn rates(runs: &[Run]) -> Result<(), Failed> {
             ..Axis::of("strain rate (1/s)")
         },
         y: Axis::of("strength over static strength"),
-        lines: vec![
-            line("without rate strengthening", without, false),
-            line("eq. 20 for the bonds", with, false),
-            line("eq. 20", theory.collect(), true),
-        ],
+        lines: vec![line("eq. 20", theory.collect(), true)],
+        marks: marks.into(),
+        filled: Some(["in equilibrium", "not in equilibrium: not valid"].map(str::to_owned)),
         ..Plot::default()
     };
     std::fs::write(root().join("doc/strain-rate.svg"), plot.svg().file())?;

@@ -33,6 +33,7 @@ mod pressing;
 mod random;
 mod results;
 mod resume;
+mod round_robin;
 mod scenes;
 mod statics;
 mod stress;

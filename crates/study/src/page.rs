@@ -158,6 +158,7 @@ fn add_all(page: &mut Page, table: &SweepTable) {
         columns.push(Column::number(&with_unit(&measure.name, &measure.unit)));
         columns.extend(measure.reference.as_ref().map(|_| Column::number("error")));
     }
+    columns.push(Column::text("verdict"));
     let rows = table.runs.iter().take(MOST_ROWS);
     let rows = rows.map(|row| of_run(table, row)).collect();
     page.table(&Table { columns, rows });
@@ -185,6 +186,7 @@ fn of_run(table: &SweepTable, row: &Row) -> dem_plots::Row {
         cells.push(number(Some(judged.value), 4));
         cells.extend(measure.reference.as_ref().map(|_| error_text(judged)));
     }
+    cells.push(row.verdict().to_owned());
     dem_plots::Row {
         cells,
         is_bad: false,

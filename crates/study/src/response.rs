@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::expand::Run;
 use super::median::median;
-use super::row::Row;
+use super::row::{DOUBTFUL, Row};
 
 /// The values of a measure without a reference.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -36,6 +36,8 @@ pub struct ResponsePoint {
     pub median: f64,
     /// Their standard deviation (divided by their number less 1). None for a single value.
     pub standard_deviation: Option<f64>,
+    /// How many of these runs are doubtful by their verdict.
+    pub doubtful: usize,
 }
 
 impl ResponsePoint {
@@ -54,6 +56,7 @@ impl ResponsePoint {
             median: median(&rising).unwrap_or(mean),
             standard_deviation: (values.len() > 1).then(|| (squares / (count - 1.0)).sqrt()),
             values,
+            doubtful: 0,
         }
     }
 
@@ -82,6 +85,15 @@ impl ResponsePoint {
                 let [low, high] = self.range().map(|end| significant(end, 3));
                 format!(" ({low} to {high})")
             }
+        }
+    }
+
+    /// The verdict, for a text after the value: empty, ` doubtful`, or of several runs how many.
+    pub(crate) fn verdict_text(&self) -> String {
+        match (self.doubtful, self.values.len()) {
+            (0, _) => String::new(),
+            (_, 1) => format!(" {DOUBTFUL}"),
+            (doubtful, _) => format!(" {doubtful} {DOUBTFUL}"),
         }
     }
 
@@ -118,15 +130,21 @@ fn points(study: &Study, runs: &[Run], rows: &[Row], measure: usize) -> Vec<Resp
         groups.entry(choice).or_default().push(at);
     }
     let of_group = |(choice, members): (Vec<usize>, Vec<usize>)| {
-        let values = members.iter();
-        let values: Vec<f64> = values
-            .filter_map(|&at| Some(rows[at].results.get(measure)?.value))
+        let with_value = members.iter().map(|&at| &rows[at]);
+        let with_value: Vec<(&Row, f64)> = with_value
+            .filter_map(|row| Some((row, row.results.get(measure)?.value)))
             .collect();
+        let doubtful = with_value.iter().filter(|(row, _)| !row.doubts.is_empty());
+        let doubtful = doubtful.count();
+        let values: Vec<f64> = with_value.iter().map(|(_, value)| *value).collect();
         let mut settings = runs[*members.first()?].labels(study);
         if let Some(averaged) = study.average_over {
             settings[averaged].clear();
         }
-        (!values.is_empty()).then(|| ResponsePoint::new(choice, settings, values))
+        (!values.is_empty()).then(|| ResponsePoint {
+            doubtful,
+            ..ResponsePoint::new(choice, settings, values)
+        })
     };
     let mut points: Vec<ResponsePoint> = groups.into_iter().filter_map(of_group).collect();
     if study.find.is_some() {

@@ -7,6 +7,7 @@ use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_scene::study::Average;
 
 use super::response::{Response, ResponsePoint};
+use super::row::DOUBTFUL;
 use super::search::{Search, SearchCase, SearchResult};
 use super::sweep_table::{AxisColumn, SweepTable};
 use super::words::with_unit;
@@ -77,6 +78,7 @@ fn found_point(case: &SearchCase) -> Option<ResponsePoint> {
         mean: *at,
         median: *at,
         standard_deviation: Some(half),
+        doubtful: 0,
     })
 }
 
@@ -122,6 +124,8 @@ fn plot(table: &SweepTable, response: &Response, over: usize) -> Plot {
         y: Axis::of(&with_unit(&name, &measure.unit)),
         marks: (0..kinds).map(marks).collect(),
         kinds: series.map_or(String::new(), |at| table.axes[at].name.clone()),
+        filled: (response.points.iter().any(|point| point.doubtful > 0))
+            .then(|| ["sound", DOUBTFUL].map(str::to_owned)),
         reference: wanted.clone(),
         if_empty: "no run has a value".to_owned(),
         ..Plot::default()
@@ -231,12 +235,13 @@ fn mark(table: &SweepTable, over: usize, point: &ResponsePoint, average: Average
     Point {
         at: place(&table.axes[over], over, point, average),
         y_spread: 2.0 * deviation,
-        filled: true,
+        filled: point.doubtful == 0,
         title: format!(
-            "{}: {}{}{runs}",
+            "{}: {}{}{runs}{}",
             named(table, point),
             significant(point.average(average), 4),
-            point.scatter_text(average)
+            point.scatter_text(average),
+            point.verdict_text()
         ),
         ..Point::default()
     }

@@ -3,6 +3,9 @@
 use dem_scene::study::Study;
 use serde::Serialize;
 
+/// Verdict of a run whose results are doubtful.
+pub(crate) const DOUBTFUL: &str = "doubtful";
+
 /// One run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Row {
@@ -14,6 +17,8 @@ pub struct Row {
     pub settings: Vec<String>,
     /// The reason why it has no values. None if it has values.
     pub failed: Option<String>,
+    /// The warnings of its verdict; empty if it is sound, or has no values.
+    pub doubts: Vec<String>,
     /// Time of each repeat, s.
     pub times_s: Vec<f64>,
     /// Their median, s.
@@ -32,6 +37,15 @@ pub struct Row {
 }
 
 impl Row {
+    /// Its verdict: `sound` or `doubtful`; empty for a failed run.
+    pub fn verdict(&self) -> &'static str {
+        match (&self.failed, self.doubts.is_empty()) {
+            (Some(_), _) => "",
+            (None, true) => "sound",
+            (None, false) => DOUBTFUL,
+        }
+    }
+
     /// The size of its value on an axis: its time step itself if the axis is the relative one, as a
     /// run has a smallest number of steps.
     pub fn size(&self, study: &Study, along: usize) -> Option<f64> {

@@ -188,6 +188,7 @@ fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
         choice: run.choice.clone(),
         settings: run.labels(study),
         failed,
+        doubts: first.map_or(Vec::new(), |done| done.doubts.clone()),
         time_s,
         spread_s: time_s.map(|time| range_of_median(&rising_s).max(LEAST_SPREAD * time)),
         times_s,

@@ -32,7 +32,7 @@ pub fn csv(table: &SweepTable) -> String {
             columns.extend(parts);
         }
     }
-    columns.push("failed".to_owned());
+    columns.extend(["verdict", "failed"].map(str::to_owned));
     let mut out = line(&columns);
     for row in &table.runs {
         let mut cells = vec![row.number.to_string()];
@@ -49,6 +49,7 @@ pub fn csv(table: &SweepTable) -> String {
                 cells.extend(judged.map_or_else(Default::default, of_error));
             }
         }
+        cells.push(row.verdict().to_owned());
         cells.push(row.failed.clone().unwrap_or_default());
         out += &line(&cells);
     }
@@ -86,6 +87,7 @@ pub fn response_csv(table: &SweepTable) -> String {
         "smallest",
         "median",
         "largest",
+        "doubtful",
     ] {
         columns.push(name.to_owned());
     }
@@ -103,6 +105,7 @@ pub fn response_csv(table: &SweepTable) -> String {
             cells.push(number(point.standard_deviation));
             let ends = [smallest, point.median, largest];
             cells.extend(ends.map(|value| number(Some(value))));
+            cells.push(point.doubtful.to_string());
             out += &line(&cells);
         }
     }
@@ -216,7 +219,7 @@ fn write_response(
     let lines = response.points.iter().map(|point| {
         let scatter = point.scatter_text(average);
         let value = significant(point.average(average), 4);
-        let value = format!("{value}{scatter}");
+        let value = format!("{value}{scatter}{}", point.verdict_text());
         format!("  {value:<20} {}", visible(&named(table, point)))
     });
     cut(f, &lines.collect::<Vec<String>>())

@@ -23,11 +23,12 @@ pub(super) const REPORT: &str = "report.html";
 pub(super) const SCENE: &str = "scene.toml";
 pub(super) const TEST_CURVE: &str = "force-displacement.csv";
 pub(super) const BAR_SIGNALS: &str = "bar-signals.csv";
+pub(super) const GAUGE_SIGNALS: &str = "gauge-signals.csv";
 pub(super) const DISC_STRESS: &str = "disc-stress.csv";
 pub(super) const CHECKPOINT: &str = "checkpoint.dem";
 pub(super) const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 18] = [
+pub(super) const SINGLE_FILES: [&str; 19] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -41,6 +42,7 @@ pub(super) const SINGLE_FILES: [&str; 18] = [
     REPORT,
     TEST_CURVE,
     BAR_SIGNALS,
+    GAUGE_SIGNALS,
     DISC_STRESS,
     FILM_STRIP,
     FILM,

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use super::names::{
     BAR_SIGNALS, CHECKPOINT, DISC_STRESS, DISCHARGE, DISTRIBUTION, ENDED, EVENTS, FILM, FILM_STRIP,
-    FLOW, FRAGMENT_TREE, FRAGMENTS, INDEX, MIXING, PICTURES, PLOTS, REPORT, SCENE, SERIES, SUMMARY,
-    TEST_CURVE, fixed_walls_name, frame_in, walls_in,
+    FLOW, FRAGMENT_TREE, FRAGMENTS, GAUGE_SIGNALS, INDEX, MIXING, PICTURES, PLOTS, REPORT, SCENE,
+    SERIES, SUMMARY, TEST_CURVE, fixed_walls_name, frame_in, walls_in,
 };
 
 /// The folder to which a run writes. No other run can write to it as long as this or a clone of it
@@ -147,6 +147,11 @@ impl ResultsFolder {
     /// The pulses of a split-Hopkinson test: `bar-signals.csv`.
     pub fn bar_signals(&self) -> PathBuf {
         self.path.join(BAR_SIGNALS)
+    }
+
+    /// What the strain gauges of a split-Hopkinson test record: `gauge-signals.csv`.
+    pub fn gauge_signals(&self) -> PathBuf {
+        self.path.join(GAUGE_SIGNALS)
     }
 
     /// The stress over the loaded diameter of a disc: `disc-stress.csv`.

@@ -62,6 +62,15 @@ impl ResultsFolder {
         write_file(&self.bar_signals(), |out| out.write_all(csv.as_bytes()))
     }
 
+    /// Writes what the strain gauges of a split-Hopkinson test record to `gauge-signals.csv`,
+    /// replacing an earlier one.
+    ///
+    /// # Errors
+    /// Those of [`ResultsFolder::write_plot`].
+    pub fn write_gauge_signals(&self, csv: &str) -> Result<()> {
+        write_file(&self.gauge_signals(), |out| out.write_all(csv.as_bytes()))
+    }
+
     /// Writes the stress over the loaded diameter of a disc to `disc-stress.csv`, replacing an
     /// earlier one.
     ///

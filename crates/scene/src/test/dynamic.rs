@@ -16,7 +16,7 @@ const STEEP: f64 = 1e-6;
 
 pub(crate) static BARS: Schema = Schema {
     title: "Bars",
-    doc: "The incident and the transmission bar, which are alike and so long that nothing comes back from their far ends.",
+    doc: "The incident and the transmission bar, which are alike and so long that nothing comes back from their far ends during the test.",
     keys: &[
         Key::quantity("density", &DENSITY, "Density.")
             .positive()
@@ -27,6 +27,20 @@ pub(crate) static BARS: Schema = Schema {
         Key::quantity("diameter", &LENGTH, "Diameter.")
             .positive()
             .required("\"20 mm\""),
+        Key::quantity(
+            "gauge_distance",
+            &LENGTH,
+            "Distance of the strain gauge on each bar from the end at the body, for `gauge-signals.csv`; requires `length`.",
+        )
+        .positive()
+        .otherwise("no gauges"),
+        Key::quantity(
+            "length",
+            &LENGTH,
+            "Length of each bar; only with `gauge_distance`.",
+        )
+        .positive()
+        .sometimes_required("\"3 m\""),
     ],
 };
 
@@ -96,6 +110,17 @@ pub struct Bars {
     pub striker_m_s: f64,
     /// `rise_time` of the pulse, s; at most its duration.
     pub rise_time_s: f64,
+    /// Strain gauges. None: there are none.
+    pub gauges: Option<Gauges>,
+}
+
+/// A strain gauge on each bar, past which no two pulses go at the same time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gauges {
+    /// `gauge_distance` from the end of the bar at the body, m.
+    pub distance_m: f64,
+    /// `length` of the bar, m.
+    pub bar_m: f64,
 }
 
 impl Bars {
@@ -166,6 +191,7 @@ pub(super) fn bars(test: &Table<'_>, transmission: String) -> Result<Bars> {
         striker_m: of_striker.read("length")?,
         striker_m_s: of_striker.read("velocity")?,
         rise_time_s: of_striker.read("rise_time")?,
+        gauges: None,
     };
     if found.rise_time_s > found.pulse_s() {
         let rise = of_striker.need_such("rise_time", "\"0 s\"")?;
@@ -175,7 +201,50 @@ pub(super) fn bars(test: &Table<'_>, transmission: String) -> Result<Bars> {
         );
         return Err(rise.wrong(&limit, "take a shorter rise or a longer striker"));
     }
-    Ok(found)
+    let gauges = gauges(&bars, found.pulse_end_s() * found.wave_speed_m_s())?;
+    Ok(Bars { gauges, ..found })
+}
+
+/// Strain gauges of bars with pulses of this length, m. Refuses a gauge that is nearer than half
+/// of it to an end, where the tail of a pulse meets the head of its reflection.
+fn gauges(bars: &Table<'_>, pulse_m: f64) -> Result<Option<Gauges>> {
+    let Some(distance) = bars.get("gauge_distance") else {
+        return match bars.get("length") {
+            Some(length) => {
+                let problem = format!("{} is for strain gauges, but there are none", length.path);
+                Err(length.refuse(problem, "add gauge_distance = \"1 m\", or remove it"))
+            }
+            None => Ok(None),
+        };
+    };
+    let found = Gauges {
+        distance_m: bars
+            .read::<Option<f64>>("gauge_distance")?
+            .unwrap_or_default(),
+        bar_m: bars.read("length")?,
+    };
+    let half_m = 0.5 * pulse_m;
+    let half = show_quantity(half_m, "m");
+    let why = |pulses: &str| {
+        format!(
+            "half the length 2 L + c rise_time of a pulse, {half}: {pulses} would overlap at the gauge"
+        )
+    };
+    if found.distance_m < half_m {
+        let limit = format!("at least {}", why("the incident and the reflected pulse"));
+        let remedy = "move the gauge away from the body, or take a shorter striker or rise";
+        return Err(distance.wrong(&limit, remedy));
+    }
+    if found.bar_m - found.distance_m < half_m {
+        let limit = format!(
+            "shorter than the bar by at least {}",
+            why("a pulse and what comes back from the far end")
+        );
+        let remedy =
+            "move the gauge towards the body, or take longer bars, a shorter striker or rise";
+        return Err(distance.wrong(&limit, remedy));
+    }
+    Ok(Some(found))
 }
 
 /// Refuses a list of the values of two bars.
@@ -232,6 +301,10 @@ pub(super) fn list_bars(bars: &Bars, listing: &mut Listing) {
         listing.value("density", &bars.density_kg_m3);
         listing.value("young_modulus", &bars.young_modulus_pa);
         listing.value("diameter", &bars.diameter_m);
+        if let Some(gauges) = &bars.gauges {
+            listing.value("gauge_distance", &gauges.distance_m);
+            listing.value("length", &gauges.bar_m);
+        }
     });
     listing.table("striker", &STRIKER, |listing| {
         listing.value("length", &bars.striker_m);

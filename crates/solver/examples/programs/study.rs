@@ -86,19 +86,33 @@ impl Run {
 
     /// Columns of one of its tables, row by row.
     pub(crate) fn columns(&self, file: &str, names: [&str; 2]) -> Result<Vec<[f64; 2]>, Failed> {
-        let text = std::fs::read_to_string(self.folder.join(file))?;
-        let mut lines = text.lines();
-        let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-        let at = |name: &str| head.iter().position(|other| *other == name);
-        let (Some(x), Some(y)) = (at(names[0]), at(names[1])) else {
-            return Err(format!("{file} has no {names:?}").into());
-        };
-        let of_line = |line: &str| -> Result<[f64; 2], Failed> {
-            let cells: Vec<&str> = line.split(',').collect();
-            Ok([cells[x].parse()?, cells[y].parse()?])
-        };
-        lines.map(of_line).collect()
+        columns(&self.folder.join(file), names)
     }
+}
+
+/// Columns of a table of results, row by row.
+pub(crate) fn columns<const N: usize>(
+    file: &Path,
+    names: [&str; N],
+) -> Result<Vec<[f64; N]>, Failed> {
+    let text = std::fs::read_to_string(file)?;
+    let mut lines = text.lines();
+    let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+    let mut places = [0; N];
+    for (place, name) in places.iter_mut().zip(names) {
+        let at = head.iter().position(|other| *other == name);
+        *place = at.ok_or_else(|| format!("{} has no {name}", file.display()))?;
+    }
+    let mut rows = Vec::new();
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let mut row = [0.0; N];
+        for (number, place) in row.iter_mut().zip(places) {
+            *number = cells[place].parse()?;
+        }
+        rows.push(row);
+    }
+    Ok(rows)
 }
 
 /// A table, row by row.

@@ -7,7 +7,7 @@
 //! eps_T = F_2/(Z c). Source: Kolsky 1949; the specimen is in equilibrium if eps_I + eps_R = eps_T.
 
 use dem_laboratory::Specimen;
-use dem_scene::{Bars, Weight};
+use dem_scene::{Bars, Gauges, Weight};
 
 use super::curve::rows_of;
 use super::evaluate::{
@@ -16,6 +16,7 @@ use super::evaluate::{
 use super::figure::Figure;
 use super::record::{Record, Row};
 use crate::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
+use crate::state::loads::factor_at;
 
 /// Fraction of the largest load from which on the body counts as loaded.
 const LOADED: f64 = 0.1;
@@ -232,7 +233,7 @@ pub(super) fn stress_strain(rows: &[Row], specimen: &Specimen, length_m: f64) ->
 }
 
 /// Strains at the ends of the bars.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct BarSignal {
     /// s.
     pub time_s: f64,
@@ -258,6 +259,66 @@ pub fn bar_signals(record: &Record, bars: &Bars) -> Vec<BarSignal> {
         }
     };
     record.rows.iter().map(signal).collect()
+}
+
+/// What the strain gauges on both bars record at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GaugeSignal {
+    /// s; the incident pulse arrives at the body at 0.
+    pub time_s: f64,
+    /// Strain of the incident bar: the incident and the reflected pulse.
+    pub incident_bar: f64,
+    /// Strain of the transmission bar: the transmitted pulse.
+    pub transmission_bar: f64,
+}
+
+/// The record of strain gauges at a distance d from the ends of the bars, where the strains are
+/// f(t) and g(t) in the incident bar and h(t) in the other: f(t + d/c) + g(t - d/c) and
+/// h(t - d/c), d'Alembert's waves. It goes from the time at which the pulse arrives at the gauge,
+/// -d/c, to the time at which the end of the run does.
+pub fn gauge_signals(record: &Record, bars: &Bars, gauges: Gauges) -> Vec<GaugeSignal> {
+    let pulses = bar_signals(record, bars);
+    let Some(last) = pulses.last() else {
+        return Vec::new();
+    };
+    let way_s = gauges.distance_m / bars.wave_speed_m_s();
+    let (from_s, to_s) = (-way_s, last.time_s + way_s);
+    let rows_per_s = pulses.len() as f64 / last.time_s;
+    let intervals = ((to_s - from_s) * rows_per_s).ceil() as usize;
+    let incident = |time_s: f64| {
+        let speed_m_s = bars.incident_m_s() * factor_at(&bars.pulse(), time_s);
+        speed_m_s / bars.wave_speed_m_s()
+    };
+    let signal = |i: usize| {
+        let time_s = from_s + (to_s - from_s) * i as f64 / intervals as f64;
+        let [reflected, transmitted] = outgoing(&pulses, time_s - way_s);
+        GaugeSignal {
+            time_s,
+            incident_bar: incident(time_s + way_s) + reflected,
+            transmission_bar: transmitted,
+        }
+    };
+    (0..=intervals).map(signal).collect()
+}
+
+/// Strains of the reflected and the transmitted pulse at the ends of the bars, straight between the
+/// rows and 0 before the incident pulse arrives.
+fn outgoing(pulses: &[BarSignal], time_s: f64) -> [f64; 2] {
+    let after = pulses.partition_point(|pulse| pulse.time_s <= time_s);
+    let before = match (time_s > 0.0, after) {
+        (false, _) => return [0.0; 2],
+        (true, 0) => BarSignal::default(),
+        (true, after) => pulses[after - 1],
+    };
+    let Some(next) = pulses.get(after) else {
+        return [before.reflected, before.transmitted];
+    };
+    let share = (time_s - before.time_s) / (next.time_s - before.time_s);
+    let between = |a: f64, b: f64| a + share * (b - a);
+    [
+        between(before.reflected, next.reflected),
+        between(before.transmitted, next.transmitted),
+    ]
 }
 
 fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {

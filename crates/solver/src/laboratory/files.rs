@@ -11,7 +11,7 @@ use dem_scene::{Bars, Test};
 use super::crack::{CrackPicture, crack_map};
 use super::curve::{peak, play_m, rows_of, slope};
 use super::disc_stress::{self, slabs};
-use super::dynamic::{BarSignal, bar_signals, stress_strain};
+use super::dynamic::{BarSignal, GaugeSignal, bar_signals, gauge_signals, stress_strain};
 use super::evaluate::{FAILURE_FORCE, TestResult, measured_curve};
 use super::figure::Figure;
 use super::record::{Record, Row};
@@ -64,6 +64,11 @@ pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Resul
             folder.write_plot(name, &plot.svg().file())?;
         }
         folder.write_bar_signals(&signals_csv(files.record, bars))?;
+        if let Some(gauges) = bars.gauges {
+            let signals = gauge_signals(files.record, bars, gauges);
+            folder.write_plot("gauge-signals", &gauge_plot(&signals).svg().file())?;
+            folder.write_gauge_signals(&gauges_csv(&signals))?;
+        }
     }
     let slabs = slabs(files.picture.setup, &files.record.disc);
     if !slabs.is_empty() {
@@ -104,6 +109,40 @@ fn signals_csv(record: &Record, bars: &Bars) -> String {
         out.push('\n');
     }
     out
+}
+
+/// The first line of `gauge-signals.csv`.
+const GAUGES: &str = "time_s,incident_bar_strain,transmission_bar_strain";
+
+fn gauges_csv(signals: &[GaugeSignal]) -> String {
+    let mut out = format!("{GAUGES}\n");
+    for signal in signals {
+        let numbers = [signal.time_s, signal.incident_bar, signal.transmission_bar];
+        out += &numbers.map(|number| format!("{number:e}")).join(",");
+        out.push('\n');
+    }
+    out
+}
+
+/// What the strain gauges on both bars record.
+fn gauge_plot(signals: &[GaugeSignal]) -> Plot {
+    let points = |of: &dyn Fn(&GaugeSignal) -> f64| -> Vec<[f64; 2]> {
+        signals.iter().map(|one| [one.time_s, of(one)]).collect()
+    };
+    Plot {
+        title: "strain at the gauges".to_owned(),
+        x: Axis::of("time (s)"),
+        y: Axis::of("strain"),
+        lines: vec![
+            line("incident bar", points(&|one| one.incident_bar), false),
+            line(
+                "transmission bar",
+                points(&|one| one.transmission_bar),
+                false,
+            ),
+        ],
+        ..Plot::default()
+    }
 }
 
 /// The three pulses over time, and the sum of two of them, which is the third in equilibrium.

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::program::Bench;
+use crate::program::{Bench, table};
 
 /// A row of 21 spheres of radius 1 mm along z between the ends of two bars: bonds of 20 GPa.
 fn row(test: &str, bonds: &str) -> String {
@@ -168,6 +168,79 @@ fn a_row_between_two_bars() {
         let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
         assert!(page.contains("force equilibrium"));
     }
+}
+
+/// At a gauge, d'Alembert's two waves: the incident pulse passes it before it arrives at the body,
+/// the reflected one after it has left, and the transmitted one as late in the other bar. The row is
+/// a spring k between two bars, F' = 2 k (v_I - F/Z), so that all three are known.
+#[test]
+fn strain_gauges_record_the_waves_of_d_alembert() {
+    let bench = Bench::new();
+    let scene = pressure().replace(
+        "diameter = \"2 mm\"",
+        "diameter = \"2 mm\", gauge_distance = \"0.5 m\", length = \"1 m\"",
+    );
+    summary(&bench, "gauges.toml", &scene, &[]);
+    let (c, v, rise_s): (f64, f64, f64) = ((210e9_f64 / 7850.0).sqrt(), 1.0, 30e-6);
+    let z = 7850.0 * c * std::f64::consts::PI * 1e-6;
+    let (pulse_s, way_s) = (0.4 / c, 0.5 / c);
+    let wave = |t: f64| {
+        v * (t / rise_s)
+            .min(1.0)
+            .min((pulse_s + rise_s - t) / rise_s)
+            .max(0.0)
+    };
+    let bond = 20e9 * std::f64::consts::PI * 1e-6 / 2e-3;
+    let k = 1.0 / (20.0 / bond + 2.0 / 20e6);
+    let step_s = 1e-8;
+    let forces: Vec<f64> = (0..40_000)
+        .scan(0.0, |force: &mut f64, i| {
+            let before = *force;
+            *force += step_s * 2.0 * k * (wave(step_s * f64::from(i)) - before / z);
+            Some(before)
+        })
+        .collect();
+    let force = |t: f64| {
+        if t < 0.0 {
+            0.0
+        } else {
+            forces[(t / step_s) as usize]
+        }
+    };
+
+    let (columns, rows) = table(&bench.path("out/gauge-signals.csv"));
+    assert_eq!(
+        columns,
+        ["time_s", "incident_bar_strain", "transmission_bar_strain"]
+    );
+    let rows: Vec<[f64; 3]> = (rows.iter())
+        .map(|row| [0, 1, 2].map(|k| row[k].parse().unwrap()))
+        .collect();
+    assert!((rows[0][0] / -way_s - 1.0).abs() < 1e-9, "{:?}", rows[0]);
+    let (mut off, mut before_the_body) = ([0.0_f64; 2], 0);
+    for [t, incident_bar, transmission_bar] in rows {
+        let [to, from] = [wave(t + way_s), t - way_s];
+        let wanted = to / c + force(from) / (z * c) - wave(from) / c;
+        if from < 0.0 {
+            // Nothing comes back yet: the pulse alone.
+            assert!(
+                (incident_bar - to / c).abs() < 1e-9 * v / c,
+                "{t} {incident_bar}"
+            );
+            before_the_body += 1;
+        }
+        off[0] = off[0].max((incident_bar - wanted).abs() * c / v);
+        off[1] = off[1].max((transmission_bar - force(from) / (z * c)).abs() * c / v);
+    }
+    assert!(before_the_body > 100, "{before_the_body}");
+    // The row is no spring without mass: a wave takes 20 spheres' time along it, during which the
+    // pulse rises by that part of its rise.
+    let along_s = 20.0 * (2600.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9 / bond).sqrt();
+    assert!(
+        off.iter().all(|off| *off < along_s / rise_s),
+        "{off:?} {along_s}"
+    );
+    assert!(bench.path("out/plots/gauge-signals.svg").is_file());
 }
 
 /// A row that breaks has a strength and a dynamic increase factor; a run that was cut in two goes

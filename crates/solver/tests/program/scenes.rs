@@ -144,7 +144,7 @@ fn every_good_scene_of_the_corpus_runs() {
 /// End time of each scene for a test without false alarms, and the shape and diameters of its body
 /// if it needs one. Laboratory tests, which have no end time of their own, load within one period
 /// of the body.
-const SHORT: [[&str; 4]; 36] = [
+const SHORT: [[&str; 4]; 39] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -159,6 +159,7 @@ const SHORT: [[&str; 4]; 36] = [
     ["drop-height", "3 ms", "", ""],
     ["drop-inclined", "5 ms", "", ""],
     ["drop-weight", "0.1 ms", "", ""],
+    ["drum", "20 ms", "", ""],
     ["four-point-bending", "", "bending-sample", "5mm..7mm"],
     ["hard-and-soft", "4 ms", "", ""],
     ["hopkinson-disc", "60 us", "", ""],
@@ -168,6 +169,7 @@ const SHORT: [[&str; 4]; 36] = [
     ["lifted-cylinder", "30 ms", "", ""],
     ["one-cake", "60 ms", "", ""],
     ["pour-box", "20 ms", "", ""],
+    ["penetration", "5 ms", "", ""],
     ["press-mould", "20 ms", "", ""],
     ["process", "20 ms", "", ""],
     ["repeated-drops", "3 ms", "", ""],
@@ -175,6 +177,7 @@ const SHORT: [[&str; 4]; 36] = [
     ["shatter", "5 ms", "", ""],
     ["shatter-box", "20 ms", "", ""],
     ["silo", "20 ms", "", ""],
+    ["silo-round-robin", "20 ms", "", ""],
     ["spinning-bar", "50 ms", "", ""],
     ["stalk-cut", "0.5 ms", "", ""],
     ["tension", "", "bar", "4mm..6mm"],

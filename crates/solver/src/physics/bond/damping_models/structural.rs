@@ -25,7 +25,7 @@ use crate::physics::number::Vec3;
 use nalgebra::Vector3;
 
 /// epsilon: over the frequency of a bond, the slowest that is damped in full.
-pub const SMOOTHING: f64 = 0.05;
+pub const SMOOTHING: f64 = 0.03;
 
 /// A bond with structural damping.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,367 @@
+//! Writes the tables and plots of doc/round-robin.md: silo, drum and penetration of the round robin
+//! of Dosta et al. 2024 beside closed forms and numbers of others. From the folder of the clone:
+//!
+//! ```sh
+//! cargo run --release -p dem-run --example round_robin -- silo
+//! cargo run --release -p dem-run --example round_robin -- drum
+//! cargo run --release -p dem-run --example round_robin -- penetration
+//! ```
+//!
+//! Builds the program and runs the scenes of the same names with several settings, some ten minutes
+//! each. Results are in `target/round-robin`; `--resume` at the end keeps the complete runs.
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "it prints a table, and how far it is"
+)]
+
+#[allow(dead_code, reason = "other examples use the rest")]
+mod programs;
+#[allow(dead_code, reason = "other examples use the rest")]
+#[path = "programs/study.rs"]
+mod study;
+
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+
+use dem_laboratory::Line as Fit;
+use dem_plots::{Axis, Line, Plot};
+use serde_json::Value;
+
+use programs::{Failed, Programs, results, root};
+use study::{Table, columns, run_scene};
+
+const PAGE: &str = "doc/round-robin.md";
+const GRAVITY_M_S2: f64 = 9.81;
+
+fn main() -> Result<(), Failed> {
+    let dem_run = Programs::build()?.dem_run;
+    match std::env::args().nth(1).as_deref() {
+        Some("silo") => silo(&dem_run),
+        Some("drum") => drum(&dem_run),
+        Some("penetration") => penetration(&dem_run),
+        _ => Err("write silo, drum or penetration".into()),
+    }
+}
+
+/// Runs a scene with these `--set` values. Returns its summary and its folder.
+fn run(
+    dem_run: &Path,
+    scene: &str,
+    name: &str,
+    set: &[String],
+) -> Result<(Value, PathBuf), Failed> {
+    let folder = results("round-robin")?.join(format!("{scene}-{name}"));
+    let options = set.iter().map(|set| format!("--set={set}"));
+    let options: Vec<String> = options.collect();
+    let resume = std::env::args().any(|word| word == "--resume");
+    let summary = match std::fs::read(folder.join("summary.json")) {
+        // Only those that have run to their end.
+        Ok(bytes) if resume && !String::from_utf8_lossy(&bytes).contains("interrupted") => {
+            serde_json::from_slice(&bytes)?
+        }
+        _ => run_scene(dem_run, scene, &options, &folder)?,
+    };
+    Ok((summary, folder))
+}
+
+fn value(summary: &Value, measure: &str) -> Result<f64, Failed> {
+    let value = summary["measures"][measure]["value"].as_f64();
+    Ok(value.ok_or("no value of a measure in summary.json")?)
+}
+
+/// Slope of a straight line through a column of the time series between two times.
+fn slope(folder: &Path, column: &str, [from_s, to_s]: [f64; 2]) -> Result<f64, Failed> {
+    let rows = columns(&folder.join("series.csv"), ["time_s", column])?;
+    let rows = rows.iter().filter(|[t, _]| (from_s..=to_s).contains(t));
+    let (times, values): (Vec<f64>, Vec<f64>) = rows.map(|[t, value]| (*t, *value)).unzip();
+    Ok(Fit::fitted(&times, &values).slope)
+}
+
+/// Mass flow of Beverloo et al. 1961 through a round hole, kg/s, of spheres.
+fn beverloo_kg_s(bulk_kg_m3: f64, hole_m: f64, diameter_m: f64) -> f64 {
+    0.58 * bulk_kg_m3 * GRAVITY_M_S2.sqrt() * (hole_m - 1.4 * diameter_m).powf(2.5)
+}
+
+/// Solid fraction of a bed of the silo, and the diameter of its beads, m.
+const SOLID: f64 = 0.6;
+const BEAD_M: f64 = 4e-3;
+
+/// Beads per second of the paper's silo, whose floor is a cone of 45 degrees: the hole, m, the mean
+/// of eight programs for the larger one, and MUSEN and LIGGGHTS for the smaller one.
+const OTHERS: [(f64, f64); 2] = [(0.060, 23_200.0), (0.040, 7_700.0)];
+
+fn silo(dem_run: &Path) -> Result<(), Failed> {
+    let silos = [
+        ("M1", "m1", 2500.0, 0.018),
+        ("M1", "m1", 2500.0, 0.022),
+        ("M2", "m2", 2000.0, 0.022),
+    ];
+    let mut table = Table::new(&["silo", "hole", "beads per second", "Beverloo", "off"]);
+    let mut row = |name: &str, hole_m: f64, density_kg_m3: f64, per_s: f64| {
+        let bead_kg = density_kg_m3 * PI / 6.0 * BEAD_M.powi(3);
+        let law_1_s = beverloo_kg_s(SOLID * density_kg_m3, hole_m, BEAD_M) / bead_kg;
+        table.row(&[
+            name.to_owned(),
+            format!("{:.0} mm", 1e3 * hole_m),
+            format!("{per_s:.0}"),
+            format!("{law_1_s:.0}"),
+            format!("{:+.0} %", 100.0 * (per_s / law_1_s - 1.0)),
+        ]);
+    };
+    for (at, (name, material, density_kg_m3, hole_m)) in silos.into_iter().enumerate() {
+        let set = [
+            format!("bodies.bead.material={material}"),
+            format!("walls.floor.scale={}", 100.0 * hole_m),
+            "inlets.fill.count=1200".to_owned(),
+            "walls.slide.table=[[\"0.3 s\",0],[\"0.35 s\",1]]".to_owned(),
+            "run.end_time=\"0.75 s\"".to_owned(),
+        ];
+        let (_, folder) = run(dem_run, "silo-round-robin", &at.to_string(), &set)?;
+        let bead_kg = density_kg_m3 * PI / 6.0 * BEAD_M.powi(3);
+        let flow_kg_s = -slope(&folder, "mass_inside_kg", [0.45, 0.75])?;
+        row(name, hole_m, density_kg_m3, flow_kg_s / bead_kg);
+        if at + 1 == 3 {
+            for (hole_m, per_s) in OTHERS {
+                row("M1, cone, by others", hole_m, 2500.0, per_s);
+            }
+        }
+    }
+    table.write(PAGE, "round_robin silo")
+}
+
+/// Angular velocity of the drum, rad/s, the height of its axis, m, and when its bed is steady, s.
+const TURNS_1_S: f64 = 2.0;
+const AXIS_M: f64 = 0.2;
+const STEADY_S: [f64; 2] = [1.6, 5.6];
+/// Masses of M1 and of all spheres of drum.toml, kg.
+const SMALL_KG: f64 = PI / 6.0 * 1111.0 * 2500.0 * 216e-9;
+const DRUM_KG: f64 = PI / 6.0 * (1111.0 * 2500.0 * 216e-9 + 296.0 * 2000.0 * 1728e-9);
+
+fn drum(dem_run: &Path) -> Result<(), Failed> {
+    let (_, folder) = run(
+        dem_run,
+        "drum",
+        "5 s",
+        &["run.end_time=\"5.6 s\"".to_owned()],
+    )?;
+    let rate = |column: &str| slope(&folder, column, STEADY_S);
+    let walls = ["drum", "front", "back"];
+    let booked_w = walls
+        .iter()
+        .map(|wall| rate(&format!("wall_{wall}_work_j")))
+        .sum::<Result<f64, Failed>>()?;
+    let mean = |column: &str| mean(&folder, column, STEADY_S);
+    let torque = |name: &str| Ok::<f64, Failed>(mean(name)?.abs());
+    let ends_n_m = torque("torque_front_n_m")? + torque("torque_back_n_m")?;
+    let torque_n_m = torque("torque_n_m")? + ends_n_m;
+    let (x_m, z_m) = (mean("bed_x_m")?, mean("bed_z_m")? - AXIS_M);
+    let lost_w = rate("contact_damping_j")? + rate("friction_j")?;
+    let kept_w = rate("kinetic_energy_j")? + rate("elastic_energy_j")? + rate("gravity_energy_j")?;
+    let weight_w = DRUM_KG * GRAVITY_M_S2 * x_m * TURNS_1_S;
+    let mut table = Table::new(&["power", "", "off"]);
+    for (name, power_w) in [
+        ("work of the drum on the spheres, booked", booked_w),
+        ("torque on the drum times 2 rad/s", torque_n_m * TURNS_1_S),
+        (
+            "weight times the offset of its centre times 2 rad/s",
+            weight_w,
+        ),
+        ("dissipated by contacts and friction", lost_w),
+        ("the same and what the spheres keep", lost_w + kept_w),
+    ] {
+        table.row(&[
+            name.to_owned(),
+            format!("{:.2} mW", 1e3 * power_w),
+            format!("{:+.2} %", 100.0 * (power_w / booked_w - 1.0)),
+        ]);
+    }
+    table.write(PAGE, "round_robin drum power")?;
+
+    let series = |name: &str| columns(&folder.join("series.csv"), ["time_s", name]);
+    let small_in_zone = series("small_in_zone_2_kg")?;
+    let period_s = period_s(&small_in_zone);
+    let mixing = series("mixing_index")?;
+    let mut table = Table::new(&["", "here", "reference"]);
+    let angle = |x_m: f64| format!("{:.1} degrees", x_m.atan2(-z_m).to_degrees());
+    table.row(&[
+        "direction of the centre of mass, from the vertical".to_owned(),
+        angle(x_m),
+        String::new(),
+    ]);
+    table.row(&[
+        "the same without the torque of the end plates".to_owned(),
+        angle(x_m * (1.0 - ends_n_m / torque_n_m)),
+        "20.9 to 32.8 degrees (Jop et al. 2006)".to_owned(),
+    ]);
+    let turning = small_in_zone.iter().filter(|[t, _]| *t >= 0.6);
+    let shares = turning.map(|[_, mass]| 100.0 * mass / SMALL_KG);
+    let (least, most) = shares.fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), share| {
+        (least.min(share), most.max(share))
+    });
+    table.row(&[
+        "M1 in zone 2, least and most".to_owned(),
+        format!("{least:.0} % and {most:.0} %"),
+        "0 and 77 % (MUSEN, LIGGGHTS)".to_owned(),
+    ]);
+    table.row(&[
+        "time between its first two maxima".to_owned(),
+        period_s.map_or("not seen".to_owned(), |period_s| format!("{period_s:.1} s")),
+        "about 2 s (MUSEN, LIGGGHTS)".to_owned(),
+    ]);
+    for time_s in [0.6, 1.6, 3.6, 5.6] {
+        let at = mixing.iter().rfind(|[t, _]| *t <= time_s + 1e-9);
+        table.row(&[
+            format!("Lacey's index {:.0} s after the start", time_s - 0.6),
+            at.map_or(String::new(), |[_, index]| format!("{index:.2}")),
+            "0 apart, 1 mixed at random".to_owned(),
+        ]);
+    }
+    table.write(PAGE, "round_robin drum bed")?;
+    let since_start = |rows: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        let turning = rows.iter().filter(|[t, _]| *t >= 0.6);
+        turning.map(|[t, mass]| [t - 0.6, *mass]).collect()
+    };
+    let lines = [("M1", "small_in_zone_2_kg"), ("M2", "large_in_zone_2_kg")];
+    let lines = lines.map(|(name, column)| {
+        Ok::<Line, Failed>(Line {
+            name: name.to_owned(),
+            points: since_start(&series(column)?),
+            ..Line::default()
+        })
+    });
+    let plot = Plot {
+        title: "mass in the lower quarter on the sinking side".to_owned(),
+        x: Axis::of("time since the start of the drum (s)"),
+        y: Axis::of("mass (kg)"),
+        lines: lines.into_iter().collect::<Result<_, _>>()?,
+        ..Plot::default()
+    };
+    std::fs::write(root().join("doc/round-robin-drum.svg"), plot.svg().file())?;
+    Ok(())
+}
+
+/// Mean of a column of the time series between two times.
+fn mean(folder: &Path, column: &str, [from_s, to_s]: [f64; 2]) -> Result<f64, Failed> {
+    let rows = columns(&folder.join("series.csv"), ["time_s", column])?;
+    let rows = rows.iter().filter(|[t, _]| (from_s..=to_s).contains(t));
+    let values: Vec<f64> = rows.map(|[_, value]| *value).collect();
+    Ok(values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// Time between the first two maxima of a curve, while the drum turns: each is the largest value
+/// between two falls below half of the largest of all.
+fn period_s(curve: &[[f64; 2]]) -> Option<f64> {
+    let turning: Vec<[f64; 2]> = curve.iter().copied().filter(|[t, _]| *t >= 0.6).collect();
+    let largest = turning.iter().map(|[_, y]| *y).fold(0.0, f64::max);
+    let mut high = turning.split(|[_, y]| *y < 0.5 * largest);
+    let mut next = || {
+        let part = high.find(|part| !part.is_empty())?;
+        part.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1]))
+    };
+    let [first, second] = [next()?, next()?];
+    Some(second[0] - first[0])
+}
+
+/// Radius of the ball, m, and the height of its centre at which it has its speed.
+const BALL_M: f64 = 10e-3;
+const FROM_M: f64 = 0.15;
+/// Friction of a bed of smooth spheres, tan 20.9 degrees (Jop et al. 2006).
+const BED_FRICTION: f64 = 0.38;
+
+/// Depth by the law of Uehara et al. 2003, m.
+fn uehara_m(bulk_kg_m3: f64, fall_m: f64) -> f64 {
+    let ratio = (7200.0 / bulk_kg_m3).sqrt();
+    0.14 / BED_FRICTION * ratio * (2.0 * BALL_M).powf(2.0 / 3.0) * fall_m.cbrt()
+}
+
+fn penetration(dem_run: &Path) -> Result<(), Failed> {
+    let grains = |diameter_mm: f64, count: usize| {
+        vec![
+            format!(
+                "bodies.grain.particles=[[0,0,0,\"{} mm\"]]",
+                0.5 * diameter_mm
+            ),
+            format!("inlets.fill.count={count}"),
+        ]
+    };
+    let and = |set: Vec<String>, more: &str| [set, vec![more.to_owned()]].concat();
+    let slow = "supports.hold.velocity.z=\"-1.818 m/s\"";
+    let stiff = "materials.m1.young_modulus=\"200 MPa\"";
+    let coarse = || grains(8.0, 1_563);
+    let cases = [
+        ("8 mm", 5.0, coarse()),
+        (
+            "8 mm, half the step",
+            5.0,
+            and(coarse(), "run.safety_factor=0.45"),
+        ),
+        ("8 mm, 200 MPa", 5.0, and(coarse(), stiff)),
+        ("8 mm", 2.5, and(coarse(), slow)),
+        ("6 mm", 5.0, grains(6.0, 3_704)),
+    ];
+    let mut table = Table::new(&[
+        "spheres",
+        "speed",
+        "bed",
+        "bulk density",
+        "depth",
+        "Uehara et al. 2003",
+        "off",
+        "displacement of the ball",
+    ]);
+    let mut lines = Vec::new();
+    for (at, (name, speed_m_s, set)) in cases.iter().enumerate() {
+        let (summary, folder) = run(dem_run, "penetration", &at.to_string(), set)?;
+        let series = folder.join("series.csv");
+        let heights = columns(&series, ["time_s", "bed_centre_m"])?;
+        let before = heights.iter().rfind(|[t, _]| *t <= 0.4);
+        let bed_m = 2.0 * before.ok_or("no row before the fall")?[1];
+        let bulk_kg_m3 = value(&summary, "bulk_density")?;
+        let lowest_m = value(&summary, "ball")?;
+        let depth_m = bed_m - (lowest_m - BALL_M);
+        // From rest to its lowest place.
+        let fall_m = speed_m_s * speed_m_s / (2.0 * GRAVITY_M_S2) + FROM_M - lowest_m;
+        let law_m = uehara_m(bulk_kg_m3, fall_m);
+        table.row(&[
+            (*name).to_owned(),
+            format!("{speed_m_s} m/s"),
+            format!("{:.1} mm", 1e3 * bed_m),
+            format!("{bulk_kg_m3:.0} kg/m3"),
+            format!("{:.1} mm", 1e3 * depth_m),
+            format!("{:.1} mm", 1e3 * law_m),
+            format!("{:+.0} %", 100.0 * (depth_m / law_m - 1.0)),
+            format!("{:.1} mm", 1e3 * (lowest_m - FROM_M)),
+        ]);
+        lines.push(Line {
+            name: format!("{name}, {speed_m_s} m/s"),
+            points: fall(&series)?,
+            ..Line::default()
+        });
+    }
+    table.write(PAGE, "round_robin penetration")?;
+    let plot = Plot {
+        title: "the ball below the place from which it falls at its speed".to_owned(),
+        x: Axis::of("time (s)"),
+        y: Axis::of("displacement (mm)"),
+        lines,
+        ..Plot::default()
+    };
+    std::fs::write(
+        root().join("doc/round-robin-penetration.svg"),
+        plot.svg().file(),
+    )?;
+    Ok(())
+}
+
+/// Displacement of the ball, mm, over time, from where it has 5 m/s.
+fn fall(series: &Path) -> Result<Vec<[f64; 2]>, Failed> {
+    let rows = columns(series, ["time_s", "ball_m"])?;
+    let below = rows.iter().filter(|[_, z]| *z <= FROM_M);
+    let Some(&[start_s, _]) = below.clone().next() else {
+        return Err("the ball has not fallen".into());
+    };
+    Ok(below
+        .map(|[t, z]| [t - start_s, 1e3 * (z - FROM_M)])
+        .collect())
+}
