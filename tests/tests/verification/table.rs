@@ -42,6 +42,16 @@ impl Case {
         }
     }
 
+    /// Its error, relative to its scale.
+    pub(crate) fn error(&self) -> f64 {
+        (self.computed - self.reference) / self.scale
+    }
+
+    /// The same with another bound; infinite: none.
+    pub(crate) fn within(self, bound: f64) -> Self {
+        Self { bound, ..self }
+    }
+
     /// Sets the limit below which errors are not printed, since their digits depend on the order of
     /// sums.
     pub(crate) fn rounding(self, rounding: f64) -> Self {
@@ -50,10 +60,6 @@ impl Case {
 
     fn keeps_bound(&self) -> bool {
         self.error().abs() <= self.bound
-    }
-
-    fn error(&self) -> f64 {
-        (self.computed - self.reference) / self.scale
     }
 
     fn row(&self) -> String {
@@ -75,7 +81,11 @@ impl Case {
             } else {
                 steady(error, DOUBT, |error| format!("{error:.1e}"))
             },
-            format!("{:.1e}", self.bound),
+            if self.bound.is_finite() {
+                format!("{:.1e}", self.bound)
+            } else {
+                "none".to_owned()
+            },
         ])
     }
 }
