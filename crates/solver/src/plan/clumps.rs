@@ -230,6 +230,13 @@ pub(super) fn need_pairs(
     kinds: &Kinds<'_>,
     templates: &[Arc<Template>],
 ) -> Result<()> {
+    let numbered = templates.iter().enumerate();
+    let number_of: BTreeMap<&str, usize> = numbered.map(|(n, t)| (&t.body[..], n)).collect();
+    let materials = scene.bodies.values();
+    let materials: BTreeSet<usize> = materials.map(|e| kinds.material(&e.material)).collect();
+    // Pairs of materials that have a law: there may be many bodies of few materials.
+    let mut known: BTreeSet<[usize; 2]> = BTreeSet::new();
+    let pair = |a: usize, b: usize| [a.min(b), a.max(b)];
     for (n, template) in templates.iter().enumerate() {
         let own = usize::from(template.material);
         let by_inlet = (scene.inlets.values())
@@ -238,12 +245,15 @@ pub(super) fn need_pairs(
             let who = format!("the bodies '{}' and their pieces need", template.body);
             kinds.need(scene, [own; 2], &who)?;
         }
+        if (materials.iter()).all(|&material| known.contains(&pair(own, material))) {
+            continue;
+        }
         for (name, entry) in &scene.bodies {
-            let is_later = templates[n + 1..].iter().any(|other| other.body == *name);
-            let stands = templates.iter().all(|other| other.body != *name);
-            if is_later || stands {
+            let material = kinds.material(&entry.material);
+            let is_later_or_stands = number_of.get(&name[..]).is_none_or(|&other| other > n);
+            if is_later_or_stands && known.insert(pair(own, material)) {
                 let who = format!("the bodies '{}' and '{name}' need", template.body);
-                kinds.need(scene, [own, kinds.material(&entry.material)], &who)?;
+                kinds.need(scene, [own, material], &who)?;
             }
         }
     }

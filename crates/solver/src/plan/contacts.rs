@@ -265,6 +265,9 @@ fn need_pairs(
     state: &State,
 ) -> Result<()> {
     let material = |body: &PlacedBody| kinds.material(&scene.bodies[&body.name].material);
+    let materials: Vec<usize> = bodies.iter().map(material).collect();
+    // Pairs of materials that have a law: there may be many bodies of few materials.
+    let mut known = vec![vec![false; kinds.names.len()]; kinds.names.len()];
     for (n, body) in bodies.iter().enumerate() {
         let first = body.first_particle;
         let cluster_of = |i: &u32| clusters.of_particle[*i as usize];
@@ -293,9 +296,11 @@ fn need_pairs(
             let who = format!("pieces that the body '{}' {why} need", body.name);
             kinds.need(scene, [material(body); 2], &who)?;
         }
-        for other in &bodies[n + 1..] {
-            let who = format!("the bodies '{}' and '{}' need", body.name, other.name);
-            kinds.need(scene, [material(body), material(other)], &who)?;
+        for (other, &of_other) in bodies.iter().zip(&materials).skip(n + 1) {
+            if !std::mem::replace(&mut known[materials[n]][of_other], true) {
+                let who = format!("the bodies '{}' and '{}' need", body.name, other.name);
+                kinds.need(scene, [materials[n], of_other], &who)?;
+            }
         }
     }
     Ok(())
