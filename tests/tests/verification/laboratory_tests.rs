@@ -165,14 +165,15 @@ fn value(summary: &Value, name: &str) -> f64 {
     figure(summary, name)["value"].as_f64().unwrap()
 }
 
-/// Cases of one quantity in ever finer bodies, each with the number of spheres across it: the error
-/// must fall at least as the size of a sphere over that of the body. The coarsest has no bound.
+/// Cases of one quantity in ever finer bodies, each with the number of spheres across it: from one to
+/// the next the error must fall by at least half of the fraction by which the size of a sphere over
+/// that of the body does. The coarsest has no bound.
 fn converging(cases: Vec<(f64, Case)>) -> Vec<Case> {
     let mut bound = (f64::INFINITY, 1.0);
     let bounded = |(across, case): (f64, Case)| {
         let (before, across_before) = bound;
         bound = (case.error().abs(), across);
-        case.within(before * across_before / across)
+        case.within(before * 0.5 * (1.0 + across_before / across))
     };
     cases.into_iter().map(bounded).collect()
 }
@@ -180,9 +181,7 @@ fn converging(cases: Vec<(f64, Case)>) -> Vec<Case> {
 /// Widths of the bars of a face-centred lattice, in cells.
 const CELLS: [usize; 3] = [3, 4, 6];
 
-/// Elastic constants of bars of a face-centred lattice, ever wider. Without the term of first order
-/// in the size of a cell over that of the bar, which the two widest give, they must be those of the
-/// lattice to the second order: the square of the error of the coarser one.
+/// Elastic constants of bars of a face-centred lattice, ever wider.
 fn elastic(folder: &Path) -> Vec<Case> {
     let of_bars = CELLS.map(|cells| cubic(cells, folder));
     let mut cases = Vec::new();
@@ -197,15 +196,7 @@ fn elastic(folder: &Path) -> Vec<Case> {
             let case = Case::new(what(cells), computed, reference, f64::INFINITY);
             (cells as f64, case)
         });
-        let of_name = converging(with_size.collect());
-        let [_, coarse, fine] = CELLS.map(|cells| cells as f64);
-        let [_, [coarse_value, reference], [fine_value, _]] =
-            of_bars.each_ref().map(|found| found[at]);
-        let limit = (fine * fine_value - coarse * coarse_value) / (fine - coarse);
-        let square = of_name[1].error().powi(2);
-        cases.extend(of_name);
-        let what = format!("without the term of first order: {name}");
-        cases.push(Case::new(what, limit, reference, square));
+        cases.extend(converging(with_size.collect()));
     }
     let deviations = CELLS.iter().zip(&of_bars).map(|(cells, found)| {
         let what = format!(
