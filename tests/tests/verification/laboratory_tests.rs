@@ -506,7 +506,7 @@ const DISC_STRESSES: [&str; 2] = [
 ];
 
 /// Numbers of spheres across the discs.
-const ACROSS: [usize; 3] = [15, 31, 63];
+const ACROSS: [usize; 3] = [15, 31, 47];
 
 /// Stresses of ever finer discs.
 fn discs(folder: &Path) -> Vec<Case> {
