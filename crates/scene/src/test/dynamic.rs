@@ -205,6 +205,9 @@ pub(super) fn bars(test: &Table<'_>, transmission: String) -> Result<Bars> {
     Ok(Bars { gauges, ..found })
 }
 
+/// Most lengths of a pulse between a strain gauge and the body: the record has rows for all of it.
+const MOST_PULSES: f64 = 1000.0;
+
 /// Strain gauges of bars with pulses of this length, m. Refuses a gauge that is nearer than half
 /// of it to an end, where the tail of a pulse meets the head of its reflection.
 fn gauges(bars: &Table<'_>, pulse_m: f64) -> Result<Option<Gauges>> {
@@ -234,6 +237,14 @@ fn gauges(bars: &Table<'_>, pulse_m: f64) -> Result<Option<Gauges>> {
         let limit = format!("at least {}", why("the incident and the reflected pulse"));
         let remedy = "move the gauge away from the body, or take a shorter striker or rise";
         return Err(distance.wrong(&limit, remedy));
+    }
+    let most_m = MOST_PULSES * pulse_m;
+    if found.distance_m > most_m {
+        let limit = format!(
+            "at most {MOST_PULSES} pulses, {}",
+            show_quantity(most_m, "m")
+        );
+        return Err(distance.wrong(&limit, "move the gauge towards the body"));
     }
     if found.bar_m - found.distance_m < half_m {
         let limit = format!(

@@ -23,8 +23,9 @@ pub struct BodyFlow {
     pub discharged_kg: BTreeMap<String, f64>,
     /// Mass of the bodies and fragments inside, kg.
     pub inside_kg: f64,
-    /// At the start and fed, less discharged and inside, kg: 0, to rounding.
-    pub missing_kg: f64,
+    /// At the start and fed, less discharged and inside, kg: 0, to rounding. None: daughters of other
+    /// bodies have replaced bodies, and their mass counts as that of their own body.
+    pub missing_kg: Option<f64>,
 }
 
 /// Those of all bodies, by name. `masses`: of the bodies of the scene. None: nothing comes or goes.
@@ -67,9 +68,18 @@ pub(crate) fn body_flows(
         let size = size_of(id, clusters, &state.particles, &state.clumps);
         flows[size.body as usize].inside_kg += size.mass_kg;
     }
+    let history = &clusters.history;
+    let is_of_other = |cluster: &Cluster| {
+        let parent = cluster
+            .parent
+            .and_then(|parent| history.get(parent as usize));
+        parent.is_some_and(|parent| parent.body != cluster.body)
+    };
+    let mixes = history.iter().any(is_of_other);
     for flow in &mut flows {
         let gone_kg: f64 = flow.discharged_kg.values().sum();
-        flow.missing_kg = flow.start_kg + flow.fed_kg - gone_kg - flow.inside_kg;
+        let missing_kg = flow.start_kg + flow.fed_kg - gone_kg - flow.inside_kg;
+        flow.missing_kg = (!mixes).then_some(missing_kg);
     }
     let names = state.model.bodies.iter().map(|body| body.name.clone());
     Some(names.zip(flows).collect())
