@@ -300,6 +300,7 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         ("8 mm", 2.5, and(coarse(), slow)),
         ("6 mm", 5.0, grains(6.0, 3_704)),
         ("4 mm", 5.0, grains(4.0, 12_500)),
+        ("3 mm", 5.0, grains(3.0, 29_630)),
     ];
     let mut table = Table::new(&[
         "spheres",
