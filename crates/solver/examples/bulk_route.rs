@@ -1,6 +1,6 @@
-//! Writes the table of doc/bulk.md: from a poured density to the density of the particles, to the overlap
-//! of a body, and back by shattering it (Platzer 2022, 3.1.1 and 4.5.1.5). From the folder of the
-//! clone:
+//! Writes the table of doc/bulk.md: from a poured density to the density of the particles, to the
+//! overlap of a body, and back by shattering it (Platzer 2022, 3.1.1 and 4.5.1.5). From the folder
+//! of the clone:
 //!
 //! ```sh
 //! cargo run --release -p dem-run --example bulk_route
@@ -13,11 +13,7 @@
     reason = "it prints a table, and how far it is"
 )]
 
-#[allow(dead_code, reason = "other examples use the rest")]
 mod programs;
-#[allow(dead_code, reason = "other examples use the rest")]
-#[path = "programs/study.rs"]
-mod study;
 
 use std::path::Path;
 
@@ -25,10 +21,9 @@ use dem_io::body::mass::of_named_density;
 use dem_io::body::write_body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
-use serde_json::Value;
 
+use programs::study::{Table, measured, run_scene};
 use programs::{Failed, Programs, results};
-use study::{Table, run_scene};
 
 /// Densities of the material as a laboratory measures them, kg/m3: poured, and solid.
 const BULK_KG_M3: f64 = 1200.0;
@@ -60,7 +55,7 @@ fn main() -> Result<(), Failed> {
     let poured = at_once(|seed| {
         let set = [format!("run.seed={seed}")];
         let out = format!("poured-{seed}");
-        value(&run("pour-box", &set, None, &out)?, "bulk_density")
+        measured(&run("pour-box", &set, None, &out)?, "bulk_density")
     })?;
     // The particle density of the material: the mean of all pourings.
     let poured_kg_m3 = poured.iter().sum::<f64>() / poured.len() as f64;
@@ -72,8 +67,8 @@ fn main() -> Result<(), Failed> {
         let out = format!("shattered-{seed}");
         let bulk = run("shatter-box", &set, Some(&file), &out)?;
         let [bulk_kg_m3, factor] = [
-            value(&bulk, "bulk_density")?,
-            value(&bulk, "bulking_factor")?,
+            measured(&bulk, "bulk_density")?,
+            measured(&bulk, "bulking_factor")?,
         ];
         Ok([overlap, solid_kg_m3, bulk_kg_m3, factor])
     })?;
@@ -116,7 +111,7 @@ fn main() -> Result<(), Failed> {
     let lying = run("shatter-box", &set, Some(&file), "lying")?;
     println!(
         "\nBroken on the floor, below the bars: {:.0} kg/m3.",
-        value(&lying, "bulk_density")?
+        measured(&lying, "bulk_density")?
     );
     Ok(())
 }
@@ -165,9 +160,4 @@ fn pack(seed: u64, particle_kg_m3: f64, file: &Path) -> Result<(f64, f64), Faile
     write_body(&body, file)?;
     let solid = of_named_density(&body).and_then(|mass| mass.solid_density_kg_m3);
     Ok((made.quality.overlap, solid.ok_or("no density")?))
-}
-
-fn value(summary: &Value, measure: &str) -> Result<f64, Failed> {
-    let value = summary["measures"][measure]["value"].as_f64();
-    Ok(value.ok_or("no value of a measure in summary.json")?)
 }

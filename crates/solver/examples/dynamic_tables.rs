@@ -15,17 +15,13 @@
     reason = "it prints a table, and how far it is"
 )]
 
-#[allow(dead_code, reason = "other examples use the rest")]
 mod programs;
-#[allow(dead_code, reason = "other examples use the rest")]
-#[path = "programs/study.rs"]
-mod study;
 
 use dem_io::units::significant;
 use dem_plots::{Axis, Line, Marks, Plot, Point};
 use dem_run::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
+use programs::study::{Run, Table, runs};
 use programs::{Failed, results, root};
-use study::{Run, Table, runs};
 
 const PAGE: &str = "doc/dynamic-tests.md";
 

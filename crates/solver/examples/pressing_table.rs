@@ -14,11 +14,7 @@
     reason = "it prints a table, and how far it is"
 )]
 
-#[allow(dead_code, reason = "other examples use the rest")]
 mod programs;
-#[allow(dead_code, reason = "other examples use the rest")]
-#[path = "programs/study.rs"]
-mod study;
 
 use dem_io::Body;
 use dem_io::body::mass::volume_m3;
@@ -32,8 +28,8 @@ use dem_plots::{Axis, Line, Plot};
 use dem_results::folder::{frame_in, frames_in};
 use serde_json::Value;
 
+use programs::study::{Table, run_scene};
 use programs::{Failed, Programs, results, root};
-use study::{Table, run_scene};
 
 /// The bar: 30 mm x 30 mm around the z axis, 60 mm high.
 const HALF_WIDTH_M: f64 = 15e-3;

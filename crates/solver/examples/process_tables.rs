@@ -14,11 +14,7 @@
     reason = "it prints tables, and how far it is"
 )]
 
-#[allow(dead_code, reason = "other examples use the rest")]
 mod programs;
-#[allow(dead_code, reason = "other examples use the rest")]
-#[path = "programs/study.rs"]
-mod study;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -27,8 +23,8 @@ use std::process::Command;
 use dem_results::read_series;
 use serde_json::Value;
 
+use programs::study::{Table, run_scene_or_keep};
 use programs::{Failed, Programs, output, results};
-use study::{Table, run_scene};
 
 const PAGE: &str = "doc/process.md";
 /// Cakes and lumps can break.
@@ -137,19 +133,13 @@ impl Runs {
     /// one thread.
     fn run(&self, out: &str, diameters: &str, set: &[String]) -> Result<Run, Failed> {
         let folder = self.folder.join(out);
-        let before = std::fs::read(folder.join("summary.json")).ok();
-        let before: Option<Value> = before.and_then(|json| serde_json::from_slice(&json).ok());
-        let ended = before.filter(|summary| self.keeps && summary["ended_by"] == "end time");
-        if let Some(summary) = ended {
-            return Ok(Run { folder, summary });
-        }
         let mut options: Vec<String> = set.iter().map(|set| format!("--set={set}")).collect();
         for body in BREAKABLE {
             let file = self.body(body, diameters);
             options.push(format!("--body={body}={}", file.display()));
         }
         options.extend(["--threads", "1"].map(str::to_owned));
-        let summary = run_scene(&self.dem_run, "process", &options, &folder)?;
+        let summary = run_scene_or_keep(&self.dem_run, "process", &options, &folder, self.keeps)?;
         Ok(Run { folder, summary })
     }
 }

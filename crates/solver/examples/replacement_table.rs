@@ -1,31 +1,27 @@
-//! Writes the tables of doc/replacement.md, the first of them into README.md as well: the chute run in
-//! three ways, with several seeds. From the folder of the clone:
+//! Writes the tables of doc/replacement.md, the first of them into README.md as well: the chute run
+//! in three ways, with several seeds. From the folder of the clone:
 //!
 //! ```sh
 //! cargo run --release -p dem-run --example replacement_table
 //! ```
 //!
-//! Builds the program and takes a quarter of an hour. One thread and hardly any pictures, so that the
-//! steps are compared. Results are in `target/replacement-table`.
+//! Builds the program and takes a quarter of an hour. One thread and hardly any pictures, so that
+//! the steps are compared. Results are in `target/replacement-table`.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
     reason = "it prints a table, and how far it is"
 )]
 
-#[allow(dead_code, reason = "other examples use the rest")]
 mod programs;
-#[allow(dead_code, reason = "other examples use the rest")]
-#[path = "programs/study.rs"]
-mod study;
 
 use std::path::Path;
 
 use dem_scene::study::Pieces;
 use dem_study::masses::{by_chance, distance, masses_kg};
 
+use programs::study::{Table, run_scene};
 use programs::{Failed, Programs, results};
-use study::{Table, run_scene};
 
 const PAGE: &str = "doc/replacement.md";
 const WAYS: [(&str, &str); 3] = [

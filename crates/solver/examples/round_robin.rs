@@ -15,11 +15,7 @@
     reason = "it prints a table, and how far it is"
 )]
 
-#[allow(dead_code, reason = "other examples use the rest")]
 mod programs;
-#[allow(dead_code, reason = "other examples use the rest")]
-#[path = "programs/study.rs"]
-mod study;
 
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -28,8 +24,8 @@ use dem_laboratory::Line as Fit;
 use dem_plots::{Axis, Line, Plot};
 use serde_json::Value;
 
+use programs::study::{Table, columns, measured, run_scene_or_keep};
 use programs::{Failed, Programs, results, root};
-use study::{Table, columns, run_scene};
 
 const PAGE: &str = "doc/round-robin.md";
 const GRAVITY_M_S2: f64 = 9.81;
@@ -55,19 +51,8 @@ fn run(
     let options = set.iter().map(|set| format!("--set={set}"));
     let options: Vec<String> = options.collect();
     let resume = std::env::args().any(|word| word == "--resume");
-    let summary = match std::fs::read(folder.join("summary.json")) {
-        // Only those that have run to their end.
-        Ok(bytes) if resume && !String::from_utf8_lossy(&bytes).contains("interrupted") => {
-            serde_json::from_slice(&bytes)?
-        }
-        _ => run_scene(dem_run, scene, &options, &folder)?,
-    };
+    let summary = run_scene_or_keep(dem_run, scene, &options, &folder, resume)?;
     Ok((summary, folder))
-}
-
-fn value(summary: &Value, measure: &str) -> Result<f64, Failed> {
-    let value = summary["measures"][measure]["value"].as_f64();
-    Ok(value.ok_or("no value of a measure in summary.json")?)
 }
 
 /// Slope of a straight line through a column of the time series between two times.
@@ -319,8 +304,8 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         let heights = columns(&series, ["time_s", "bed_centre_m"])?;
         let before = heights.iter().rfind(|[t, _]| *t <= 0.4);
         let bed_m = 2.0 * before.ok_or("no row before the fall")?[1];
-        let bulk_kg_m3 = value(&summary, "bulk_density")?;
-        let lowest_m = value(&summary, "ball")?;
+        let bulk_kg_m3 = measured(&summary, "bulk_density")?;
+        let lowest_m = measured(&summary, "ball")?;
         let depth_m = bed_m - (lowest_m - BALL_M);
         // From rest to its lowest place.
         let fall_m = speed_m_s * speed_m_s / (2.0 * GRAVITY_M_S2) + FROM_M - lowest_m;

@@ -106,8 +106,8 @@ pub struct State {
     pub previous_time_step_s: f64,
     /// Upper bound of the largest eigenvalue of the damping of bonds over mass, 1/s.
     pub damping_rate_1_s: f64,
-    /// That of all bodies that are or may come, while no bond is much longer than at the start, 1/s.
-    /// Infinite: it is not known.
+    /// That of all bodies that are or may come, while no bond is much longer than at the start,
+    /// 1/s. Infinite: it is not known.
     pub most_damping_rate_1_s: f64,
     /// Damping forces of bonds in the last step, one for each free particle. Empty: no bond
     /// has any.

@@ -19,8 +19,8 @@ const GRAVITY_M_S2: f64 = 9.81;
 /// Step times angular frequency.
 const STEP: f64 = 0.01;
 
-/// Bound of structural damping. A reversal takes SMOOTHING radians, some steps: in them the error of
-/// second order is that of (STEP/SMOOTHING)^2 over the part of the half period that they are.
+/// Bound of structural damping. A reversal takes SMOOTHING radians, some steps: in them the error
+/// of second order is that of (STEP/SMOOTHING)^2 over the part of the half period that they are.
 const STRUCTURAL: f64 = STEP * STEP / SMOOTHING;
 
 /// Mode in which two spheres oscillate against each other.
@@ -337,10 +337,10 @@ fn booked(modes: &[Mode], damping: &str) -> String {
     compared("mode", "", &cases)
 }
 
-/// Logarithmic decrement of half an oscillation of x'' = -x - gamma |x| v / sqrt(v^2 + (s x)^2), and
-/// its duration: with x = A cos(phi), v = -A sin(phi), and c and n for cos and sin of phi,
-/// dA/A = -gamma n^2 |c| / (r - gamma |c| c n) dphi and dt = r / (r - gamma |c| c n) dphi, where
-/// r^2 = n^2 + (s c)^2. By Simpson's rule from one passage through the middle to the next.
+/// Logarithmic decrement of half an oscillation of x'' = -x - gamma |x| v / sqrt(v^2 + (s x)^2),
+/// and its duration: with x = A cos(phi), v = -A sin(phi), and c and n for cos and sin of phi, dA/A
+/// = -gamma n^2 |c| / (r - gamma |c| c n) dphi and dt = r / (r - gamma |c| c n) dphi, where r^2 =
+/// n^2 + (s c)^2. By Simpson's rule from one passage through the middle to the next.
 fn half_swing_of(gamma: f64, smoothing: f64) -> [f64; 2] {
     const PARTS: usize = 20_000;
     let part = PI / PARTS as f64;

@@ -165,9 +165,9 @@ fn value(summary: &Value, name: &str) -> f64 {
     figure(summary, name)["value"].as_f64().unwrap()
 }
 
-/// Cases of one quantity in ever finer bodies, each with the number of spheres across it: from one to
-/// the next the error must fall by at least half of the fraction by which the size of a sphere over
-/// that of the body does. The coarsest has no bound.
+/// Cases of one quantity in ever finer bodies, each with the number of spheres across it: from one
+/// to the next the error must fall by at least half of the fraction by which the size of a sphere
+/// over that of the body does. The coarsest has no bound.
 fn converging(cases: Vec<(f64, Case)>) -> Vec<Case> {
     let mut bound = (f64::INFINITY, 1.0);
     let bounded = |(across, case): (f64, Case)| {

@@ -265,8 +265,8 @@ const STEPS: usize = 20_000;
 /// which is -1 at r = 2. Beyond it by a fraction s, its logarithm is 2 sqrt(2 s) without damping,
 /// and 4 s/(b - 1) = 4 s/tanh(2 zeta) with it. Damping in one stage, with g = 4 zeta, has
 /// r^2 + f(q, g) = 0 (stages/damping.rs), where f(-1) = -4 and f'(-1) = g/(1 - g): the logarithm
-/// is 8 s (1 - g)/g. Structural damping resists most at reversals, where R is nearly 0: b is at most
-/// 2, and the logarithm at least 4 s.
+/// is 8 s (1 - g)/g. Structural damping resists most at reversals, where R is nearly 0: b is at
+/// most 2, and the logarithm at least 4 s.
 fn late(damping: Damping) -> f64 {
     let in_a_step = 1e6_f64.ln() / STEPS as f64;
     let Damping::Viscous(damping) = damping else {

@@ -1,4 +1,7 @@
 //! The two programs, for examples that run them.
+#![allow(dead_code, reason = "each example uses a part")]
+
+pub(crate) mod study;
 
 use std::error::Error;
 use std::ffi::OsStr;

@@ -69,6 +69,28 @@ pub(crate) fn run_scene(
     summary_in(folder)
 }
 
+/// As [`run_scene`]; if it `keeps`, a run that has come to its end in this folder is not run again.
+pub(crate) fn run_scene_or_keep(
+    dem_run: &Path,
+    scene: &str,
+    options: &[String],
+    folder: &Path,
+    keeps: bool,
+) -> Result<Value, Failed> {
+    let before = if keeps { summary_in(folder).ok() } else { None };
+    let ends = ["end time", "rest", "measure"];
+    match before.filter(|summary| ends.iter().any(|end| summary["ended_by"] == *end)) {
+        Some(summary) => Ok(summary),
+        None => run_scene(dem_run, scene, options, folder),
+    }
+}
+
+/// The value of a measure in a summary.
+pub(crate) fn measured(summary: &Value, measure: &str) -> Result<f64, Failed> {
+    let value = summary["measures"][measure]["value"].as_f64();
+    Ok(value.ok_or("no value of a measure in summary.json")?)
+}
+
 impl Run {
     /// A figure of its test; not a number if it has none.
     pub(crate) fn figure(&self, name: &str) -> f64 {

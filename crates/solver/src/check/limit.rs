@@ -342,9 +342,9 @@ fn largest_eigenvalue(
     })
 }
 
-/// The largest eigenvalue of the damping of bonds over mass, 1/s, with the largest coefficients that
-/// structural damping can have; not too small by more than a ten-thousandth. Afterwards no wrench
-/// acts on any particle.
+/// The largest eigenvalue of the damping of bonds over mass, 1/s, with the largest coefficients
+/// that structural damping can have; not too small by more than a ten-thousandth. Afterwards no
+/// wrench acts on any particle.
 pub fn damping_eigenvalue_1_s(state: &mut State) -> f64 {
     with_all_bonds(state, |state| {
         let roots = inverse_mass_roots(state);

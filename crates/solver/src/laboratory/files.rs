@@ -92,10 +92,10 @@ fn line(name: &str, points: Vec<[f64; 2]>, dashed: bool) -> Line {
 const SIGNALS: &str = "time_s,incident_strain,reflected_strain,transmitted_strain,incident_force_n,transmission_force_n,incident_bar_velocity_m_s,transmission_bar_velocity_m_s";
 
 fn signals_csv(record: &Record, bars: &Bars) -> String {
-    let mut out = format!("{SIGNALS}\n");
-    for (signal, row) in bar_signals(record, bars).iter().zip(&record.rows) {
+    let signals = bar_signals(record, bars);
+    let rows = signals.iter().zip(&record.rows).map(|(signal, row)| {
         let [moving_m_s, resting_m_s, _] = row.speeds_m_s;
-        let numbers = [
+        [
             signal.time_s,
             signal.incident,
             signal.reflected,
@@ -104,21 +104,24 @@ fn signals_csv(record: &Record, bars: &Bars) -> String {
             row.reaction_n,
             moving_m_s,
             resting_m_s,
-        ];
-        out += &numbers.map(|number| format!("{number:e}")).join(",");
-        out.push('\n');
-    }
-    out
+        ]
+    });
+    csv(SIGNALS, rows)
 }
 
 /// The first line of `gauge-signals.csv`.
 const GAUGES: &str = "time_s,incident_bar_strain,transmission_bar_strain";
 
 fn gauges_csv(signals: &[GaugeSignal]) -> String {
-    let mut out = format!("{GAUGES}\n");
-    for signal in signals {
-        let numbers = [signal.time_s, signal.incident_bar, signal.transmission_bar];
-        out += &numbers.map(|number| format!("{number:e}")).join(",");
+    let row = |signal: &GaugeSignal| [signal.time_s, signal.incident_bar, signal.transmission_bar];
+    csv(GAUGES, signals.iter().map(row))
+}
+
+/// A table of numbers with this first line.
+fn csv<const N: usize>(head: &str, rows: impl Iterator<Item = [f64; N]>) -> String {
+    let mut out = format!("{head}\n");
+    for row in rows {
+        out += &row.map(|number| format!("{number:e}")).join(",");
         out.push('\n');
     }
     out

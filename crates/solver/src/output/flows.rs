@@ -7,8 +7,8 @@ use dem_results::FlowRow;
 use serde::Serialize;
 
 use crate::state::State;
-use crate::state::clusters::Cluster;
 use crate::state::clusters::sizes::size_of;
+use crate::state::clusters::{Cluster, Clusters};
 
 /// Where the mass of a body is at the end of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -23,8 +23,8 @@ pub struct BodyFlow {
     pub discharged_kg: BTreeMap<String, f64>,
     /// Mass of the bodies and fragments inside, kg.
     pub inside_kg: f64,
-    /// At the start and fed, less discharged and inside, kg: 0, to rounding. None: daughters of other
-    /// bodies have replaced bodies, and their mass counts as that of their own body.
+    /// At the start and fed, less discharged and inside, kg: 0, to rounding. None: daughters of
+    /// other bodies have replaced bodies, and their mass counts as that of their own body.
     pub missing_kg: Option<f64>,
 }
 
@@ -35,9 +35,10 @@ pub(crate) fn body_flows(
 ) -> Option<BTreeMap<String, BodyFlow>> {
     let rules = &state.model.rules;
     let clusters = state.clusters.as_ref()?;
-    if rules.inlets.is_empty() && rules.outlets.is_empty() {
+    if !rules.have_flows() {
         return None;
     }
+    let fed_kg = fed_kg(state);
     let mut flows = vec![BodyFlow::default(); state.model.bodies.len()];
     for (number, flow) in (0..).zip(&mut flows) {
         let name = state.model.body_name(number);
@@ -46,14 +47,14 @@ pub(crate) fn body_flows(
             .history
             .iter()
             .filter(|cluster| cluster.body == number);
-        if !is_fed(state, name) && own.any(|cluster| cluster.parent.is_none()) {
+        if fed_kg[number as usize].is_none() && own.any(|cluster| cluster.parent.is_none()) {
             flow.start_kg = masses.get(name).map_or(0.0, |mass| mass.mass_kg);
         }
         for outlet in &rules.outlets {
             flow.discharged_kg.insert(outlet.name.clone(), 0.0);
         }
     }
-    for (_, body, mass_kg) in fed(state) {
+    for (_, body, mass_kg) in fed(clusters, &fed_kg) {
         let flow = &mut flows[body as usize];
         flow.fed += 1;
         flow.fed_kg += mass_kg;
@@ -85,28 +86,29 @@ pub(crate) fn body_flows(
     Some(names.zip(flows).collect())
 }
 
-/// Whether an inlet feeds bodies of this name: then none is there at the start.
-fn is_fed(state: &State, body: &str) -> bool {
-    let mut fed = state
-        .model
-        .rules
-        .inlets
-        .iter()
-        .flat_map(|inlet| &inlet.templates);
-    fed.any(|(template, _)| state.clumps.templates[*template as usize].body == body)
+/// For each body its mass if inlets feed it, kg: then none is there at the start.
+fn fed_kg(state: &State) -> Vec<Option<f64>> {
+    let mut found = vec![None; state.model.bodies.len()];
+    let inlets = state.model.rules.inlets.iter();
+    for (template, _) in inlets.flat_map(|inlet| &inlet.templates) {
+        let template = &state.clumps.templates[*template as usize];
+        let body = state.model.body_number(&template.body) as usize;
+        found[body] = Some(template.mass_kg);
+    }
+    found
 }
 
 /// Time, s, body and mass, kg, of each body that an inlet has fed, in order.
-fn fed(state: &State) -> Vec<(f64, u32, f64)> {
-    let history = state.clusters.iter().flat_map(|clusters| &clusters.history);
-    let come = history.filter(|cluster| cluster.parent.is_none());
-    let templates = &state.clumps.templates;
-    let of_body = |cluster: &Cluster| {
-        let name = state.model.body_name(cluster.body);
-        let template = templates.iter().find(|template| template.body == name)?;
-        is_fed(state, name).then_some((cluster.created_s, cluster.body, template.mass_kg))
-    };
-    come.filter_map(of_body).collect()
+fn fed<'a>(
+    clusters: &'a Clusters,
+    fed_kg: &'a [Option<f64>],
+) -> impl Iterator<Item = (f64, u32, f64)> + 'a {
+    let come = clusters.history.iter();
+    let come = come.filter(|cluster| cluster.parent.is_none());
+    come.filter_map(|cluster| {
+        let mass_kg = fed_kg[cluster.body as usize]?;
+        Some((cluster.created_s, cluster.body, mass_kg))
+    })
 }
 
 /// Numbers of a body and of the outlet through which it has left. None: inlets have fed it.
@@ -117,7 +119,9 @@ type BodyAndOutlet = (u32, Option<u32>);
 pub(crate) fn flow_rows(state: &State, interval_s: f64, end_s: f64) -> Vec<FlowRow<'_>> {
     let outlets = &state.model.rules.outlets;
     let mut events: BTreeMap<BodyAndOutlet, Vec<(f64, f64)>> = BTreeMap::new();
-    for (time_s, body, mass_kg) in fed(state) {
+    let clusters = state.clusters.iter();
+    let fed_kg = fed_kg(state);
+    for (time_s, body, mass_kg) in clusters.flat_map(|clusters| fed(clusters, &fed_kg)) {
         events
             .entry((body, None))
             .or_default()

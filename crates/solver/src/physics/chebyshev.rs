@@ -15,10 +15,8 @@ const KNOWN: usize = 16;
 const FEWEST: usize = 2;
 
 /// Factors of the stages over a unit of time.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Chebyshev {
-    /// The largest eigenvalue for which they were chosen.
-    pub covered: f64,
     /// Of the first rate in the first stage.
     pub first: f64,
     /// Of the other stages.
@@ -65,16 +63,16 @@ impl Polynomial {
 }
 
 impl Chebyshev {
-    /// As [`Self::covering`], from those that were chosen before: bodies with steps of their own need
-    /// several.
-    pub fn of_known(known: &mut Vec<Self>, largest: f64) -> &Self {
-        let at = known.iter().position(|known| known.covered == largest);
+    /// As [`Self::covering`], from those that were chosen before, each with its eigenvalue: bodies
+    /// with steps of their own need several.
+    pub fn of_known(known: &mut Vec<(f64, Self)>, largest: f64) -> &Self {
+        let at = known.iter().position(|(covered, _)| *covered == largest);
         let at = at.unwrap_or_else(|| {
             known.truncate(KNOWN - 1);
-            known.insert(0, Self::covering(largest));
+            known.insert(0, (largest, Self::covering(largest)));
             0
         });
-        &known[at]
+        &known[at].1
     }
 
     /// The fewest stages for eigenvalues up to `largest`, with their limit if that is larger.
@@ -83,10 +81,7 @@ impl Chebyshev {
         while limit(count) < largest {
             count += 1;
         }
-        Self {
-            covered: largest,
-            ..Self::of(count)
-        }
+        Self::of(count)
     }
 
     /// So many stages, at least two.
@@ -107,7 +102,6 @@ impl Chebyshev {
             }
         };
         Self {
-            covered: limit(count),
             first: b(1) * scale,
             others: (2..=count).map(stage).collect(),
         }

@@ -232,28 +232,24 @@ pub(super) fn need_pairs(
 ) -> Result<()> {
     let numbered = templates.iter().enumerate();
     let number_of: BTreeMap<&str, usize> = numbered.map(|(n, t)| (&t.body[..], n)).collect();
-    let materials = scene.bodies.values();
-    let materials: BTreeSet<usize> = materials.map(|e| kinds.material(&e.material)).collect();
-    // Pairs of materials that have a law: there may be many bodies of few materials.
-    let mut known: BTreeSet<[usize; 2]> = BTreeSet::new();
-    let pair = |a: usize, b: usize| [a.min(b), a.max(b)];
+    let described = scene.bodies.iter().map(|(name, entry)| {
+        let material = kinds.material(&entry.material);
+        (name, material, number_of.get(&name[..]))
+    });
+    let described: Vec<_> = described.collect();
     for (n, template) in templates.iter().enumerate() {
         let own = usize::from(template.material);
         let by_inlet = (scene.inlets.values())
             .any(|inlet| inlet.bodies.iter().any(|(name, _)| *name == template.body));
         if by_inlet || scene.replacement.contains_key(&template.body) {
-            let who = format!("the bodies '{}' and their pieces need", template.body);
-            kinds.need(scene, [own; 2], &who)?;
+            let who = || format!("the bodies '{}' and their pieces need", template.body);
+            kinds.need(scene, [own; 2], who)?;
         }
-        if (materials.iter()).all(|&material| known.contains(&pair(own, material))) {
-            continue;
-        }
-        for (name, entry) in &scene.bodies {
-            let material = kinds.material(&entry.material);
-            let is_later_or_stands = number_of.get(&name[..]).is_none_or(|&other| other > n);
-            if is_later_or_stands && known.insert(pair(own, material)) {
-                let who = format!("the bodies '{}' and '{name}' need", template.body);
-                kinds.need(scene, [own, material], &who)?;
+        for (name, material, number) in &described {
+            let is_later_or_stands = number.is_none_or(|&other| other > n);
+            if is_later_or_stands {
+                let who = || format!("the bodies '{}' and '{name}' need", template.body);
+                kinds.need(scene, [own, *material], who)?;
             }
         }
     }

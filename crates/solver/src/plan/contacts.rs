@@ -86,15 +86,24 @@ impl<'a> Kinds<'a> {
         &self.of_pair[material * count..(material + 1) * count]
     }
 
-    /// Refuses a pair of materials without a contact law. `who` describes what needs it.
-    pub(super) fn need(&self, scene: &Scene, pair: [usize; 2], who: &str) -> Result<()> {
+    /// Refuses a pair of materials without a contact law. `who` describes what needs it, and is
+    /// asked only then: there may be thousands of bodies.
+    pub(super) fn need(
+        &self,
+        scene: &Scene,
+        pair: [usize; 2],
+        who: impl FnOnce() -> String,
+    ) -> Result<()> {
         if self.row(pair[0])[pair[1]] != NO_KIND {
             return Ok(());
         }
         let [a, b] = pair.map(|material| self.names[material]);
         Err(Diagnostic::input(
             format!("{}: [contacts]", scene.source),
-            format!("no contact law for the material pair {a}-{b}, which {who}"),
+            format!(
+                "no contact law for the material pair {a}-{b}, which {}",
+                who()
+            ),
             format!("add {a}-{b} = {{ restitution = 0.5, friction = 0.5 }} to [contacts]"),
         ))
     }
@@ -266,8 +275,6 @@ fn need_pairs(
 ) -> Result<()> {
     let material = |body: &PlacedBody| kinds.material(&scene.bodies[&body.name].material);
     let materials: Vec<usize> = bodies.iter().map(material).collect();
-    // Pairs of materials that have a law: there may be many bodies of few materials.
-    let mut known = vec![vec![false; kinds.names.len()]; kinds.names.len()];
     for (n, body) in bodies.iter().enumerate() {
         let first = body.first_particle;
         let cluster_of = |i: &u32| clusters.of_particle[*i as usize];
@@ -284,8 +291,8 @@ fn need_pairs(
             state.bonds.rules[rule].contact_beside
         });
         if beside {
-            let who = format!("contacts beside the bonds of the body '{}' need", body.name);
-            kinds.need(scene, [material(body); 2], &who)?;
+            let who = || format!("contacts beside the bonds of the body '{}' need", body.name);
+            kinds.need(scene, [materials[n]; 2], who)?;
         }
         if breaks || is_in_pieces {
             let why = if breaks {
@@ -293,14 +300,12 @@ fn need_pairs(
             } else {
                 "consists of"
             };
-            let who = format!("pieces that the body '{}' {why} need", body.name);
-            kinds.need(scene, [material(body); 2], &who)?;
+            let who = || format!("pieces that the body '{}' {why} need", body.name);
+            kinds.need(scene, [materials[n]; 2], who)?;
         }
         for (other, &of_other) in bodies.iter().zip(&materials).skip(n + 1) {
-            if !std::mem::replace(&mut known[materials[n]][of_other], true) {
-                let who = format!("the bodies '{}' and '{}' need", body.name, other.name);
-                kinds.need(scene, [materials[n], of_other], &who)?;
-            }
+            let who = || format!("the bodies '{}' and '{}' need", body.name, other.name);
+            kinds.need(scene, [materials[n], of_other], who)?;
         }
     }
     Ok(())

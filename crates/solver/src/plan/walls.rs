@@ -42,16 +42,16 @@ pub(super) fn place_walls(
         let place = format!("{}: [walls.{name}]", scene.source);
         for body in bodies {
             let pair = [&scene.bodies[&body.name].material, &entry.material];
-            let who = format!("the body '{}' and the wall '{name}' need", body.name);
-            kinds.need(scene, pair.map(|m| kinds.material(m)), &who)?;
+            let who = || format!("the body '{}' and the wall '{name}' need", body.name);
+            kinds.need(scene, pair.map(|m| kinds.material(m)), who)?;
         }
         for template in &state.clumps.templates {
             let pair = [
                 usize::from(template.material),
                 kinds.material(&entry.material),
             ];
-            let who = format!("the body '{}' and the wall '{name}' need", template.body);
-            kinds.need(scene, pair, &who)?;
+            let who = || format!("the body '{}' and the wall '{name}' need", template.body);
+            kinds.need(scene, pair, who)?;
         }
         let shape = shape(entry, name, notes).map_err(|error| error.within(&place))?;
         notes.extend(question_size(name, entry, &shape, sizes));

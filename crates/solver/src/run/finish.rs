@@ -70,7 +70,7 @@ impl End {
             &folder.distribution(),
             &fragments.rows(&state.model, sieves_m),
         )?;
-        if has_flows(state) {
+        if state.model.rules.have_flows() {
             let interval_s = output.and_then(|output| output.flow_s);
             let rows = flow_rows(state, interval_s.unwrap_or(end_s / 20.0), end_s);
             write_flows(&folder.flow(), &rows)?;
@@ -144,16 +144,10 @@ impl End {
     }
 }
 
-/// Whether bodies are fed or discharged.
-fn has_flows(state: &State) -> bool {
-    let rules = &state.model.rules;
-    !(rules.inlets.is_empty() && rules.outlets.is_empty())
-}
-
 /// The tables of a run with fragments.
 fn tables(folder: &ResultsFolder, state: &State, probes: &[Probe]) -> Vec<PathBuf> {
     let mut tables = vec![folder.fragment_tree(), folder.distribution()];
-    tables.extend(has_flows(state).then(|| folder.flow()));
+    tables.extend(state.model.rules.have_flows().then(|| folder.flow()));
     tables.extend(probes.iter().any(Probe::mixes).then(|| folder.mixing()));
     tables
 }

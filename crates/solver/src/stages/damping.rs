@@ -39,9 +39,9 @@
 //! With coefficients that change from step to step, as those of structural damping, the first proof
 //! fails, but not its result: with the synchronous velocities v_n, the other forces keep
 //! v M v + x K (1 - A/4) x, which has no negative part up to the undamped limit, and R only lowers
-//! v M v. So does damping in one stage, over all steps: with the velocities u = w + dt/2 M^-1 D_(n-1)
-//! that it goes by and P = dt u C u, a step takes at least 5/8 P_n - 1/8 P_(n-1) where G is at most
-//! 1/2.
+//! v M v. So does damping in one stage, over all steps: with the velocities u = w + dt/2 M^-1
+//! D_(n-1) that it goes by and P = dt u C u, a step takes at least 5/8 P_n - 1/8 P_(n-1) where G is
+//! at most 1/2.
 
 use rayon::prelude::*;
 
@@ -103,7 +103,10 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
         return 0;
     }
     if state.kick_s() * state.damping_rate_1_s <= WEAK {
-        predict_as_damped_before(state);
+        // Structural damping has predicted them already.
+        if state.scratch.damping_now.is_empty() {
+            predict_as_damped_before(state);
+        }
         let mut force = std::mem::take(&mut state.bond_resistance);
         damp(state, 0, &mut force);
         state.bond_resistance = force;

@@ -1,9 +1,9 @@
 //! Structural damping of bonds: the coefficients of the dashpots that resist as it does.
 //!
-//! They hold for one step: [`super::damping`] lets velocities decay with them. They are those of the
-//! motions at the time of the poses, in the middle of the decay, predicted with the damping of the
-//! last step: so that the error is of second order in the step. Since a decay only takes energy,
-//! whatever its coefficients, the largest stable step is that without damping.
+//! They hold for one step: [`super::damping`] lets velocities decay with them. They are those of
+//! the motions at the time of the poses, in the middle of the decay, predicted with the damping of
+//! the last step: so that the error is of second order in the step. Since a decay only takes
+//! energy, whatever its coefficients, the largest stable step is that without damping.
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -50,11 +50,7 @@ pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
         let resist = |(at, now): (usize, &mut [f64; 4])| {
             let structural = of_bond(bonds, at, part_of, particles, motions);
             let is_computed = structural.is_some();
-            let structural: [f64; 4] = structural.unwrap_or_default().into();
-            *now = bonds.damping.get(at).copied().unwrap_or_default();
-            for (now, structural) in now.iter_mut().zip(structural) {
-                *now += structural;
-            }
+            *now = bonds.damping_with(at, structural.unwrap_or_default());
             usize::from(is_computed)
         };
         numbered.map(resist).sum::<usize>()
@@ -64,8 +60,8 @@ pub(crate) fn compute_structural_damping(state: &mut State) -> usize {
     computed
 }
 
-/// Coefficients of structural damping of bond `at` with these motions. None: it has none, sleeps, or
-/// is within a rigid part.
+/// Coefficients of structural damping of bond `at` with these motions. None: it has none, sleeps,
+/// or is within a rigid part.
 fn of_bond(
     bonds: &Bonds,
     at: usize,

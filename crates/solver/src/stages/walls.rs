@@ -335,6 +335,15 @@ pub(crate) fn wall_contact(
     wall_contact_kinematics(&foot, particles.contact_sphere_at_rest(i), 0.0)
 }
 
+/// A recorded contact of a particle with a wall, both at rest.
+fn recorded(particles: &Particles, touch: &WallContact) -> ContactKinematics {
+    let overlap_m = touch.history.overlap_m();
+    let normal = Vector3::from(touch.normal);
+    let mut recorded = wall_contact(particles, touch.particle as usize, &normal, overlap_m);
+    recorded.overlap_m = overlap_m;
+    recorded
+}
+
 /// Part of the energy of recorded contacts of a wall that is adhesion, J: below 0.
 pub(crate) fn touches_adhesion_j<'a>(
     wall: &Wall,
@@ -346,12 +355,8 @@ pub(crate) fn touches_adhesion_j<'a>(
         return 0.0;
     }
     let adhesion_j = |touch: &WallContact| {
-        let i = touch.particle as usize;
-        let overlap_m = touch.history.overlap_m();
-        let kind = wall.kind(contacts.materials[i]);
-        let mut touch = wall_contact(particles, i, &touch.normal.into(), overlap_m);
-        touch.overlap_m = overlap_m;
-        kind.adhesion_j(&touch)
+        let kind = wall.kind(contacts.materials[touch.particle as usize]);
+        kind.adhesion_j(&recorded(particles, touch))
     };
     touches.map(adhesion_j).sum()
 }
@@ -364,9 +369,8 @@ pub(crate) fn touch_energy_j(
     touch: &WallContact,
 ) -> f64 {
     let kind = wall.kind(contacts.materials[touch.particle as usize]);
-    let (i, history) = (touch.particle as usize, &touch.history);
-    let mut touch = wall_contact(particles, i, &touch.normal.into(), history.overlap_m());
-    touch.overlap_m = history.overlap_m();
+    let history = &touch.history;
+    let touch = recorded(particles, touch);
     kind.with(|number| number, StoredEnergy { touch, history })
 }
 
@@ -384,10 +388,9 @@ pub(crate) fn touch_force_n(
     particles: &Particles,
     old: &WallContact,
 ) -> Vector3<f64> {
-    let (i, history) = (old.particle as usize, &old.history);
-    let mut touch = wall_contact(particles, i, &old.normal.into(), history.overlap_m());
-    touch.overlap_m = history.overlap_m();
-    let kind = wall.kind(contacts.materials[i]);
+    let history = &old.history;
+    let touch = recorded(particles, old);
+    let kind = wall.kind(contacts.materials[old.particle as usize]);
     kind.with(|number| number, StoredForce { touch, history })
 }
 

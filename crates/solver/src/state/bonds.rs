@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::physics::bond::criteria::COUNT;
 use crate::physics::bond::damage::{Damage, opening_ratios, screened_factor};
+use crate::physics::bond::damping::DampingCoefficients;
 use crate::physics::bond::damping_models::StructuralDamping;
 use crate::physics::bond::failure::Criteria;
 use crate::physics::bond::flat_joint::{
@@ -533,6 +534,13 @@ impl Bonds {
             bending,
             levers_m: self.levers_m(at),
         }
+    }
+
+    /// Coefficients of damping of bond `at`, mode by mode, with these of structural damping.
+    pub(crate) fn damping_with(&self, at: usize, structural: DampingCoefficients) -> [f64; 4] {
+        let viscous = self.damping.get(at).copied().unwrap_or_default();
+        let structural: [f64; 4] = structural.into();
+        std::array::from_fn(|mode| viscous[mode] + structural[mode])
     }
 
     /// Structural damping of bond `at` with this stiffness between ends of these masses. None: it

@@ -12,8 +12,9 @@ use super::particles::{Motion, Particles};
 pub(crate) const MORE: f64 = 1.05;
 
 /// An upper bound of the largest eigenvalue of the damping of bonds over mass, 1/s; 0 without any.
-/// Structural damping counts with the largest coefficients that it can have. For two ends joined by a dashpot, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so it is that
-/// of the particle that twice its own dashpots, to ends at rest, slow down most.
+/// Structural damping counts with the largest coefficients that it can have. For two ends joined by
+/// a dashpot, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so it is that of the particle that twice its own
+/// dashpots, to ends at rest, slow down most.
 pub(crate) fn damping_rate_1_s(bonds: &Bonds, particles: &Particles) -> f64 {
     if !bonds.rules.iter().any(BondRule::is_damped) {
         return 0.0;
@@ -37,13 +38,10 @@ pub(crate) fn damping_rate_1_s(bonds: &Bonds, particles: &Particles) -> f64 {
 
 /// Largest coefficients of damping of bond `at`, mode by mode.
 pub(crate) fn largest_coefficients(bonds: &Bonds, at: usize, particles: &Particles) -> [f64; 4] {
-    let viscous = bonds.damping.get(at).copied().unwrap_or_default();
     let undamaged = bonds.undamaged_stiffness(at);
-    let Some(structural) = bonds.structural_damping(at, undamaged, &particles.motions) else {
-        return viscous;
-    };
-    let structural: [f64; 4] = structural.largest_coefficients().into();
-    std::array::from_fn(|mode| viscous[mode] + structural[mode])
+    let structural = bonds.structural_damping(at, undamaged, &particles.motions);
+    let largest = structural.map(|structural| structural.largest_coefficients());
+    bonds.damping_with(at, largest.unwrap_or_default())
 }
 
 /// Resistance of a dashpot in this direction, with coefficients mode by mode, to the motion of an

@@ -252,12 +252,14 @@ impl Rules {
         self.regions[zone.region].contains(at_start)
     }
 
+    /// Whether bodies are fed or discharged.
+    pub(crate) fn have_flows(&self) -> bool {
+        !(self.inlets.is_empty() && self.outlets.is_empty())
+    }
+
     /// Whether there are no rules by which bodies come, go or are replaced.
     pub(crate) fn are_none(&self) -> bool {
-        self.inlets.is_empty()
-            && self.outlets.is_empty()
-            && self.triggers.iter().all(Option::is_none)
-            && !self.make_daughters()
+        !self.have_flows() && self.triggers.iter().all(Option::is_none) && !self.make_daughters()
     }
 
     /// Whether daughters can replace any particle.

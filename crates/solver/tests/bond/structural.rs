@@ -344,8 +344,8 @@ fn a_rebound_falls_with_gamma_at_the_undamped_step() {
     }
 }
 
-/// Under its weight the block hangs still, without trembling, and its uppermost layer carries all of
-/// it: the damping carries nothing.
+/// Under its weight the block hangs still, without trembling, and its uppermost layer carries all
+/// of it: the damping carries nothing.
 #[test]
 fn a_hanging_block_comes_to_rest_and_its_bonds_carry_its_weight() {
     let run = format!("gravity = [0, 0, {}]", -GRAVITY_M_S2);
@@ -377,9 +377,9 @@ supports.top = {{ group = \"top\", fixed = true }}",
     assert!(resisting_n < 1e-9 * hanging * GRAVITY_M_S2, "{resisting_n}");
 }
 
-/// Beside bonds that soften, break, yield or sum their forces, in a body that is bonded in part, and
-/// beside viscous damping, in an impact: what all of them take is booked, each in its column, and a
-/// run goes on from a checkpoint with the same bits.
+/// Beside bonds that soften, break, yield or sum their forces, in a body that is bonded in part,
+/// and beside viscous damping, in an impact: what all of them take is booked, each in its column,
+/// and a run goes on from a checkpoint with the same bits.
 #[test]
 fn what_it_takes_beside_other_models_is_booked_and_resumed() {
     let damping = "damping = { structural_damping = 0.4 }";

@@ -171,8 +171,8 @@ fn a_row_between_two_bars() {
 }
 
 /// At a gauge, d'Alembert's two waves: the incident pulse passes it before it arrives at the body,
-/// the reflected one after it has left, and the transmitted one as late in the other bar. The row is
-/// a spring k between two bars, F' = 2 k (v_I - F/Z), so that all three are known.
+/// the reflected one after it has left, and the transmitted one as late in the other bar. The row
+/// is a spring k between two bars, F' = 2 k (v_I - F/Z), so that all three are known.
 #[test]
 fn strain_gauges_record_the_waves_of_d_alembert() {
     let bench = Bench::new();

@@ -119,8 +119,8 @@ fn a_drum_does_the_work_that_its_bed_dissipates() {
         "{lost_w} {kept_w} {work_w}"
     );
     // The end plates lift a part of the bed: its slope is between that which its weight has without
-    // their share of the torque and with it, and so are the friction angles of slow and of fast flow
-    // of glass beads (Jop et al. 2006), at least in part.
+    // their share of the torque and with it, and so are the friction angles of slow and of fast
+    // flow of glass beads (Jop et al. 2006), at least in part.
     let of_ends = (5..=6).map(|wall| mean(&rows, wall)).sum::<f64>().abs() / torque_n_m;
     let [without, with] = [1.0 - of_ends, 1.0].map(|share| {
         let bed_x_m = share * mean(&rows, 12);
@@ -134,8 +134,8 @@ fn a_drum_does_the_work_that_its_bed_dissipates() {
 }
 
 /// Depth of the ball below the surface of a bed of spheres of 8 mm, m, and the height from which it
-/// would have fallen from rest to its lowest place, m. `held_m_s`: the speed with which it is let go
-/// 150 mm above the place where it has `speed_m_s`.
+/// would have fallen from rest to its lowest place, m. `held_m_s`: the speed with which it is let
+/// go 150 mm above the place where it has `speed_m_s`.
 fn impact(speed_m_s: f64, held_m_s: f64) -> [f64; 2] {
     let bench = Bench::new();
     let set = [

@@ -1,26 +1,26 @@
 //! Structural damping: a fraction of what a bond carries resists its relative motion, mode by mode.
 //!
-//! F_d = -gamma |F| v / sqrt(v^2 + v_0^2), M_d = -gamma |M| w / sqrt(w^2 + w_0^2), with the relative
-//! velocity v and spin w at the contact point: along the bond and across it, about it and across it.
+//! F_d = -gamma |F| v / sqrt(v^2 + v_0^2), M_d = -gamma |M| w / sqrt(w^2 + w_0^2), with the
+//! relative velocity v and spin w at the contact point: along the bond and across it, about it and
+//! across it.
 //!
 //! The rule that Chen et al. 2022, eqs. 11 and 12, apply to the motion of particles brakes free
 //! flight and carries a part of the weight. This one acts on the relative motion of two ends: what
 //! moves as a rigid body is not damped, and momentum and angular momentum are untouched. A mode
 //! loses the same fraction of its amplitude in every cycle, whatever its frequency (but see below):
-//! it moves
-//! outwards with the stiffness (1 + gamma) k and back with (1 - gamma) k, so that half a cycle
-//! multiplies its speed by sqrt((1 - gamma)/(1 + gamma)).
+//! it moves outwards with the stiffness (1 + gamma) k and back with (1 - gamma) k, so that half a
+//! cycle multiplies its speed by sqrt((1 - gamma)/(1 + gamma)).
 //!
-//! **Deviation.** Chen et al. have the sign of the motion, which is v_0 = 0. Such a force jumps where
-//! the motion reverses, carries a part of a steady load and leaves no order of convergence in the
-//! step. Here v_0 = epsilon omega |F|/k, with the frequency omega of the ends on the bond alone and
-//! its stiffness k: near the reversal the force grows with the motion, and what is under a steady
-//! load comes to rest. Modes slower than epsilon omega are damped less, in proportion to their
-//! frequency.
+//! **Deviation.** Chen et al. have the sign of the motion, which is v_0 = 0. Such a force jumps
+//! where the motion reverses, carries a part of a steady load and leaves no order of convergence in
+//! the step. Here v_0 = epsilon omega |F|/k, with the frequency omega of the ends on the bond alone
+//! and its stiffness k: near the reversal the force grows with the motion, and what is under a
+//! steady load comes to rest. Modes slower than epsilon omega are damped less, in proportion to
+//! their frequency.
 
-use super::super::damping::{DampingCoefficients, EndMotion, relative_motion};
-use super::super::stiffness::Stiffness;
 use crate::physics::bond::BondLoad;
+use crate::physics::bond::damping::{DampingCoefficients, EndMotion, relative_motion};
+use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::number::Vec3;
 use nalgebra::Vector3;
 
