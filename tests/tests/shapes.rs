@@ -264,9 +264,15 @@ fn flat_sided_shapes_have_their_exact_volume() {
 #[test]
 fn rings_around_a_hole_have_its_area() {
     let side = PI / 36.0;
-    let polygon = |radius: f64| 36.0 * radius * radius * side.sin();
-    for (name, outer, height) in [("tube.stl", 5.3, 20.0), ("orifice.stl", 20.0, 1.0)] {
-        let exact = height * (polygon(outer) - PI * 25.0);
+    // Between two heights, polygons of these radii.
+    let polygons = |low: f64, high: f64| 12.0 * side.sin() * (low * low + low * high + high * high);
+    let circles = |low: f64, high: f64| PI / 3.0 * (low * low + low * high + high * high);
+    for (name, outer, inner, height) in [
+        ("tube.stl", [5.3, 5.3], [5.0, 5.0], 20.0),
+        ("orifice.stl", [20.0, 20.0], [5.0, 5.0], 1.0),
+        ("funnel.stl", [5.5, 26.5], [5.0, 26.0], 21.0),
+    ] {
+        let exact = height * (polygons(outer[0], outer[1]) - circles(inner[0], inner[1]));
         let facets = facets(name);
         assert!(
             (volume(&facets) - exact).abs() < 1e-4 * area(&facets),

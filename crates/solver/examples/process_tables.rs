@@ -45,6 +45,8 @@ const WAYS: [(&str, &str); 4] = [
 const STATIC: &str = "bonds.cake.failure.rate_strengthening=false";
 /// Diameters of the spheres of cakes and lumps: those of the scene last.
 const DIAMETERS: [&str; 4] = ["15mm..18mm", "12mm..15mm", "10mm..12.5mm", "8mm..10mm"];
+/// Seeds of the runs with and without the DIF.
+const SEEDS: std::ops::RangeInclusive<u32> = 1..=10;
 /// Those of the comparison of ways, and of the run with 300 bodies.
 const OF_WAYS: &str = DIAMETERS[1];
 const OF_MINUTE: &str = DIAMETERS[0];
@@ -167,6 +169,7 @@ fn main() -> Result<(), Failed> {
     write_waiting(&runs)?;
     write_ways(&runs)?;
     write_sizes(&runs)?;
+    write_seeds(&runs)?;
     let minute = runs.run("minute", OF_MINUTE, &MINUTE.map(str::to_owned))?;
     write_minute(&minute)?;
     write_flows(&minute)?;
@@ -251,6 +254,59 @@ fn write_sizes(runs: &Runs) -> Result<(), Failed> {
         }
     }
     table.write(PAGE, "process_tables: sizes")
+}
+
+/// Mean over the seeds with and without the DIF, with the standard error, and the difference.
+fn write_seeds(runs: &Runs) -> Result<(), Failed> {
+    let mut found: Vec<Vec<Run>> = Vec::new();
+    for has_dif in [true, false] {
+        let mut of_seeds = Vec::new();
+        for seed in SEEDS {
+            let mut set = vec![format!("run.seed={seed}")];
+            if !has_dif {
+                set.push(STATIC.to_owned());
+            }
+            of_seeds.push(runs.run(&format!("seed-{seed}-{has_dif}"), OF_WAYS, &set)?);
+        }
+        found.push(of_seeds);
+    }
+    let mut table = Table::new(&[
+        "mean of ten runs",
+        "with the DIF",
+        "without",
+        "difference",
+        "standard errors",
+    ]);
+    for (what, pointer, scale) in [
+        ("bonds broken", "/broken_bonds", 1.0),
+        ("cake: d10, mm", "/sizes/bodies/cake/both/d10_m", 1e3),
+        ("cake: d50, mm", "/sizes/bodies/cake/both/d50_m", 1e3),
+        ("lump: d10, mm", "/sizes/bodies/lump/both/d10_m", 1e3),
+        ("lump: d50, mm", "/sizes/bodies/lump/both/d50_m", 1e3),
+    ] {
+        let [with, without] = [0, 1].map(|way| {
+            let values = found[way].iter().map(|run| scale * run.number(pointer));
+            mean_and_error(&values.collect::<Vec<_>>())
+        });
+        let (difference, error) = (with.0 - without.0, with.1.hypot(without.1));
+        table.row(&[
+            what.to_owned(),
+            format!("{:.1} +- {:.1}", with.0, with.1),
+            format!("{:.1} +- {:.1}", without.0, without.1),
+            format!("{difference:+.1}"),
+            format!("{:+.1}", difference / error),
+        ]);
+    }
+    table.write(PAGE, "process_tables: seeds")
+}
+
+/// The mean of these values, and its standard error.
+fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares = values.iter().map(|value| (value - mean).powi(2));
+    let variance = squares.sum::<f64>() / (count - 1.0);
+    (mean, (variance / count).sqrt())
 }
 
 /// Mass flows of its steady part.

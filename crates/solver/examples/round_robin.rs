@@ -7,8 +7,9 @@
 //! cargo run --release -p dem-run --example round_robin -- penetration
 //! ```
 //!
-//! Builds the program and runs the scenes of the same names with several settings, some ten minutes
-//! each. Results are in `target/round-robin`; `--resume` at the end keeps the complete runs.
+//! Builds the program and runs the scenes of the same names with several settings: some minutes for
+//! the drum, one to two hours each for the other two, whose last runs have 100,000 spheres. Results
+//! are in `target/round-robin`; `--resume` at the end keeps the complete runs.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -68,49 +69,103 @@ fn beverloo_kg_s(bulk_kg_m3: f64, hole_m: f64, diameter_m: f64) -> f64 {
     0.58 * bulk_kg_m3 * GRAVITY_M_S2.sqrt() * (hole_m - 1.4 * diameter_m).powf(2.5)
 }
 
-/// Solid fraction of a bed of the silo, and the diameter of its beads, m.
+/// Solid fraction of the bed of a silo.
 const SOLID: f64 = 0.6;
-const BEAD_M: f64 = 4e-3;
 
-/// Beads per second of the paper's silo, whose floor is a cone of 45 degrees: the hole, m, the mean
-/// of eight programs for the larger one, and MUSEN and LIGGGHTS for the smaller one.
-const OTHERS: [(f64, f64); 2] = [(0.060, 23_200.0), (0.040, 7_700.0)];
+/// A run of a silo.
+struct Silo {
+    scene: &'static str,
+    floor: &'static str,
+    material: &'static str,
+    density_kg_m3: f64,
+    hole_m: f64,
+    bead_m: f64,
+    set: Vec<String>,
+    /// Times between which the flow is measured, s.
+    flows_s: [f64; 2],
+    /// Spheres per second of others.
+    others: &'static str,
+}
 
-fn silo(dem_run: &Path) -> Result<(), Failed> {
-    let silos = [
-        ("M1", "m1", 2500.0, 0.018),
-        ("M1", "m1", 2500.0, 0.022),
-        ("M2", "m2", 2000.0, 0.022),
-    ];
-    let mut table = Table::new(&["silo", "hole", "beads per second", "Beverloo", "off"]);
-    let mut row = |name: &str, hole_m: f64, density_kg_m3: f64, per_s: f64| {
-        let bead_kg = density_kg_m3 * PI / 6.0 * BEAD_M.powi(3);
-        let law_1_s = beverloo_kg_s(SOLID * density_kg_m3, hole_m, BEAD_M) / bead_kg;
-        table.row(&[
-            name.to_owned(),
-            format!("{:.0} mm", 1e3 * hole_m),
-            format!("{per_s:.0}"),
-            format!("{law_1_s:.0}"),
-            format!("{:+.0} %", 100.0 * (per_s / law_1_s - 1.0)),
-        ]);
-    };
-    for (at, (name, material, density_kg_m3, hole_m)) in silos.into_iter().enumerate() {
-        let set = [
-            format!("bodies.bead.material={material}"),
+/// `silo-round-robin.toml` with fewer spheres.
+fn flat(material: &'static str, density_kg_m3: f64, hole_m: f64) -> Silo {
+    Silo {
+        scene: "silo-round-robin",
+        floor: "flat, 60 mm wide",
+        material,
+        density_kg_m3,
+        hole_m,
+        bead_m: 4e-3,
+        set: vec![
+            format!("bodies.bead.material={}", material.to_lowercase()),
             format!("walls.floor.scale={}", 100.0 * hole_m),
             "inlets.fill.count=1200".to_owned(),
             "walls.slide.table=[[\"0.3 s\",0],[\"0.35 s\",1]]".to_owned(),
             "run.end_time=\"0.75 s\"".to_owned(),
-        ];
-        let (_, folder) = run(dem_run, "silo-round-robin", &at.to_string(), &set)?;
-        let bead_kg = density_kg_m3 * PI / 6.0 * BEAD_M.powi(3);
-        let flow_kg_s = -slope(&folder, "mass_inside_kg", [0.45, 0.75])?;
-        row(name, hole_m, density_kg_m3, flow_kg_s / bead_kg);
-        if at + 1 == 3 {
-            for (hole_m, per_s) in OTHERS {
-                row("M1, cone, by others", hole_m, 2500.0, per_s);
-            }
-        }
+        ],
+        flows_s: [0.45, 0.75],
+        others: "",
+    }
+}
+
+/// `silo-cone.toml`: the silo of the paper. Its spheres have 4 mm; 100,000 of them.
+fn cone(hole_m: f64, bead_m: f64, others: &'static str) -> Silo {
+    Silo {
+        scene: "silo-cone",
+        floor: "cone, 200 mm wide",
+        material: "M1",
+        density_kg_m3: 2500.0,
+        hole_m,
+        bead_m,
+        set: vec![
+            format!("bodies.bead.particles=[[0,0,0,{}]]", 0.5 * bead_m),
+            format!("inlets.fill.count={:.0}", 1e5 * (4e-3 / bead_m).powi(3)),
+            format!("walls.cone.scale={}", 100.0 * hole_m),
+            "output.series=\"10 ms\"".to_owned(),
+        ],
+        flows_s: [1.0, 1.4],
+        others,
+    }
+}
+
+fn silo(dem_run: &Path) -> Result<(), Failed> {
+    let silos = [
+        flat("M1", 2500.0, 0.018),
+        flat("M1", 2500.0, 0.022),
+        flat("M2", 2000.0, 0.022),
+        cone(0.06, 8e-3, ""),
+        cone(0.06, 6e-3, ""),
+        cone(
+            0.06,
+            4e-3,
+            "23,200 (mean of eight programs, which agree within 5 %)",
+        ),
+        cone(0.04, 4e-3, "7,700 (MUSEN and LIGGGHTS)"),
+    ];
+    let mut table = Table::new(&[
+        "floor",
+        "spheres",
+        "hole",
+        "spheres per second",
+        "Beverloo",
+        "off",
+        "others",
+    ]);
+    for (at, silo) in silos.iter().enumerate() {
+        let (_, folder) = run(dem_run, silo.scene, &at.to_string(), &silo.set)?;
+        let bead_kg = silo.density_kg_m3 * PI / 6.0 * silo.bead_m.powi(3);
+        let per_s = -slope(&folder, "mass_inside_kg", silo.flows_s)? / bead_kg;
+        let bulk_kg_m3 = SOLID * silo.density_kg_m3;
+        let law_1_s = beverloo_kg_s(bulk_kg_m3, silo.hole_m, silo.bead_m) / bead_kg;
+        table.row(&[
+            silo.floor.to_owned(),
+            format!("{} of {:.0} mm", silo.material, 1e3 * silo.bead_m),
+            format!("{:.0} mm", 1e3 * silo.hole_m),
+            format!("{per_s:.0}"),
+            format!("{law_1_s:.0}"),
+            format!("{:+.0} %", 100.0 * (per_s / law_1_s - 1.0)),
+            silo.others.to_owned(),
+        ]);
     }
     table.write(PAGE, "round_robin silo")
 }
@@ -286,6 +341,11 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         ("6 mm", 5.0, grains(6.0, 3_704)),
         ("4 mm", 5.0, grains(4.0, 12_500)),
         ("3 mm", 5.0, grains(3.0, 29_630)),
+        (
+            "2 mm",
+            5.0,
+            and(grains(2.0, 100_000), "output.series=\"2 ms\""),
+        ),
     ];
     let mut table = Table::new(&[
         "spheres",

@@ -71,8 +71,11 @@ pub(super) fn rules(
     let starts = templates.iter().map(|template| {
         let entry = &scene.bodies[&template.body];
         let turned = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
+        let is_replaced = scene.replacement.contains_key(&template.body)
+            || scene.parent_of(&template.body).is_some();
         Start {
             bonded: entry.start_as == StartAs::Bonded && !template.bonds.is_empty(),
+            sphere: template.spheres.len() == 1 && template.scale == 1.0 && !is_replaced,
             turned: numbers(&turned),
         }
     });

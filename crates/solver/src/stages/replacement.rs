@@ -17,10 +17,22 @@ pub(crate) const REPLACEMENT: Stage = Stage {
     within: None,
     need: |state, _| {
         let rules = &state.model.rules;
-        let starts_bonded = rules.starts.iter().any(|start| start.bonded);
+        let replaces = rules.triggers.iter().any(Option::is_some);
+        let starts = rules
+            .starts
+            .iter()
+            .any(|start| start.bonded || start.sphere);
         Need::of(
-            starts_bonded || rules.triggers.iter().any(Option::is_some),
-            || "clumps become bonded clusters".to_owned(),
+            starts || replaces,
+            || {
+                let of_inlets = "what inlets feed starts as bonded clusters or single spheres";
+                let text = if replaces {
+                    "clumps become bonded clusters"
+                } else {
+                    of_inlets
+                };
+                text.to_owned()
+            },
             "no clump can become a cluster",
         )
     },
@@ -72,7 +84,8 @@ fn triggered(state: &State, squeezes: &[Squeeze]) -> impl Iterator<Item = (usize
     let rules = &state.model.rules;
     (state.clumps.all.iter().enumerate()).filter_map(move |(n, clump)| {
         let template = clump.template as usize;
-        if rules.starts.get(template).is_some_and(|start| start.bonded) {
+        let start = rules.starts.get(template);
+        if start.is_some_and(|start| start.bonded || start.sphere) {
             return Some((n, STARTS_BONDED));
         }
         let squeeze = squeezes.get(n);
@@ -147,16 +160,14 @@ fn swap(state: &mut State, to_clusters: Vec<usize>, causes: &[&'static str]) {
         ..TopologyChange::default()
     };
     let renumbered = apply_topology_change(state, changes);
-    for created in &renumbered.created {
-        let base = state.base_of(created.clump.template);
-        let of_scene = (base, created.clump.instance);
-        state
-            .population
-            .base_of_cluster
-            .insert(created.clump.cluster, of_scene);
-    }
     for (created, cause) in renumbered.created.iter().zip(causes) {
         let (clump, template) = (&created.clump, &created.template);
+        if template.bonds.is_empty() && *cause == STARTS_BONDED {
+            // A single sphere: nothing restores it.
+            continue;
+        }
+        let of_scene = (state.base_of(clump.template), clump.instance);
+        (state.population.base_of_cluster).insert(clump.cluster, of_scene);
         let p = &state.particles;
         let (mut mass, mut momentum, mut kinetic) = (0.0, Vector3::zeros(), 0.0);
         for i in created.first_particle..created.first_particle + template.spheres.len() {

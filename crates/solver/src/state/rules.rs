@@ -209,7 +209,7 @@ pub struct Rules {
     pub compliances: Vec<f64>,
     /// The same for each wall; a wall of unknown compliance is rigid.
     pub wall_compliances: Vec<f64>,
-    /// For each template, whether its bodies start as bonded clusters, and their orientation.
+    /// For each template, how its bodies start, and their orientation.
     pub starts: Vec<Start>,
     /// Inlets, in the order of their names.
     pub inlets: Vec<Inlet>,
@@ -226,6 +226,9 @@ pub struct Rules {
 pub struct Start {
     /// As bonded clusters; otherwise as clumps.
     pub bonded: bool,
+    /// As particles of their own: single spheres that nothing replaces. A clump of one sphere moves
+    /// in the same way, but takes twice as long.
+    pub sphere: bool,
     /// Orientation of the body in the scene: unit quaternion x, y, z, w, from the axes of its file
     /// to space.
     pub turned: [f64; 4],

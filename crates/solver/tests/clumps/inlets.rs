@@ -29,6 +29,11 @@ fn run_to(state: &mut State, end_s: f64) -> Vec<PopulationEvent> {
     all
 }
 
+/// Bodies in the scene: single spheres are particles, all others clumps.
+fn bodies_in(state: &State) -> usize {
+    state.particles.free + state.clumps.all.len()
+}
+
 #[test]
 fn a_rate_by_number_is_kept_between_start_and_end() {
     let inlet = "bodies = [\"ball\"]\nrate = 500\nstart = 0.01\nend = 0.05\n";
@@ -52,7 +57,7 @@ fn a_rate_by_number_is_kept_between_start_and_end() {
         );
     }
     assert_eq!(state.population.inlets[0].bodies, 20);
-    assert_eq!(state.clumps.all.len(), 20);
+    assert_eq!(bodies_in(&state), 20);
     assert_eq!(state.population.inlets[0].delayed, 0);
     // No more than `count`.
     let mut state = fed(&format!("{BALL}{WIDE}"), &format!("{inlet}count = 7\n"));
@@ -76,10 +81,12 @@ fn a_rate_by_mass_is_kept_to_a_body() {
         happens(&mut state);
         let come_kg = state.population.inlets[0].mass_kg;
         assert!(come_kg > 0.05 * now_s && come_kg <= 0.05 * now_s + heaviest * (1.0 + 1e-12));
-        let there: f64 = state.clumps.mass_kg();
-        assert!((there / come_kg - 1.0).abs() < 1e-12);
+        let balls = &state.particles.motions[..state.particles.free];
+        let balls_kg: f64 = balls.iter().map(|motion| 1.0 / motion.inverse_mass).sum();
+        let there_kg = state.clumps.mass_kg() + balls_kg;
+        assert!((there_kg / come_kg - 1.0).abs() < 1e-12);
     }
-    assert!(state.clumps.all.len() > 100, "{}", state.clumps.all.len());
+    assert!(bodies_in(&state) > 100, "{}", bodies_in(&state));
 }
 
 #[test]
@@ -94,7 +101,7 @@ fn a_mix_has_its_shares() {
     let bodies = format!("{BALL}{pair}{WIDE}");
     let mut state = fed(&bodies, "bodies = { ball = 6, pair = 2 }\nrate = 10000\n");
     run_to(&mut state, 0.2);
-    let count = state.clumps.all.len() as f64;
+    let count = bodies_in(&state) as f64;
     assert!((count - 2000.0).abs() < 1.5);
     let is_pair = |clump: &&Clump| state.clumps.template(clump).body == "pair";
     let pairs = state.clumps.all.iter().filter(is_pair).count() as f64;
@@ -208,10 +215,7 @@ fn who_finds_no_place_waits_and_is_counted_once() {
         assert!(none_overlap(&state));
     }
     let come = &state.population.inlets[0];
-    assert_eq!(
-        (come.bodies, come.delayed, state.clumps.all.len()),
-        (10, 9, 10)
-    );
+    assert_eq!((come.bodies, come.delayed, bodies_in(&state)), (10, 9, 10));
 }
 
 #[test]
@@ -315,5 +319,39 @@ fn who_is_due_and_has_not_come_is_counted() {
         let come = &plan.state.population.inlets[0];
         assert_eq!(come.bodies, 1, "{rest}");
         assert_eq!(inlet.owed(come, time_s), waiting, "{rest} at {time_s} s");
+    }
+}
+
+/// A single sphere moves as a clump of one sphere does, which it is only where something replaces
+/// it.
+#[test]
+fn a_fed_sphere_is_a_particle_unless_something_replaces_it() {
+    let run = |more: &str| {
+        let gate =
+            "[regions.gate]\nbox = { min = [-2e-3, -2e-3, 2e-3], max = [2e-3, 2e-3, 5e-3] }\n";
+        let floor = "run.gravity = [1, 0, -9.81]\nwalls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"stuff\" }\n";
+        let inlet = "bodies = [\"ball\"]\nrate = 1e6\ncount = 1\nvelocity = [0.1, 0.2, -0.3]\nangular_velocity = [50, 0, 20]\n";
+        let text = format!(
+            "{HEAD}{floor}{MEETS}{BALL}{gate}{more}[inlets.feed]\nregion = \"gate\"\n{inlet}"
+        );
+        let mut state = planned(&text).state;
+        let mut events = Vec::new();
+        let mut poses = Vec::new();
+        while state.time_s < 0.05 {
+            events.extend(happens(&mut state));
+            poses.push(state.particles.poses[0].place());
+        }
+        (state, events, poses)
+    };
+    let (particle, events, as_particle) = run("");
+    let (clump, _, as_clump) = run("[replacement.ball]\nwhen = { time = 1000 }\n");
+    assert!(particle.clumps.all.is_empty());
+    assert_eq!(clump.clumps.all.len(), 1);
+    assert_eq!(events.len(), 1, "{events:?}");
+    // It has bounced and slides or rolls.
+    assert!(as_particle.iter().any(|place| place.z < 1e-3));
+    assert_eq!(as_particle.len(), as_clump.len());
+    for (one, other) in as_particle.iter().zip(&as_clump) {
+        assert!((one - other).norm() < 1e-9, "{one} {other}");
     }
 }

@@ -144,7 +144,7 @@ fn every_good_scene_of_the_corpus_runs() {
 /// End time of each scene for a test without false alarms, and the shape and diameters of its body
 /// if it needs one. Laboratory tests, which have no end time of their own, load within one period
 /// of the body.
-const SHORT: [[&str; 4]; 39] = [
+const SHORT: [[&str; 4]; 40] = [
     ["brazilian-disc", "", "disc", "4mm..6mm"],
     ["brazilian-disc-rock", "", "disc", "4mm..6mm"],
     ["cantilever", "4 s", "", ""],
@@ -177,6 +177,7 @@ const SHORT: [[&str; 4]; 39] = [
     ["shatter", "5 ms", "", ""],
     ["shatter-box", "20 ms", "", ""],
     ["silo", "20 ms", "", ""],
+    ["silo-cone", "20 ms", "", ""],
     ["silo-round-robin", "20 ms", "", ""],
     ["spinning-bar", "50 ms", "", ""],
     ["stalk-cut", "0.5 ms", "", ""],

@@ -23,6 +23,7 @@ pub(crate) fn all() -> Vec<(&'static str, Mesh)> {
         ("disc", round::disc()),
         ("dog-bone", round::dog_bone()),
         ("filter-cake", cake::filter_cake()),
+        ("funnel", round::funnel()),
         ("hollow-pair", hollow_pair()),
         ("infinity-knot", round::infinity_knot()),
         ("jaw", jaw::jaw()),

@@ -58,28 +58,34 @@ pub(crate) fn c_shape() -> Mesh {
 
 /// A tube, open at both ends: 10 mm wide inside, 20 mm long, with a wall of 0.3 mm.
 pub(crate) fn tube() -> Mesh {
-    flat_ring(5.3, [0.0, 20.0])
+    ring([(0.0, 5.0, 5.3), (20.0, 5.0, 5.3)])
 }
 
 /// A round plate of 40 mm, 1 mm thick, with its top on z = 0 and a hole of 10 mm.
 pub(crate) fn orifice() -> Mesh {
-    flat_ring(20.0, [-1.0, 0.0])
+    ring([(-1.0, 5.0, 20.0), (0.0, 5.0, 20.0)])
 }
 
-/// A ring between two heights around a hole of 10 mm: polygons of 72 corners with the area of the
-/// hole's circle.
-fn flat_ring(outer_mm: f64, [low, high]: [f64; 2]) -> Mesh {
+/// A cone of 45 degrees that widens from a hole of 10 mm on z = 0 to 52 mm on z = 21 mm. Its wall
+/// is 0.5 mm wide, seen from above.
+pub(crate) fn funnel() -> Mesh {
+    ring([(0.0, 5.0, 5.5), (21.0, 26.0, 26.5)])
+}
+
+/// A ring between two heights, each with the radii inside and outside, in mm: polygons of 72
+/// corners, those inside with the area of their circle.
+fn ring([low, high]: [(f64, f64, f64); 2]) -> Mesh {
     const SIDES: u32 = 72;
     let side = TAU / f64::from(SIDES);
-    let inner_mm = 5.0 * (side / side.sin()).sqrt();
+    let wider = (side / side.sin()).sqrt();
     let mut mesh = Mesh::default();
     let section = |i: u32| {
         let (sin, cos) = (side * f64::from(i)).sin_cos();
         [
-            (inner_mm, low),
-            (inner_mm, high),
-            (outer_mm, high),
-            (outer_mm, low),
+            (low.1 * wider, low.0),
+            (high.1 * wider, high.0),
+            (high.2, high.0),
+            (low.2, low.0),
         ]
         .map(|(distance, z)| mesh.vertex([distance * cos, distance * sin, z]))
         .to_vec()

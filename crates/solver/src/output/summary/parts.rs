@@ -33,7 +33,7 @@ pub struct OutletSummary {
 pub struct PopulationSummary {
     /// Rigid clumps of two or more spheres at the end.
     pub clumps: usize,
-    /// Bodies of one sphere at the end, from inlets and clumps; fragments are not counted.
+    /// Bodies of one sphere at the end; fragments are not counted.
     pub single_sphere_bodies: usize,
     /// Clumps that became bonded clusters.
     pub replaced: u32,
@@ -99,7 +99,7 @@ impl PopulationSummary {
             .sum();
         Some(Self {
             clumps: several,
-            single_sphere_bodies: clumps.all.len() - several,
+            single_sphere_bodies: clumps.all.len() - several + single_spheres(state),
             replaced: population.replaced,
             replaced_by_daughters: population.by_daughters.iter().sum(),
             restored: population.restored,
@@ -125,6 +125,19 @@ impl PopulationSummary {
             inner_sphere_fraction: over(inner, clumps.templates.len() as f64),
         })
     }
+}
+
+/// Bodies of one sphere that are no clumps and no fragments.
+fn single_spheres(state: &State) -> usize {
+    let Some(clusters) = &state.clusters else {
+        return 0;
+    };
+    let is_one = |id: &u32| {
+        let is_particle =
+            matches!(clusters.members(*id), [i] if (*i as usize) < state.particles.free);
+        is_particle && clusters.history[*id as usize].parent.is_none()
+    };
+    clusters.living().filter(is_one).count()
 }
 
 /// Sleeping bodies.
