@@ -3,13 +3,14 @@
 use std::fmt::Write;
 
 use allocation_counter::measure;
+use dem_run::state::State;
 use dem_run::step;
 
 use super::verification::page::on_one_thread;
 use super::verification::scene::started;
 
 const HEAD: &str = "version = 1
-run = { end_time = 1, gravity = [0, 0, -9.81] }
+run = { end_time = 1, initial_overlap = \"keep\", gravity = [0, 0, -9.81] }
 materials.stone = { density = 2500, young_modulus = 1e8, poisson_ratio = 0.3 }
 contacts.stone-stone = { restitution = 0.5, friction = 0.4 }
 walls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"stone\" }
@@ -40,8 +41,35 @@ bodies.block = {{ particles = [{spheres}], bond_list = [{pairs}], material = \"s
     )
 }
 
-/// Steps of a scene, after as many that are not counted: the allocations in each.
-fn allocations(text: &str) -> Vec<u64> {
+/// Loose wet spheres that press on each other and on the floor.
+fn wet() -> String {
+    let mut spheres = String::new();
+    for n in 0..27 {
+        let [x, y, z] = [n % 3, n / 3 % 3, n / 9].map(|k| 1.9999e-3 * f64::from(k));
+        write!(spheres, "[{x:e}, {y:e}, {:e}, 1e-3], ", z + 0.9999e-3).unwrap();
+    }
+    let bridge = "liquid_bridge = { surface_tension = 0.07, volume = 1e-12 }";
+    HEAD.replace("friction = 0.4", &format!("friction = 0.4, {bridge}"))
+        + &format!("bodies.heap = {{ particles = [{spheres}], material = \"stone\" }}\n")
+}
+
+/// A block on the floor and, far from it, one of a softer material, which takes longer steps.
+fn hard_and_soft(bonds: &str) -> String {
+    let soft = block(0.5, bonds, ", position = [0.1, 0, -1e-9]");
+    let (_, soft) = soft.split_once("bonds.glue").unwrap();
+    let soft = soft.replace("1e8", "1e6").replace("glue", "gum");
+    block(0.5 - 1e-9, bonds, "").replace("gravity", "steps_by_body = true, gravity")
+        + "materials.rubber = { density = 2500, young_modulus = 1e6, poisson_ratio = 0.3 }
+contacts.rubber-stone = { restitution = 0.5, friction = 0.4 }
+contacts.rubber-rubber = { restitution = 0.5, friction = 0.4 }
+bonds.gum"
+        + &soft
+            .replace("block", "soft")
+            .replace("\"stone\"", "\"rubber\"")
+}
+
+/// Steps of a scene, after as many that are not counted: the allocations in each, and the state.
+fn allocations(text: &str) -> (Vec<u64>, State) {
     const STEPS: usize = 200;
     on_one_thread(|| {
         let mut state = started(text);
@@ -49,7 +77,8 @@ fn allocations(text: &str) -> Vec<u64> {
             step(&mut state);
         }
         let count = |_| measure(|| _ = step(&mut state)).count_total;
-        (0..STEPS).map(count).collect()
+        let found = (0..STEPS).map(count).collect();
+        (found, state)
     })
 }
 
@@ -96,14 +125,32 @@ fn a_step_takes_no_memory() {
             block(1.0, "", ", bonded_within = { region = \"zone\" }")
                 + "regions.zone.box = { min = [-1, -1, -1], max = [1, 1, 4e-3] }\n",
         ),
+        ("liquid bridges", wet()),
+        (
+            "squeeze",
+            block(0.5 - 1e-6, strengths, ", start_as = \"clump\"")
+                + "replacement.block.when = { contact_force = 1e9, principal_stress = 1e12 }\n",
+        ),
+        ("steps by body", hard_and_soft(strengths)),
+        (
+            "steps by body, damped",
+            hard_and_soft(", damping = { damping_ratio = 0.1 }"),
+        ),
     ] {
-        let found = allocations(&text);
-        // Where the bonded zone of a body is now, is found once in fifty steps.
-        let looks = if name == "part bonded" {
-            found.len() / 50
-        } else {
-            0
+        let (found, state) = allocations(&text);
+        let looks = match name {
+            // Where the bonded zone of a body is now, is found once in fifty steps.
+            "part bonded" => found.len() / 50,
+            // Which bodies may take longer steps is found once in nine common steps.
+            _ if name.starts_with("steps by body") => found.len().div_ceil(9),
+            _ => 0,
         };
+        let bridges = state.bridges.as_ref();
+        let is_wet = bridges.is_some_and(|all| !all.pairs.is_empty() && !all.walls.is_empty());
+        assert_eq!(is_wet, name == "liquid bridges");
+        let levels = state.levels.as_ref();
+        let takes_longer = levels.is_some_and(|levels| levels.of_particle.iter().any(|&of| of > 0));
+        assert_eq!(takes_longer, name.starts_with("steps by body"));
         let taking = found.iter().filter(|&&count| count > 0).count();
         assert!(taking <= looks, "{name}: {found:?}");
     }

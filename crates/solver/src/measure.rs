@@ -332,9 +332,9 @@ impl Probe {
             Quantity::BrokenBonds => self.over_bonds(state, 0.0, |sum, at, _| {
                 sum + f64::from(u8::from(state.bonds.is_broken(at)))
             }),
-            Quantity::LargestUtilisation => self.over_bonds(state, 0.0, |largest: f64, at, _| {
-                largest.max(bond_utilisation(state, at))
-            }),
+            Quantity::LargestUtilisation => {
+                bonds::largest_utilisation(state, &members.marked(state))
+            }
             Quantity::LargestStrainRate
             | Quantity::LargestDynamicIncreaseFactor
             | Quantity::LargestDynamicUtilisation

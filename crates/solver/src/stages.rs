@@ -39,6 +39,7 @@ pub(crate) mod structural;
 pub mod supports;
 pub mod totals;
 pub(crate) mod touching;
+pub(crate) mod utilisation;
 pub mod walls;
 pub(crate) mod watching;
 pub mod zones;

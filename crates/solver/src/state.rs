@@ -25,6 +25,7 @@ pub mod rigid_parts;
 pub(crate) mod rules;
 pub(crate) mod scratch;
 pub mod sleep;
+pub(crate) mod squeeze;
 pub(crate) mod stored_bonds;
 pub mod supports;
 pub mod walls;

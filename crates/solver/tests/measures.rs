@@ -4,6 +4,7 @@ mod bulk;
 mod contacts;
 mod heaps;
 mod refused;
+mod utilisation;
 mod whole;
 
 use std::collections::BTreeMap;

@@ -1,9 +1,16 @@
 //! Loads of single bonds, and how near they are to failure.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::damage::utilisation_of_damaged;
 use crate::physics::bond::failure::{Factors, stresses, utilisation};
+use crate::stages::bonds::NEARLY;
+use crate::stages::chunks::CHUNK;
 use crate::stages::totals::motions_before_kick;
+use crate::stages::utilisation::squared_utilisations;
 use crate::state::State;
 use crate::state::particles::Motion;
 
@@ -70,7 +77,48 @@ pub fn bond_utilisation(state: &State, at: usize) -> f64 {
     utilisation_under(state, at, &load(state, at))
 }
 
-/// The same for a given load.
+/// Largest [utilisation](bond_utilisation) of the bonds with an end among these particles. Those
+/// below 1e-150 count as 0.
+pub(super) fn largest_utilisation(state: &State, is_in: &[bool]) -> f64 {
+    let all = state.bonds.len();
+    let chunks = (0..all.div_ceil(CHUNK)).into_par_iter();
+    let of_chunk = |chunk: usize| {
+        let range = chunk * CHUNK..all.min((chunk + 1) * CHUNK);
+        let runs = state.bonds.runs(range);
+        runs.map(|(rule, run)| largest_of_rule(state, is_in, rule, run))
+            .fold(0.0, f64::max)
+    };
+    chunks.map(of_chunk).reduce(|| 0.0, f64::max)
+}
+
+/// The same of at most [`CHUNK`] bonds of a rule: their squares tell which of them are to be
+/// evaluated.
+fn largest_of_rule(state: &State, is_in: &[bool], rule: usize, run: Range<usize>) -> f64 {
+    let bonds = &state.bonds;
+    let is_counted = |at: usize| bonds.ends[at].iter().any(|&end| is_in[end as usize]);
+    let mut squares = [f64::INFINITY; CHUNK];
+    let squares = &mut squares[..run.len()];
+    if !bonds.rules[rule].is_single() {
+        squared_utilisations(bonds, &state.particles.poses, rule, run.clone(), squares);
+    }
+    let mut most = 0.0_f64;
+    for (at, square) in run.clone().zip(&mut *squares) {
+        if !is_counted(at) {
+            *square = 0.0;
+        } else if bonds.was_damaged(at) {
+            *square = f64::INFINITY;
+        } else {
+            *square /= bonds.strength_factor(at).powi(2);
+            most = most.max(*square);
+        }
+    }
+    run.zip(squares)
+        .filter(|(_, square)| **square > 0.0 && **square >= NEARLY * most)
+        .map(|(at, _)| bond_utilisation(state, at))
+        .fold(0.0, f64::max)
+}
+
+/// Utilisation of a bond under a given load.
 pub(crate) fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
     utilisation_at(state, at, load, 1.0)
 }

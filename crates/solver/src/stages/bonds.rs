@@ -8,7 +8,7 @@ use super::chunks::CHUNK;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::bond::failure::Screen;
 use crate::physics::bond::stiffness::Stiffness;
-use crate::physics::bond::total::bond_response;
+use crate::physics::bond::total::{BondResponse, bond_response};
 use crate::physics::number::{Rotation, Vec3};
 use crate::stages::blocks::{
     BondGroup, blocks_of, coming_second_ends, fetch_soon, fetch_wrench_soon, for_each_partition,
@@ -110,7 +110,7 @@ pub(crate) fn compute_bonds(state: &mut State) -> usize {
 
 /// Square of the utilisation from which a bond is checked individually: less than 1, to allow for
 /// rounding.
-const NEARLY: f64 = 1.0 - 1e-9;
+pub(crate) const NEARLY: f64 = 1.0 - 1e-9;
 
 /// Slightly more than 1, to allow for rounding of the differences that identify weak bonds.
 const ROUNDED_UP: f64 = 1.0 + 1e-14;
@@ -261,11 +261,7 @@ impl PartitionWork<'_> {
         Batch { rule, which }: &Batch,
     ) {
         let bonds = self.bonds;
-        let kind = Kind {
-            torsion_per_bending: bonds.torsion_per_bending[*rule],
-            bending_per_normal: bonds.bending_per_normal[*rule],
-            screen: bonds.rules[*rule].criteria.as_ref().map(Screen::new),
-        };
+        let kind = Kind::of(bonds, *rule);
         let computed = &mut self.partition.computed;
         computed.total += which.count();
         computed.compared += if kind.screen.is_some() {
@@ -320,9 +316,7 @@ impl PartitionWork<'_> {
             particles, failing, ..
         } = &mut *self.partition;
         for first in (0..BLOCK).step_by(T::COUNT) {
-            let apart = separations(proof, &four.ends[first..], self.poses);
-            let found =
-                kind.forces::<T, FRICTIONAL>(proof, four, numbers, first, apart, self.poses);
+            let found = kind.forces::<T, FRICTIONAL>(proof, four, numbers, first, self.poses);
             four.add(
                 first,
                 found.force_on_b,
@@ -348,25 +342,33 @@ struct Found<T> {
 }
 
 /// Properties that the bonds of a rule share.
-struct Kind {
+pub(super) struct Kind {
     torsion_per_bending: f64,
     bending_per_normal: f64,
-    screen: Option<Screen>,
+    pub(super) screen: Option<Screen>,
 }
 
 impl Kind {
-    /// Forces of the bonds from `first` on, one for each lane.
+    pub(super) fn of(bonds: &Bonds, rule: usize) -> Self {
+        Self {
+            torsion_per_bending: bonds.torsion_per_bending[rule],
+            bending_per_normal: bonds.bending_per_normal[rule],
+            screen: bonds.rules[rule].criteria.as_ref().map(Screen::new),
+        }
+    }
+
+    /// Forces of the bonds from `first` on, one for each lane, by the total formulation.
     #[inline(always)]
-    fn forces<T: Lanes, const FRICTIONAL: bool>(
+    pub(super) fn response<T: Lanes>(
         &self,
         proof: T::Proof,
         four: &BondGroup,
         numbers: &BondBlock,
         first: usize,
-        apart: Vec3<T>,
         poses: &[Pose],
-    ) -> Found<T> {
+    ) -> BondResponse<T> {
         let ends = &four.ends[first..first + T::COUNT];
+        let apart = separations(proof, ends, poses);
         let normal = T::load(proof, &numbers.normal, first);
         let radius_m = T::load(proof, &numbers.radii_m, first);
         let bending = bending_stiffness(normal, radius_m, self.bending_per_normal);
@@ -389,16 +391,30 @@ impl Kind {
             turns(proof, |lane| poses[ends[lane][0] as usize].turned),
             turns(proof, |lane| poses[ends[lane][1] as usize].turned),
         ];
-        let bond_response = bond_response(&stiffness, direction, apart, turned);
+        bond_response(&stiffness, direction, apart, turned)
+    }
+
+    /// The same, and how far the bonds exceed their strength.
+    #[inline(always)]
+    fn forces<T: Lanes, const FRICTIONAL: bool>(
+        &self,
+        proof: T::Proof,
+        four: &BondGroup,
+        numbers: &BondBlock,
+        first: usize,
+        poses: &[Pose],
+    ) -> Found<T> {
+        let response = self.response(proof, four, numbers, first, poses);
         let mut beyond = [-1.0; MOST];
         if let Some(screen) = &self.screen {
+            let radius_m = T::load(proof, &numbers.radii_m, first);
             let [used, factor] =
-                screen.utilisation_and_factor::<T, FRICTIONAL>(&bond_response.load, radius_m);
+                screen.utilisation_and_factor::<T, FRICTIONAL>(&response.load, radius_m);
             beyond = (used - factor.scale(NEARLY)).values();
         }
         Found {
-            force_on_b: bond_response.force_on_b,
-            torques: bond_response.torques,
+            force_on_b: response.force_on_b,
+            torques: response.torques,
             beyond,
         }
     }

@@ -5,10 +5,11 @@ use rayon::prelude::*;
 
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::SAME_WAY;
+use crate::geometry::Touch;
 use crate::physics::contact::liquid_bridge::LiquidBridge;
 use crate::stages::chunks::CHUNK;
 use crate::state::State;
-use crate::state::bridges::{Bridges, PairBridge, WallBridge};
+use crate::state::bridges::{BridgeScratch, Bridges, PairBridge, Stepped, WallBridge};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::{Particles, Wrench};
 use crate::state::walls::{Wall, WallLoad};
@@ -37,59 +38,53 @@ pub(crate) fn compute_bridges(state: &mut State) -> usize {
     let Some(mut bridges) = state.bridges.take() else {
         return 0;
     };
-    between_particles(state, &mut bridges);
-    at_walls(state, &mut bridges);
+    let mut scratch = std::mem::take(&mut state.scratch.bridges);
+    between_particles(state, &mut bridges, &mut scratch.pairs);
+    at_walls(state, &mut bridges, &mut scratch);
+    state.scratch.bridges = scratch;
     let count = bridges.pairs.len() + bridges.walls.len();
     state.bridges = Some(bridges);
     count
 }
 
-/// A bridge after a step.
-struct Stepped<B> {
-    /// None: it ruptured.
-    bridge: Option<B>,
-    /// Force on its second end, or on its particle, N.
-    force_n: Vector3<f64>,
-    /// Energy lost in the step, J.
-    lost_j: f64,
+impl Bridges {
+    /// Records the formation and the rupture of a bridge.
+    fn book<B>(&mut self, stepped: &Stepped<B>, is_new: bool) {
+        self.lost_j += stepped.lost_j;
+        self.formed_and_ruptured[0] += u64::from(is_new);
+        self.formed_and_ruptured[1] += u64::from(stepped.is_ruptured);
+    }
 }
 
-/// Records the formation and the loss of a bridge. Returns it, unless it ruptured.
-fn booked<B>(bridges: &mut Bridges, stepped: Stepped<B>, is_new: bool) -> Option<B> {
-    bridges.lost_j += stepped.lost_j;
-    bridges.formed_and_ruptured[0] += u64::from(is_new);
-    bridges.formed_and_ruptured[1] += u64::from(stepped.bridge.is_none());
-    stepped.bridge
-}
-
-fn between_particles(state: &mut State, bridges: &mut Bridges) {
+fn between_particles(
+    state: &mut State,
+    bridges: &mut Bridges,
+    stepped: &mut Vec<Stepped<PairBridge>>,
+) {
     let Some(contacts) = &state.contacts else {
         return;
     };
     let (p, drift_s) = (&mut state.particles, state.previous_time_step_s);
-    let old = std::mem::take(&mut bridges.pairs);
-    let new = new_pairs(contacts, &old);
-    let known = old.par_iter().with_min_len(CHUNK);
-    let known =
-        known.map(|bridge| step_pair(contacts, p, bridge.pair, Some(bridge.gap_m), drift_s));
-    let mut stepped: Vec<_> = known.collect();
+    let new = new_pairs(contacts, &bridges.pairs);
+    let known = bridges.pairs.par_iter().with_min_len(CHUNK);
+    known
+        .map(|bridge| step_pair(contacts, p, bridge.pair, Some(bridge.gap_m), drift_s))
+        .collect_into_vec(stepped);
     stepped.extend(
         new.iter()
             .map(|&pair| step_pair(contacts, p, pair, None, drift_s)),
     );
-    for (n, stepped) in stepped.into_iter().enumerate() {
-        let is_new = n >= old.len();
-        let pair = if is_new {
-            new[n - old.len()]
-        } else {
-            old[n].pair
-        };
-        let [a, b] = pair.map(|end| end as usize);
+    let known = bridges.pairs.len();
+    bridges.pairs.clear();
+    for (n, stepped) in stepped.iter().enumerate() {
+        let [a, b] = stepped.bridge.pair.map(|end| end as usize);
         let none = Vector3::zeros();
         p.wrenches[a].add(&-stepped.force_n, &none);
         p.wrenches[b].add(&stepped.force_n, &none);
-        let kept = booked(bridges, stepped, is_new);
-        bridges.pairs.extend(kept);
+        bridges.book(stepped, n >= known);
+        if !stepped.is_ruptured {
+            bridges.pairs.push(stepped.bridge);
+        }
     }
     bridges.pairs.sort_unstable_by_key(|bridge| bridge.pair);
 }
@@ -129,7 +124,8 @@ fn step_pair(
 ) -> Stepped<PairBridge> {
     let [a, b] = pair.map(|end| end as usize);
     let unchanged = |gap_m: f64| Stepped {
-        bridge: Some(PairBridge { pair, gap_m }),
+        bridge: PairBridge { pair, gap_m },
+        is_ruptured: false,
         force_n: Vector3::zeros(),
         lost_j: 0.0,
     };
@@ -153,27 +149,41 @@ fn step_pair(
     let radius_m = radii_m[0] * radii_m[1] / reach_m;
     let [force_n, lost_j] = law.after_step(radius_m, gaps_m, [before_m.is_some(), is_there]);
     Stepped {
-        bridge: is_there.then_some(PairBridge {
+        bridge: PairBridge {
             pair,
             gap_m: gaps_m[1],
-        }),
+        },
+        is_ruptured: !is_there,
         force_n: apart * (-force_n / distance_m),
         lost_j,
     }
 }
 
-fn at_walls(state: &mut State, bridges: &mut Bridges) {
+fn at_walls(state: &mut State, bridges: &mut Bridges, scratch: &mut BridgeScratch) {
     let Some(contacts) = &state.contacts else {
         return;
     };
-    let old = std::mem::take(&mut bridges.walls);
-    let follow = |bridge: &WallBridge| followed(state, contacts, &old, bridge);
-    let mut stepped: Vec<_> = old.par_iter().with_min_len(CHUNK).map(follow).collect();
-    stepped.extend(new_at_walls(state, contacts, &stepped));
-    for (n, mut stepped) in stepped.into_iter().enumerate() {
-        if let Some(bridge) = &mut stepped.bridge
-            && !state.particles.sleeps(bridge.particle as usize)
-        {
+    let BridgeScratch {
+        walls: stepped,
+        touches,
+        keys,
+        ..
+    } = scratch;
+    let (all, known) = (&bridges.walls, bridges.walls.len());
+    stepped.clear();
+    stepped.resize(known, Stepped::default());
+    touches.resize_with(known.div_ceil(CHUNK), Vec::new);
+    let chunks = all.par_chunks(CHUNK).zip(stepped.par_chunks_mut(CHUNK));
+    chunks.zip(touches).for_each(|((own, stepped), touches)| {
+        for (bridge, stepped) in own.iter().zip(stepped) {
+            *stepped = followed(state, contacts, all, bridge, touches);
+        }
+    });
+    add_new_at_walls(state, contacts, stepped, keys);
+    bridges.walls.clear();
+    for (n, stepped) in stepped.iter_mut().enumerate() {
+        let bridge = &mut stepped.bridge;
+        if !stepped.is_ruptured && !state.particles.sleeps(bridge.particle as usize) {
             bridge.load = load(
                 &state.walls[bridge.wall as usize],
                 &state.particles,
@@ -191,8 +201,10 @@ fn at_walls(state: &mut State, bridges: &mut Bridges) {
                 .push
                 .add(force_n, torque_n_m, belt_w);
         }
-        let kept = booked(bridges, stepped, n >= old.len());
-        bridges.walls.extend(kept);
+        bridges.book(stepped, n >= known);
+        if !stepped.is_ruptured {
+            bridges.walls.push(stepped.bridge);
+        }
     }
     bridges.walls.sort_unstable_by_key(WallBridge::key);
 }
@@ -215,30 +227,30 @@ fn load(
 }
 
 /// A bridge at a wall after a drift: at the same feature of the wall, or at one without a bridge to
-/// which the particle has moved on.
+/// which the particle has moved on. `touches`: room for where the particle touches the wall.
 fn followed(
     state: &State,
     contacts: &Contacts,
     all: &[WallBridge],
     bridge: &WallBridge,
+    touches: &mut Vec<Touch>,
 ) -> Stepped<WallBridge> {
     let (wall, i) = (&state.walls[bridge.wall as usize], bridge.particle as usize);
     let law = wall.kind(contacts.materials[i]).bridge;
     let Some(law) = law.filter(|_| !state.particles.sleeps(i)) else {
         return Stepped {
-            bridge: Some(*bridge),
+            bridge: *bridge,
+            is_ruptured: false,
             force_n: Vector3::zeros(),
             lost_j: 0.0,
         };
     };
     let pose = &state.particles.poses[i];
-    let mut touches = Vec::new();
+    touches.clear();
     let reach_m = pose.radius_m() + 2.0 * law.rupture_m();
-    wall.model.shape.touches(
-        wall.frame.to_wall(pose.place().into()),
-        reach_m,
-        &mut touches,
-    );
+    wall.model
+        .shape
+        .touches(wall.frame.to_wall(pose.place().into()), reach_m, touches);
     let is_taken = |feature: u32| {
         let key = WallBridge { feature, ..*bridge }.key();
         all.binary_search_by_key(&key, WallBridge::key).is_ok()
@@ -272,18 +284,18 @@ fn followed(
     stepped_at_wall(&law, pose.radius_m(), now, gaps_m, [true, is_there])
 }
 
-/// Bridges of wet particles that touch a wall and have none yet at the same feature.
-fn new_at_walls(
+/// Adds the bridges of wet particles that touch a wall and have none yet at the same feature.
+/// `keys`: room for those of the bridges.
+fn add_new_at_walls(
     state: &State,
     contacts: &Contacts,
-    known: &[Stepped<WallBridge>],
-) -> Vec<Stepped<WallBridge>> {
-    let mut keys: Vec<[u32; 3]> = known
-        .iter()
-        .filter_map(|known| Some(known.bridge.as_ref()?.key()))
-        .collect();
+    stepped: &mut Vec<Stepped<WallBridge>>,
+    keys: &mut Vec<[u32; 3]>,
+) {
+    keys.clear();
+    let there = stepped.iter().filter(|known| !known.is_ruptured);
+    keys.extend(there.map(|known| known.bridge.key()));
     keys.sort_unstable();
-    let mut new = Vec::new();
     for (n, wall) in (0..).zip(&state.walls) {
         for touch in wall
             .touching
@@ -306,7 +318,7 @@ fn new_at_walls(
                 let drift_s = state.previous_time_step_s;
                 let before_m = bridge.gap_m - opening_m_s(wall, p, &bridge) * drift_s;
                 let (radius_m, gaps_m) = (p.poses[i].radius_m(), [before_m, bridge.gap_m]);
-                new.push(stepped_at_wall(
+                stepped.push(stepped_at_wall(
                     &law,
                     radius_m,
                     bridge,
@@ -316,7 +328,6 @@ fn new_at_walls(
             }
         }
     }
-    new
 }
 
 /// Speed at which the gap between a particle and a wall opened in the drift, m/s.
@@ -340,7 +351,8 @@ fn stepped_at_wall(
 ) -> Stepped<WallBridge> {
     let [force_n, lost_j] = law.after_step(radius_m, gaps_m, there);
     Stepped {
-        bridge: there[1].then_some(bridge),
+        bridge,
+        is_ruptured: !there[1],
         force_n: Vector3::from(bridge.normal) * -force_n,
         lost_j,
     }

@@ -13,9 +13,11 @@ use crate::stages::contacts::overlap_m;
 use crate::state::State;
 use crate::state::events::Break;
 use crate::state::ledger::Work;
-use crate::state::levels::{CYCLE, Group, HIGHEST, LevelRule, Levels, Share, length};
+use crate::state::levels::{
+    CYCLE, Group, HIGHEST, LevelRule, Levels, MOST_GROUPS, OfWall, Share, length,
+};
 use crate::state::partitions::{Idle, Partition, STALE, divide_busy};
-use crate::state::walls::{Wall, WallContact, WallLoad};
+use crate::state::walls::Wall;
 use dem_io::disjoint::{find, join};
 
 /// Steps by body.
@@ -365,7 +367,12 @@ fn sum_of(shares: &[Share]) -> Share {
 pub(crate) fn in_all_groups(state: &mut State, work: impl Fn(&mut State)) {
     let mut broken: Vec<Break> = Vec::new();
     let mut pending = Work::default();
-    let mut walls = vec![OfWall::default(); state.walls.len()];
+    let levels = state.levels.as_mut();
+    let mut walls = levels.map_or(Vec::new(), |levels| {
+        std::mem::take(&mut levels.scratch.walls)
+    });
+    walls.clear();
+    walls.resize(state.walls.len(), OfWall::default());
     // What has been found since the last common time counts as well.
     let mut pressed = take_pressed(state);
     for n in 0..groups(state) {
@@ -380,42 +387,20 @@ pub(crate) fn in_all_groups(state: &mut State, work: impl Fn(&mut State)) {
     }
     state.scratch.events.broken = broken;
     state.ledger.pending = pending;
-    for (sum, wall) in walls.into_iter().zip(&mut state.walls) {
+    for (sum, wall) in walls.iter().zip(&mut state.walls) {
         wall.push = sum.push;
         wall.scratch.damping = sum.damping;
         wall.scratch.elastic_j = sum.elastic_j;
         wall.stiffness_n_m = sum.stiffness_n_m;
         wall.pending_j = sum.pending_j;
     }
+    if let Some(levels) = &mut state.levels {
+        levels.scratch.walls = walls;
+    }
     if let Some(contacts) = &mut state.contacts {
         contacts.scratch.excessive_overlap = pressed;
     }
     gather(state);
-}
-
-/// What the groups add to a wall.
-#[derive(Debug, Clone, Copy, Default)]
-struct OfWall {
-    push: WallLoad,
-    damping: WallLoad,
-    elastic_j: f64,
-    stiffness_n_m: f64,
-    pending_j: f64,
-}
-
-impl OfWall {
-    fn add(&mut self, wall: &mut Wall) {
-        let both = [
-            (&mut self.push, &wall.push),
-            (&mut self.damping, &wall.scratch.damping),
-        ];
-        for (sum, load) in both {
-            sum.add(load.force_n, load.torque_n_m, load.belt_w);
-        }
-        self.elastic_j += wall.scratch.elastic_j;
-        self.stiffness_n_m += wall.stiffness_n_m;
-        self.pending_j += std::mem::take(&mut wall.pending_j);
-    }
 }
 
 /// Works on the groups that have come to the present time, one after the other, between two common
@@ -583,13 +568,22 @@ fn gather(state: &mut State) {
     let Some(levels) = &state.levels else {
         return;
     };
+    let groups = &levels.scratch.groups;
     for (n, wall) in state.walls.iter_mut().enumerate() {
         wall.touching.clear();
-        let of_groups = levels.scratch.groups.iter();
-        let of_groups = of_groups.filter_map(|group| group.walls.get(n));
-        wall.touching
-            .extend(of_groups.flat_map(|(_, touching): &(_, Vec<WallContact>)| touching));
-        wall.touching.sort_by_key(|touch| touch.particle);
+        // Each group has its contacts in the order of the particles.
+        let mut from = [0; MOST_GROUPS];
+        let next = |from: &[usize], group: usize| {
+            let of_wall = groups[group].walls.get(n);
+            of_wall.and_then(|(_, touching)| touching.get(from[group]).copied())
+        };
+        while let Some((group, touch)) = (0..groups.len())
+            .filter_map(|group| Some((group, next(&from, group)?)))
+            .min_by_key(|(_, touch)| touch.particle)
+        {
+            wall.touching.push(touch);
+            from[group] += 1;
+        }
     }
     state.ledger.momentum = sum_of(&levels.shares).momentum;
 }

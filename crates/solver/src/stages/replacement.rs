@@ -3,13 +3,14 @@
 use nalgebra::Vector3;
 
 use super::population::apply_topology_change;
-use super::squeeze::{Squeeze, squeezes};
+use super::squeeze::find_squeezes;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
 use crate::state::clumps::Clump;
 use crate::state::events::TopologyChange;
 use crate::state::events::{PopulationEvent, STARTS_BONDED};
 use crate::state::rules::Trigger;
+use crate::state::squeeze::Squeeze;
 
 /// Clumps that become clusters, and clusters that become clumps.
 pub(crate) const REPLACEMENT: Stage = Stage {
@@ -68,9 +69,11 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
         return 0;
     }
     let clumps = state.clumps.all.len();
-    let (squeezes, read) = squeezes(state);
+    let mut squeezes = std::mem::take(&mut state.scratch.squeezes);
+    let read = find_squeezes(state, &mut squeezes);
     let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) =
         triggered(state, &squeezes).unzip();
+    state.scratch.squeezes = squeezes;
     state.scratch.squeezing = read;
     if !to_clusters.is_empty() {
         swap(state, to_clusters, &causes);

@@ -1,49 +1,27 @@
 //! How contacts squeeze clumps: between two jaws their forces cancel, and only the single forces
 //! and the stress tell.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 use super::contacts::{self, pair_force_n};
 use super::walls::{self, touch_force_n};
 use crate::state::State;
 use crate::state::contacts::Contacts;
+use crate::state::squeeze::Squeeze;
 
-/// The contacts of a clump at the end of a step.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Squeeze {
-    /// Largest force of a single contact, N.
-    pub(super) largest_n: f64,
-    /// Sum over the contacts of their force times the way from the clump's centre to the contact
-    /// point (dyadic products), N m: the mean stress (Love 1927, Weber 1966) times the volume.
-    moment_n_m: Matrix3<f64>,
-}
-
-impl Squeeze {
-    /// Largest principal value, by magnitude, of the mean stress in this volume, m3, in Pa. The
-    /// antisymmetric part, which belongs to a torque on the clump, is left out.
-    pub(super) fn principal_stress_pa(&self, volume_m3: f64) -> f64 {
-        let symmetric = 0.5 * (self.moment_n_m + self.moment_n_m.transpose());
-        symmetric.symmetric_eigenvalues().amax() / volume_m3
-    }
-
-    fn add(&mut self, force_n: Vector3<f64>, arm_m: Vector3<f64>) {
-        self.largest_n = self.largest_n.max(force_n.norm());
-        self.moment_n_m += force_n * arm_m.transpose();
-    }
-}
-
-/// The squeeze of each clump, and the number of contacts read for it; none if no trigger needs it.
-pub(super) fn squeezes(state: &State) -> (Vec<Squeeze>, usize) {
+/// Sets `squeezes` to the squeeze of each clump; to none if no trigger needs it. Returns the number
+/// of contacts read.
+pub(super) fn find_squeezes(state: &State, squeezes: &mut Vec<Squeeze>) -> usize {
+    squeezes.clear();
     let mut triggers = state.model.rules.triggers.iter().flatten();
     let Some(contacts) = &state.contacts else {
-        return (Vec::new(), 0);
+        return 0;
     };
     if !triggers.any(|trigger| trigger.needs_squeeze()) {
-        return (Vec::new(), 0);
+        return 0;
     }
-    let mut squeezes = vec![Squeeze::default(); state.clumps.all.len()];
-    let read = of_pairs(state, contacts, &mut squeezes) + of_walls(state, contacts, &mut squeezes);
-    (squeezes, read)
+    squeezes.resize(state.clumps.all.len(), Squeeze::default());
+    of_pairs(state, contacts, squeezes) + of_walls(state, contacts, squeezes)
 }
 
 /// The clump of a particle. None: it is free.

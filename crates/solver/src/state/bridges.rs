@@ -1,9 +1,11 @@
 //! Liquid bridges between particles, and between particles and walls.
 
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::events::REMOVED;
 use super::walls::WallLoad;
+use crate::geometry::Touch;
 
 /// All liquid bridges of a state.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -50,8 +52,31 @@ impl Bridges {
     }
 }
 
+/// A bridge after a step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Stepped<B> {
+    pub(crate) bridge: B,
+    /// Whether it has ruptured.
+    pub(crate) is_ruptured: bool,
+    /// Force on its second end, or on its particle, N.
+    pub(crate) force_n: Vector3<f64>,
+    /// Energy lost in the step, J.
+    pub(crate) lost_j: f64,
+}
+
+/// The bridges in a step: kept from step to step for their memory only.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct BridgeScratch {
+    pub(crate) pairs: Vec<Stepped<PairBridge>>,
+    pub(crate) walls: Vec<Stepped<WallBridge>>,
+    /// For each chunk of bridges at walls where a particle touches a wall.
+    pub(crate) touches: Vec<Vec<Touch>>,
+    /// Keys of the bridges at walls.
+    pub(crate) keys: Vec<[u32; 3]>,
+}
+
 /// A bridge between two particles.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct PairBridge {
     /// The smaller number first.
     pub pair: [u32; 2],
@@ -60,7 +85,7 @@ pub struct PairBridge {
 }
 
 /// A bridge between a particle and a wall.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct WallBridge {
     /// Number of the wall.
     pub wall: u32,

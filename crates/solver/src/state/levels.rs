@@ -9,12 +9,15 @@ use serde::{Deserialize, Serialize};
 use super::contacts::ContactPartition;
 use super::events::Break;
 use super::partitions::Partition;
-use super::walls::WallContact;
+use super::walls::{Wall, WallContact, WallLoad};
 
 /// The highest level.
 pub const HIGHEST: u8 = 3;
 /// Number of time steps from one common time to the next.
 pub const CYCLE: u64 = 1 << HIGHEST;
+
+/// Largest number of groups: of pairs of levels, before a kick and after it.
+pub(crate) const MOST_GROUPS: usize = (HIGHEST as usize + 1).pow(2);
 
 /// Length of a step of a level in time steps. Products with it are exact.
 pub(crate) fn length(level: u8) -> f64 {
@@ -75,6 +78,8 @@ pub(crate) struct LevelScratch {
     pub(crate) groups: Vec<Group>,
     /// Level of the group that is being stepped.
     pub(crate) stepping: u8,
+    /// Length as the walls.
+    pub(crate) walls: Vec<OfWall>,
     /// Number of bonds that had broken when the groups were made.
     pub(crate) broken_count: u64,
     /// Bonds that broke at the last common time, kept until the next.
@@ -108,4 +113,29 @@ pub(crate) struct Group {
     pub(crate) moved_m: f64,
     /// For each wall the particles near it, and its contacts.
     pub(crate) walls: Vec<(Vec<u32>, Vec<WallContact>)>,
+}
+
+/// What the groups add to a wall.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct OfWall {
+    pub(crate) push: WallLoad,
+    pub(crate) damping: WallLoad,
+    pub(crate) elastic_j: f64,
+    pub(crate) stiffness_n_m: f64,
+    pub(crate) pending_j: f64,
+}
+
+impl OfWall {
+    pub(crate) fn add(&mut self, wall: &mut Wall) {
+        let both = [
+            (&mut self.push, &wall.push),
+            (&mut self.damping, &wall.scratch.damping),
+        ];
+        for (sum, load) in both {
+            sum.add(load.force_n, load.torque_n_m, load.belt_w);
+        }
+        self.elastic_j += wall.scratch.elastic_j;
+        self.stiffness_n_m += wall.stiffness_n_m;
+        self.pending_j += std::mem::take(&mut wall.pending_j);
+    }
 }

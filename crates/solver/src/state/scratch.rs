@@ -1,9 +1,11 @@
 //! Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 
+use super::bridges::BridgeScratch;
 use super::events::Events;
 use super::meetings::Meetings;
 use super::particles::{Motion, Wrench};
 use super::partitions::Partition;
+use super::squeeze::Squeeze;
 use crate::clock::StageClock;
 use crate::physics::chebyshev::Chebyshev;
 
@@ -39,6 +41,10 @@ pub struct Scratch {
     pub powers_w: Vec<Option<f64>>,
     /// Damaged bonds that have reached their compressive strength.
     pub(crate) crushed: Vec<u32>,
+    /// How contacts squeeze each clump. Empty: no trigger needs it.
+    pub(crate) squeezes: Vec<Squeeze>,
+    /// The liquid bridges in this step.
+    pub(crate) bridges: BridgeScratch,
     /// Contacts that triggers have read in this step.
     pub(crate) squeezing: usize,
     /// Events of the last step.
