@@ -1,5 +1,5 @@
 //! The time step of dem-run for 20,000 single spheres with contacts as in a settled heap, on one
-//! thread and on all: `cargo bench -p dem-tests --bench heap`.
+//! thread and on all: `cargo bench -p dem-tests --features benchmarks --bench heap`.
 //!
 //! "contacts" is the pass over the contacts alone; "step" the complete step; "relist" the search
 //! for near pairs, which a settled heap rarely needs.

@@ -230,10 +230,9 @@ fn a_normal_impact_gives_the_kinetic_energy_of_the_relative_motion() {
             "[bodies.other]\nparticles = [[0, 0, 0, {RADIUS_M}]]\nmaterial = \"ore\"\nstart_as = \"clump\"\nposition = [0, 0, {}]\nvelocity = [0, 0, 1.5]\n",
             -RADIUS_M - 1e-4
         );
-        let other = format!(
-            "{other}{}",
-            never.replace("replacement.ball", "replacement.other")
-        );
+        // What nothing replaces is no clump.
+        let rule = never.replace("ball", "other").replace("halves", "pieces");
+        let other = format!("{other}{rule}");
         let start = start.replace("-3]", "-1.5]").replace("0.5, 0", "0, 0");
         let text = bodies(restitution, &format!("{other}{never}")).replace(&falls, &start);
         let (both, _) = taken_in(&text, 0.5);

@@ -329,22 +329,29 @@ fn a_fed_sphere_is_a_particle_unless_something_replaces_it() {
     let run = |more: &str| {
         let gate =
             "[regions.gate]\nbox = { min = [-2e-3, -2e-3, 2e-3], max = [2e-3, 2e-3, 5e-3] }\n";
-        let floor = "run.gravity = [1, 0, -9.81]\nwalls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"stuff\" }\n";
+        let floor = "run.gravity = [1, 0, -9.81]\nrun.time_step = 2e-6\nwalls.floor = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"stuff\" }\n";
         let inlet = "bodies = [\"ball\"]\nrate = 1e6\ncount = 1\nvelocity = [0.1, 0.2, -0.3]\nangular_velocity = [50, 0, 20]\n";
         let text = format!(
-            "{HEAD}{floor}{MEETS}{BALL}{gate}{more}[inlets.feed]\nregion = \"gate\"\n{inlet}"
+            "{HEAD}{floor}{MEETS}{BALL}{more}{gate}[inlets.feed]\nregion = \"gate\"\n{inlet}"
         );
         let mut state = planned(&text).state;
         let mut events = Vec::new();
-        let mut poses = Vec::new();
+        let mut places = Vec::new();
         while state.time_s < 0.05 {
             events.extend(happens(&mut state));
-            poses.push(state.particles.poses[0].place());
+            // Spheres of clumps are in place only where something is near.
+            let clump = state.clumps.all.first();
+            places.push(match clump {
+                Some(clump) => Vector3::from(clump.place_m),
+                None => state.particles.poses[0].place(),
+            });
         }
-        (state, events, poses)
+        (state, events, places)
     };
     let (particle, events, as_particle) = run("");
-    let (clump, _, as_clump) = run("[replacement.ball]\nwhen = { time = 1000 }\n");
+    let (clump, _, as_clump) = run(
+        "start_as = \"clump\"\n[bodies.half]\nmaterial = \"stuff\"\nparticles = [[0, 0, 0, 1e-4], [2e-4, 0, 0, 1e-4]]\n[replacement.ball.daughters]\nclasses = [{ from = 1e9, body = \"half\" }]\n",
+    );
     assert!(particle.clumps.all.is_empty());
     assert_eq!(clump.clumps.all.len(), 1);
     assert_eq!(events.len(), 1, "{events:?}");
