@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Builds the program and runs the scenes of the same names with several settings: some minutes for
-//! the drum, one to two hours each for the other two, whose last runs have 100,000 spheres. Results
-//! are in `target/round-robin`; `--resume` at the end keeps the complete runs.
+//! the drum, half an hour for the silo, more than an hour for the penetration, whose last run has
+//! 100,000 spheres. Results are in `target/round-robin`; `--resume` at the end keeps the complete runs.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -72,99 +72,114 @@ fn beverloo_kg_s(bulk_kg_m3: f64, hole_m: f64, diameter_m: f64) -> f64 {
 /// Solid fraction of the bed of a silo.
 const SOLID: f64 = 0.6;
 
-/// A run of a silo.
+/// Spheres per second of others in the paper's silo, spheres of 4 mm: the hole, m, the mean of
+/// eight programs for the larger one, and MUSEN and LIGGGHTS for the smaller one.
+const OTHERS: [(f64, f64); 2] = [(0.060, 23_200.0), (0.040, 7_700.0)];
+
+/// A silo, and the flow out of it.
 struct Silo {
-    scene: &'static str,
     floor: &'static str,
     material: &'static str,
     density_kg_m3: f64,
     hole_m: f64,
     bead_m: f64,
-    set: Vec<String>,
-    /// Times between which the flow is measured, s.
-    flows_s: [f64; 2],
-    /// Spheres per second of others.
-    others: &'static str,
 }
 
-/// `silo-round-robin.toml` with fewer spheres.
-fn flat(material: &'static str, density_kg_m3: f64, hole_m: f64) -> Silo {
-    Silo {
-        scene: "silo-round-robin",
-        floor: "flat, 60 mm wide",
-        material,
-        density_kg_m3,
-        hole_m,
-        bead_m: 4e-3,
-        set: vec![
-            format!("bodies.bead.material={}", material.to_lowercase()),
-            format!("walls.floor.scale={}", 100.0 * hole_m),
-            "inlets.fill.count=1200".to_owned(),
-            "walls.slide.table=[[\"0.3 s\",0],[\"0.35 s\",1]]".to_owned(),
-            "run.end_time=\"0.75 s\"".to_owned(),
-        ],
-        flows_s: [0.45, 0.75],
-        others: "",
+impl Silo {
+    /// `silo-round-robin.toml`.
+    const fn flat(material: &'static str, density_kg_m3: f64, hole_m: f64) -> Self {
+        let floor = "flat";
+        let bead_m = 4e-3;
+        Self {
+            floor,
+            material,
+            density_kg_m3,
+            hole_m,
+            bead_m,
+        }
+    }
+
+    /// The paper's: `silo-cone.toml`.
+    const fn cone(floor: &'static str, hole_m: f64, bead_m: f64) -> Self {
+        Self {
+            floor,
+            material: "M1",
+            density_kg_m3: 2500.0,
+            hole_m,
+            bead_m,
+        }
+    }
+
+    fn bead_kg(&self) -> f64 {
+        self.density_kg_m3 * PI / 6.0 * self.bead_m.powi(3)
+    }
+
+    /// Runs its scene. Returns the spheres that flow out per second.
+    fn run(&self, dem_run: &Path, number: usize) -> Result<f64, Failed> {
+        let is_flat = self.floor == "flat";
+        let (scene, plate, between_s) = if is_flat {
+            ("silo-round-robin", "floor", [0.45, 0.75])
+        } else {
+            ("silo-cone", "cone", [1.0, 1.4])
+        };
+        let mut set = vec![
+            format!("bodies.bead.material={}", self.material.to_lowercase()),
+            format!("walls.{plate}.scale={}", 100.0 * self.hole_m),
+        ];
+        if is_flat {
+            let opens = "walls.slide.table=[[\"0.3 s\",0],[\"0.35 s\",1]]";
+            let ends = "run.end_time=\"0.75 s\"";
+            set.extend([opens, ends, "inlets.fill.count=1200"].map(str::to_owned));
+        } else {
+            let count = 1e5 * (4e-3 / self.bead_m).powi(3);
+            set.extend([
+                format!("bodies.bead.particles=[[0,0,0,{}]]", 0.5 * self.bead_m),
+                format!("inlets.fill.count={count:.0}"),
+            ]);
+        }
+        let (_, folder) = run(dem_run, scene, &number.to_string(), &set)?;
+        Ok(-slope(&folder, "mass_inside_kg", between_s)? / self.bead_kg())
     }
 }
 
-/// `silo-cone.toml`: the silo of the paper. Its spheres have 4 mm; 100,000 of them.
-fn cone(hole_m: f64, bead_m: f64, others: &'static str) -> Silo {
-    Silo {
-        scene: "silo-cone",
-        floor: "cone, 200 mm wide",
-        material: "M1",
-        density_kg_m3: 2500.0,
-        hole_m,
-        bead_m,
-        set: vec![
-            format!("bodies.bead.particles=[[0,0,0,{}]]", 0.5 * bead_m),
-            format!("inlets.fill.count={:.0}", 1e5 * (4e-3 / bead_m).powi(3)),
-            format!("walls.cone.scale={}", 100.0 * hole_m),
-            "output.series=\"10 ms\"".to_owned(),
-        ],
-        flows_s: [1.0, 1.4],
-        others,
-    }
-}
+const SILOS: [Silo; 6] = [
+    Silo::flat("M1", 2500.0, 0.018),
+    Silo::flat("M1", 2500.0, 0.022),
+    Silo::flat("M2", 2000.0, 0.022),
+    Silo::cone("cone", 0.060, 8e-3),
+    Silo::cone("cone", 0.060, 6e-3),
+    Silo::cone("cone", 0.040, 6e-3),
+];
 
 fn silo(dem_run: &Path) -> Result<(), Failed> {
-    let silos = [
-        flat("M1", 2500.0, 0.018),
-        flat("M1", 2500.0, 0.022),
-        flat("M2", 2000.0, 0.022),
-        cone(0.06, 8e-3, ""),
-        cone(0.06, 6e-3, ""),
-        cone(
-            0.06,
-            4e-3,
-            "23,200 (mean of eight programs, which agree within 5 %)",
-        ),
-        cone(0.04, 4e-3, "7,700 (MUSEN and LIGGGHTS)"),
-    ];
+    let mut flows = Vec::new();
+    for (number, silo) in SILOS.into_iter().enumerate() {
+        let per_s = silo.run(dem_run, number)?;
+        flows.push((silo, per_s));
+    }
+    let by_others = |(hole_m, per_s)| (Silo::cone("cone, by others", hole_m, 4e-3), per_s);
+    flows.extend(OTHERS.map(by_others));
     let mut table = Table::new(&[
         "floor",
         "spheres",
         "hole",
+        "of diameters",
         "spheres per second",
         "Beverloo",
         "off",
-        "others",
     ]);
-    for (at, silo) in silos.iter().enumerate() {
-        let (_, folder) = run(dem_run, silo.scene, &at.to_string(), &silo.set)?;
-        let bead_kg = silo.density_kg_m3 * PI / 6.0 * silo.bead_m.powi(3);
-        let per_s = -slope(&folder, "mass_inside_kg", silo.flows_s)? / bead_kg;
+    for (silo, per_s) in flows {
         let bulk_kg_m3 = SOLID * silo.density_kg_m3;
-        let law_1_s = beverloo_kg_s(bulk_kg_m3, silo.hole_m, silo.bead_m) / bead_kg;
+        let law_kg_s = beverloo_kg_s(bulk_kg_m3, silo.hole_m, silo.bead_m);
+        let law_1_s = law_kg_s / silo.bead_kg();
         table.row(&[
             silo.floor.to_owned(),
             format!("{} of {:.0} mm", silo.material, 1e3 * silo.bead_m),
             format!("{:.0} mm", 1e3 * silo.hole_m),
+            format!("{:.1}", silo.hole_m / silo.bead_m),
             format!("{per_s:.0}"),
             format!("{law_1_s:.0}"),
             format!("{:+.0} %", 100.0 * (per_s / law_1_s - 1.0)),
-            silo.others.to_owned(),
         ]);
     }
     table.write(PAGE, "round_robin silo")
