@@ -6,7 +6,7 @@
 //! cargo run --release -p dem-run --example process_tables -- keep
 //! ```
 //!
-//! Builds the programs and takes half an hour of one core; with `keep`, runs that ended before are
+//! Builds the programs and takes 40 minutes of one core; with `keep`, runs that ended before are
 //! not done again. Results are in `target/process`.
 #![allow(
     clippy::print_stdout,

@@ -9,7 +9,8 @@
 //!
 //! Builds the program and runs the scenes of the same names with several settings: some minutes for
 //! the drum, half an hour for the silo, more than an hour for the penetration, whose last run has
-//! 100,000 spheres. Results are in `target/round-robin`; `--resume` at the end keeps the complete runs.
+//! 100,000 spheres. Results are in `target/round-robin`; `--resume` at the end keeps the complete
+//! runs.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -78,7 +79,9 @@ const OTHERS: [(f64, f64); 2] = [(0.060, 23_200.0), (0.040, 7_700.0)];
 
 /// A silo, and the flow out of it.
 struct Silo {
+    /// How its table calls its floor.
     floor: &'static str,
+    is_cone: bool,
     material: &'static str,
     density_kg_m3: f64,
     hole_m: f64,
@@ -88,14 +91,13 @@ struct Silo {
 impl Silo {
     /// `silo-round-robin.toml`.
     const fn flat(material: &'static str, density_kg_m3: f64, hole_m: f64) -> Self {
-        let floor = "flat";
-        let bead_m = 4e-3;
         Self {
-            floor,
+            floor: "flat",
+            is_cone: false,
             material,
             density_kg_m3,
             hole_m,
-            bead_m,
+            bead_m: 4e-3,
         }
     }
 
@@ -103,6 +105,7 @@ impl Silo {
     const fn cone(floor: &'static str, hole_m: f64, bead_m: f64) -> Self {
         Self {
             floor,
+            is_cone: true,
             material: "M1",
             density_kg_m3: 2500.0,
             hole_m,
@@ -116,26 +119,25 @@ impl Silo {
 
     /// Runs its scene. Returns the spheres that flow out per second.
     fn run(&self, dem_run: &Path, number: usize) -> Result<f64, Failed> {
-        let is_flat = self.floor == "flat";
-        let (scene, plate, between_s) = if is_flat {
-            ("silo-round-robin", "floor", [0.45, 0.75])
-        } else {
+        let (scene, plate, between_s) = if self.is_cone {
             ("silo-cone", "cone", [1.0, 1.4])
+        } else {
+            ("silo-round-robin", "floor", [0.45, 0.75])
         };
         let mut set = vec![
             format!("bodies.bead.material={}", self.material.to_lowercase()),
             format!("walls.{plate}.scale={}", 100.0 * self.hole_m),
         ];
-        if is_flat {
-            let opens = "walls.slide.table=[[\"0.3 s\",0],[\"0.35 s\",1]]";
-            let ends = "run.end_time=\"0.75 s\"";
-            set.extend([opens, ends, "inlets.fill.count=1200"].map(str::to_owned));
-        } else {
+        if self.is_cone {
             let count = 1e5 * (4e-3 / self.bead_m).powi(3);
             set.extend([
                 format!("bodies.bead.particles=[[0,0,0,{}]]", 0.5 * self.bead_m),
                 format!("inlets.fill.count={count:.0}"),
             ]);
+        } else {
+            let opens = "walls.slide.table=[[\"0.3 s\",0],[\"0.35 s\",1]]";
+            let ends = "run.end_time=\"0.75 s\"";
+            set.extend([opens, ends, "inlets.fill.count=1200"].map(str::to_owned));
         }
         let (_, folder) = run(dem_run, scene, &number.to_string(), &set)?;
         Ok(-slope(&folder, "mass_inside_kg", between_s)? / self.bead_kg())
@@ -163,7 +165,7 @@ fn silo(dem_run: &Path) -> Result<(), Failed> {
         "floor",
         "spheres",
         "hole",
-        "of diameters",
+        "hole over diameter",
         "spheres per second",
         "Beverloo",
         "off",

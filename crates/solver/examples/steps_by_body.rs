@@ -5,8 +5,8 @@
 //! cargo run --release -p dem-run --example steps_by_body
 //! ```
 //!
-//! Builds the program, runs `steps-by-body.toml`, three minutes, and writes the table into the page.
-//! Results are in `target/steps-by-body`; `--resume` keeps the complete runs.
+//! Builds the program, runs `steps-by-body.toml`, three minutes, and writes the table into the
+//! page. Results are in `target/steps-by-body`; `--resume` keeps the complete runs.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,

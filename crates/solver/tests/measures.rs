@@ -57,7 +57,7 @@ impl Measured {
     /// Feeding, removal and replacement. Returns whether anything changed.
     pub(crate) fn replace(&mut self) -> bool {
         exchange(&mut self.state);
-        if self.state.scratch.events.population.is_empty() {
+        if self.state.scratch.events.renumberings.is_empty() {
             return false;
         }
         let renumbered = std::mem::take(&mut self.state.scratch.events.renumberings);

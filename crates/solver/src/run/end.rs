@@ -167,7 +167,7 @@ impl Run<'_> {
             yielded_bonds: state.bonds.count_yielded(),
             sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
             fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
-            population: PopulationSummary::of(state),
+            population: PopulationSummary::of(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
             sleep: state.sleep.as_ref().map(SleepSummary::of),
             updates_skipped_by_longer_steps: state.levels.as_ref().map(Levels::updates_skipped),

@@ -276,7 +276,7 @@ impl Run<'_> {
     /// whether clumps have become clusters.
     pub(super) fn follow_population(&mut self) -> Result<bool> {
         let events = &self.state.scratch.events;
-        if events.population.is_empty() {
+        if events.population.is_empty() && events.renumberings.is_empty() {
             return Ok(false);
         }
         let is_swap = |one: &PopulationEvent| matches!(one, PopulationEvent::Replaced { .. });

@@ -2,6 +2,7 @@
 //! with them.
 
 use nalgebra::{Rotation3, Vector3};
+use rayon::prelude::*;
 
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::stage::{NO_SAVING, Need, Stage};
@@ -12,7 +13,10 @@ use crate::physics::rotation::rotation as rotation_of;
 use crate::state::State;
 use crate::state::clumps::Template;
 use crate::state::clumps::{Clump, Clumps};
-use crate::state::particles::{Particles, Wrench};
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
+
+/// Clumps handled by one task.
+const CHUNK: usize = 32;
 
 /// Rigid clumps.
 pub(crate) const CLUMPS: Stage = Stage {
@@ -27,8 +31,10 @@ pub(crate) const CLUMPS: Stage = Stage {
             shapes => format!("{shapes} shapes"),
         };
         let clumps = state.clumps.all.len();
+        let starts = &state.model.rules.starts;
+        let is_particle = |n: usize| starts.get(n).is_some_and(|start| start.sphere);
         Need::of(
-            !templates.is_empty(),
+            clumps > 0 || !(0..templates.len()).all(is_particle),
             || {
                 format!(
                     "{clumps} at the start; of the {spheres} spheres of {shapes} the {outer} outer ones"
@@ -150,6 +156,65 @@ pub(crate) fn place_centres(clumps: &Clumps, clump: &Clump, particles: &mut Part
     }
 }
 
+/// Some clumps in their order, and what belongs to their spheres.
+struct Part<'a> {
+    clumps: &'a mut [Clump],
+    poses: &'a mut [Pose],
+    motions: &'a mut [Motion],
+    wrenches: &'a mut [Wrench],
+    /// Number of the first of their spheres among the particles.
+    first: usize,
+}
+
+impl<'a> Part<'a> {
+    /// All of them.
+    fn of(all: &'a mut [Clump], particles: &'a mut Particles) -> Self {
+        let free = particles.free;
+        Self {
+            clumps: all,
+            poses: &mut particles.poses[free..],
+            motions: &mut particles.motions[free..],
+            wrenches: &mut particles.wrenches[free..],
+            first: free,
+        }
+    }
+
+    fn halves(self) -> [Self; 2] {
+        let (clumps, others) = self.clumps.split_at_mut(self.clumps.len() / 2);
+        let first = others[0].first as usize;
+        let at = first - self.first;
+        let (poses, other_poses) = self.poses.split_at_mut(at);
+        let (motions, other_motions) = self.motions.split_at_mut(at);
+        let (wrenches, other_wrenches) = self.wrenches.split_at_mut(at);
+        [
+            Self {
+                clumps,
+                poses,
+                motions,
+                wrenches,
+                first: self.first,
+            },
+            Self {
+                clumps: others,
+                poses: other_poses,
+                motions: other_motions,
+                wrenches: other_wrenches,
+                first,
+            },
+        ]
+    }
+}
+
+/// Does some work on all clumps, on as many threads as there are. Returns the largest result.
+fn in_parts(part: Part<'_>, work: &(impl Fn(Part<'_>) -> f64 + Sync)) -> f64 {
+    if part.clumps.len() <= CHUNK {
+        return work(part);
+    }
+    let [one, other] = part.halves();
+    let (one, other) = rayon::join(|| in_parts(one, work), || in_parts(other, work));
+    one.max(other)
+}
+
 /// Sums the forces on the spheres of each clump, and the energy that they take from its motion in a
 /// step of `dt`, s. Clears the wrenches of the spheres.
 pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
@@ -159,40 +224,41 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
         near,
         ..
     } = clumps;
-    for clump in all.iter_mut().filter(|clump| !clump.asleep) {
-        let centre = Vector3::from(clump.place_m);
-        let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
-        let [from, to] = clump.near.map(|n| n as usize);
-        for &i in &near[from..to] {
-            let wrench = &mut particles.wrenches[i as usize];
-            let [fx, fy, fz, _] = wrench.force_n;
-            let [tx, ty, tz, _] = wrench.torque_n_m;
-            let on_sphere = Vector3::new(fx, fy, fz);
-            let arm = particles.poses[i as usize].place() - centre;
-            force += on_sphere;
-            torque += Vector3::new(tx, ty, tz) + arm.cross(&on_sphere);
-            *wrench = Wrench::default();
+    in_parts(Part::of(all, particles), &|part| {
+        for clump in part.clumps.iter_mut().filter(|clump| !clump.asleep) {
+            let centre = Vector3::from(clump.place_m);
+            let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
+            let [from, to] = clump.near.map(|n| n as usize);
+            for i in near[from..to].iter().map(|&i| i as usize - part.first) {
+                let wrench = &mut part.wrenches[i];
+                let [fx, fy, fz, _] = wrench.force_n;
+                let [tx, ty, tz, _] = wrench.torque_n_m;
+                let on_sphere = Vector3::new(fx, fy, fz);
+                let arm = part.poses[i].place() - centre;
+                force += on_sphere;
+                torque += Vector3::new(tx, ty, tz) + arm.cross(&on_sphere);
+                *wrench = Wrench::default();
+            }
+            let spin = clump.spin_rad_s(&templates[clump.template as usize]);
+            let power = force.dot(&Vector3::from(clump.velocity_m_s)) + torque.dot(&spin);
+            clump.impact_energy_j += (-power * dt).max(0.0);
+            clump.force_n = force.into();
+            clump.torque_n_m = torque.into();
         }
-        let spin = clump.spin_rad_s(&templates[clump.template as usize]);
-        let power = force.dot(&Vector3::from(clump.velocity_m_s)) + torque.dot(&spin);
-        clump.impact_energy_j += (-power * dt).max(0.0);
-        clump.force_n = force.into();
-        clump.torque_n_m = torque.into();
-    }
+        0.0
+    });
 }
 
 /// Changes velocities and angular momenta by the wrenches on the clumps and by gravity, over the
 /// time `kick_s`.
 pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     let Clumps { templates, all, .. } = clumps;
-    for clump in all.iter_mut().filter(|clump| !clump.asleep) {
-        kick_one(
-            clump,
-            &templates[clump.template as usize],
-            gravity_m_s2,
-            kick_s,
-        );
-    }
+    all.par_chunks_mut(CHUNK).for_each(|some| {
+        for clump in some.iter_mut().filter(|clump| !clump.asleep) {
+            let template = &templates[clump.template as usize];
+            kick_one(clump, template, gravity_m_s2, kick_s);
+        }
+    });
 }
 
 /// The same for one clump, awake or not.
@@ -218,41 +284,50 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
         near,
         ..
     } = clumps;
-    let mut fastest = 0.0_f64;
-    for clump in all.iter_mut().filter(|clump| !clump.asleep) {
-        let template = &templates[clump.template as usize];
-        let before = rotation_of(clump.turned);
-        for k in 0..3 {
-            clump.place_m[k] += time_step_s * clump.velocity_m_s[k];
+    in_parts(Part::of(all, particles), &|part| {
+        let mut fastest = 0.0_f64;
+        for clump in part.clumps.iter_mut().filter(|clump| !clump.asleep) {
+            let template = &templates[clump.template as usize];
+            let (speed, spin_rad_s) = drift_one(clump, template, time_step_s);
+            fastest = fastest.max(speed);
+            let to_space = rotation_of(clump.turned).to_rotation_matrix();
+            let per_s = 1.0 / time_step_s;
+            let [from, to] = clump.near.map(|n| n as usize);
+            for &i in &near[from..to] {
+                let sphere = template.outer[(i - clump.first) as usize] as usize;
+                let pose = &mut part.poses[i as usize - part.first];
+                let motion = &mut part.motions[i as usize - part.first];
+                let place = place_of(template, sphere, clump, &to_space);
+                // Contacts use the displacement in the step.
+                motion.velocity_m_s = ((place - pose.place()) * per_s).into();
+                motion.spin_rad_s = spin_rad_s;
+                pose.put_at(place.into());
+            }
         }
-        rotation::drift(
-            &mut clump.turned,
-            clump.angular_momentum,
-            template.moments_kg_m2,
-            time_step_s,
-        );
-        let now = rotation_of(clump.turned);
-        let turn = rotation_vector(numbers(&(now * before.inverse())));
-        let spin_rad_s = turn.map(|angle| angle / time_step_s);
-        let speed = Vector3::from(clump.velocity_m_s).norm();
-        let speed = speed + Vector3::from(spin_rad_s).norm() * template.reach_m;
-        clump.moved_m = speed * time_step_s;
-        fastest = fastest.max(speed);
-        let (centre, to_space) = (Vector3::from(clump.place_m), now.to_rotation_matrix());
-        let per_s = 1.0 / time_step_s;
-        let [from, to] = clump.near.map(|n| n as usize);
-        for &i in &near[from..to] {
-            let sphere = template.outer[(i - clump.first) as usize] as usize;
-            let pose = &mut particles.poses[i as usize];
-            let motion = &mut particles.motions[i as usize];
-            let place = centre + to_space * Vector3::from(template.spheres[sphere].place_m);
-            // Contacts use the displacement in the step.
-            motion.velocity_m_s = ((place - pose.place()) * per_s).into();
-            motion.spin_rad_s = spin_rad_s;
-            pose.put_at(place.into());
-        }
+        fastest
+    })
+}
+
+/// Updates position and orientation of a clump. Returns an upper bound of the speed of its spheres,
+/// m/s, and its mean spin in this step, rad/s.
+fn drift_one(clump: &mut Clump, template: &Template, time_step_s: f64) -> (f64, [f64; 3]) {
+    let before = rotation_of(clump.turned);
+    for k in 0..3 {
+        clump.place_m[k] += time_step_s * clump.velocity_m_s[k];
     }
-    fastest
+    rotation::drift(
+        &mut clump.turned,
+        clump.angular_momentum,
+        template.moments_kg_m2,
+        time_step_s,
+    );
+    let now = rotation_of(clump.turned);
+    let turn = rotation_vector(numbers(&(now * before.inverse())));
+    let spin_rad_s = turn.map(|angle| angle / time_step_s);
+    let speed = Vector3::from(clump.velocity_m_s).norm();
+    let speed = speed + Vector3::from(spin_rad_s).norm() * template.reach_m;
+    clump.moved_m = speed * time_step_s;
+    (speed, spin_rad_s)
 }
 
 /// Velocities and angular momenta at the time of the positions, between a kick and the drift after

@@ -19,10 +19,8 @@ pub(crate) const REPLACEMENT: Stage = Stage {
     need: |state, _| {
         let rules = &state.model.rules;
         let replaces = rules.triggers.iter().any(Option::is_some);
-        let starts = rules
-            .starts
-            .iter()
-            .any(|start| start.bonded || start.sphere);
+        let mut starts = rules.starts.iter();
+        let starts = !rules.inlets.is_empty() && starts.any(|start| start.bonded || start.sphere);
         Need::of(
             starts || replaces,
             || {

@@ -9,7 +9,7 @@ use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::Pose;
 
 /// Sets `squares` to the squared utilisations of a range of bonds that share a rule, before any
-/// scatter or strengthening of strengths, to 1e-13 of their values: the rule has no history, and no
+/// scatter or strengthening of strengths, to 1e-13 of their terms: the rule has no history, and no
 /// bond is damaged. 0 without strengths.
 pub(crate) fn squared_utilisations(
     bonds: &Bonds,

@@ -1,11 +1,12 @@
 //! Parts of the summary that only some runs have: adaptive steps, bodies that come and go, sleep.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
 use crate::stages::ledger::over;
 use crate::state::State;
+use crate::state::bodies::PlacedBody;
 use crate::state::sleep::Sleep;
 
 /// Range of an adaptive step.
@@ -33,7 +34,7 @@ pub struct OutletSummary {
 pub struct PopulationSummary {
     /// Rigid clumps of two or more spheres at the end.
     pub clumps: usize,
-    /// Bodies of one sphere at the end; fragments are not counted.
+    /// Bodies of one sphere at the end, from inlets and clumps; fragments are not counted.
     pub single_sphere_bodies: usize,
     /// Clumps that became bonded clusters.
     pub replaced: u32,
@@ -85,7 +86,7 @@ impl PopulationSummary {
 
     /// From a state at its end. None: no body can be added, removed or replaced, or is rigid in
     /// part.
-    pub fn of(state: &State) -> Option<Self> {
+    pub fn of(state: &State, bodies: &[PlacedBody]) -> Option<Self> {
         let (rules, clumps) = (&state.model.rules, &state.clumps);
         let population = &state.population;
         if !state.bodies_change() && rules.zones.is_empty() {
@@ -99,7 +100,7 @@ impl PopulationSummary {
             .sum();
         Some(Self {
             clumps: several,
-            single_sphere_bodies: clumps.all.len() - several + single_spheres(state),
+            single_sphere_bodies: clumps.all.len() - several + single_spheres(state, bodies),
             replaced: population.replaced,
             replaced_by_daughters: population.by_daughters.iter().sum(),
             restored: population.restored,
@@ -127,17 +128,15 @@ impl PopulationSummary {
     }
 }
 
-/// Bodies of one sphere that are no clumps and no fragments.
-fn single_spheres(state: &State) -> usize {
-    let Some(clusters) = &state.clusters else {
-        return 0;
-    };
-    let is_one = |id: &u32| {
-        let is_particle =
-            matches!(clusters.members(*id), [i] if (*i as usize) < state.particles.free);
-        is_particle && clusters.history[*id as usize].parent.is_none()
-    };
-    clusters.living().filter(is_one).count()
+/// Bodies of one sphere that are particles and come from inlets or clumps.
+fn single_spheres(state: &State, bodies: &[PlacedBody]) -> usize {
+    let templates = state.clumps.templates.iter().zip(&state.model.rules.starts);
+    let names: BTreeSet<&str> = templates
+        .filter(|(_, start)| start.sphere)
+        .map(|(template, _)| &template.body[..])
+        .collect();
+    let is_one = |body: &&PlacedBody| names.contains(&body.name[..]);
+    bodies.iter().filter(is_one).count()
 }
 
 /// Sleeping bodies.
