@@ -50,10 +50,10 @@ const SEEDS: std::ops::RangeInclusive<u32> = 1..=10;
 /// Those of the comparison of ways, and of the run with 300 bodies.
 const OF_WAYS: &str = DIAMETERS[1];
 const OF_MINUTE: &str = DIAMETERS[0];
-/// The run with 300 bodies.
-const MINUTE: [&str; 6] = [
+/// The runs with 300 bodies: their product belts, and what else they set.
+const PRODUCT_BELTS: [&str; 2] = ["0.1 m/s", "20 mm/s"];
+const MINUTE: [&str; 5] = [
     "run.end_time=\"60 s\"",
-    "walls.product-belt.surface_velocity=[\"0.1 m/s\",0,0]",
     "measures.mixing.cell_size=\"0.3 m\"",
     "output.frames=\"5 s\"",
     "output.series=\"0.1 s\"",
@@ -131,6 +131,19 @@ impl Runs {
         self.folder.join(format!("{body}-{diameters}.vtp"))
     }
 
+    /// Broken bonds of a run, and their fraction of the bonds of all bodies fed, as text.
+    fn broken(&self, run: &Run, diameters: &str) -> Result<String, Failed> {
+        let mut bonds = 0.0;
+        for body in BREAKABLE {
+            let own = dem_io::body::read_body(&self.body(body, diameters))?
+                .bonds
+                .len();
+            bonds += own as f64 * run.number(&format!("/flows/{body}/fed"));
+        }
+        let broken = run.number("/broken_bonds");
+        Ok(format!("{broken:.0} ({:.0} %)", 100.0 * broken / bonds))
+    }
+
     /// Runs the scene with these values, and cakes and lumps of spheres with these diameters, on
     /// one thread.
     fn run(&self, out: &str, diameters: &str, set: &[String]) -> Result<Run, Failed> {
@@ -170,11 +183,21 @@ fn main() -> Result<(), Failed> {
     write_ways(&runs)?;
     write_sizes(&runs)?;
     write_seeds(&runs)?;
-    let minute = runs.run("minute", OF_MINUTE, &MINUTE.map(str::to_owned))?;
-    write_minute(&minute)?;
-    write_flows(&minute)?;
-    write_mixing(&minute)?;
-    write_sieves(&minute)
+    let minute = |speed: &str| {
+        let belt = format!("walls.product-belt.surface_velocity=[\"{speed}\",0,0]");
+        let set: Vec<String> = MINUTE
+            .map(str::to_owned)
+            .into_iter()
+            .chain([belt])
+            .collect();
+        runs.run(&format!("minute at {speed}"), OF_MINUTE, &set)
+    };
+    let [fast, slow] = PRODUCT_BELTS.map(minute);
+    let [fast, slow] = [fast?, slow?];
+    write_minute([&fast, &slow])?;
+    write_flows(&fast)?;
+    write_mixing([&fast, &slow])?;
+    write_sieves(&fast)
 }
 
 fn write_ways(runs: &Runs) -> Result<(), Failed> {
@@ -186,6 +209,8 @@ fn write_ways(runs: &Runs) -> Result<(), Failed> {
         "pieces",
         "cake: d10, d50, d80, mm",
         "lump: d10, d50, d80, mm",
+        "left with the product",
+        "Lacey's index",
         "energy error",
     ]);
     for (number, (words, replacement)) in WAYS.iter().enumerate() {
@@ -204,13 +229,18 @@ fn write_ways(runs: &Runs) -> Result<(), Failed> {
                 (*words).to_owned(),
                 if has_dif { "yes" } else { "no" }.to_owned(),
                 format!("{:.0} s", found.number("/processor_s")),
-                format!("{:.0}", found.number("/broken_bonds")),
+                runs.broken(&found, OF_WAYS)?,
                 format!(
                     "{:.0}",
                     found.number("/fragments/count") + found.number("/population/discharged")
                 ),
                 found.sizes("cake"),
                 found.sizes("lump"),
+                format!(
+                    "{:.1} kg",
+                    found.number("/population/outlets/product/mass_kg")
+                ),
+                format!("{:.2}", found.number("/measures/mixing/value")),
                 format!("{:.1e}", found.number("/energy_error")),
             ]);
         }
@@ -228,6 +258,8 @@ fn write_sizes(runs: &Runs) -> Result<(), Failed> {
         "bonds broken",
         "cake: d10, d50, d80, mm",
         "lump: d10, d50, d80, mm",
+        "left with the product",
+        "Lacey's index",
         "energy error",
     ]);
     for diameters in DIAMETERS {
@@ -246,9 +278,14 @@ fn write_sizes(runs: &Runs) -> Result<(), Failed> {
                 if has_dif { "yes" } else { "no" }.to_owned(),
                 format!("{:.1} us", 1e6 * found.number("/time_step_s")),
                 format!("{:.0} s", found.number("/processor_s")),
-                format!("{:.0}", found.number("/broken_bonds")),
+                runs.broken(&found, diameters)?,
                 found.sizes("cake"),
                 found.sizes("lump"),
+                format!(
+                    "{:.1} kg",
+                    found.number("/population/outlets/product/mass_kg")
+                ),
+                format!("{:.2}", found.number("/measures/mixing/value")),
                 format!("{:.1e}", found.number("/energy_error")),
             ]);
         }
@@ -400,28 +437,31 @@ fn waiting(count: usize, lies: bool) -> String {
 }
 
 /// What the bin holds every ten seconds.
-fn write_mixing(run: &Run) -> Result<(), Failed> {
+fn write_mixing(found: [&Run; 2]) -> Result<(), Failed> {
     let mut table = Table::new(&[
         "time",
+        "product belt",
         "pieces in the scene",
         "mass in the bin",
         "Lacey's index",
     ]);
-    let columns = ["pieces", "mass_in_bin_kg", "mixing"];
-    let [pieces, mass, mixing] = columns.map(|name| run.column(name));
-    let [pieces, mass, mixing] = [pieces?, mass?, mixing?];
-    for number in 1..=6 {
-        let wanted_s = 10.0 * f64::from(number);
-        let at = pieces
-            .iter()
-            .position(|(time_s, _)| *time_s > wanted_s - 0.05);
-        let at = at.ok_or("the run is too short")?;
-        table.row(&[
-            format!("{wanted_s:.0} s"),
-            format!("{:.0}", pieces[at].1),
-            format!("{:.1} kg", mass[at].1),
-            format!("{:.2}", mixing[at].1),
-        ]);
+    for (run, speed) in found.into_iter().zip(PRODUCT_BELTS) {
+        let columns = ["pieces", "mass_in_bin_kg", "mixing"];
+        let [pieces, mass, mixing] = columns.map(|name| run.column(name));
+        let [pieces, mass, mixing] = [pieces?, mass?, mixing?];
+        for number in 1..=6 {
+            let wanted_s = 10.0 * f64::from(number);
+            let mut times = pieces.iter();
+            let at = times.position(|(time_s, _)| *time_s > wanted_s - 0.05);
+            let at = at.ok_or("the run is too short")?;
+            table.row(&[
+                format!("{wanted_s:.0} s"),
+                speed.to_owned(),
+                format!("{:.0}", pieces[at].1),
+                format!("{:.1} kg", mass[at].1),
+                format!("{:.2}", mixing[at].1),
+            ]);
+        }
     }
     table.write(PAGE, "process_tables: mixing")
 }
@@ -482,42 +522,49 @@ fn discharged(run: &Run) -> Result<BTreeMap<String, f64>, Failed> {
     Ok(flows)
 }
 
-/// The run with 300 bodies.
-fn write_minute(run: &Run) -> Result<(), Failed> {
-    let mut table = Table::new(&["a minute of the process", ""]);
-    let mut row = |what: &str, value: String| table.row(&[what.to_owned(), value]);
-    row(
-        "processor time, one thread",
-        format!("{:.1} min", run.number("/processor_s") / 60.0),
-    );
-    row("steps", format!("{:.0}", run.number("/steps")));
-    row(
-        "bodies fed",
-        format!("{:.0}", run.number("/population/fed")),
-    );
+/// The runs with 300 bodies.
+fn write_minute(found: [&Run; 2]) -> Result<(), Failed> {
+    let [fast, slow] = PRODUCT_BELTS.map(|speed| format!("product belt {speed}"));
+    let mut table = Table::new(&["a minute of the process", &fast, &slow]);
+    let mut row = |what: &str, value: &dyn Fn(&Run) -> String| {
+        let [fast, slow] = found.map(value);
+        table.row(&[what.to_owned(), fast, slow]);
+    };
+    let count = |pointer: &'static str| move |run: &Run| format!("{:.0}", run.number(pointer));
+    row("processor time, one thread", &|run| {
+        format!("{:.1} min", run.number("/processor_s") / 60.0)
+    });
+    row("steps", &count("/steps"));
+    row("bodies fed", &count("/population/fed"));
     row(
         "bodies and pieces inside at the end",
-        format!("{:.0}", run.number("/fragments/count")),
+        &count("/fragments/count"),
     );
-    row(
-        "pieces discharged",
-        format!("{:.0}", run.number("/population/discharged")),
-    );
-    row(
-        "bonds broken",
-        format!("{:.0}", run.number("/broken_bonds")),
-    );
-    row("cake: d10, d50, d80", format!("{} mm", run.sizes("cake")));
-    row("lump: d10, d50, d80", format!("{} mm", run.sizes("lump")));
-    row(
-        "Lacey's index at the end",
-        format!("{:.2}", run.number("/measures/mixing/value")),
-    );
-    row(
-        "energy error",
-        format!("{:.1e}", run.number("/energy_error")),
-    );
-    let missing = run.flow_kg(|flow| flow["missing_kg"].as_f64().unwrap_or(f64::NAN).abs());
-    row("fed, less left and inside", format!("{missing:.1e} kg"));
+    row("their mass, over that of a mean body", &|run| {
+        let inside_kg = run.flow_kg(|flow| flow["inside_kg"].as_f64().unwrap_or(f64::NAN));
+        let mean_kg = run.number("/population/fed_kg") / run.number("/population/fed");
+        format!("{:.0}", inside_kg / mean_kg)
+    });
+    row("pieces discharged", &count("/population/discharged"));
+    row("bonds broken", &count("/broken_bonds"));
+    row("cake: d10, d50, d80", &|run| {
+        format!("{} mm", run.sizes("cake"))
+    });
+    row("lump: d10, d50, d80", &|run| {
+        format!("{} mm", run.sizes("lump"))
+    });
+    row("Lacey's index at the end", &|run| {
+        format!("{:.2}", run.number("/measures/mixing/value"))
+    });
+    row("largest overlap, of the smaller radius", &|run| {
+        format!("{:.2}", run.number("/largest_overlap"))
+    });
+    row("energy error", &|run| {
+        format!("{:.1e}", run.number("/energy_error"))
+    });
+    row("fed, less left and inside", &|run| {
+        let missing = run.flow_kg(|flow| flow["missing_kg"].as_f64().unwrap_or(f64::NAN).abs());
+        format!("{missing:.1e} kg")
+    });
     table.write(PAGE, "process_tables: minute")
 }

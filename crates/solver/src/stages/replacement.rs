@@ -19,16 +19,17 @@ pub(crate) const REPLACEMENT: Stage = Stage {
     need: |state, _| {
         let rules = &state.model.rules;
         let replaces = rules.triggers.iter().any(Option::is_some);
+        let feeds = !rules.inlets.is_empty();
         let mut starts = rules.starts.iter();
-        let starts = !rules.inlets.is_empty() && starts.any(|start| start.bonded || start.sphere);
+        let starts = starts.any(|start| start.bonded || (feeds && start.sphere));
         Need::of(
             starts || replaces,
             || {
-                let of_inlets = "what inlets feed starts as bonded clusters or single spheres";
+                let of_starts = "new bodies start as bonded clusters or single spheres";
                 let text = if replaces {
                     "clumps become bonded clusters"
                 } else {
-                    of_inlets
+                    of_starts
                 };
                 text.to_owned()
             },
