@@ -190,7 +190,8 @@ fn main() -> Result<(), Failed> {
             .into_iter()
             .chain([belt])
             .collect();
-        runs.run(&format!("minute at {speed}"), OF_MINUTE, &set)
+        let name = format!("minute-{}", speed.replace([' ', '/'], "-"));
+        runs.run(&name, OF_MINUTE, &set)
     };
     let [fast, slow] = PRODUCT_BELTS.map(minute);
     let [fast, slow] = [fast?, slow?];
@@ -210,7 +211,6 @@ fn write_ways(runs: &Runs) -> Result<(), Failed> {
         "cake: d10, d50, d80, mm",
         "lump: d10, d50, d80, mm",
         "left with the product",
-        "Lacey's index",
         "energy error",
     ]);
     for (number, (words, replacement)) in WAYS.iter().enumerate() {
@@ -240,7 +240,6 @@ fn write_ways(runs: &Runs) -> Result<(), Failed> {
                     "{:.1} kg",
                     found.number("/population/outlets/product/mass_kg")
                 ),
-                format!("{:.2}", found.number("/measures/mixing/value")),
                 format!("{:.1e}", found.number("/energy_error")),
             ]);
         }
@@ -259,7 +258,6 @@ fn write_sizes(runs: &Runs) -> Result<(), Failed> {
         "cake: d10, d50, d80, mm",
         "lump: d10, d50, d80, mm",
         "left with the product",
-        "Lacey's index",
         "energy error",
     ]);
     for diameters in DIAMETERS {
@@ -285,7 +283,6 @@ fn write_sizes(runs: &Runs) -> Result<(), Failed> {
                     "{:.1} kg",
                     found.number("/population/outlets/product/mass_kg")
                 ),
-                format!("{:.2}", found.number("/measures/mixing/value")),
                 format!("{:.1e}", found.number("/energy_error")),
             ]);
         }
