@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::program::{Bench, table};
+use crate::program::{Bench, scene_of_data, table};
 
 /// A row of 21 spheres of radius 1 mm along z between the ends of two bars: bonds of 20 GPa.
 fn row(test: &str, bonds: &str) -> String {
@@ -241,6 +241,46 @@ fn strain_gauges_record_the_waves_of_d_alembert() {
         "{off:?} {along_s}"
     );
     assert!(bench.path("out/plots/gauge-signals.svg").is_file());
+}
+
+/// The disc of data that is seated on its bars is in equilibrium when it splits, and its verdict is
+/// sound. The same disc between bars that only touch its rim is not, and the verdict says so.
+#[test]
+fn a_disc_is_in_equilibrium_if_it_is_seated_on_its_bars() {
+    let bench = Bench::new();
+    let scene = scene_of_data("hopkinson-disc.toml");
+    let run = |name: &str, options: &[&str]| -> Value {
+        let end = [
+            "--json",
+            "--output",
+            name,
+            "--set",
+            "run.end_time=\"300 us\"",
+        ];
+        let said = bench.good(&scene, &[&end[..], options].concat());
+        serde_json::from_str(&said).unwrap()
+    };
+    let seated = run("seated", &[]);
+    assert_eq!(seated["test"]["broken"], true, "{seated}");
+    let apart = figure(&seated, "force equilibrium");
+    assert!(apart.abs() < 0.1, "{apart}");
+    assert_eq!(seated["verdict"]["sound"], true, "{}", seated["verdict"]);
+    let touching = run(
+        "touching",
+        &[
+            "--set",
+            "walls.incident-bar.plane.point=[0, 0, \"25.01 mm\"]",
+            "--set",
+            "walls.transmission-bar.plane.point=[0, 0, \"-25.01 mm\"]",
+        ],
+    );
+    let apart = figure(&touching, "force equilibrium");
+    assert!(apart.abs() > 0.1, "{apart}");
+    let warnings = touching["verdict"]["warnings"].to_string();
+    assert!(
+        warnings.contains("the forces on the two ends differ by"),
+        "{warnings}"
+    );
 }
 
 /// A row that breaks has a strength and a dynamic increase factor; a run that was cut in two goes
