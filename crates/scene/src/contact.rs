@@ -316,10 +316,7 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
                 "not given, which means 0"
             }
         );
-        return Err(field.refuse(
-            problem,
-            "give friction above 0, or rolling_friction = 0",
-        ));
+        return Err(field.refuse(problem, "give friction above 0, or rolling_friction = 0"));
     }
     Ok(if is_sprung == Some(true) {
         Rolling::SpringDashpot { friction, damping }
