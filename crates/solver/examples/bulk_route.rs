@@ -8,7 +8,7 @@
 //! cargo run --release -p dem-run --example bulk_route -- heaps
 //! ```
 //!
-//! Builds the program and takes some ten minutes each. Results are in `target/bulk-route`;
+//! Builds the program and takes ten to fifteen minutes each. Results are in `target/bulk-route`;
 //! `--resume` at the end keeps the complete runs of the heaps.
 #![allow(
     clippy::print_stdout,
