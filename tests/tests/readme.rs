@@ -8,7 +8,7 @@ use std::process::Command;
 use super::{DEM_PACK, DEM_RUN, dem_pack, dem_run, root};
 
 /// The pages whose commands are run and whose options must exist.
-const PAGES: [&str; 9] = [
+const PAGES: [&str; 15] = [
     "README.md",
     "doc/README.md",
     "doc/packing.md",
@@ -18,6 +18,12 @@ const PAGES: [&str; 9] = [
     "doc/measured-curves.md",
     "doc/gallery.md",
     "doc/development.md",
+    "doc/bulk.md",
+    "doc/dynamic-tests.md",
+    "doc/laboratory.md",
+    "doc/pressing.md",
+    "doc/process.md",
+    "doc/round-robin.md",
 ];
 
 fn read(page: &str) -> String {
@@ -344,6 +350,88 @@ fn the_gallery_names_every_scene() {
             "doc/gallery.md does not name {scene}"
         );
     }
+}
+
+#[test]
+fn the_page_of_studies_names_every_study() {
+    let page = read("doc/studies.md");
+    for study in files_in("data/studies", ".toml") {
+        let name = study.trim_start_matches("data/studies/");
+        let row = format!("\n| `{name}` |");
+        assert!(page.contains(&row), "doc/studies.md has no row of {name}");
+    }
+}
+
+/// All examples of the solver write tables, but for the one of [the library](doc/library.md).
+#[test]
+fn the_gallery_names_every_program_that_writes_tables() {
+    let gallery = read("doc/gallery.md");
+    let entries = fs::read_dir(root().join("crates/solver/examples")).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let names: Vec<String> = names
+        .map(|name| name.trim_end_matches(".rs").to_owned())
+        .filter(|name| !["programs", "step_a_scene"].contains(&name.as_str()))
+        .collect();
+    assert!(names.len() >= 11, "{names:?}");
+    for name in names {
+        let command = format!("| `cargo run --release -p dem-run --example {name}");
+        assert!(gallery.contains(&command), "doc/gallery.md lacks {name}");
+    }
+}
+
+/// The commands in comments of scenes and studies: `#   dem-run data/scenes/NAME.toml OPTIONS`. A
+/// remark follows after two spaces or more.
+fn commands_in_comments() -> Vec<String> {
+    let mut files = files_in("data/scenes", ".toml");
+    files.extend(files_in("data/studies", ".toml"));
+    let commands = files.iter().flat_map(|file| {
+        let text = read(file);
+        let lines = text
+            .lines()
+            .filter_map(|line| line.strip_prefix("#   dem-run "));
+        let commands = lines.map(|line| line.split("  ").next().unwrap().to_owned());
+        commands.collect::<Vec<_>>()
+    });
+    commands.collect()
+}
+
+/// `dem-run check` refuses no command that a scene prints, except that a body or a material which
+/// an earlier command makes is not there. A study is listed instead.
+#[test]
+fn commands_in_comments_of_scenes_and_studies_are_not_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut counts = [0, 0];
+    for command in commands_in_comments() {
+        let is_study = command.starts_with("sweep ");
+        if !is_study && !command.starts_with("data/scenes/") {
+            continue;
+        }
+        let made = ["--body ", "--material rock.toml"].map(|word| command.contains(word));
+        if made.contains(&true) || command.contains("larger-spheres") {
+            continue;
+        }
+        // `--output` is for a run.
+        let command = command.split(" --output ").next().unwrap();
+        let command = command.split(" -o ").next().unwrap();
+        let options = if is_study {
+            format!(
+                "{command} --list --output {}",
+                folder.path().join("sweep").display()
+            )
+        } else {
+            format!("check {command}")
+        };
+        let output = Command::new("bash")
+            .args(["-c", &format!("{DEM_RUN} {options}")])
+            .current_dir(root())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{command}\n{said}");
+        counts[usize::from(is_study)] += 1;
+        let _ = fs::remove_dir_all(folder.path().join("sweep"));
+    }
+    assert!(counts[0] >= 35 && counts[1] >= 8, "{counts:?}");
 }
 
 /// Every line of the report begins with a name that the table of doc/packing.md explains.

@@ -86,10 +86,10 @@ pub(super) static CONTACT: Schema = Schema {
         ),
         Key::number(
             "rolling_friction",
-            "Coefficient of rolling friction. Requires a `friction` above 0.",
+            "Coefficient of rolling friction; 0 is none. Above 0 it requires a `friction` above 0.",
         )
-        .positive()
-        .remedy("a law of rolling needs its friction: remove rolling and rolling_friction where nothing resists")
+        .not_negative()
+        .remedy("0 is none")
         .sometimes_required("0.05"),
         Key::number(
             "rolling_damping_ratio",
@@ -147,7 +147,7 @@ pub enum ContactLaw {
 /// Resistance to rolling.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rolling {
-    /// None, without `rolling_friction`.
+    /// None: without `rolling_friction`, or where it is 0.
     None,
     /// "constant-torque", unless given.
     ConstantTorque {
@@ -301,6 +301,9 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
         return Ok(Rolling::None);
     }
     let friction = table.read("rolling_friction")?;
+    if friction == 0.0 {
+        return Ok(Rolling::None);
+    }
     if let (Some(field), true) = (table.get("rolling_friction"), sliding_friction == 0.0) {
         let problem = format!(
             "{} is {}, but {}.friction is {}: what slides freely has no grip to roll with",
@@ -313,10 +316,7 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
                 "not given, which means 0"
             }
         );
-        return Err(field.refuse(
-            problem,
-            "give friction above 0, or remove rolling and rolling_friction",
-        ));
+        return Err(field.refuse(problem, "give friction above 0, or rolling_friction = 0"));
     }
     Ok(if is_sprung == Some(true) {
         Rolling::SpringDashpot { friction, damping }

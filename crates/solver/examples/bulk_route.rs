@@ -1,12 +1,15 @@
-//! Writes the table of doc/bulk.md: from a poured density to the density of the particles, to the
-//! overlap of a body, and back by shattering it (Platzer 2022, 3.1.1 and 4.5.1.5). From the folder
-//! of the clone:
+//! Writes the tables of doc/bulk.md. `route`: from a poured density to the density of the
+//! particles, to the overlap of a body, and back by shattering it (Platzer 2022, 3.1.1 and
+//! 4.5.1.5). `heaps`: angles of repose of beads that run out of a lifted tube, and of the same
+//! beads poured. From the folder of the clone:
 //!
 //! ```sh
-//! cargo run --release -p dem-run --example bulk_route
+//! cargo run --release -p dem-run --example bulk_route -- route
+//! cargo run --release -p dem-run --example bulk_route -- heaps
 //! ```
 //!
-//! Builds the program and takes some ten minutes. Results are in `target/bulk-route`.
+//! Builds the program and takes ten to fifteen minutes each. Results are in `target/bulk-route`;
+//! `--resume` at the end keeps the complete runs of the heaps.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -21,8 +24,9 @@ use dem_io::body::mass::of_named_density;
 use dem_io::body::write_body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
+use serde_json::Value;
 
-use programs::study::{Table, measured, run_scene};
+use programs::study::{Table, measured, run_scene, run_scene_or_keep};
 use programs::{Failed, Programs, results};
 
 /// Densities of the material as a laboratory measures them, kg/m3: poured, and solid.
@@ -34,13 +38,27 @@ const TRIAL_KG_M3: f64 = 2050.0;
 const DIAMETERS: &str = "3.5mm..5mm";
 const SEEDS: [u64; 3] = [1, 2, 3];
 
+/// Coefficients of rolling friction of the heaps.
+const ROLLING: [f64; 3] = [0.2, 0.1, 0.05];
+
 fn main() -> Result<(), Failed> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let keeps = words.iter().any(|word| word == "--resume");
     let folder = results("bulk-route")?;
     let dem_run = Programs::build()?.dem_run;
+    match words.first().map(String::as_str) {
+        Some("route") => route(&dem_run, &folder),
+        Some("heaps") => heaps(&dem_run, &folder, keeps),
+        _ => Err("say which table: route or heaps".into()),
+    }
+}
+
+/// Table of the route from a poured density to that of a solid and back.
+fn route(dem_run: &Path, folder: &Path) -> Result<(), Failed> {
     let run = |scene: &str, set: &[String], bar: Option<&Path>, out: &str| {
         let mut options: Vec<String> = set.iter().map(|set| format!("--set={set}")).collect();
         options.extend(bar.map(|bar| format!("--body=bar={}", bar.display())));
-        run_scene(&dem_run, scene, &options, &folder.join(out))
+        run_scene(dem_run, scene, &options, &folder.join(out))
     };
     let mut table = Table::new(&[
         "seed",
@@ -114,6 +132,115 @@ fn main() -> Result<(), Failed> {
         measured(&lying, "bulk_density")?
     );
     Ok(())
+}
+
+/// Ways to make a heap of 1,500 beads.
+#[derive(Clone, Copy)]
+enum Way {
+    /// data/scenes/lifted-cylinder.toml, lifted by 30 mm/s.
+    Lifted,
+    /// By 75 mm/s.
+    LiftedFast,
+    /// data/scenes/wet-heap.toml, dry and with the beads of the other scene.
+    Poured,
+}
+
+impl Way {
+    /// The scene, a word for the folder, and the options.
+    fn options(self, rolling: f64, seed: u64) -> (&'static str, &'static str, Vec<String>) {
+        let lifted =
+            ["bead", "plate"].map(|on| format!("contacts.bead-{on}.rolling_friction={rolling}"));
+        let (scene, word, mut set) = match self {
+            Self::Lifted => ("lifted-cylinder", "lifted-30", lifted.to_vec()),
+            Self::LiftedFast => {
+                let faster = [
+                    "walls.tube.table=[[\"0.5 s\",0],[\"1.3 s\",1]]",
+                    "run.end_time=\"1.6 s\"",
+                ];
+                let set = lifted.into_iter().chain(faster.map(str::to_owned));
+                ("lifted-cylinder", "lifted-75", set.collect())
+            }
+            Self::Poured => {
+                let rolling = format!("contacts.glass-glass.rolling_friction={rolling}");
+                let set = [rolling].into_iter().chain(POURED.map(str::to_owned));
+                ("wet-heap", "poured", set.collect())
+            }
+        };
+        set.push(format!("run.seed={seed}"));
+        let options = set.iter().map(|set| format!("--set={set}")).collect();
+        (scene, word, options)
+    }
+}
+
+/// Settings with which `wet-heap.toml` pours 1,500 dry beads of `lifted-cylinder.toml`.
+const POURED: [&str; 10] = [
+    "contacts.glass-glass.liquid_bridge.surface_tension=1e-9",
+    "contacts.glass-glass.friction=0.5",
+    "contacts.glass-glass.restitution=0.4",
+    "materials.glass.young_modulus=\"2 MPa\"",
+    "bodies.bead.particles=[[0,0,0,\"2 mm\"]]",
+    "regions.gate.box={min=[\"-10 mm\",\"-10 mm\",\"45 mm\"],max=[\"10 mm\",\"10 mm\",\"65 mm\"]}",
+    "inlets.pour.count=1500",
+    "inlets.pour.rate=\"1000 /s\"",
+    "inlets.pour.end=\"2 s\"",
+    "run.end_time=\"2.2 s\"",
+];
+
+/// Table of the angles of repose of lifted and poured heaps.
+fn heaps(dem_run: &Path, folder: &Path, keeps: bool) -> Result<(), Failed> {
+    let mut table = Table::new(&[
+        "rolling friction",
+        "lifted by 30 mm/s",
+        "lifted by 75 mm/s",
+        "poured",
+        "bulk density in the tube",
+        "in the heap lifted by 30 mm/s",
+    ]);
+    for rolling in ROLLING {
+        let summaries = |way: Way| {
+            at_once(|seed| {
+                let (scene, word, mut options) = way.options(rolling, seed);
+                options.push("--threads=1".to_owned());
+                let folder = folder.join(format!("{word}-{rolling}-{seed}"));
+                run_scene_or_keep(dem_run, scene, &options, &folder, keeps)
+            })
+        };
+        let [lifted, fast, poured] = [
+            summaries(Way::Lifted)?,
+            summaries(Way::LiftedFast)?,
+            summaries(Way::Poured)?,
+        ];
+        let angle = |of: &[Value]| mean_and_range(of, "angle_of_repose", "degrees", 1);
+        let density = |name: &str| mean_and_range(&lifted, name, "kg/m3", 0);
+        table.row(&[
+            rolling.to_string(),
+            angle(&lifted)?,
+            angle(&fast)?,
+            angle(&poured)?,
+            density("poured_bulk_density")?,
+            density("heap_bulk_density")?,
+        ]);
+    }
+    table.write("doc/bulk.md", "bulk_route heaps")
+}
+
+/// Mean of a measure over runs, and its smallest and largest value.
+fn mean_and_range(
+    summaries: &[Value],
+    measure: &str,
+    unit: &str,
+    decimals: usize,
+) -> Result<String, Failed> {
+    let values: Result<Vec<f64>, Failed> = (summaries.iter())
+        .map(|summary| measured(summary, measure))
+        .collect();
+    let values = values?;
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    Ok(format!(
+        "{mean:.decimals$} {unit} ({smallest:.decimals$} to {largest:.decimals$})"
+    ))
 }
 
 /// The results of some work for each seed, all at once.

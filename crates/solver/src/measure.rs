@@ -10,6 +10,7 @@ mod whole;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use dem_io::units::significant;
 use dem_scene::{Measure, Quantity, Statistic};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
@@ -459,6 +460,28 @@ impl Probe {
         } else {
             None
         }
+    }
+
+    /// For a run that went on to its end time: what it says of a measure with `end_run_above`,
+    /// whose value did not end it. None for any other, and without a value.
+    pub fn end_not_reached(&self) -> Option<String> {
+        let limit = self.measure.end_run_above?;
+        let largest = self.history.largest?;
+        let remedy = if largest > limit {
+            "this was between two rows of the time series: make output.series shorter"
+        } else {
+            "set a later run.end_time, or let what changes it, such as a plunger, move faster"
+        };
+        let with_unit = |value| {
+            let text = format!("{} {}", significant(value, 4), self.unit());
+            text.trim_end().to_owned()
+        };
+        Some(format!(
+            "{} did not end the run, which its end_run_above of {} was to do: its largest value is {}; {remedy}",
+            self.name,
+            with_unit(limit),
+            with_unit(largest)
+        ))
     }
 
     /// Folds over the bonds that have an end in the set, with the number of ends in it.

@@ -6,7 +6,7 @@ use dem_results::write_json;
 use super::begin::Run;
 use super::events::{write_breaks_between, write_sleep, write_zones};
 use super::finish::End;
-use super::observe::Ended;
+use super::observe::{AT_END_TIME, Ended};
 use super::outcome::Outcome;
 use super::past_outlets::past_outlets;
 use crate::laboratory::evaluate::TestResult;
@@ -45,6 +45,9 @@ impl Run<'_> {
         warnings.extend(seen.warnings(&self.state, self.scene, bodies, flies, is_stopped));
         if !is_stopped {
             warnings.extend(past_outlets(&self.state, pieces));
+        }
+        if ended.by == AT_END_TIME && self.progress.exceeded.is_none() {
+            warnings.extend(self.probes.iter().filter_map(Probe::end_not_reached));
         }
         let mut summary = self.summary(&ended, fragments.as_deref(), test.transpose()?);
         let note = flying.filter(|flying| !flying.touches);

@@ -32,6 +32,9 @@ use crate::step::number_of;
 /// Wall time between two checkpoints unless the scene sets an interval.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
+/// Why a run ended that went on to its end time.
+pub(super) const AT_END_TIME: &str = "end time";
+
 /// Interval between checks of bending and twisting of bonds, in steps: each check costs about five
 /// times as much as the bonds of a step.
 const EDGES_EVERY: u64 = 1024;
@@ -123,7 +126,7 @@ impl Run<'_> {
             self.progress.test_ended = over;
             let by = match (due.end, &self.watch) {
                 (true, Some(watch)) => watch.ended_by(over),
-                (true, None) => "end time",
+                (true, None) => AT_END_TIME,
                 (false, _) if rests => "rest",
                 (false, _) => "measure",
             };

@@ -4,6 +4,7 @@ use super::{Bench, dem_pack, last_frame, root, scene_of_data, table};
 use crate::helpers::mass_in_box_kg;
 use dem_io::body::mass::of_named_density;
 use dem_io::body::{read_body, read_particles};
+use rayon::prelude::*;
 use serde_json::Value;
 
 /// Slope of a straight line through the values of a column of `series.csv` between two times.
@@ -15,6 +16,11 @@ fn slope(bench: &Bench, column: &str, [from, to]: [f64; 2]) -> f64 {
         .map(|row| [time, value].map(|k| row[k].parse().unwrap()))
         .filter(|[t, _]: &[f64; 2]| (from..to).contains(t))
         .collect();
+    slope_of_line(&points)
+}
+
+/// Slope of the straight line through points, by least squares.
+fn slope_of_line(points: &[[f64; 2]]) -> f64 {
     let mean = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64);
     let squares: f64 = points.iter().map(|p| (p[0] - mean[0]).powi(2)).sum();
     let products = points.iter().map(|p| (p[0] - mean[0]) * (p[1] - mean[1]));
@@ -140,4 +146,151 @@ fn bulking_needs_a_body_with_a_shape() {
         said.contains("[measures.factor]: \"a\" is no body with a shape of known volume"),
         "{said}"
     );
+}
+
+/// Diameter of the beads of a heap, m.
+const BEAD_M: f64 = 4e-3;
+
+/// A heap: the tangent of the measured angle of repose, the slope that [`flank`] finds, and the
+/// length of that flank, m.
+struct Heap {
+    measured: f64,
+    counted: f64,
+    flank_m: f64,
+}
+
+/// The heap that a scene of data leaves.
+fn heap(scene: &str, settings: &[&str]) -> Heap {
+    let bench = Bench::new();
+    let mut options = vec!["--quiet", "--json", "--threads", "1", "--output", "out"];
+    options.extend(settings.iter().flat_map(|setting| ["--set", setting]));
+    let said = bench.good(&scene_of_data(scene), &options);
+    let summary: Value = serde_json::from_str(&said).unwrap();
+    let frame = read_particles(&last_frame(&bench.path("out"))).unwrap();
+    assert_eq!(frame.radii, [BEAD_M / 2.0; 300]);
+    let (counted, flank_m) = flank(&frame.positions);
+    Heap {
+        measured: value(&summary, "angle_of_repose").to_radians().tan(),
+        counted,
+        flank_m,
+    }
+}
+
+/// The heap of 300 beads that run out of a lifted tube.
+fn lifted(rolling_friction: f64) -> Heap {
+    let [bead, plate] = ["bead", "plate"]
+        .map(|on| format!("contacts.bead-{on}.rolling_friction={rolling_friction}"));
+    let settings = [
+        bead.as_str(),
+        plate.as_str(),
+        "inlets.fill.count=300",
+        "inlets.fill.rate=\"2000 /s\"",
+        "regions.gate.cylinder.radius=\"11 mm\"",
+        "walls.tube.scale=3",
+        "walls.tube.displacement=[0,0,\"25 mm\"]",
+        "walls.tube.table=[[\"0.25 s\",0],[\"1 s\",1]]",
+        "run.end_time=\"1.1 s\"",
+        "output.pictures=10",
+    ];
+    heap("lifted-cylinder.toml", &settings)
+}
+
+/// The heap of 300 beads of the same material, dry, that are poured.
+fn poured(rolling_friction: f64) -> Heap {
+    let rolling = format!("contacts.glass-glass.rolling_friction={rolling_friction}");
+    let settings = [
+        rolling.as_str(),
+        "contacts.glass-glass.friction=0.5",
+        "contacts.glass-glass.restitution=0.4",
+        "contacts.glass-glass.liquid_bridge.surface_tension=1e-9",
+        "materials.glass.young_modulus=\"2 MPa\"",
+        "bodies.bead.particles=[[0,0,0,\"2 mm\"]]",
+        "inlets.pour.count=300",
+        "inlets.pour.rate=\"400 /s\"",
+        "inlets.pour.end=\"1 s\"",
+        "run.end_time=\"1.2 s\"",
+        "output.pictures=10",
+    ];
+    heap("wet-heap.toml", &settings)
+}
+
+/// Slope of a straight line through the surface of a heap of beads over the distance from its
+/// middle, and the length of the flank, m. The surface is what a plumb line finds on a grid of a
+/// quarter of a bead, averaged over rings as wide as a bead. The flank begins a bead from the
+/// middle, where the tip is blunt, and ends where the beads cover less than a layer half as high as
+/// they are.
+fn flank(places: &[[f64; 3]]) -> (f64, f64) {
+    const RINGS: usize = 40;
+    let radius = BEAD_M / 2.0;
+    let middle =
+        [0, 1].map(|k| places.iter().map(|place| place[k]).sum::<f64>() / places.len() as f64);
+    let mut rings = [[0.0; 2]; RINGS];
+    let reach = 4 * RINGS as i32;
+    for (i, j) in (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| (i, j))) {
+        let across = [i, j].map(|k| f64::from(k) * BEAD_M / 4.0);
+        let ring = (across[0].hypot(across[1]) / BEAD_M) as usize;
+        if ring >= RINGS {
+            continue;
+        }
+        let tops = places.iter().filter_map(|place| {
+            let [x, y] = [0, 1].map(|k| place[k] - middle[k] - across[k]);
+            let cap = radius * radius - x * x - y * y;
+            (cap > 0.0).then(|| place[2] + cap.sqrt())
+        });
+        rings[ring][0] += tops.fold(0.0, f64::max);
+        rings[ring][1] += 1.0;
+    }
+    let surface = rings.iter().enumerate().map(|(ring, [sum, count])| {
+        let distance = (ring as f64 + 0.5) * BEAD_M;
+        [distance, sum / count]
+    });
+    let flank: Vec<[f64; 2]> = surface
+        .skip(1)
+        .take_while(|[_, height]| *height >= radius)
+        .collect();
+    (-slope_of_line(&flank), (flank.len() - 1) as f64 * BEAD_M)
+}
+
+#[test]
+fn heaps_of_rough_beads_are_steeper_lifted_or_poured() {
+    let ways: [fn(f64) -> Heap; 2] = [lifted, poured];
+    let runs: Vec<_> = [0.2, 0.05]
+        .map(|rolling| ways.map(|way| (way, rolling)))
+        .concat();
+    let heaps: Vec<Heap> = runs
+        .par_iter()
+        .map(|(way, rolling)| way(*rolling))
+        .collect();
+    // A surface of beads is rough by half a bead: a slope along it is known to half a bead over its
+    // length.
+    let bound = |heap: &Heap| BEAD_M / 2.0 / heap.flank_m;
+    for heap in &heaps {
+        let Heap {
+            measured,
+            counted,
+            flank_m,
+        } = heap;
+        assert!(*flank_m >= 4.0 * BEAD_M, "{flank_m}");
+        assert!(
+            (measured - counted).abs() < bound(heap),
+            "{measured} {counted} {flank_m}"
+        );
+    }
+    for ways in heaps.chunks(2) {
+        let [lifted, poured] = [0, 1].map(|k| ways[k].measured);
+        assert!(
+            (lifted - poured).abs() < bound(&ways[0]),
+            "{lifted} {poured}"
+        );
+    }
+    let [rough, smooth] = [&heaps[..2], &heaps[2..]];
+    for (rough, smooth) in rough.iter().zip(smooth) {
+        let steeper = rough.measured - smooth.measured;
+        assert!(
+            steeper > 2.0 * bound(rough),
+            "{} {}",
+            rough.measured,
+            smooth.measured
+        );
+    }
 }

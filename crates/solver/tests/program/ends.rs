@@ -65,7 +65,7 @@ fn a_run_ends_at_the_first_row_above_the_value() {
 }
 
 #[test]
-fn a_value_that_is_not_exceeded_ends_nothing() {
+fn a_value_that_is_not_exceeded_ends_nothing_and_is_a_doubt() {
     let bench = Bench::new();
     let scene = bench.write("falling.toml", FALLING);
     bench.good(
@@ -77,5 +77,14 @@ fn a_value_that_is_not_exceeded_ends_nothing() {
             "measures.speed.end_run_above=20",
         ],
     );
-    assert_eq!(summary(&bench)["ended_by"], "end time");
+    let summary = summary(&bench);
+    assert_eq!(summary["ended_by"], "end time");
+    // The speed at the end, g t, is the largest.
+    let warnings = summary["verdict"]["warnings"].as_array().unwrap();
+    assert_eq!(
+        *warnings,
+        [
+            "speed did not end the run, which its end_run_above of 20 m/s was to do: its largest value is 10 m/s; set a later run.end_time, or let what changes it, such as a plunger, move faster"
+        ]
+    );
 }
