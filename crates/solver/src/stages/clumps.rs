@@ -33,9 +33,13 @@ pub(crate) const CLUMPS: Stage = Stage {
         let clumps = state.clumps.all.len();
         let starts = &state.model.rules.starts;
         let is_particle = |n: usize| starts.get(n).is_some_and(|start| start.sphere);
+        let are_particles = clumps == 0 && (0..templates.len()).all(is_particle);
         Need::of(
-            clumps > 0 || !(0..templates.len()).all(is_particle),
+            !templates.is_empty(),
             || {
+                if are_particles {
+                    return "what inlets feed, until it is a particle".to_owned();
+                }
                 format!(
                     "{clumps} at the start; of the {spheres} spheres of {shapes} the {outer} outer ones"
                 )

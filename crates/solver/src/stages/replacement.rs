@@ -19,9 +19,8 @@ pub(crate) const REPLACEMENT: Stage = Stage {
     need: |state, _| {
         let rules = &state.model.rules;
         let replaces = rules.triggers.iter().any(Option::is_some);
-        let feeds = !rules.inlets.is_empty();
         let mut starts = rules.starts.iter();
-        let starts = starts.any(|start| start.bonded || (feeds && start.sphere));
+        let starts = !rules.are_none() && starts.any(|start| start.bonded || start.sphere);
         Need::of(
             starts || replaces,
             || {
