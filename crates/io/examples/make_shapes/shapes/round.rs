@@ -58,37 +58,34 @@ pub(crate) fn c_shape() -> Mesh {
 
 /// A tube, open at both ends: 10 mm wide inside, 20 mm long, with a wall of 0.3 mm.
 pub(crate) fn tube() -> Mesh {
-    ring([(0.0, 5.0, 5.3), (20.0, 5.0, 5.3)])
+    ring(&[(0.0, 5.0, 5.3), (20.0, 5.0, 5.3)])
 }
 
 /// A round plate of 40 mm, 1 mm thick, with its top on z = 0 and a hole of 10 mm.
 pub(crate) fn orifice() -> Mesh {
-    ring([(-1.0, 5.0, 20.0), (0.0, 5.0, 20.0)])
+    ring(&[(-1.0, 5.0, 20.0), (0.0, 5.0, 20.0)])
 }
 
 /// A cone of 45 degrees that widens from a hole of 10 mm on z = 0 to 52 mm on z = 21 mm. Its wall
 /// is 0.5 mm wide, seen from above.
 pub(crate) fn funnel() -> Mesh {
-    ring([(0.0, 5.0, 5.5), (21.0, 26.0, 26.5)])
+    ring(&[(0.0, 5.0, 5.5), (7.0, 12.0, 12.5), (21.0, 26.0, 26.5)])
 }
 
-/// A ring between two heights, each with the radii inside and outside, in mm: polygons of 72
-/// corners, those inside with the area of their circle.
-fn ring([low, high]: [(f64, f64, f64); 2]) -> Mesh {
+/// A ring through these heights from below, each with the radii inside and outside, in mm: polygons
+/// of 72 corners, those inside with the area of their circle.
+fn ring(heights: &[(f64, f64, f64)]) -> Mesh {
     const SIDES: u32 = 72;
     let side = TAU / f64::from(SIDES);
     let wider = (side / side.sin()).sqrt();
+    let inside = heights.iter().map(|(z, inside, _)| (inside * wider, *z));
+    let outside = heights.iter().rev().map(|(z, _, outside)| (*outside, *z));
+    let corners: Vec<(f64, f64)> = inside.chain(outside).collect();
     let mut mesh = Mesh::default();
     let section = |i: u32| {
         let (sin, cos) = (side * f64::from(i)).sin_cos();
-        [
-            (low.1 * wider, low.0),
-            (high.1 * wider, high.0),
-            (high.2, high.0),
-            (low.2, low.0),
-        ]
-        .map(|(distance, z)| mesh.vertex([distance * cos, distance * sin, z]))
-        .to_vec()
+        let corner = |&(distance, z): &(f64, f64)| mesh.vertex([distance * cos, distance * sin, z]);
+        corners.iter().map(corner).collect()
     };
     let rings: Vec<Vec<u32>> = (0..SIDES).map(section).collect();
     join_rings(&mut mesh, &rings, true);
