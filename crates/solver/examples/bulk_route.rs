@@ -26,7 +26,7 @@ use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use serde_json::Value;
 
-use programs::study::{Table, measured, run_scene, run_scene_or_keep};
+use programs::study::{Table, mean_and_range, measured, run_scene, run_scene_or_keep};
 use programs::{Failed, Programs, results};
 
 /// Densities of the material as a laboratory measures them, kg/m3: poured, and solid.
@@ -210,8 +210,8 @@ fn heaps(dem_run: &Path, folder: &Path, keeps: bool) -> Result<(), Failed> {
             summaries(Way::LiftedFast)?,
             summaries(Way::Poured)?,
         ];
-        let angle = |of: &[Value]| mean_and_range(of, "angle_of_repose", "degrees", 1);
-        let density = |name: &str| mean_and_range(&lifted, name, "kg/m3", 0);
+        let angle = |of: &[Value]| of_runs(of, "angle_of_repose", "degrees", 1);
+        let density = |name: &str| of_runs(&lifted, name, "kg/m3", 0);
         table.row(&[
             rolling.to_string(),
             angle(&lifted)?,
@@ -225,22 +225,15 @@ fn heaps(dem_run: &Path, folder: &Path, keeps: bool) -> Result<(), Failed> {
 }
 
 /// Mean of a measure over runs, and its smallest and largest value.
-fn mean_and_range(
+fn of_runs(
     summaries: &[Value],
     measure: &str,
     unit: &str,
     decimals: usize,
 ) -> Result<String, Failed> {
-    let values: Result<Vec<f64>, Failed> = (summaries.iter())
-        .map(|summary| measured(summary, measure))
-        .collect();
-    let values = values?;
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    Ok(format!(
-        "{mean:.decimals$} {unit} ({smallest:.decimals$} to {largest:.decimals$})"
-    ))
+    let values = summaries.iter().map(|summary| measured(summary, measure));
+    let values: Vec<f64> = values.collect::<Result<_, _>>()?;
+    Ok(mean_and_range(&values, unit, decimals))
 }
 
 /// The results of some work for each seed, all at once.

@@ -88,6 +88,12 @@ impl Run {
         ["d10", "d50", "d80"].map(size).join(", ")
     }
 
+    /// Mass that has left through the outlet `product`, as text.
+    fn left_with_the_product(&self) -> String {
+        let mass_kg = self.number("/population/outlets/product/mass_kg");
+        format!("{mass_kg:.1} kg")
+    }
+
     /// Times, s, and values of a column of the time series.
     fn column(&self, name: &str) -> Result<Vec<(f64, f64)>, Failed> {
         let series = read_series(&self.folder.join("series.csv"))?;
@@ -236,10 +242,7 @@ fn write_ways(runs: &Runs) -> Result<(), Failed> {
                 ),
                 found.sizes("cake"),
                 found.sizes("lump"),
-                format!(
-                    "{:.1} kg",
-                    found.number("/population/outlets/product/mass_kg")
-                ),
+                found.left_with_the_product(),
                 format!("{:.1e}", found.number("/energy_error")),
             ]);
         }
@@ -279,10 +282,7 @@ fn write_sizes(runs: &Runs) -> Result<(), Failed> {
                 runs.broken(&found, diameters)?,
                 found.sizes("cake"),
                 found.sizes("lump"),
-                format!(
-                    "{:.1} kg",
-                    found.number("/population/outlets/product/mass_kg")
-                ),
+                found.left_with_the_product(),
                 format!("{:.1e}", found.number("/energy_error")),
             ]);
         }

@@ -25,7 +25,7 @@ use dem_laboratory::Line as Fit;
 use dem_plots::{Axis, Line, Plot};
 use serde_json::Value;
 
-use programs::study::{Table, columns, measured, run_scene_or_keep};
+use programs::study::{Table, columns, mean_and_range, measured, run_scene_or_keep};
 use programs::{Failed, Programs, results, root};
 
 const PAGE: &str = "doc/round-robin.md";
@@ -172,15 +172,6 @@ fn silo(dem_run: &Path) -> Result<(), Failed> {
     ]);
     for (silo, of_seeds) in flows {
         let per_s = of_seeds.iter().sum::<f64>() / of_seeds.len() as f64;
-        let (least, most) = (of_seeds.iter())
-            .fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), &one| {
-                (least.min(one), most.max(one))
-            });
-        let range = if of_seeds.len() > 1 {
-            format!(" ({least:.0} to {most:.0})")
-        } else {
-            String::new()
-        };
         let bulk_kg_m3 = SOLID * silo.density_kg_m3;
         let law_kg_s = beverloo_kg_s(bulk_kg_m3, silo.hole_m, silo.bead_m);
         let law_1_s = law_kg_s / silo.bead_kg();
@@ -189,7 +180,7 @@ fn silo(dem_run: &Path) -> Result<(), Failed> {
             format!("{} of {:.0} mm", silo.material, 1e3 * silo.bead_m),
             format!("{:.0} mm", 1e3 * silo.hole_m),
             format!("{:.1}", silo.hole_m / silo.bead_m),
-            format!("{per_s:.0}{range}"),
+            mean_and_range(&of_seeds, "", 0),
             format!("{law_1_s:.0}"),
             format!("{:+.0} %", 100.0 * (per_s / law_1_s - 1.0)),
         ]);

@@ -213,9 +213,7 @@ pub fn plan(
 }
 
 fn refuse_damped_clumps(scene: &Scene, state: &State) -> Result<()> {
-    let starts = &state.model.rules.starts;
-    let are_none = state.clumps.all.is_empty() && starts.iter().all(|start| start.sphere);
-    if are_none || state.model.particle_damping <= 0.0 {
+    if state.has_no_lasting_clump() || state.model.particle_damping <= 0.0 {
         return Ok(());
     }
     Err(Diagnostic::input(

@@ -178,6 +178,12 @@ impl State {
         state
     }
 
+    /// Whether no clump exists, and what inlets feed becomes single spheres at once.
+    pub(crate) fn has_no_lasting_clump(&self) -> bool {
+        let starts = &self.model.rules.starts;
+        self.clumps.all.is_empty() && starts.iter().all(|start| start.sphere)
+    }
+
     /// Whether there are clumps, or bodies can be added, removed or replaced.
     pub(crate) fn bodies_change(&self) -> bool {
         !(self.clumps.templates.is_empty() && self.model.rules.are_none())

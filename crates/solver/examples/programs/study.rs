@@ -91,6 +91,19 @@ pub(crate) fn measured(summary: &Value, measure: &str) -> Result<f64, Failed> {
     Ok(value.ok_or("no value of a measure in summary.json")?)
 }
 
+/// Mean of some values with their unit, and the smallest and the largest if there are several.
+pub(crate) fn mean_and_range(values: &[f64], unit: &str, decimals: usize) -> String {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let text = format!("{mean:.decimals$} {unit}");
+    let text = text.trim_end();
+    if values.len() < 2 {
+        return text.to_owned();
+    }
+    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    format!("{text} ({smallest:.decimals$} to {largest:.decimals$})")
+}
+
 impl Run {
     /// A figure of its test; not a number if it has none.
     pub(crate) fn figure(&self, name: &str) -> f64 {

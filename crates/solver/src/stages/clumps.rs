@@ -31,13 +31,10 @@ pub(crate) const CLUMPS: Stage = Stage {
             shapes => format!("{shapes} shapes"),
         };
         let clumps = state.clumps.all.len();
-        let starts = &state.model.rules.starts;
-        let is_particle = |n: usize| starts.get(n).is_some_and(|start| start.sphere);
-        let are_particles = clumps == 0 && (0..templates.len()).all(is_particle);
         Need::of(
             !templates.is_empty(),
             || {
-                if are_particles {
+                if state.has_no_lasting_clump() {
                     return "what inlets feed, until it is a particle".to_owned();
                 }
                 format!(
