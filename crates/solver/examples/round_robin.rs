@@ -8,8 +8,9 @@
 //! ```
 //!
 //! Builds the program and runs the scenes of the same names with several settings: some minutes for
-//! the drum and the silo, half an hour for the penetration. Results are in `target/round-robin`;
-//! `--resume` at the end keeps the complete runs.
+//! the drum, half an hour for the silo, some three hours for the penetration, most of them for
+//! spheres of 2 mm. Results are in `target/round-robin`; `--resume` at the end keeps the complete
+//! runs.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -333,6 +334,33 @@ fn uehara_m(bulk_kg_m3: f64, fall_m: f64) -> f64 {
     0.14 / BED_FRICTION * ratio * (2.0 * BALL_M).powf(2.0 / 3.0) * fall_m.cbrt()
 }
 
+/// The way of the ball into the bed by the law of Katsuragi and Durian 2013: time since its lowest
+/// point touches the surface, s, and depth of that point, m, until it stops. The force on it is
+/// m v²/d_1 + k z, with d_1 = 0.25/mu rho_b/rho D and k = 12 mu (rho/rho_b)^(1/2) m g/D.
+fn katsuragi_durian(bulk_kg_m3: f64, impact_m_s: f64) -> Vec<[f64; 2]> {
+    const STEP_S: f64 = 1e-6;
+    let density_ratio = 7200.0 / bulk_kg_m3;
+    let drag_length_m = 0.25 / BED_FRICTION * density_ratio * 2.0 * BALL_M;
+    let stiffness_1_s2 = 12.0 * BED_FRICTION / density_ratio.sqrt() * GRAVITY_M_S2 / (2.0 * BALL_M);
+    let mut way = vec![[0.0, 0.0]];
+    let (mut time_s, mut depth_m, mut speed_m_s) = (0.0, 0.0, impact_m_s);
+    while speed_m_s > 0.0 {
+        let drag_m_s2 = speed_m_s * speed_m_s / drag_length_m;
+        speed_m_s += (GRAVITY_M_S2 - drag_m_s2 - stiffness_1_s2 * depth_m) * STEP_S;
+        depth_m += speed_m_s * STEP_S;
+        time_s += STEP_S;
+        way.push([time_s, depth_m]);
+    }
+    way
+}
+
+/// When 99 % of the largest depth is reached, in the time of the rows (time, depth).
+fn sinks_s(way: &[[f64; 2]]) -> Option<f64> {
+    let deepest_m = way.iter().map(|[_, depth]| *depth).fold(0.0, f64::max);
+    let there = way.iter().find(|[_, depth]| *depth >= 0.99 * deepest_m);
+    there.map(|[time_s, _]| *time_s)
+}
+
 fn penetration(dem_run: &Path) -> Result<(), Failed> {
     let grains = |diameter_mm: f64, count: usize| {
         vec![
@@ -372,7 +400,9 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         "bulk density",
         "depth",
         "Uehara et al. 2003",
-        "off",
+        "Katsuragi and Durian 2013",
+        "time to 99 % of the depth",
+        "by their law",
         "displacement of the ball",
     ]);
     let mut lines = Vec::new();
@@ -387,26 +417,62 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         let depth_m = bed_m - (lowest_m - BALL_M);
         // From rest to its lowest place.
         let fall_m = speed_m_s * speed_m_s / (2.0 * GRAVITY_M_S2) + FROM_M - lowest_m;
-        let law_m = uehara_m(bulk_kg_m3, fall_m);
+        let off = |law_m: f64| {
+            format!(
+                "{:.1} mm ({:+.0} %)",
+                1e3 * law_m,
+                100.0 * (depth_m / law_m - 1.0)
+            )
+        };
+        let gap_m = FROM_M - BALL_M - bed_m;
+        let impact_m_s = (speed_m_s * speed_m_s + 2.0 * GRAVITY_M_S2 * gap_m).sqrt();
+        let law = katsuragi_durian(bulk_kg_m3, impact_m_s);
+        let depths = columns(&series, ["time_s", "ball_m"])?;
+        let depths = depths.iter().map(|[t, z]| [*t, bed_m + BALL_M - z]);
+        let below: Vec<[f64; 2]> = depths.filter(|[_, depth]| *depth >= 0.0).collect();
+        let touches_s = below.first().ok_or("the ball has not reached the bed")?[0];
+        let milliseconds =
+            |time_s: Option<f64>| format!("{:.0} ms", 1e3 * time_s.unwrap_or(f64::NAN));
         table.row(&[
             (*name).to_owned(),
             format!("{speed_m_s} m/s"),
             format!("{:.1} mm", 1e3 * bed_m),
             format!("{bulk_kg_m3:.0} kg/m3"),
             format!("{:.1} mm", 1e3 * depth_m),
-            format!("{:.1} mm", 1e3 * law_m),
-            format!("{:+.0} %", 100.0 * (depth_m / law_m - 1.0)),
+            off(uehara_m(bulk_kg_m3, fall_m)),
+            off(law[law.len() - 1][1]),
+            milliseconds(sinks_s(&below).map(|time_s| time_s - touches_s)),
+            milliseconds(sinks_s(&law)),
             format!("{:.1} mm", 1e3 * (lowest_m - FROM_M)),
         ]);
-        lines.push(Line {
-            name: format!("{name}, {speed_m_s} m/s"),
-            points: fall(&series)?,
-            ..Line::default()
-        });
+        // Sizes at the same speed: each line of a plot has a colour of its own.
+        if *speed_m_s > 4.0 && !name.contains(',') {
+            lines.push(Line {
+                name: format!("spheres of {name}"),
+                points: fall(&series)?,
+                ..Line::default()
+            });
+        }
+        if at + 1 == cases.len() {
+            let falls_s = (impact_m_s - speed_m_s) / GRAVITY_M_S2;
+            let every_ms = law.iter().step_by(1000);
+            lines.push(Line {
+                name: "Katsuragi and Durian 2013".to_owned(),
+                points: every_ms
+                    .map(|[t, depth]| [falls_s + t, -1e3 * (gap_m + depth)])
+                    .collect(),
+                dashed: true,
+            });
+        }
     }
+    lines.push(Line {
+        name: "LIGGGHTS and MUSEN, at rest".to_owned(),
+        points: vec![[0.08, -90.7], [0.13, -90.7]],
+        dashed: true,
+    });
     table.write(PAGE, "round_robin penetration")?;
     let plot = Plot {
-        title: "the ball below the place from which it falls at its speed".to_owned(),
+        title: "a ball of steel that hits a bed of glass at 5 m/s, below the place where it has its speed".to_owned(),
         x: Axis::of("time (s)"),
         y: Axis::of("displacement (mm)"),
         lines,

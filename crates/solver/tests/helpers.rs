@@ -56,8 +56,18 @@ impl Random {
 /// Mass of the parts of the spheres of a body in a box, given by its corners, kg: counted by cubes
 /// of a fortieth of each sphere's diameter.
 pub(crate) fn mass_in_box_kg(body: &Body, density_kg_m3: f64, [low, high]: [[f64; 3]; 2]) -> f64 {
+    mass_within_kg(body, density_kg_m3, |p| {
+        (0..3).all(|k| (low[k]..high[k]).contains(&p[k]))
+    })
+}
+
+/// The same for the points at which `is_in` is true.
+pub(crate) fn mass_within_kg(
+    body: &Body,
+    density_kg_m3: f64,
+    is_in: impl Fn([f64; 3]) -> bool,
+) -> f64 {
     const STEPS: i32 = 40;
-    let is_in = |p: [f64; 3]| (0..3).all(|k| (low[k]..high[k]).contains(&p[k]));
     let middle = |i: i32| (f64::from(2 * i + 1) / f64::from(STEPS)) - 1.0;
     let mut cubes = Vec::new();
     for i in 0..STEPS.pow(3) {

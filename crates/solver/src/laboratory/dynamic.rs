@@ -22,6 +22,8 @@ use crate::state::loads::factor_at;
 const LOADED: f64 = 0.1;
 /// Fractions of the largest load between which the rates are means.
 const RISE: [f64; 2] = [LOADED, 0.9];
+/// Fraction of the largest load from which on the forces on both ends have to agree.
+const AGREES: f64 = 0.5;
 /// Fraction of the largest load at which a contact of the weight begins and ends.
 const TOUCHES: f64 = 0.01;
 /// Energy in J/kg of one kWh/t.
@@ -33,7 +35,8 @@ pub const LARGEST_STRESS: &str = "largest stress";
 pub const STRAIN_RATE: &str = "strain rate";
 /// Strength over the static one.
 pub const INCREASE_FACTOR: &str = "dynamic increase factor";
-/// Difference of the forces on both ends over their mean, at the largest load.
+/// Largest difference of the forces on both ends from half of the largest load on, over the largest
+/// load.
 pub const EQUILIBRIUM: &str = "force equilibrium";
 /// Share of the incident energy that the pulses and the work of the bars disagree by.
 pub const UNBOOKED: &str = "energy unaccounted for";
@@ -167,14 +170,26 @@ struct Peak<'a> {
 }
 
 impl Peak<'_> {
+    /// The first row that reaches this share of the largest load.
+    fn reaches(&self, share: f64) -> Option<usize> {
+        let largest_n = self.rows[self.at].load_n();
+        let mut before = self.rows[..=self.at].iter();
+        before.position(|row| row.load_n() >= share * largest_n)
+    }
+
+    /// Largest difference of the forces on both ends, over the largest load, while they have to
+    /// agree.
+    fn apart(&self) -> Option<f64> {
+        let largest_n = self.rows[self.at].load_n();
+        let rows = &self.rows[self.reaches(AGREES)?..=self.at];
+        let differences = rows.iter().map(|row| row.force_n - row.reaction_n);
+        let largest = differences.max_by(|a, b| a.abs().total_cmp(&b.abs()));
+        largest.map(|difference_n| difference_n / largest_n)
+    }
+
     /// Rates, 1/s, of strain and of stress, Pa/s, while the load rises.
     fn rates(&self) -> Option<[f64; 2]> {
-        let largest_n = self.rows[self.at].load_n();
-        let reaches = |share: f64| {
-            let mut before = self.rows[..=self.at].iter();
-            before.position(|row| row.load_n() >= share * largest_n)
-        };
-        let [from, to] = [reaches(RISE[0])?, reaches(RISE[1])?];
+        let [from, to] = [self.reaches(RISE[0])?, self.reaches(RISE[1])?];
         let during_s = self.rows[to].time_s - self.rows[from].time_s;
         let gain = |k: usize| (self.curve[to][k] - self.curve[from][k]) / during_s;
         (during_s > 0.0).then(|| [gain(0), gain(1)])
@@ -206,8 +221,7 @@ fn at_peak(found: &mut Found, evidence: &TestInput<'_>, peak: Peak<'_>) {
     if matches!(evidence.setup.specimen, Specimen::Bar { .. }) {
         found.add("strain at the largest load", Some(strain), "");
     }
-    let difference_n = row.force_n - row.reaction_n;
-    found.add(EQUILIBRIUM, Some(difference_n / row.load_n()), "");
+    found.add(EQUILIBRIUM, peak.apart(), "");
     if let (true, Some(strength_pa)) = (evidence.broken, test.strength_pa) {
         // The printed fit ends at 50/s.
         let known = strain_rate.filter(|rate| *rate > 0.0 && *rate <= HIGHEST_1_S);

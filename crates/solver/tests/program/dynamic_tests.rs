@@ -342,6 +342,95 @@ fn a_weight_on_a_row() {
     assert!((force / largest - 1.0).abs() < 0.1, "{force} {largest}");
 }
 
+/// A buffer of rubber: the weight on a Hertz contact, whose largest force and rebound are known.
+#[test]
+fn a_buffer_of_rubber_is_a_hertz_contact() {
+    const MASS_KG: f64 = 0.01;
+    const RADIUS_M: f64 = 1e-3;
+    let [modulus_pa, poisson] = [5e6, 0.49];
+    let test = "type = \"drop-weight\"\ncrosshead = [\"above\"]\ndirection = [0, 0, -1]\nstroke = \"2 mm\"\nweight = { mass = \"10 g\", height = \"5 mm\" }";
+    let run = |restitution: f64| {
+        let bench = Bench::new();
+        let rubber = format!(
+            "[materials.rubber]\nyoung_modulus = {modulus_pa}\npoisson_ratio = {poisson}\n[contacts]\nrock-rubber = {{ restitution = {restitution}, friction = 0 }}\n"
+        );
+        let scene = row(test, "damping = { damping_ratio = 0 }")
+            .replace("gravity = [0, 0, 0]", "gravity = [0, 0, -9.81]")
+            .replace(
+                "young_modulus = \"20 GPa\"\n[materials",
+                "young_modulus = \"20 GPa\"\npoisson_ratio = 0.2\n[materials",
+            )
+            .replace("[contacts]\n", &rubber)
+            .replace(
+                "normal = [0, 0, -1] }\nmaterial = \"steel\"",
+                "normal = [0, 0, -1] }\nmaterial = \"rubber\"",
+            );
+        summary(&bench, "rubber.toml", &scene, &[])
+    };
+    let elastic = run(1.0);
+    let impact_j = MASS_KG * 9.81 * 5e-3;
+    let plane_strain = |modulus_pa: f64, poisson: f64| (1.0 - poisson * poisson) / modulus_pa;
+    let effective_pa = 1.0 / (plane_strain(modulus_pa, poisson) + plane_strain(20e9, 0.2));
+    // Energy at the largest depth: 8/15 E* R^(1/2) d^(5/2) = M g (h + d).
+    let mut depth_m: f64 = 0.0;
+    for _ in 0..50 {
+        let energy_j = impact_j + MASS_KG * 9.81 * depth_m;
+        depth_m = (energy_j * 15.0 / 8.0 / (effective_pa * RADIUS_M.sqrt())).powf(0.4);
+    }
+    let largest_n = 4.0 / 3.0 * effective_pa * RADIUS_M.sqrt() * depth_m.powf(1.5);
+    let force_n = figure(&elastic, "largest force");
+    // The row is far stiffer, and has a fortieth of the mass.
+    assert!(
+        (force_n / largest_n - 1.0).abs() < 0.02,
+        "{force_n} {largest_n}"
+    );
+    // The restitution is that of a sphere alone: its dashpot is in proportion to the root of the
+    // sphere's mass, and takes less from a weight that is M/m times as heavy.
+    let spheres_kg = 2600.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS_M.powi(3);
+    let of_weight = 0.4_f64.powf((spheres_kg / MASS_KG).sqrt());
+    let speed_m_s = (2.0 * 9.81 * 5e-3_f64).sqrt();
+    for (found, restitution) in [(elastic, 1.0), (run(0.4), of_weight)] {
+        let rebound = figure(&found, "rebound velocity") / speed_m_s;
+        assert!(
+            (rebound - restitution).abs() < 0.01,
+            "{rebound} {restitution}"
+        );
+        assert!(
+            figure(&found, "energy unaccounted for").abs() < 2e-3,
+            "{found}"
+        );
+    }
+}
+
+/// A weight that a gas gun shoots: no gravity, a velocity instead of a height, and a row that breaks.
+#[test]
+fn a_weight_of_a_gas_gun_breaks_a_row() {
+    const MASS_KG: f64 = 0.01;
+    const SPEED_M_S: f64 = 20.0;
+    let test = "type = \"drop-weight\"\ncrosshead = [\"above\"]\ndirection = [0, 0, -1]\nstroke = \"5 mm\"\nweight = { mass = \"10 g\", velocity = \"20 m/s\" }";
+    let bench = Bench::new();
+    let bonds =
+        "damping = { damping_ratio = 0.05 }\nfailure = { compressive_strength = \"100 MPa\" }";
+    let found = summary(&bench, "gun.toml", &row(test, bonds), &[]);
+    assert_eq!(found["test"]["rate_m_s"].as_f64(), Some(SPEED_M_S));
+    let impact_j = 0.5 * MASS_KG * SPEED_M_S * SPEED_M_S;
+    assert!((figure(&found, "impact energy") / impact_j - 1.0).abs() < 1e-9);
+    // 2 J on a quarter of a gram crush it.
+    assert!(found["broken_bonds"].as_u64().unwrap() > 0, "{found}");
+    assert!(figure(&found, "largest fragment") < 1.0);
+    assert!(
+        figure(&found, "energy unaccounted for").abs() < 2e-3,
+        "{found}"
+    );
+    assert!(found["energy_error"].as_f64().unwrap() < 2e-3, "{found}");
+    let mass_kg = 21.0 * 2600.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9;
+    let kwh_t = figure(&found, "specific energy per tonne");
+    assert!(
+        (kwh_t * 3600.0 * mass_kg / impact_j - 1.0).abs() < 1e-6,
+        "{kwh_t}"
+    );
+}
+
 /// What only the plan can see is refused there.
 #[test]
 fn bodies_that_do_not_fit_are_refused() {

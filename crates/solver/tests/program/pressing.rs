@@ -2,8 +2,9 @@
 //! spheres become a body that a scene loads and breaks.
 
 use super::{Bench, dem_run, last_frame, scene_of_data};
-use crate::helpers::mass_in_box_kg;
+use crate::helpers::{mass_in_box_kg, mass_within_kg};
 use clap::Parser;
+use dem_io::Body;
 use dem_io::body::{body_summary, read_body, read_particles, write_body};
 use dem_pack::cli::Arguments;
 use dem_pack::{BondSettings, bond_spheres};
@@ -31,6 +32,18 @@ fn pressed() -> Bench {
     bench
 }
 
+/// The loose spheres of the last frame of a run in `out`, and what the program says of them.
+fn loose_spheres(bench: &Bench) -> (Body, String) {
+    let output = dem_run()
+        .current_dir(bench.path(""))
+        .args(["fragment", "out", "--loose", "-o", "spheres.vtp"])
+        .output()
+        .unwrap();
+    assert!(output.status.success() && output.stderr.is_empty());
+    let said = String::from_utf8(output.stdout).unwrap();
+    (read_body(&bench.path("spheres.vtp")).unwrap(), said)
+}
+
 #[test]
 fn a_mould_is_pressed_to_a_density_and_its_body_breaks() {
     let bench = pressed();
@@ -43,15 +56,8 @@ fn a_mould_is_pressed_to_a_density_and_its_body_breaks() {
     // The plunger moves 0.1 mm between two rows.
     assert!((1650.0..1650.0 * 1.003).contains(&found), "{found}");
 
-    let output = dem_run()
-        .current_dir(bench.path(""))
-        .args(["fragment", "out", "--loose", "-o", "spheres.vtp"])
-        .output()
-        .unwrap();
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success() && output.stderr.is_empty());
+    let (spheres, said) = loose_spheres(&bench);
     assert!(said.contains("237 of 237 particles, 0.09027 kg"), "{said}");
-    let spheres = read_body(&bench.path("spheres.vtp")).unwrap();
     assert_eq!(spheres.about.particle_density_kg_m3, Some(2050.0));
     let last = last_frame(&bench.path("out"));
     let frame = read_particles(&last).unwrap();
@@ -87,6 +93,38 @@ fn a_mould_is_pressed_to_a_density_and_its_body_breaks() {
     let value = |name: &str| summary["measures"][name]["value"].as_f64().unwrap();
     assert_eq!(value("at_start"), 0.0);
     assert!(value("broken") > 0.2 * body.bonds.len() as f64, "{summary}");
+}
+
+/// A mould that is an STL surface, open at the top: no sphere leaves through its wall, the density
+/// in the cylinder is that of a count by fine steps, and the spheres become one bonded body.
+#[test]
+fn a_mould_of_an_stl_surface_is_filled_and_pressed() {
+    const RADIUS_M: f64 = 15e-3;
+    const HEIGHT_M: f64 = 30e-3;
+    let bench = Bench::new();
+    let options = ["--json", "--quiet", "--output", "out"];
+    let said = bench.good(&scene_of_data("press-tube.toml"), &options);
+    let summary: Value = serde_json::from_str(&said).unwrap();
+    assert_eq!(summary["ended_by"], "measure");
+    let found = summary["measures"]["solid_density"]["value"]
+        .as_f64()
+        .unwrap();
+    assert!((1650.0..1650.0 * 1.005).contains(&found), "{found}");
+    let (spheres, _) = loose_spheres(&bench);
+    assert_eq!(spheres.radii.len(), 360);
+    let from_axis_m = |p: [f64; 3]| p[0].hypot(p[1]);
+    for (p, radius_m) in spheres.positions.iter().zip(&spheres.radii) {
+        let stands_out_m = from_axis_m(*p) + radius_m - RADIUS_M;
+        assert!(stands_out_m < 0.4 * radius_m, "{p:?} {radius_m}");
+        assert!(p[2] > 0.5 * radius_m, "{p:?} {radius_m}");
+    }
+    let mass_kg = mass_within_kg(&spheres, 2050.0, |p| {
+        from_axis_m(p) < RADIUS_M && (0.0..HEIGHT_M).contains(&p[2])
+    });
+    let counted = mass_kg / (std::f64::consts::PI * RADIUS_M * RADIUS_M * HEIGHT_M);
+    assert!((counted / found - 1.0).abs() < 2e-3, "{counted} {found}");
+    let (body, _) = bond_spheres(&spheres, &BondSettings::default()).unwrap();
+    assert_eq!(body_summary(&body).pieces, 1);
 }
 
 /// The body at rest on its bonds, which then strikes a plate.
