@@ -9,10 +9,10 @@
 )]
 
 mod page;
+mod reading;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
@@ -21,9 +21,7 @@ use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
 use dem_run::state::State;
-use dem_run::state::bonds::BLOCK;
 use dem_run::step::{stages, step};
-use rayon::prelude::*;
 
 use self::page::{Table, words};
 
@@ -172,17 +170,55 @@ impl Case {
                 Counted::Particles => "million particle-steps/s",
                 Counted::Steps => "steps/s",
             };
+            let rate = rates[ROUNDS / 2];
             let reading = match self.counted {
-                Counted::Bonds => format!("{:.0}", reading_rate(&state)),
-                Counted::Particles | Counted::Steps => String::new(),
+                Counted::Bonds => Some(reading::million_bonds_per_s(&state)),
+                Counted::Particles => Some(reading::million_particles_per_s(&state)),
+                Counted::Steps => None,
             };
+            let reading = reading.map_or(String::from("|"), |reading| {
+                format!("{reading:.0} | {:.0} %", 1e2 * rate / reading)
+            });
             format!(
-                "| {} | {} | {} | {threads} | {:.1} | {unit} | {reading} | {:.0} % |",
+                "| {} | {} | {} | {threads} | {rate:.1} | {unit} | {reading} | {:.0} % |",
                 self.name,
                 state.particles.len(),
                 state.bonds.len(),
-                rates[ROUNDS / 2],
                 1e2 * fraction
+            )
+        })
+    }
+
+    /// A row on the searches of a scene: how many steps apart they are, how long each takes, and what
+    /// the memory allows.
+    fn search_row(&self, threads: usize) -> String {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads start").install(|| {
+            let mut state = self.state(threads);
+            go(&mut state, self.times_s[0]);
+            let stage = stages().iter().position(|s| s.name == "neighbour search");
+            let stage = stage.expect("a stage");
+            let end_s = state.time_s + ROUNDS as f64 * self.times_s[1];
+            let (mut with, mut without, mut sought) = (Vec::new(), Vec::new(), 0);
+            while state.time_s < end_s {
+                let (clock, before) = (Instant::now(), state.scratch.clock.done(stage));
+                step(&mut state);
+                let took_s = clock.elapsed().as_secs_f64();
+                let done = state.scratch.clock.done(stage) - before;
+                sought += done;
+                if done > 0 { &mut with } else { &mut without }.push(took_s);
+            }
+            let [search_s, other_s] = [with.as_slice(), &without].map(mean);
+            let searches = with.len() as f64;
+            let apart = (with.len() + without.len()) as f64 / searches;
+            format!(
+                "| {} | {threads} | {apart:.0} | {:.0} of {} | {} | {:.2} ms | {:.2} ms |",
+                self.name,
+                sought as f64 / searches,
+                state.particles.len(),
+                state.contacts.as_ref().map_or(0, |c| c.pairs.len()),
+                1e3 * (search_s - other_s),
+                1e3 * reading::search_s(&state)
             )
         })
     }
@@ -200,60 +236,15 @@ impl Case {
     }
 }
 
-/// Million bonds per second of a loop that only reads what a step of bonds reads: each bond's block
-/// and the poses of its ends, then poses, motions and wrenches of all particles, once each. A step
-/// writes the last three as well.
-fn reading_rate(state: &State) -> f64 {
-    const CHUNK: usize = 1024;
-    let bonds = &state.bonds;
-    let poses = &state.particles.poses;
-    let of_bonds = |(blocks, ends): (&[_], &[[u32; 2]])| {
-        let block_sum = |block: &dem_run::state::bonds::BondBlock| {
-            let columns = block.direction.iter().chain(&block.levers_m);
-            let others = [&block.normal, &block.shear, &block.radii_m];
-            columns.chain(others).flatten().sum::<f64>()
-        };
-        let end_sum = |end: u32| {
-            let pose = &poses[end as usize];
-            pose.position_m.iter().chain(&pose.turned).sum::<f64>()
-        };
-        let blocks: f64 = blocks.iter().map(block_sum).sum();
-        let ends: f64 = (ends.iter().flatten()).map(|end| end_sum(*end)).sum();
-        blocks + ends
-    };
-    let pass = || {
-        let sums: f64 = (bonds.blocks.par_chunks(CHUNK / BLOCK))
-            .zip(bonds.ends.par_chunks(CHUNK))
-            .map(of_bonds)
-            .sum();
-        let motions = state.particles.motions.par_chunks(CHUNK);
-        let others: f64 = motions
-            .zip(state.particles.wrenches.par_chunks(CHUNK))
-            .map(|(motions, wrenches)| {
-                let velocities: f64 = motions.iter().flat_map(|m| m.velocity_m_s).sum();
-                velocities + wrenches.iter().flat_map(|w| w.force_n).sum::<f64>()
-            })
-            .sum();
-        black_box(sums + others)
-    };
-    let mut rates: Vec<f64> = (0..ROUNDS)
-        .map(|_| {
-            let clock = Instant::now();
-            for _ in 0..10 {
-                pass();
-            }
-            10.0 * 1e-6 * bonds.len() as f64 / clock.elapsed().as_secs_f64()
-        })
-        .collect();
-    rates.sort_by(f64::total_cmp);
-    rates[ROUNDS / 2]
-}
-
 /// The scene with the body alone that is written in it.
 fn only_ball(scene: &dem_scene::Scene) -> dem_scene::Scene {
     let mut scene = scene.clone();
     scene.bodies.retain(|name, _| name == "ball");
     scene
+}
+
+fn mean(times_s: &[f64]) -> f64 {
+    times_s.iter().sum::<f64>() / times_s.len() as f64
 }
 
 fn go(state: &mut State, time_s: f64) {
@@ -329,12 +320,21 @@ fn main() {
     let words = words();
     let wanted = |name: &str| words.is_empty() || words.iter().any(|word| word == name);
     let mut table = Table::new();
-    table.row("| case | particles | bonds | threads | rate | | reading alone | neighbour search |");
-    table.row("|---|---|---|---|---|---|---|---|");
+    table.row("| case | particles | bonds | threads | rate | | reading alone | reached | neighbour search |");
+    table.row("|---|---|---|---|---|---|---|---|---|");
     for case in cases(wanted) {
         for threads in [1, 2] {
             table.row(&case.row(threads));
         }
     }
     table.write("figures");
+    let mut table = Table::new();
+    table.row("| case | threads | steps between searches | spheres searched for | listed pairs | a search | reading alone |");
+    table.row("|---|---|---|---|---|---|---|");
+    for case in cases(|name| wanted(name) && name == "pour") {
+        for threads in [1, 2] {
+            table.row(&case.search_row(threads));
+        }
+    }
+    table.write("figures search");
 }

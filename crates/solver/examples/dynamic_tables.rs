@@ -170,7 +170,7 @@ fn heights(runs: &[Run]) -> Result<(), Failed> {
         ));
         let at = |[e, t10]: &[f64; 2]| Point {
             at: [*e, 100.0 * t10],
-            filled: name == "absorbed energy",
+            filled: true,
             ..Point::default()
         };
         marks.push(Marks {

@@ -256,7 +256,8 @@ impl State {
     pub fn rebuilt(mut self, model: Model, threads: usize) -> Option<Self> {
         let of_fragments = self.population.fragments.iter_mut();
         for fragment in of_fragments {
-            Arc::make_mut(&mut fragment.template).bonds.rules = Arc::clone(&model.bond_rules);
+            let bonds = &mut Arc::make_mut(&mut fragment.template).bonds;
+            Arc::make_mut(bonds).rules = Arc::clone(&model.bond_rules);
         }
         self.bonds.rules = Arc::clone(&model.bond_rules);
         let of_fragments = self.population.fragments.iter();

@@ -9,12 +9,18 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// An empty one, for the page that the program's arguments name.
+    /// An empty one, for the page that the program's arguments name. A page has whole tables: with
+    /// the names of some cases as well there is none.
     pub(crate) fn new() -> Self {
-        let mut words = std::env::args().skip_while(|word| word != "--page").skip(1);
+        let mut after = std::env::args().skip_while(|word| word != "--page").skip(1);
+        let page = after.next().map(PathBuf::from);
+        assert!(
+            page.is_none() || words().is_empty(),
+            "--page is for all cases: a page has whole tables"
+        );
         Self {
             rows: String::new(),
-            page: words.next().map(PathBuf::from),
+            page,
         }
     }
 

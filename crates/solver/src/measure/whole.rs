@@ -103,7 +103,7 @@ pub(super) fn start_centre(
             }
             // A fragment.
             Some(start) => {
-                let spheres = template.spheres.iter().zip(&template.file_number);
+                let spheres = template.spheres.iter().zip(template.file_number.iter());
                 parts.extend(spheres.map(|(s, n)| (s.mass_kg, start.places[*n as usize])));
             }
             None => {}
@@ -246,7 +246,7 @@ pub(super) fn turn(
     }
     for (clump, template) in members.clumps(state, &state.clumps.all) {
         let before = (starts.get(&template.body)).map_or(UnitQuaternion::identity(), |s| s.turned);
-        for sphere in &template.spheres {
+        for sphere in template.spheres.iter() {
             let now = rotation(clump.turned) * rotation(sphere.turned);
             add(sphere.mass_kg, numbers(&(now * before.inverse())));
         }

@@ -59,15 +59,17 @@ pub(super) fn templates(
     for name in names {
         if let Some(body) = read.remove(name) {
             let mut template = template(scene, name, &body)?;
-            // The search for outer spheres takes longest, and bodies from the same file share the
-            // result.
+            // Bodies from the same file share their arrays and the result of the search for outer
+            // spheres, which takes longest.
             let same = |other: &&Arc<Template>| {
                 other.scale == template.scale && other.spheres == template.spheres
             };
-            template.outer = match templates.iter().rev().find(same) {
-                Some(other) => other.outer.clone(),
-                None => outer(&template, ball_m),
-            };
+            if let Some(other) = templates.iter().rev().find(same) {
+                template.share(other);
+                template.outer = Arc::clone(&other.outer);
+            } else {
+                template.outer = Arc::new(outer(&template, ball_m));
+            }
             templates.push(Arc::new(template));
         }
     }
@@ -173,22 +175,22 @@ pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Templat
         axes: properties.axes,
         centre_m: properties.centre_m,
         reach_m: reach_m(&spheres),
-        outer: Vec::new(),
-        spheres,
+        outer: Arc::default(),
+        spheres: Arc::new(spheres),
         scale: settings.scale,
         material: scene
             .materials
             .keys()
             .position(|material| *material == entry.material)
             .unwrap_or(0) as u8,
-        bonds,
-        file_number,
+        bonds: Arc::new(bonds),
+        file_number: Arc::new(file_number),
         ids: Vec::new(),
         scatter: modulus.map(|modulus| Scatter {
             seed: scene.run.seed,
             modulus,
         }),
-        bonds_of_file: placed.bonds,
+        bonds_of_file: Arc::new(placed.bonds),
     })
 }
 

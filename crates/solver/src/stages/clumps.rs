@@ -45,11 +45,10 @@ pub(crate) const CLUMPS: Stage = Stage {
         )
     },
     bytes: |state| {
-        let templates = state.clumps.templates.iter();
         clusters_bytes(state, ClusterUser::Clumps)
             + size_of::<Clump>() * state.clumps.all.len()
             + size_of_val(&state.clumps.near[..])
-            + templates.map(|template| template.bytes()).sum::<usize>()
+            + Template::bytes_of(&state.clumps.templates)
     },
     saving: NO_SAVING,
 };
@@ -140,7 +139,7 @@ pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
         let template = clumps.template(clump);
         let turned = rotation_of(clump.turned);
         let spheres = &mut particles.poses[clumps.spheres_of(clump)];
-        for (pose, &sphere) in spheres.iter_mut().zip(&template.outer) {
+        for (pose, &sphere) in spheres.iter_mut().zip(template.outer.iter()) {
             let of_sphere = rotation_of(template.spheres[sphere as usize].turned);
             pose.turned = numbers(&(turned * of_sphere));
         }
@@ -152,7 +151,7 @@ pub(crate) fn place_centres(clumps: &Clumps, clump: &Clump, particles: &mut Part
     let template = clumps.template(clump);
     let to_space = rotation_of(clump.turned).to_rotation_matrix();
     let spheres = &mut particles.poses[clumps.spheres_of(clump)];
-    for (pose, &sphere) in spheres.iter_mut().zip(&template.outer) {
+    for (pose, &sphere) in spheres.iter_mut().zip(template.outer.iter()) {
         pose.put_at(place_of(template, sphere as usize, clump, &to_space).into());
     }
 }

@@ -31,7 +31,7 @@ impl PlacedBody {
     pub fn created(created: &NewCluster) -> Self {
         let template = &created.template;
         let mut particles = vec![REMOVED; template.spheres.len()];
-        for (i, &number) in (created.first_particle as u32..).zip(&template.file_number) {
+        for (i, &number) in (created.first_particle as u32..).zip(template.file_number.iter()) {
             particles[number as usize] = i;
         }
         Self {
@@ -39,7 +39,7 @@ impl PlacedBody {
             first_particle: created.first_particle,
             particles,
             first_bond: created.first_bond,
-            bonds: template.bonds_of_file.clone(),
+            bonds: template.bonds_of_file.to_vec(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Rigid clumps: bodies that move as one, and their spheres.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -65,7 +66,8 @@ pub struct Scatter {
     pub modulus: f64,
 }
 
-/// Data common to clumps of one shape. Stored once, whatever the number of clumps.
+/// Data common to clumps of one shape. Stored once, whatever the number of clumps. Bodies of one
+/// file share its arrays: see [`Template::share`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Template {
     /// Name of the body in the scene.
@@ -81,25 +83,25 @@ pub struct Template {
     /// Largest distance of a point from the centre of mass, m.
     pub reach_m: f64,
     /// All its spheres.
-    pub spheres: Vec<SubSphere>,
+    pub spheres: Arc<Vec<SubSphere>>,
     /// The outer spheres, which can be touched: numbers in `spheres`, ascending. Only these are in
     /// the scene while the body is a clump.
-    pub outer: Vec<u32>,
+    pub outer: Arc<Vec<u32>>,
     /// Ratio of the radius of a contact sphere of the clump to that of the sphere.
     pub scale: f64,
     /// Number of its material.
     pub material: u8,
     /// Bonds of the cluster that it can become, between numbers in `spheres`. Empty: none.
-    pub bonds: Bonds,
+    pub bonds: Arc<Bonds>,
     /// For each of `spheres`, its number in the body's file.
-    pub file_number: Vec<u32>,
+    pub file_number: Arc<Vec<u32>>,
     /// For each of the `spheres` of a fragment, its id: see [`Particles::id`]. Empty: not a
     /// fragment.
     pub ids: Vec<u32>,
     /// Scatter of bond strengths. None: no scatter.
     pub scatter: Option<Scatter>,
     /// For each of `bonds`, its number in the body's file.
-    pub bonds_of_file: Vec<u32>,
+    pub bonds_of_file: Arc<Vec<u32>>,
 }
 
 impl Template {
@@ -293,7 +295,7 @@ impl Clumps {
     pub(crate) fn push_spheres(template: &Template, clump: &mut Clump, particles: &mut Particles) {
         clump.first = particles.len() as u32;
         let motion_at = clump.motion(template);
-        for &sphere in &template.outer {
+        for &sphere in template.outer.iter() {
             let mut pose = template.pose(sphere as usize, clump);
             pose.position_m[3] *= template.scale;
             particles.motions.push(motion_at(&pose.place()));
@@ -315,24 +317,24 @@ impl Template {
             axes: [0.0, 0.0, 0.0, 1.0],
             centre_m: [0.0; 3],
             reach_m: radius_m,
-            spheres: vec![SubSphere {
+            spheres: Arc::new(vec![SubSphere {
                 place_m: [0.0; 3],
                 turned: [0.0, 0.0, 0.0, 1.0],
                 radius_m,
                 mass_kg,
                 inertia_kg_m2,
-            }],
-            outer: vec![0],
+            }]),
+            outer: Arc::new(vec![0]),
             scale: 1.0,
             material: like.material,
-            bonds: Bonds {
+            bonds: Arc::new(Bonds {
                 rules: like.bonds.rules.clone(),
                 ..Bonds::default()
-            },
-            file_number: vec![0],
+            }),
+            file_number: Arc::new(vec![0]),
             ids: Vec::new(),
             scatter: None,
-            bonds_of_file: Vec::new(),
+            bonds_of_file: Arc::default(),
         }
     }
 
@@ -347,19 +349,48 @@ impl Template {
         2.0 * cubes.sum::<f64>().cbrt()
     }
 
-    /// Bytes of its arrays.
-    pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&self.spheres[..])
-            + size_of_val(&self.outer[..])
-            + size_of_val(&self.file_number[..])
-            + size_of_val(&self.ids[..])
-            + size_of_val(&self.bonds_of_file[..])
-            + size_of_val(&self.bonds.ends[..])
-            + size_of_val(&self.bonds.blocks[..])
-            + size_of_val(&self.bonds.damping[..])
-            + size_of_val(&self.bonds.histories[..])
-            + size_of_val(&self.bonds.damages[..])
-            + size_of_val(&self.bonds.plastics[..])
-            + self.bonds.joint_bytes()
+    /// Takes the arrays of another template in place of equal ones, so that they are stored once.
+    pub(crate) fn share(&mut self, other: &Self) {
+        fn share<T: PartialEq>(own: &mut Arc<T>, other: &Arc<T>) {
+            if **own == **other {
+                *own = Arc::clone(other);
+            }
+        }
+        share(&mut self.spheres, &other.spheres);
+        share(&mut self.outer, &other.outer);
+        share(&mut self.bonds, &other.bonds);
+        share(&mut self.file_number, &other.file_number);
+        share(&mut self.bonds_of_file, &other.bonds_of_file);
+    }
+
+    /// Bytes of all arrays of some templates, of shared ones once.
+    pub(crate) fn bytes_of(templates: &[Arc<Self>]) -> usize {
+        let mut counted = BTreeSet::new();
+        let arrays = templates.iter().flat_map(|template| template.arrays());
+        let once = arrays.filter(|(address, _)| counted.insert(*address));
+        let own = templates.iter().map(|t| size_of_val(&t.ids[..]));
+        once.map(|(_, bytes)| bytes).chain(own).sum()
+    }
+
+    /// Address and bytes of each array that can be shared.
+    fn arrays(&self) -> [(usize, usize); 5] {
+        fn array<T>(list: &Arc<Vec<T>>) -> (usize, usize) {
+            (Arc::as_ptr(list).addr(), size_of_val(&list[..]))
+        }
+        let bonds = &self.bonds;
+        let of_bonds = size_of_val(&bonds.ends[..])
+            + size_of_val(&bonds.blocks[..])
+            + size_of_val(&bonds.damping[..])
+            + size_of_val(&bonds.histories[..])
+            + size_of_val(&bonds.damages[..])
+            + size_of_val(&bonds.plastics[..])
+            + bonds.joint_bytes();
+        [
+            array(&self.spheres),
+            array(&self.outer),
+            array(&self.file_number),
+            array(&self.bonds_of_file),
+            (Arc::as_ptr(bonds).addr(), of_bonds),
+        ]
     }
 }

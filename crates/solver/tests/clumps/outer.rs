@@ -6,7 +6,7 @@ use dem_run::stages::population::apply_topology_change;
 use dem_run::state::State;
 use dem_run::state::clumps::{Clump, Template};
 use dem_run::state::events::TopologyChange;
-use dem_run::step::step;
+use dem_run::step::{stages, step};
 
 use super::{HEAD, MEETS, block, planned};
 
@@ -60,7 +60,7 @@ fn with_all_spheres(state: &State) -> State {
     apply_topology_change(&mut state, changes);
     assert!(state.particles.is_empty() && state.clumps.all.is_empty());
     for template in &mut state.clumps.templates {
-        let outer = (0..template.spheres.len() as u32).collect();
+        let outer = Arc::new((0..template.spheres.len() as u32).collect());
         *template = Arc::new(Template {
             outer,
             ..(**template).clone()
@@ -148,4 +148,39 @@ fn clumps_share_what_they_are_made_of() {
     assert!(template.bonds.len() == 144 && state.bonds.is_empty());
     assert_eq!(state.clumps.all.len(), 1000);
     assert_eq!(state.particles.len(), 1000 * template.outer.len());
+}
+
+/// Bodies of one shape share their arrays, which count once; another shape has its own.
+#[test]
+fn bodies_of_one_shape_share_one_template() {
+    let scene = |names: &[&str]| {
+        let bodies = names
+            .iter()
+            .enumerate()
+            .map(|(at, name)| covered(name, &format!("position = [{}, 0, 0]", 0.1 * at as f64)));
+        planned(&format!("{HEAD}{MEETS}{}", bodies.collect::<String>())).state
+    };
+    let bytes = |state: &State| {
+        let stage = stages().iter().find(|stage| stage.name == "rigid clumps");
+        (stage.unwrap().bytes)(state) as f64
+    };
+    let [one, many] = [scene(&["a"]), scene(&["a", "b", "c", "d"])];
+    let [first, others @ ..] = &many.clumps.templates[..] else {
+        panic!("no template");
+    };
+    assert_eq!(others.len(), 3);
+    for other in others {
+        assert_ne!(other.body, first.body);
+        assert!(Arc::ptr_eq(&other.spheres, &first.spheres));
+        assert!(Arc::ptr_eq(&other.outer, &first.outer));
+        assert!(Arc::ptr_eq(&other.bonds, &first.bonds));
+        assert!(Arc::ptr_eq(&other.file_number, &first.file_number));
+    }
+    let arrays = size_of_val(&first.spheres[..]) as f64;
+    assert!(
+        bytes(&many) - bytes(&one) < arrays,
+        "{} {}",
+        bytes(&many),
+        bytes(&one)
+    );
 }

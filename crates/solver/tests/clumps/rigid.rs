@@ -48,7 +48,7 @@ fn two_and_three_spheres_turn_as_free_rotation_says_to_the_last_bit() {
             assert_eq!(clump.angular_momentum, start.angular_momentum);
             assert_eq!(clump.velocity_m_s, start.velocity_m_s);
             place_all(&state.clumps, &mut state.particles);
-            for (pose, sphere) in state.particles.poses.iter().zip(&template.spheres) {
+            for (pose, sphere) in state.particles.poses.iter().zip(template.spheres.iter()) {
                 let arm = rotation(turned) * Vector3::from(sphere.place_m);
                 let wanted = Vector3::from(start.place_m)
                     + Vector3::from(start.velocity_m_s) * (1e-4 * f64::from(n))

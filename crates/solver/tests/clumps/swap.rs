@@ -201,7 +201,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
         let moved = Vector3::from(is.place_m) - Vector3::from(was.place_m);
         assert!((moved - Vector3::from(was.velocity_m_s) * 1e-6).norm() < 1e-15);
         let template = state.clumps.template(&is);
-        for (i, &sphere) in own.zip(&template.outer) {
+        for (i, &sphere) in own.zip(template.outer.iter()) {
             let wanted = template.pose(sphere as usize, &is).place();
             assert!((state.particles.poses[i].place() - wanted).norm() < 1e-15);
         }

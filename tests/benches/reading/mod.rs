@@ -1,0 +1,172 @@
+//! How fast the memory lets a step be: loops that read what a step of bonds or of contacts reads,
+//! and do nothing else.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use dem_run::state::State;
+use dem_run::state::bonds::{BLOCK, BondBlock};
+use dem_run::state::particles::Pose;
+use rayon::prelude::*;
+
+/// Number of rounds, of which the median is taken, and passes in each.
+const ROUNDS: usize = 7;
+const PASSES: usize = 10;
+/// Number of bonds, pairs or particles that a thread reads at once.
+const CHUNK: usize = 1024;
+
+/// Sums that a loop adds to side by side, so that additions wait for the memory and not for each
+/// other.
+type Sums = [f64; 8];
+
+#[inline(always)]
+fn add<const N: usize>(sums: &mut Sums, values: &[f64; N]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += value;
+    }
+}
+
+#[inline(always)]
+fn add_pose(sums: &mut Sums, pose: &Pose) {
+    add(sums, &pose.position_m);
+    add(sums, &pose.turned);
+}
+
+fn total(sums: Sums) -> f64 {
+    sums.iter().sum()
+}
+
+/// Passes per second, the median of all rounds.
+fn passes_per_s(pass: impl Fn() -> f64) -> f64 {
+    let mut rates: Vec<f64> = (0..ROUNDS)
+        .map(|_| {
+            let clock = Instant::now();
+            for _ in 0..PASSES {
+                black_box(pass());
+            }
+            PASSES as f64 / clock.elapsed().as_secs_f64()
+        })
+        .collect();
+    rates.sort_by(f64::total_cmp);
+    rates[ROUNDS / 2]
+}
+
+/// Reads motions and wrenches of all particles once.
+fn of_particles(state: &State) -> f64 {
+    let motions = state.particles.motions.par_chunks(CHUNK);
+    motions
+        .zip(state.particles.wrenches.par_chunks(CHUNK))
+        .map(|(motions, wrenches)| {
+            let mut sums = Sums::default();
+            for (motion, wrench) in motions.iter().zip(wrenches) {
+                add(&mut sums, &motion.velocity_m_s);
+                add(&mut sums, &motion.spin_rad_s);
+                add(&mut sums, &wrench.force_n);
+                add(&mut sums, &wrench.torque_n_m);
+            }
+            total(sums)
+        })
+        .sum()
+}
+
+/// Million bonds per second of a loop that only reads what a step of bonds reads: each bond's block
+/// (72 bytes) and the poses of its ends (64 bytes each), then motions and wrenches of all particles,
+/// once each. A step writes the last two and the poses as well.
+pub(crate) fn million_bonds_per_s(state: &State) -> f64 {
+    let (bonds, poses) = (&state.bonds, &state.particles.poses);
+    let of_bonds = |(blocks, ends): (&[BondBlock], &[[u32; 2]])| {
+        let mut sums = Sums::default();
+        for (block, ends) in blocks.iter().zip(ends.chunks(BLOCK)) {
+            for column in block.direction.iter().chain(&block.levers_m) {
+                add(&mut sums, column);
+            }
+            for column in [&block.normal, &block.shear, &block.radii_m] {
+                add(&mut sums, column);
+            }
+            for end in ends.as_flattened() {
+                add_pose(&mut sums, &poses[*end as usize]);
+            }
+        }
+        total(sums)
+    };
+    let pass = || {
+        let of_bonds: f64 = (bonds.blocks.par_chunks(CHUNK / BLOCK))
+            .zip(bonds.ends.par_chunks(CHUNK))
+            .map(of_bonds)
+            .sum();
+        of_bonds + of_particles(state)
+    };
+    1e-6 * bonds.len() as f64 * passes_per_s(pass)
+}
+
+/// Million particles per second of a loop that only reads what a step of contacts reads: each listed
+/// pair (8 bytes) and the poses of its ends, of pairs that touch the history (64 bytes) and the
+/// motions of both ends, then motions and wrenches of all particles. A step writes the histories,
+/// the poses, the motions and the wrenches as well.
+pub(crate) fn million_particles_per_s(state: &State) -> f64 {
+    let Some(contacts) = &state.contacts else {
+        return f64::NAN;
+    };
+    let (poses, motions) = (&state.particles.poses, &state.particles.motions);
+    let pass = || {
+        let of_pairs: f64 = (contacts.pairs.par_chunks(CHUNK))
+            .zip(contacts.histories.par_chunks(CHUNK))
+            .map(|(pairs, histories)| {
+                let mut sums = Sums::default();
+                for (pair, history) in pairs.iter().zip(histories) {
+                    for end in pair {
+                        add_pose(&mut sums, &poses[*end as usize]);
+                    }
+                    add(&mut sums, &history.tangential);
+                    if history.overlap_m() > 0.0 {
+                        add(&mut sums, &history.damping);
+                        for end in pair {
+                            add(&mut sums, &motions[*end as usize].velocity_m_s);
+                            add(&mut sums, &motions[*end as usize].spin_rad_s);
+                        }
+                    }
+                }
+                total(sums)
+            })
+            .sum();
+        of_pairs + of_particles(state)
+    };
+    1e-6 * state.particles.len() as f64 * passes_per_s(pass)
+}
+
+/// Seconds of a loop that only reads what a search for neighbours has to read once: the ball of each
+/// particle (32 bytes), each listed pair (8 bytes) and its history (128 bytes). A search writes the
+/// last two anew.
+pub(crate) fn search_s(state: &State) -> f64 {
+    let Some(contacts) = &state.contacts else {
+        return f64::NAN;
+    };
+    let balls = &contacts.scratch.references.balls;
+    let pass = || {
+        let of_balls: f64 = (balls.par_chunks(CHUNK))
+            .map(|balls| {
+                let mut sums = Sums::default();
+                for ball in balls {
+                    add(&mut sums, ball);
+                }
+                total(sums)
+            })
+            .sum();
+        let of_pairs: f64 = (contacts.pairs.par_chunks(CHUNK))
+            .zip(contacts.histories.par_chunks(CHUNK))
+            .map(|(pairs, histories)| {
+                let mut sums = Sums::default();
+                for ([a, b], history) in pairs.iter().zip(histories) {
+                    add(&mut sums, &[f64::from(*a), f64::from(*b)]);
+                    add(&mut sums, &history.tangential);
+                    add(&mut sums, &history.damping);
+                    add(&mut sums, &history.rolling);
+                    add(&mut sums, &history.rolling_damping);
+                }
+                total(sums)
+            })
+            .sum();
+        of_balls + of_pairs
+    };
+    1.0 / passes_per_s(pass)
+}
