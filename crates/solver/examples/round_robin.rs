@@ -145,11 +145,12 @@ impl Silo {
     }
 }
 
-const SILOS: [Silo; 4] = [
+const SILOS: [Silo; 5] = [
     Silo::flat("M1", 2500.0, 0.018),
     Silo::flat("M1", 2500.0, 0.022),
     Silo::flat("M2", 2000.0, 0.022),
     Silo::cone("cone", 0.060, 8e-3),
+    Silo::cone("cone", 0.060, 6e-3),
 ];
 
 fn silo(dem_run: &Path) -> Result<(), Failed> {
@@ -427,10 +428,13 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         let gap_m = FROM_M - BALL_M - bed_m;
         let impact_m_s = (speed_m_s * speed_m_s + 2.0 * GRAVITY_M_S2 * gap_m).sqrt();
         let law = katsuragi_durian(bulk_kg_m3, impact_m_s);
-        let depths = columns(&series, ["time_s", "ball_m"])?;
-        let depths = depths.iter().map(|[t, z]| [*t, bed_m + BALL_M - z]);
-        let below: Vec<[f64; 2]> = depths.filter(|[_, depth]| *depth >= 0.0).collect();
-        let touches_s = below.first().ok_or("the ball has not reached the bed")?[0];
+        let heights = columns(&series, ["time_s", "ball_m"])?;
+        let in_bed = falls_below(&heights, bed_m + BALL_M)?;
+        let touches_s = in_bed[0][0];
+        let depths = in_bed
+            .iter()
+            .map(|[t, z]| [t - touches_s, bed_m + BALL_M - z]);
+        let depths: Vec<[f64; 2]> = depths.collect();
         let milliseconds =
             |time_s: Option<f64>| format!("{:.0} ms", 1e3 * time_s.unwrap_or(f64::NAN));
         table.row(&[
@@ -441,7 +445,7 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
             format!("{:.1} mm", 1e3 * depth_m),
             off(uehara_m(bulk_kg_m3, fall_m)),
             off(law[law.len() - 1][1]),
-            milliseconds(sinks_s(&below).map(|time_s| time_s - touches_s)),
+            milliseconds(sinks_s(&depths)),
             milliseconds(sinks_s(&law)),
             format!("{:.1} mm", 1e3 * (lowest_m - FROM_M)),
         ]);
@@ -449,7 +453,7 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
         if *speed_m_s > 4.0 && !name.contains(',') {
             lines.push(Line {
                 name: format!("spheres of {name}"),
-                points: fall(&series)?,
+                points: displacements(&heights)?,
                 ..Line::default()
             });
         }
@@ -472,7 +476,7 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
     });
     table.write(PAGE, "round_robin penetration")?;
     let plot = Plot {
-        title: "a ball of steel that hits a bed of glass at 5 m/s, below the place where it has its speed".to_owned(),
+        title: "a ball that hits a bed of spheres at 5 m/s".to_owned(),
         x: Axis::of("time (s)"),
         y: Axis::of("displacement (mm)"),
         lines,
@@ -485,14 +489,20 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Displacement of the ball, mm, over time, from where it has 5 m/s.
-fn fall(series: &Path) -> Result<Vec<[f64; 2]>, Failed> {
-    let rows = columns(series, ["time_s", "ball_m"])?;
-    let below = rows.iter().filter(|[_, z]| *z <= FROM_M);
-    let Some(&[start_s, _]) = below.clone().next() else {
-        return Err("the ball has not fallen".into());
-    };
-    Ok(below
-        .map(|[t, z]| [t - start_s, 1e3 * (z - FROM_M)])
-        .collect())
+/// Displacement of the ball, mm, over time, from where it has 5 m/s, from rows (time, height).
+fn displacements(heights: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, Failed> {
+    let fall = falls_below(heights, FROM_M)?;
+    let displacement = |[t, z]: &[f64; 2]| [t - fall[0][0], 1e3 * (z - FROM_M)];
+    Ok(fall.iter().map(displacement).collect())
+}
+
+/// The rows (time, height) from the time on at which the height falls below a level: the first row
+/// is at that level, on the straight line between two rows.
+fn falls_below(heights: &[[f64; 2]], level_m: f64) -> Result<Vec<[f64; 2]>, Failed> {
+    let first = heights.iter().position(|[_, z]| *z < level_m);
+    let first = first.filter(|first| *first > 0);
+    let first = first.ok_or("the ball has not fallen")?;
+    let ([t, z], [next_s, next_m]) = (heights[first - 1], heights[first]);
+    let crosses_s = t + (next_s - t) * (z - level_m) / (z - next_m);
+    Ok([&[[crosses_s, level_m]], &heights[first..]].concat())
 }

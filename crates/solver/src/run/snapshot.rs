@@ -138,7 +138,7 @@ impl<'a> Snapshot<'a> {
                 "the scene is not that of the run: {}{more}",
                 changed[..changed.len().min(3)].join("; ")
             ),
-            "put it back, or start again without --resume; end_time, rest, time_step, safety and [output] may change",
+            "put it back, or start again without --resume; end_time, rest_energy_ratio, time_step, safety_factor and [output] may change",
         ))
     }
 

@@ -17,10 +17,10 @@ use rayon::prelude::*;
 use self::grid::{Grids, Seeker};
 use self::meetings::Meetings;
 use super::chunks::CHUNK;
-use super::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
+use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
-use crate::state::groups::{KnownClusters, LargeCluster};
+use crate::state::groups::{BLOCK, KnownClusters, LargeCluster};
 use crate::state::particles::Pose;
 use crate::state::references::Ball;
 
@@ -150,40 +150,62 @@ impl LargeMeetings<'_> {
     /// Adds the pairs of two clusters: those of their blocks that overlap.
     #[inline(always)]
     fn meet<T: Lanes>(&mut self, proof: T::Proof, a: &LargeCluster, b: &LargeCluster) {
-        let groups = &self.search.known.groups;
         let mut room = a.bounds.common(&b.bounds);
         // What one of them has there narrows down where the other can meet it.
         for large in [a, b, a, b] {
-            let blocks = large.blocks_within(&room, groups).map(|(_, bounds)| bounds);
+            let blocks = large.blocks_within(&room).map(|(_, bounds)| bounds);
             room = room.common(&blocks.fold(Bounds::EMPTY, |all, one| all.with(one)));
         }
-        for (of_a, around_a) in a.blocks_within(&room, groups) {
-            for (of_b, _) in b.blocks_within(&room.common(around_a), groups) {
-                for some in of_b.chunks(T::COUNT) {
-                    self.test::<T>(proof, of_a, some);
-                }
+        for (of_a, around_a) in a.blocks_within(&room) {
+            for (of_b, _) in b.blocks_within(&room.common(around_a)) {
+                self.test::<T>(proof, [a, b], [of_a, of_b]);
             }
         }
     }
 
-    /// Tests some balls against others, one for each lane.
+    /// Tests the balls of a block of one cluster that reach into the box of a block of another
+    /// against its balls, one of these for each lane.
     #[inline(always)]
-    fn test<T: Lanes>(&mut self, proof: T::Proof, some: &[u32], others: &[u32]) {
-        let search = self.search;
-        let other = |lane: usize| others[lane.min(others.len() - 1)];
-        let [ox, oy, oz, other_m] = T::columns(proof, |lane| search.balls[other(lane) as usize]);
-        for &i in some {
-            let [x, y, z, radius_m] = search.balls[i as usize].map(|c| T::all(proof, c));
-            let apart = Vec3(ox - x, oy - y, oz - z);
-            let near = radius_m + other_m;
-            let mut bits = (near * near).above(apart.square()) & (0xff >> (MOST - others.len()));
-            while bits != 0 {
-                let j = other(bits.trailing_zeros() as usize);
-                bits &= bits - 1;
-                if search.seeks(i) || search.seeks(j) {
-                    self.pairs.push([i.min(j), i.max(j)]);
+    fn test<T: Lanes>(&mut self, proof: T::Proof, large: [&LargeCluster; 2], blocks: [usize; 2]) {
+        let groups = &self.search.known.groups;
+        let [members, others] = [0, 1].map(|k| large[k].members(blocks[k], groups));
+        let [columns, of_others] = [0, 1].map(|k| &large[k].columns[blocks[k]]);
+        let mut reaching = reaching::<T>(proof, columns, &large[1].blocks[blocks[1]]);
+        while reaching != 0 {
+            let n = reaching.trailing_zeros() as usize;
+            reaching &= reaching - 1;
+            let [x, y, z, radius_m] = columns.each_ref().map(|column| T::all(proof, column[n]));
+            for first in (0..BLOCK).step_by(T::COUNT) {
+                let other = of_others.each_ref();
+                let [ox, oy, oz, other_m] = other.map(|column| T::load(proof, column, first));
+                let apart = Vec3(ox - x, oy - y, oz - z);
+                let near = radius_m + other_m;
+                let mut bits = (near * near).above(apart.square());
+                while bits != 0 {
+                    let [i, j] = [members[n], others[first + bits.trailing_zeros() as usize]];
+                    bits &= bits - 1;
+                    if self.search.seeks(i) || self.search.seeks(j) {
+                        self.pairs.push([i.min(j), i.max(j)]);
+                    }
                 }
             }
         }
     }
+}
+
+/// A bit for each ball of a block that reaches into a box.
+#[inline(always)]
+fn reaching<T: Lanes>(proof: T::Proof, columns: &[[f64; BLOCK]; 4], room: &Bounds) -> u32 {
+    let mut bits = 0;
+    for first in (0..BLOCK).step_by(T::COUNT) {
+        let radius_m = T::load(proof, &columns[3], first);
+        let mut inside = u8::MAX;
+        for k in 0..3 {
+            let c = T::load(proof, &columns[k], first);
+            inside &= (c + radius_m).above(T::all(proof, room.low[k]));
+            inside &= T::all(proof, room.high[k]).above(c - radius_m);
+        }
+        bits |= u32::from(inside) << first;
+    }
+    bits
 }

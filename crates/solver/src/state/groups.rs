@@ -12,7 +12,9 @@ pub type Ball = [f64; 4];
 const SMALL: usize = 16;
 /// Number of balls, in the order of a cluster, that have a box of their own. Near ones follow one
 /// another.
-const BLOCK: usize = 16;
+pub(crate) const BLOCK: usize = 16;
+/// A ball that overlaps none.
+const NOWHERE: Ball = [f64::INFINITY, 0.0, 0.0, 0.0];
 
 /// What the last neighbour search knew of the clusters.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +35,9 @@ pub struct LargeCluster {
     /// Box around its balls.
     pub(crate) bounds: Bounds,
     /// Boxes around each [`BLOCK`] of its balls.
-    blocks: Vec<Bounds>,
+    pub(crate) blocks: Vec<Bounds>,
+    /// The balls of each block by columns, x, y, z and radius, m, filled up with [`NOWHERE`].
+    pub(crate) columns: Vec<[[f64; BLOCK]; 4]>,
     /// Whether any of its balls seeks.
     pub(crate) seeks: bool,
 }
@@ -71,6 +75,7 @@ impl LargeCluster {
             group,
             bounds: Bounds::EMPTY,
             blocks: Vec::new(),
+            columns: Vec::new(),
             seeks: true,
         }
     }
@@ -81,16 +86,32 @@ impl LargeCluster {
         self.blocks.extend(blocks);
         let blocks = self.blocks.iter();
         self.bounds = blocks.fold(Bounds::EMPTY, |all, one| all.with(one));
+        let columns = members.chunks(BLOCK).map(|some| {
+            let mut columns = NOWHERE.map(|c| [c; BLOCK]);
+            for (n, &i) in some.iter().enumerate() {
+                for (column, c) in columns.iter_mut().zip(balls[i as usize]) {
+                    column[n] = c;
+                }
+            }
+            columns
+        });
+        self.columns.clear();
+        self.columns.extend(columns);
     }
 
-    /// The members and the boxes of its blocks that reach into a box.
+    /// Numbers and boxes of its blocks that reach into a box.
     pub(crate) fn blocks_within<'a>(
         &'a self,
         room: &'a Bounds,
-        groups: &'a Groups,
-    ) -> impl Iterator<Item = (&'a [u32], &'a Bounds)> {
-        let blocks = groups.members(self.group).chunks(BLOCK).zip(&self.blocks);
+    ) -> impl Iterator<Item = (usize, &'a Bounds)> {
+        let blocks = self.blocks.iter().enumerate();
         blocks.filter(|(_, bounds)| bounds.overlaps(room))
+    }
+
+    /// The members of a block.
+    pub(crate) fn members<'a>(&self, block: usize, groups: &'a Groups) -> &'a [u32] {
+        let all = groups.members(self.group);
+        &all[BLOCK * block..all.len().min(BLOCK * (block + 1))]
     }
 
     /// Its balls that reach into a box.
@@ -100,9 +121,9 @@ impl LargeCluster {
         balls: &'a [Ball],
         groups: &'a Groups,
     ) -> impl Iterator<Item = u32> + 'a {
-        let blocks = self.blocks_within(room, groups);
+        let blocks = self.blocks_within(room);
         blocks
-            .flat_map(|(members, _)| members)
+            .flat_map(|(block, _)| self.members(block, groups))
             .copied()
             .filter(|&i| around(&balls[i as usize]).overlaps(room))
     }
