@@ -1,7 +1,7 @@
 //! The table of doc/performance.md on many bodies: the time of a step over the number of bodies
 //! that wait in an inlet, fly bonded or rigid, are broken, or sleep; alone, and beside ten bonded
-//! bodies that fly. `cargo bench -p dem-tests --bench bodies`, then the largest number of bodies or
-//! nothing (10,000), and `--page FILE` to write it. On one thread, some minutes. With the word
+//! bodies that fly. `cargo bench -p dem-tests --bench bodies`, then `--page FILE` to write it, or
+//! the largest number of bodies to print it up to there. On one thread, some minutes. With the word
 //! `waiting`, what a waiting body costs in time and memory.
 #![allow(
     clippy::expect_used,

@@ -1,5 +1,5 @@
-//! The table of doc/performance.md: how fast a step is in scenes of bonded bodies, of loose spheres
-//! and of rigid clumps, and how much of it is the neighbour search. `cargo bench -p dem-tests
+//! The first tables of doc/performance.md: how fast a step is in scenes of bonded bodies, of loose
+//! spheres and of rigid clumps, and how much of it is the neighbour search. `cargo bench -p dem-tests
 //! --bench figures`, then the names of cases or nothing, and `--page FILE` to write it. Some
 //! minutes.
 #![allow(
@@ -189,8 +189,8 @@ impl Case {
         })
     }
 
-    /// A row on the searches of a scene: how many steps apart they are, how long each takes, and what
-    /// the memory allows.
+    /// A row on the searches of a scene: how many steps apart they are, how long each takes, and
+    /// what the memory allows.
     fn search_row(&self, threads: usize) -> String {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads start").install(|| {

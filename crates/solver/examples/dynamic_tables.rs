@@ -46,8 +46,8 @@ fn line(name: &str, points: Vec<[f64; 2]>, dashed: bool) -> Line {
     }
 }
 
-/// Largest difference of the forces on both ends over the largest load, from half of it on, of a
-/// test in equilibrium: that of the verdict of a run.
+/// Largest difference of the forces on both ends over the largest load, between half of it and all
+/// of it, of a test in equilibrium: that of the verdict of a run.
 const APART: f64 = 0.1;
 
 /// Strength of the disc over the strain rate, without rate strengthening and with it: the runs of
@@ -71,6 +71,9 @@ fn rates(runs: &[Run]) -> Result<(), Failed> {
         let strengthens = at % 2;
         let rate_1_s = run.figure("strain rate");
         let factor = run.figure("dynamic increase factor");
+        if !factor.is_finite() {
+            return Err("a disc of the study did not break".into());
+        }
         let apart = run.figure("force equilibrium");
         let is_valid = apart.abs() <= APART;
         marks[strengthens].points.push(Point {
@@ -145,7 +148,7 @@ fn heights(runs: &[Run]) -> Result<(), Failed> {
     }
     table.write(PAGE, "dynamic_tables heights")?;
 
-    let mut table = Table::new(&["E", "A", "b", "A b", "largest deviation of t10"]);
+    let mut table = Table::new(&["E", "A", "b", "A b", "t10 off by at most"]);
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
     for (name, points) in [("impact energy", impact), ("absorbed energy", absorbed)] {
         let law = Breakage::fitted(&points);
@@ -158,7 +161,10 @@ fn heights(runs: &[Run]) -> Result<(), Failed> {
                 "{} % t/kWh",
                 significant(100.0 * law.largest * law.rate_t_kwh, 3)
             ),
-            percent(points.iter().map(off).fold(0.0, f64::max)),
+            format!(
+                "{} points",
+                significant(100.0 * points.iter().map(off).fold(0.0, f64::max), 3)
+            ),
         ]);
         let of = |f: fn(f64, f64) -> f64| points.iter().map(|[e, _]| *e).reduce(f);
         let [first, last] = [of(f64::min), of(f64::max)].map(|e| e.unwrap_or(f64::NAN));

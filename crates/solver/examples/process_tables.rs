@@ -371,7 +371,7 @@ fn write_flows(run: &Run) -> Result<(), Failed> {
 }
 
 /// What waste rock costs that waits to be fed, or lies on a floor: memory as `dem-run check` tells
-/// it, and processor time of a step. The largest number is checked only.
+/// it, and processor time of a step.
 fn write_waiting(runs: &Runs) -> Result<(), Failed> {
     let mut table = Table::new(&[
         "pieces of waste rock",

@@ -375,7 +375,8 @@ fn penetration(dem_run: &Path) -> Result<(), Failed> {
     let and = |set: Vec<String>, more: &str| [set, vec![more.to_owned()]].concat();
     let slow = "supports.hold.velocity.z=\"-1.818 m/s\"";
     let stiff = "materials.m1.young_modulus=\"200 MPa\"";
-    let coarse = || grains(8.0, 1_563);
+    // Until the ball is at rest: with large spheres it creeps.
+    let coarse = || and(grains(8.0, 1_563), "run.end_time=\"0.7 s\"");
     let cases = [
         ("8 mm", 5.0, coarse()),
         (

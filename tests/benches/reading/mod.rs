@@ -15,25 +15,26 @@ const PASSES: usize = 10;
 /// Number of bonds, pairs or particles that a thread reads at once.
 const CHUNK: usize = 1024;
 
-/// Sums that a loop adds to side by side, so that additions wait for the memory and not for each
-/// other.
-type Sums = [f64; 8];
+/// Sums of four numbers. What a loop reads side by side goes into different ones, so that additions
+/// wait for the memory and not for each other.
+type Sums = [[f64; 4]; 8];
 
 #[inline(always)]
-fn add<const N: usize>(sums: &mut Sums, values: &[f64; N]) {
-    for (sum, value) in sums.iter_mut().zip(values) {
+fn add<const N: usize>(sum: &mut [f64; 4], values: &[f64; N]) {
+    for (sum, value) in sum.iter_mut().zip(values) {
         *sum += value;
     }
 }
 
+/// Adds a pose to two sums.
 #[inline(always)]
-fn add_pose(sums: &mut Sums, pose: &Pose) {
-    add(sums, &pose.position_m);
-    add(sums, &pose.turned);
+fn add_pose(sums: &mut [[f64; 4]], pose: &Pose) {
+    add(&mut sums[0], &pose.position_m);
+    add(&mut sums[1], &pose.turned);
 }
 
 fn total(sums: Sums) -> f64 {
-    sums.iter().sum()
+    sums.iter().flatten().sum()
 }
 
 /// Passes per second, the median of all rounds.
@@ -59,10 +60,10 @@ fn of_particles(state: &State) -> f64 {
         .map(|(motions, wrenches)| {
             let mut sums = Sums::default();
             for (motion, wrench) in motions.iter().zip(wrenches) {
-                add(&mut sums, &motion.velocity_m_s);
-                add(&mut sums, &motion.spin_rad_s);
-                add(&mut sums, &wrench.force_n);
-                add(&mut sums, &wrench.torque_n_m);
+                add(&mut sums[0], &motion.velocity_m_s);
+                add(&mut sums[1], &motion.spin_rad_s);
+                add(&mut sums[2], &wrench.force_n);
+                add(&mut sums[3], &wrench.torque_n_m);
             }
             total(sums)
         })
@@ -70,21 +71,20 @@ fn of_particles(state: &State) -> f64 {
 }
 
 /// Million bonds per second of a loop that only reads what a step of bonds reads: each bond's block
-/// (72 bytes) and the poses of its ends (64 bytes each), then motions and wrenches of all particles,
-/// once each. A step writes the last two and the poses as well.
+/// (72 bytes) and the poses of its ends (64 bytes each), then motions and wrenches of all
+/// particles, once each. A step writes the last two and the poses as well.
 pub(crate) fn million_bonds_per_s(state: &State) -> f64 {
     let (bonds, poses) = (&state.bonds, &state.particles.poses);
     let of_bonds = |(blocks, ends): (&[BondBlock], &[[u32; 2]])| {
         let mut sums = Sums::default();
         for (block, ends) in blocks.iter().zip(ends.chunks(BLOCK)) {
-            for column in block.direction.iter().chain(&block.levers_m) {
-                add(&mut sums, column);
+            let columns = block.direction.iter().chain(&block.levers_m);
+            let columns = columns.chain([&block.normal, &block.shear, &block.radii_m]);
+            for (sum, column) in sums.iter_mut().zip(columns) {
+                add(sum, column);
             }
-            for column in [&block.normal, &block.shear, &block.radii_m] {
-                add(&mut sums, column);
-            }
-            for end in ends.as_flattened() {
-                add_pose(&mut sums, &poses[*end as usize]);
+            for (n, end) in ends.as_flattened().iter().enumerate() {
+                add_pose(&mut sums[n % 4 * 2..], &poses[*end as usize]);
             }
         }
         total(sums)
@@ -100,9 +100,9 @@ pub(crate) fn million_bonds_per_s(state: &State) -> f64 {
 }
 
 /// Million particles per second of a loop that only reads what a step of contacts reads: each listed
-/// pair (8 bytes) and the poses of its ends, of pairs that touch the history (64 bytes) and the
-/// motions of both ends, then motions and wrenches of all particles. A step writes the histories,
-/// the poses, the motions and the wrenches as well.
+/// pair (8 bytes), the first cache line of its history (64 bytes) and the poses of its ends, of
+/// pairs that touch the motions of both ends, then motions and wrenches of all particles. A step
+/// writes the histories, the poses, the motions and the wrenches as well.
 pub(crate) fn million_particles_per_s(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return f64::NAN;
@@ -114,15 +114,15 @@ pub(crate) fn million_particles_per_s(state: &State) -> f64 {
             .map(|(pairs, histories)| {
                 let mut sums = Sums::default();
                 for (pair, history) in pairs.iter().zip(histories) {
-                    for end in pair {
-                        add_pose(&mut sums, &poses[*end as usize]);
+                    for (n, end) in pair.iter().enumerate() {
+                        add_pose(&mut sums[2 * n..], &poses[*end as usize]);
                     }
-                    add(&mut sums, &history.tangential);
+                    add(&mut sums[4], &history.tangential);
                     if history.overlap_m() > 0.0 {
-                        add(&mut sums, &history.damping);
+                        add(&mut sums[5], &history.damping);
                         for end in pair {
-                            add(&mut sums, &motions[*end as usize].velocity_m_s);
-                            add(&mut sums, &motions[*end as usize].spin_rad_s);
+                            add(&mut sums[6], &motions[*end as usize].velocity_m_s);
+                            add(&mut sums[7], &motions[*end as usize].spin_rad_s);
                         }
                     }
                 }
@@ -134,9 +134,9 @@ pub(crate) fn million_particles_per_s(state: &State) -> f64 {
     1e-6 * state.particles.len() as f64 * passes_per_s(pass)
 }
 
-/// Seconds of a loop that only reads what a search for neighbours has to read once: the ball of each
-/// particle (32 bytes), each listed pair (8 bytes) and its history (128 bytes). A search writes the
-/// last two anew.
+/// Seconds of a loop that only reads what a search for neighbours has to read once: the ball of
+/// each particle (32 bytes), each listed pair (8 bytes) and its history (128 bytes). A search
+/// writes the last two anew.
 pub(crate) fn search_s(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return f64::NAN;
@@ -146,8 +146,8 @@ pub(crate) fn search_s(state: &State) -> f64 {
         let of_balls: f64 = (balls.par_chunks(CHUNK))
             .map(|balls| {
                 let mut sums = Sums::default();
-                for ball in balls {
-                    add(&mut sums, ball);
+                for (n, ball) in balls.iter().enumerate() {
+                    add(&mut sums[n % 8], ball);
                 }
                 total(sums)
             })
@@ -157,11 +157,11 @@ pub(crate) fn search_s(state: &State) -> f64 {
             .map(|(pairs, histories)| {
                 let mut sums = Sums::default();
                 for ([a, b], history) in pairs.iter().zip(histories) {
-                    add(&mut sums, &[f64::from(*a), f64::from(*b)]);
-                    add(&mut sums, &history.tangential);
-                    add(&mut sums, &history.damping);
-                    add(&mut sums, &history.rolling);
-                    add(&mut sums, &history.rolling_damping);
+                    add(&mut sums[0], &[f64::from(*a), f64::from(*b)]);
+                    add(&mut sums[1], &history.tangential);
+                    add(&mut sums[2], &history.damping);
+                    add(&mut sums[3], &history.rolling);
+                    add(&mut sums[4], &history.rolling_damping);
                 }
                 total(sums)
             })

@@ -35,8 +35,8 @@ pub const LARGEST_STRESS: &str = "largest stress";
 pub const STRAIN_RATE: &str = "strain rate";
 /// Strength over the static one.
 pub const INCREASE_FACTOR: &str = "dynamic increase factor";
-/// Largest difference of the forces on both ends from half of the largest load on, over the largest
-/// load.
+/// Largest difference of the forces on both ends between half of the largest load and all of it,
+/// over the largest load.
 pub const EQUILIBRIUM: &str = "force equilibrium";
 /// Share of the incident energy that the pulses and the work of the bars disagree by.
 pub const UNBOOKED: &str = "energy unaccounted for";

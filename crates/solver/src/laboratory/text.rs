@@ -13,8 +13,8 @@ use super::files::percent;
 
 /// Smallest change at half the rate that is reported.
 const MUCH: f64 = 0.02;
-/// Largest difference of the forces on both ends of a specimen over the largest load, from half of
-/// that load on, at which it counts as in equilibrium.
+/// Largest difference of the forces on both ends of a specimen over the largest load, between half
+/// of that load and all of it, at which it counts as in equilibrium.
 const APART: f64 = 0.1;
 /// Largest deviation of a lateral pressure that counts as constant.
 const UNSTEADY: f64 = 0.01;
@@ -106,7 +106,7 @@ impl TestResult {
         if apart.abs() > APART {
             doubts.push(format!(
                 "the forces on the two ends differ by up to {} of the largest load between half of it and all of it, so the specimen was not in equilibrium (at most {:.0} %): take a longer rise (test.striker.rise_time), a shorter specimen or a slower striker",
-                percent(apart),
+                format_args!("{:.1} %", 100.0 * apart.abs()),
                 100.0 * APART
             ));
         }

@@ -357,7 +357,6 @@ impl Template {
             }
         }
         share(&mut self.spheres, &other.spheres);
-        share(&mut self.outer, &other.outer);
         share(&mut self.bonds, &other.bonds);
         share(&mut self.file_number, &other.file_number);
         share(&mut self.bonds_of_file, &other.bonds_of_file);

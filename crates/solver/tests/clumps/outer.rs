@@ -152,29 +152,41 @@ fn clumps_share_what_they_are_made_of() {
 
 /// Bodies of one shape share their arrays, which count once; another shape has its own.
 #[test]
-fn bodies_of_one_shape_share_one_template() {
+fn bodies_of_one_shape_share_their_arrays() {
+    let bonded = |name: &str, at: usize, make: fn(&str, &str) -> String| {
+        let clump = "start_as = \"clump\"\n";
+        make(name, &format!("position = [{}, 0, 0]", 0.1 * at as f64))
+            .replace(clump, &format!("{clump}bonds = \"stiff\"\n"))
+    };
     let scene = |names: &[&str]| {
-        let bodies = names
-            .iter()
-            .enumerate()
-            .map(|(at, name)| covered(name, &format!("position = [{}, 0, 0]", 0.1 * at as f64)));
-        planned(&format!("{HEAD}{MEETS}{}", bodies.collect::<String>())).state
+        let bodies = names.iter().enumerate();
+        let bodies: String = bodies.map(|(at, name)| bonded(name, at, porous)).collect();
+        let other = bonded("other", names.len(), covered);
+        let far = "[regions.far]\nbox = { min = [1, 1, 1], max = [2, 2, 2] }\n";
+        let replaced = names.iter().chain(&["other"]);
+        let replaced =
+            replaced.map(|name| format!("[replacement.{name}]\nwhen = {{ enters = \"far\" }}\n"));
+        let replaced: String = replaced.collect();
+        planned(&format!("{HEAD}{MEETS}{bodies}{other}{far}{replaced}")).state
     };
     let bytes = |state: &State| {
         let stage = stages().iter().find(|stage| stage.name == "rigid clumps");
         (stage.unwrap().bytes)(state) as f64
     };
     let [one, many] = [scene(&["a"]), scene(&["a", "b", "c", "d"])];
-    let [first, others @ ..] = &many.clumps.templates[..] else {
-        panic!("no template");
+    let [first, others @ .., another] = &many.clumps.templates[..] else {
+        panic!("no templates");
     };
-    assert_eq!(others.len(), 3);
+    assert_eq!((others.len(), another.body.as_str()), (3, "other"));
+    assert!(!Arc::ptr_eq(&another.spheres, &first.spheres));
+    assert!(!first.bonds.is_empty());
     for other in others {
         assert_ne!(other.body, first.body);
         assert!(Arc::ptr_eq(&other.spheres, &first.spheres));
         assert!(Arc::ptr_eq(&other.outer, &first.outer));
         assert!(Arc::ptr_eq(&other.bonds, &first.bonds));
         assert!(Arc::ptr_eq(&other.file_number, &first.file_number));
+        assert!(Arc::ptr_eq(&other.bonds_of_file, &first.bonds_of_file));
     }
     let arrays = size_of_val(&first.spheres[..]) as f64;
     assert!(

@@ -5,11 +5,12 @@ use std::f64::consts::PI;
 use dem_laboratory::Specimen;
 use dem_laboratory::TestType;
 use dem_laboratory::theory::{Beam, KAPPA};
+use dem_run::laboratory::dynamic::evaluate_dynamic;
 use dem_run::laboratory::evaluate::{TestInput, TestResult, evaluate};
 use dem_run::laboratory::record::{BrokenBond, Record, Row};
 use dem_run::physics::bond::failure::Cause;
 use dem_run::plan::test_setup::Setup;
-use dem_scene::{BondKind, Test};
+use dem_scene::{Bars, BondKind, Test};
 
 const BEAM: Beam = Beam {
     span_m: 0.18,
@@ -156,6 +157,74 @@ fn assert_near(got: Option<f64>, wanted: f64) {
         (got / wanted - 1.0).abs() < 1e-9,
         "{got:e} is not {wanted:e}"
     );
+}
+
+/// The forces on the two ends of a specimen between bars differ by a part of the largest load: what
+/// counts is the largest difference between half of that load and all of it.
+#[test]
+fn forces_on_both_ends_agree_from_half_of_the_largest_load_on() {
+    let bars = Bars {
+        transmission: "below".to_owned(),
+        density_kg_m3: 7850.0,
+        young_modulus_pa: 210e9,
+        diameter_m: 0.05,
+        striker_m: 1.0,
+        striker_m_s: 10.0,
+        rise_time_s: 0.0,
+        gauges: None,
+    };
+    let specimen = Specimen::Bar {
+        length_m: 0.05,
+        area_m2: 2e-3,
+    };
+    // The load rises to 1 kN and falls again; here the forces differ by this much in these rows.
+    let apart = |differences: &[(usize, f64)]| {
+        let test = Test {
+            bars: Some(bars.clone()),
+            ..test(TestType::HopkinsonPressure)
+        };
+        let mut record = Record::default();
+        record.rows = (0..=40)
+            .map(|i| {
+                let load_n = 1000.0 - 50.0 * (f64::from(i) - 20.0).abs();
+                let here = differences.iter().find(|(at, _)| *at == i as usize);
+                let half_n = 0.5 * here.map_or(0.0, |(_, difference_n)| *difference_n);
+                Row {
+                    time_s: 1e-6 * f64::from(i),
+                    force_n: load_n + half_n,
+                    reaction_n: load_n - half_n,
+                    ..Row::default()
+                }
+            })
+            .collect();
+        // A frequency so high that nothing is averaged.
+        let input_hz = 1e9;
+        let result = evaluated_dynamic(input_hz, &test, &setup(specimen), &record);
+        result.figure("force equilibrium").unwrap()
+    };
+    assert_eq!(apart(&[(20, 50.0)]), 0.05);
+    assert_eq!(apart(&[(12, -300.0), (20, 10.0)]), -0.3);
+    // Below half of the largest load, and behind it, nothing counts.
+    assert_eq!(apart(&[(8, 300.0), (21, 300.0), (20, 20.0)]), 0.02);
+}
+
+fn evaluated_dynamic(
+    lowest_frequency_hz: f64,
+    test: &Test,
+    setup: &Setup,
+    record: &Record,
+) -> TestResult {
+    evaluate_dynamic(&TestInput {
+        test,
+        setup,
+        record,
+        places_m: &PLACES,
+        bonds: None,
+        lowest_frequency_hz,
+        broken: false,
+        all_bonds: ALL_BONDS,
+        pieces: None,
+    })
 }
 
 #[test]

@@ -46,6 +46,32 @@ proptest! {
     }
 }
 
+proptest! {
+    /// Clusters of 16 and more spheres, whose number leaves any remainder in a block of them.
+    #[test]
+    fn large_clusters_have_all_near_pairs(
+        bodies in prop::collection::vec(
+            (
+                prop::array::uniform3(-1.5..1.5),
+                prop::collection::vec((prop::array::uniform3(-1.0..1.0), 0.02_f64..0.3), 16..60),
+            ),
+            2..5,
+        ),
+        skin_m in 0.001..0.1,
+    ) {
+        let (mut places, mut radii, mut clusters) = (Vec::new(), Vec::new(), Vec::new());
+        for (number, (middle, spheres)) in (0..).zip(&bodies) {
+            for (place, radius) in spheres {
+                places.push([0, 1, 2].map(|k| middle[k] + place[k]));
+                radii.push(*radius);
+                clusters.push(number);
+            }
+        }
+        let poses = cloud(&places, &radii);
+        prop_assert_eq!(near_pairs(&poses, &clusters, skin_m), all_pairs(&poses, &clusters, skin_m));
+    }
+}
+
 /// Two bodies of many particles each, side by side: only the facing sides are near, and the other
 /// ends are left out.
 #[test]
