@@ -1,6 +1,7 @@
 //! What loads the body of a dynamic test: two long bars and a striker, or a falling weight.
 
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 use crate::factor::Factor;
 use crate::listing::Listing;
@@ -9,7 +10,7 @@ use crate::schema::{Key, Schema};
 use crate::table::Table;
 use crate::tree::Value;
 use dem_io::diagnostic::Result;
-use dem_io::units::{DENSITY, LENGTH, MASS, STRESS, TIME, VELOCITY, show_quantity};
+use dem_io::units::{DENSITY, LENGTH, MASS, STRESS, TIME, VELOCITY, show_quantity, significant};
 
 /// Rise of a pulse without a rise time, as a fraction of its duration.
 const STEEP: f64 = 1e-6;
@@ -92,6 +93,9 @@ pub(crate) static WEIGHT: Schema = Schema {
     ],
 };
 
+/// Wave speeds of any solid that bars are made of.
+const WAVE_SPEEDS_M_S: RangeInclusive<f64> = 100.0..=20_000.0;
+
 /// Two long elastic bars, and the striker.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bars {
@@ -129,10 +133,14 @@ impl Bars {
         (self.young_modulus_pa / self.density_kg_m3).sqrt()
     }
 
+    /// Section of a bar, m2.
+    pub fn area_m2(&self) -> f64 {
+        0.25 * PI * self.diameter_m * self.diameter_m
+    }
+
     /// Impedance of a bar, the ratio of force to velocity in a wave, N s/m: rho c A.
     pub fn impedance_n_s_m(&self) -> f64 {
-        let area_m2 = 0.25 * PI * self.diameter_m * self.diameter_m;
-        self.density_kg_m3 * self.wave_speed_m_s() * area_m2
+        self.density_kg_m3 * self.wave_speed_m_s() * self.area_m2()
     }
 
     /// Velocity of the particles of the bar in the incident pulse, m/s: half of the striker's.
@@ -193,6 +201,17 @@ pub(super) fn bars(test: &Table<'_>, transmission: String) -> Result<Bars> {
         rise_time_s: of_striker.read("rise_time")?,
         gauges: None,
     };
+    let speed_m_s = found.wave_speed_m_s();
+    if !WAVE_SPEEDS_M_S.contains(&speed_m_s) {
+        let modulus = bars.need("young_modulus")?;
+        let limit = format!(
+            "such that sqrt(E/rho), the wave speed of the bars, is {} m/s to {} m/s, and not {} m/s",
+            WAVE_SPEEDS_M_S.start(),
+            WAVE_SPEEDS_M_S.end(),
+            significant(speed_m_s, 3)
+        );
+        return Err(modulus.wrong(&limit, "check the units of density and young_modulus"));
+    }
     if found.rise_time_s > found.pulse_s() {
         let rise = of_striker.need_such("rise_time", "\"0 s\"")?;
         let limit = format!(

@@ -6,6 +6,9 @@
 //! test, in tension) at the ends of the bars are eps_I = v_I/c, eps_R = F_1/(Z c) - eps_I and
 //! eps_T = F_2/(Z c). Source: Kolsky 1949; the specimen is in equilibrium if eps_I + eps_R = eps_T.
 
+use std::ops::RangeInclusive;
+
+use dem_io::units::significant;
 use dem_laboratory::Specimen;
 use dem_scene::{Bars, Gauges, Weight};
 
@@ -24,6 +27,10 @@ const LOADED: f64 = 0.1;
 const RISE: [f64; 2] = [LOADED, 0.9];
 /// Fraction of the largest load from which on the forces on both ends have to agree.
 const AGREES: f64 = 0.5;
+/// Sections of the bars, over that of the body, for which a bar stands for a rigid end.
+const SECTIONS: RangeInclusive<f64> = 0.99..=100.0;
+/// Fraction of the pulse before whose end a run is cut short.
+const CUT_SHORT: f64 = 0.99;
 /// Fraction of the largest load at which a contact of the weight begins and ends.
 const TOUCHES: f64 = 0.01;
 /// Energy in J/kg of one kWh/t.
@@ -53,6 +60,7 @@ pub fn evaluate_dynamic(evidence: &TestInput<'_>) -> TestResult {
         rate_m_s: found.rate_m_s,
         dimensions: found.dimensions,
         figures: found.figures,
+        reasons: found.reasons,
         first_broken: first_broken(evidence),
         curve: points.collect(),
         ..without_figures(evidence, rows)
@@ -66,6 +74,8 @@ struct Found {
     rate_m_s: f64,
     dimensions: Vec<Figure>,
     figures: Vec<Figure>,
+    /// Reasons to doubt the test.
+    reasons: Vec<String>,
 }
 
 impl Found {
@@ -99,22 +109,31 @@ fn figures(evidence: &TestInput<'_>, rows: &[Row]) -> Found {
 fn of_bars(found: &mut Found, evidence: &TestInput<'_>, bars: &Bars, rows: &[Row]) {
     found.rate_m_s = bars.striker_m_s;
     let specimen = evidence.setup.specimen;
-    let length_m = match specimen {
+    let (length_m, area_m2) = match specimen {
         Specimen::Disc {
             diameter_m,
             thickness_m,
         } => {
             found.dimension("diameter", diameter_m, "m");
             found.dimension("thickness", thickness_m, "m");
-            diameter_m
+            (diameter_m, diameter_m * thickness_m)
         }
         Specimen::Bar { length_m, area_m2 } => {
             found.dimension("length", length_m, "m");
             found.dimension("area", area_m2, "m2");
-            length_m
+            (length_m, area_m2)
         }
         Specimen::Beam(_) => return,
     };
+    let sections = bars.area_m2() / area_m2;
+    if !SECTIONS.contains(&sections) {
+        found.reasons.push(format!(
+            "the section of the bars is {} times that of the body ({} to {}): check test.bars.diameter",
+            significant(sections, 3),
+            SECTIONS.start(),
+            SECTIONS.end()
+        ));
+    }
     found.dimension("bar wave speed", bars.wave_speed_m_s(), "m/s");
     found.dimension("bar impedance", bars.impedance_n_s_m(), "N s/m");
     found.dimension("pulse duration", bars.pulse_s(), "s");
@@ -127,6 +146,15 @@ fn of_bars(found: &mut Found, evidence: &TestInput<'_>, bars: &Bars, rows: &[Row
     // The load while the pulse lasts: later waves are not part of the test.
     let during = rows.partition_point(|row| row.time_s <= bars.pulse_end_s());
     let peak = (0..during).max_by(|a, b| rows[*a].load_n().total_cmp(&rows[*b].load_n()));
+    if let (Some(peak), Some(last)) = (peak, rows.last())
+        && last.time_s < CUT_SHORT * bars.pulse_end_s()
+        && last.load_n() > 0.5 * rows[peak].load_n()
+    {
+        found.reasons.push(
+            "the run ended before the pulse, and under more than half of the largest load: set a later run.end_time, or none"
+                .to_owned(),
+        );
+    }
     if let Some(peak) = peak {
         at_peak(
             found,
@@ -335,6 +363,38 @@ fn outgoing(pulses: &[BarSignal], time_s: f64) -> [f64; 2] {
     ]
 }
 
+/// How long the weight presses without a break around its largest force, s. None: it never does.
+fn contact_s(rows: &[Row], largest_n: f64) -> Option<f64> {
+    let presses = |row: &Row| row.force_n > TOUCHES * largest_n;
+    let largest = rows.iter().position(|row| row.force_n >= largest_n);
+    let largest = largest.filter(|_| largest_n > 0.0)?;
+    let first = rows[..largest].iter().rposition(|row| !presses(row));
+    let last = rows[largest..].iter().position(|row| !presses(row));
+    let first = first.map_or(0, |before| before + 1);
+    let last = last.map_or(rows.len(), |behind| largest + behind) - 1;
+    Some(rows[last].time_s - rows[first].time_s)
+}
+
+/// Reasons to doubt a test with a weight with these largest forces of the weight and of the anvil, N.
+fn weight_reasons(rows: &[Row], largest_n: f64, anvil_n: f64) -> Vec<String> {
+    if largest_n <= 0.0 {
+        let said = "the weight did not touch the body: put the wall of test.crosshead at its top";
+        return vec![said.to_owned()];
+    }
+    let mut reasons = Vec::new();
+    if anvil_n < TOUCHES * largest_n {
+        reasons
+            .push("no wall or support behind the body took a load: put an anvil there".to_owned());
+    }
+    if rows.last().is_some_and(|row| row.force_n > 0.5 * largest_n) {
+        reasons.push(
+            "the run ended while the weight pressed with more than half of its largest force: set a later run.end_time, or none"
+                .to_owned(),
+        );
+    }
+    reasons
+}
+
 fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {
     found.rate_m_s = weight.velocity_m_s;
     found.dimension("weight", weight.mass_kg, "kg");
@@ -344,11 +404,10 @@ fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {
     }
     let rows = &evidence.record.rows;
     let largest_n = rows.iter().map(|row| row.force_n).fold(0.0, f64::max);
-    let touches = |row: &&Row| row.force_n >= TOUCHES * largest_n;
-    let (first, last) = (rows.iter().find(touches), rows.iter().rev().find(touches));
-    let duration = first
-        .zip(last)
-        .map(|(first, last)| last.time_s - first.time_s);
+    let anvil_n = rows.iter().map(|row| row.reaction_n).fold(0.0, f64::max);
+    found
+        .reasons
+        .extend(weight_reasons(rows, largest_n, anvil_n));
     let impact_j = 0.5 * weight.mass_kg * weight.velocity_m_s.powi(2);
     let end = rows.last();
     let left_j = end.map(|row| {
@@ -357,7 +416,8 @@ fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {
         0.5 * weight.mass_kg * speed_m_s * speed_m_s - fall_j
     });
     found.add(LARGEST_FORCE, Some(largest_n), "N");
-    found.add("contact duration", duration, "s");
+    found.add("largest force on the anvil", Some(anvil_n), "N");
+    found.add("contact duration", contact_s(rows, largest_n), "s");
     found.add("impact energy", Some(impact_j), "J");
     let absorbed_j = evidence.record.works.moving_j;
     found.add("absorbed energy", Some(absorbed_j), "J");

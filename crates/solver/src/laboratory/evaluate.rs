@@ -85,6 +85,9 @@ pub struct TestResult {
     /// Displacement, m, from where the fitted line has no load, and load, N.
     #[serde(skip)]
     pub curve: Vec<[f64; 2]>,
+    /// Reasons to doubt a dynamic test that its figures do not show.
+    #[serde(skip)]
+    pub reasons: Vec<String>,
     /// Relative changes of the figures at half the rate: (slow - fast)/fast. Empty: not checked.
     #[serde(rename = "changes_at_half_the_rate")]
     pub half_the_rate_changes: Vec<Figure>,
@@ -215,6 +218,7 @@ pub(super) fn without_figures(evidence: &TestInput<'_>, rows: &[Row]) -> TestRes
         first_broken: None,
         crack: crack(evidence),
         curve: Vec::new(),
+        reasons: Vec::new(),
         half_the_rate_changes: Vec::new(),
     }
 }
@@ -507,7 +511,11 @@ pub(super) fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {
     let nearest = rows.get(before.saturating_sub(1))?;
     Some(FirstBroken {
         time_s: first.time_s,
-        force_n: nearest.load_n(),
+        // The anvil feels the impact of a weight later.
+        force_n: match evidence.test.weight {
+            Some(_) => nearest.force_n,
+            None => nearest.load_n(),
+        },
         travel_m: nearest.travel_m,
         place_m: *evidence.places_m.first()?,
         cause: first.cause,

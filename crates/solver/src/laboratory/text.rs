@@ -101,7 +101,7 @@ impl TestResult {
 
     /// The same for a dynamic test.
     fn dynamic_doubts(&self) -> Vec<String> {
-        let mut doubts = Vec::new();
+        let mut doubts = self.reasons.clone();
         let apart = self.figure(EQUILIBRIUM).unwrap_or(0.0);
         if apart.abs() > APART {
             doubts.push(format!(
@@ -115,6 +115,14 @@ impl TestResult {
             doubts.push(format!(
                 "{} of the energy of the impact is unaccounted for: take a smaller step (run.safety_factor)",
                 percent(unbooked)
+            ));
+        }
+        if self.test_type() == Some(TestType::HopkinsonTension)
+            && let Some(crack) = self.crack.as_ref().filter(|crack| !crack.is_within)
+        {
+            doubts.push(format!(
+                "the body breaks at a grip, as {:.0} % of the broken bonds do not lie in its middle half: the test does not give the strength of the material; take a body with a neck",
+                100.0 * (1.0 - crack.fraction_within)
             ));
         }
         let needs_strength = self.target_strength_pa.is_some() && self.kind != DROP;

@@ -21,6 +21,10 @@ const ROUND: f64 = 1.25;
 const NEAR_DIAMETER: f64 = 0.1;
 /// Largest number of slabs along the loaded diameter.
 const MOST_SLABS: usize = 20;
+/// Largest length or section of a test over that of the box around its body.
+const ABOUT: f64 = 1.1;
+/// Largest sine of the angle between the direction of a test and the normal of a plane that moves.
+const OBLIQUE: f64 = 1e-3;
 
 /// A wall that keeps a pressure on a side of a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,12 +157,14 @@ pub fn setup(
         | TestType::Tension
         | TestType::HopkinsonPressure
         | TestType::HopkinsonTension
-        | TestType::DropWeight => Ok(bar(test, direction, volume_m3, extent)),
-        TestType::DogBone => Ok(dog_bone(bar(test, direction, volume_m3, extent))),
-        TestType::TriaxialCompression => Ok(Setup {
-            sides: sides(scene, test, state, particles),
-            ..bar(test, direction, volume_m3, extent)
-        }),
+        | TestType::DropWeight => bar(test, direction, volume_m3, extent),
+        TestType::DogBone => bar(test, direction, volume_m3, extent).map(dog_bone),
+        TestType::TriaxialCompression => {
+            bar(test, direction, volume_m3, extent).map(|found| Setup {
+                sides: sides(scene, test, state, particles),
+                ..found
+            })
+        }
         TestType::DirectShear => sheared(test, state, extent, halves),
     };
     let place = || format!("{}: [test]", scene.source);
@@ -373,9 +379,29 @@ fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
     pivot + turned * (Vector3::from(point_m) - pivot)
 }
 
-/// Refuses walls that load by moving away from the body, and a transmission bar that is not behind
-/// it.
+/// Normal of a plane at the start. None: it is another shape.
+fn normal_of(wall: &Wall) -> Option<Vector3<f64>> {
+    let WallShape::Plane { point_m, normal } = wall.shape else {
+        return None;
+    };
+    let tip_m = [0, 1, 2].map(|k| point_m[k] + normal[k]);
+    Some(placed(wall, tip_m) - placed(wall, point_m))
+}
+
+/// Refuses planes that load obliquely, walls that load by moving away from the body, and a
+/// transmission bar that is not behind it.
 fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<()> {
+    let direction = Vector3::from(test.direction);
+    for name in &test.crosshead {
+        let normal = scene.walls.get(name).and_then(normal_of);
+        if normal.is_some_and(|normal| normal.cross(&direction).norm() > OBLIQUE) {
+            return Err(Diagnostic::input(
+                format!("{}: test.direction", scene.source),
+                format!("the wall '{name}' is not square to the direction in which it moves"),
+                "write a direction along the normal of the wall",
+            ));
+        }
+    }
     let behind_m = |name: &String| {
         let place = middle_of(scene.walls.get(name)?)?;
         Some((place - middle).dot(&Vector3::from(test.direction)))
@@ -504,24 +530,41 @@ fn bar(
     direction: Vector3<f64>,
     volume_m3: Option<f64>,
     extent: impl Fn(&Vector3<f64>) -> [f64; 2],
-) -> Setup {
+) -> std::result::Result<Setup, Refusal> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let of_body_m = size(extent(&direction));
     let length_m = test.length_m.unwrap_or(of_body_m);
+    // A box around the body, with its edges along the direction and the other axes.
     let others = axes.iter().filter(|axis| axis.dot(&direction).abs() < 0.5);
-    let sides = || others.map(|axis| size(extent(axis))).product();
+    let around_m2: f64 = others.map(|axis| size(extent(axis))).product();
     let area_m2 = test
         .area_m2
         .or(volume_m3.map(|volume| volume / of_body_m))
-        .unwrap_or_else(sides);
+        .unwrap_or(around_m2);
+    for (key, given, largest, unit) in [
+        ("length", test.length_m, of_body_m, "m"),
+        ("area", test.area_m2, around_m2, "m2"),
+    ] {
+        if let Some(given) = given.filter(|given| *given > ABOUT * largest) {
+            return Err((
+                format!(
+                    "test.{key} is {}, and the body '{}' has {} (at most as large)",
+                    show_quantity(given, unit),
+                    test.body,
+                    show_quantity(largest, unit)
+                ),
+                "check the unit, or remove the key: it is then measured",
+            ));
+        }
+    }
     let centre: Vector3<f64> = axes.iter().map(|axis| middle(extent(axis)) * axis).sum();
-    Setup::of(
+    Ok(Setup::of(
         Specimen::Bar { length_m, area_m2 },
         test.direction,
         test.direction,
         centre.into(),
         0.5 * GAUGE * length_m,
-    )
+    ))
 }
 
 /// A dog bone: the crack belongs into its neck, whose length and section are given.

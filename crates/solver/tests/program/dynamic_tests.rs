@@ -433,6 +433,38 @@ fn a_weight_of_a_gas_gun_breaks_a_row() {
     );
 }
 
+/// A test whose weight does not touch, that has no anvil, whose bars have another size than the
+/// body, or that is cut short, says so.
+#[test]
+fn tests_that_say_nothing_of_the_body_are_doubtful() {
+    let test = "type = \"drop-weight\"\ncrosshead = [\"above\"]\ndirection = [0, 0, -1]\nstroke = \"1 mm\"\nweight = { mass = \"10 g\", velocity = \"1 m/s\" }";
+    let weight = row(test, "");
+    let far = weight.replace("point = [0, 0, 0.041]", "point = [0, 0, 0.06]");
+    let free = weight.replace("point = [0, 0, -0.001]", "point = [0, 0, -1]");
+    let wide = pressure().replace("diameter = \"2 mm\"", "diameter = \"50 mm\"");
+    let cut = "run.end_time=\"15 us\"";
+    for (scene, set, said) in [
+        (far, "run.seed=1", "the weight did not touch the body"),
+        (
+            free,
+            "run.seed=1",
+            "no wall or support behind the body took a load",
+        ),
+        (
+            wide,
+            "run.seed=1",
+            "the section of the bars is 625 times that of the body",
+        ),
+        (pressure(), cut, "the run ended before the pulse"),
+        (weight, cut, "the run ended while the weight pressed"),
+    ] {
+        let bench = Bench::new();
+        let found = summary(&bench, "doubtful.toml", &scene, &["--set", set]);
+        let warnings = found["verdict"]["warnings"].to_string();
+        assert!(warnings.contains(said), "{said}: {warnings}");
+    }
+}
+
 /// What only the plan can see is refused there.
 #[test]
 fn bodies_that_do_not_fit_are_refused() {
@@ -449,4 +481,32 @@ fn bodies_that_do_not_fit_are_refused() {
     let scene = bench.write("light.toml", row(test, ""));
     let said = bench.bad(std::path::Path::new(&scene), &[], 2);
     assert!(said.contains("is lighter than the body 'row'"), "{said}");
+    for (old, new, wanted) in [
+        (
+            "direction = [0, 0, -1]",
+            "direction = [0.1, 0, -1]",
+            "the wall 'above' is not square to the direction in which it moves",
+        ),
+        (
+            "area = \"3.1416 mm2\"",
+            "area = \"3.1416 cm2\"",
+            "test.area is 314.16 mm2, and the body 'row' has 4 mm2",
+        ),
+        (
+            "length = \"40 mm\"",
+            "length = \"40 m\"",
+            "test.length is 40 m",
+        ),
+        (
+            "density = 7850, young_modulus = \"210 GPa\"",
+            "density = 7850, young_modulus = 210",
+            "the wave speed of the bars",
+        ),
+    ] {
+        let scene = pressure();
+        assert!(scene.contains(old), "{old}");
+        let scene = bench.write("wrong.toml", scene.replace(old, new));
+        let said = bench.bad(std::path::Path::new(&scene), &[], 2);
+        assert!(said.contains(wanted), "{wanted}: {said}");
+    }
 }

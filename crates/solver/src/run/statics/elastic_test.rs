@@ -51,6 +51,7 @@ impl ElasticTest {
             curve: (self.rows.iter())
                 .map(|row| [row.travel_m, row.load_n()])
                 .collect(),
+            reasons: Vec::new(),
             half_the_rate_changes: Vec::new(),
         })
     }
