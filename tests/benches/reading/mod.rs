@@ -28,9 +28,9 @@ fn add<const N: usize>(sum: &mut [f64; 4], values: &[f64; N]) {
 
 /// Adds a pose to two sums.
 #[inline(always)]
-fn add_pose(sums: &mut [[f64; 4]], pose: &Pose) {
-    add(&mut sums[0], &pose.position_m);
-    add(&mut sums[1], &pose.turned);
+fn add_pose([position, turned]: &mut [[f64; 4]; 2], pose: &Pose) {
+    add(position, &pose.position_m);
+    add(turned, &pose.turned);
 }
 
 fn total(sums: Sums) -> f64 {
@@ -77,17 +77,21 @@ pub(crate) fn million_bonds_per_s(state: &State) -> f64 {
     let (bonds, poses) = (&state.bonds, &state.particles.poses);
     let of_bonds = |(blocks, ends): (&[BondBlock], &[[u32; 2]])| {
         let mut sums = Sums::default();
+        let (mut of_first, mut of_second) = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
         for (block, ends) in blocks.iter().zip(ends.chunks(BLOCK)) {
-            let columns = block.direction.iter().chain(&block.levers_m);
-            let columns = columns.chain([&block.normal, &block.shear, &block.radii_m]);
-            for (sum, column) in sums.iter_mut().zip(columns) {
+            let ([x, y, z], [first, second]) = (&block.direction, &block.levers_m);
+            let [normal, shear, radii] = [&block.normal, &block.shear, &block.radii_m];
+            for (sum, column) in
+                (sums.iter_mut()).zip([x, y, z, first, second, normal, shear, radii])
+            {
                 add(sum, column);
             }
-            for (n, end) in ends.as_flattened().iter().enumerate() {
-                add_pose(&mut sums[n % 4 * 2..], &poses[*end as usize]);
+            for [a, b] in ends {
+                add_pose(&mut of_first, &poses[*a as usize]);
+                add_pose(&mut of_second, &poses[*b as usize]);
             }
         }
-        total(sums)
+        total(sums) + (of_first.iter().chain(&of_second).flatten()).sum::<f64>()
     };
     let pass = || {
         let of_bonds: f64 = (bonds.blocks.par_chunks(CHUNK / BLOCK))
@@ -113,20 +117,21 @@ pub(crate) fn million_particles_per_s(state: &State) -> f64 {
             .zip(contacts.histories.par_chunks(CHUNK))
             .map(|(pairs, histories)| {
                 let mut sums = Sums::default();
-                for (pair, history) in pairs.iter().zip(histories) {
-                    for (n, end) in pair.iter().enumerate() {
-                        add_pose(&mut sums[2 * n..], &poses[*end as usize]);
-                    }
-                    add(&mut sums[4], &history.tangential);
+                let (mut of_first, mut of_second) = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
+                for ([a, b], history) in pairs.iter().zip(histories) {
+                    let [a, b] = [*a as usize, *b as usize];
+                    add_pose(&mut of_first, &poses[a]);
+                    add_pose(&mut of_second, &poses[b]);
+                    add(&mut sums[0], &history.tangential);
                     if history.overlap_m() > 0.0 {
-                        add(&mut sums[5], &history.damping);
-                        for end in pair {
-                            add(&mut sums[6], &motions[*end as usize].velocity_m_s);
-                            add(&mut sums[7], &motions[*end as usize].spin_rad_s);
-                        }
+                        add(&mut sums[1], &history.damping);
+                        add(&mut sums[2], &motions[a].velocity_m_s);
+                        add(&mut sums[3], &motions[a].spin_rad_s);
+                        add(&mut sums[4], &motions[b].velocity_m_s);
+                        add(&mut sums[5], &motions[b].spin_rad_s);
                     }
                 }
-                total(sums)
+                total(sums) + (of_first.iter().chain(&of_second).flatten()).sum::<f64>()
             })
             .sum();
         of_pairs + of_particles(state)
