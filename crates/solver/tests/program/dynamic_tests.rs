@@ -490,7 +490,7 @@ fn bodies_that_do_not_fit_are_refused() {
         (
             "area = \"3.1416 mm2\"",
             "area = \"3.1416 cm2\"",
-            "test.area is 314.16 mm2, and the body 'row' has 4 mm2",
+            "test.area is 314.2 mm2, and the body 'row' has 4 mm2",
         ),
         (
             "length = \"40 mm\"",
