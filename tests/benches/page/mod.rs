@@ -1,6 +1,6 @@
 //! Tables of benchmarks: printed row by row, and written into a page if `--page FILE` is given.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A table that grows row by row.
 pub(crate) struct Table {
@@ -9,11 +9,12 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// An empty one, for the page that the program's arguments name. A page has whole tables: with
-    /// the names of some cases as well there is none.
+    /// An empty one, for the page that the program's arguments name, from the root of the
+    /// repository. A page has whole tables: with the names of some cases as well it is refused.
     pub(crate) fn new() -> Self {
         let mut after = std::env::args().skip_while(|word| word != "--page").skip(1);
-        let page = after.next().map(PathBuf::from);
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let page = after.next().map(|page| root.join(page));
         assert!(
             page.is_none() || words().is_empty(),
             "--page is for all cases: a page has whole tables"
