@@ -196,14 +196,15 @@ impl LargeMeetings<'_> {
 /// A bit for each ball of a block that reaches into a box.
 #[inline(always)]
 fn reaching<T: Lanes>(proof: T::Proof, columns: &[[f64; BLOCK]; 4], room: &Bounds) -> u32 {
+    let ends = [0, 1, 2].map(|k| [room.low[k], room.high[k]].map(|end| T::all(proof, end)));
     let mut bits = 0;
     for first in (0..BLOCK).step_by(T::COUNT) {
         let radius_m = T::load(proof, &columns[3], first);
         let mut inside = u8::MAX;
-        for k in 0..3 {
-            let c = T::load(proof, &columns[k], first);
-            inside &= (c + radius_m).above(T::all(proof, room.low[k]));
-            inside &= T::all(proof, room.high[k]).above(c - radius_m);
+        for (column, [low, high]) in columns.iter().zip(ends) {
+            let c = T::load(proof, column, first);
+            inside &= (c + radius_m).above(low);
+            inside &= high.above(c - radius_m);
         }
         bits |= u32::from(inside) << first;
     }
