@@ -67,7 +67,7 @@ pub struct Scatter {
 }
 
 /// Data common to clumps of one shape. Stored once, whatever the number of clumps. Bodies of one
-/// file share its arrays: see [`Template::share`].
+/// file share its arrays.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Template {
     /// Name of the body in the scene.
