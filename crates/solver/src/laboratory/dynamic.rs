@@ -375,7 +375,7 @@ fn contact_s(rows: &[Row], largest_n: f64) -> Option<f64> {
     Some(rows[last].time_s - rows[first].time_s)
 }
 
-/// Reasons to doubt a test with a weight, with the largest forces of the weight and of the anvil, N.
+/// Reasons to doubt a test with a weight; the largest forces of the weight and of the anvil, N.
 fn weight_reasons(rows: &[Row], largest_n: f64, anvil_n: f64) -> Vec<String> {
     if largest_n <= 0.0 {
         let said = "the weight did not touch the body: put the wall of test.crosshead at its top";
