@@ -18,7 +18,8 @@ const MUCH: f64 = 0.02;
 const APART: f64 = 0.1;
 /// Largest deviation of a lateral pressure that counts as constant.
 const UNSTEADY: f64 = 0.01;
-/// Share of the broken bonds outside the neck of a dog bone above which it failed there.
+/// Share of the broken bonds outside the neck of a dog bone, or the middle half of a bar between
+/// two grips, above which it failed there.
 const MOSTLY: f64 = 0.5;
 /// The test without a strength.
 const DROP: &str = "drop-weight";
@@ -118,7 +119,8 @@ impl TestResult {
             ));
         }
         if self.test_type() == Some(TestType::HopkinsonTension)
-            && let Some(crack) = self.crack.as_ref().filter(|crack| !crack.is_within)
+            && let Some(crack) = &self.crack
+            && 1.0 - crack.fraction_within > MOSTLY
         {
             doubts.push(format!(
                 "the body breaks at a grip, as {:.0} % of the broken bonds do not lie in its middle half: the test does not give the strength of the material; take a body with a neck",
