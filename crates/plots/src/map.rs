@@ -1,5 +1,6 @@
 //! Positions to scale, such as the broken bonds of a body seen from the side.
 
+use dem_io::units::show_quantity;
 use maud::{Markup, html};
 
 use crate::colours::{GREY, INK, hex, viridis};
@@ -139,18 +140,6 @@ impl Map {
     }
 }
 
-/// A time in the unit that it is at least one of.
-fn time(time_s: f64) -> String {
-    let size = time_s.abs();
-    if size >= 1.0 || size == 0.0 {
-        format!("{time_s:.3} s")
-    } else if size >= 1e-3 {
-        format!("{:.3} ms", 1e3 * time_s)
-    } else {
-        format!("{:.3} us", 1e6 * time_s)
-    }
-}
-
 /// Position of a time between the first and the last one, 0 to 1.
 fn fraction(time_s: f64, [first_s, last_s]: [f64; 2]) -> f64 {
     if last_s > first_s {
@@ -165,12 +154,12 @@ fn colour_bar([first_s, last_s]: [f64; 2], y: f64) -> Markup {
     const CELLS: u32 = 24;
     let (left, width) = (WIDTH - SIDE - 200.0, 120.0);
     html! {
-        text x=(px(left - 6.0)) y=(px(y + 4.0)) text-anchor="end" { (time(first_s)) }
+        text x=(px(left - 6.0)) y=(px(y + 4.0)) text-anchor="end" { (show_quantity(first_s, "s")) }
         @for cell in 0..CELLS {
             rect x=(px(left + width * f64::from(cell) / f64::from(CELLS))) y=(px(y - 5.0))
                 width="5.2" height="9" fill=(hex(viridis(f64::from(cell) / f64::from(CELLS - 1)))) {}
         }
-        text x=(px(left + width + 6.0)) y=(px(y + 4.0)) { (time(last_s)) }
+        text x=(px(left + width + 6.0)) y=(px(y + 4.0)) { (show_quantity(last_s, "s")) }
     }
 }
 

@@ -103,9 +103,9 @@ pub(crate) fn million_bonds_per_s(state: &State) -> f64 {
     1e-6 * bonds.len() as f64 * passes_per_s(pass)
 }
 
-/// Million particles per second of a loop that only reads what a step of contacts reads: each listed
-/// pair (8 bytes), the first cache line of its history (64 bytes) and the poses of its ends, of
-/// pairs that touch the motions of both ends, then motions and wrenches of all particles. A step
+/// Million particles per second of a loop that only reads what a step of contacts reads: each
+/// listed pair (8 bytes), the first cache line of its history (64 bytes) and the poses of its ends,
+/// of pairs that touch the motions of both ends, then motions and wrenches of all particles. A step
 /// writes the histories, the poses, the motions and the wrenches as well.
 pub(crate) fn million_particles_per_s(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {

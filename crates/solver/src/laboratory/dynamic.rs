@@ -29,6 +29,8 @@ const RISE: [f64; 2] = [LOADED, 0.9];
 const AGREES: f64 = 0.5;
 /// Sections of the bars, over that of the body, for which a bar stands for a rigid end.
 const SECTIONS: RangeInclusive<f64> = 0.99..=100.0;
+/// Fraction of the largest load above which a run ends too early.
+const STILL_LOADED: f64 = 0.5;
 /// Fraction of the pulse before whose end a run is cut short.
 const CUT_SHORT: f64 = 0.99;
 /// Fraction of the largest load at which a contact of the weight begins and ends.
@@ -148,7 +150,7 @@ fn of_bars(found: &mut Found, evidence: &TestInput<'_>, bars: &Bars, rows: &[Row
     let peak = (0..during).max_by(|a, b| rows[*a].load_n().total_cmp(&rows[*b].load_n()));
     if let (Some(peak), Some(last)) = (peak, rows.last())
         && last.time_s < CUT_SHORT * bars.pulse_end_s()
-        && last.load_n() > 0.5 * rows[peak].load_n()
+        && last.load_n() > STILL_LOADED * rows[peak].load_n()
     {
         found.reasons.push(
             "the run ended before the pulse, and under more than half of the largest load: set a later run.end_time, or none"
@@ -167,10 +169,7 @@ fn of_bars(found: &mut Found, evidence: &TestInput<'_>, bars: &Bars, rows: &[Row
         );
     }
     let signals = bar_signals(evidence.record, bars);
-    let largest = |of: fn(&BarSignal) -> f64| {
-        let strains = signals.iter().map(of);
-        strains.max_by(|a, b| a.abs().total_cmp(&b.abs()))
-    };
+    let largest = |of: fn(&BarSignal) -> f64| of_largest_size(signals.iter().map(of));
     found.add("reflected strain", largest(|signal| signal.reflected), "");
     found.add(
         "transmitted strain",
@@ -185,6 +184,10 @@ fn of_bars(found: &mut Found, evidence: &TestInput<'_>, bars: &Bars, rows: &[Row
     found.add("transmitted energy", Some(works.transmitted_j), "J");
     found.add("absorbed energy", Some(done_j), "J");
     found.add(UNBOOKED, Some((carried_j - done_j) / works.incident_j), "");
+}
+
+fn of_largest_size(values: impl Iterator<Item = f64>) -> Option<f64> {
+    values.max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
 /// The largest load of a test with bars.
@@ -211,8 +214,7 @@ impl Peak<'_> {
         let largest_n = self.rows[self.at].load_n();
         let rows = &self.rows[self.reaches(AGREES)?..=self.at];
         let differences = rows.iter().map(|row| row.force_n - row.reaction_n);
-        let largest = differences.max_by(|a, b| a.abs().total_cmp(&b.abs()));
-        largest.map(|difference_n| difference_n / largest_n)
+        of_largest_size(differences).map(|difference_n| difference_n / largest_n)
     }
 
     /// Rates, 1/s, of strain and of stress, Pa/s, while the load rises.
@@ -386,7 +388,10 @@ fn weight_reasons(rows: &[Row], largest_n: f64, anvil_n: f64) -> Vec<String> {
         reasons
             .push("no wall or support behind the body took a load: put an anvil there".to_owned());
     }
-    if rows.last().is_some_and(|row| row.force_n > 0.5 * largest_n) {
+    if rows
+        .last()
+        .is_some_and(|row| row.force_n > STILL_LOADED * largest_n)
+    {
         reasons.push(
             "the run ended while the weight pressed with more than half of its largest force: set a later run.end_time, or none"
                 .to_owned(),
