@@ -141,9 +141,17 @@ fn directions() -> impl Iterator<Item = Vector3> {
 struct NearestAround {
     base: Vector3,
     reach: f64,
-    /// Distance from `base` and index; nearest first.
-    triangles: Vec<(f64, u32)>,
+    /// Lower bound of the distance from `base` and index; nearest first. None if there are too
+    /// many: then the tree is searched.
+    triangles: Option<Vec<(f64, u32)>>,
 }
+
+/// Largest number of triangles that are listed around a point.
+const MOST_LISTED: usize = 1_000;
+/// Fraction of a reach within which there were too many at which they are counted again.
+const FEWER: f64 = 0.1;
+/// Length for which a list lasts, in steps.
+const STEPS: f64 = 8.0;
 
 impl NearestAround {
     fn new(boundary: &Boundary, ball: &InscribedSphere, reach: f64) -> Self {
@@ -163,31 +171,46 @@ impl NearestAround {
         reach: f64,
     ) -> Self {
         let mut triangles: Vec<(f64, u32)> = triangles
-            .map(|t| (boundary.nearest_on(t, &ball.centre).distance, t))
+            .map(|t| (boundary.least_distance(t, &ball.centre), t))
             .filter(|(distance, _)| *distance <= ball.radius + 2.0 * reach)
+            .take(MOST_LISTED + 1)
             .collect();
         triangles.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         Self {
             base: ball.centre,
             reach,
-            triangles,
+            triangles: (triangles.len() <= MOST_LISTED).then_some(triangles),
         }
     }
 
-    /// The same around another ball, or with a smaller reach around this one.
-    fn moved(&self, boundary: &Boundary, ball: &InscribedSphere, reach: f64) -> Self {
-        if (ball.centre - self.base).norm() + reach > self.reach {
-            return Self::new(boundary, ball, reach);
+    /// Those for steps of this length from another ball, or shorter ones from this one.
+    fn moved(self, boundary: &Boundary, ball: &InscribedSphere, step: f64) -> Self {
+        let reach = STEPS * step;
+        let moved = (ball.centre - self.base).norm();
+        match &self.triangles {
+            Some(known) if moved + reach <= self.reach => {
+                Self::among(known.iter().map(|(_, t)| *t), boundary, ball, reach)
+            }
+            Some(_) if moved + step <= self.reach => self,
+            None if reach > FEWER * self.reach => self,
+            _ => Self::new(boundary, ball, reach),
         }
-        let triangles = self.triangles.iter().map(|(_, t)| *t);
-        Self::among(triangles, boundary, ball, reach)
     }
 
     /// Distance from `point` to the wall, if it is more than `least`.
     fn distance_above(&self, boundary: &Boundary, point: &Vector3, least: f64) -> Option<f64> {
+        let Some(triangles) = &self.triangles else {
+            let near = boundary
+                .clears(point, least)
+                .then(|| boundary.nearest(point, f64::MAX));
+            return near
+                .flatten()
+                .map(|near| near.distance)
+                .filter(|d| *d > least);
+        };
         let moved = (point - self.base).norm();
         let mut nearest = f64::INFINITY;
-        for (from_base, triangle) in &self.triangles {
+        for (from_base, triangle) in triangles {
             if from_base - moved >= nearest {
                 break;
             }
@@ -205,7 +228,7 @@ impl NearestAround {
 fn climb_from_wall(boundary: &Boundary, start: &InscribedSphere) -> InscribedSphere {
     let mut best = *start;
     let mut step = 0.5 * start.radius;
-    let mut near = NearestAround::new(boundary, &best, step);
+    let mut near = NearestAround::new(boundary, &best, STEPS * step);
     while step > 1e-8 * start.radius {
         let before = best;
         near = near.moved(boundary, &before, step);

@@ -162,6 +162,8 @@ impl<'a> DepthMap<'a> {
         let mut known_side = None;
         // Lower limit of the distance between the last centre and the surface, if it is outside.
         let mut far_outside = 0.0;
+        // The triangle nearest to the last centre that had one within reach.
+        let mut nearest_before = None;
         for x in 0..self.counts[0] {
             far_outside -= self.edge;
             if far_outside > 2.0 * half_diagonal {
@@ -175,10 +177,10 @@ impl<'a> DepthMap<'a> {
                 continue;
             }
             let centre = Vector3::from([x, y, z].map(|c| (c as f64 + 0.5) * self.edge));
-            let nearest = self
-                .boundary
-                .nearest_triangle(&centre, self.cut_off + half_diagonal);
-            let distance = nearest.map_or(f64::INFINITY, |(_, near)| near.distance);
+            let cut_off = self.cut_off + half_diagonal;
+            let nearest = self.nearest_with_hint(&centre, cut_off, nearest_before);
+            nearest_before = nearest.map(|(_, triangle)| triangle).or(nearest_before);
+            let distance = nearest.map_or(f64::INFINITY, |(distance, _)| distance);
             let crossed = distance <= half_diagonal * (1.0 + MARGIN);
             known_side = if crossed {
                 None
@@ -193,10 +195,10 @@ impl<'a> DepthMap<'a> {
                 (None, _) => Side::Crossed,
             };
             if side == Side::Outside {
-                far_outside = distance.min(self.cut_off + half_diagonal);
+                far_outside = distance.min(cut_off);
             }
             let mut complete = false;
-            if let Some((triangle, _)) = nearest
+            if let Some((_, triangle)) = nearest
                 && side != Side::Outside
             {
                 // For a point of the cell, the nearest triangle is at most half a diagonal farther
@@ -210,7 +212,7 @@ impl<'a> DepthMap<'a> {
             }
             row.cells.push(Cell {
                 side,
-                clear: (distance.min(self.cut_off + half_diagonal) - half_diagonal).max(0.0),
+                clear: (distance.min(cut_off) - half_diagonal).max(0.0),
                 first: first as u32,
                 count: (row.triangles.len() - first) as u32,
                 complete,
@@ -219,11 +221,34 @@ impl<'a> DepthMap<'a> {
         row
     }
 
+    /// The distance of the nearest triangle, if it is below `cut_off`, and that triangle, searched
+    /// for no farther away than the one that was nearest to a point beside.
+    fn nearest_with_hint(
+        &self,
+        point: &Vector3,
+        cut_off: f64,
+        hint: Option<u32>,
+    ) -> Option<(f64, u32)> {
+        let of_hint = hint
+            .map(|triangle| (self.boundary.nearest_on(triangle, point).distance, triangle))
+            .filter(|(distance, _)| *distance < cut_off);
+        let bound = of_hint.map_or(cut_off, |(distance, _)| distance);
+        self.nearest_in_tree(point, bound).or(of_hint)
+    }
+
+    /// The distance of the nearest triangle, if it is below `cut_off`, and that triangle.
+    fn nearest_in_tree(&self, point: &Vector3, cut_off: f64) -> Option<(f64, u32)> {
+        let nearest = self.boundary.nearest_triangle(point, cut_off);
+        nearest.map(|(triangle, near)| (near.distance, triangle))
+    }
+
     /// Adds the triangles within `reach` of a point; false if there are too many.
     fn list(&self, centre: &Vector3, reach: f64, triangles: &mut Vec<u32>) -> bool {
         let most = triangles.len() + MOST_TRIANGLES;
         for triangle in self.boundary.triangles_near(centre, reach) {
-            if self.boundary.nearest_on(triangle, centre).distance <= reach {
+            if self.boundary.may_be_nearer(triangle, centre, reach)
+                && self.boundary.nearest_on(triangle, centre).distance <= reach
+            {
                 if triangles.len() == most {
                     return false;
                 }
@@ -323,10 +348,6 @@ impl<'a> DepthMap<'a> {
             return of_list;
         }
         let bound = of_list.map_or(self.cut_off, |(distance, _)| distance.min(self.cut_off));
-        let of_tree = self
-            .boundary
-            .nearest_triangle(point, bound)
-            .map(|(triangle, near)| (near.distance, triangle));
-        of_tree.or(of_list)
+        self.nearest_in_tree(point, bound).or(of_list)
     }
 }
