@@ -1,4 +1,4 @@
-//! Bonds are processed four at a time: the data of their ends are gathered from memory row by row,
+//! Bonds are processed eight at a time: the data of their ends are gathered from memory row by row,
 //! computed lane by lane, and added to the particles in the order of the bonds.
 
 use std::ops::Range;
@@ -9,9 +9,9 @@ use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::Partition;
 
-/// Four bonds, some of which are wanted.
+/// Eight bonds, some of which are wanted.
 pub(super) struct BondGroup {
-    /// Their numbers. If there are fewer than four, one of them fills the empty places.
+    /// Their numbers. If there are fewer than eight, one of them fills the empty places.
     pub(super) numbers: [usize; BLOCK],
     /// Their two particles.
     pub(super) ends: [[u32; 2]; BLOCK],
@@ -19,39 +19,41 @@ pub(super) struct BondGroup {
     pub(super) wanted: Range<usize>,
 }
 
-impl BondGroup {
-    /// The bonds with these numbers, some of them wanted. `ends` are those of all bonds.
-    #[inline(always)]
-    pub(super) fn new(numbers: [usize; BLOCK], ends: &[[u32; 2]], wanted: Range<usize>) -> Self {
-        Self {
-            numbers,
-            ends: [
-                ends[numbers[0]],
-                ends[numbers[1]],
-                ends[numbers[2]],
-                ends[numbers[3]],
-            ],
-            wanted,
-        }
-    }
+/// Places in a block.
+const PLACES: [usize; BLOCK] = [0, 1, 2, 3, 4, 5, 6, 7];
 
+impl BondGroup {
     /// The bonds of a block; those in `range` are wanted.
     #[inline(always)]
     pub(super) fn of_block(bonds: &Bonds, block: usize, range: &Range<usize>) -> Self {
         let (first, last) = (block * BLOCK, bonds.len() - 1);
-        let wanted = range.start.saturating_sub(first)..(range.end - first).min(BLOCK);
-        Self::new(
-            [0, 1, 2, 3].map(|i| (first + i).min(last)),
-            &bonds.ends,
-            wanted,
-        )
+        let numbers = PLACES.map(|i| (first + i).min(last));
+        let ends = match bonds.ends[first..].first_chunk() {
+            Some(ends) => *ends,
+            None => numbers.map(|at| bonds.ends[at]),
+        };
+        Self {
+            numbers,
+            ends,
+            wanted: range.start.saturating_sub(first)..(range.end - first).min(BLOCK),
+        }
     }
 
-    /// The bonds of a short list: one to four.
+    /// The bonds of a short list: one to eight.
     #[inline(always)]
     pub(super) fn of_list(bonds: &Bonds, some: &[u32]) -> Self {
-        let numbers = [0, 1, 2, 3].map(|i: usize| some[i.min(some.len() - 1)] as usize);
-        Self::new(numbers, &bonds.ends, 0..some.len())
+        let numbers = PLACES.map(|i| some[i.min(some.len() - 1)] as usize);
+        Self {
+            numbers,
+            ends: numbers.map(|at| bonds.ends[at]),
+            wanted: 0..some.len(),
+        }
+    }
+
+    /// Whether any of the bonds from `first` on, one for each lane, is wanted.
+    #[inline(always)]
+    pub(super) fn any_wanted<T: Lanes>(&self, first: usize) -> bool {
+        self.wanted.start < first + T::COUNT && first < self.wanted.end
     }
 
     /// Adds the wrenches of the bonds from `first` on, one for each lane, to those of their ends

@@ -14,7 +14,7 @@ use crate::stages::blocks::{
     BondGroup, blocks_of, coming_second_ends, fetch_soon, fetch_wrench_soon, for_each_partition,
     separations,
 };
-use crate::stages::lanes::{LaneWork, Lanes, MOST, with_lanes};
+use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
@@ -247,7 +247,7 @@ impl PartitionWork<'_> {
     fn batch<const FRICTIONAL: bool>(&mut self, batch: &Batch, lanes: LaneChoice) {
         let work = BatchWork::<FRICTIONAL>(self, batch);
         match lanes {
-            AsManyLanes => with_lanes(work),
+            AsManyLanes => with_most_lanes(work),
             OneLane => work.with::<f64>(()),
         }
     }
@@ -276,17 +276,17 @@ impl PartitionWork<'_> {
             BondSelection::Run(range) => {
                 for block in blocks_of(range) {
                     self.fetch_coming(block);
-                    let four = BondGroup::of_block(bonds, block, range);
+                    let eight = BondGroup::of_block(bonds, block, range);
                     let numbers = &bonds.blocks[block];
-                    self.of_four::<T, FRICTIONAL>(proof, &kind, &four, numbers, true);
+                    self.of_eight::<T, FRICTIONAL>(proof, &kind, &eight, numbers, true);
                 }
             }
             BondSelection::Own(list) | BondSelection::Border(list) => {
                 let own = matches!(which, BondSelection::Own(_));
                 for some in list.chunks(BLOCK) {
-                    let four = BondGroup::of_list(bonds, some);
-                    let numbers = &BondBlock::of(bonds, four.numbers);
-                    self.of_four::<T, FRICTIONAL>(proof, &kind, &four, numbers, own);
+                    let eight = BondGroup::of_list(bonds, some);
+                    let numbers = &BondBlock::of(bonds, eight.numbers);
+                    self.of_eight::<T, FRICTIONAL>(proof, &kind, &eight, numbers, own);
                 }
             }
         }
@@ -302,13 +302,13 @@ impl PartitionWork<'_> {
         }
     }
 
-    /// Four bonds, whose first ends are in the partition if they are its `own`.
+    /// Eight bonds, whose first ends are in the partition if they are its `own`.
     #[inline(always)]
-    fn of_four<T: Lanes, const FRICTIONAL: bool>(
+    fn of_eight<T: Lanes, const FRICTIONAL: bool>(
         &mut self,
         proof: T::Proof,
         kind: &Kind,
-        four: &BondGroup,
+        eight: &BondGroup,
         numbers: &BondBlock,
         own: bool,
     ) {
@@ -316,8 +316,11 @@ impl PartitionWork<'_> {
             particles, failing, ..
         } = &mut *self.partition;
         for first in (0..BLOCK).step_by(T::COUNT) {
-            let found = kind.forces::<T, FRICTIONAL>(proof, four, numbers, first, self.poses);
-            four.add(
+            if !eight.any_wanted::<T>(first) {
+                continue;
+            }
+            let found = kind.forces::<T, FRICTIONAL>(proof, eight, numbers, first, self.poses);
+            eight.add(
                 first,
                 found.force_on_b,
                 found.torques,
@@ -326,7 +329,7 @@ impl PartitionWork<'_> {
             );
             if own {
                 let beyond = &found.beyond[..T::COUNT];
-                list_failing(self.bonds, four, numbers, first, beyond, failing);
+                list_failing(self.bonds, eight, numbers, first, beyond, failing);
             }
         }
     }
@@ -362,12 +365,12 @@ impl Kind {
     pub(super) fn response<T: Lanes>(
         &self,
         proof: T::Proof,
-        four: &BondGroup,
+        eight: &BondGroup,
         numbers: &BondBlock,
         first: usize,
         poses: &[Pose],
     ) -> BondResponse<T> {
-        let ends = &four.ends[first..first + T::COUNT];
+        let ends = &eight.ends[first..first + T::COUNT];
         let apart = separations(proof, ends, poses);
         let normal = T::load(proof, &numbers.normal, first);
         let radius_m = T::load(proof, &numbers.radii_m, first);
@@ -399,12 +402,12 @@ impl Kind {
     fn forces<T: Lanes, const FRICTIONAL: bool>(
         &self,
         proof: T::Proof,
-        four: &BondGroup,
+        eight: &BondGroup,
         numbers: &BondBlock,
         first: usize,
         poses: &[Pose],
     ) -> Found<T> {
-        let response = self.response(proof, four, numbers, first, poses);
+        let response = self.response(proof, eight, numbers, first, poses);
         let mut beyond = [-1.0; MOST];
         if let Some(screen) = &self.screen {
             let radius_m = T::load(proof, &numbers.radii_m, first);
@@ -432,19 +435,19 @@ fn turns<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Rotatio
 #[inline(always)]
 fn list_failing(
     bonds: &Bonds,
-    four: &BondGroup,
+    eight: &BondGroup,
     numbers: &BondBlock,
     first: usize,
     beyond: &[f64],
     failing: &mut Vec<u32>,
 ) {
     for (i, beyond) in (first..).zip(beyond) {
-        let at = four.numbers[i];
+        let at = eight.numbers[i];
         let strengthened = bonds.strength_factors.get(at).map_or(0.0, |factor| {
             let volume = PI * numbers.radii_m[i].powi(3);
             NEARLY * volume * volume * (factor * factor - ROUNDED_UP)
         });
-        if *beyond >= strengthened && four.wanted.contains(&i) {
+        if *beyond >= strengthened && eight.wanted.contains(&i) {
             failing.push(at as u32);
         }
     }

@@ -6,7 +6,7 @@ use crate::stages::blocks::{
     BondGroup, blocks_of, coming_second_ends, fetch_soon, fetch_wrench_soon, for_each_partition,
     separations, vectors,
 };
-use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
+use crate::stages::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::state::bonds::{BLOCK, BondBlock, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Partition};
@@ -29,7 +29,7 @@ pub(crate) fn damping_wrenches(
         for Batch { rule, which } in &partition.batches {
             if bonds.rules[*rule].is_damped() {
                 partition.computed.damped += which.count();
-                with_lanes(BatchWork {
+                with_most_lanes(BatchWork {
                     bonds,
                     coefficients,
                     poses,
@@ -62,15 +62,15 @@ impl LaneWork for BatchWork<'_> {
             BondSelection::Run(range) => {
                 for block in blocks_of(range) {
                     self.fetch_coming(block);
-                    let four = BondGroup::of_block(self.bonds, block, range);
-                    self.add::<T>(proof, &four, &self.bonds.blocks[block]);
+                    let eight = BondGroup::of_block(self.bonds, block, range);
+                    self.add::<T>(proof, &eight, &self.bonds.blocks[block]);
                 }
             }
             BondSelection::Own(list) | BondSelection::Border(list) => {
                 for some in list.chunks(BLOCK) {
-                    let four = BondGroup::of_list(self.bonds, some);
-                    let numbers = BondBlock::of(self.bonds, four.numbers);
-                    self.add::<T>(proof, &four, &numbers);
+                    let eight = BondGroup::of_list(self.bonds, some);
+                    let numbers = BondBlock::of(self.bonds, eight.numbers);
+                    self.add::<T>(proof, &eight, &numbers);
                 }
             }
         }
@@ -88,13 +88,16 @@ impl BatchWork<'_> {
         }
     }
 
-    /// Adds the forces of four bonds.
+    /// Adds the forces of eight bonds.
     #[inline(always)]
-    fn add<T: Lanes>(&mut self, proof: T::Proof, four: &BondGroup, numbers: &BondBlock) {
+    fn add<T: Lanes>(&mut self, proof: T::Proof, eight: &BondGroup, numbers: &BondBlock) {
         for first in (0..BLOCK).step_by(T::COUNT) {
-            let apart: Vec3<T> = separations(proof, &four.ends[first..], self.poses);
-            let ends = &four.ends[first..first + T::COUNT];
-            let at = &four.numbers[first..first + T::COUNT];
+            if !eight.any_wanted::<T>(first) {
+                continue;
+            }
+            let apart: Vec3<T> = separations(proof, &eight.ends[first..], self.poses);
+            let ends = &eight.ends[first..first + T::COUNT];
+            let at = &eight.numbers[first..first + T::COUNT];
             let motion = |lane: usize, side: usize| &self.motions[ends[lane][side] as usize];
             // Spelled out: a closure around lanes may not be compiled for them.
             let moving = [
@@ -118,7 +121,7 @@ impl BatchWork<'_> {
             let levers_m = [0, 1].map(|end: usize| T::load(proof, &numbers.levers_m[end], first));
             let (force_on_b, torques) = resistance(&coefficients, levers_m, apart, moving);
             let particles = &self.partition.particles;
-            four.add(first, force_on_b, torques, self.damping, particles);
+            eight.add(first, force_on_b, torques, self.damping, particles);
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::bonds::Kind;
-use super::lanes::{LaneWork, Lanes, with_lanes};
+use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::stages::blocks::{BondGroup, blocks_of, coming_second_ends, fetch_soon};
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::Pose;
@@ -19,7 +19,7 @@ pub(crate) fn squared_utilisations(
     squares: &mut [f64],
 ) {
     let kind = Kind::of(bonds, rule);
-    with_lanes(Squares {
+    with_most_lanes(Squares {
         bonds,
         poses,
         kind: &kind,
@@ -46,16 +46,19 @@ impl LaneWork for Squares<'_> {
             for b in coming_second_ends(self.bonds, block) {
                 fetch_soon(&self.poses[b]);
             }
-            let four = BondGroup::of_block(self.bonds, block, &self.range);
+            let eight = BondGroup::of_block(self.bonds, block, &self.range);
             let numbers = &self.bonds.blocks[block];
             for first in (0..BLOCK).step_by(T::COUNT) {
-                let response = (self.kind).response::<T>(proof, &four, numbers, first, self.poses);
+                if !eight.any_wanted::<T>(first) {
+                    continue;
+                }
+                let response = (self.kind).response::<T>(proof, &eight, numbers, first, self.poses);
                 let radius_m = T::load(proof, &numbers.radii_m, first);
                 let [used, factor] =
                     screen.utilisation_and_factor::<T, true>(&response.load, radius_m);
                 let found = (used * factor.inverse()).values();
                 for (i, square) in (first..).zip(&found[..T::COUNT]) {
-                    if four.wanted.contains(&i) {
+                    if eight.wanted.contains(&i) {
                         self.squares[block * BLOCK + i - self.range.start] = *square;
                     }
                 }

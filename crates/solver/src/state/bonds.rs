@@ -67,7 +67,7 @@ impl BondRule {
 }
 
 /// Bonds in a block.
-pub const BLOCK: usize = 4;
+pub const BLOCK: usize = 8;
 
 /// One number for each bond of a block.
 pub type Column = [f64; BLOCK];

@@ -1,7 +1,6 @@
 //! What all lanes have in common; and one lane, for any processor.
 
 use crate::physics::number::Number;
-use crate::state::bonds::BLOCK;
 
 /// One number for each of `COUNT` bonds or contacts.
 pub(in crate::stages) trait Lanes: Number {
@@ -30,8 +29,8 @@ pub(in crate::stages) trait Lanes: Number {
     fn rows(columns: [Self; 4]) -> [[f64; 4]; MOST];
 }
 
-/// Bonds in a block.
-pub(in crate::stages) const FOUR: usize = BLOCK;
+/// Number of lanes of a processor with AVX2.
+pub(in crate::stages) const FOUR: usize = 4;
 
 /// Largest number of lanes of any processor.
 pub(in crate::stages) const MOST: usize = 8;
