@@ -113,6 +113,9 @@ pub struct State {
     /// Damping forces of bonds in the last step, one for each free particle. Empty: no bond
     /// has any.
     pub bond_resistance: Vec<Wrench>,
+    /// Running means of these forces, from which those of the next step are predicted where one
+    /// stage is enough for more than weak damping. Empty: they have not been needed.
+    pub mean_resistance: Vec<Wrench>,
     /// Largest speed of a particle in the previous step, plus that of a wall if there are contacts,
     /// m/s.
     pub fastest_m_s: f64,
@@ -165,6 +168,7 @@ impl State {
             damping_rate_1_s: 0.0,
             most_damping_rate_1_s: f64::INFINITY,
             bond_resistance: Vec::new(),
+            mean_resistance: Vec::new(),
             fastest_m_s: 0.0,
             broken_count: 0,
             broken_by_cause: CauseCounts::default(),
@@ -200,6 +204,9 @@ impl State {
         let rate_1_s = damping_rate_1_s(&self.bonds, &self.particles);
         self.damping_rate_1_s = rate_1_s.min(self.most_damping_rate_1_s);
         self.bond_resistance = vec![Wrench::default(); damped];
+        if !self.mean_resistance.is_empty() {
+            self.mean_resistance = self.bond_resistance.clone();
+        }
         let scratch = &mut self.scratch;
         scratch.damping_now = vec![[0.0; 4]; structural];
         scratch.damping_stages = std::array::from_fn(|_| vec![Wrench::default(); damped]);
@@ -278,13 +285,15 @@ impl State {
         self.rigid_parts.number(self.particles.free, &self.bonds);
         // Bonds that broke since it was found still count.
         let damping_rate_1_s = self.damping_rate_1_s;
-        let bond_resistance = std::mem::take(&mut self.bond_resistance);
+        let damped = [&mut self.bond_resistance, &mut self.mean_resistance].map(std::mem::take);
         self.divide();
         self.damping_rate_1_s = damping_rate_1_s;
-        if bond_resistance.len() != self.bond_resistance.len() {
+        let free = self.bond_resistance.len();
+        [self.bond_resistance, self.mean_resistance] = damped;
+        let means = self.mean_resistance.len();
+        if self.bond_resistance.len() != free || (means > 0 && means != free) {
             return None;
         }
-        self.bond_resistance = bond_resistance;
         self.particles.wrenches = vec![Wrench::default(); self.particles.len()];
         if let Some(clusters) = &mut self.clusters {
             clusters.rebuild(&self.bonds)?;

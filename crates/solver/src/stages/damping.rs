@@ -16,7 +16,13 @@
 //!
 //!   D_n = -C (v_(n-1/2) + dt/2 M^-1 (F_n + D_(n-1))),
 //!
-//! predicted with the damping of the last step, which is of second order too.
+//! predicted with the damping of the last step, which is of second order too. Where it is not weak,
+//! but at most [`ONE_STAGE`], D_(n-1) is replaced by the running mean
+//!
+//!   P_(n-1) = q P_(n-2) + (1 - q) D_(n-1),
+//!
+//! which is of second order as well, and stable up to 1 + q instead of 1. Here q follows from the
+//! largest eigenvalue: see [`memory`].
 //!
 //! **Stability.** With symmetric K and C the scheme is stable up to the same step as without
 //! damping of bonds. With B = (1 + R)/2 and A = dt^2 M^-1 K, z^n u is a solution if
@@ -25,12 +31,13 @@
 //!
 //! With the quadratic forms a of A and b of B^-1 in u, of norm 1, b z^2 + (a - 2) z + 2 - b = 0:
 //! |z| is at most 1 if b is at least 1 and a at most 4, and z = -1 where A has the eigenvalue 4.
-//! With one stage, z^n u is a solution only if a equals minus a mean
+//! With one stage, where q is 0 without a mean, z^n u is a solution only if a equals minus a mean
 //! over the eigenvalues g of G, with weights of u, of
 //!
-//!   f(z, g) = (z - 1) (2 z^2 + (3 g - 2) z - g) / (z (2 z + g - z g)).
+//!   f(z, g) = (z - 1) (2 z^2 + ((3 - q) g - 2 - 2 q) z + 2 q - (1 + q) g)
+//!             / (z ((2 - g) z + g - 2 q)).
 //!
-//! For g below 1, f has no pole outside the unit circle, and its imaginary part has the sign of
+//! For g below 1 + q, f has no pole outside the unit circle, and its imaginary part has the sign of
 //! that of z there, as it has on the circle (where it is at least g |Im z|); for real z it is
 //! positive beyond 1 and below -4 beyond -1. So a between 0 and 4 leaves no z outside. Dashpots of
 //! contacts, which F contains with the velocity of half a step ago, change the last condition
@@ -61,9 +68,11 @@ use crate::state::particles::{Motion, Wrench};
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const BOND_DAMPING_NS: f64 = 57.2;
 
-/// Largest eigenvalue of G up to which damping takes one stage. It is stable below 1; here the
-/// fastest decay, 0.64 in a step, is still near exp(-1/2) = 0.61.
-pub const WEAK: f64 = 0.5;
+/// Largest eigenvalue of G up to which one stage needs no running mean.
+pub const WEAK: f64 = 2.88 / 3.4;
+
+/// Largest eigenvalue of G up to which damping takes one stage.
+pub const ONE_STAGE: f64 = 1.43;
 
 /// Damping of bonds.
 pub const BOND_DAMPING: Stage = Stage {
@@ -81,6 +90,7 @@ pub const BOND_DAMPING: Stage = Stage {
         let predicted = state.scratch.predicted.iter();
         size_of_val(&state.bonds.damping[..])
             + size_of_val(&state.bond_resistance[..])
+            + size_of_val(&state.mean_resistance[..])
             + stages.map(|stage| size_of_val(&stage[..])).sum::<usize>()
             + predicted
                 .map(|motions| size_of_val(&motions[..]))
@@ -96,13 +106,25 @@ pub const BOND_DAMPING: Stage = Stage {
     },
 };
 
+/// Weight q of the running mean of damping in that of the next step, for this largest eigenvalue of
+/// G: so that what alternates from step to step by damping alone keeps at most four fifths in each,
+/// -4/5 being a root of 2 z^2 + ((3 - q) g - 2 - 2 q) z + 2 q - (1 + q) g. It is at most 0.6.
+fn memory(largest: f64) -> f64 {
+    if WEAK < largest && largest <= ONE_STAGE {
+        (3.4 * largest - 2.88) / (3.6 - 0.2 * largest)
+    } else {
+        0.0
+    }
+}
+
 /// Sets the damping forces of bonds: those that, over the kick, have the impulse of its damping.
 /// Returns the number of bonds computed, in one stage.
 pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
     if state.bond_resistance.is_empty() {
         return 0;
     }
-    if state.kick_s() * state.damping_rate_1_s <= WEAK {
+    let largest = state.kick_s() * state.damping_rate_1_s;
+    if largest <= ONE_STAGE {
         // Structural damping has predicted them already.
         if state.scratch.damping_now.is_empty() {
             predict_as_damped_before(state);
@@ -113,9 +135,28 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
     } else {
         damp_in_stages(state);
     }
+    remember(state, largest);
     state.scratch.structural_share = structural_share(state);
     let partitions = state.scratch.partitions.iter();
     partitions.map(|partition| partition.computed.damped).sum()
+}
+
+/// Renews the running means of damping forces, if they are or have been needed.
+fn remember(state: &mut State, largest: f64) {
+    let memory = memory(largest);
+    if state.mean_resistance.is_empty() {
+        if memory > 0.0 {
+            state.mean_resistance.clone_from(&state.bond_resistance);
+        }
+        return;
+    }
+    let (last, asleep) = (&state.bond_resistance, &state.particles.asleep);
+    let chunks = state.mean_resistance.par_chunks_mut(CHUNK).enumerate();
+    chunks.for_each(|(chunk, means)| {
+        for_each_awake(chunk * CHUNK, means, asleep, |i, mean| {
+            *mean = sum(mean, memory, [(1.0 - memory, &last[..])], i);
+        });
+    });
 }
 
 fn damp_in_stages(state: &mut State) {
@@ -163,12 +204,12 @@ fn damp_in_stages(state: &mut State) {
 enum Prediction {
     /// None.
     Undamped,
-    /// That of the last step.
+    /// That of the last step, or the running mean.
     AsDampedBefore,
 }
 
 /// Predicts the motions of the free particles at the time of their poses, with the damping of bonds
-/// of the last step.
+/// of the last step, or its running mean if that is not weak.
 pub(super) fn predict_as_damped_before(state: &mut State) {
     predict(state, Prediction::AsDampedBefore);
 }
@@ -212,10 +253,12 @@ fn predict(state: &mut State, prediction: Prediction) {
     let half_s = 0.5 * state.previous_time_step_s;
     let mut predicted = std::mem::take(&mut state.scratch.predicted[0]);
     let p = &state.particles;
-    let [of_bonds, on_particles] = state.resistances();
+    let [of_last_step, on_particles] = state.resistances();
+    let has_mean = !state.mean_resistance.is_empty();
     let of_bonds = match prediction {
         Prediction::Undamped => &[],
-        Prediction::AsDampedBefore => of_bonds,
+        Prediction::AsDampedBefore if has_mean => &state.mean_resistance[..],
+        Prediction::AsDampedBefore => of_last_step,
     };
     let resisting = [of_bonds, on_particles];
     let forces = Forces::of(p, resisting, state.model.gravity_m_s2, half_s);

@@ -350,10 +350,16 @@ fn count_anew(
     let free = state.particles.free;
     state.rigid_parts.number(free, &state.bonds);
     let resistance = std::mem::take(&mut state.bond_resistance);
+    let means = state.mean_resistance.clone();
     state.divide();
-    for (&now, resistance) in particles.iter().zip(resistance) {
-        if let Some(kept) = state.bond_resistance.get_mut(now as usize) {
-            *kept = resistance;
+    for (list, before) in [
+        (&mut state.bond_resistance, resistance),
+        (&mut state.mean_resistance, means),
+    ] {
+        for (&now, wrench) in particles.iter().zip(before) {
+            if let Some(kept) = list.get_mut(now as usize) {
+                *kept = wrench;
+            }
         }
     }
     for wall in &mut state.walls {

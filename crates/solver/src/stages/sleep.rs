@@ -226,6 +226,9 @@ fn fall_asleep(state: &mut State, falling: &[u32]) {
                 [1.0 / motion.inverse_mass, kinetic_j],
                 [p.poses[i].place().into(), motion.velocity_m_s, own],
             );
+            if let Some(mean) = state.mean_resistance.get_mut(i) {
+                *mean = Wrench::default();
+            }
             let resisting = [
                 &mut state.bond_resistance,
                 &mut state.scratch.particle_resistance,
