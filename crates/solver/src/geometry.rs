@@ -48,14 +48,31 @@ impl Shape {
     /// Adds all points where the wall is nearer than `reach_m` to `centre`, each once. Equal input
     /// gives equal order.
     pub fn touches(&self, centre: [f64; 3], reach_m: f64, found: &mut Vec<Touch>) {
-        let touch = match self {
-            Self::Plane(plane) => plane.touch(centre),
-            Self::Box(solid) => solid.touch(centre),
-            Self::Cylinder(cylinder) => cylinder.touch(centre),
-            Self::Mesh(mesh) => return mesh.touches(centre, reach_m, found),
-        };
-        if touch.distance_m < reach_m {
-            found.push(touch);
+        match self {
+            Self::Mesh(mesh) => mesh.touches(centre, reach_m, found),
+            _ => found.extend(self.only_touch(centre).filter(|t| t.distance_m < reach_m)),
+        }
+    }
+
+    /// Whether the wall is nearer to `centre` than `reach_m`.
+    pub(crate) fn is_within(&self, centre: [f64; 3], reach_m: f64) -> bool {
+        match self.only_touch(centre) {
+            Some(touch) => touch.distance_m < reach_m,
+            None => {
+                let mut found = Vec::new();
+                self.touches(centre, reach_m, &mut found);
+                !found.is_empty()
+            }
+        }
+    }
+
+    /// The nearest point of a wall that has only one. None: of a mesh.
+    fn only_touch(&self, centre: [f64; 3]) -> Option<Touch> {
+        match self {
+            Self::Plane(plane) => Some(plane.touch(centre)),
+            Self::Box(solid) => Some(solid.touch(centre)),
+            Self::Cylinder(cylinder) => Some(cylinder.touch(centre)),
+            Self::Mesh(_) => None,
         }
     }
 

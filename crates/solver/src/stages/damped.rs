@@ -118,7 +118,10 @@ impl BatchWork<'_> {
                 torsion,
                 bending,
             };
-            let levers_m = [0, 1].map(|end: usize| T::load(proof, &numbers.levers_m[end], first));
+            let levers_m = [
+                T::load(proof, &numbers.levers_m[0], first),
+                T::load(proof, &numbers.levers_m[1], first),
+            ];
             let (force_on_b, torques) = resistance(&coefficients, levers_m, apart, moving);
             let particles = &self.partition.particles;
             eight.add(first, force_on_b, torques, self.damping, particles);

@@ -174,12 +174,20 @@ impl LargeMeetings<'_> {
         while reaching != 0 {
             let n = reaching.trailing_zeros() as usize;
             reaching &= reaching - 1;
-            let [x, y, z, radius_m] = columns.each_ref().map(|column| T::all(proof, column[n]));
+            // Spelled out: a closure around lanes may not be compiled for them.
+            let [x, y, z, radius_m] = [
+                T::all(proof, columns[0][n]),
+                T::all(proof, columns[1][n]),
+                T::all(proof, columns[2][n]),
+                T::all(proof, columns[3][n]),
+            ];
             for first in (0..BLOCK).step_by(T::COUNT) {
-                let other = of_others.each_ref();
-                let [ox, oy, oz, other_m] = other.map(|column| T::load(proof, column, first));
-                let apart = Vec3(ox - x, oy - y, oz - z);
-                let near = radius_m + other_m;
+                let apart = Vec3(
+                    T::load(proof, &of_others[0], first) - x,
+                    T::load(proof, &of_others[1], first) - y,
+                    T::load(proof, &of_others[2], first) - z,
+                );
+                let near = radius_m + T::load(proof, &of_others[3], first);
                 let mut bits = (near * near).above(apart.square());
                 while bits != 0 {
                     let [i, j] = [members[n], others[first + bits.trailing_zeros() as usize]];
@@ -196,15 +204,14 @@ impl LargeMeetings<'_> {
 /// A bit for each ball of a block that reaches into a box.
 #[inline(always)]
 fn reaching<T: Lanes>(proof: T::Proof, columns: &[[f64; BLOCK]; 4], room: &Bounds) -> u32 {
-    let ends = [0, 1, 2].map(|k| [room.low[k], room.high[k]].map(|end| T::all(proof, end)));
     let mut bits = 0;
     for first in (0..BLOCK).step_by(T::COUNT) {
         let radius_m = T::load(proof, &columns[3], first);
         let mut inside = u8::MAX;
-        for (column, [low, high]) in columns.iter().zip(ends) {
-            let c = T::load(proof, column, first);
-            inside &= (c + radius_m).above(low);
-            inside &= high.above(c - radius_m);
+        for k in 0..3 {
+            let c = T::load(proof, &columns[k], first);
+            inside &= (c + radius_m).above(T::all(proof, room.low[k]));
+            inside &= T::all(proof, room.high[k]).above(c - radius_m);
         }
         bits |= u32::from(inside) << first;
     }

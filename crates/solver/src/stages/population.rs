@@ -4,6 +4,7 @@
 //! Done between a kick and the drift after it: positions are those of the present time, velocities
 //! those half a step later.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::physics::bond::scatter::{body_key, strength_factor};
@@ -35,7 +36,8 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     let old = std::mem::take(&mut state.particles);
     let old_firsts: Vec<u32> = state.clumps.all.iter().map(|clump| clump.first).collect();
     let mut near = std::mem::take(&mut state.clumps.near);
-    let mut rebuilt = Rebuilt::of(&old);
+    let outer_of = |clump: &Clump| state.clumps.template(clump).outer.len();
+    let mut rebuilt = Rebuilt::of(&old, coming.iter().map(outer_of).sum());
     let mut clusters = state.clusters.take();
     let stiffens = |id: u32| to_clumps.binary_search_by_key(&id, |(id, _)| *id).is_ok();
     let goes = |id: u32| leaving.binary_search(&id).is_ok() || stiffens(id);
@@ -119,13 +121,14 @@ struct Rebuilt<'a> {
 }
 
 impl<'a> Rebuilt<'a> {
-    fn of(old: &'a Particles) -> Self {
+    /// With room for `coming` more particles.
+    fn of(old: &'a Particles, coming: usize) -> Self {
         Self {
             old,
-            new: Particles::default(),
+            new: Particles::with_room(old.len() + coming),
             numbers: vec![REMOVED; old.len()],
-            ids: Vec::new(),
-            materials_of_new: Vec::new(),
+            ids: Vec::with_capacity(old.len() + coming),
+            materials_of_new: Vec::with_capacity(old.len() + coming),
         }
     }
 
@@ -141,7 +144,7 @@ impl<'a> Rebuilt<'a> {
         for i in 0..self.old.free {
             let id = clusters.map_or(0, |clusters| clusters.of_particle[i]);
             if !goes(id) {
-                self.numbers[i] = keep(self.old, i, &mut self.new);
+                keep(self.old, i..i + 1, &mut self.new, &mut self.numbers);
                 self.label(id, None);
             }
         }
@@ -182,9 +185,7 @@ impl<'a> Rebuilt<'a> {
             }
             let own = templates[clump.template as usize].spheres_from(clump.first);
             clump.first = self.new.len() as u32;
-            for i in own {
-                self.numbers[i] = keep(self.old, i, &mut self.new);
-            }
+            keep(self.old, own, &mut self.new, &mut self.numbers);
             self.label(clump.cluster, None);
             true
         });
@@ -254,12 +255,15 @@ fn renumber(numbers: &mut Vec<u32>, now: &[u32]) {
     });
 }
 
-fn keep(old: &Particles, i: usize, new: &mut Particles) -> u32 {
-    new.poses.push(old.poses[i]);
-    new.motions.push(old.motions[i]);
-    new.wrenches.push(old.wrenches[i]);
-    new.ids.push(old.id(i));
-    new.len() as u32 - 1
+/// Keeps some consecutive particles, and sets their new numbers.
+fn keep(old: &Particles, some: Range<usize>, new: &mut Particles, numbers: &mut [u32]) {
+    for (number, now) in numbers[some.clone()].iter_mut().zip(new.len() as u32..) {
+        *number = now;
+    }
+    new.poses.extend_from_slice(&old.poses[some.clone()]);
+    new.motions.extend_from_slice(&old.motions[some.clone()]);
+    new.wrenches.extend_from_slice(&old.wrenches[some.clone()]);
+    new.ids.extend(some.map(|i| old.id(i)));
 }
 
 /// All spheres of a clump, as particles that move with it (Platzer 2022, section 4.5.4.1): x = c +

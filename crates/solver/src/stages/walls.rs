@@ -114,11 +114,7 @@ pub(crate) fn reaches(wall: &Wall) -> impl Fn([f64; 3], f64) -> bool + Sync {
             return false;
         }
         let centre = to_wall(point);
-        let mut found = Vec::new();
-        if bounds.is_near(&centre, reach_m) {
-            wall.model.shape.touches(centre, reach_m, &mut found);
-        }
-        !found.is_empty()
+        bounds.is_near(&centre, reach_m) && wall.model.shape.is_within(centre, reach_m)
     }
 }
 

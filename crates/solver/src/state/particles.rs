@@ -134,6 +134,17 @@ pub struct Particles {
 }
 
 impl Particles {
+    /// None, with room for so many.
+    pub(crate) fn with_room(count: usize) -> Self {
+        Self {
+            poses: Vec::with_capacity(count),
+            motions: Vec::with_capacity(count),
+            wrenches: Vec::with_capacity(count),
+            ids: Vec::with_capacity(count),
+            ..Self::default()
+        }
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.poses.len()

@@ -47,6 +47,15 @@ fn try_all(name: &str, body: impl Fn() -> State, speed_m_s: f64, steps: u64) {
         shake(&mut state, speed_m_s);
         let [stable, unstable] = [0.98, 1.02].map(|fraction| {
             let mut state = state.clone();
+            if fraction > 1.0 && bonds.is_some() && particles > 0.0 {
+                // Damping of particles acts against the fastest mode once that moves most, and
+                // damping of bonds makes it grow too slowly to come that far by itself.
+                state.time_step_s = 1.04 * limit_s;
+                for _ in 0..10 {
+                    interact(&mut state);
+                    advance(&mut state);
+                }
+            }
             state.time_step_s = fraction * limit_s;
             stopped_at(&mut state, steps)
         });
