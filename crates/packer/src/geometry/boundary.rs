@@ -177,9 +177,10 @@ impl Boundary {
             })
     }
 
-    /// The walls that a ball of this radius (local units) would meet: nearest points in directions
-    /// that differ by more than 14 degrees. A face hidden behind a nearer one (the same plane, the
-    /// far side of an edge) is left out. `triangles` limits the search; the 8 nearest are found.
+    /// The walls that a ball of this radius (local units) would meet, nearest first, 8 at most: the
+    /// nearest points of triangles, except those behind the plane of a nearer wall. That plane is
+    /// taken to be nearer to the centre by 3 %, so that a smooth curved surface is one wall.
+    /// `triangles` limits the search.
     pub fn walls(
         &self,
         triangles: impl Iterator<Item = u32>,
@@ -188,9 +189,58 @@ impl Boundary {
         found: &mut Vec<Nearest>,
     ) {
         let in_reach = triangles.filter(|t| self.may_be_nearer(*t, centre, radius));
-        let near = in_reach.map(|triangle| self.nearest_on(triangle, centre));
-        walls_among(near, centre, radius, found);
+        let mut nearest_first: Vec<(f64, u32)> = in_reach
+            .map(|t| (self.least_distance(t, centre), t))
+            .collect();
+        nearest_first.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.walls_among(nearest_first.into_iter(), centre, radius, found);
     }
+
+    /// As [`Boundary::walls`], for triangles with lower bounds of their distances. It is fast where
+    /// the nearest come first: others are then known to be hidden without being measured.
+    pub(crate) fn walls_among(
+        &self,
+        triangles: impl Iterator<Item = (f64, u32)>,
+        centre: &Vector3,
+        radius: f64,
+        found: &mut Vec<Nearest>,
+    ) {
+        const MOST: usize = 8;
+        found.clear();
+        for (least, triangle) in triangles {
+            let is_hidden = |wall: &Nearest| {
+                least >= wall.distance && self.is_hidden_behind(wall, triangle, centre)
+            };
+            if least >= radius || found.iter().any(is_hidden) {
+                continue;
+            }
+            let near = self.nearest_on(triangle, centre);
+            if near.distance < radius && near.distance > 0.0 {
+                found.push(near);
+            }
+        }
+        found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut kept = 0;
+        for k in 0..found.len() {
+            let near = found[k];
+            let from_centre = near.point - centre;
+            if !(found[..kept].iter()).any(|wall| is_behind(wall, centre, &from_centre, 0.0)) {
+                found[kept] = near;
+                kept += 1;
+            }
+        }
+        found.truncate(kept.min(MOST));
+    }
+
+    /// True if all of a triangle is behind the plane of a wall.
+    fn is_hidden_behind(&self, wall: &Nearest, triangle: u32, centre: &Vector3) -> bool {
+        let triangle = triangle as usize;
+        let (surroundings, plane) = (&self.surroundings[triangle], &self.planes[triangle]);
+        let towards = (wall.point - centre) / wall.distance;
+        let before_middle = surroundings.most_along(plane, &towards);
+        is_behind(wall, centre, &(surroundings.middle - centre), before_middle)
+    }
+
     /// False if a triangle of the wall is certainly farther from a point than `reach` (local
     /// units).
     pub(crate) fn may_be_nearer(&self, triangle: u32, point: &Vector3, reach: f64) -> bool {
@@ -247,42 +297,10 @@ impl Boundary {
     }
 }
 
-/// The walls of [`Boundary::walls`] among the nearest points of triangles.
-pub(crate) fn walls_among(
-    near: impl Iterator<Item = Nearest>,
-    centre: &Vector3,
-    radius: f64,
-    found: &mut Vec<Nearest>,
-) {
-    const SAME_DIRECTION: f64 = 0.97;
-    const MOST: usize = 8;
-    found.clear();
-    let toward = |near: &Nearest| (near.point - centre) / near.distance;
-    for near in near {
-        if near.distance >= radius || near.distance <= 0.0 {
-            continue;
-        }
-        let direction = toward(&near);
-        match found
-            .iter()
-            .position(|other| toward(other).dot(&direction) > SAME_DIRECTION)
-        {
-            Some(k) if near.distance < found[k].distance => found[k] = near,
-            None => found.push(near),
-            _ => {}
-        }
-    }
-    found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    let mut kept = 0;
-    for k in 0..found.len() {
-        let near = found[k];
-        let hidden = found[..kept]
-            .iter()
-            .any(|nearer| (near.point - nearer.point).dot(&toward(nearer)) > -1e-6 * radius);
-        if !hidden {
-            found[kept] = near;
-            kept += 1;
-        }
-    }
-    found.truncate(kept.min(MOST));
+/// True if a point, given from the centre, is behind the plane of a wall by at least `by`: the
+/// plane is taken to be nearer to the centre by 3 %.
+fn is_behind(wall: &Nearest, centre: &Vector3, point: &Vector3, by: f64) -> bool {
+    const NEARER: f64 = 0.97;
+    let height = (wall.point - centre).dot(point) / wall.distance;
+    height - by > NEARER * wall.distance
 }

@@ -56,7 +56,7 @@ impl Plane {
 /// The ball around a triangle: by far the smallest part of what is known about it, so that many are
 /// excluded without reading the rest.
 pub(super) struct Surroundings {
-    middle: Vector3,
+    pub(super) middle: Vector3,
     radius: f64,
 }
 
@@ -88,5 +88,12 @@ impl Surroundings {
         let distance = (height_squared + aside * aside).sqrt();
         // The plane of a thin triangle is NaN, and max takes the other value.
         (distance - MARGIN * (distance + self.radius)).max(0.0)
+    }
+
+    /// The largest distance of a point of the triangle from its middle in a direction (a unit
+    /// vector); NaN for a thin triangle.
+    pub(super) fn most_along(&self, plane: &Plane, direction: &Vector3) -> f64 {
+        let across = plane.normal.dot(direction);
+        self.radius * (1.0 + MARGIN - across * across).sqrt()
     }
 }

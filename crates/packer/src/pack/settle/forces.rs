@@ -1,7 +1,7 @@
 //! Forces of overlaps, and the largest overlap: settling spends most of its time in this loop.
 
 use super::neighbours::ChunkOfLists;
-use super::walls::{NearWall, Workspace};
+use super::walls::NearWall;
 use crate::geometry::boundary::Boundary;
 use crate::spheres::ReducedSphere;
 use pulp::NullaryFnOnce;
@@ -36,8 +36,6 @@ pub(super) struct ForcesOn<'a> {
     pub(super) first: usize,
     pub(super) boundary: &'a Boundary,
     pub(super) balls: &'a [ReducedSphere],
-    /// Lengths of the paths of these spheres.
-    pub(super) path: &'a [f64],
     pub(super) spheres: &'a ChunkOfLists,
     pub(super) walls: &'a mut [NearWall],
     pub(super) enlarge: f64,
@@ -56,14 +54,13 @@ impl NullaryFnOnce for ForcesOn<'_> {
             first,
             boundary,
             balls,
-            path,
             spheres,
             walls,
             enlarge,
             plane_lasts,
         } = self;
         let mut worst = 0.0_f64;
-        let mut workspace = Workspace::default();
+        let mut touched = Vec::new();
         for (k, f) in force.iter_mut().enumerate() {
             let ball = balls[first + k];
             let mut push = ForceLanes::default();
@@ -87,14 +84,19 @@ impl NullaryFnOnce for ForcesOn<'_> {
             let k = near.sphere;
             let ball = &balls[first + k];
             let radius = ball[3] * enlarge;
-            let sphere = (ball, radius, path[k]);
             let lasts = plane_lasts * radius;
-            near.touching(boundary, sphere, lasts, &mut workspace, |inward, height| {
-                for axis in 0..3 {
-                    force[k][axis] += (radius - height) * inward[axis];
-                }
-                worst = worst.max(wall_overlap(radius, height));
-            });
+            near.touching(
+                boundary,
+                (ball, radius),
+                lasts,
+                &mut touched,
+                |inward, height| {
+                    for axis in 0..3 {
+                        force[k][axis] += (radius - height) * inward[axis];
+                    }
+                    worst = worst.max(wall_overlap(radius, height));
+                },
+            );
         }
         worst
     }

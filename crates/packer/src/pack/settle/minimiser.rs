@@ -84,8 +84,6 @@ struct State<'a> {
     walls: WallLists<'a>,
     /// The spheres when neighbours were listed last.
     listed_at: Vec<ReducedSphere>,
-    /// Length of the path of each sphere.
-    path: Vec<f64>,
     skin: f64,
     largest_move: f64,
     /// The largest overlap at the last positions, in radii.
@@ -204,7 +202,6 @@ impl<'a> State<'a> {
             response: Vec::new(),
             near: NeighbourLists::default(),
             listed_at: Vec::new(),
-            path: vec![0.0; n],
             skin,
             largest_move: LARGEST_MOVE * mean,
             worst: f64::INFINITY,
@@ -283,19 +280,17 @@ impl<'a> State<'a> {
         let (boundary, balls, enlarge) = (self.boundary, &self.balls, self.enlarge);
         let plane_lasts = PLANE_LASTS[usize::from(self.worst < NEARLY_DONE)];
         let force = self.force.par_chunks_mut(CHUNK);
-        let path = self.path.par_chunks(CHUNK);
         let spheres = self.near.chunks.par_iter();
         let walls = self.walls.chunks.par_iter_mut();
-        self.worst = (force, path, spheres, walls)
+        self.worst = (force, spheres, walls)
             .into_par_iter()
             .enumerate()
-            .map(|(chunk, (force, path, spheres, walls))| {
+            .map(|(chunk, (force, spheres, walls))| {
                 Arch::new().dispatch(ForcesOn {
                     force,
                     first: chunk * CHUNK,
                     boundary,
                     balls,
-                    path,
                     spheres,
                     walls: &mut walls.near,
                     enlarge,
@@ -316,10 +311,9 @@ impl<'a> State<'a> {
         let force = self.force.par_chunks(CHUNK);
         let response = self.response.par_chunks(CHUNK);
         let listed_at = self.listed_at.par_chunks(CHUNK);
-        let path = self.path.par_chunks_mut(CHUNK);
-        let farthest = (balls, velocity, force, response, listed_at, path)
+        let farthest = (balls, velocity, force, response, listed_at)
             .into_par_iter()
-            .map(|(balls, velocity, force, response, listed_at, path)| {
+            .map(|(balls, velocity, force, response, listed_at)| {
                 let mut farthest = 0.0;
                 for k in 0..balls.len() {
                     let v = &mut velocity[k];
@@ -330,7 +324,6 @@ impl<'a> State<'a> {
                     if speed_squared > most * most {
                         *v = v.map(|v| v * most / speed_squared.sqrt());
                     }
-                    path[k] += speed_squared.sqrt().min(most);
                     let mut moved = [0.0; 4];
                     for axis in 0..4 {
                         balls[k][axis] += v[axis];
