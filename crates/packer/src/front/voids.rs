@@ -59,10 +59,10 @@ impl Assembly<'_> {
     /// the wall than `clearance`.
     fn wall_at(&self, centre: &Vector3, reach: f64, clearance: f64) -> Wall {
         let boundary = self.boundary;
-        let Some((triangle, near)) = boundary.nearest_triangle(centre, clearance + reach) else {
+        let Some(near) = boundary.nearest(centre, clearance + reach) else {
             return Wall::LeavesMiddle;
         };
-        let is_behind = boundary.is_behind(triangle, centre);
+        let is_behind = boundary.is_behind(near.triangle, centre);
         let inwards = match is_behind {
             Some(false) => -near.distance,
             _ => near.distance,

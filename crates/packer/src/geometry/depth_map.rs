@@ -238,8 +238,8 @@ impl<'a> DepthMap<'a> {
 
     /// The distance of the nearest triangle, if it is below `cut_off`, and that triangle.
     fn nearest_in_tree(&self, point: &Vector3, cut_off: f64) -> Option<(f64, u32)> {
-        let nearest = self.boundary.nearest_triangle(point, cut_off);
-        nearest.map(|(triangle, near)| (near.distance, triangle))
+        let nearest = self.boundary.nearest(point, cut_off);
+        nearest.map(|near| (near.distance, near.triangle))
     }
 
     /// Adds the triangles within `reach` of a point; false if there are too many.

@@ -39,6 +39,8 @@ pub(super) struct NearWall {
     /// The triangles near, nearest first, and the sphere when they were listed.
     triangles: Vec<NearTriangle>,
     listed_at: ReducedSphere,
+    /// The triangle that was nearest last.
+    nearest: u32,
     /// The walls that it touches, or nearly.
     planes: Vec<WallPlane>,
     /// Where the sphere was when these planes were found, and how far it may move until they are
@@ -107,20 +109,22 @@ impl<'a> WallLists<'a> {
     fn near(&self, k: usize, ball: &ReducedSphere) -> Option<NearWall> {
         let (centre, radius) = (centre_of(ball), ball[3] * self.enlarge);
         let reach = radius + REACH * self.skin;
-        let is_near = |t: &u32| self.boundary.may_be_nearer(*t, &centre, reach);
-        let triangles = self.boundary.triangles_near(&centre, reach).filter(is_near);
-        let mut triangles: Vec<NearTriangle> = triangles
-            .map(|number| NearTriangle {
-                least: (self.boundary.least_distance(number, &centre) as f32).next_down(),
+        let listed = |number: u32| {
+            let least = self.boundary.least_below(number, &centre, reach)?;
+            Some(NearTriangle {
+                least: (least as f32).next_down(),
                 number,
             })
-            .collect();
+        };
+        let triangles = self.boundary.triangles_near(&centre, reach);
+        let mut triangles: Vec<NearTriangle> = triangles.filter_map(listed).collect();
         triangles.sort_unstable_by(|a, b| {
             let nearer = a.least.total_cmp(&b.least);
             nearer.then(a.number.cmp(&b.number))
         });
-        (!triangles.is_empty()).then(|| NearWall {
+        Some(NearWall {
             sphere: k,
+            nearest: triangles.first()?.number,
             triangles,
             listed_at: *ball,
             planes: Vec::new(),
@@ -201,9 +205,16 @@ impl NearWall {
         }
         self.lasts_squared = lasts * lasts;
         let may_reach = |t: &&NearTriangle| f64::from(t.least) < reach + moved;
-        let measured = |t: &NearTriangle| (boundary.least_distance(t.number, &centre), t.number);
-        let near = self.triangles.iter().take_while(may_reach).map(measured);
-        boundary.walls_among(near, &centre, reach, touched);
+        let near = self
+            .triangles
+            .iter()
+            .take_while(may_reach)
+            .map(|t| t.number);
+        let others = near.filter(|t| *t != self.nearest);
+        let measured = |t: u32| (boundary.least_distance(t, &centre), t);
+        let nearest_first = std::iter::once(self.nearest).chain(others).map(measured);
+        boundary.walls_among(nearest_first, &centre, reach, touched);
+        self.nearest = touched.first().map_or(self.nearest, |wall| wall.triangle);
         // A centre that was pushed through the wall is pulled back.
         let is_beyond = touched.first().is_some_and(|wall| {
             let all = self.triangles.iter().map(|t| t.number);
