@@ -242,13 +242,11 @@ impl<'a> DepthMap<'a> {
         nearest.map(|near| (near.distance, near.triangle))
     }
 
-    /// Adds the triangles within `reach` of a point; false if there are too many.
+    /// Adds the triangles that may be within `reach` of a point; false if there are too many.
     fn list(&self, centre: &Vector3, reach: f64, triangles: &mut Vec<u32>) -> bool {
         let most = triangles.len() + MOST_TRIANGLES;
         for triangle in self.boundary.triangles_near(centre, reach) {
-            if self.boundary.may_be_nearer(triangle, centre, reach)
-                && self.boundary.nearest_on(triangle, centre).distance <= reach
-            {
+            if self.boundary.may_be_nearer(triangle, centre, reach) {
                 if triangles.len() == most {
                     return false;
                 }

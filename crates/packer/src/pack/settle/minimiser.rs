@@ -20,10 +20,10 @@ const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
 /// their places, and what is left only has to decay.
 const LAST_DAMPING: f64 = 0.1;
 const NEARLY_DONE: f64 = 0.03;
-/// Fraction of its radius that a sphere moves at the wall until it is measured again: a plane
-/// stands for the wall for so long, until and after overlaps are nearly done. At an edge the
-/// distance is off by half the square of this at most.
-const PLANE_LASTS: [f64; 2] = [0.1, 0.02];
+/// Limits of the fraction of its radius that a sphere moves at the wall until it is measured again:
+/// a plane stands for the wall for so long. At an edge its distance is off by half the square of
+/// this at most, which is kept below a quarter of the largest overlap, in radii.
+const PLANE_LASTS: [f64; 2] = [0.02, 0.25];
 /// Velocity that a unit of force gives per step to a sphere of few neighbours; 1.5 times this value
 /// makes the dynamics unstable.
 const LARGEST_RESPONSE: f64 = 0.75;
@@ -278,7 +278,8 @@ impl<'a> State<'a> {
     /// Forces at the present positions. Returns the largest overlap, in radii.
     fn forces(&mut self) -> f64 {
         let (boundary, balls, enlarge) = (self.boundary, &self.balls, self.enlarge);
-        let plane_lasts = PLANE_LASTS[usize::from(self.worst < NEARLY_DONE)];
+        let [least, most] = PLANE_LASTS;
+        let plane_lasts = (0.5 * self.worst).sqrt().clamp(least, most);
         let force = self.force.par_chunks_mut(CHUNK);
         let spheres = self.near.chunks.par_iter();
         let walls = self.walls.chunks.par_iter_mut();
