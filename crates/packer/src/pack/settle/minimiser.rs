@@ -5,6 +5,7 @@ use super::neighbours::{CHUNK, NeighbourLists, squared_distance};
 use super::walls::WallLists;
 use crate::geometry::boundary::Boundary;
 use crate::geometry::inside::is_inside;
+use crate::grid::WIDEST_CLASS;
 use crate::pack::shrink::thin_out;
 use crate::spheres::{ReducedSphere, centre_of};
 use dem_io::{Diagnostic, Result};
@@ -17,8 +18,11 @@ const SKIN: f64 = 0.8;
 const DAMPING: f64 = 9.0;
 const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
 /// The damping once no two spheres overlap by more than `NEARLY_DONE` of a radius: they have found
-/// their places, and what is left only has to decay.
-const LAST_DAMPING: f64 = 0.1;
+/// their places, and what is left only has to decay. After `SLOW` such steps only slow motions are
+/// left, which light damping stops sooner. Where large spheres lie among many small ones all
+/// motions are slow.
+const LAST_DAMPING: [f64; 2] = [0.1, 0.03];
+const SLOW: usize = 100;
 const NEARLY_DONE: f64 = 0.03;
 /// Limits of the fraction of its radius that a sphere moves at the wall until it is measured again:
 /// a plane stands for the wall for so long. At an edge its distance is off by half the square of
@@ -119,6 +123,7 @@ pub fn minimise_overlaps(
     };
     let mut patience = PATIENCE[0];
     let mut fraction = TAKEN_OUT[0];
+    let mut nearly_done = if state.is_wide() { SLOW } else { 0 };
     loop {
         let mut worst = state.forces();
         if worst < MARGIN {
@@ -150,7 +155,8 @@ pub fn minimise_overlaps(
             }
         } else {
             settled.steps += 1;
-            if state.accelerate_and_move(damping(settled.steps, worst)) {
+            nearly_done += usize::from(worst < NEARLY_DONE);
+            if state.accelerate_and_move(damping(settled.steps, worst, nearly_done)) {
                 state.list_neighbours();
             }
         }
@@ -166,10 +172,11 @@ pub fn minimise_overlaps(
     Ok(settled)
 }
 
-/// The fraction of the velocity that is removed in a step, for the largest overlap in radii.
-fn damping(step: usize, largest_overlap: f64) -> f64 {
+/// The fraction of the velocity that is removed in a step, for the largest overlap in radii and the
+/// number of steps in which overlaps were nearly done.
+fn damping(step: usize, largest_overlap: f64, nearly_done: usize) -> f64 {
     if largest_overlap < NEARLY_DONE {
-        LAST_DAMPING
+        LAST_DAMPING[usize::from(nearly_done > SLOW)]
     } else {
         (DAMPING / step as f64).clamp(DAMPING_LIMITS[0], DAMPING_LIMITS[1])
     }
@@ -208,6 +215,13 @@ impl<'a> State<'a> {
         };
         state.list_neighbours();
         state
+    }
+
+    /// True if there are small spheres among much larger ones.
+    fn is_wide(&self) -> bool {
+        let radii = || self.balls.iter().map(|ball| ball[3]);
+        let largest = radii().fold(0.0, f64::max);
+        radii().fold(largest, f64::min) * WIDEST_CLASS < largest
     }
 
     /// Leaves out some spheres evenly, and lets the others come to rest. Returns the number left
