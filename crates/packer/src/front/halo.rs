@@ -15,6 +15,9 @@ use pulp::Arch;
 const RIM_TOLERANCE: f64 = 1e-12;
 /// Caps whose axes are nearer to parallel than this (sine squared) have no sharp corner.
 const SMALLEST_SINE_SQUARED: f64 = 1e-8;
+/// Numbers of the nearest neighbours that may cover a halo.
+const NEAREST: [usize; 2] = [8, 32];
+
 /// The part that a neighbour or a wall cuts out of a halo: the places p with p . axis > rim.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cap {
@@ -108,10 +111,49 @@ impl Halo {
     /// The halo of `ball` for a new sphere of reduced radius `new`, with the caps of its
     /// neighbours.
     pub fn set(&mut self, ball: &ReducedSphere, new: f64, neighbours: &Neighbours) {
+        self.set_nearest(ball, new, neighbours, usize::MAX);
+    }
+
+    /// As [`Halo::set`], unless the nearest neighbours alone cover the halo, as where a large
+    /// sphere is tried beside a small one: then false.
+    pub(crate) fn set_unless_covered(
+        &mut self,
+        ball: &ReducedSphere,
+        new: f64,
+        neighbours: &Neighbours,
+    ) -> bool {
+        for nearest in NEAREST {
+            if neighbours.order.len() > 2 * nearest {
+                self.set_nearest(ball, new, neighbours, nearest);
+                if self.is_covered() {
+                    return false;
+                }
+            }
+        }
+        self.set(ball, new, neighbours);
+        true
+    }
+
+    /// True if the caps certainly cover the halo: no point of any rim is free.
+    fn is_covered(&mut self) -> bool {
+        let Self { caps, rims, .. } = self;
+        Arch::new().dispatch(
+            #[inline(always)]
+            || !caps.is_empty() && (0..caps.len()).all(|j| rims.is_covered(j)),
+        )
+    }
+
+    fn set_nearest(
+        &mut self,
+        ball: &ReducedSphere,
+        new: f64,
+        neighbours: &Neighbours,
+        nearest: usize,
+    ) {
         self.centre = Vector3::new(ball[0], ball[1], ball[2]);
         self.radius = ball[3] + new;
         self.caps.clear();
-        for entry in &neighbours.order {
+        for entry in neighbours.order.iter().take(nearest) {
             let Neighbour {
                 axis,
                 distance,

@@ -91,7 +91,9 @@ impl Assembly<'_> {
             walls,
             ..
         } = workspace;
-        halo.set(initial, self.reduced(radius), neighbours);
+        if !halo.set_unless_covered(initial, self.reduced(radius), neighbours) {
+            return None;
+        }
         let from_seed = halo.centre - seed;
         let mut best: Option<Vector3> = None;
         halo.corners(&from_seed, |centre| {

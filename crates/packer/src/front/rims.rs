@@ -79,17 +79,9 @@ impl Rims {
     /// Calls `visit` with each cap k < `j` that may have a free corner with cap `j`.
     #[inline(always)]
     pub(crate) fn open_corners(&mut self, j: usize, mut visit: impl FnMut(usize)) {
-        let rim = self.rim(j);
-        let mut covered = 0;
-        self.ends.clear();
-        for group in &self.groups {
-            let arcs = rim.arcs(group);
-            covered |= arcs.covered;
-            if covered == u64::MAX {
-                return;
-            }
-            self.ends.push(arcs.ends);
-        }
+        let Some(covered) = self.covered(j) else {
+            return;
+        };
         for (group, [from, to]) in self.ends[..j.div_ceil(LANES)].iter().enumerate() {
             for lane in 0..LANES.min(j - group * LANES) {
                 let open = !covered & (around(from[lane]) | around(to[lane])) != 0;
@@ -98,6 +90,30 @@ impl Rims {
                 }
             }
         }
+    }
+
+    /// True if no point of the rim of cap `j` is free.
+    #[inline(always)]
+    pub(crate) fn is_covered(&mut self, j: usize) -> bool {
+        self.covered(j).is_none()
+    }
+
+    /// The sectors of the rim of cap `j` that are covered, and the ends of all arcs on it; none if
+    /// all of it is covered.
+    #[inline(always)]
+    fn covered(&mut self, j: usize) -> Option<u64> {
+        let rim = self.rim(j);
+        let mut covered = 0;
+        self.ends.clear();
+        for group in &self.groups {
+            let arcs = rim.arcs(group);
+            covered |= arcs.covered;
+            if covered == u64::MAX {
+                return None;
+            }
+            self.ends.push(arcs.ends);
+        }
+        Some(covered)
     }
 
     #[inline(always)]
