@@ -8,6 +8,7 @@
 //! caps meet and no other cap covers the point.
 
 use super::rims::{LANES, Rims};
+use crate::grid::curve_position;
 use crate::spheres::{ReducedSphere, Vector3};
 use pulp::Arch;
 
@@ -15,6 +16,10 @@ use pulp::Arch;
 const RIM_TOLERANCE: f64 = 1e-12;
 /// Caps whose axes are nearer to parallel than this (sine squared) have no sharp corner.
 const SMALLEST_SINE_SQUARED: f64 = 1e-8;
+/// Edge of the cells on the unit sphere by which directions are ordered.
+const DIRECTIONS: f64 = 1.0 / 64.0;
+/// Number of caps above which those near each other are looked at together.
+const MANY: usize = 64;
 /// Numbers of the nearest neighbours that may cover a halo.
 const NEAREST: [usize; 2] = [8, 32];
 
@@ -56,8 +61,8 @@ struct Neighbour {
 #[derive(Debug, Default)]
 pub struct Neighbours {
     all: Vec<Neighbour>,
-    /// Their order by the distance between surfaces: that distance in the upper half, the index in
-    /// the lower half.
+    /// Their order by the distance between surfaces, or by direction where many small ones surround
+    /// a large one: that in the upper half, the index in the lower half.
     order: Vec<u64>,
 }
 
@@ -77,12 +82,16 @@ impl Neighbours {
             let reach = ball[3] + other[3] + 2.0 * largest;
             if squared < reach * reach && squared > 0.0 {
                 let distance = squared.sqrt();
-                // The bits of positive numbers have the same order as the numbers.
-                let apart = (distance - other[3]).max(0.0) as f32;
-                self.order
-                    .push(u64::from(apart.to_bits()) << 32 | self.all.len() as u64);
+                let axis = d / distance;
+                let order = if 2.0 * largest < ball[3] {
+                    curve_position((axis.add_scalar(1.0)).into(), DIRECTIONS)
+                } else {
+                    // The bits of positive numbers have the same order as the numbers.
+                    u64::from(((distance - other[3]).max(0.0) as f32).to_bits())
+                };
+                self.order.push(order << 32 | self.all.len() as u64);
                 self.all.push(Neighbour {
-                    axis: d / distance,
+                    axis,
                     distance,
                     radius: other[3],
                 });
@@ -101,7 +110,7 @@ impl Neighbours {
         }
     }
 
-    /// Sorts the nearest neighbours first: their caps are the largest.
+    /// Sorts the nearest neighbours first, as their caps are the largest, or by direction.
     pub(crate) fn sort(&mut self) {
         self.order.sort_unstable();
     }
@@ -193,6 +202,9 @@ impl Halo {
         self.rims.clear();
         for group in self.caps.chunks(LANES) {
             self.rims.push(group.iter().map(|cap| (cap.axis, cap.rim)));
+        }
+        if self.caps.len() > MANY {
+            self.rims.enclose_groups();
         }
     }
 

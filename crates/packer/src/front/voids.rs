@@ -169,13 +169,11 @@ impl Assembly<'_> {
             if found >= MOST_COUNTED {
                 return found * open.len() / searched;
             }
-            loop {
-                self.find_neighbours(&mut workspace, sphere, &[], smallest);
-                let place = self.place_for_smallest(&mut workspace, sphere, wall_in_reach);
-                let Some(place) = place else {
-                    break;
-                };
-                self.grid.insert(self.sphere(&place, smallest));
+            self.find_neighbours(&mut workspace, sphere, &[], smallest);
+            while let Some(place) = self.place_for_smallest(&mut workspace, sphere, wall_in_reach) {
+                let new = self.sphere(&place, smallest);
+                workspace.add_neighbour(sphere, &new, new[3]);
+                self.grid.insert(new);
                 found += 1;
             }
         }
