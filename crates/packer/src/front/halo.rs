@@ -228,16 +228,20 @@ impl Halo {
     fn visit_corners(&mut self, wanted: &Vector3, mut found: impl FnMut(&Vector3) -> bool) {
         let squared = wanted.norm_squared();
         self.order.clear();
-        self.order
-            .extend(self.caps.iter().enumerate().map(|(j, cap)| {
-                let along = cap.axis.dot(wanted);
-                let across = (cap.sine_squared * (squared - along * along))
-                    .max(0.0)
-                    .sqrt();
-                // From 0 to 4; the bits of positive numbers have the same order as the numbers.
-                let least = 2.0 + (cap.rim * along - across) / squared.sqrt();
-                u64::from((least as f32).max(0.0).to_bits()) << 32 | j as u64
-            }));
+        for (j, cap) in self.caps.iter().enumerate() {
+            // Of many rims nearly all are covered, and few remain to be sorted.
+            if self.caps.len() > MANY && self.rims.is_covered(j) {
+                continue;
+            }
+            let along = cap.axis.dot(wanted);
+            let across = (cap.sine_squared * (squared - along * along))
+                .max(0.0)
+                .sqrt();
+            // From 0 to 4; the bits of positive numbers have the same order as the numbers.
+            let least = 2.0 + (cap.rim * along - across) / squared.sqrt();
+            let order = u64::from((least as f32).max(0.0).to_bits());
+            self.order.push(order << 32 | j as u64);
+        }
         self.order.sort_unstable();
         let (mut least, mut of_rim) = (f64::INFINITY, 0);
         for entry in &self.order {
@@ -264,7 +268,10 @@ impl Halo {
 
     /// The position of a point where two rims meet, that no cap covers and that `takes` accepts, if
     /// there is one.
-    pub(crate) fn any_corner(&mut self, takes: impl Fn(&Vector3) -> bool) -> Option<Vector3> {
+    pub(crate) fn any_corner(
+        &mut self,
+        mut takes: impl FnMut(&Vector3) -> bool,
+    ) -> Option<Vector3> {
         Arch::new().dispatch(
             #[inline(always)]
             || {
