@@ -241,9 +241,9 @@ impl<'a> State<'a> {
             .into_par_iter()
             .map(|i| {
                 let ball = &self.balls[i];
-                let earlier = (self.near.of(i).iter()).filter(|j| (**j as usize) < i);
-                let overlap = |j: &u32| {
-                    let other = &self.balls[*j as usize];
+                let earlier = self.near.of(i).filter(|j| (*j as usize) < i);
+                let overlap = |j: u32| {
+                    let other = &self.balls[j as usize];
                     (ball[3] + other[3] - squared_distance(ball, other).sqrt())
                         / ball[3].min(other[3])
                 };
@@ -280,12 +280,12 @@ impl<'a> State<'a> {
         self.near = NeighbourLists::new(balls, self.skin);
         self.walls.renew(balls);
         self.listed_at.clone_from(balls);
-        let neighbours = (0..balls.len()).map(|i| self.near.of(i).len());
+        let neighbours = (0..balls.len()).map(|i| self.near.of(i).count());
         let response = |n: usize| LARGEST_RESPONSE * (FEW_NEIGHBOURS / n as f64).min(1.0);
         self.response = neighbours.map(response).collect();
         for (i, walls) in self.walls.triangles() {
             let walls = walls.take(MOST_WALLS).count();
-            self.response[i] = response(self.near.of(i).len() + walls);
+            self.response[i] = response(self.near.of(i).count() + walls);
         }
     }
 

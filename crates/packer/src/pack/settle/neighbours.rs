@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 /// Number of spheres processed by one task.
 pub(super) const CHUNK: usize = 1024;
-/// Number of spheres compared at once.
-const LANES: usize = 4;
+/// Number of spheres compared at once, and of neighbours processed at once.
+pub(super) const LANES: usize = 4;
 
 /// The other spheres that each sphere could touch before the lists are rebuilt.
 #[derive(Default)]
@@ -18,7 +18,8 @@ pub(super) struct NeighbourLists {
     pub(super) chunks: Vec<ChunkOfLists>,
 }
 
-/// The lists of up to `CHUNK` spheres, one after the other.
+/// The lists of up to `CHUNK` spheres, one after the other. Each ends with the sphere's own number,
+/// repeated until its length is a multiple of `LANES`.
 pub(super) struct ChunkOfLists {
     all: Vec<u32>,
     /// End of each list. One per sphere.
@@ -42,16 +43,20 @@ impl NeighbourLists {
         }
     }
 
-    pub(super) fn of(&self, sphere: usize) -> &[u32] {
-        self.chunks[sphere / CHUNK].of(sphere % CHUNK)
+    pub(super) fn of(&self, sphere: usize) -> impl Iterator<Item = u32> + '_ {
+        let list = self.chunks[sphere / CHUNK]
+            .of(sphere % CHUNK)
+            .as_flattened();
+        (list.iter().copied()).take_while(move |other| *other as usize != sphere)
     }
 }
 
 impl ChunkOfLists {
-    /// The list of a sphere, numbered within the chunk.
-    pub(super) fn of(&self, sphere: usize) -> &[u32] {
+    /// The list of a sphere, numbered within the chunk, with the repetitions of its own number.
+    pub(super) fn of(&self, sphere: usize) -> &[[u32; LANES]] {
         let begin = sphere.checked_sub(1).map_or(0, |last| self.ends[last]);
-        &self.all[begin as usize..self.ends[sphere] as usize]
+        let list = &self.all[begin as usize..self.ends[sphere] as usize];
+        list.as_chunks().0
     }
 }
 
@@ -68,6 +73,7 @@ fn list_chunk(
     for (k, ball) in part.iter().enumerate() {
         let number = (first + k) as u32;
         classes.near(ball, |row| add_near(ball, number, &row, skin, &mut all));
+        all.resize(all.len().next_multiple_of(LANES), number);
         ends.push(all.len() as u32);
     }
     all.shrink_to_fit();
