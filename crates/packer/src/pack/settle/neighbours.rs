@@ -68,28 +68,45 @@ fn list_chunk(
     first: usize,
     skin: f64,
 ) -> ChunkOfLists {
-    let mut all = Vec::with_capacity(part.len() * 16);
+    let mut all = vec![0; part.len() * 16];
+    let mut end = 0;
     let mut ends = Vec::with_capacity(part.len());
     for (k, ball) in part.iter().enumerate() {
         let number = (first + k) as u32;
-        classes.near(ball, |row| add_near(ball, number, &row, skin, &mut all));
-        all.resize(all.len().next_multiple_of(LANES), number);
-        ends.push(all.len() as u32);
+        classes.near(ball, |row| {
+            let most = end + row.numbers.len() + LANES;
+            if most > all.len() {
+                all.resize(2 * most, 0);
+            }
+            add_near(ball, number, &row, skin, &mut all, &mut end);
+        });
+        while !end.is_multiple_of(LANES) {
+            all[end] = number;
+            end += 1;
+        }
+        ends.push(end as u32);
     }
+    all.truncate(end);
     all.shrink_to_fit();
     ChunkOfLists { all, ends }
 }
 
-/// Adds those of a row of spheres to the list of `ball`, sphere `number`, that are less than `skin`
-/// away. Each is written in any case and kept if near, since a branch would be mispredicted.
+/// Adds those of a row of spheres that are less than `skin` away from `ball`, sphere `number`, to
+/// the list from `end` on. Each is written in any case and kept if near, since a branch would be
+/// mispredicted.
 #[expect(
     clippy::needless_range_loop,
     reason = "several arrays side by side, lane by lane"
 )]
 #[inline(always)]
-fn add_near(ball: &ReducedSphere, number: u32, row: &Row, skin: f64, list: &mut Vec<u32>) {
-    let mut end = list.len();
-    list.resize(end + row.numbers.len(), 0);
+fn add_near(
+    ball: &ReducedSphere,
+    number: u32,
+    row: &Row,
+    skin: f64,
+    list: &mut [u32],
+    end: &mut usize,
+) {
     let is_near = |[x, y, z, radius]: [f64; 4]| {
         let (dx, dy, dz) = (ball[0] - x, ball[1] - y, ball[2] - z);
         let reach = ball[3] + radius + skin;
@@ -103,16 +120,15 @@ fn add_near(ball: &ReducedSphere, number: u32, row: &Row, skin: f64, list: &mut 
             near[k] = is_near([x.0[g][k], y.0[g][k], z.0[g][k], radius.0[g][k]]);
         }
         for k in 0..LANES {
-            list[end] = numbers[k];
-            end += usize::from(near[k] & (numbers[k] != number));
+            list[*end] = numbers[k];
+            *end += usize::from(near[k] & (numbers[k] != number));
         }
     }
     for (k, other) in last.iter().enumerate() {
-        list[end] = *other;
+        list[*end] = *other;
         let near = is_near([x.1[k], y.1[k], z.1[k], radius.1[k]]);
-        end += usize::from(near & (*other != number));
+        *end += usize::from(near & (*other != number));
     }
-    list.truncate(end);
 }
 
 pub(super) fn squared_distance(a: &ReducedSphere, b: &ReducedSphere) -> f64 {
