@@ -165,7 +165,10 @@ impl Cone {
         // Those that stand for no cap have no axis.
         let sum = [x, y, z].map(|lanes| lanes.iter().sum::<f32>());
         let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
-        let axis = sum.map(|s| s / length.max(1e-3));
+        if length < 0.1 {
+            return Self::everywhere();
+        }
+        let axis = sum.map(|s| s / length);
         let (mut apart, mut widest) = (1.0_f32, 1.0_f32);
         for k in (0..LANES).filter(|k| cosine[*k] <= 1.0) {
             apart = apart.min(axis[0] * x[k] + axis[1] * y[k] + axis[2] * z[k]);
@@ -179,16 +182,25 @@ impl Cone {
         }
     }
 
+    /// A cone that holds all directions.
+    fn everywhere() -> Self {
+        Self {
+            axis: [0.0; 3],
+            cosine: -1.0,
+            sine: 0.0,
+        }
+    }
+
     /// True if the rim certainly does not meet the cone.
     #[inline(always)]
     fn misses(&self, rim: &Rim) -> bool {
-        const MARGIN: f32 = 1e-4;
+        const ROUNDING: f32 = 1e-3;
         let [x, y, z] = rim.axis;
         let between = self.axis[0] * x + self.axis[1] * y + self.axis[2] * z;
         let cosine = self.cosine * rim.cosine - self.sine * rim.sine;
         let sine = self.sine * rim.cosine + self.cosine * rim.sine;
         // The sum of the two angles is less than half a turn.
-        self.sine > 0.0 && sine > 0.0 && between < cosine - MARGIN
+        self.sine > 0.0 && sine > 0.0 && between < cosine - ROUNDING
     }
 }
 
