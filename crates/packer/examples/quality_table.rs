@@ -17,7 +17,8 @@ use std::time::Instant;
 
 use dem_io::body::vtp;
 use dem_io::surface::{ReadSettings, Surface, surface_from_stl};
-use dem_io::{Diagnostic, Result};
+use dem_io::{Body, Diagnostic, Result};
+use dem_pack::internals::{Boundary, Vector3};
 use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_plots::{Axis, Marks, Plot, Point};
 
@@ -218,7 +219,10 @@ struct Timed {
     spheres: f64,
     all_us: f64,
     densifying_us: f64,
-    interior: f64,
+    /// Number of spheres that touch the wall.
+    at_wall: usize,
+    /// None if the shape has no interior for spheres of this size.
+    interior: Option<f64>,
 }
 
 impl Timed {
@@ -228,16 +232,15 @@ impl Timed {
         let mut densifying = Vec::new();
         let mut last = None;
         for _ in 0..3 {
-            let made = on_threads(1, || make_body(surface, &settings, &|_, _| Ok(())))?.1;
+            let (body, made) = on_threads(1, || make_body(surface, &settings, &|_, _| Ok(())))?;
             let seconds = &made.seconds;
             all.push(seconds.packing + seconds.bonds + seconds.report);
             densifying.push(made.history.densify_seconds);
-            last = Some(made.quality);
+            last = Some((body, made.quality));
         }
-        let spheres = last
-            .as_ref()
-            .map_or(0.0, |quality| quality.particles as f64);
-        let interior = last.and_then(|quality| quality.interior_generating_density);
+        let (body, quality) =
+            last.ok_or_else(|| Diagnostic::failed("", "nothing was packed", ""))?;
+        let spheres = quality.particles as f64;
         let median_us = |mut seconds: Vec<f64>| {
             seconds.sort_by(f64::total_cmp);
             1e6 * seconds[1] / spheres
@@ -246,9 +249,23 @@ impl Timed {
             spheres,
             all_us: median_us(all),
             densifying_us: median_us(densifying),
-            interior: interior.map_or(f64::NAN, |fraction| fraction.value),
+            at_wall: touching_the_wall(surface, &body)?,
+            interior: (quality.interior_generating_density).map(|fraction| fraction.value),
         })
     }
+}
+
+/// The number of spheres that come within a thousandth of their radius of the surface.
+fn touching_the_wall(surface: &Surface, body: &Body) -> Result<usize> {
+    let boundary = Boundary::new(surface)?;
+    let touches = |(centre_m, radius_m): &(&[f64; 3], &f64)| {
+        let local = [0, 1, 2].map(|k| (centre_m[k] - surface.origin_m[k]) / surface.unit_m);
+        let reach = 1.001 * *radius_m / surface.unit_m;
+        boundary.nearest(&Vector3::from(local), reach).is_some()
+    };
+    Ok((body.positions.iter().zip(&body.radii))
+        .filter(touches)
+        .count())
 }
 
 /// Spheres per second in the bar, the time of a scan over that of a box, and the time of wide sizes
@@ -271,20 +288,22 @@ fn ratios() -> std::result::Result<(), Error> {
     let mut out = std::io::stdout();
     writeln!(
         out,
-        "| case | diameters | spheres | all, us/sphere | densifying, us/sphere | spheres/s | interior |\n\
-         |---|---|---|---|---|---|---|"
+        "| case | diameters | spheres | all, us/sphere | densifying, us/sphere | spheres/s | touch the wall | interior |\n\
+         |---|---|---|---|---|---|---|---|"
     )?;
     let mut timed = Vec::new();
     for (name, surface, diameter, basis) in cases {
         let row = Timed::of(&surface, diameter, basis).map_err(Error::other)?;
         writeln!(
             out,
-            "| {name} | {diameter} | {} | {:.1} | {:.1} | {:.0} | {:.4} |",
+            "| {name} | {diameter} | {} | {:.1} | {:.1} | {:.0} | {} | {} |",
             row.spheres,
             row.all_us,
             row.densifying_us,
             1e6 / row.all_us,
+            row.at_wall,
             row.interior
+                .map_or("-".to_owned(), |fraction| format!("{fraction:.4}")),
         )?;
         timed.push(row);
     }

@@ -252,13 +252,17 @@ pub fn next_overlap(tries: &[Try], target: f64) -> f64 {
     let least = tries.iter().map(off).fold(f64::INFINITY, f64::min);
     let near = tries.iter().filter(|t| off(t) <= least.max(NEAR));
     let reduced = median(near.map(|t| t.filled / (1.0 + t.overlap).powi(3)));
-    let mut next = overlap_for(target, reduced.unwrap_or(USUAL_FRACTION));
-    // The same overlap would give the same packing.
+    let root = overlap_for(target, reduced.unwrap_or(USUAL_FRACTION));
+    // The same overlap would give the same packing: one beside it, below and above in turn.
     let is_tried = |o: f64| tries.iter().any(|t| (t.overlap - o).abs() < FINEST_STEP);
-    let mut step = FINEST_STEP;
+    let (mut next, mut away) = (root, 0.0);
     while next > 0.0 && is_tried(next) {
-        step *= -2.0;
-        next += step;
+        if next >= root {
+            away += 2.0 * FINEST_STEP;
+            next = root - away;
+        } else {
+            next = root + away;
+        }
     }
     next
 }

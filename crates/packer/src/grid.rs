@@ -134,3 +134,25 @@ impl Grid {
         }
     }
 }
+
+/// The position of a point along a curve through all cells of this edge (their Morton codes):
+/// points near each other in this order are near each other in space.
+pub(crate) fn curve_position(point: [f64; 3], edge: f64) -> u64 {
+    let cell = point.map(|x| (x / edge).clamp(0.0, 2_097_151.0) as u64);
+    spread(cell[0]) | spread(cell[1]) << 1 | spread(cell[2]) << 2
+}
+
+/// The 21 lowest bits of `x`, two zeros between each and the next.
+fn spread(x: u64) -> u64 {
+    let mut x = x & 0x1f_ffff;
+    for (shift, mask) in [
+        (32, 0x001f_0000_0000_ffff),
+        (16, 0x001f_0000_ff00_00ff),
+        (8, 0x100f_00f0_0f00_f00f),
+        (4, 0x10c3_0c30_c30c_30c3),
+        (2, 0x1249_2492_4924_9249),
+    ] {
+        x = (x | x << shift) & mask;
+    }
+    x
+}

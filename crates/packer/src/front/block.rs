@@ -117,6 +117,9 @@ impl<'a> Block<'a> {
         }
         let quantile = self.draws.current(any_size);
         let radius = assembly.radius(quantile);
+        if assembly.is_hemmed_in(workspace, initial, assembled, radius) {
+            return None;
+        }
         assembly.need_neighbours(workspace, initial, assembled, radius);
         let centre = assembly.best_place(workspace, initial, radius, seed)?;
         self.draws.placed();

@@ -205,7 +205,7 @@ impl<'a> BlockFillers<'a> {
     ) -> Option<Place> {
         if self.void.is_none() {
             let wall_in_reach = self.rules.wall_in_reach;
-            self.void = assembly.place_for_smallest(workspace, initial, wall_in_reach);
+            self.void = assembly.place_for_smallest(workspace, initial, wall_in_reach, |_| true);
         }
         let void = self.void?;
         if self.rules.draws {

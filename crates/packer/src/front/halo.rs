@@ -8,6 +8,7 @@
 //! caps meet and no other cap covers the point.
 
 use super::rims::{LANES, Rims};
+use crate::grid::curve_position;
 use crate::spheres::{ReducedSphere, Vector3};
 use pulp::Arch;
 
@@ -15,6 +16,13 @@ use pulp::Arch;
 const RIM_TOLERANCE: f64 = 1e-12;
 /// Caps whose axes are nearer to parallel than this (sine squared) have no sharp corner.
 const SMALLEST_SINE_SQUARED: f64 = 1e-8;
+/// Edge of the cells on the unit sphere by which directions are ordered.
+const DIRECTIONS: f64 = 1.0 / 64.0;
+/// Number of caps above which those near each other are looked at together.
+const MANY: usize = 64;
+/// Numbers of the nearest neighbours that may cover a halo.
+const NEAREST: [usize; 2] = [8, 32];
+
 /// The part that a neighbour or a wall cuts out of a halo: the places p with p . axis > rim.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cap {
@@ -53,8 +61,8 @@ struct Neighbour {
 #[derive(Debug, Default)]
 pub struct Neighbours {
     all: Vec<Neighbour>,
-    /// Their order by the distance between surfaces: that distance in the upper half, the index in
-    /// the lower half.
+    /// Their order by the distance between surfaces, or by direction where many small ones surround
+    /// a large one: that in the upper half, the index in the lower half.
     order: Vec<u64>,
 }
 
@@ -74,12 +82,16 @@ impl Neighbours {
             let reach = ball[3] + other[3] + 2.0 * largest;
             if squared < reach * reach && squared > 0.0 {
                 let distance = squared.sqrt();
-                // The bits of positive numbers have the same order as the numbers.
-                let apart = (distance - other[3]).max(0.0) as f32;
-                self.order
-                    .push(u64::from(apart.to_bits()) << 32 | self.all.len() as u64);
+                let axis = d / distance;
+                let order = if 2.0 * largest < ball[3] {
+                    curve_position((axis.add_scalar(1.0)).into(), DIRECTIONS)
+                } else {
+                    // The bits of positive numbers have the same order as the numbers.
+                    u64::from(((distance - other[3]).max(0.0) as f32).to_bits())
+                };
+                self.order.push(order << 32 | self.all.len() as u64);
                 self.all.push(Neighbour {
-                    axis: d / distance,
+                    axis,
                     distance,
                     radius: other[3],
                 });
@@ -98,7 +110,7 @@ impl Neighbours {
         }
     }
 
-    /// Sorts the nearest neighbours first: their caps are the largest.
+    /// Sorts the nearest neighbours first, as their caps are the largest, or by direction.
     pub(crate) fn sort(&mut self) {
         self.order.sort_unstable();
     }
@@ -108,10 +120,49 @@ impl Halo {
     /// The halo of `ball` for a new sphere of reduced radius `new`, with the caps of its
     /// neighbours.
     pub fn set(&mut self, ball: &ReducedSphere, new: f64, neighbours: &Neighbours) {
+        self.set_nearest(ball, new, neighbours, usize::MAX);
+    }
+
+    /// As [`Halo::set`], unless the nearest neighbours alone cover the halo, as where a large
+    /// sphere is tried beside a small one: then false.
+    pub(crate) fn set_unless_covered(
+        &mut self,
+        ball: &ReducedSphere,
+        new: f64,
+        neighbours: &Neighbours,
+    ) -> bool {
+        for nearest in NEAREST {
+            if neighbours.order.len() > 2 * nearest {
+                self.set_nearest(ball, new, neighbours, nearest);
+                if self.is_covered() {
+                    return false;
+                }
+            }
+        }
+        self.set(ball, new, neighbours);
+        true
+    }
+
+    /// True if the caps certainly cover the halo: no point of any rim is free.
+    pub(crate) fn is_covered(&mut self) -> bool {
+        let Self { caps, rims, .. } = self;
+        Arch::new().dispatch(
+            #[inline(always)]
+            || !caps.is_empty() && (0..caps.len()).all(|j| rims.is_covered(j)),
+        )
+    }
+
+    fn set_nearest(
+        &mut self,
+        ball: &ReducedSphere,
+        new: f64,
+        neighbours: &Neighbours,
+        nearest: usize,
+    ) {
         self.centre = Vector3::new(ball[0], ball[1], ball[2]);
         self.radius = ball[3] + new;
         self.caps.clear();
-        for entry in &neighbours.order {
+        for entry in neighbours.order.iter().take(nearest) {
             let Neighbour {
                 axis,
                 distance,
@@ -152,6 +203,9 @@ impl Halo {
         for group in self.caps.chunks(LANES) {
             self.rims.push(group.iter().map(|cap| (cap.axis, cap.rim)));
         }
+        if self.caps.len() > MANY {
+            self.rims.enclose_groups();
+        }
     }
 
     /// True if no neighbour's cap covers the place.
@@ -174,16 +228,20 @@ impl Halo {
     fn visit_corners(&mut self, wanted: &Vector3, mut found: impl FnMut(&Vector3) -> bool) {
         let squared = wanted.norm_squared();
         self.order.clear();
-        self.order
-            .extend(self.caps.iter().enumerate().map(|(j, cap)| {
-                let along = cap.axis.dot(wanted);
-                let across = (cap.sine_squared * (squared - along * along))
-                    .max(0.0)
-                    .sqrt();
-                // From 0 to 4; the bits of positive numbers have the same order as the numbers.
-                let least = 2.0 + (cap.rim * along - across) / squared.sqrt();
-                u64::from((least as f32).max(0.0).to_bits()) << 32 | j as u64
-            }));
+        for (j, cap) in self.caps.iter().enumerate() {
+            // Of many rims nearly all are covered, and few remain to be sorted.
+            if self.caps.len() > MANY && self.rims.is_covered(j) {
+                continue;
+            }
+            let along = cap.axis.dot(wanted);
+            let across = (cap.sine_squared * (squared - along * along))
+                .max(0.0)
+                .sqrt();
+            // From 0 to 4; the bits of positive numbers have the same order as the numbers.
+            let least = 2.0 + (cap.rim * along - across) / squared.sqrt();
+            let order = u64::from((least as f32).max(0.0).to_bits());
+            self.order.push(order << 32 | j as u64);
+        }
         self.order.sort_unstable();
         let (mut least, mut of_rim) = (f64::INFINITY, 0);
         for entry in &self.order {
@@ -210,7 +268,10 @@ impl Halo {
 
     /// The position of a point where two rims meet, that no cap covers and that `takes` accepts, if
     /// there is one.
-    pub(crate) fn any_corner(&mut self, takes: impl Fn(&Vector3) -> bool) -> Option<Vector3> {
+    pub(crate) fn any_corner(
+        &mut self,
+        mut takes: impl FnMut(&Vector3) -> bool,
+    ) -> Option<Vector3> {
         Arch::new().dispatch(
             #[inline(always)]
             || {

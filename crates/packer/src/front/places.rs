@@ -34,6 +34,30 @@ impl Assembly<'_> {
         workspace.gathered = largest;
     }
 
+    /// True if `initial` is certainly hemmed in: the spheres near it, which are found much sooner
+    /// than all that a large new sphere of (not reduced) `radius` could touch, leave no place for it
+    /// next to `initial`. False if the workspace holds the neighbours already.
+    pub(super) fn is_hemmed_in(
+        &self,
+        workspace: &mut Workspace,
+        initial: &ReducedSphere,
+        assembled: &[ReducedSphere],
+        radius: f64,
+    ) -> bool {
+        const LARGE: f64 = 2.0;
+        let near = initial[3] * (1.0 + self.settings.overlap);
+        if workspace.gathered >= radius || radius < LARGE * near {
+            return false;
+        }
+        workspace.gathered = 0.0;
+        self.find_neighbours(workspace, initial, assembled, near);
+        let Workspace {
+            neighbours, halo, ..
+        } = workspace;
+        halo.set(initial, self.reduced(radius), neighbours);
+        halo.is_covered()
+    }
+
     /// Collects the spheres that a new sphere of (not reduced) radius up to `largest` next to
     /// `initial` could touch. `assembled` are the spheres not yet in the grid.
     pub(super) fn find_neighbours(
@@ -91,7 +115,9 @@ impl Assembly<'_> {
             walls,
             ..
         } = workspace;
-        halo.set(initial, self.reduced(radius), neighbours);
+        if !halo.set_unless_covered(initial, self.reduced(radius), neighbours) {
+            return None;
+        }
         let from_seed = halo.centre - seed;
         let mut best: Option<Vector3> = None;
         halo.corners(&from_seed, |centre| {

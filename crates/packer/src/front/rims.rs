@@ -39,8 +39,20 @@ const ANYWHERE: f32 = -2.0;
 #[derive(Debug, Default)]
 pub(crate) struct Rims {
     groups: Vec<[Lanes; 4]>,
-    /// Begin and end of the arcs on the rim examined last, in sectors.
-    ends: Vec<[Lanes; 2]>,
+    /// The cone around the caps of each group, if there are many: most are then far from a rim.
+    cones: Vec<Cone>,
+    /// For groups near the rim examined last, their number, and begin and end of the arcs in
+    /// sectors.
+    ends: Vec<(usize, [Lanes; 2])>,
+}
+
+/// A cone that holds all directions of some caps.
+#[derive(Debug)]
+struct Cone {
+    axis: [f32; 3],
+    /// Cosine and sine of its half angle.
+    cosine: f32,
+    sine: f32,
 }
 
 /// A cap, and two directions perpendicular to its axis from which positions on its rim are
@@ -49,6 +61,7 @@ struct Rim {
     axis: [f32; 3],
     across: [[f32; 3]; 2],
     cosine: f32,
+    sine: f32,
     sine_squared: f32,
 }
 
@@ -62,6 +75,12 @@ struct Arcs {
 impl Rims {
     pub(crate) fn clear(&mut self) {
         self.groups.clear();
+        self.cones.clear();
+    }
+
+    /// Makes a cone around the caps of each group.
+    pub(crate) fn enclose_groups(&mut self) {
+        self.cones.extend(self.groups.iter().map(Cone::around));
     }
 
     /// Adds up to `LANES` caps: axis and cosine of the cap's angle.
@@ -79,25 +98,44 @@ impl Rims {
     /// Calls `visit` with each cap k < `j` that may have a free corner with cap `j`.
     #[inline(always)]
     pub(crate) fn open_corners(&mut self, j: usize, mut visit: impl FnMut(usize)) {
-        let rim = self.rim(j);
-        let mut covered = 0;
-        self.ends.clear();
-        for group in &self.groups {
-            let arcs = rim.arcs(group);
-            covered |= arcs.covered;
-            if covered == u64::MAX {
-                return;
-            }
-            self.ends.push(arcs.ends);
-        }
-        for (group, [from, to]) in self.ends[..j.div_ceil(LANES)].iter().enumerate() {
-            for lane in 0..LANES.min(j - group * LANES) {
+        let Some(covered) = self.covered(j) else {
+            return;
+        };
+        for (group, [from, to]) in &self.ends {
+            for lane in 0..LANES.min(j.saturating_sub(group * LANES)) {
                 let open = !covered & (around(from[lane]) | around(to[lane])) != 0;
                 if from[lane] != APART && (from[lane] == ANYWHERE || open) {
                     visit(group * LANES + lane);
                 }
             }
         }
+    }
+
+    /// True if no point of the rim of cap `j` is free.
+    #[inline(always)]
+    pub(crate) fn is_covered(&mut self, j: usize) -> bool {
+        self.covered(j).is_none()
+    }
+
+    /// The sectors of the rim of cap `j` that are covered, and the ends of all arcs on it; none if
+    /// all of it is covered.
+    #[inline(always)]
+    fn covered(&mut self, j: usize) -> Option<u64> {
+        let rim = self.rim(j);
+        let mut covered = 0;
+        self.ends.clear();
+        for (number, group) in self.groups.iter().enumerate() {
+            if self.cones.get(number).is_some_and(|cone| cone.misses(&rim)) {
+                continue;
+            }
+            let arcs = rim.arcs(group);
+            covered |= arcs.covered;
+            if covered == u64::MAX {
+                return None;
+            }
+            self.ends.push((number, arcs.ends));
+        }
+        Some(covered)
     }
 
     #[inline(always)]
@@ -107,6 +145,7 @@ impl Rims {
         let sign = 1.0_f32.copysign(z);
         let a = -1.0 / (sign + z);
         let b = x * y * a;
+        let sine_squared = 1.0 - cosine * cosine;
         Rim {
             axis: [x, y, z],
             across: [
@@ -114,8 +153,54 @@ impl Rims {
                 [b, sign + y * y * a, -y],
             ],
             cosine,
-            sine_squared: 1.0 - cosine * cosine,
+            sine: sine_squared.max(0.0).sqrt(),
+            sine_squared,
         }
+    }
+}
+
+impl Cone {
+    /// The cone around the caps of a group.
+    fn around([x, y, z, cosine]: &[Lanes; 4]) -> Self {
+        // Those that stand for no cap have no axis.
+        let sum = [x, y, z].map(|lanes| lanes.iter().sum::<f32>());
+        let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
+        if length < 0.1 {
+            return Self::everywhere();
+        }
+        let axis = sum.map(|s| s / length);
+        let (mut apart, mut widest) = (1.0_f32, 1.0_f32);
+        for k in (0..LANES).filter(|k| cosine[*k] <= 1.0) {
+            apart = apart.min(axis[0] * x[k] + axis[1] * y[k] + axis[2] * z[k]);
+            widest = widest.min(cosine[k]);
+        }
+        let sine = |cosine: f32| (1.0 - cosine * cosine).max(0.0).sqrt();
+        Self {
+            axis,
+            cosine: apart * widest - sine(apart) * sine(widest),
+            sine: sine(apart) * widest + apart * sine(widest),
+        }
+    }
+
+    /// A cone that holds all directions.
+    fn everywhere() -> Self {
+        Self {
+            axis: [0.0; 3],
+            cosine: -1.0,
+            sine: 0.0,
+        }
+    }
+
+    /// True if the rim certainly does not meet the cone.
+    #[inline(always)]
+    fn misses(&self, rim: &Rim) -> bool {
+        const ROUNDING: f32 = 1e-3;
+        let [x, y, z] = rim.axis;
+        let between = self.axis[0] * x + self.axis[1] * y + self.axis[2] * z;
+        let cosine = self.cosine * rim.cosine - self.sine * rim.sine;
+        let sine = self.sine * rim.cosine + self.cosine * rim.sine;
+        // The sum of the two angles is less than half a turn.
+        self.sine > 0.0 && sine > 0.0 && between < cosine - ROUNDING
     }
 }
 

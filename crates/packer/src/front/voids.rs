@@ -21,12 +21,13 @@ impl Assembly<'_> {
     }
 
     /// A place where a sphere of the smallest radius touches `initial` and overlaps neither sphere
-    /// nor wall, if there is one. `wall_in_reach` is from [`Assembly::cells_with_wall_in_reach`].
+    /// nor wall, if there is one. Of the places that touch two others `takes` may refuse some. `wall_in_reach` is from [`Assembly::cells_with_wall_in_reach`].
     pub(super) fn place_for_smallest(
         &self,
         workspace: &mut Workspace,
         initial: &ReducedSphere,
         wall_in_reach: &[bool],
+        mut takes: impl FnMut(&Vector3) -> bool,
     ) -> Option<Vector3> {
         let smallest = self.settings.radius_range[0];
         let clearance = self.wall_clearance(smallest);
@@ -41,7 +42,7 @@ impl Assembly<'_> {
         let is_near_wall =
             wall_in_reach[self.cell_of(initial)] && !self.boundary.clears(&halo.centre, reach);
         if !is_near_wall {
-            return halo.any_corner(|_| true);
+            return halo.any_corner(takes);
         }
         if self.boundary.flat_walls(&halo.centre, reach, planes) {
             halo.add_walls(
@@ -49,9 +50,9 @@ impl Assembly<'_> {
                     .iter()
                     .map(|(towards, distance)| (*towards, distance - clearance)),
             );
-            return halo.any_corner(|_| true);
+            return halo.any_corner(takes);
         }
-        halo.any_corner(|centre| self.boundary.clears(centre, clearance))
+        halo.any_corner(|centre| self.boundary.clears(centre, clearance) && takes(centre))
             .or_else(|| halo.free_place(|centre, reach| self.wall_at(centre, reach, clearance)))
     }
 
@@ -59,10 +60,10 @@ impl Assembly<'_> {
     /// the wall than `clearance`.
     fn wall_at(&self, centre: &Vector3, reach: f64, clearance: f64) -> Wall {
         let boundary = self.boundary;
-        let Some((triangle, near)) = boundary.nearest_triangle(centre, clearance + reach) else {
+        let Some(near) = boundary.nearest(centre, clearance + reach) else {
             return Wall::LeavesMiddle;
         };
-        let is_behind = boundary.is_behind(triangle, centre);
+        let is_behind = boundary.is_behind(near.triangle, centre);
         let inwards = match is_behind {
             Some(false) => -near.distance,
             _ => near.distance,
@@ -169,14 +170,31 @@ impl Assembly<'_> {
             if found >= MOST_COUNTED {
                 return found * open.len() / searched;
             }
+            self.find_neighbours(&mut workspace, sphere, &[], smallest);
+            let apart_squared = (2.0 * self.reduced(smallest)).powi(2);
             loop {
-                self.find_neighbours(&mut workspace, sphere, &[], smallest);
-                let place = self.place_for_smallest(&mut workspace, sphere, wall_in_reach);
-                let Some(place) = place else {
-                    break;
+                // As many places at a time as there are, since those of a large sphere are many.
+                let mut places: Vec<Vector3> = Vec::new();
+                let collect = |place: &Vector3| {
+                    let is_free = |other: &Vector3| (place - other).norm_squared() >= apart_squared;
+                    if places.iter().all(is_free) {
+                        places.push(*place);
+                    }
+                    false
                 };
-                self.grid.insert(self.sphere(&place, smallest));
-                found += 1;
+                let other = self.place_for_smallest(&mut workspace, sphere, wall_in_reach, collect);
+                if places.is_empty() {
+                    places.extend(other);
+                }
+                if places.is_empty() {
+                    break;
+                }
+                for place in &places {
+                    let new = self.sphere(place, smallest);
+                    workspace.add_neighbour(sphere, &new, new[3]);
+                    self.grid.insert(new);
+                }
+                found += places.len();
             }
         }
         found

@@ -2,8 +2,9 @@
 //! that a ball would meet.
 
 use super::plane::{Plane, Surroundings};
-use super::tree::{Corners, TriangleTree};
+use super::tree::{Corners, TriangleTree, projection};
 use super::union::outer_pieces;
+use crate::grid::curve_position;
 use crate::spheres::Vector3;
 use dem_io::{Diagnostic, Result, Surface};
 
@@ -14,18 +15,20 @@ pub struct Nearest {
     pub point: Vector3,
     /// Its distance, in local units.
     pub distance: f64,
+    /// The triangle of the wall on which it lies.
+    pub triangle: u32,
 }
 
 /// The facets of a surface in a tree, for distance queries and rays.
 pub struct Boundary {
-    /// All facets of the surface, in its order: rays are counted against them.
+    /// All facets of the surface: rays are counted against them.
     facets: TriangleTree,
     /// The triangles that bound the solid, if they differ from the facets: parts of the surface may
     /// lie inside others.
     union: Option<TriangleTree>,
     /// The triangles of the wall, prepared for `nearest_on`.
     planes: Vec<Plane>,
-    /// The balls around these triangles.
+    /// The surroundings of these triangles.
     surroundings: Vec<Surroundings>,
 }
 
@@ -42,16 +45,25 @@ impl Boundary {
                 "",
             )
         };
-        let vertices = surface.vertices.iter().copied();
-        let facets = TriangleTree::new(vertices, surface.triangles.clone()).map_err(refused)?;
-        let mut union = None;
+        let vertices = || surface.vertices.iter().copied();
+        let extent = surface.extent();
+        let (facets, union);
         if surface.repairs.self_intersections > 0 || surface.overlap_volume_m3 != 0.0 {
+            let triangles = surface.triangles.clone();
+            facets = TriangleTree::new(vertices(), triangles).map_err(refused)?;
             let pieces = outer_pieces(surface, &facets);
-            let triangles = (0..pieces.len() as u32)
+            let mut triangles = (0..pieces.len() as u32)
                 .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
-                .collect();
-            let corners = pieces.into_iter().flatten();
+                .collect::<Vec<_>>();
+            let corners = pieces.into_iter().flatten().collect::<Vec<_>>();
+            sort_along_curve(&mut triangles, &corners, extent);
+            let corners = corners.into_iter();
             union = Some(TriangleTree::new(corners, triangles).map_err(refused)?);
+        } else {
+            let mut triangles = surface.triangles.clone();
+            sort_along_curve(&mut triangles, &surface.vertices, extent);
+            facets = TriangleTree::new(vertices(), triangles).map_err(refused)?;
+            union = None;
         }
         let wall = union.as_ref().unwrap_or(&facets);
         Ok(Self {
@@ -62,7 +74,7 @@ impl Boundary {
         })
     }
 
-    /// All facets of the surface, in its order.
+    /// All facets of the surface.
     pub fn facets(&self) -> &TriangleTree {
         &self.facets
     }
@@ -74,11 +86,6 @@ impl Boundary {
 
     /// The nearest point of the surface, if it is closer than `cut_off` (local units).
     pub fn nearest(&self, point: &Vector3, cut_off: f64) -> Option<Nearest> {
-        self.nearest_triangle(point, cut_off).map(|(_, near)| near)
-    }
-
-    /// As [`Boundary::nearest`], with the triangle of the wall on which the nearest point lies.
-    pub(crate) fn nearest_triangle(&self, point: &Vector3, cut_off: f64) -> Option<(u32, Nearest)> {
         self.wall().nearest(point, cut_off, |triangle, closest| {
             self.nearest_below(triangle, point, closest)
         })
@@ -90,7 +97,7 @@ impl Boundary {
     pub(crate) fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
         const EDGE: f64 = 1e-6;
         let plane = self.planes.get(nearest_triangle as usize)?;
-        let from_corner = point - plane.corner;
+        let from_corner = point - plane.corner();
         let [u, v] = plane.along_triangle(&from_corner);
         let height = from_corner.dot(&plane.normal);
         let sure =
@@ -107,19 +114,15 @@ impl Boundary {
             })
     }
 
-    /// The nearest point of a triangle of the wall with its distance, unless its plane is farther
-    /// away than `closest`.
+    /// The nearest point of a triangle of the wall with its distance, unless that is certainly not
+    /// below `closest`.
     fn nearest_below(
         &self,
         triangle: u32,
         point: &Vector3,
         closest: f64,
     ) -> Option<(f64, Nearest)> {
-        let plane = &self.planes[triangle as usize];
-        // The plane of a thin triangle is NaN, which is never farther away.
-        if (point - plane.corner).dot(&plane.normal).abs() >= closest {
-            return None;
-        }
+        self.least_below(triangle, point, closest)?;
         let near = self.nearest_on(triangle, point);
         Some((near.distance, near))
     }
@@ -154,7 +157,7 @@ impl Boundary {
         found.clear();
         for triangle in self.triangles_near(point, reach).take(MOST + 1) {
             let plane = &self.planes[triangle as usize];
-            let distance = (plane.corner - point).dot(&plane.normal);
+            let distance = (plane.corner() - point).dot(&plane.normal);
             let is_known = |(normal, other): &(Vector3, f64)| {
                 (normal - plane.normal).norm() < SAME_PLANE
                     && (other - distance).abs() < SAME_PLANE * reach
@@ -177,9 +180,10 @@ impl Boundary {
             })
     }
 
-    /// The walls that a ball of this radius (local units) would meet: nearest points in directions
-    /// that differ by more than 14 degrees. A face hidden behind a nearer one (the same plane, the
-    /// far side of an edge) is left out. `triangles` limits the search; the 8 nearest are found.
+    /// The walls that a ball of this radius (local units) would meet, nearest first, 8 at most: the
+    /// nearest points of triangles, except those behind the plane of a nearer wall. That plane is
+    /// taken to be nearer to the centre by 3 %, so that a smooth curved surface is one wall.
+    /// `triangles` limits the search.
     pub fn walls(
         &self,
         triangles: impl Iterator<Item = u32>,
@@ -187,22 +191,77 @@ impl Boundary {
         radius: f64,
         found: &mut Vec<Nearest>,
     ) {
-        let in_reach = triangles.filter(|t| self.may_be_nearer(*t, centre, radius));
-        let near = in_reach.map(|triangle| self.nearest_on(triangle, centre));
-        walls_among(near, centre, radius, found);
+        let in_reach = triangles.filter_map(|t| Some((self.least_below(t, centre, radius)?, t)));
+        let mut nearest_first: Vec<(f64, u32)> = in_reach.collect();
+        nearest_first.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        self.walls_among(nearest_first.into_iter(), centre, radius, found);
     }
+
+    /// As [`Boundary::walls`], for triangles with lower bounds of their distances. It is fast where
+    /// the nearest come first: others are then known to be hidden without being measured.
+    pub(crate) fn walls_among(
+        &self,
+        triangles: impl Iterator<Item = (f64, u32)>,
+        centre: &Vector3,
+        radius: f64,
+        found: &mut Vec<Nearest>,
+    ) {
+        const MOST: usize = 8;
+        found.clear();
+        for (least, triangle) in triangles {
+            let is_hidden = |wall: &Nearest| {
+                least >= wall.distance && self.is_hidden_behind(wall, triangle, centre)
+            };
+            if least >= radius || found.iter().any(is_hidden) {
+                continue;
+            }
+            let near = self.nearest_on(triangle, centre);
+            if near.distance < radius && near.distance > 0.0 {
+                found.push(near);
+            }
+        }
+        found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut kept = 0;
+        for k in 0..found.len() {
+            let near = found[k];
+            let from_centre = near.point - centre;
+            if !(found[..kept].iter()).any(|wall| is_behind(wall, centre, &from_centre, 0.0)) {
+                found[kept] = near;
+                kept += 1;
+            }
+        }
+        found.truncate(kept.min(MOST));
+    }
+
+    /// True if all of a triangle is behind the plane of a wall.
+    fn is_hidden_behind(&self, wall: &Nearest, triangle: u32, centre: &Vector3) -> bool {
+        let around = &self.surroundings[triangle as usize];
+        let towards = (wall.point - centre) / wall.distance;
+        let before_middle = around.most_along(&towards);
+        is_behind(wall, centre, &(around.middle() - centre), before_middle)
+    }
+
     /// False if a triangle of the wall is certainly farther from a point than `reach` (local
     /// units).
     pub(crate) fn may_be_nearer(&self, triangle: u32, point: &Vector3, reach: f64) -> bool {
-        !self.surroundings[triangle as usize].is_beyond(point, reach)
-            && self.least_distance(triangle, point) < reach
+        self.least_below(triangle, point, reach).is_some()
+    }
+
+    /// A lower bound of the distance of a triangle of the wall from a point, if it is less than
+    /// `reach` (local units).
+    #[inline]
+    pub(crate) fn least_below(&self, triangle: u32, point: &Vector3, reach: f64) -> Option<f64> {
+        let around = &self.surroundings[triangle as usize];
+        if around.is_beyond(point, reach) {
+            return None;
+        }
+        Some(around.least_distance(point)).filter(|least| *least < reach)
     }
 
     /// A lower bound of the distance of a triangle of the wall from a point, at little cost.
     #[inline]
     pub(crate) fn least_distance(&self, triangle: u32, point: &Vector3) -> f64 {
-        let triangle = triangle as usize;
-        self.surroundings[triangle].least_distance(&self.planes[triangle], point)
+        self.surroundings[triangle as usize].least_distance(point)
     }
 
     /// The nearest point of one triangle of the wall.
@@ -212,10 +271,15 @@ impl Boundary {
             return Nearest {
                 point: point - plane.normal * height,
                 distance: height.abs(),
+                triangle,
             };
         }
-        let (point, distance) = self.wall().projection(triangle, point);
-        Nearest { point, distance }
+        let (point, distance) = projection(plane.corners, point);
+        Nearest {
+            point,
+            distance,
+            triangle,
+        }
     }
 
     /// True if a point (local units) lies inside the solid, judged by the normal of the nearest
@@ -247,42 +311,21 @@ impl Boundary {
     }
 }
 
-/// The walls of [`Boundary::walls`] among the nearest points of triangles.
-pub(crate) fn walls_among(
-    near: impl Iterator<Item = Nearest>,
-    centre: &Vector3,
-    radius: f64,
-    found: &mut Vec<Nearest>,
-) {
-    const SAME_DIRECTION: f64 = 0.97;
-    const MOST: usize = 8;
-    found.clear();
-    let toward = |near: &Nearest| (near.point - centre) / near.distance;
-    for near in near {
-        if near.distance >= radius || near.distance <= 0.0 {
-            continue;
-        }
-        let direction = toward(&near);
-        match found
-            .iter()
-            .position(|other| toward(other).dot(&direction) > SAME_DIRECTION)
-        {
-            Some(k) if near.distance < found[k].distance => found[k] = near,
-            None => found.push(near),
-            _ => {}
-        }
-    }
-    found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    let mut kept = 0;
-    for k in 0..found.len() {
-        let near = found[k];
-        let hidden = found[..kept]
-            .iter()
-            .any(|nearer| (near.point - nearer.point).dot(&toward(nearer)) > -1e-6 * radius);
-        if !hidden {
-            found[kept] = near;
-            kept += 1;
-        }
-    }
-    found.truncate(kept.min(MOST));
+/// True if a point, given from the centre, is behind the plane of a wall by at least `by`: the
+/// plane is taken to be nearer to the centre by 3 %.
+fn is_behind(wall: &Nearest, centre: &Vector3, point: &Vector3, by: f64) -> bool {
+    const NEARER: f64 = 0.97;
+    let height = (wall.point - centre).dot(point) / wall.distance;
+    height - by > NEARER * wall.distance
+}
+
+/// Sorts triangles (indices of vertices) along a curve, so that neighbours in space are neighbours
+/// in memory. `extent` is the largest corner of their box, whose smallest is the origin.
+fn sort_along_curve(triangles: &mut [[u32; 3]], vertices: &[[f64; 3]], extent: [f64; 3]) {
+    const CELLS_ALONG: f64 = 1024.0;
+    let cell = extent.iter().copied().fold(0.0, f64::max) / CELLS_ALONG;
+    triangles.sort_by_cached_key(|corners| {
+        let [a, b, c] = corners.map(|corner| Vector3::from(vertices[corner as usize]));
+        curve_position(((a + b + c) / 3.0).into(), cell)
+    });
 }

@@ -238,17 +238,15 @@ impl<'a> DepthMap<'a> {
 
     /// The distance of the nearest triangle, if it is below `cut_off`, and that triangle.
     fn nearest_in_tree(&self, point: &Vector3, cut_off: f64) -> Option<(f64, u32)> {
-        let nearest = self.boundary.nearest_triangle(point, cut_off);
-        nearest.map(|(triangle, near)| (near.distance, triangle))
+        let nearest = self.boundary.nearest(point, cut_off);
+        nearest.map(|near| (near.distance, near.triangle))
     }
 
-    /// Adds the triangles within `reach` of a point; false if there are too many.
+    /// Adds the triangles that may be within `reach` of a point; false if there are too many.
     fn list(&self, centre: &Vector3, reach: f64, triangles: &mut Vec<u32>) -> bool {
         let most = triangles.len() + MOST_TRIANGLES;
         for triangle in self.boundary.triangles_near(centre, reach) {
-            if self.boundary.may_be_nearer(triangle, centre, reach)
-                && self.boundary.nearest_on(triangle, centre).distance <= reach
-            {
+            if self.boundary.may_be_nearer(triangle, centre, reach) {
                 if triangles.len() == most {
                     return false;
                 }

@@ -5,7 +5,7 @@ use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::BvhNode;
 use parry3d_f64::query::{PointQueryWithLocation, Ray};
-use parry3d_f64::shape::TriMesh;
+use parry3d_f64::shape::{TriMesh, Triangle};
 
 /// Three corners, local units.
 pub(super) type Corners = [[f64; 3]; 3];
@@ -75,10 +75,10 @@ impl TriangleTree {
         point: &Vector3,
         cut_off: f64,
         measure: impl Fn(u32, f64) -> Option<(f64, T)>,
-    ) -> Option<(u32, T)> {
+    ) -> Option<T> {
         let distance = |node: &BvhNode, _: f64| distance_to_box(node, point);
-        let (triangle, (_, found)) = self.0.bvh().find_best(cut_off, distance, measure)?;
-        Some((triangle, found))
+        let (_, (_, found)) = self.0.bvh().find_best(cut_off, distance, measure)?;
+        Some(found)
     }
 
     /// True if any triangle is closer to `point` than `radius`; `measure` as for
@@ -100,17 +100,15 @@ impl TriangleTree {
         };
         self.0.bvh().find_best(radius, distance, measure).is_some()
     }
+}
 
-    /// The point of a triangle that is nearest to `point`, and its distance.
-    pub(super) fn projection(&self, triangle: u32, point: &Vector3) -> (Vector3, f64) {
-        let from = to_parry(point);
-        let (projection, _) = self
-            .0
-            .triangle(triangle)
-            .project_local_point_and_get_location(from, false);
-        let distance = (projection.point - from).length();
-        (from_parry(&projection.point), distance)
-    }
+/// The point of a triangle that is nearest to `point`, and its distance.
+pub(super) fn projection(corners: Corners, point: &Vector3) -> (Vector3, f64) {
+    let from = to_parry(point);
+    let [a, b, c] = corners.map(Vector::from);
+    let (projection, _) = Triangle::new(a, b, c).project_local_point_and_get_location(from, false);
+    let distance = (projection.point - from).length();
+    (from_parry(&projection.point), distance)
 }
 
 /// Distance from a point to the box of a node.

@@ -1,7 +1,7 @@
 //! Forces of overlaps, and the largest overlap: settling spends most of its time in this loop.
 
-use super::neighbours::ChunkOfLists;
-use super::walls::{NearWall, Workspace};
+use super::neighbours::{ChunkOfLists, LANES};
+use super::walls::NearWall;
 use crate::geometry::boundary::Boundary;
 use crate::spheres::ReducedSphere;
 use pulp::NullaryFnOnce;
@@ -12,10 +12,6 @@ pub(super) const MARGIN: f64 = 5e-5;
 /// of its radius. Two spheres then overlap by less than the surplus of one of them, so not at all
 /// at their true sizes.
 const STANDS_OUT: f64 = 1e-10;
-/// A coordinate far from everything, in local units.
-const FAR: f64 = 1e6;
-/// Number of neighbours processed at once.
-const LANES: usize = 4;
 
 /// Protrusion of a sphere of this radius, `MARGIN` larger than true, from a wall at this distance
 /// from its centre, as a fraction of the radius. Zero if it fits at its true size: a sphere between
@@ -36,8 +32,6 @@ pub(super) struct ForcesOn<'a> {
     pub(super) first: usize,
     pub(super) boundary: &'a Boundary,
     pub(super) balls: &'a [ReducedSphere],
-    /// Lengths of the paths of these spheres.
-    pub(super) path: &'a [f64],
     pub(super) spheres: &'a ChunkOfLists,
     pub(super) walls: &'a mut [NearWall],
     pub(super) enlarge: f64,
@@ -56,28 +50,20 @@ impl NullaryFnOnce for ForcesOn<'_> {
             first,
             boundary,
             balls,
-            path,
             spheres,
             walls,
             enlarge,
             plane_lasts,
         } = self;
         let mut worst = 0.0_f64;
-        let mut workspace = Workspace::default();
+        let mut touched = Vec::new();
         for (k, f) in force.iter_mut().enumerate() {
             let ball = balls[first + k];
             let mut push = ForceLanes::default();
-            let (groups, rest) = spheres.of(k).as_chunks::<LANES>();
-            for group in groups {
-                push.add(&ball, group.map(|j| balls[j as usize]));
-            }
-            if !rest.is_empty() {
-                // Padded with points far away, which touch nothing.
-                let mut last = [[FAR, FAR, FAR, 0.0]; LANES];
-                for (other, j) in last.iter_mut().zip(rest) {
-                    *other = balls[*j as usize];
-                }
-                push.add(&ball, last);
+            for group in spheres.of(k) {
+                let others = group.map(|j| balls[j as usize]);
+                let is_other = group.map(|j| j as usize != first + k);
+                push.add(&ball, others, is_other);
             }
             let (total, worst_overlap) = push.sum();
             worst = worst.max(worst_overlap / ball[3]);
@@ -87,14 +73,19 @@ impl NullaryFnOnce for ForcesOn<'_> {
             let k = near.sphere;
             let ball = &balls[first + k];
             let radius = ball[3] * enlarge;
-            let sphere = (ball, radius, path[k]);
             let lasts = plane_lasts * radius;
-            near.touching(boundary, sphere, lasts, &mut workspace, |inward, height| {
-                for axis in 0..3 {
-                    force[k][axis] += (radius - height) * inward[axis];
-                }
-                worst = worst.max(wall_overlap(radius, height));
-            });
+            near.touching(
+                boundary,
+                (ball, radius),
+                lasts,
+                &mut touched,
+                |inward, height| {
+                    for axis in 0..3 {
+                        force[k][axis] += (radius - height) * inward[axis];
+                    }
+                    worst = worst.max(wall_overlap(radius, height));
+                },
+            );
         }
         worst
     }
@@ -109,14 +100,19 @@ struct ForceLanes {
 }
 
 impl ForceLanes {
-    /// Adds `LANES` neighbours of `ball` at once and without a branch: contacts of near spheres
-    /// change too often to be predicted.
+    /// Adds `LANES` neighbours of `ball`, as far as they are others, at once and without a branch:
+    /// contacts of near spheres change too often to be predicted.
     #[expect(
         clippy::needless_range_loop,
         reason = "several arrays side by side, lane by lane"
     )]
     #[inline(always)]
-    fn add(&mut self, ball: &ReducedSphere, others: [ReducedSphere; LANES]) {
+    fn add(
+        &mut self,
+        ball: &ReducedSphere,
+        others: [ReducedSphere; LANES],
+        is_other: [bool; LANES],
+    ) {
         let mut d = [[0.0; LANES]; 3];
         let (mut squared, mut touching, mut excess, mut push) =
             ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
@@ -131,7 +127,7 @@ impl ForceLanes {
         }
         for k in 0..LANES {
             let of_touching = touching[k] * touching[k];
-            excess[k] = if of_touching > squared[k] {
+            excess[k] = if (of_touching > squared[k]) & is_other[k] {
                 of_touching - squared[k]
             } else {
                 0.0

@@ -5,6 +5,7 @@ use super::neighbours::{CHUNK, NeighbourLists, squared_distance};
 use super::walls::WallLists;
 use crate::geometry::boundary::Boundary;
 use crate::geometry::inside::is_inside;
+use crate::grid::WIDEST_CLASS;
 use crate::pack::shrink::thin_out;
 use crate::spheres::{ReducedSphere, centre_of};
 use dem_io::{Diagnostic, Result};
@@ -17,13 +18,16 @@ const SKIN: f64 = 0.8;
 const DAMPING: f64 = 9.0;
 const DAMPING_LIMITS: [f64; 2] = [0.01, 0.03];
 /// The damping once no two spheres overlap by more than `NEARLY_DONE` of a radius: they have found
-/// their places, and what is left only has to decay.
-const LAST_DAMPING: f64 = 0.1;
+/// their places, and what is left only has to decay. After `SLOW` such steps only slow motions are
+/// left, which light damping stops sooner. Where large spheres lie among many small ones all
+/// motions are slow.
+const LAST_DAMPING: [f64; 2] = [0.1, 0.03];
+const SLOW: usize = 100;
 const NEARLY_DONE: f64 = 0.03;
-/// Fraction of its radius that a sphere moves at the wall until it is measured again: a plane
-/// stands for the wall for so long, until and after overlaps are nearly done. At an edge the
-/// distance is off by half the square of this at most.
-const PLANE_LASTS: [f64; 2] = [0.1, 0.02];
+/// Limits of the fraction of its radius that a sphere moves at the wall until it is measured again:
+/// a plane stands for the wall for so long. At an edge its distance is off by half the square of
+/// this at most, which is kept below a quarter of the largest overlap, in radii.
+const PLANE_LASTS: [f64; 2] = [0.02, 0.25];
 /// Velocity that a unit of force gives per step to a sphere of few neighbours; 1.5 times this value
 /// makes the dynamics unstable.
 const LARGEST_RESPONSE: f64 = 0.75;
@@ -84,8 +88,6 @@ struct State<'a> {
     walls: WallLists<'a>,
     /// The spheres when neighbours were listed last.
     listed_at: Vec<ReducedSphere>,
-    /// Length of the path of each sphere.
-    path: Vec<f64>,
     skin: f64,
     largest_move: f64,
     /// The largest overlap at the last positions, in radii.
@@ -121,6 +123,7 @@ pub fn minimise_overlaps(
     };
     let mut patience = PATIENCE[0];
     let mut fraction = TAKEN_OUT[0];
+    let mut nearly_done = if state.is_wide() { SLOW } else { 0 };
     loop {
         let mut worst = state.forces();
         if worst < MARGIN {
@@ -152,7 +155,8 @@ pub fn minimise_overlaps(
             }
         } else {
             settled.steps += 1;
-            if state.accelerate_and_move(damping(settled.steps, worst)) {
+            nearly_done += usize::from(worst < NEARLY_DONE);
+            if state.accelerate_and_move(damping(settled.steps, worst, nearly_done)) {
                 state.list_neighbours();
             }
         }
@@ -168,10 +172,11 @@ pub fn minimise_overlaps(
     Ok(settled)
 }
 
-/// The fraction of the velocity that is removed in a step, for the largest overlap in radii.
-fn damping(step: usize, largest_overlap: f64) -> f64 {
+/// The fraction of the velocity that is removed in a step, for the largest overlap in radii and the
+/// number of steps in which overlaps were nearly done.
+fn damping(step: usize, largest_overlap: f64, nearly_done: usize) -> f64 {
     if largest_overlap < NEARLY_DONE {
-        LAST_DAMPING
+        LAST_DAMPING[usize::from(nearly_done > SLOW)]
     } else {
         (DAMPING / step as f64).clamp(DAMPING_LIMITS[0], DAMPING_LIMITS[1])
     }
@@ -204,13 +209,19 @@ impl<'a> State<'a> {
             response: Vec::new(),
             near: NeighbourLists::default(),
             listed_at: Vec::new(),
-            path: vec![0.0; n],
             skin,
             largest_move: LARGEST_MOVE * mean,
             worst: f64::INFINITY,
         };
         state.list_neighbours();
         state
+    }
+
+    /// True if there are small spheres among much larger ones.
+    fn is_wide(&self) -> bool {
+        let radii = || self.balls.iter().map(|ball| ball[3]);
+        let largest = radii().fold(0.0, f64::max);
+        radii().fold(largest, f64::min) * WIDEST_CLASS < largest
     }
 
     /// Leaves out some spheres evenly, and lets the others come to rest. Returns the number left
@@ -230,9 +241,9 @@ impl<'a> State<'a> {
             .into_par_iter()
             .map(|i| {
                 let ball = &self.balls[i];
-                let earlier = (self.near.of(i).iter()).filter(|j| (**j as usize) < i);
-                let overlap = |j: &u32| {
-                    let other = &self.balls[*j as usize];
+                let earlier = self.near.of(i).filter(|j| (*j as usize) < i);
+                let overlap = |j: u32| {
+                    let other = &self.balls[j as usize];
                     (ball[3] + other[3] - squared_distance(ball, other).sqrt())
                         / ball[3].min(other[3])
                 };
@@ -269,33 +280,32 @@ impl<'a> State<'a> {
         self.near = NeighbourLists::new(balls, self.skin);
         self.walls.renew(balls);
         self.listed_at.clone_from(balls);
-        let neighbours = (0..balls.len()).map(|i| self.near.of(i).len());
+        let neighbours = (0..balls.len()).map(|i| self.near.of(i).count());
         let response = |n: usize| LARGEST_RESPONSE * (FEW_NEIGHBOURS / n as f64).min(1.0);
         self.response = neighbours.map(response).collect();
         for (i, walls) in self.walls.triangles() {
             let walls = walls.take(MOST_WALLS).count();
-            self.response[i] = response(self.near.of(i).len() + walls);
+            self.response[i] = response(self.near.of(i).count() + walls);
         }
     }
 
     /// Forces at the present positions. Returns the largest overlap, in radii.
     fn forces(&mut self) -> f64 {
         let (boundary, balls, enlarge) = (self.boundary, &self.balls, self.enlarge);
-        let plane_lasts = PLANE_LASTS[usize::from(self.worst < NEARLY_DONE)];
+        let [least, most] = PLANE_LASTS;
+        let plane_lasts = (0.5 * self.worst).sqrt().clamp(least, most);
         let force = self.force.par_chunks_mut(CHUNK);
-        let path = self.path.par_chunks(CHUNK);
         let spheres = self.near.chunks.par_iter();
         let walls = self.walls.chunks.par_iter_mut();
-        self.worst = (force, path, spheres, walls)
+        self.worst = (force, spheres, walls)
             .into_par_iter()
             .enumerate()
-            .map(|(chunk, (force, path, spheres, walls))| {
+            .map(|(chunk, (force, spheres, walls))| {
                 Arch::new().dispatch(ForcesOn {
                     force,
                     first: chunk * CHUNK,
                     boundary,
                     balls,
-                    path,
                     spheres,
                     walls: &mut walls.near,
                     enlarge,
@@ -316,10 +326,9 @@ impl<'a> State<'a> {
         let force = self.force.par_chunks(CHUNK);
         let response = self.response.par_chunks(CHUNK);
         let listed_at = self.listed_at.par_chunks(CHUNK);
-        let path = self.path.par_chunks_mut(CHUNK);
-        let farthest = (balls, velocity, force, response, listed_at, path)
+        let farthest = (balls, velocity, force, response, listed_at)
             .into_par_iter()
-            .map(|(balls, velocity, force, response, listed_at, path)| {
+            .map(|(balls, velocity, force, response, listed_at)| {
                 let mut farthest = 0.0;
                 for k in 0..balls.len() {
                     let v = &mut velocity[k];
@@ -330,7 +339,6 @@ impl<'a> State<'a> {
                     if speed_squared > most * most {
                         *v = v.map(|v| v * most / speed_squared.sqrt());
                     }
-                    path[k] += speed_squared.sqrt().min(most);
                     let mut moved = [0.0; 4];
                     for axis in 0..4 {
                         balls[k][axis] += v[axis];

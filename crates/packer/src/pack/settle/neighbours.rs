@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 /// Number of spheres processed by one task.
 pub(super) const CHUNK: usize = 1024;
-/// Number of spheres compared at once.
-const LANES: usize = 4;
+/// Number of spheres compared at once, and of neighbours processed at once.
+pub(super) const LANES: usize = 4;
 
 /// The other spheres that each sphere could touch before the lists are rebuilt.
 #[derive(Default)]
@@ -18,7 +18,8 @@ pub(super) struct NeighbourLists {
     pub(super) chunks: Vec<ChunkOfLists>,
 }
 
-/// The lists of up to `CHUNK` spheres, one after the other.
+/// The lists of up to `CHUNK` spheres, one after the other. Each ends with the sphere's own number,
+/// repeated until its length is a multiple of `LANES`.
 pub(super) struct ChunkOfLists {
     all: Vec<u32>,
     /// End of each list. One per sphere.
@@ -42,16 +43,20 @@ impl NeighbourLists {
         }
     }
 
-    pub(super) fn of(&self, sphere: usize) -> &[u32] {
-        self.chunks[sphere / CHUNK].of(sphere % CHUNK)
+    pub(super) fn of(&self, sphere: usize) -> impl Iterator<Item = u32> + '_ {
+        let list = self.chunks[sphere / CHUNK]
+            .of(sphere % CHUNK)
+            .as_flattened();
+        (list.iter().copied()).take_while(move |other| *other as usize != sphere)
     }
 }
 
 impl ChunkOfLists {
-    /// The list of a sphere, numbered within the chunk.
-    pub(super) fn of(&self, sphere: usize) -> &[u32] {
+    /// The list of a sphere, numbered within the chunk, with the repetitions of its own number.
+    pub(super) fn of(&self, sphere: usize) -> &[[u32; LANES]] {
         let begin = sphere.checked_sub(1).map_or(0, |last| self.ends[last]);
-        &self.all[begin as usize..self.ends[sphere] as usize]
+        let list = &self.all[begin as usize..self.ends[sphere] as usize];
+        list.as_chunks().0
     }
 }
 
@@ -63,27 +68,45 @@ fn list_chunk(
     first: usize,
     skin: f64,
 ) -> ChunkOfLists {
-    let mut all = Vec::with_capacity(part.len() * 16);
+    let mut all = vec![0; part.len() * 16];
+    let mut end = 0;
     let mut ends = Vec::with_capacity(part.len());
     for (k, ball) in part.iter().enumerate() {
         let number = (first + k) as u32;
-        classes.near(ball, |row| add_near(ball, number, &row, skin, &mut all));
-        ends.push(all.len() as u32);
+        classes.near(ball, |row| {
+            let most = end + row.numbers.len() + LANES;
+            if most > all.len() {
+                all.resize(2 * most, 0);
+            }
+            add_near(ball, number, &row, skin, &mut all, &mut end);
+        });
+        while !end.is_multiple_of(LANES) {
+            all[end] = number;
+            end += 1;
+        }
+        ends.push(end as u32);
     }
+    all.truncate(end);
     all.shrink_to_fit();
     ChunkOfLists { all, ends }
 }
 
-/// Adds those of a row of spheres to the list of `ball`, sphere `number`, that are less than `skin`
-/// away. Each is written in any case and kept if near, since a branch would be mispredicted.
+/// Adds those of a row of spheres that are less than `skin` away from `ball`, sphere `number`, to
+/// the list from `end` on. Each is written in any case and kept if near, since a branch would be
+/// mispredicted.
 #[expect(
     clippy::needless_range_loop,
     reason = "several arrays side by side, lane by lane"
 )]
 #[inline(always)]
-fn add_near(ball: &ReducedSphere, number: u32, row: &Row, skin: f64, list: &mut Vec<u32>) {
-    let mut end = list.len();
-    list.resize(end + row.numbers.len(), 0);
+fn add_near(
+    ball: &ReducedSphere,
+    number: u32,
+    row: &Row,
+    skin: f64,
+    list: &mut [u32],
+    end: &mut usize,
+) {
     let is_near = |[x, y, z, radius]: [f64; 4]| {
         let (dx, dy, dz) = (ball[0] - x, ball[1] - y, ball[2] - z);
         let reach = ball[3] + radius + skin;
@@ -97,16 +120,15 @@ fn add_near(ball: &ReducedSphere, number: u32, row: &Row, skin: f64, list: &mut 
             near[k] = is_near([x.0[g][k], y.0[g][k], z.0[g][k], radius.0[g][k]]);
         }
         for k in 0..LANES {
-            list[end] = numbers[k];
-            end += usize::from(near[k] & (numbers[k] != number));
+            list[*end] = numbers[k];
+            *end += usize::from(near[k] & (numbers[k] != number));
         }
     }
     for (k, other) in last.iter().enumerate() {
-        list[end] = *other;
+        list[*end] = *other;
         let near = is_near([x.1[k], y.1[k], z.1[k], radius.1[k]]);
-        end += usize::from(near & (*other != number));
+        *end += usize::from(near & (*other != number));
     }
-    list.truncate(end);
 }
 
 pub(super) fn squared_distance(a: &ReducedSphere, b: &ReducedSphere) -> f64 {

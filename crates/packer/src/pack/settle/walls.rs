@@ -3,13 +3,13 @@
 //! far: most hardly leave their place while they settle.
 
 use super::neighbours::{CHUNK, squared_distance};
-use crate::geometry::boundary::{Boundary, Nearest, walls_among};
+use crate::geometry::boundary::{Boundary, Nearest};
 use crate::spheres::{ReducedSphere, Vector3, centre_of};
 use rayon::prelude::*;
 
 /// Distance beyond contact up to which triangles are listed, in skins: half a skin is what a sphere
 /// may move until neighbours are listed again.
-const REACH: f64 = 0.75;
+const REACH: f64 = 1.5;
 /// Distance from the wall, as a fraction of the radius, below which a centre may have been pushed
 /// through it.
 const BEYOND: f64 = 0.9;
@@ -36,7 +36,11 @@ pub(super) struct ChunkOfWalls {
 pub(super) struct NearWall {
     /// Number of the sphere within the chunk.
     pub(super) sphere: usize,
+    /// The triangles near, nearest first, and the sphere when they were listed.
     triangles: Vec<NearTriangle>,
+    listed_at: ReducedSphere,
+    /// The triangle that was nearest last.
+    nearest: u32,
     /// The walls that it touches, or nearly.
     planes: Vec<WallPlane>,
     /// Where the sphere was when these planes were found, and how far it may move until they are
@@ -47,9 +51,9 @@ pub(super) struct NearWall {
 
 /// A triangle of the wall near a sphere.
 struct NearTriangle {
+    /// A lower bound of its distance from the sphere when it was listed.
+    least: f32,
     number: u32,
-    /// Length of the sphere's path up to which it cannot touch the triangle.
-    free_until: f32,
 }
 
 /// The plane through the point of the wall nearest to a sphere.
@@ -57,13 +61,6 @@ struct WallPlane {
     point: Vector3,
     /// Unit vector towards the sphere, or away from it if its centre is beyond the wall.
     inward: Vector3,
-}
-
-/// Length of a path, now `path`, up to which a sphere at this distance from a triangle does not
-/// come within `reach` of it: rounded down.
-fn free_until(path: f64, distance: f64, reach: f64) -> f32 {
-    const MARGIN: f64 = 1e-9;
-    ((path + distance - (1.0 + MARGIN) * reach) as f32).next_down()
 }
 
 impl<'a> WallLists<'a> {
@@ -112,17 +109,24 @@ impl<'a> WallLists<'a> {
     fn near(&self, k: usize, ball: &ReducedSphere) -> Option<NearWall> {
         let (centre, radius) = (centre_of(ball), ball[3] * self.enlarge);
         let reach = radius + REACH * self.skin;
-        let is_near = |t: &u32| self.boundary.may_be_nearer(*t, &centre, reach);
-        let triangles = self.boundary.triangles_near(&centre, reach).filter(is_near);
-        let triangles: Vec<NearTriangle> = triangles
-            .map(|number| NearTriangle {
+        let listed = |number: u32| {
+            let least = self.boundary.least_below(number, &centre, reach)?;
+            Some(NearTriangle {
+                least: (least as f32).next_down(),
                 number,
-                free_until: 0.0,
             })
-            .collect();
-        (!triangles.is_empty()).then(|| NearWall {
+        };
+        let triangles = self.boundary.triangles_near(&centre, reach);
+        let mut triangles: Vec<NearTriangle> = triangles.filter_map(listed).collect();
+        triangles.sort_unstable_by(|a, b| {
+            let nearer = a.least.total_cmp(&b.least);
+            nearer.then(a.number.cmp(&b.number))
+        });
+        Some(NearWall {
             sphere: k,
+            nearest: triangles.first()?.number,
             triangles,
+            listed_at: *ball,
             planes: Vec::new(),
             found_at: *ball,
             lasts_squared: -1.0,
@@ -154,28 +158,25 @@ impl WallPlane {
     }
 }
 
-/// Work arrays of a thread.
-#[derive(Default)]
-pub(super) struct Workspace {
-    reached: Vec<(u32, Nearest)>,
-    touched: Vec<Nearest>,
-}
-
 impl NearWall {
-    /// Calls `push` with each wall that a sphere of this radius and length of path touches: the
-    /// direction into the solid, and the height of its centre. The planes that stand for the wall
-    /// are found anew once the sphere has moved by `lasts`.
+    /// Calls `push` with each wall that a sphere of this radius touches: the direction into the
+    /// solid, and the height of its centre. The planes that stand for the wall are found anew once
+    /// the sphere has moved by `lasts`. `touched` is a work array.
     pub(super) fn touching(
         &mut self,
         boundary: &Boundary,
-        (ball, radius, path): (&ReducedSphere, f64, f64),
+        (ball, radius): (&ReducedSphere, f64),
         lasts: f64,
-        workspace: &mut Workspace,
+        touched: &mut Vec<Nearest>,
         mut push: impl FnMut([f64; 3], f64),
     ) {
-        let most_squared = self.lasts_squared.min(lasts * lasts);
+        let most_squared = if self.planes.is_empty() {
+            self.lasts_squared
+        } else {
+            self.lasts_squared.min(lasts * lasts)
+        };
         if squared_distance(&self.found_at, ball) >= most_squared {
-            self.find_planes(boundary, (ball, radius, path), lasts, workspace);
+            self.find_planes(boundary, (ball, radius), lasts, touched);
         }
         for plane in &self.planes {
             let height = plane.height(ball);
@@ -189,39 +190,41 @@ impl NearWall {
     fn find_planes(
         &mut self,
         boundary: &Boundary,
-        (ball, radius, path): (&ReducedSphere, f64, f64),
+        (ball, radius): (&ReducedSphere, f64),
         lasts: f64,
-        Workspace { reached, touched }: &mut Workspace,
+        touched: &mut Vec<Nearest>,
     ) {
+        self.planes.clear();
+        self.found_at = *ball;
         let (centre, reach) = (centre_of(ball), radius + lasts);
-        reached.clear();
-        for near in &mut self.triangles {
-            if f64::from(near.free_until) <= path + lasts {
-                let least = boundary.least_distance(near.number, &centre);
-                if least >= reach {
-                    near.free_until = free_until(path, least, radius);
-                    continue;
-                }
-                let nearest = boundary.nearest_on(near.number, &centre);
-                near.free_until = free_until(path, nearest.distance, radius);
-                if nearest.distance < reach {
-                    reached.push((near.number, nearest));
-                }
-            }
+        let moved = squared_distance(&self.listed_at, ball).sqrt();
+        let clear = (self.triangles.first()).map_or(reach, |t| f64::from(t.least) - moved);
+        if clear >= reach {
+            self.lasts_squared = (clear - radius).powi(2);
+            return;
         }
-        walls_among(reached.iter().map(|r| r.1), &centre, reach, touched);
+        self.lasts_squared = lasts * lasts;
+        let may_reach = |t: &&NearTriangle| f64::from(t.least) < reach + moved;
+        let near = self
+            .triangles
+            .iter()
+            .take_while(may_reach)
+            .map(|t| t.number);
+        let others = near.filter(|t| *t != self.nearest);
+        let measured = |t: u32| (boundary.least_distance(t, &centre), t);
+        let nearest_first = std::iter::once(self.nearest).chain(others).map(measured);
+        boundary.walls_among(nearest_first, &centre, reach, touched);
+        self.nearest = touched.first().map_or(self.nearest, |wall| wall.triangle);
         // A centre that was pushed through the wall is pulled back.
         let is_beyond = touched.first().is_some_and(|wall| {
+            let all = self.triangles.iter().map(|t| t.number);
             wall.distance < BEYOND * radius
-                && boundary.is_behind_nearest(reached.iter().map(|r| r.0), &centre) == Some(false)
+                && boundary.is_behind_nearest(all, &centre) == Some(false)
         });
         let side = if is_beyond { -1.0 } else { 1.0 };
-        self.planes.clear();
         self.planes.extend(touched.iter().map(|wall| WallPlane {
             point: wall.point,
             inward: (centre - wall.point) * (side / wall.distance),
         }));
-        self.found_at = *ball;
-        self.lasts_squared = lasts * lasts;
     }
 }
