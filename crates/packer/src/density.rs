@@ -259,10 +259,12 @@ pub fn next_overlap(tries: &[Try], target: f64) -> f64 {
     while next > 0.0 && is_tried(next) {
         if next >= root {
             away += 2.0 * FINEST_STEP;
-            next = root - away;
-        } else {
-            next = root + away;
         }
+        next = if next >= root && away < root {
+            root - away
+        } else {
+            root + away
+        };
     }
     next
 }

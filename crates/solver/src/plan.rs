@@ -223,7 +223,7 @@ fn refuse_damped_clumps(scene: &Scene, state: &State) -> Result<()> {
     ))
 }
 
-/// Where damping takes several passes over the bonds by its bound, finds how fast it is.
+/// Where damping is not weak by its bound, finds how fast it is.
 fn bound_damping(state: &mut State) {
     let mut arriving = arriving_as_clusters(state);
     let of_arriving = arriving.iter().map(|state| state.damping_rate_1_s);

@@ -35,8 +35,8 @@ impl Assembly<'_> {
     }
 
     /// True if `initial` is certainly hemmed in: the spheres near it, which are found much sooner
-    /// than all that a large new sphere of (not reduced) `radius` could touch, leave no place for it
-    /// next to `initial`. False if the workspace holds the neighbours already.
+    /// than all that a large new sphere of (not reduced) `radius` could touch, leave no place for
+    /// it next to `initial`. False if the workspace holds the neighbours already.
     pub(super) fn is_hemmed_in(
         &self,
         workspace: &mut Workspace,

@@ -21,7 +21,8 @@ impl Assembly<'_> {
     }
 
     /// A place where a sphere of the smallest radius touches `initial` and overlaps neither sphere
-    /// nor wall, if there is one. Of the places that touch two others `takes` may refuse some. `wall_in_reach` is from [`Assembly::cells_with_wall_in_reach`].
+    /// nor wall, if there is one. Of the places that touch two others `takes` may refuse some.
+    /// `wall_in_reach` is from [`Assembly::cells_with_wall_in_reach`].
     pub(super) fn place_for_smallest(
         &self,
         workspace: &mut Workspace,

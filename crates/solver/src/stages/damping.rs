@@ -9,8 +9,8 @@
 //!   w = v_(n-1/2) + dt/2 M^-1 F_n,   v_(n+1/2) = R(G) w + dt/2 M^-1 F_n,
 //!
 //! where R approximates exp(-G) to second order by the stages of Runge, Kutta and Chebyshev
-//! ([`Chebyshev`]), as many as keep R between 0 and 1. The error is of second order in the step in
-//! any network of bonds, damping only ever takes energy, and each stage keeps momenta.
+//! ([`Chebyshev`]), as many as keep R between 0 and 1, so that it only ever takes energy. The error
+//! is of second order in the step in any network of bonds, and each stage keeps momenta.
 //!
 //! Where damping is weak, one stage is enough: that of velocities at the time of the forces,
 //!
@@ -74,6 +74,9 @@ pub const WEAK: f64 = 2.88 / 3.4;
 /// Largest eigenvalue of G up to which damping takes one stage.
 pub const ONE_STAGE: f64 = 1.43;
 
+/// The same where coefficients change from step to step.
+const ONE_STAGE_IF_CHANGING: f64 = 0.5;
+
 /// Damping of bonds.
 pub const BOND_DAMPING: Stage = Stage {
     name: "bond damping",
@@ -98,6 +101,7 @@ pub const BOND_DAMPING: Stage = Stage {
     },
     saving: |state| {
         let of_bonds = Saving::of(state.bonds.len(), size_of::<[f64; 4]>(), BOND_DAMPING_NS)?;
+        // Without the running mean, which not all need.
         let of_particle = 4 * size_of::<Wrench>() + 2 * size_of::<Motion>();
         Some(Saving {
             bytes: of_bonds.bytes + state.particles.free * of_particle,
@@ -110,7 +114,7 @@ pub const BOND_DAMPING: Stage = Stage {
 /// G: so that what alternates from step to step by damping alone keeps at most four fifths in each,
 /// -4/5 being a root of 2 z^2 + ((3 - q) g - 2 - 2 q) z + 2 q - (1 + q) g. It is at most 0.6.
 fn memory(largest: f64) -> f64 {
-    if WEAK < largest && largest <= ONE_STAGE {
+    if largest > WEAK {
         (3.4 * largest - 2.88) / (3.6 - 0.2 * largest)
     } else {
         0.0
@@ -123,8 +127,16 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
     if state.bond_resistance.is_empty() {
         return 0;
     }
-    let largest = state.kick_s() * state.damping_rate_1_s;
-    if largest <= ONE_STAGE {
+    // The first kick is half as long as those that follow, which are to have the same stages.
+    let largest = state.kick_s().max(state.time_step_s) * state.damping_rate_1_s;
+    let changes = !state.scratch.damping_now.is_empty();
+    let is_one_stage = largest
+        <= if changes {
+            ONE_STAGE_IF_CHANGING
+        } else {
+            ONE_STAGE
+        };
+    if is_one_stage {
         // Structural damping has predicted them already.
         if state.scratch.damping_now.is_empty() {
             predict_as_damped_before(state);
@@ -133,17 +145,17 @@ pub(crate) fn compute_bond_damping(state: &mut State) -> usize {
         damp(state, 0, &mut force);
         state.bond_resistance = force;
     } else {
-        damp_in_stages(state);
+        damp_in_stages(state, largest);
     }
-    remember(state, largest);
+    remember(state, if is_one_stage { memory(largest) } else { 0.0 });
     state.scratch.structural_share = structural_share(state);
     let partitions = state.scratch.partitions.iter();
     partitions.map(|partition| partition.computed.damped).sum()
 }
 
-/// Renews the running means of damping forces, if they are or have been needed.
-fn remember(state: &mut State, largest: f64) {
-    let memory = memory(largest);
+/// Renews the running means of damping forces, with this weight of the means before, if they are or
+/// have been needed.
+fn remember(state: &mut State, memory: f64) {
     if state.mean_resistance.is_empty() {
         if memory > 0.0 {
             state.mean_resistance.clone_from(&state.bond_resistance);
@@ -159,9 +171,8 @@ fn remember(state: &mut State, largest: f64) {
     });
 }
 
-fn damp_in_stages(state: &mut State) {
+fn damp_in_stages(state: &mut State, largest: f64) {
     let kick_s = state.kick_s();
-    let largest = kick_s * state.damping_rate_1_s;
     let mut known = std::mem::take(&mut state.scratch.stages);
     let stages = Chebyshev::of_known(&mut known, largest);
     predict(state, Prediction::Undamped);

@@ -247,6 +247,23 @@ fn pressed_j(state: &State) -> f64 {
     elastic_energy_j(contacts, &state.particles) + of_walls + bridges_energy_j(state)
 }
 
+/// Divides the work anew, and gives damping forces of bonds to the particles that remain.
+fn divide_anew(state: &mut State, particles: &[u32]) {
+    let resistance = std::mem::take(&mut state.bond_resistance);
+    let means = state.mean_resistance.clone();
+    state.divide();
+    for (list, before) in [
+        (&mut state.bond_resistance, resistance),
+        (&mut state.mean_resistance, means),
+    ] {
+        for (&now, wrench) in particles.iter().zip(before) {
+            if let Some(kept) = list.get_mut(now as usize) {
+                *kept = wrench;
+            }
+        }
+    }
+}
+
 /// New numbers, without those of removed items.
 fn renumber(numbers: &mut Vec<u32>, now: &[u32]) {
     numbers.retain_mut(|number| {
@@ -353,19 +370,7 @@ fn count_anew(
     state.rigid_parts.renumber(particles, REMOVED);
     let free = state.particles.free;
     state.rigid_parts.number(free, &state.bonds);
-    let resistance = std::mem::take(&mut state.bond_resistance);
-    let means = state.mean_resistance.clone();
-    state.divide();
-    for (list, before) in [
-        (&mut state.bond_resistance, resistance),
-        (&mut state.mean_resistance, means),
-    ] {
-        for (&now, wrench) in particles.iter().zip(before) {
-            if let Some(kept) = list.get_mut(now as usize) {
-                *kept = wrench;
-            }
-        }
-    }
+    divide_anew(state, particles);
     for wall in &mut state.walls {
         wall.touching.retain_mut(|touch| {
             let before = touch.particle as usize;

@@ -30,8 +30,8 @@ const REST_STEP_S: f64 = 0.05;
 /// 2 (1 - cos theta) m r/dt^2 and has the angular momentum m r^2 sin(theta)/dt about the centre.
 /// The spheres turn by theta as well, with the speed r theta/dt at the contact point, and the shear
 /// spring holds against the dashpot of the difference. Of the force of that dashpot in the last
-/// step, with which damping in one stage predicts the velocities, the part sin(theta) has turned
-/// into the bond: c_n dt/m of it is what the dashpot along the bond carries of the load.
+/// step, with which weak damping predicts the velocities, the part sin(theta) has turned into the
+/// bond: c_n dt/m of it is what the dashpot along the bond carries of the load.
 ///
 /// # Errors
 /// None.

@@ -19,8 +19,10 @@ fn fall(bench: &Bench, body: &[&str], folder: &str) -> Value {
     serde_json::from_str(&bench.good(&scene, &[&options[..], body].concat())).unwrap()
 }
 
-/// The fall that breaks the body in two.
-const LAST: usize = 6;
+/// A fall by which the body has broken in two.
+const LAST: usize = 7;
+/// One before which it has not.
+const WHOLE: usize = 4;
 
 /// The mass fraction of the largest fragment, and the number of damaged bonds, after each fall of
 /// the largest fragment of the fall before; `mended`: its damage is taken away in between.
@@ -55,17 +57,16 @@ fn falls(bench: &Bench, mended: bool) -> Vec<(f64, u64)> {
 fn a_body_that_is_dropped_again_and_again_breaks_at_last() {
     let bench = Bench::new();
     let damaged = falls(&bench, false);
-    let before = &damaged[..LAST - 1];
+    let largest: Vec<f64> = damaged.iter().map(|after| after.0).collect();
     assert!(
-        before.iter().all(|(largest, _)| *largest > 0.98),
+        largest[..WHOLE].iter().all(|largest| *largest > 0.98),
         "{damaged:?}"
     );
-    assert!(damaged[LAST - 1].0 < 0.7, "{damaged:?}");
-    // Damage adds up: with the bonds mended before each fall, far fewer are damaged. When the body
-    // breaks is no measure of it: in either case that is some fall from the fifth on, and another
-    // one with another time step.
+    // Which fall breaks it depends on the time step.
+    assert!(largest.iter().any(|largest| *largest < 0.7), "{damaged:?}");
+    // Damage adds up: with the bonds mended before each fall, far fewer are damaged by the fifth.
     let mended = falls(&bench, true);
-    let [damaged, mended] = [&damaged, &mended].map(|after| after[LAST - 2].1 as f64);
+    let [damaged, mended] = [&damaged, &mended].map(|after| after[WHOLE].1 as f64);
     assert!(damaged > 1.4 * mended, "{damaged} {mended}");
 }
 
