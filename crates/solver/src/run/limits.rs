@@ -7,14 +7,16 @@ use dem_scene::Scene;
 use super::events::{change, look_anew_for_near, new_step};
 use super::files::Files;
 use super::progress::Progress;
-use crate::check::limit::{Bound, bound_near, limit};
+use crate::check::limit::{Bound, bound_near, damping_eigenvalue_1_s, limit};
 use crate::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
 use crate::plan::time_step::{FARTHEST, StepBasis, StepChoice, arriving, impact_step_s};
 use crate::stages::bonds::largest_strain;
+use crate::stages::damping::WEAK;
 use crate::stages::totals::kinetic_energy;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::called;
+use crate::state::damping_rate::MORE;
 use crate::state::particles::Pose;
 
 /// Interval between checks of the bond strains, in steps.
@@ -64,6 +66,22 @@ struct Adaptive<'a> {
     replaced: StepBasis,
 }
 
+/// Raises the bound of damping, since bonds have become longer. Where damping is not weak by its
+/// bound, finds how fast it is in whole bodies, which saves passes over the bonds.
+fn renew_damping(state: &mut State) {
+    let [before_1_s, most_1_s] = [state.damping_rate_1_s, state.most_damping_rate_1_s];
+    state.renew_damping_rate();
+    if state.time_step_s * state.damping_rate_1_s <= WEAK {
+        return;
+    }
+    let largest_1_s = (MORE * MORE * damping_eigenvalue_1_s(state)).max(before_1_s);
+    state.damping_rate_1_s = state.damping_rate_1_s.min(largest_1_s);
+    // It counts what is asleep or still to come, if it is known.
+    if most_1_s.is_finite() {
+        state.most_damping_rate_1_s = most_1_s.max(largest_1_s);
+    }
+}
+
 impl<'a> Limits<'a> {
     pub(super) fn of(scene: &'a Scene, state: &State, choice: &StepChoice) -> Self {
         Self {
@@ -103,7 +121,7 @@ impl<'a> Limits<'a> {
             let strain = progress.seen.look_at_bonds(state, bodies);
             if strain > progress.strain + MORE_STRAIN {
                 progress.strain = strain;
-                state.renew_damping_rate();
+                renew_damping(state);
                 may_be_less = true;
             }
         }
