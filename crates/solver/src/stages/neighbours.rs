@@ -208,10 +208,10 @@ fn reaching<T: Lanes>(proof: T::Proof, columns: &[[f64; BLOCK]; 4], room: &Bound
     for first in (0..BLOCK).step_by(T::COUNT) {
         let radius_m = T::load(proof, &columns[3], first);
         let mut inside = u8::MAX;
-        for k in 0..3 {
-            let c = T::load(proof, &columns[k], first);
-            inside &= (c + radius_m).above(T::all(proof, room.low[k]));
-            inside &= T::all(proof, room.high[k]).above(c - radius_m);
+        for (column, (low, high)) in columns.iter().zip(room.low.iter().zip(&room.high)) {
+            let c = T::load(proof, column, first);
+            inside &= (c + radius_m).above(T::all(proof, *low));
+            inside &= T::all(proof, *high).above(c - radius_m);
         }
         bits |= u32::from(inside) << first;
     }
