@@ -22,7 +22,7 @@
 //!   P_(n-1) = q P_(n-2) + (1 - q) D_(n-1),
 //!
 //! which is of second order as well, and stable up to 1 + q instead of 1. Here q follows from the
-//! largest eigenvalue: see [`memory`].
+//! largest eigenvalue: see `memory`.
 //!
 //! **Stability.** With symmetric K and C the scheme is stable up to the same step as without
 //! damping of bonds. With B = (1 + R)/2 and A = dt^2 M^-1 K, z^n u is a solution if
