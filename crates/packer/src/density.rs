@@ -253,20 +253,17 @@ pub fn next_overlap(tries: &[Try], target: f64) -> f64 {
     let near = tries.iter().filter(|t| off(t) <= least.max(NEAR));
     let reduced = median(near.map(|t| t.filled / (1.0 + t.overlap).powi(3)));
     let root = overlap_for(target, reduced.unwrap_or(USUAL_FRACTION));
-    // The same overlap would give the same packing: one beside it, below and above in turn.
     let is_tried = |o: f64| tries.iter().any(|t| (t.overlap - o).abs() < FINEST_STEP);
-    let (mut next, mut away) = (root, 0.0);
-    while next > 0.0 && is_tried(next) {
-        if next >= root {
-            away += 2.0 * FINEST_STEP;
-        }
-        next = if next >= root && away < root {
-            root - away
-        } else {
-            root + away
-        };
+    if root <= 0.0 || !is_tried(root) {
+        return root;
     }
-    next
+    // The same overlap would give the same packing: the nearest one beside it, below or above.
+    let beside = (1..).flat_map(|n| {
+        let away = 2.0 * f64::from(n) * FINEST_STEP;
+        [root - away, root + away]
+    });
+    let mut untried = beside.filter(|o| *o > 0.0 && !is_tried(*o));
+    untried.next().unwrap_or(root)
 }
 
 /// Approximate fraction of the shape that spheres reduced to r_gen fill. Volumes of true radii are

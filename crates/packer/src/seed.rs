@@ -200,13 +200,11 @@ impl NearestAround {
     /// Distance from `point` to the wall, if it is more than `least`.
     fn distance_above(&self, boundary: &Boundary, point: &Vector3, least: f64) -> Option<f64> {
         let Some(triangles) = &self.triangles else {
-            let near = boundary
-                .clears(point, least)
-                .then(|| boundary.nearest(point, f64::MAX));
-            return near
-                .flatten()
-                .map(|near| near.distance)
-                .filter(|d| *d > least);
+            if !boundary.clears(point, least) {
+                return None;
+            }
+            let distance = boundary.nearest(point, f64::MAX)?.distance;
+            return (distance > least).then_some(distance);
         };
         let moved = (point - self.base).norm();
         let mut nearest = f64::INFINITY;

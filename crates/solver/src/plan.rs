@@ -31,7 +31,7 @@ use dem_io::body::mass::BodyMass;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Integrator, Quantity, Scene};
 
-use crate::check::limit::damping_eigenvalue_1_s;
+use crate::check::limit::damping_bound_1_s;
 use crate::physics::chebyshev::{MOST, limit};
 use crate::stages::damping::WEAK;
 use crate::stages::ledger::opened;
@@ -41,7 +41,6 @@ use crate::state::bonds::Bonds;
 use crate::state::clumps::Template;
 use crate::state::clusters::sizes::{Sphere, box_lengths_m};
 use crate::state::clusters::{Clusters, Triggers};
-use crate::state::damping_rate::MORE;
 use crate::state::events::TopologyChange;
 use crate::state::loads::GroupLoad;
 use crate::state::model::NamedBody;
@@ -231,9 +230,8 @@ fn bound_damping(state: &mut State) {
     if state.time_step_s * bound_1_s <= WEAK {
         return;
     }
-    let of_arriving = arriving.iter_mut().map(damping_eigenvalue_1_s);
-    let of_arriving = of_arriving.fold(0.0, f64::max);
-    let largest_1_s = MORE * MORE * damping_eigenvalue_1_s(state).max(of_arriving);
+    let of_arriving = arriving.iter_mut().map(damping_bound_1_s);
+    let largest_1_s = of_arriving.fold(damping_bound_1_s(state), f64::max);
     state.most_damping_rate_1_s = largest_1_s;
     state.damping_rate_1_s = state.damping_rate_1_s.min(largest_1_s);
 }

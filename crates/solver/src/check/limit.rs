@@ -13,7 +13,7 @@ use crate::stages::damped::damping_wrenches;
 use crate::stages::plasticity::add_elasto_plastic_wrenches;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
-use crate::state::damping_rate::largest_coefficients;
+use crate::state::damping_rate::{MORE, largest_coefficients};
 use crate::state::particles::{Motion, Pose, Wrench};
 
 /// Iterations at least and at most.
@@ -342,10 +342,10 @@ fn largest_eigenvalue(
     })
 }
 
-/// The largest eigenvalue of the damping of bonds over mass, 1/s, with the largest coefficients
-/// that structural damping can have; not too small by more than a ten-thousandth. Afterwards no
-/// wrench acts on any particle.
-pub fn damping_eigenvalue_1_s(state: &mut State) -> f64 {
+/// A bound of the largest eigenvalue of the damping of bonds over mass, 1/s, with the largest
+/// coefficients that structural damping can have, until bonds are longer, or lie in other
+/// directions, by `MORE`. Afterwards no wrench acts on any particle.
+pub fn damping_bound_1_s(state: &mut State) -> f64 {
     with_all_bonds(state, |state| {
         let roots = inverse_mass_roots(state);
         let coefficients: Vec<[f64; 4]> = (0..state.bonds.len())
@@ -363,7 +363,7 @@ pub fn damping_eigenvalue_1_s(state: &mut State) -> f64 {
             );
             add_forces(-1.0, &wrenches, &roots, image);
         });
-        value
+        MORE * MORE * value
     })
 }
 

@@ -7,7 +7,7 @@ use dem_scene::Scene;
 use super::events::{change, look_anew_for_near, new_step};
 use super::files::Files;
 use super::progress::Progress;
-use crate::check::limit::{Bound, bound_near, damping_eigenvalue_1_s, limit};
+use crate::check::limit::{Bound, bound_near, damping_bound_1_s, limit};
 use crate::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
 use crate::plan::time_step::{FARTHEST, StepBasis, StepChoice, arriving, impact_step_s};
 use crate::stages::bonds::largest_strain;
@@ -16,7 +16,6 @@ use crate::stages::totals::kinetic_energy;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::called;
-use crate::state::damping_rate::MORE;
 use crate::state::particles::Pose;
 
 /// Interval between checks of the bond strains, in steps.
@@ -74,7 +73,7 @@ fn renew_damping(state: &mut State) {
     if state.time_step_s * state.damping_rate_1_s <= WEAK {
         return;
     }
-    let largest_1_s = (MORE * MORE * damping_eigenvalue_1_s(state)).max(before_1_s);
+    let largest_1_s = damping_bound_1_s(state).max(before_1_s);
     state.damping_rate_1_s = state.damping_rate_1_s.min(largest_1_s);
     // It counts what is asleep or still to come, if it is known.
     if most_1_s.is_finite() {

@@ -1,6 +1,6 @@
 //! How fast the dashpots of bonds can slow particles down: at most by a bound that follows from the
 //! dashpots of each particle, and at most as fast as the plan found for the whole bodies
-//! ([`crate::check::limit::damping_eigenvalue_1_s`]). Bonds that break only lower it.
+//! ([`crate::check::limit::damping_bound_1_s`]). Bonds that break only lower it.
 
 use nalgebra::{Matrix3, Matrix6, Vector3};
 

@@ -81,34 +81,22 @@ impl LargeCluster {
     }
 
     fn find_boxes(&mut self, members: &[u32], balls: &[Ball]) {
+        let blocks = members.chunks(BLOCK).map(|some| box_of(some, balls));
         self.blocks.clear();
-        self.columns.clear();
-        for some in members.chunks(BLOCK) {
-            let mut columns = NOWHERE.map(|c| [c; BLOCK]);
-            let mut bounds = Bounds::EMPTY;
-            for (n, &i) in some.iter().enumerate() {
-                let ball = &balls[i as usize];
-                for k in 0..3 {
-                    let [low, high] = [ball[k] - ball[3], ball[k] + ball[3]];
-                    bounds.low[k] = if low < bounds.low[k] {
-                        low
-                    } else {
-                        bounds.low[k]
-                    };
-                    bounds.high[k] = if high > bounds.high[k] {
-                        high
-                    } else {
-                        bounds.high[k]
-                    };
-                    columns[k][n] = ball[k];
-                }
-                columns[3][n] = ball[3];
-            }
-            self.blocks.push(bounds);
-            self.columns.push(columns);
-        }
+        self.blocks.extend(blocks);
         let blocks = self.blocks.iter();
         self.bounds = blocks.fold(Bounds::EMPTY, |all, one| all.with(one));
+        let columns = members.chunks(BLOCK).map(|some| {
+            let mut columns = NOWHERE.map(|c| [c; BLOCK]);
+            for (n, &i) in some.iter().enumerate() {
+                for (column, c) in columns.iter_mut().zip(balls[i as usize]) {
+                    column[n] = c;
+                }
+            }
+            columns
+        });
+        self.columns.clear();
+        self.columns.extend(columns);
     }
 
     /// Numbers and boxes of its blocks that reach into a box.
