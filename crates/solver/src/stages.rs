@@ -12,6 +12,8 @@ pub(crate) mod damage;
 pub(crate) mod damped;
 pub mod damping;
 pub(crate) mod daughters;
+pub mod elastic;
+mod feeding;
 pub(crate) mod flat_joints;
 pub(crate) mod flow;
 pub mod incremental;

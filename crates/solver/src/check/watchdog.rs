@@ -4,9 +4,10 @@ use dem_io::{Diagnostic, Result};
 
 use crate::physics::bond::pair::frequencies;
 use crate::stages::contacts::contact_energy_j;
+use crate::stages::elastic::elastic_energy;
 use crate::stages::ledger::Balance;
 use crate::stages::loads::loads_power_w;
-use crate::stages::totals::{elastic_energy, kinetic_energy};
+use crate::stages::totals::kinetic_energy;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::bond_of_file;

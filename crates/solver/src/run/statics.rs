@@ -40,8 +40,8 @@ use crate::output::frames::FrameOrder;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
 use crate::run::settings::{RunSettings, SoFar};
+use crate::stages::elastic::elastic_energy;
 use crate::stages::ledger::Balance;
-use crate::stages::totals::elastic_energy;
 use crate::state::State;
 use crate::state::particles::Motion;
 

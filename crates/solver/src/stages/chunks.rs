@@ -1,6 +1,8 @@
 //! Particles by chunks: what one task handles, and sums that do not depend on the number of
 //! threads.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 /// Particles handled by one task.
@@ -20,10 +22,17 @@ pub(crate) fn ordered_sums<const N: usize>(
     count: usize,
     terms: impl Fn(usize) -> [f64; N] + Sync,
 ) -> [f64; N] {
-    let of_chunk = |chunk: usize| {
-        let end = ((chunk + 1) * CHUNK).min(count);
-        (chunk * CHUNK..end).fold([0.0; N], |sums, i| add(sums, terms(i)))
-    };
+    sums_of_chunks(count, |range| {
+        range.fold([0.0; N], |sums, i| add(sums, terms(i)))
+    })
+}
+
+/// The same from the sums over ranges of up to [`CHUNK`].
+pub(crate) fn sums_of_chunks<const N: usize>(
+    count: usize,
+    sums_over: impl Fn(Range<usize>) -> [f64; N] + Sync,
+) -> [f64; N] {
+    let of_chunk = |chunk: usize| sums_over(chunk * CHUNK..((chunk + 1) * CHUNK).min(count));
     if count <= CHUNK {
         return of_chunk(0);
     }

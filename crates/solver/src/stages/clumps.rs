@@ -17,6 +17,8 @@ use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// Clumps handled by one task.
 const CHUNK: usize = 32;
+/// Spheres that are looked at together, whether any is near something.
+const SOME: usize = 64;
 
 /// Rigid clumps.
 pub(crate) const CLUMPS: Stage = Stage {
@@ -98,8 +100,14 @@ pub(crate) fn list_near(
     for i in near.map(|i| i as usize).filter(|&i| i >= free) {
         is_near[i - free] = true;
     }
-    let numbers = free as u32..particles.len() as u32;
-    let now = numbers.filter(|&i| is_near[i as usize - free]).collect();
+    let mut now = Vec::with_capacity(clumps.near.len());
+    for (first, some) in (free as u32..).step_by(SOME).zip(is_near.chunks(SOME)) {
+        // Most are near nothing: this is fast for many at once.
+        if some.iter().fold(false, |any, is_near| any | is_near) {
+            let near = (first..).zip(some).filter(|(_, is_near)| **is_near);
+            now.extend(near.map(|(i, _)| i));
+        }
+    }
     for &i in &clumps.near {
         is_near[i as usize - free] = false;
     }
@@ -123,7 +131,7 @@ pub(crate) fn list_near(
 }
 
 /// Centre of a sphere of a clump that has this rotation, m.
-fn place_of(
+pub(super) fn place_of(
     template: &Template,
     sphere: usize,
     clump: &Clump,
@@ -135,24 +143,15 @@ fn place_of(
 /// Puts all spheres of all clumps in place. Those of sleeping clumps already are.
 pub fn place_all(clumps: &Clumps, particles: &mut Particles) {
     for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
-        place_centres(clumps, clump, particles);
         let template = clumps.template(clump);
         let turned = rotation_of(clump.turned);
+        let to_space = turned.to_rotation_matrix();
         let spheres = &mut particles.poses[clumps.spheres_of(clump)];
         for (pose, &sphere) in spheres.iter_mut().zip(template.outer.iter()) {
+            pose.put_at(place_of(template, sphere as usize, clump, &to_space).into());
             let of_sphere = rotation_of(template.spheres[sphere as usize].turned);
             pose.turned = numbers(&(turned * of_sphere));
         }
-    }
-}
-
-/// Puts the centres of all spheres of a clump in place.
-pub(crate) fn place_centres(clumps: &Clumps, clump: &Clump, particles: &mut Particles) {
-    let template = clumps.template(clump);
-    let to_space = rotation_of(clump.turned).to_rotation_matrix();
-    let spheres = &mut particles.poses[clumps.spheres_of(clump)];
-    for (pose, &sphere) in spheres.iter_mut().zip(template.outer.iter()) {
-        pose.put_at(place_of(template, sphere as usize, clump, &to_space).into());
     }
 }
 

@@ -1,5 +1,6 @@
 //! Bodies enter through inlets and leave through outlets.
 
+use super::feeding::add_clumps;
 use super::inlets::coming;
 use super::outlets::leaving;
 use super::population::apply_topology_change;
@@ -32,12 +33,16 @@ pub(crate) fn apply_inlets_and_outlets(state: &mut State) -> usize {
     let leaving = leaving(state);
     let coming = coming(state);
     if !(leaving.is_empty() && coming.is_empty()) {
-        let changes = TopologyChange {
-            coming,
-            leaving,
-            ..TopologyChange::default()
+        let renumbering = if leaving.is_empty() && state.sleep.is_none() {
+            add_clumps(state, coming)
+        } else {
+            let changes = TopologyChange {
+                coming,
+                leaving,
+                ..TopologyChange::default()
+            };
+            apply_topology_change(state, changes)
         };
-        let renumbering = apply_topology_change(state, changes);
         state.scratch.events.renumberings.push(renumbering);
     }
     state.model.rules.inlets.len() + state.model.rules.outlets.len()

@@ -5,11 +5,10 @@ mod moved;
 mod renumbered;
 
 use dem_scene::WallMotion;
-use nalgebra::Vector3;
 
-pub(super) use self::renumbered::renumber_lists;
+pub(super) use self::renumbered::{lengthen_lists, renumber_lists};
 
-use self::moved::{Due, due, find_left, may_be_due, refer_clump, refer_particle, use_up};
+use self::moved::{Due, due, find_left, may_be_due, refer_clumps, refer_particle, use_up};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::contacts::{find_mean_radius, list_beside, list_contacts, relist};
@@ -133,15 +132,11 @@ fn everything(state: &State) -> Due {
 fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     for &i in &due.particles {
         let i = i as usize;
-        let speed_m_s = Vector3::from(state.particles.motions[i].velocity_m_s).norm();
+        let speed_m_s = state.particles.motions[i].speed_m_s();
         let moved_m = speed_m_s * state.cycle_s();
         refer_particle(contacts, i, &state.particles.poses[i], moved_m);
     }
-    for &at in &due.clumps {
-        let clump = &state.clumps.all[at];
-        clumps::place_centres(&state.clumps, clump, &mut state.particles);
-        refer_clump(contacts, state, at);
-    }
+    refer_clumps(contacts, state, &due.clumps);
     find_left(&state.particles, &mut contacts.scratch.references);
     let seeks = seeks(state, due);
     for wall in &mut state.walls {

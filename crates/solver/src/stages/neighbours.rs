@@ -20,7 +20,7 @@ use super::chunks::CHUNK;
 use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
-use crate::state::groups::{BLOCK, KnownClusters, LargeCluster};
+use crate::state::groups::{BLOCK, BOXES, KnownClusters, LargeCluster};
 use crate::state::particles::Pose;
 use crate::state::references::Ball;
 
@@ -152,13 +152,31 @@ impl LargeMeetings<'_> {
     fn meet<T: Lanes>(&mut self, proof: T::Proof, a: &LargeCluster, b: &LargeCluster) {
         let mut room = a.bounds.common(&b.bounds);
         // What one of them has there narrows down where the other can meet it.
-        for large in [a, b, a, b] {
-            let blocks = large.blocks_within(&room).map(|(_, bounds)| bounds);
-            room = room.common(&blocks.fold(Bounds::EMPTY, |all, one| all.with(one)));
+        for large in [a, b] {
+            let mut there = Bounds::EMPTY;
+            for some in 0..large.boxes.len() {
+                let mut bits = within::<T>(proof, &large.boxes[some], &room);
+                while bits != 0 {
+                    include(&mut there, &large.blocks[some * BOXES + next_of(&mut bits)]);
+                }
+            }
+            room = room.common(&there);
+            if room == Bounds::EMPTY {
+                return;
+            }
         }
-        for (of_a, around_a) in a.blocks_within(&room) {
-            for (of_b, _) in b.blocks_within(&room.common(around_a)) {
-                self.test::<T>(proof, [a, b], [of_a, of_b]);
+        for some_a in 0..a.boxes.len() {
+            let mut bits_a = within::<T>(proof, &a.boxes[some_a], &room);
+            while bits_a != 0 {
+                let of_a = some_a * BOXES + next_of(&mut bits_a);
+                let room = room.common(&a.blocks[of_a]);
+                for some_b in 0..b.boxes.len() {
+                    let mut bits_b = within::<T>(proof, &b.boxes[some_b], &room);
+                    while bits_b != 0 {
+                        let of_b = some_b * BOXES + next_of(&mut bits_b);
+                        self.test::<T>(proof, [a, b], [of_a, of_b]);
+                    }
+                }
             }
         }
     }
@@ -167,38 +185,78 @@ impl LargeMeetings<'_> {
     /// against its balls, one of these for each lane.
     #[inline(always)]
     fn test<T: Lanes>(&mut self, proof: T::Proof, large: [&LargeCluster; 2], blocks: [usize; 2]) {
-        let groups = &self.search.known.groups;
-        let [members, others] = [0, 1].map(|k| large[k].members(blocks[k], groups));
-        let [columns, of_others] = [0, 1].map(|k| &large[k].columns[blocks[k]]);
-        let mut reaching = reaching::<T>(proof, columns, &large[1].blocks[blocks[1]]);
+        let [of_a, of_b] = [&large[0].columns[blocks[0]], &large[1].columns[blocks[1]]];
+        let mut reaching = reaching::<T>(proof, of_a, &large[1].blocks[blocks[1]]);
         while reaching != 0 {
-            let n = reaching.trailing_zeros() as usize;
-            reaching &= reaching - 1;
+            let n = next_of(&mut reaching);
             // Spelled out: a closure around lanes may not be compiled for them.
             let [x, y, z, radius_m] = [
-                T::all(proof, columns[0][n]),
-                T::all(proof, columns[1][n]),
-                T::all(proof, columns[2][n]),
-                T::all(proof, columns[3][n]),
+                T::all(proof, of_a[0][n]),
+                T::all(proof, of_a[1][n]),
+                T::all(proof, of_a[2][n]),
+                T::all(proof, of_a[3][n]),
             ];
             for first in (0..BLOCK).step_by(T::COUNT) {
                 let apart = Vec3(
-                    T::load(proof, &of_others[0], first) - x,
-                    T::load(proof, &of_others[1], first) - y,
-                    T::load(proof, &of_others[2], first) - z,
+                    T::load(proof, &of_b[0], first) - x,
+                    T::load(proof, &of_b[1], first) - y,
+                    T::load(proof, &of_b[2], first) - z,
                 );
-                let near = radius_m + T::load(proof, &of_others[3], first);
-                let mut bits = (near * near).above(apart.square());
+                let near = radius_m + T::load(proof, &of_b[3], first);
+                let mut bits = u32::from((near * near).above(apart.square()));
                 while bits != 0 {
-                    let [i, j] = [members[n], others[first + bits.trailing_zeros() as usize]];
-                    bits &= bits - 1;
-                    if self.search.seeks(i) || self.search.seeks(j) {
-                        self.pairs.push([i.min(j), i.max(j)]);
-                    }
+                    self.found(large, blocks, [n, first + next_of(&mut bits)]);
                 }
             }
         }
     }
+
+    /// Adds a pair of balls, given by their blocks and their places in these, if one of them seeks.
+    fn found(&mut self, large: [&LargeCluster; 2], blocks: [usize; 2], places: [usize; 2]) {
+        let number = |k: usize| large[k].members(blocks[k], &self.search.known.groups)[places[k]];
+        let [i, j] = [number(0), number(1)];
+        if self.search.seeks(i) || self.search.seeks(j) {
+            self.pairs.push([i.min(j), i.max(j)]);
+        }
+    }
+}
+
+/// The place of the lowest of some bits, which is cleared.
+#[inline(always)]
+fn next_of(bits: &mut u32) -> usize {
+    let lowest = bits.trailing_zeros() as usize;
+    *bits &= *bits - 1;
+    lowest
+}
+
+/// Makes a box so large that another is in it. No number of either is not a number.
+#[inline(always)]
+fn include(all: &mut Bounds, one: &Bounds) {
+    // Comparisons, which are one operation each.
+    for k in 0..3 {
+        let (low, high) = (one.low[k], one.high[k]);
+        all.low[k] = if low < all.low[k] { low } else { all.low[k] };
+        all.high[k] = if high > all.high[k] {
+            high
+        } else {
+            all.high[k]
+        };
+    }
+}
+
+/// A bit for each of some boxes that overlaps `room`.
+#[inline(always)]
+fn within<T: Lanes>(proof: T::Proof, boxes: &[[f64; BOXES]; 6], room: &Bounds) -> u32 {
+    let mut bits = 0;
+    for first in (0..BOXES).step_by(T::COUNT) {
+        let mut outside = 0;
+        for k in 0..3 {
+            outside |= T::load(proof, &boxes[k], first).above(T::all(proof, room.high[k]));
+            outside |= T::all(proof, room.low[k]).above(T::load(proof, &boxes[3 + k], first));
+        }
+        bits |= u32::from(!outside & (u8::MAX >> (BOXES - T::COUNT))) << first;
+    }
+    bits
 }
 
 /// A bit for each ball of a block that reaches into a box.

@@ -11,6 +11,7 @@ use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
+use crate::stages::feeding::arrived;
 use crate::stages::listing::renumber_lists;
 use crate::stages::sleep::{count_sleepers, prepare_change};
 use crate::stages::walls::touch_energy_j;
@@ -213,18 +214,10 @@ impl<'a> Rebuilt<'a> {
 
     /// New clumps, each with its own number among the clusters.
     fn receive(&mut self, state: &mut State, coming: Vec<Clump>, history: &mut Vec<Cluster>) {
-        for mut clump in coming {
+        for clump in coming {
+            let (mut clump, cluster) = arrived(state, clump, history.len() as u32);
+            history.push(cluster);
             let template = Arc::clone(state.clumps.template(&clump));
-            clump.cluster = history.len() as u32;
-            clump.first_id = state.population.next_particle_id;
-            state.population.next_particle_id += template.spheres.len() as u32;
-            history.push(Cluster {
-                parent: None,
-                body: state.model.body_number(&template.body),
-                created_s: state.time_s,
-                ended_s: None,
-                particles: template.outer.len() as u32,
-            });
             Clumps::push_spheres(&template, &mut clump, &mut self.new);
             self.label(clump.cluster, Some(template.material));
             state.clumps.all.push(clump);

@@ -1,7 +1,6 @@
 //! Totals of a state: velocities at the time of its positions, kinetic and elastic energy, momenta.
 
 use super::chunks::{CHUNK, ordered_sum, ordered_sums};
-use crate::physics::bond::total::BondEnergy;
 use crate::stages::clumps::synchronous;
 use crate::stages::loads::add_resultant;
 use crate::stages::supports::velocity_at_kick;
@@ -110,24 +109,6 @@ pub fn motions_before_kick(state: &State) -> Vec<Motion> {
 /// Kinetic energy of the free particles with these motions, J.
 pub fn kinetic_energy(particles: &Particles, motion: impl Fn(usize) -> Motion + Sync) -> f64 {
     ordered_sum(particles.free, |i| particles.kinetic_j(i, &motion(i)))
-}
-
-/// Elastic energy of all bonds by mode.
-pub fn elastic_energy(state: &State) -> BondEnergy {
-    let bonds = &state.bonds;
-    let [normal, shear, torsion, bending] = ordered_sums(bonds.len(), |at| {
-        if bonds.is_broken(at) {
-            return [0.0; 4];
-        }
-        let energy = bonds.forces(at, &state.particles.poses).energy;
-        [energy.normal, energy.shear, energy.torsion, energy.bending]
-    });
-    BondEnergy {
-        normal,
-        shear,
-        torsion,
-        bending,
-    }
 }
 
 /// Momentum and angular momentum about a point, N s and N m s, and the sums of the magnitudes of

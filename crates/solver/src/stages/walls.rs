@@ -109,7 +109,18 @@ pub(crate) fn reaches(wall: &Wall) -> impl Fn([f64; 3], f64) -> bool + Sync {
     let bounds = wall.model.shape.bounds();
     let in_space = wall.bounds_in_space();
     let to_wall = wall.frame.all_to_wall();
+    let plane = match &wall.model.shape {
+        Shape::Plane(plane) => {
+            let point = Vector3::from(wall.frame.to_space(plane.point_m()));
+            let normal = Vector3::from(wall.frame.direction_to_space(plane.normal()));
+            Some((point, normal))
+        }
+        _ => None,
+    };
     move |point, reach_m| {
+        if let Some((of_plane, normal)) = &plane {
+            return (Vector3::from(point) - of_plane).dot(normal) < reach_m;
+        }
         if !in_space.is_near(&point, reach_m) {
             return false;
         }

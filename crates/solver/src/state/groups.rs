@@ -13,8 +13,8 @@ const SMALL: usize = 16;
 /// Number of balls, in the order of a cluster, that have a box of their own. Near ones follow one
 /// another.
 pub(crate) const BLOCK: usize = 16;
-/// A ball that overlaps none.
-const NOWHERE: Ball = [f64::INFINITY, 0.0, 0.0, 0.0];
+/// Number of boxes that are compared at once.
+pub(crate) const BOXES: usize = 8;
 
 /// What the last neighbour search knew of the clusters.
 #[derive(Debug, Clone, Default)]
@@ -36,7 +36,11 @@ pub struct LargeCluster {
     pub(crate) bounds: Bounds,
     /// Boxes around each [`BLOCK`] of its balls.
     pub(crate) blocks: Vec<Bounds>,
-    /// The balls of each block by columns, x, y, z and radius, m, filled up with [`NOWHERE`].
+    /// The same, [`BOXES`] at once, by columns: the lower ends along x, y and z, then the upper
+    /// ones, m. Filled up with empty boxes.
+    pub(crate) boxes: Vec<[[f64; BOXES]; 6]>,
+    /// The balls of each block by columns, x, y, z and radius, m. Empty places have a ball that
+    /// overlaps none.
     pub(crate) columns: Vec<[[f64; BLOCK]; 4]>,
     /// Whether any of its balls seeks.
     pub(crate) seeks: bool,
@@ -75,28 +79,29 @@ impl LargeCluster {
             group,
             bounds: Bounds::EMPTY,
             blocks: Vec::new(),
+            boxes: Vec::new(),
             columns: Vec::new(),
             seeks: true,
         }
     }
 
     fn find_boxes(&mut self, members: &[u32], balls: &[Ball]) {
-        let blocks = members.chunks(BLOCK).map(|some| box_of(some, balls));
         self.blocks.clear();
-        self.blocks.extend(blocks);
+        self.columns.clear();
+        for some in members.chunks(BLOCK) {
+            let last = some.len() - 1;
+            // The last fills the empty places.
+            let rows: [Ball; BLOCK] = std::array::from_fn(|n| balls[some[n.min(last)] as usize]);
+            self.blocks.push(box_around(&rows));
+            let mut columns = [0, 1, 2, 3].map(|k| rows.map(|row| row[k]));
+            columns[0][last + 1..].fill(f64::INFINITY);
+            self.columns.push(columns);
+        }
         let blocks = self.blocks.iter();
         self.bounds = blocks.fold(Bounds::EMPTY, |all, one| all.with(one));
-        let columns = members.chunks(BLOCK).map(|some| {
-            let mut columns = NOWHERE.map(|c| [c; BLOCK]);
-            for (n, &i) in some.iter().enumerate() {
-                for (column, c) in columns.iter_mut().zip(balls[i as usize]) {
-                    column[n] = c;
-                }
-            }
-            columns
-        });
-        self.columns.clear();
-        self.columns.extend(columns);
+        self.boxes.clear();
+        self.boxes
+            .extend(self.blocks.chunks(BOXES).map(box_columns));
     }
 
     /// Numbers and boxes of its blocks that reach into a box.
@@ -129,10 +134,41 @@ impl LargeCluster {
     }
 }
 
-/// The box around some balls.
+/// Some boxes by columns: see [`LargeCluster::boxes`].
+fn box_columns(some: &[Bounds]) -> [[f64; BOXES]; 6] {
+    let Bounds { low, high } = Bounds::EMPTY;
+    let mut columns = [low[0], low[1], low[2], high[0], high[1], high[2]].map(|c| [c; BOXES]);
+    for (n, bounds) in some.iter().enumerate() {
+        for k in 0..3 {
+            columns[k][n] = bounds.low[k];
+            columns[3 + k][n] = bounds.high[k];
+        }
+    }
+    columns
+}
+
+/// The box around the balls with these numbers.
 pub(crate) fn box_of(some: &[u32], balls: &[Ball]) -> Bounds {
     let boxes = some.iter().map(|&i| around(&balls[i as usize]));
     boxes.fold(Bounds::EMPTY, |all, one| all.with(&one))
+}
+
+/// The box around a block of balls.
+fn box_around(balls: &[Ball; BLOCK]) -> Bounds {
+    // Four numbers at once, by comparisons that are one operation each: the fourth is not used.
+    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+    for ball in balls {
+        for k in 0..4 {
+            let (before, after) = (ball[k] - ball[3], ball[k] + ball[3]);
+            low[k] = if before < low[k] { before } else { low[k] };
+            high[k] = if after > high[k] { after } else { high[k] };
+        }
+    }
+    let ([x0, y0, z0, _], [x1, y1, z1, _]) = (low, high);
+    Bounds {
+        low: [x0, y0, z0],
+        high: [x1, y1, z1],
+    }
 }
 
 /// The box around a ball.

@@ -68,6 +68,11 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// m/s.
+    pub(crate) fn speed_m_s(&self) -> f64 {
+        Vector3::from(self.velocity_m_s).norm()
+    }
+
     /// Power of a wrench at this motion, W.
     pub(crate) fn power_w(&self, wrench: &Wrench) -> f64 {
         (0..3)

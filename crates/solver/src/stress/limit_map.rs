@@ -11,7 +11,8 @@ use dem_io::{Body, Diagnostic, Result};
 
 use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
 use super::trial::Trial;
-use crate::stages::totals::{elastic_energy, kinetic_energy};
+use crate::stages::elastic::elastic_energy;
+use crate::stages::totals::kinetic_energy;
 use crate::state::State;
 use crate::step::step;
 

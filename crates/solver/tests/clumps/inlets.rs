@@ -362,3 +362,38 @@ fn a_fed_sphere_is_a_particle_unless_something_replaces_it() {
         assert!((one - other).norm() < 1e-9, "{one} {other}");
     }
 }
+
+#[test]
+fn what_is_known_of_fed_bodies_is_what_would_be_found_anew() {
+    let gate = "[regions.gate]\nbox = { min = [-0.02, -0.02, 0.02], max = [0.02, 0.02, 0.06] }\n";
+    let more = "position = [0, 0, 0.01]\nvelocity = [0, 0, -1]";
+    let text = format!(
+        "{HEAD}run.gravity = [0, 0, -9.81]\n{MEETS}{gate}{}{}\
+         [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n\
+         [inlets.feed]\nregion = \"gate\"\nbodies = [\"fed\"]\nrate = 2000\ncount = 12\norientation = \"random\"\n",
+        lump("fed", "start_as = \"clump\""),
+        block("brittle", [4, 4, 3], 2e-3, |_| Some(1e-3), more),
+    );
+    let mut state = planned(&text).state;
+    run_to(&mut state, 8e-3);
+    assert_eq!(state.population.inlets[0].bodies, 12);
+    assert_eq!(state.clumps.all.len(), 12);
+    let clusters = state.clusters.as_ref().unwrap();
+    let mut again = clusters.clone();
+    again.rebuild(&state.bonds).expect("they belong together");
+    assert_eq!(&again, clusters);
+    let contacts = state.contacts.as_ref().unwrap();
+    let count = state.particles.len();
+    assert_eq!(
+        [
+            contacts.materials.len(),
+            contacts.lost_j.len(),
+            clusters.of_particle.len()
+        ],
+        [count; 3]
+    );
+    let mut ids = state.particles.ids.clone();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), count);
+}

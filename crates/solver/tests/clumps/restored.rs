@@ -1,9 +1,9 @@
 //! Clusters and fragments that become rigid clumps again: conserved quantities, recorded losses,
 //! and retained data.
 
+use dem_run::stages::elastic::elastic_energy;
 use dem_run::stages::population::apply_topology_change;
 use dem_run::stages::restoring::restore_clumps;
-use dem_run::stages::totals::elastic_energy;
 use dem_run::state::State;
 use dem_run::state::events::PopulationEvent;
 use dem_run::state::events::TopologyChange;

@@ -8,6 +8,7 @@ use dem_run::check::limit::{Limit, limit};
 use dem_run::physics::bond::damage::Damage;
 use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::BondModel;
+use dem_run::stages::elastic::elastic_energy;
 use dem_run::stages::ledger::Balance;
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
@@ -167,6 +168,41 @@ fn shares_and_threads_do_not_change_a_bit() {
         assert!(
             left(partitions, threads) == one,
             "{partitions} partitions, {threads} threads"
+        );
+    }
+}
+
+#[test]
+fn the_elastic_energy_is_the_sum_over_bonds_one_by_one() {
+    let mut state = scene(2);
+    for _ in 0..150 {
+        step_and_balance(&mut state);
+    }
+    let bonds = &state.bonds;
+    let count =
+        |is_so: fn(&Bonds, usize) -> bool| (0..bonds.len()).filter(|&at| is_so(bonds, at)).count();
+    // Broken ones, damaged ones, and two kinds.
+    assert!(count(Bonds::is_broken) > 30);
+    assert!(count(|bonds, at| bonds.damages[at].damage > 0.0) > 30);
+    let energy = |at: usize| match bonds.is_broken(at) {
+        true => [0.0; 4],
+        false => {
+            let energy = bonds.forces(at, &state.particles.poses).energy;
+            [energy.normal, energy.shear, energy.torsion, energy.bending]
+        }
+    };
+    let mut sums = [0.0; 4];
+    for at in 0..bonds.len() {
+        for (sum, mode) in sums.iter_mut().zip(energy(at)) {
+            *sum += mode;
+        }
+    }
+    let found = elastic_energy(&state);
+    let found = [found.normal, found.shear, found.torsion, found.bending];
+    for (found, sum) in found.into_iter().zip(sums) {
+        assert!(
+            sum > 0.0 && (found / sum - 1.0).abs() < 1e-13,
+            "{found} {sum}"
         );
     }
 }

@@ -6,12 +6,14 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use crate::physics::rotation::rotation;
 use crate::stages::chunks::CHUNK;
+use crate::stages::clumps::place_of;
 use crate::state::State;
-use crate::state::clumps::{Clump, Clumps};
+use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::Contacts;
 use crate::state::particles::{Particles, Pose};
-use crate::state::references::{ClumpReference, References};
+use crate::state::references::{Ball, ClumpReference, References};
 
 /// Number of steps that a particle may go on at its present speed until its next search.
 const STEPS: f64 = 30.0;
@@ -81,7 +83,7 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
     let is_due = |i: &u32| {
         let i = *i as usize;
         let [left_m, allowance_m] = free_left_m(p, references, i);
-        particle_is_due(p, i, left_m, SOON[0] * allowance_m, step_s)
+        left_m < least_m(SOON[0] * allowance_m, p.motions[i].speed_m_s() * step_s)
     };
     let free = (0..p.free as u32).into_par_iter().with_min_len(CHUNK);
     let mut particles: Vec<u32> = free.filter(is_due).collect();
@@ -96,7 +98,7 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
         .enumerate()
     {
         reference.left_m = clump_left_m(&state.clumps, clump, reference);
-        if clump_is_due(clump, reference, SOON[1]) {
+        if reference.left_m < least_m(SOON[1] * reference.allowance_m, clump.moved_m) {
             clumps.push(n);
         }
     }
@@ -113,19 +115,20 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
     for chunk in 0..references.chunks_left_m.len() {
         let moved_m = state.scratch.chunks_moved_m.get(chunk).copied();
         if references.chunks_left_m[chunk] < STEPS_LEFT * moved_m.unwrap_or(0.0) {
-            let mut least_m = f64::INFINITY;
+            let mut least_left_m = f64::INFINITY;
             for i in chunk_of(p, chunk) {
                 let [left_m, allowance_m] = free_left_m(p, references, i);
-                least_m = least_m.min(left_m);
-                urgent |= particle_is_due(p, i, left_m, NOW * allowance_m, state.cycle_s());
+                least_left_m = least_left_m.min(left_m);
+                let moved_m = p.motions[i].speed_m_s() * state.cycle_s();
+                urgent |= left_m < least_m(NOW * allowance_m, moved_m);
             }
-            references.chunks_left_m[chunk] = least_m;
+            references.chunks_left_m[chunk] = least_left_m;
         }
     }
     for (clump, reference) in state.clumps.all.iter().zip(&mut references.clumps) {
         if reference.left_m < STEPS_LEFT * clump.moved_m {
             reference.left_m = clump_left_m(&state.clumps, clump, reference);
-            urgent |= clump_is_due(clump, reference, NOW);
+            urgent |= reference.left_m < least_m(NOW * reference.allowance_m, clump.moved_m);
         }
     }
     urgent
@@ -140,22 +143,11 @@ fn free_left_m(particles: &Particles, references: &References, i: usize) -> [f64
     [left_m, allowance_m]
 }
 
-/// Whether a particle with this distance left, m, is due: less than `enough_m`, or used up in a few
-/// steps at its present speed.
+/// What something that moves by `moved_m` in a step must have left, m, so that it is not due: this
+/// distance, and enough for a few steps.
 #[inline(always)]
-fn particle_is_due(
-    particles: &Particles,
-    i: usize,
-    left_m: f64,
-    enough_m: f64,
-    step_s: f64,
-) -> bool {
-    let squared_speed = Vector3::from(particles.motions[i].velocity_m_s).norm_squared();
-    left_m < enough_m || left_m.powi(2) < (STEPS_LEFT * step_s).powi(2) * squared_speed
-}
-
-fn clump_is_due(clump: &Clump, reference: &ClumpReference, fraction: f64) -> bool {
-    reference.left_m < (fraction * reference.allowance_m).max(STEPS_LEFT * clump.moved_m)
+fn least_m(enough_m: f64, moved_m: f64) -> f64 {
+    enough_m.max(STEPS_LEFT * moved_m)
 }
 
 /// Finds the distances left to the chunks, after a search.
@@ -212,29 +204,58 @@ pub(super) fn refer_particle(contacts: &mut Contacts, i: usize, pose: &Pose, mov
     contacts.scratch.references.balls[i] = [x, y, z, radius_m + allowance_m];
 }
 
-/// Gives the spheres of a clump, which are in place, new balls.
-pub(super) fn refer_clump(contacts: &mut Contacts, state: &State, at: usize) {
-    let clump = &state.clumps.all[at];
-    let spheres = state.clumps.spheres_of(clump);
-    let poses = &state.particles.poses[spheres.clone()];
-    let moved_m = clump_speed_m_s(&state.clumps, clump) * state.time_step_s;
-    let allowance_m = match contacts.model.allowances {
-        None => 0.5 * contacts.skin_m,
-        Some([least, _]) => {
-            let largest_m = poses.iter().map(Pose::radius_m).fold(0.0, f64::max);
-            (STEPS_OF_CLUMP * moved_m).clamp(least * largest_m, FARTHEST_OF_CLUMP * largest_m)
+/// Gives the spheres of these clumps, ascending, new balls.
+pub(super) fn refer_clumps(contacts: &mut Contacts, state: &State, some: &[usize]) {
+    let Contacts {
+        model,
+        skin_m,
+        scratch,
+        ..
+    } = contacts;
+    let (allowances, skin_m) = (model.allowances, *skin_m);
+    let References { balls, clumps, .. } = &mut scratch.references;
+    let mut left = &mut balls[state.particles.free..];
+    let mut work = Vec::with_capacity(some.len());
+    let mut some = some.iter().peekable();
+    for (at, (clump, reference)) in state.clumps.all.iter().zip(clumps).enumerate() {
+        let count = state.clumps.spheres_of(clump).len();
+        let (own, others) = std::mem::take(&mut left).split_at_mut(count);
+        left = others;
+        if some.next_if(|due| **due == at).is_some() {
+            work.push((clump, reference, own));
         }
-    };
-    let allowance_m = allowance_m.max(2.0 * moved_m);
-    let references = &mut contacts.scratch.references;
-    for (ball, pose) in references.balls[spheres].iter_mut().zip(poses) {
-        let [x, y, z, radius_m] = pose.position_m;
-        *ball = [x, y, z, radius_m + allowance_m];
     }
-    references.clumps[at] = ClumpReference {
-        place_m: clump.place_m,
-        turned: clump.turned,
-        allowance_m,
-        left_m: allowance_m,
-    };
+    work.into_par_iter().for_each(|(clump, reference, balls)| {
+        let largest_m = put_balls(state.clumps.template(clump), clump, balls);
+        let moved_m = clump_speed_m_s(&state.clumps, clump) * state.time_step_s;
+        let allowance_m = match allowances {
+            None => 0.5 * skin_m,
+            Some([least, _]) => {
+                (STEPS_OF_CLUMP * moved_m).clamp(least * largest_m, FARTHEST_OF_CLUMP * largest_m)
+            }
+        };
+        let allowance_m = allowance_m.max(2.0 * moved_m);
+        for ball in balls {
+            ball[3] += allowance_m;
+        }
+        *reference = ClumpReference {
+            place_m: clump.place_m,
+            turned: clump.turned,
+            allowance_m,
+            left_m: allowance_m,
+        };
+    });
+}
+
+/// Sets balls to the spheres of a clump, one for each, and returns the largest radius, m.
+fn put_balls(template: &Template, clump: &Clump, balls: &mut [Ball]) -> f64 {
+    let to_space = rotation(clump.turned).to_rotation_matrix();
+    let mut largest_m = 0.0_f64;
+    for (ball, &sphere) in balls.iter_mut().zip(template.outer.iter()) {
+        let [x, y, z] = place_of(template, sphere as usize, clump, &to_space).into();
+        let radius_m = template.spheres[sphere as usize].radius_m * template.scale;
+        *ball = [x, y, z, radius_m];
+        largest_m = largest_m.max(radius_m);
+    }
+    largest_m
 }

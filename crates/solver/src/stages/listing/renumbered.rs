@@ -4,8 +4,30 @@
 use super::moved::find_left;
 use crate::stages::contacts::find_mean_radius;
 use crate::state::State;
+use crate::state::clumps::Clumps;
+use crate::state::contacts::Contacts;
 use crate::state::events::REMOVED;
+use crate::state::particles::Particles;
 use crate::state::references::{ClumpReference, References};
+
+/// Adds the particles from number `known` on and their clumps, which come after all others, to the
+/// last search: they are searched for before the next step.
+pub(crate) fn lengthen_lists(
+    contacts: &mut Contacts,
+    particles: &Particles,
+    clumps: &Clumps,
+    known: u32,
+) {
+    find_mean_radius(contacts, particles);
+    contacts.skin_left_m = -1.0;
+    let references = &mut contacts.scratch.references;
+    if references.balls.len() == known as usize {
+        references.due.extend(known..particles.len() as u32);
+        references.balls.resize(particles.len(), [0.0; 4]);
+        let count = clumps.all.len();
+        references.clumps.resize(count, ClumpReference::default());
+    }
+}
 
 /// Renumbers the last search. `now`: for each old particle its new number or [`REMOVED`];
 /// `is_new`: for each new number whether the particle is new; `old_firsts`: the first sphere of

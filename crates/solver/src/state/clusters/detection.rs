@@ -97,6 +97,20 @@ impl Clusters {
         self.number(None, time_s, known..particles);
     }
 
+    /// Adds a cluster without bonds, whose particles come after all others.
+    pub(crate) fn append(&mut self, cluster: Cluster) {
+        let known = self.of_particle.len() as u32;
+        let all = known + cluster.particles;
+        self.of_particle
+            .resize(all as usize, self.history.len() as u32);
+        self.starts.push(known);
+        self.members.extend(known..all);
+        self.names.extend(known..all);
+        let bonds = self.first_bonds.last().copied().unwrap_or(0);
+        self.first_bonds.resize(all as usize + 1, bonds);
+        self.history.push(cluster);
+    }
+
     /// Sets the body of the clusters of these particles.
     pub(crate) fn set_body(&mut self, particles: &[u32], body: u32) {
         for &particle in particles {
