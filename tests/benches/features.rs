@@ -207,6 +207,12 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
+/// The median of some differences, if three quarters of them are above 0.
+fn above_noise(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    (values[values.len() / 4] > 0.0).then(|| values[values.len() / 2])
+}
+
 fn main() {
     let body = packed("2mm..3mm");
     let mut states: Vec<State> = CASES.iter().map(|case| case.state(&body)).collect();
@@ -237,12 +243,8 @@ fn main() {
         let base = beside.expect("one of the cases");
         // Round by round, so that a disturbance of a round affects both.
         let pairs = times[at].iter().zip(&times[base]);
-        let more_ns = median(
-            pairs
-                .clone()
-                .map(|(with, without)| with - without)
-                .collect(),
-        );
+        let more_ns = pairs.clone().map(|(with, without)| with - without);
+        let more_ns = above_noise(more_ns.collect());
         let ratio = median(pairs.map(|(with, without)| with / without).collect());
         let steps = states[at].steps as f64;
         let named = |stage: &&&Stage| stage.name == case.stage;
@@ -263,10 +265,9 @@ fn main() {
             } else {
                 "-".to_owned()
             },
-            if items > 0.0 {
-                format!("{:.1}", more_ns / items)
-            } else {
-                "-".to_owned()
+            match more_ns {
+                Some(more_ns) if items > 0.0 => format!("{:.1}", more_ns / items),
+                _ => "-".to_owned(),
             },
         ));
     }

@@ -27,7 +27,7 @@ pub(crate) fn ordered_sums<const N: usize>(
     })
 }
 
-/// The same from the sums over ranges of up to [`CHUNK`].
+/// The same, where the caller sums each range of up to [`CHUNK`] itself.
 pub(crate) fn sums_of_chunks<const N: usize>(
     count: usize,
     sums_over: impl Fn(Range<usize>) -> [f64; N] + Sync,

@@ -18,7 +18,7 @@ use crate::state::particles::{Motion, Particles, Pose, Wrench};
 /// Clumps handled by one task.
 const CHUNK: usize = 32;
 /// Spheres that are looked at together, whether any is near something.
-const SOME: usize = 64;
+const AT_ONCE: usize = 64;
 
 /// Rigid clumps.
 pub(crate) const CLUMPS: Stage = Stage {
@@ -101,9 +101,12 @@ pub(crate) fn list_near(
         is_near[i - free] = true;
     }
     let mut now = Vec::with_capacity(clumps.near.len());
-    for (first, some) in (free as u32..).step_by(SOME).zip(is_near.chunks(SOME)) {
+    for (first, some) in (free as u32..)
+        .step_by(AT_ONCE)
+        .zip(is_near.chunks(AT_ONCE))
+    {
         // Most are near nothing: this is fast for many at once.
-        if some.iter().fold(false, |any, is_near| any | is_near) {
+        if some.iter().fold(false, |any, near| any | near) {
             let near = (first..).zip(some).filter(|(_, is_near)| **is_near);
             now.extend(near.map(|(i, _)| i));
         }

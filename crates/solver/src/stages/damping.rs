@@ -66,7 +66,7 @@ use crate::state::bonds::BondRule;
 use crate::state::particles::{Motion, Wrench};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
-const BOND_DAMPING_NS: f64 = 57.2;
+const BOND_DAMPING_NS: f64 = 43.3;
 
 /// Largest eigenvalue of G up to which one stage needs no running mean.
 pub const WEAK: f64 = 2.88 / 3.4;

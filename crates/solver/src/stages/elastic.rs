@@ -88,7 +88,7 @@ impl LaneWork for Energies<'_> {
                     if !eight.wanted.contains(&i) || bonds.is_broken(at) {
                         continue;
                     }
-                    // A damaged bond that is pressed has the stiffness from before.
+                    // One that is pressed is as stiff as before the damage.
                     if bonds.was_damaged(at) {
                         add(self.sums, energy(bonds, poses, at));
                     } else {

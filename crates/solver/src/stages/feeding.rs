@@ -1,5 +1,5 @@
-//! Clumps that are added, where nothing else changes: no particle gets another number, so that all
-//! lists grow at their ends, and a body costs its own spheres only.
+//! Clumps that are added, where nothing else changes. No particle gets another number: lists grow
+//! at their ends, and nothing is copied or placed anew.
 
 use std::sync::Arc;
 
@@ -12,21 +12,18 @@ use crate::state::particles::Wrench;
 
 /// Adds clumps, each with a number of its own among the clusters, to a scene without sleep.
 pub(super) fn add_clumps(state: &mut State, coming: Vec<Clump>) -> Renumbering {
-    let before = state.particles.len() as u32;
+    let before = [state.particles.len(), state.clumps.all.len()];
     for clump in coming {
         let number = state
             .clusters
             .as_ref()
             .map_or(0, |c| c.history.len() as u32);
-        let (clump, cluster) = arrived(state, clump, number);
+        let (mut clump, cluster) = arrived(state, clump, number);
         let template = Arc::clone(state.clumps.template(&clump));
-        state.clumps.all.push(clump);
-        let Some(clump) = state.clumps.all.last_mut() else {
-            continue;
-        };
-        Clumps::push_spheres(&template, clump, &mut state.particles);
+        Clumps::push_spheres(&template, &mut clump, &mut state.particles);
         // Nothing is known to be near it before the next search.
         clump.near = [state.clumps.near.len() as u32; 2];
+        state.clumps.all.push(clump);
         if let Some(clusters) = &mut state.clusters {
             clusters.append(cluster);
         }
@@ -49,7 +46,7 @@ pub(super) fn add_clumps(state: &mut State, coming: Vec<Clump>) -> Renumbering {
         lengthen_lists(contacts, &state.particles, &state.clumps, before);
     }
     Renumbering {
-        particles: (0..before).collect(),
+        particles: (0..before[0] as u32).collect(),
         bonds: (0..state.bonds.len() as u32).collect(),
         free: state.particles.free as u32,
         created: Vec::new(),

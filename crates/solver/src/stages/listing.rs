@@ -5,6 +5,7 @@ mod moved;
 mod renumbered;
 
 use dem_scene::WallMotion;
+use nalgebra::Vector3;
 
 pub(super) use self::renumbered::{lengthen_lists, renumber_lists};
 
@@ -16,10 +17,12 @@ use super::neighbours::overlapping_pairs;
 use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{list_near, reached, reaches};
+use crate::geometry::Bounds;
 use crate::state::State;
 use crate::state::bridges::Bridges;
 use crate::state::clumps::Clumps;
 use crate::state::contacts::Contacts;
+use crate::state::groups::{KnownClusters, LargeCluster};
 use crate::state::references::{ClumpReference, References};
 use crate::state::walls::Wall;
 
@@ -139,20 +142,26 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     refer_clumps(contacts, state, &due.clumps);
     find_left(&state.particles, &mut contacts.scratch.references);
     let seeks = seeks(state, due);
+    let some = seeks.contains(&false).then_some(&seeks[..]);
+    let clusters = state.clusters.as_ref();
+    let clusters = clusters.filter(|_| !contacts.model.alone);
+    let References {
+        balls,
+        clusters: known,
+        ..
+    } = &mut contacts.scratch.references;
+    if let Some(clusters) = clusters {
+        known.update(balls, &clusters.of_particle, some);
+    }
+    let small = of_small(known, &state.clumps, due);
     for wall in &mut state.walls {
-        let near = reached_of(wall, contacts, &state.clumps, due);
+        let near = reached(wall, balls, &candidates(wall, known, &small, some));
         wall.near.retain(|&i| !seeks[i as usize]);
         wall.near.extend(near);
         wall.near.sort_unstable();
     }
-    let mut pairs = match &state.clusters {
-        Some(clusters) if !contacts.model.alone => {
-            let References {
-                balls,
-                clusters: known,
-                ..
-            } = &mut contacts.scratch.references;
-            let some = seeks.contains(&false).then_some(&seeks[..]);
+    let mut pairs = match clusters {
+        Some(clusters) => {
             let found = overlapping_pairs(balls, &clusters.of_particle, some, known);
             if some.is_some() {
                 with_others(&contacts.pairs, found, &seeks)
@@ -160,7 +169,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
                 found
             }
         }
-        _ => Vec::new(),
+        None => Vec::new(),
     };
     list_beside(state, contacts, &mut pairs);
     list_near_spheres(state, &pairs);
@@ -186,21 +195,43 @@ fn seeks(state: &State, due: &Due) -> Vec<bool> {
     seeks
 }
 
-/// The particles among those due whose balls a wall reaches, ascending.
-fn reached_of(wall: &Wall, contacts: &Contacts, clumps: &Clumps, due: &Due) -> Vec<u32> {
-    let references = &contacts.scratch.references;
+/// What is due and is in no large cluster.
+fn of_small(known: &KnownClusters, clumps: &Clumps, due: &Due) -> Vec<u32> {
+    let free = due.particles.iter().copied();
+    let clumps_due = due.clumps.iter().map(|&at| &clumps.all[at]);
+    let spheres = clumps_due.filter(|clump| !known.is_in_large(clump.first));
+    let spheres = spheres.flat_map(|clump| clumps.spheres_of(clump));
+    free.filter(|&i| !known.is_in_large(i))
+        .chain(spheres.map(|i| i as u32))
+        .collect()
+}
+
+/// The particles that a wall may reach: those of small clusters, and of large ones those of blocks
+/// whose boxes it may reach, which seek. Without `seeks` all do.
+fn candidates(
+    wall: &Wall,
+    known: &KnownClusters,
+    small: &[u32],
+    seeks: Option<&[bool]>,
+) -> Vec<u32> {
     let is_reached = reaches(wall);
-    let mut some = due.particles.clone();
-    for &at in &due.clumps {
-        let (clump, reference) = (&clumps.all[at], &references.clumps[at]);
-        let template = clumps.template(clump);
-        let reach_m = template.largest_reach_m();
-        let around_m = reach_m + reference.allowance_m + wall.skin_left_m;
-        if is_reached(reference.place_m, around_m) {
-            some.extend(clumps.spheres_of(clump).map(|i| i as u32));
+    let may_reach = |bounds: &Bounds| {
+        let [low, high] = [bounds.low, bounds.high].map(Vector3::from);
+        let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+        is_reached(centre.into(), half.norm() + wall.skin_left_m)
+    };
+    let mut some = small.to_vec();
+    let seeking = |large: &&LargeCluster| seeks.is_none() || large.seeks;
+    let large = known.large.iter().filter(seeking);
+    for large in large.filter(|large| may_reach(&large.bounds)) {
+        for (block, bounds) in large.blocks.iter().enumerate() {
+            if may_reach(bounds) {
+                let members = large.members(block, &known.groups).iter().copied();
+                some.extend(members.filter(|&i| seeks.is_none_or(|seeks| seeks[i as usize])));
+            }
         }
     }
-    reached(wall, &references.balls, &some)
+    some
 }
 
 /// The pairs found for the particles that seek, and the known pairs of the others: sorted.
@@ -242,10 +273,16 @@ fn list_near_moving_walls(state: &mut State) {
     };
     let is_due = |wall: &Wall| wall.skin_left_m < 2.0 * wall.moved_m;
     if state.walls.iter().any(is_due) {
-        let everything = everything(state);
+        let References {
+            balls,
+            clusters: known,
+            ..
+        } = &contacts.scratch.references;
+        let small = of_small(known, &state.clumps, &everything(state));
         for wall in state.walls.iter_mut().filter(|wall| is_due(wall)) {
             wall.skin_left_m = skin_m(wall, &contacts);
-            wall.near = reached_of(wall, &contacts, &state.clumps, &everything);
+            wall.near = reached(wall, balls, &candidates(wall, known, &small, None));
+            wall.near.sort_unstable();
         }
         list_near_spheres(state, &contacts.pairs);
     }

@@ -20,7 +20,7 @@ use super::chunks::CHUNK;
 use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
-use crate::state::groups::{BLOCK, BOXES, KnownClusters, LargeCluster};
+use crate::state::groups::{BLOCK, BOXES, KnownClusters, LargeCluster, NOWHERE};
 use crate::state::particles::Pose;
 use crate::state::references::Ball;
 
@@ -32,19 +32,20 @@ pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]
         [x, y, z, radius_m + 0.5 * skin_m]
     };
     let balls: Vec<Ball> = poses.iter().map(ball).collect();
-    overlapping_pairs(&balls, clusters, None, &mut KnownClusters::default())
+    let mut known = KnownClusters::default();
+    known.update(&balls, clusters, None);
+    overlapping_pairs(&balls, clusters, None, &known)
 }
 
 /// Pairs of overlapping balls of different clusters, the smaller index first, sorted; with `seeks`
 /// (one for each ball) only those with at least one ball that seeks. `clusters`: one for each ball.
-/// `known`: of the last search; since then only balls that seek have changed.
+/// `known`: of these balls.
 pub(crate) fn overlapping_pairs(
     balls: &[Ball],
     clusters: &[u32],
     seeks: Option<&[bool]>,
-    known: &mut KnownClusters,
+    known: &KnownClusters,
 ) -> Vec<[u32; 2]> {
-    known.update(balls, clusters, seeks);
     let search = Search {
         balls,
         clusters,
@@ -170,54 +171,90 @@ impl LargeMeetings<'_> {
             while bits_a != 0 {
                 let of_a = some_a * BOXES + next_of(&mut bits_a);
                 let room = room.common(&a.blocks[of_a]);
+                let of_a = Members::of::<T>(proof, a, of_a, self.search);
                 for some_b in 0..b.boxes.len() {
                     let mut bits_b = within::<T>(proof, &b.boxes[some_b], &room);
                     while bits_b != 0 {
                         let of_b = some_b * BOXES + next_of(&mut bits_b);
-                        self.test::<T>(proof, [a, b], [of_a, of_b]);
+                        self.test::<T>(proof, &of_a, b, of_b);
                     }
                 }
             }
         }
     }
 
-    /// Tests the balls of a block of one cluster that reach into the box of a block of another
-    /// against its balls, one of these for each lane.
+    /// Tests the balls of a block that reach into the box of a block of another cluster against its
+    /// balls, one of these for each lane.
     #[inline(always)]
-    fn test<T: Lanes>(&mut self, proof: T::Proof, large: [&LargeCluster; 2], blocks: [usize; 2]) {
-        let [of_a, of_b] = [&large[0].columns[blocks[0]], &large[1].columns[blocks[1]]];
-        let mut reaching = reaching::<T>(proof, of_a, &large[1].blocks[blocks[1]]);
+    fn test<T: Lanes>(
+        &mut self,
+        proof: T::Proof,
+        of_a: &Members<'_>,
+        b: &LargeCluster,
+        block_of_b: usize,
+    ) {
+        let mut reaching = reaching::<T>(proof, &of_a.columns, &b.blocks[block_of_b]);
+        if reaching == 0 {
+            return;
+        }
+        let of_b = Members::of::<T>(proof, b, block_of_b, self.search);
         while reaching != 0 {
             let n = next_of(&mut reaching);
             // Spelled out: a closure around lanes may not be compiled for them.
             let [x, y, z, radius_m] = [
-                T::all(proof, of_a[0][n]),
-                T::all(proof, of_a[1][n]),
-                T::all(proof, of_a[2][n]),
-                T::all(proof, of_a[3][n]),
+                T::all(proof, of_a.columns[0][n]),
+                T::all(proof, of_a.columns[1][n]),
+                T::all(proof, of_a.columns[2][n]),
+                T::all(proof, of_a.columns[3][n]),
             ];
             for first in (0..BLOCK).step_by(T::COUNT) {
                 let apart = Vec3(
-                    T::load(proof, &of_b[0], first) - x,
-                    T::load(proof, &of_b[1], first) - y,
-                    T::load(proof, &of_b[2], first) - z,
+                    T::load(proof, &of_b.columns[0], first) - x,
+                    T::load(proof, &of_b.columns[1], first) - y,
+                    T::load(proof, &of_b.columns[2], first) - z,
                 );
-                let near = radius_m + T::load(proof, &of_b[3], first);
+                let near = radius_m + T::load(proof, &of_b.columns[3], first);
                 let mut bits = u32::from((near * near).above(apart.square()));
                 while bits != 0 {
-                    self.found(large, blocks, [n, first + next_of(&mut bits)]);
+                    let lane = next_of(&mut bits);
+                    let [i, j] = [of_a.numbers[n], of_b.numbers[first + lane]];
+                    if self.search.seeks(i) || self.search.seeks(j) {
+                        self.pairs.push([i.min(j), i.max(j)]);
+                    }
                 }
             }
         }
     }
+}
 
-    /// Adds a pair of balls, given by their blocks and their places in these, if one of them seeks.
-    fn found(&mut self, large: [&LargeCluster; 2], blocks: [usize; 2], places: [usize; 2]) {
-        let number = |k: usize| large[k].members(blocks[k], &self.search.known.groups)[places[k]];
-        let [i, j] = [number(0), number(1)];
-        if self.search.seeks(i) || self.search.seeks(j) {
-            self.pairs.push([i.min(j), i.max(j)]);
+/// The balls of a block.
+struct Members<'a> {
+    /// Their numbers.
+    numbers: &'a [u32],
+    /// The balls by columns, x, y, z and radius, m, filled up with [`NOWHERE`].
+    columns: [[f64; BLOCK]; 4],
+}
+
+impl<'a> Members<'a> {
+    #[inline(always)]
+    fn of<T: Lanes>(
+        proof: T::Proof,
+        large: &LargeCluster,
+        block: usize,
+        search: &Search<'a>,
+    ) -> Self {
+        let numbers = large.members(block, &search.known.groups);
+        let mut columns = [[0.0; BLOCK]; 4];
+        for first in (0..BLOCK).step_by(T::COUNT) {
+            let lanes = T::columns(proof, |lane| match numbers.get(first + lane) {
+                Some(&i) => search.balls[i as usize],
+                None => NOWHERE,
+            });
+            for (column, lanes) in columns.iter_mut().zip(lanes) {
+                column[first..first + T::COUNT].copy_from_slice(&lanes.values()[..T::COUNT]);
+            }
         }
+        Self { numbers, columns }
     }
 }
 
@@ -229,7 +266,7 @@ fn next_of(bits: &mut u32) -> usize {
     lowest
 }
 
-/// Makes a box so large that another is in it. No number of either is not a number.
+/// Enlarges a box so that it contains another. None of the numbers may be NaN.
 #[inline(always)]
 fn include(all: &mut Bounds, one: &Bounds) {
     // Comparisons, which are one operation each.
@@ -249,12 +286,12 @@ fn include(all: &mut Bounds, one: &Bounds) {
 fn within<T: Lanes>(proof: T::Proof, boxes: &[[f64; BOXES]; 6], room: &Bounds) -> u32 {
     let mut bits = 0;
     for first in (0..BOXES).step_by(T::COUNT) {
-        let mut outside = 0;
+        let mut inside = u8::MAX;
         for k in 0..3 {
-            outside |= T::load(proof, &boxes[k], first).above(T::all(proof, room.high[k]));
-            outside |= T::all(proof, room.low[k]).above(T::load(proof, &boxes[3 + k], first));
+            inside &= T::all(proof, room.high[k]).above(T::load(proof, &boxes[k], first));
+            inside &= T::load(proof, &boxes[3 + k], first).above(T::all(proof, room.low[k]));
         }
-        bits |= u32::from(!outside & (u8::MAX >> (BOXES - T::COUNT))) << first;
+        bits |= u32::from(inside) << first;
     }
     bits
 }

@@ -1,4 +1,4 @@
-//! Adds, removes and replaces bodies. All changes of a step are made at once, and everything
+//! Adds, removes and replaces bodies. All changes of one call are made at once, and everything
 //! indexed by particle is then renumbered.
 //!
 //! Done between a kick and the drift after it: positions are those of the present time, velocities

@@ -118,8 +118,9 @@ pub(crate) fn reaches(wall: &Wall) -> impl Fn([f64; 3], f64) -> bool + Sync {
         _ => None,
     };
     move |point, reach_m| {
-        if let Some((of_plane, normal)) = &plane {
-            return (Vector3::from(point) - of_plane).dot(normal) < reach_m;
+        // A plane is infinite: it needs neither box nor frame.
+        if let Some((on_plane, normal)) = &plane {
+            return (Vector3::from(point) - on_plane).dot(normal) < reach_m;
         }
         if !in_space.is_near(&point, reach_m) {
             return false;

@@ -16,6 +16,9 @@ pub(crate) const BLOCK: usize = 16;
 /// Number of boxes that are compared at once.
 pub(crate) const BOXES: usize = 8;
 
+/// A ball that overlaps none.
+pub(crate) const NOWHERE: Ball = [f64::INFINITY, 0.0, 0.0, 0.0];
+
 /// What the last neighbour search knew of the clusters.
 #[derive(Debug, Clone, Default)]
 pub struct KnownClusters {
@@ -39,9 +42,6 @@ pub struct LargeCluster {
     /// The same, [`BOXES`] at once, by columns: the lower ends along x, y and z, then the upper
     /// ones, m. Filled up with empty boxes.
     pub(crate) boxes: Vec<[[f64; BOXES]; 6]>,
-    /// The balls of each block by columns, x, y, z and radius, m. Empty places have a ball that
-    /// overlaps none.
-    pub(crate) columns: Vec<[[f64; BLOCK]; 4]>,
     /// Whether any of its balls seeks.
     pub(crate) seeks: bool,
 }
@@ -73,6 +73,14 @@ impl KnownClusters {
     }
 }
 
+impl KnownClusters {
+    /// Whether a particle is in one of the large clusters, as of the last search.
+    pub(crate) fn is_in_large(&self, i: u32) -> bool {
+        let cluster = self.of_particle.get(i as usize);
+        cluster.is_some_and(|&cluster| self.groups.is_large(cluster))
+    }
+}
+
 impl LargeCluster {
     fn new(group: u32) -> Self {
         Self {
@@ -80,23 +88,14 @@ impl LargeCluster {
             bounds: Bounds::EMPTY,
             blocks: Vec::new(),
             boxes: Vec::new(),
-            columns: Vec::new(),
             seeks: true,
         }
     }
 
     fn find_boxes(&mut self, members: &[u32], balls: &[Ball]) {
+        let blocks = members.chunks(BLOCK).map(|some| box_of(some, balls));
         self.blocks.clear();
-        self.columns.clear();
-        for some in members.chunks(BLOCK) {
-            let last = some.len() - 1;
-            // The last fills the empty places.
-            let rows: [Ball; BLOCK] = std::array::from_fn(|n| balls[some[n.min(last)] as usize]);
-            self.blocks.push(box_around(&rows));
-            let mut columns = [0, 1, 2, 3].map(|k| rows.map(|row| row[k]));
-            columns[0][last + 1..].fill(f64::INFINITY);
-            self.columns.push(columns);
-        }
+        self.blocks.extend(blocks);
         let blocks = self.blocks.iter();
         self.bounds = blocks.fold(Bounds::EMPTY, |all, one| all.with(one));
         self.boxes.clear();
@@ -149,15 +148,10 @@ fn box_columns(some: &[Bounds]) -> [[f64; BOXES]; 6] {
 
 /// The box around the balls with these numbers.
 pub(crate) fn box_of(some: &[u32], balls: &[Ball]) -> Bounds {
-    let boxes = some.iter().map(|&i| around(&balls[i as usize]));
-    boxes.fold(Bounds::EMPTY, |all, one| all.with(&one))
-}
-
-/// The box around a block of balls.
-fn box_around(balls: &[Ball; BLOCK]) -> Bounds {
     // Four numbers at once, by comparisons that are one operation each: the fourth is not used.
     let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
-    for ball in balls {
+    for &i in some {
+        let ball = balls[i as usize];
         for k in 0..4 {
             let (before, after) = (ball[k] - ball[3], ball[k] + ball[3]);
             low[k] = if before < low[k] { before } else { low[k] };

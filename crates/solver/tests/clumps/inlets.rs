@@ -372,7 +372,7 @@ fn what_is_known_of_fed_bodies_is_what_would_be_found_anew() {
          [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n\
          [inlets.feed]\nregion = \"gate\"\nbodies = [\"fed\"]\nrate = 2000\ncount = 12\norientation = \"random\"\n",
         lump("fed", "start_as = \"clump\""),
-        block("brittle", [4, 4, 3], 2e-3, |_| Some(1e-3), more),
+        block("falls", [4, 4, 3], 2e-3, |_| Some(1e-3), more),
     );
     let mut state = planned(&text).state;
     run_to(&mut state, 8e-3);

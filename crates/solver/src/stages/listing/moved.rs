@@ -143,8 +143,8 @@ fn free_left_m(particles: &Particles, references: &References, i: usize) -> [f64
     [left_m, allowance_m]
 }
 
-/// What something that moves by `moved_m` in a step must have left, m, so that it is not due: this
-/// distance, and enough for a few steps.
+/// Distance that must be left, m, or a new search is due: `enough_m`, or a few steps of `moved_m` if
+/// that is more.
 #[inline(always)]
 fn least_m(enough_m: f64, moved_m: f64) -> f64 {
     enough_m.max(STEPS_LEFT * moved_m)

@@ -1,5 +1,5 @@
 //! Neighbour lists after bodies have been added, removed or replaced: what was there before keeps
-//! its last search, under new numbers, and only what is new is searched for.
+//! its last search, under new numbers if these have changed, and only what is new is searched for.
 
 use super::moved::find_left;
 use crate::stages::contacts::find_mean_radius;
@@ -7,25 +7,30 @@ use crate::state::State;
 use crate::state::clumps::Clumps;
 use crate::state::contacts::Contacts;
 use crate::state::events::REMOVED;
+use crate::state::groups::KnownClusters;
 use crate::state::particles::Particles;
 use crate::state::references::{ClumpReference, References};
 
-/// Adds the particles from number `known` on and their clumps, which come after all others, to the
-/// last search: they are searched for before the next step.
+/// Adds particles and their clumps, which come after those that were there before, to the last
+/// search: they are searched for before the next step. `known`: numbers of particles and clumps
+/// before.
 pub(crate) fn lengthen_lists(
     contacts: &mut Contacts,
     particles: &Particles,
     clumps: &Clumps,
-    known: u32,
+    [known, known_clumps]: [usize; 2],
 ) {
     find_mean_radius(contacts, particles);
     contacts.skin_left_m = -1.0;
     let references = &mut contacts.scratch.references;
-    if references.balls.len() == known as usize {
-        references.due.extend(known..particles.len() as u32);
+    let knows_all = references.balls.len() == known && references.clumps.len() == known_clumps;
+    if knows_all {
+        references.due.extend(known as u32..particles.len() as u32);
         references.balls.resize(particles.len(), [0.0; 4]);
         let count = clumps.all.len();
         references.clumps.resize(count, ClumpReference::default());
+    } else {
+        contacts.search_all();
     }
 }
 
@@ -80,7 +85,8 @@ pub(crate) fn renumber_lists(
         balls: balls.into_iter().map(Option::unwrap_or_default).collect(),
         clumps,
         due,
-        ..std::mem::take(references)
+        chunks_left_m: Vec::new(),
+        clusters: KnownClusters::default(),
     };
     find_left(&state.particles, references);
     contacts.skin_left_m = -1.0;
