@@ -46,7 +46,8 @@ pub(crate) fn sums_of_chunks<const N: usize>(
     parts.into_iter().fold([0.0; N], add)
 }
 
-fn add<const N: usize>(mut sums: [f64; N], terms: [f64; N]) -> [f64; N] {
+/// Sums of two lists, number by number.
+pub(super) fn add<const N: usize>(mut sums: [f64; N], terms: [f64; N]) -> [f64; N] {
     for (sum, term) in sums.iter_mut().zip(terms) {
         *sum += term;
     }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::bonds::Kind;
-use super::chunks::sums_of_chunks;
+use super::chunks::{add, sums_of_chunks};
 use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::physics::bond::total::BondEnergy;
 use crate::stages::blocks::{BondGroup, blocks_of, coming_second_ends, fetch_soon};
@@ -18,7 +18,7 @@ pub fn elastic_energy(state: &State) -> BondEnergy {
         let mut sums = [0.0; 4];
         for (rule, run) in bonds.runs(range) {
             if bonds.rules[rule].is_single() {
-                run.for_each(|at| add(&mut sums, energy(bonds, poses, at)));
+                sums = run.fold(sums, |sums, at| add(sums, energy(bonds, poses, at)));
             } else {
                 with_most_lanes(Energies {
                     bonds,
@@ -46,12 +46,6 @@ fn energy(bonds: &Bonds, poses: &[Pose], at: usize) -> [f64; 4] {
     }
     let energy = bonds.forces(at, poses).energy;
     [energy.normal, energy.shear, energy.torsion, energy.bending]
-}
-
-fn add(sums: &mut [f64; 4], terms: [f64; 4]) {
-    for (sum, term) in sums.iter_mut().zip(terms) {
-        *sum += term;
-    }
 }
 
 /// Sums over a range of bonds that share a rule without history, in their order.
@@ -89,11 +83,12 @@ impl LaneWork for Energies<'_> {
                         continue;
                     }
                     // One that is pressed is as stiff as before the damage.
-                    if bonds.was_damaged(at) {
-                        add(self.sums, energy(bonds, poses, at));
+                    let terms = if bonds.was_damaged(at) {
+                        energy(bonds, poses, at)
                     } else {
-                        add(self.sums, *row);
-                    }
+                        *row
+                    };
+                    *self.sums = add(*self.sums, terms);
                 }
             }
         }

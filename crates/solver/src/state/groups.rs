@@ -71,9 +71,7 @@ impl KnownClusters {
             low(a).total_cmp(&low(b)).then(a.group.cmp(&b.group))
         });
     }
-}
 
-impl KnownClusters {
     /// Whether a particle is in one of the large clusters, as of the last search.
     pub(crate) fn is_in_large(&self, i: u32) -> bool {
         let cluster = self.of_particle.get(i as usize);

@@ -15,7 +15,7 @@ pub struct References {
     pub chunks_left_m: Vec<f64>,
     /// The clumps.
     pub clumps: Vec<ClumpReference>,
-    /// Particles to be searched for again, wherever they are: those of bodies and fragments that are new.
+    /// Particles to be searched for again, wherever they are: those of new bodies and fragments.
     pub due: Vec<u32>,
     /// The clusters.
     pub clusters: KnownClusters,
