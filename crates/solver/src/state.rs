@@ -1,6 +1,7 @@
 //! The state of a simulation as plain arrays: bodies, bonds, contacts and all other data that a
 //! step needs.
 
+pub mod balls;
 pub mod bodies;
 pub mod bonds;
 pub mod bridges;
@@ -21,6 +22,7 @@ pub mod partitions;
 pub(crate) mod population;
 pub mod references;
 pub mod regions;
+pub mod rigid_balls;
 pub mod rigid_parts;
 pub(crate) mod rules;
 pub(crate) mod scratch;

@@ -17,8 +17,6 @@ use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// Clumps handled by one task.
 const CHUNK: usize = 32;
-/// Spheres that are looked at together, whether any is near something.
-const AT_ONCE: usize = 64;
 
 /// Rigid clumps.
 pub(crate) const CLUMPS: Stage = Stage {
@@ -96,40 +94,62 @@ pub(crate) fn list_near(
     near: impl Iterator<Item = u32>,
 ) {
     let free = particles.free;
-    let mut is_near = vec![false; particles.len() - free];
+    let mut is_near = Bits::new(particles.len() - free);
     for i in near.map(|i| i as usize).filter(|&i| i >= free) {
-        is_near[i - free] = true;
+        is_near.set(i - free);
     }
-    let mut now = Vec::with_capacity(clumps.near.len());
-    for (first, some) in (free as u32..)
-        .step_by(AT_ONCE)
-        .zip(is_near.chunks(AT_ONCE))
-    {
-        // Most are near nothing: this is fast for many at once.
-        if some.iter().fold(false, |any, near| any | near) {
-            let near = (first..).zip(some).filter(|(_, is_near)| **is_near);
-            now.extend(near.map(|(i, _)| i));
-        }
-    }
+    let now = is_near.all().map(|i| (free + i) as u32).collect();
     for &i in &clumps.near {
-        is_near[i as usize - free] = false;
+        is_near.clear(i as usize - free);
     }
     clumps.set_near(now);
     for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
+        let [from, to] = clump.near.map(|n| n as usize);
+        // Those that were near before are in place and have a velocity.
+        let now_near = clumps.near[from..to].iter().map(|&i| i as usize);
+        let mut now_near = now_near.filter(|i| is_near.get(i - free)).peekable();
+        if now_near.peek().is_none() {
+            continue;
+        }
         let template = clumps.template(clump);
         let to_space = rotation_of(clump.turned).to_rotation_matrix();
         let motion_at = clump.motion(template);
-        let [from, to] = clump.near.map(|n| n as usize);
-        for &i in &clumps.near[from..to] {
-            let i = i as usize;
-            // Those that were near before are in place and have a velocity.
-            if is_near[i - free] {
-                let sphere = template.outer[i - clump.first as usize] as usize;
-                let place = place_of(template, sphere, clump, &to_space);
-                particles.poses[i].put_at(place.into());
-                particles.motions[i] = motion_at(&place);
-            }
+        for i in now_near {
+            let sphere = template.outer[i - clump.first as usize] as usize;
+            let place = place_of(template, sphere, clump, &to_space);
+            particles.poses[i].put_at(place.into());
+            particles.motions[i] = motion_at(&place);
         }
+    }
+}
+
+/// A bit for each of many numbers, most of which are clear.
+struct Bits(Vec<u64>);
+
+impl Bits {
+    fn new(count: usize) -> Self {
+        Self(vec![0; count.div_ceil(64)])
+    }
+
+    fn set(&mut self, i: usize) {
+        self.0[i / 64] |= 1 << (i % 64);
+    }
+
+    fn clear(&mut self, i: usize) {
+        self.0[i / 64] &= !(1 << (i % 64));
+    }
+
+    fn get(&self, i: usize) -> bool {
+        self.0[i / 64] >> (i % 64) & 1 == 1
+    }
+
+    /// The numbers that are set, ascending.
+    fn all(&self) -> impl Iterator<Item = usize> {
+        self.0.iter().enumerate().flat_map(|(at, &word)| {
+            let without_lowest = |word: &u64| Some(word & (word - 1)).filter(|&word| word != 0);
+            let words = std::iter::successors(Some(word).filter(|&word| word != 0), without_lowest);
+            words.map(move |word| 64 * at + word.trailing_zeros() as usize)
+        })
     }
 }
 

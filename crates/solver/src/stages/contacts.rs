@@ -216,16 +216,22 @@ pub fn list_contacts(
     particles: &Particles,
     skin_m: f64,
 ) {
-    find_mean_radius(contacts, particles);
+    find_mean_radius(contacts, particles, 0);
     let pairs = near_pairs(&particles.poses, clusters, skin_m);
     relist(contacts, pairs, particles);
     contacts.skin_left_m = 0.5 * skin_m;
 }
 
-/// Finds the mean radius of the particles.
-pub(super) fn find_mean_radius(contacts: &mut Contacts, particles: &Particles) {
-    let radii_m: f64 = particles.poses.iter().map(Pose::radius_m).sum();
-    contacts.scratch.mean_radius_m = radii_m / particles.len().max(1) as f64;
+/// Finds the mean radius of the particles. The sum of the first `known` is the one that was found
+/// last.
+pub(super) fn find_mean_radius(contacts: &mut Contacts, particles: &Particles, known: usize) {
+    let radii_m = &mut contacts.scratch.radii_m;
+    if known == 0 {
+        *radii_m = 0.0;
+    }
+    let new = particles.poses[known..].iter().map(Pose::radius_m);
+    *radii_m = new.fold(*radii_m, |sum, radius_m| sum + radius_m);
+    contacts.scratch.mean_radius_m = *radii_m / particles.len().max(1) as f64;
 }
 
 /// Replaces the list of pairs, and divides the work anew.

@@ -5,25 +5,27 @@ mod moved;
 mod renumbered;
 
 use dem_scene::WallMotion;
-use nalgebra::Vector3;
+use rayon::prelude::*;
 
 pub(super) use self::renumbered::{lengthen_lists, renumber_lists};
 
 use self::moved::{Due, due, find_left, may_be_due, refer_clumps, refer_particle, use_up};
+use super::chunks::CHUNK;
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::contacts::{find_mean_radius, list_beside, list_contacts, relist};
 use super::neighbours::overlapping_pairs;
 use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
-use super::walls::{list_near, reached, reaches};
-use crate::geometry::Bounds;
+use super::walls::{list_near, reaches};
 use crate::state::State;
+use crate::state::balls::{Ball, ball_around};
 use crate::state::bridges::Bridges;
 use crate::state::clumps::Clumps;
 use crate::state::contacts::Contacts;
-use crate::state::groups::{KnownClusters, LargeCluster};
-use crate::state::references::{ClumpReference, References};
+use crate::state::groups::{KnownClusters, Searched};
+use crate::state::references::References;
+use crate::state::rigid_balls::ClumpReference;
 use crate::state::walls::Wall;
 
 /// The neighbour search.
@@ -113,7 +115,7 @@ fn search_for_moved(state: &mut State) -> usize {
 
 /// Searches for the neighbours of all particles.
 fn search_for_all(state: &mut State, contacts: &mut Contacts) -> usize {
-    find_mean_radius(contacts, &state.particles);
+    find_mean_radius(contacts, &state.particles, 0);
     let references = &mut contacts.scratch.references;
     references.balls = vec![[0.0; 4]; state.particles.len()];
     references.clumps = vec![ClumpReference::default(); state.clumps.all.len()];
@@ -139,38 +141,38 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
         let moved_m = speed_m_s * state.cycle_s();
         refer_particle(contacts, i, &state.particles.poses[i], moved_m);
     }
-    refer_clumps(contacts, state, &due.clumps);
+    let clusters = state.clusters.as_ref();
+    refer_clumps(contacts, state, &due.clumps, clusters.is_none());
     find_left(&state.particles, &mut contacts.scratch.references);
     let seeks = seeks(state, due);
     let some = seeks.contains(&false).then_some(&seeks[..]);
-    let clusters = state.clusters.as_ref();
-    let clusters = clusters.filter(|_| !contacts.model.alone);
     let References {
         balls,
         clusters: known,
+        clumps: references,
         ..
     } = &mut contacts.scratch.references;
-    if let Some(clusters) = clusters {
-        known.update(balls, &clusters.of_particle, some);
-    }
+    let searched = Searched {
+        balls,
+        clusters: clusters.map_or(&[], |clusters| &clusters.of_particle),
+        seeks: some,
+        clumps: Some((&state.clumps, references)),
+    };
+    known.update(&searched);
     let small = of_small(known, &state.clumps, due);
     for wall in &mut state.walls {
-        let near = reached(wall, balls, &candidates(wall, known, &small, some));
+        let near = reached(wall, known, &searched, &small);
         wall.near.retain(|&i| !seeks[i as usize]);
         wall.near.extend(near);
         wall.near.sort_unstable();
     }
-    let mut pairs = match clusters {
-        Some(clusters) => {
-            let found = overlapping_pairs(balls, &clusters.of_particle, some, known);
-            if some.is_some() {
-                with_others(&contacts.pairs, found, &seeks)
-            } else {
-                found
-            }
+    let mut pairs = Vec::new();
+    if clusters.is_some() && !contacts.model.alone {
+        pairs = overlapping_pairs(&searched, known);
+        if some.is_some() {
+            pairs = with_others(&contacts.pairs, pairs, &seeks);
         }
-        None => Vec::new(),
-    };
+    }
     list_beside(state, contacts, &mut pairs);
     list_near_spheres(state, &pairs);
     relist(contacts, pairs, &state.particles);
@@ -206,32 +208,32 @@ fn of_small(known: &KnownClusters, clumps: &Clumps, due: &Due) -> Vec<u32> {
         .collect()
 }
 
-/// The particles that a wall may reach: those of small clusters, and of large ones those of blocks
-/// whose boxes it may reach, which seek. Without `seeks` all do.
-fn candidates(
-    wall: &Wall,
-    known: &KnownClusters,
-    small: &[u32],
-    seeks: Option<&[bool]>,
-) -> Vec<u32> {
-    let is_reached = reaches(wall);
-    let may_reach = |bounds: &Bounds| {
-        let [low, high] = [bounds.low, bounds.high].map(Vector3::from);
-        let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
-        is_reached(centre.into(), half.norm() + wall.skin_left_m)
-    };
-    let mut some = small.to_vec();
-    let seeking = |large: &&LargeCluster| seeks.is_none() || large.seeks;
-    let large = known.large.iter().filter(seeking);
-    for large in large.filter(|large| may_reach(&large.bounds)) {
-        for (block, bounds) in large.blocks.iter().enumerate() {
-            if may_reach(bounds) {
-                let members = large.members(block, &known.groups).iter().copied();
-                some.extend(members.filter(|&i| seeks.is_none_or(|seeks| seeks[i as usize])));
+/// The particles that a wall reaches before its skin is used up, of those that seek: of small
+/// clusters `small`, and of large ones those of blocks that it may reach.
+fn reached(wall: &Wall, known: &KnownClusters, searched: &Searched<'_>, small: &[u32]) -> Vec<u32> {
+    let reaches = reaches(wall);
+    let is_reached = |[x, y, z, radius_m]: Ball| reaches([x, y, z], radius_m + wall.skin_left_m);
+    let of_small = small.par_iter().with_min_len(CHUNK).copied();
+    let of_small = of_small.filter(|&i| is_reached(searched.balls[i as usize]));
+    let mut reached: Vec<u32> = of_small.collect();
+    let seeks = |i: u32| searched.seeks.is_none_or(|seeks| seeks[i as usize]);
+    let of_large = known.large.par_iter().filter(|large| {
+        let any_seeks = searched.seeks.is_none() || large.seeks;
+        any_seeks && is_reached(ball_around(&large.bounds))
+    });
+    let of_large = of_large.flat_map_iter(|large| {
+        let mut near = Vec::new();
+        for (block, ball) in large.blocks.around.iter().enumerate() {
+            if is_reached(large.in_space(ball)) {
+                let balls = large.balls_of(block, searched.balls, &known.groups);
+                let balls = balls.filter(|&(i, ball)| seeks(i) && is_reached(ball));
+                near.extend(balls.map(|(i, _)| i));
             }
         }
-    }
-    some
+        near
+    });
+    reached.par_extend(of_large);
+    reached
 }
 
 /// The pairs found for the particles that seek, and the known pairs of the others: sorted.
@@ -276,12 +278,20 @@ fn list_near_moving_walls(state: &mut State) {
         let References {
             balls,
             clusters: known,
+            clumps,
             ..
         } = &contacts.scratch.references;
+        let clusters = state.clusters.as_ref();
+        let searched = Searched {
+            balls,
+            clusters: clusters.map_or(&[], |clusters| &clusters.of_particle),
+            seeks: None,
+            clumps: Some((&state.clumps, clumps)),
+        };
         let small = of_small(known, &state.clumps, &everything(state));
         for wall in state.walls.iter_mut().filter(|wall| is_due(wall)) {
             wall.skin_left_m = skin_m(wall, &contacts);
-            wall.near = reached(wall, balls, &candidates(wall, known, &small, None));
+            wall.near = reached(wall, known, &searched, &small);
             wall.near.sort_unstable();
         }
         list_near_spheres(state, &contacts.pairs);

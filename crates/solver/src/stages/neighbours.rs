@@ -20,9 +20,10 @@ use super::chunks::CHUNK;
 use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
-use crate::state::groups::{BLOCK, BOXES, KnownClusters, LargeCluster, NOWHERE};
+use crate::state::balls::{BLOCK, BOXES, Ball, BoxColumns, NOWHERE};
+use crate::state::groups::{KnownClusters, LargeCluster, Searched};
 use crate::state::particles::Pose;
-use crate::state::references::Ball;
+use crate::state::rigid_balls::Placement;
 
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the
 /// smaller index first, sorted. `clusters`: one for each particle.
@@ -32,26 +33,21 @@ pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]
         [x, y, z, radius_m + 0.5 * skin_m]
     };
     let balls: Vec<Ball> = poses.iter().map(ball).collect();
+    let searched = Searched {
+        balls: &balls,
+        clusters,
+        seeks: None,
+        clumps: None,
+    };
     let mut known = KnownClusters::default();
-    known.update(&balls, clusters, None);
-    overlapping_pairs(&balls, clusters, None, &known)
+    known.update(&searched);
+    overlapping_pairs(&searched, &known)
 }
 
-/// Pairs of overlapping balls of different clusters, the smaller index first, sorted; with `seeks`
-/// (one for each ball) only those with at least one ball that seeks. `clusters`: one for each ball.
-/// `known`: of these balls.
-pub(crate) fn overlapping_pairs(
-    balls: &[Ball],
-    clusters: &[u32],
-    seeks: Option<&[bool]>,
-    known: &KnownClusters,
-) -> Vec<[u32; 2]> {
-    let search = Search {
-        balls,
-        clusters,
-        seeks,
-        known,
-    };
+/// Pairs of overlapping balls of different clusters, the smaller index first, sorted: those with at
+/// least one ball that seeks. `known`: of these balls.
+pub(crate) fn overlapping_pairs(searched: &Searched<'_>, known: &KnownClusters) -> Vec<[u32; 2]> {
+    let search = Search { searched, known };
     let mut pairs = search.among_small();
     let of_large: Vec<Vec<[u32; 2]>> = (0..known.large.len())
         .into_par_iter()
@@ -59,30 +55,37 @@ pub(crate) fn overlapping_pairs(
         .collect();
     pairs.extend(of_large.into_iter().flatten());
     if !pairs.is_sorted() {
-        pairs.par_sort_unstable();
+        // One number is compared faster than two.
+        pairs.par_sort_unstable_by_key(|&[i, j]| u64::from(i) << 32 | u64::from(j));
     }
     pairs
 }
 
-/// What is searched.
+/// What is searched, and what is known of it.
 struct Search<'a> {
-    balls: &'a [Ball],
-    clusters: &'a [u32],
-    seeks: Option<&'a [bool]>,
+    searched: &'a Searched<'a>,
     known: &'a KnownClusters,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
     fn seeks(&self, i: u32) -> bool {
-        self.seeks.is_none_or(|seeks| seeks[i as usize])
+        self.searched.seeks.is_none_or(|seeks| seeks[i as usize])
     }
 
-    fn seeker(&self, i: u32) -> Seeker {
-        Seeker {
-            particle: i,
-            cluster: self.clusters[i as usize],
-            ball: self.balls[i as usize],
-        }
+    /// The balls of a block of a cluster, in its axes.
+    #[inline(always)]
+    fn members<T: Lanes>(
+        &self,
+        proof: T::Proof,
+        large: &LargeCluster,
+        block: usize,
+    ) -> Members<'a> {
+        let numbers = large.members(block, &self.known.groups);
+        let columns = match &large.rigid {
+            Some(body) => body.balls.columns[block],
+            None => gather::<T>(proof, numbers, self.searched.balls),
+        };
+        Members { numbers, columns }
     }
 
     /// Pairs of the large cluster of this place in the list with those that come after it.
@@ -92,25 +95,36 @@ impl Search<'_> {
             search: self,
             of: n,
             pairs: &mut pairs,
+            placed: [Vec::new(), Vec::new()],
         });
         pairs
     }
 
     /// Pairs of which at least one is of a small cluster.
     fn among_small(&self) -> Vec<[u32; 2]> {
-        let groups = &self.known.groups;
-        let active = Meetings::new(self.balls, self.known, self.seeks).with_small(self.balls);
+        let Searched {
+            balls,
+            clusters,
+            seeks,
+            ..
+        } = *self.searched;
+        let active = Meetings::new(balls, self.known, seeks).with_small(balls);
         if active.len() < 2 {
             return Vec::new();
         }
-        let grids = Grids::new(self.balls, self.clusters, &active);
-        let is_large = |i: u32| groups.is_large(self.clusters[i as usize]);
+        let grids = Grids::new(clusters, &active);
+        let groups = &self.known.groups;
+        let is_large = |i: u32| groups.is_large(clusters[i as usize]);
         let any_large = !self.known.large.is_empty();
-        let of_chunk = |some: &[u32]| {
+        let of_chunk = |some: &[(u32, Ball)]| {
             let mut pairs = Vec::new();
-            for &i in some.iter().filter(|i| self.seeks(**i)) {
-                let seeker = self.seeker(i);
-                match self.seeks {
+            for &(i, ball) in some.iter().filter(|(i, _)| self.seeks(*i)) {
+                let seeker = Seeker {
+                    particle: i,
+                    cluster: clusters[i as usize],
+                    ball,
+                };
+                match seeks {
                     None => grids.add_pairs_of_all(&seeker, &mut pairs),
                     Some(seeks) => grids.add_pairs(&seeker, |j| seeks[j as usize], &mut pairs),
                 }
@@ -131,54 +145,113 @@ struct LargeMeetings<'a> {
     search: &'a Search<'a>,
     of: usize,
     pairs: &'a mut Vec<[u32; 2]>,
+    /// Boxes of each of two clusters in the axes of the other.
+    placed: [Vec<BoxColumns>; 2],
+}
+
+/// How the first of two clusters lies in the axes of the second.
+struct Relative {
+    placement: Placement,
+    /// What both add to the distance at which their balls overlap, m.
+    allowance_m: f64,
 }
 
 impl LaneWork for LargeMeetings<'_> {
     #[inline(always)]
     fn with<T: Lanes>(mut self, proof: T::Proof) {
-        let large = &self.search.known.large;
-        let a = &large[self.of];
-        let reaches = |b: &&LargeCluster| b.bounds.low[0] <= a.bounds.high[0];
-        for b in large[self.of + 1..].iter().take_while(reaches) {
-            if (a.seeks || b.seeks) && a.bounds.overlaps(&b.bounds) {
-                self.meet::<T>(proof, a, b);
+        let known = self.search.known;
+        let a = &known.large[self.of];
+        for (some, boxes) in known.columns.iter().enumerate().skip(self.of / BOXES) {
+            if boxes[0][0] > a.bounds.high[0] {
+                break;
+            }
+            let mut bits = within::<T>(proof, boxes, &a.bounds);
+            while bits != 0 {
+                let n = some * BOXES + next_of(&mut bits);
+                if n > self.of && (a.seeks || known.large[n].seeks) {
+                    self.meet::<T>(proof, a, &known.large[n]);
+                }
             }
         }
     }
 }
 
+impl Relative {
+    /// None: both are in space.
+    fn of(a: &LargeCluster, b: &LargeCluster) -> Option<Self> {
+        let to_space = [a, b].map(LargeCluster::to_space);
+        if to_space == [None; 2] {
+            return None;
+        }
+        let [a_to_space, b_to_space] = to_space.map(|to| to.unwrap_or(&Placement::NONE));
+        Some(Self {
+            placement: a_to_space.seen_from(b_to_space),
+            allowance_m: a.allowance_m() + b.allowance_m(),
+        })
+    }
+}
+
 impl LargeMeetings<'_> {
-    /// Adds the pairs of two clusters: those of their blocks that overlap.
+    /// Adds the pairs of two clusters: those of their blocks that overlap along the axes of both.
     #[inline(always)]
     fn meet<T: Lanes>(&mut self, proof: T::Proof, a: &LargeCluster, b: &LargeCluster) {
-        let mut room = a.bounds.common(&b.bounds);
+        let [to_b, to_a] = [Relative::of(a, b), Relative::of(b, a)];
+        let mut room = bounds_at(a, to_b.as_ref()).common(&b.blocks.bounds);
+        if room == Bounds::EMPTY || !bounds_at(b, to_a.as_ref()).overlaps(&a.blocks.bounds) {
+            return;
+        }
+        let mut placed = std::mem::take(&mut self.placed);
+        let [placed_a, placed_b] = &mut placed;
+        let a_in_b = all_at::<T>(proof, &a.blocks.columns, to_b.as_ref(), placed_a);
         // What one of them has there narrows down where the other can meet it.
-        for large in [a, b] {
-            let mut there = Bounds::EMPTY;
-            for some in 0..large.boxes.len() {
-                let mut bits = within::<T>(proof, &large.boxes[some], &room);
+        for boxes in [a_in_b, &b.blocks.columns] {
+            room = room.common(&reach_within::<T>(proof, boxes, &room));
+        }
+        if room != Bounds::EMPTY {
+            let b_in_a = all_at::<T>(proof, &b.blocks.columns, to_a.as_ref(), placed_b);
+            for (some, boxes) in a_in_b.iter().enumerate() {
+                let mut bits = within::<T>(proof, boxes, &room);
                 while bits != 0 {
-                    include(&mut there, &large.blocks[some * BOXES + next_of(&mut bits)]);
+                    let lane = next_of(&mut bits);
+                    let block = Block {
+                        number: some * BOXES + lane,
+                        in_a: box_at(&a.blocks.columns[some], lane),
+                        in_b: box_at(boxes, lane),
+                    };
+                    self.meet_block::<T>(proof, (a, &block), (b, b_in_a), to_b.as_ref());
                 }
-            }
-            room = room.common(&there);
-            if room == Bounds::EMPTY {
-                return;
             }
         }
-        for some_a in 0..a.boxes.len() {
-            let mut bits_a = within::<T>(proof, &a.boxes[some_a], &room);
-            while bits_a != 0 {
-                let of_a = some_a * BOXES + next_of(&mut bits_a);
-                let room = room.common(&a.blocks[of_a]);
-                let of_a = Members::of::<T>(proof, a, of_a, self.search);
-                for some_b in 0..b.boxes.len() {
-                    let mut bits_b = within::<T>(proof, &b.boxes[some_b], &room);
-                    while bits_b != 0 {
-                        let of_b = some_b * BOXES + next_of(&mut bits_b);
-                        self.test::<T>(proof, &of_a, b, of_b);
-                    }
+        self.placed = placed;
+    }
+
+    /// Adds the pairs of a block of the first of two clusters with the second.
+    #[inline(always)]
+    fn meet_block<T: Lanes>(
+        &mut self,
+        proof: T::Proof,
+        (a, block): (&LargeCluster, &Block),
+        (b, b_in_a): (&LargeCluster, &[BoxColumns]),
+        to_b: Option<&Relative>,
+    ) {
+        let mut of_a = None;
+        for (some, (boxes, in_a)) in b.blocks.columns.iter().zip(b_in_a).enumerate() {
+            let mut bits = within::<T>(proof, boxes, &block.in_b);
+            if bits != 0 && to_b.is_some() {
+                bits &= within::<T>(proof, in_a, &block.in_a);
+            }
+            while bits != 0 {
+                let lane = next_of(&mut bits);
+                if of_a.is_none() {
+                    let members = self.search.members::<T>(proof, a, block.number);
+                    of_a = Some(match to_b {
+                        Some(to_b) => members.at::<T>(proof, to_b),
+                        None => members,
+                    });
                 }
+                let Some(of_a) = &of_a else { continue };
+                let of_b = (b, some * BOXES + lane);
+                self.test::<T>(proof, of_a, of_b, &box_at(boxes, lane));
             }
         }
     }
@@ -190,14 +263,22 @@ impl LargeMeetings<'_> {
         &mut self,
         proof: T::Proof,
         of_a: &Members<'_>,
-        b: &LargeCluster,
-        block_of_b: usize,
+        (b, block): (&LargeCluster, usize),
+        bounds: &Bounds,
     ) {
-        let mut reaching = reaching::<T>(proof, &of_a.columns, &b.blocks[block_of_b]);
+        let mut reaching = reaching::<T>(proof, &of_a.columns, bounds);
         if reaching == 0 {
             return;
         }
-        let of_b = Members::of::<T>(proof, b, block_of_b, self.search);
+        let numbers = b.members(block, &self.search.known.groups);
+        let gathered;
+        let of_b = match &b.rigid {
+            Some(body) => &body.balls.columns[block],
+            None => {
+                gathered = gather::<T>(proof, numbers, self.search.searched.balls);
+                &gathered
+            }
+        };
         while reaching != 0 {
             let n = next_of(&mut reaching);
             // Spelled out: a closure around lanes may not be compiled for them.
@@ -207,24 +288,33 @@ impl LargeMeetings<'_> {
                 T::all(proof, of_a.columns[2][n]),
                 T::all(proof, of_a.columns[3][n]),
             ];
+            let mut bits = 0;
             for first in (0..BLOCK).step_by(T::COUNT) {
                 let apart = Vec3(
-                    T::load(proof, &of_b.columns[0], first) - x,
-                    T::load(proof, &of_b.columns[1], first) - y,
-                    T::load(proof, &of_b.columns[2], first) - z,
+                    T::load(proof, &of_b[0], first) - x,
+                    T::load(proof, &of_b[1], first) - y,
+                    T::load(proof, &of_b[2], first) - z,
                 );
-                let near = radius_m + T::load(proof, &of_b.columns[3], first);
-                let mut bits = u32::from((near * near).above(apart.square()));
-                while bits != 0 {
-                    let lane = next_of(&mut bits);
-                    let [i, j] = [of_a.numbers[n], of_b.numbers[first + lane]];
-                    if self.search.seeks(i) || self.search.seeks(j) {
-                        self.pairs.push([i.min(j), i.max(j)]);
-                    }
+                let near = radius_m + T::load(proof, &of_b[3], first);
+                bits |= u32::from((near * near).above(apart.square())) << first;
+            }
+            while bits != 0 {
+                let [i, j] = [of_a.numbers[n], numbers[next_of(&mut bits)]];
+                if self.search.seeks(i) || self.search.seeks(j) {
+                    self.pairs.push([i.min(j), i.max(j)]);
                 }
             }
         }
     }
+}
+
+/// A block of the first of two clusters.
+struct Block {
+    number: usize,
+    /// Its box along its own axes, without allowance.
+    in_a: Bounds,
+    /// The same along the axes of the second, with the allowance of both.
+    in_b: Bounds,
 }
 
 /// The balls of a block.
@@ -235,26 +325,135 @@ struct Members<'a> {
     columns: [[f64; BLOCK]; 4],
 }
 
-impl<'a> Members<'a> {
+impl Members<'_> {
+    /// The same in the axes of another cluster, with the allowance of both.
     #[inline(always)]
-    fn of<T: Lanes>(
-        proof: T::Proof,
-        large: &LargeCluster,
-        block: usize,
-        search: &Search<'a>,
-    ) -> Self {
-        let numbers = large.members(block, &search.known.groups);
-        let mut columns = [[0.0; BLOCK]; 4];
+    fn at<T: Lanes>(mut self, proof: T::Proof, relative: &Relative) -> Self {
+        let Placement { turned, place_m } = &relative.placement;
         for first in (0..BLOCK).step_by(T::COUNT) {
-            let lanes = T::columns(proof, |lane| match numbers.get(first + lane) {
-                Some(&i) => search.balls[i as usize],
-                None => NOWHERE,
-            });
-            for (column, lanes) in columns.iter_mut().zip(lanes) {
-                column[first..first + T::COUNT].copy_from_slice(&lanes.values()[..T::COUNT]);
+            let [x, y, z, radius_m] = [
+                T::load(proof, &self.columns[0], first),
+                T::load(proof, &self.columns[1], first),
+                T::load(proof, &self.columns[2], first),
+                T::load(proof, &self.columns[3], first),
+            ];
+            for k in 0..3 {
+                let turned =
+                    x.scale(turned[(k, 0)]) + y.scale(turned[(k, 1)]) + z.scale(turned[(k, 2)]);
+                put::<T>(&mut self.columns[k], first, turned.plus(place_m[k]));
             }
+            let radius_m = radius_m.plus(relative.allowance_m);
+            put::<T>(&mut self.columns[3], first, radius_m);
         }
-        Self { numbers, columns }
+        self
+    }
+}
+
+/// Some balls by columns: see [`Members`].
+#[inline(always)]
+fn gather<T: Lanes>(proof: T::Proof, numbers: &[u32], balls: &[Ball]) -> [[f64; BLOCK]; 4] {
+    let mut columns = [[0.0; BLOCK]; 4];
+    for first in (0..BLOCK).step_by(T::COUNT) {
+        let lanes = T::columns(proof, |lane| match numbers.get(first + lane) {
+            Some(&i) => balls[i as usize],
+            None => NOWHERE,
+        });
+        for (column, lanes) in columns.iter_mut().zip(lanes) {
+            put::<T>(column, first, lanes);
+        }
+    }
+    columns
+}
+
+/// Writes lanes to a column, from place `first` on.
+#[inline(always)]
+fn put<T: Lanes>(column: &mut [f64], first: usize, lanes: T) {
+    column[first..first + T::COUNT].copy_from_slice(&lanes.values()[..T::COUNT]);
+}
+
+/// The box around a cluster in the axes of another, with the allowance of both.
+fn bounds_at(large: &LargeCluster, relative: Option<&Relative>) -> Bounds {
+    let bounds = &large.blocks.bounds;
+    relative.map_or(*bounds, |to| to.placement.of_box(bounds, to.allowance_m))
+}
+
+/// Boxes of a cluster in the axes of another, kept in `placed` if those differ.
+#[inline(always)]
+fn all_at<'a, T: Lanes>(
+    proof: T::Proof,
+    columns: &'a [BoxColumns],
+    relative: Option<&Relative>,
+    placed: &'a mut Vec<BoxColumns>,
+) -> &'a [BoxColumns] {
+    let Some(relative) = relative else {
+        return columns;
+    };
+    placed.clear();
+    for boxes in columns {
+        placed.push(boxes_at::<T>(proof, boxes, relative));
+    }
+    placed
+}
+
+/// The boxes around some boxes of a cluster, in the axes of another, with the allowance of both.
+#[inline(always)]
+fn boxes_at<T: Lanes>(proof: T::Proof, boxes: &BoxColumns, relative: &Relative) -> BoxColumns {
+    let Placement { turned, place_m } = &relative.placement;
+    let mut placed = [[0.0; BOXES]; 6];
+    for first in (0..BOXES).step_by(T::COUNT) {
+        let [x0, y0, z0] = [
+            T::load(proof, &boxes[0], first),
+            T::load(proof, &boxes[1], first),
+            T::load(proof, &boxes[2], first),
+        ];
+        let [x1, y1, z1] = [
+            T::load(proof, &boxes[3], first),
+            T::load(proof, &boxes[4], first),
+            T::load(proof, &boxes[5], first),
+        ];
+        let centre = [
+            (x0 + x1).scale(0.5),
+            (y0 + y1).scale(0.5),
+            (z0 + z1).scale(0.5),
+        ];
+        let half = [
+            (x1 - x0).scale(0.5),
+            (y1 - y0).scale(0.5),
+            (z1 - z0).scale(0.5),
+        ];
+        for k in 0..3 {
+            let row = [turned[(k, 0)], turned[(k, 1)], turned[(k, 2)]];
+            let at = centre[0].scale(row[0]) + centre[1].scale(row[1]) + centre[2].scale(row[2]);
+            let at = at.plus(place_m[k]);
+            let row = row.map(f64::abs);
+            let half = half[0].scale(row[0]) + half[1].scale(row[1]) + half[2].scale(row[2]);
+            let half = half.plus(relative.allowance_m);
+            put::<T>(&mut placed[k], first, at - half);
+            put::<T>(&mut placed[3 + k], first, at + half);
+        }
+    }
+    placed
+}
+
+/// The box around those of some boxes that overlap `room`.
+#[inline(always)]
+fn reach_within<T: Lanes>(proof: T::Proof, boxes: &[BoxColumns], room: &Bounds) -> Bounds {
+    let mut there = Bounds::EMPTY;
+    for boxes in boxes {
+        let mut bits = within::<T>(proof, boxes, room);
+        while bits != 0 {
+            include(&mut there, &box_at(boxes, next_of(&mut bits)));
+        }
+    }
+    there
+}
+
+/// One of some boxes.
+#[inline(always)]
+fn box_at(boxes: &BoxColumns, lane: usize) -> Bounds {
+    Bounds {
+        low: [boxes[0][lane], boxes[1][lane], boxes[2][lane]],
+        high: [boxes[3][lane], boxes[4][lane], boxes[5][lane]],
     }
 }
 
@@ -283,7 +482,7 @@ fn include(all: &mut Bounds, one: &Bounds) {
 
 /// A bit for each of some boxes that overlaps `room`.
 #[inline(always)]
-fn within<T: Lanes>(proof: T::Proof, boxes: &[[f64; BOXES]; 6], room: &Bounds) -> u32 {
+fn within<T: Lanes>(proof: T::Proof, boxes: &BoxColumns, room: &Bounds) -> u32 {
     let mut bits = 0;
     for first in (0..BOXES).step_by(T::COUNT) {
         let mut inside = u8::MAX;

@@ -21,7 +21,6 @@ use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::loads::factor_at;
 use crate::state::meetings::{Meeting, Meetings, Met};
 use crate::state::particles::{Particles, Pose};
-use crate::state::references::Ball;
 use crate::state::walls::{Wall, WallContact, WallLoad};
 
 /// Contacts with walls, and their motion.
@@ -85,17 +84,6 @@ pub(crate) fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) 
         };
         wall.near = near;
     }
-}
-
-/// Of some balls, ascending, those that a wall reaches before its skin is used up.
-pub(crate) fn reached(wall: &Wall, balls: &[Ball], some: &[u32]) -> Vec<u32> {
-    let is_reached = reaches(wall);
-    let is_near = |i: &u32| {
-        let [x, y, z, radius_m] = balls[*i as usize];
-        is_reached([x, y, z], radius_m + wall.skin_left_m)
-    };
-    let some = some.par_iter().with_min_len(CHUNK).copied();
-    some.filter(is_near).collect()
 }
 
 /// Test whether the surface of a sphere is less than `skin_m` from a wall.

@@ -129,6 +129,8 @@ pub struct ContactScratch {
     pub partitions: Vec<ContactPartition>,
     /// Requested number of partitions: few contacts need fewer.
     pub wanted_partitions: usize,
+    /// Sum of the radii of the particles, m.
+    pub radii_m: f64,
     /// Mean radius of the particles at the last search, m.
     pub mean_radius_m: f64,
     /// Only the listed pairs that were closer than this at the last check of all pairs are

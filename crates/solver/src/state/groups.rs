@@ -1,23 +1,30 @@
 //! Particles by cluster, and boxes around large clusters: known from one neighbour search to the
 //! next.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
+use super::balls::{BLOCK, BOXES, Ball, Blocks, BoxColumns, around, box_columns};
+use super::clumps::Clumps;
+use super::rigid_balls::{ClumpReference, Placement, RigidBalls, RigidBody};
 use crate::geometry::Bounds;
-
-/// Centre x, y, z and radius, m.
-pub type Ball = [f64; 4];
 
 /// Clusters with fewer particles are small.
 const SMALL: usize = 16;
-/// Number of balls, in the order of a cluster, that have a box of their own. Near ones follow one
-/// another.
-pub(crate) const BLOCK: usize = 16;
-/// Number of boxes that are compared at once.
-pub(crate) const BOXES: usize = 8;
 
-/// A ball that overlaps none.
-pub(crate) const NOWHERE: Ball = [f64::INFINITY, 0.0, 0.0, 0.0];
+/// What is searched.
+#[derive(Clone, Copy)]
+pub(crate) struct Searched<'a> {
+    /// One for each particle. Those of the spheres of large clumps are not looked at.
+    pub(crate) balls: &'a [Ball],
+    /// Cluster of each particle.
+    pub(crate) clusters: &'a [u32],
+    /// For each particle whether it seeks. None: all seek.
+    pub(crate) seeks: Option<&'a [bool]>,
+    /// The clumps, and where they were at their last search.
+    pub(crate) clumps: Option<(&'a Clumps, &'a [ClumpReference])>,
+}
 
 /// What the last neighbour search knew of the clusters.
 #[derive(Debug, Clone, Default)]
@@ -28,6 +35,10 @@ pub struct KnownClusters {
     pub(crate) groups: Groups,
     /// Boxes around the large ones, by the lower end of the box along x.
     pub(crate) large: Vec<LargeCluster>,
+    /// These boxes by columns.
+    pub(crate) columns: Vec<BoxColumns>,
+    /// The balls of each template, once a large clump of it has been searched for.
+    templates: Vec<Option<Arc<RigidBalls>>>,
 }
 
 /// A cluster of many balls.
@@ -35,41 +46,82 @@ pub struct KnownClusters {
 pub struct LargeCluster {
     /// Its number.
     pub(crate) group: u32,
-    /// Box around its balls.
+    /// Box around its balls, in space.
     pub(crate) bounds: Bounds,
-    /// Boxes around each [`BLOCK`] of its balls.
-    pub(crate) blocks: Vec<Bounds>,
-    /// The same, [`BOXES`] at once, by columns: the lower ends along x, y and z, then the upper
-    /// ones, m. Filled up with empty boxes.
-    pub(crate) boxes: Vec<[[f64; BOXES]; 6]>,
+    /// Boxes around blocks of its balls: in its own axes if it is rigid, otherwise in space.
+    pub(crate) blocks: Arc<Blocks>,
+    /// If it is a clump.
+    pub(crate) rigid: Option<RigidBody>,
     /// Whether any of its balls seeks.
     pub(crate) seeks: bool,
 }
 
+/// Whether a clump has so many spheres that its balls follow from its template.
+pub(crate) fn is_large(spheres: usize) -> bool {
+    spheres >= SMALL
+}
+
 impl KnownClusters {
-    /// Updates the boxes of the clusters of which a ball seeks. The balls of the others are those
-    /// of the last time. `clusters`, `seeks`: one for each ball; without `seeks` all seek.
-    pub(crate) fn update(&mut self, balls: &[Ball], clusters: &[u32], seeks: Option<&[bool]>) {
-        let all_new = self.of_particle != clusters;
+    /// Updates the boxes of the clusters of which a ball seeks. Those of the others are those of
+    /// the last time.
+    pub(crate) fn update(&mut self, searched: &Searched<'_>) {
+        let all_new = self.of_particle != searched.clusters;
         if all_new {
-            self.of_particle = clusters.to_vec();
-            self.groups = Groups::new(clusters);
-            let groups = &self.groups;
-            let large = groups.all().filter(|&group| groups.is_large(group));
-            self.large = large.map(LargeCluster::new).collect();
+            self.of_particle = searched.clusters.to_vec();
+            self.groups = Groups::new(searched.clusters);
+            self.large = self.all_large(searched.clumps.map(|(clumps, _)| clumps));
         }
         let groups = &self.groups;
         self.large.par_iter_mut().for_each(|large| {
             let members = groups.members(large.group);
-            large.seeks = seeks.is_none_or(|seeks| members.iter().any(|&i| seeks[i as usize]));
+            let seeks = |&i: &u32| searched.seeks.is_none_or(|seeks| seeks[i as usize]);
+            large.seeks = members.iter().any(seeks);
             if large.seeks || all_new {
-                large.find_boxes(members, balls);
+                large.find_boxes(members, searched);
             }
         });
         self.large.sort_by(|a, b| {
             let low = |large: &LargeCluster| large.bounds.low[0];
             low(a).total_cmp(&low(b)).then(a.group.cmp(&b.group))
         });
+        let bounds: Vec<Bounds> = self.large.iter().map(|large| large.bounds).collect();
+        self.columns = bounds.chunks(BOXES).map(box_columns).collect();
+    }
+
+    /// The large clusters, without boxes in space.
+    fn all_large(&mut self, clumps: Option<&Clumps>) -> Vec<LargeCluster> {
+        let Self {
+            groups, templates, ..
+        } = self;
+        let rigid = |group: u32| {
+            let clumps = clumps?;
+            let clump = clumps.carrier_of(groups.members(group)[0] as usize)?;
+            let number = clumps.all[clump].template as usize;
+            templates.resize(templates.len().max(number + 1), None);
+            let new = || Arc::new(RigidBalls::new(&clumps.templates[number]));
+            let balls = templates[number].get_or_insert_with(new);
+            Some(RigidBody::new(clump, Arc::clone(balls)))
+        };
+        let large = groups.all().filter(|&group| groups.is_large(group));
+        let numbers: Vec<u32> = large.collect();
+        let rigid: Vec<Option<RigidBody>> = numbers.iter().copied().map(rigid).collect();
+        let all = numbers.into_iter().zip(rigid);
+        all.map(|(group, rigid)| LargeCluster::new(group, rigid))
+            .collect()
+    }
+
+    /// What stays known when the particles get new numbers.
+    pub(crate) fn renumbered(self) -> Self {
+        Self {
+            templates: self.templates,
+            ..Self::default()
+        }
+    }
+
+    /// Radius of the largest ball of a template, m, if its balls are known.
+    pub(crate) fn largest_m(&self, template: usize) -> Option<f64> {
+        let balls = self.templates.get(template)?.as_ref()?;
+        Some(balls.largest_m)
     }
 
     /// Whether a particle is in one of the large clusters, as of the last search.
@@ -80,34 +132,45 @@ impl KnownClusters {
 }
 
 impl LargeCluster {
-    fn new(group: u32) -> Self {
+    fn new(group: u32, rigid: Option<RigidBody>) -> Self {
+        let blocks = rigid.as_ref().map(|body| Arc::clone(&body.balls.blocks));
         Self {
             group,
             bounds: Bounds::EMPTY,
-            blocks: Vec::new(),
-            boxes: Vec::new(),
+            blocks: blocks.unwrap_or_default(),
+            rigid,
             seeks: true,
         }
     }
 
-    fn find_boxes(&mut self, members: &[u32], balls: &[Ball]) {
-        let blocks = members.chunks(BLOCK).map(|some| box_of(some, balls));
-        self.blocks.clear();
-        self.blocks.extend(blocks);
-        let blocks = self.blocks.iter();
-        self.bounds = blocks.fold(Bounds::EMPTY, |all, one| all.with(one));
-        self.boxes.clear();
-        self.boxes
-            .extend(self.blocks.chunks(BOXES).map(box_columns));
+    fn find_boxes(&mut self, members: &[u32], searched: &Searched<'_>) {
+        if let (Some(body), Some((_, references))) = (&mut self.rigid, searched.clumps) {
+            body.put_at(&references[body.clump]);
+            let whole = &self.blocks.bounds;
+            self.bounds = body.to_space.of_box(whole, body.allowance_m);
+        } else {
+            // Blocks of a cluster that is no clump are its own: this does not copy them.
+            let blocks = Arc::make_mut(&mut self.blocks);
+            blocks.find(members, searched.balls);
+            self.bounds = blocks.bounds;
+        }
     }
 
-    /// Numbers and boxes of its blocks that reach into a box.
-    pub(crate) fn blocks_within<'a>(
-        &'a self,
-        room: &'a Bounds,
-    ) -> impl Iterator<Item = (usize, &'a Bounds)> {
-        let blocks = self.blocks.iter().enumerate();
-        blocks.filter(|(_, bounds)| bounds.overlaps(room))
+    /// From its axes to space. None: its boxes and balls are in space.
+    pub(crate) fn to_space(&self) -> Option<&Placement> {
+        self.rigid.as_ref().map(|body| &body.to_space)
+    }
+
+    /// What is added to the boxes and balls in its axes, m.
+    pub(crate) fn allowance_m(&self) -> f64 {
+        self.rigid.as_ref().map_or(0.0, |body| body.allowance_m)
+    }
+
+    /// A ball of its axes in space.
+    pub(crate) fn in_space(&self, ball: &Ball) -> Ball {
+        self.rigid
+            .as_ref()
+            .map_or(*ball, |body| body.in_space(ball))
     }
 
     /// The members of a block.
@@ -116,58 +179,35 @@ impl LargeCluster {
         &all[BLOCK * block..all.len().min(BLOCK * (block + 1))]
     }
 
-    /// Its balls that reach into a box.
+    /// Numbers and balls of a block, in space.
+    pub(crate) fn balls_of<'a>(
+        &'a self,
+        block: usize,
+        balls: &'a [Ball],
+        groups: &'a Groups,
+    ) -> impl Iterator<Item = (u32, Ball)> + 'a {
+        let members = self.members(block, groups).iter().enumerate();
+        members.map(move |(lane, &i)| match &self.rigid {
+            Some(body) => (i, body.ball(block, lane)),
+            None => (i, balls[i as usize]),
+        })
+    }
+
+    /// Its balls that reach into a box in space.
     pub(crate) fn within<'a>(
         &'a self,
         room: &'a Bounds,
         balls: &'a [Ball],
         groups: &'a Groups,
-    ) -> impl Iterator<Item = u32> + 'a {
-        let blocks = self.blocks_within(room);
-        blocks
-            .flat_map(|(block, _)| self.members(block, groups))
-            .copied()
-            .filter(|&i| around(&balls[i as usize]).overlaps(room))
-    }
-}
-
-/// Some boxes by columns: see [`LargeCluster::boxes`].
-fn box_columns(some: &[Bounds]) -> [[f64; BOXES]; 6] {
-    let Bounds { low, high } = Bounds::EMPTY;
-    let mut columns = [low[0], low[1], low[2], high[0], high[1], high[2]].map(|c| [c; BOXES]);
-    for (n, bounds) in some.iter().enumerate() {
-        for k in 0..3 {
-            columns[k][n] = bounds.low[k];
-            columns[3 + k][n] = bounds.high[k];
-        }
-    }
-    columns
-}
-
-/// The box around the balls with these numbers.
-pub(crate) fn box_of(some: &[u32], balls: &[Ball]) -> Bounds {
-    // Four numbers at once, by comparisons that are one operation each: the fourth is not used.
-    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
-    for &i in some {
-        let ball = balls[i as usize];
-        for k in 0..4 {
-            let (before, after) = (ball[k] - ball[3], ball[k] + ball[3]);
-            low[k] = if before < low[k] { before } else { low[k] };
-            high[k] = if after > high[k] { after } else { high[k] };
-        }
-    }
-    let ([x0, y0, z0, _], [x1, y1, z1, _]) = (low, high);
-    Bounds {
-        low: [x0, y0, z0],
-        high: [x1, y1, z1],
-    }
-}
-
-/// The box around a ball.
-pub(crate) fn around(&[x, y, z, radius_m]: &Ball) -> Bounds {
-    Bounds {
-        low: [x - radius_m, y - radius_m, z - radius_m],
-        high: [x + radius_m, y + radius_m, z + radius_m],
+    ) -> impl Iterator<Item = (u32, Ball)> + 'a {
+        let boxes = self.blocks.boxes.iter().enumerate();
+        let reaching = boxes.filter(|(_, bounds)| match self.to_space() {
+            Some(to_space) => to_space.of_box(bounds, self.allowance_m()).overlaps(room),
+            None => bounds.overlaps(room),
+        });
+        reaching
+            .flat_map(|(block, _)| self.balls_of(block, balls, groups))
+            .filter(|(_, ball)| around(ball).overlaps(room))
     }
 }
 
@@ -213,6 +253,6 @@ impl Groups {
     }
 
     pub(crate) fn is_large(&self, cluster: u32) -> bool {
-        self.members(cluster).len() >= SMALL
+        is_large(self.members(cluster).len())
     }
 }

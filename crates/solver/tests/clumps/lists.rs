@@ -15,8 +15,8 @@ use super::again::busy;
 use super::{HEAD, MEETS, block, lump, planned};
 
 /// Clumps and a breakable block fall at different speeds into a box with a moving plate, after a
-/// sphere ten times as large as theirs.
-fn fall(search: &str) -> Plan {
+/// sphere ten times as large as theirs. `lump`: the body of a clump with this name and these lines.
+fn fall(search: &str, lump: fn(&str, &str) -> String) -> Plan {
     let mut text = format!(
         "{HEAD}run.gravity = [0, 0, -9.81]\n{MEETS}{search}\n\
          bonds.weak = {{ young_modulus = 1e7, poisson_ratio = 0.25, failure = {{ tensile_strength = 1e3, shear_strength = 1e3 }} }}\n\
@@ -84,15 +84,41 @@ fn places(state: &State) -> Vec<[f64; 4]> {
     particles.poses.iter().map(|pose| pose.position_m).collect()
 }
 
+/// A body of 17 spheres of 2 mm: as a clump, its balls follow from its template.
+fn large_lump(name: &str, more: &str) -> String {
+    let radius = |[x, y, z]: [i32; 3]| {
+        let is_there = [x, y, z] != [2, 1, 1];
+        is_there.then(|| 1e-3 * (1.0 - 0.02 * f64::from(x) - 0.04 * f64::from(y * z)))
+    };
+    block(name, [3, 3, 2], 2e-3, radius, more)
+}
+
 #[test]
 fn what_touches_is_listed_however_unevenly_bodies_move() {
-    let Plan { mut state, .. } = fall("");
+    assert_all_listed_in_a_fall(lump);
+}
+
+#[test]
+fn what_touches_is_listed_however_unevenly_large_clumps_move() {
+    assert_all_listed_in_a_fall(large_lump);
+}
+
+fn assert_all_listed_in_a_fall(lump: fn(&str, &str) -> String) {
+    let Plan { mut state, .. } = fall("", lump);
+    let mut most_pairs = 0;
     while state.time_s < 0.05 {
         let clusters = state.clusters.as_ref().unwrap().of_particle.clone();
         interact(&mut state);
         assert_all_listed(&state, &clusters);
+        let is_of_clump = |i: u32| i as usize >= state.particles.free;
+        let pairs = &state.contacts.as_ref().unwrap().pairs;
+        let of_clumps = pairs
+            .iter()
+            .filter(|[i, j]| is_of_clump(*i) && is_of_clump(*j));
+        most_pairs = most_pairs.max(of_clumps.count());
         advance(&mut state);
     }
+    assert!(most_pairs > 10, "clumps meet: {most_pairs}");
     let pieces = state.clusters.as_ref().unwrap().living().count();
     assert!(pieces > 12, "the block breaks: {pieces}");
     let mut all = stages().iter();
@@ -100,8 +126,8 @@ fn what_touches_is_listed_however_unevenly_bodies_move() {
     let searched = state.scratch.clock.done(search.unwrap()) as f64 / state.steps as f64;
     let particles = state.particles.len();
     eprintln!("{searched} of {particles} particles searched for in a step");
-    // A particle is searched for again when it has used at least three tenths of the distance that
-    // it goes in thirty steps.
+    // A free particle is searched for again when it has used at least half of the distance that it
+    // goes in thirty steps; a clump would use up the rest of its distance in thirty steps.
     assert!(searched > 0.0 && searched < particles as f64 / 9.0);
 }
 
@@ -153,7 +179,7 @@ fn lists_of_walls_follow_where_all_is_searched_for() {
 #[test]
 fn the_size_of_the_skin_changes_no_bit() {
     let end = |search: &str| {
-        let Plan { mut state, .. } = fall(search);
+        let Plan { mut state, .. } = fall(search, lump);
         while state.time_s < 0.04 {
             step(&mut state);
         }

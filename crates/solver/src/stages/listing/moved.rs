@@ -10,10 +10,13 @@ use crate::physics::rotation::rotation;
 use crate::stages::chunks::CHUNK;
 use crate::stages::clumps::place_of;
 use crate::state::State;
+use crate::state::balls::Ball;
 use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::Contacts;
+use crate::state::groups::is_large;
 use crate::state::particles::{Particles, Pose};
-use crate::state::references::{Ball, ClumpReference, References};
+use crate::state::references::References;
+use crate::state::rigid_balls::ClumpReference;
 
 /// Number of steps that a particle may go on at its present speed until its next search.
 const STEPS: f64 = 30.0;
@@ -24,9 +27,11 @@ const STEPS_OF_CLUMP: f64 = 40.0;
 const FARTHEST_OF_CLUMP: f64 = 1.0;
 /// A search is due when something has less than this fraction of its distance left.
 const NOW: f64 = 0.1;
-/// Then everything is searched for that has less than this fraction left: a free particle, and a
-/// clump.
-const SOON: [f64; 2] = [0.5, 0.7];
+/// Then every free particle is searched for that has less than this fraction left.
+const SOON: f64 = 0.5;
+/// And every clump that has less than this fraction left, if it would use up what it has in this
+/// number of steps at its present speed.
+const SOON_OF_CLUMP: (f64, f64) = (0.9, 30.0);
 /// After two more steps like the last, unlisted particles could overlap.
 const STEPS_LEFT: f64 = 2.0;
 
@@ -83,7 +88,7 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
     let is_due = |i: &u32| {
         let i = *i as usize;
         let [left_m, allowance_m] = free_left_m(p, references, i);
-        left_m < least_m(SOON[0] * allowance_m, p.motions[i].speed_m_s() * step_s)
+        left_m < least_m(SOON * allowance_m, p.motions[i].speed_m_s() * step_s)
     };
     let free = (0..p.free as u32).into_par_iter().with_min_len(CHUNK);
     let mut particles: Vec<u32> = free.filter(is_due).collect();
@@ -98,7 +103,9 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
         .enumerate()
     {
         reference.left_m = clump_left_m(&state.clumps, clump, reference);
-        if reference.left_m < least_m(SOON[1] * reference.allowance_m, clump.moved_m) {
+        let (fraction, steps) = SOON_OF_CLUMP;
+        let soon_m = (fraction * reference.allowance_m).min(steps * clump.moved_m);
+        if reference.left_m < least_m(soon_m, clump.moved_m) {
             clumps.push(n);
         }
     }
@@ -204,29 +211,26 @@ pub(super) fn refer_particle(contacts: &mut Contacts, i: usize, pose: &Pose, mov
     contacts.scratch.references.balls[i] = [x, y, z, radius_m + allowance_m];
 }
 
-/// Gives the spheres of these clumps, ascending, new balls.
-pub(super) fn refer_clumps(contacts: &mut Contacts, state: &State, some: &[usize]) {
-    let Contacts {
-        model,
-        skin_m,
-        scratch,
+/// Gives these clumps, ascending, new references, and the spheres of small ones new balls; those of
+/// large ones only if `all_balls`.
+pub(super) fn refer_clumps(
+    contacts: &mut Contacts,
+    state: &State,
+    some: &[usize],
+    all_balls: bool,
+) {
+    let (allowances, skin_m) = (contacts.model.allowances, contacts.skin_m);
+    let References {
+        balls,
+        clumps,
+        clusters: known,
         ..
-    } = contacts;
-    let (allowances, skin_m) = (model.allowances, *skin_m);
-    let References { balls, clumps, .. } = &mut scratch.references;
-    let mut left = &mut balls[state.particles.free..];
-    let mut work = Vec::with_capacity(some.len());
-    let mut some = some.iter().peekable();
-    for (at, (clump, reference)) in state.clumps.all.iter().zip(clumps).enumerate() {
-        let count = state.clumps.spheres_of(clump).len();
-        let (own, others) = std::mem::take(&mut left).split_at_mut(count);
-        left = others;
-        if some.next_if(|due| **due == at).is_some() {
-            work.push((clump, reference, own));
-        }
-    }
-    work.into_par_iter().for_each(|(clump, reference, balls)| {
-        let largest_m = put_balls(state.clumps.template(clump), clump, balls);
+    } = &mut contacts.scratch.references;
+    for &at in some {
+        let clump = &state.clumps.all[at];
+        let template = state.clumps.template(clump);
+        let known_m = known.largest_m(clump.template as usize);
+        let largest_m = known_m.unwrap_or_else(|| template.largest_m());
         let moved_m = clump_speed_m_s(&state.clumps, clump) * state.time_step_s;
         let allowance_m = match allowances {
             None => 0.5 * skin_m,
@@ -235,27 +239,25 @@ pub(super) fn refer_clumps(contacts: &mut Contacts, state: &State, some: &[usize
             }
         };
         let allowance_m = allowance_m.max(2.0 * moved_m);
-        for ball in balls {
-            ball[3] += allowance_m;
-        }
-        *reference = ClumpReference {
+        clumps[at] = ClumpReference {
             place_m: clump.place_m,
             turned: clump.turned,
             allowance_m,
             left_m: allowance_m,
         };
-    });
+        if all_balls || !is_large(template.outer.len()) {
+            let spheres = state.clumps.spheres_of(clump);
+            put_balls(template, clump, allowance_m, &mut balls[spheres]);
+        }
+    }
 }
 
-/// Sets balls to the spheres of a clump, one for each, and returns the largest radius, m.
-fn put_balls(template: &Template, clump: &Clump, balls: &mut [Ball]) -> f64 {
+/// Sets balls, one for each sphere of a clump.
+fn put_balls(template: &Template, clump: &Clump, allowance_m: f64, balls: &mut [Ball]) {
     let to_space = rotation(clump.turned).to_rotation_matrix();
-    let mut largest_m = 0.0_f64;
     for (ball, &sphere) in balls.iter_mut().zip(template.outer.iter()) {
         let [x, y, z] = place_of(template, sphere as usize, clump, &to_space).into();
         let radius_m = template.spheres[sphere as usize].radius_m * template.scale;
-        *ball = [x, y, z, radius_m];
-        largest_m = largest_m.max(radius_m);
+        *ball = [x, y, z, radius_m + allowance_m];
     }
-    largest_m
 }

@@ -7,9 +7,9 @@ use crate::state::State;
 use crate::state::clumps::Clumps;
 use crate::state::contacts::Contacts;
 use crate::state::events::REMOVED;
-use crate::state::groups::KnownClusters;
 use crate::state::particles::Particles;
-use crate::state::references::{ClumpReference, References};
+use crate::state::references::References;
+use crate::state::rigid_balls::ClumpReference;
 
 /// Adds particles and their clumps, which come after those that were there before, to the last
 /// search: they are searched for before the next step. `known`: numbers of particles and clumps
@@ -20,10 +20,11 @@ pub(crate) fn lengthen_lists(
     clumps: &Clumps,
     [known, known_clumps]: [usize; 2],
 ) {
-    find_mean_radius(contacts, particles);
     contacts.skin_left_m = -1.0;
-    let references = &mut contacts.scratch.references;
+    let references = &contacts.scratch.references;
     let knows_all = references.balls.len() == known && references.clumps.len() == known_clumps;
+    find_mean_radius(contacts, particles, if knows_all { known } else { 0 });
+    let references = &mut contacts.scratch.references;
     if knows_all {
         references.due.extend(known as u32..particles.len() as u32);
         references.balls.resize(particles.len(), [0.0; 4]);
@@ -46,7 +47,7 @@ pub(crate) fn renumber_lists(
     let Some(mut contacts) = state.contacts.take() else {
         return;
     };
-    find_mean_radius(&mut contacts, &state.particles);
+    find_mean_radius(&mut contacts, &state.particles, 0);
     let stays = |i: u32| Some(now[i as usize]).filter(|&to| to != REMOVED && !is_new(to));
     for wall in &mut state.walls {
         wall.near = wall.near.iter().filter_map(|&i| stays(i)).collect();
@@ -86,7 +87,7 @@ pub(crate) fn renumber_lists(
         clumps,
         due,
         chunks_left_m: Vec::new(),
-        clusters: KnownClusters::default(),
+        clusters: std::mem::take(&mut references.clusters).renumbered(),
     };
     find_left(&state.particles, references);
     contacts.skin_left_m = -1.0;

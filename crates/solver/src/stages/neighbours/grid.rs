@@ -2,7 +2,7 @@
 //! others does not make the cells of the others larger.
 
 use crate::geometry::Bounds;
-use crate::state::references::Ball;
+use crate::state::balls::Ball;
 
 /// Balls of a level are at least half as large as the largest of it, except those of the last.
 const MOST_LEVELS: usize = 16;
@@ -45,18 +45,18 @@ pub(super) struct Seeker {
 }
 
 impl Grids {
-    /// The balls with these numbers. Their radii are above 0.
-    pub(super) fn new(balls: &[Ball], clusters: &[u32], active: &[u32]) -> Self {
-        let radius = |i: &u32| balls[*i as usize][3];
-        let largest_m = active.iter().map(radius).fold(0.0, f64::max);
+    /// These balls, given with their numbers. Their radii are above 0.
+    pub(super) fn new(clusters: &[u32], active: &[(u32, Ball)]) -> Self {
+        let largest_m = active.iter().map(|(_, ball)| ball[3]).fold(0.0, f64::max);
         let mut of_level = vec![Vec::new(); MOST_LEVELS];
-        for &i in active {
-            of_level[level_of(radius(&i), largest_m)].push(i);
+        for &(particle, ball) in active {
+            of_level[level_of(ball[3], largest_m)].push(Standing {
+                ball,
+                particle,
+                cluster: clusters[particle as usize],
+            });
         }
-        let levels = of_level
-            .iter()
-            .map(|members| Grid::new(balls, clusters, members))
-            .collect();
+        let levels = of_level.iter().map(|members| Grid::new(members)).collect();
         Self { levels, largest_m }
     }
 
@@ -109,7 +109,7 @@ fn level_of(radius_m: f64, largest_m: f64) -> usize {
 }
 
 impl Grid {
-    fn new(balls: &[Ball], clusters: &[u32], members: &[u32]) -> Self {
+    fn new(members: &[Standing]) -> Self {
         let mut grid = Self {
             origin: [0.0; 3],
             per_width: 1.0,
@@ -121,7 +121,7 @@ impl Grid {
         if members.is_empty() {
             return grid;
         }
-        let own = || members.iter().map(|&i| balls[i as usize]);
+        let own = || members.iter().map(|standing| standing.ball);
         let bounds = Bounds::of(own().map(|[x, y, z, _]| [x, y, z]));
         grid.largest_m = own().map(|ball| ball[3]).fold(0.0, f64::max);
         let mut width = 2.0 * grid.largest_m;
@@ -136,14 +136,14 @@ impl Grid {
         grid.origin = bounds.low;
         grid.per_width = 1.0 / width;
         grid.counts = counts_of(width);
-        grid.fill(balls, clusters, members);
+        grid.fill(members);
         grid
     }
 
-    fn fill(&mut self, balls: &[Ball], clusters: &[u32], members: &[u32]) {
+    fn fill(&mut self, members: &[Standing]) {
         let cells: Vec<u32> = members
             .iter()
-            .map(|&i| self.number(self.cell(balls[i as usize])) as u32)
+            .map(|standing| self.number(self.cell(standing.ball)) as u32)
             .collect();
         let mut starts = vec![0_u32; self.counts.iter().product::<usize>() + 1];
         for &cell in &cells {
@@ -153,13 +153,9 @@ impl Grid {
             starts[cell] += starts[cell - 1];
         }
         let mut next = starts.clone();
-        for (&cell, &i) in cells.iter().zip(members) {
+        for (&cell, standing) in cells.iter().zip(members) {
             let place = &mut next[cell as usize];
-            self.standing[*place as usize] = Standing {
-                ball: balls[i as usize],
-                particle: i,
-                cluster: clusters[i as usize],
-            };
+            self.standing[*place as usize] = *standing;
             *place += 1;
         }
         self.starts = starts;

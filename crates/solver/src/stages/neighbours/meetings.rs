@@ -1,8 +1,8 @@
 //! Where clusters may meet small ones.
 
 use crate::geometry::Bounds;
-use crate::state::groups::{KnownClusters, around, box_of};
-use crate::state::references::Ball;
+use crate::state::balls::{Ball, around, box_of};
+use crate::state::groups::KnownClusters;
 
 /// Small clusters, and the boxes around them.
 pub(super) struct Meetings<'a> {
@@ -38,8 +38,11 @@ impl<'a> Meetings<'a> {
         }
     }
 
-    /// The balls that may be in a pair with one of a small cluster, ascending.
-    pub(super) fn with_small(&self, balls: &[Ball]) -> Vec<u32> {
+    /// The balls that may be in a pair with one of a small cluster, by their numbers.
+    pub(super) fn with_small(&self, balls: &[Ball]) -> Vec<(u32, Ball)> {
+        if self.small.is_empty() {
+            return Vec::new();
+        }
         let groups = &self.known.groups;
         let [all, seeking] = &self.of_small;
         let mut active = Vec::new();
@@ -51,10 +54,11 @@ impl<'a> Meetings<'a> {
             active.extend(large.within(&common, balls, groups));
         }
         let of_small = self.small.iter().flat_map(|&group| groups.members(group));
+        let of_small = of_small.map(|&i| (i, balls[i as usize]));
         let may_meet =
-            |i: &&u32| self.all_seek || around(&balls[**i as usize]).overlaps(&where_sought);
+            |(_, ball): &(u32, Ball)| self.all_seek || around(ball).overlaps(&where_sought);
         active.extend(of_small.filter(may_meet));
-        active.sort_unstable();
+        active.sort_unstable_by_key(|(i, _)| *i);
         active
     }
 }
