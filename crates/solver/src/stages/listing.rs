@@ -17,7 +17,7 @@ use super::contacts::{find_mean_radius, list_beside, list_contacts, relist};
 use super::neighbours::overlapping_pairs;
 use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
 use super::stage::{NO_SAVING, Need, Stage};
-use super::walls::{list_near, reaches};
+use super::walls::{list_near, plane_in_space, reaches};
 use crate::state::State;
 use crate::state::balls::{Ball, ball_around};
 use crate::state::bridges::Bridges;
@@ -119,8 +119,9 @@ fn search_for_all(state: &mut State, contacts: &mut Contacts) -> usize {
     let references = &mut contacts.scratch.references;
     references.balls = vec![[0.0; 4]; state.particles.len()];
     references.clumps = vec![ClumpReference::default(); state.clumps.all.len()];
+    references.clusters = KnownClusters::default();
     for wall in &mut state.walls {
-        wall.skin_left_m = skin_m(wall, contacts);
+        wall.skin_left_m = skin_m(wall, contacts.skin_m);
     }
     search_for(state, contacts, &everything(state))
 }
@@ -221,7 +222,13 @@ fn reached(wall: &Wall, known: &KnownClusters, searched: &Searched<'_>, small: &
         let any_seeks = searched.seeks.is_none() || large.seeks;
         any_seeks && is_reached(ball_around(&large.bounds))
     });
+    let plane = plane_in_space(wall);
     let of_large = of_large.flat_map_iter(|large| {
+        if let (Some(body), Some(plane)) = (&large.rigid, plane) {
+            let members = known.groups.members(large.group);
+            let places = body.near_plane(plane, wall.skin_left_m).into_iter();
+            return places.map(|place| members[place]).collect();
+        }
         let mut near = Vec::new();
         for (block, ball) in large.blocks.around.iter().enumerate() {
             if is_reached(large.in_space(ball)) {
@@ -270,7 +277,7 @@ fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]]) {
 
 /// Lists what is near the walls that have moved too far since they were last listed.
 fn list_near_moving_walls(state: &mut State) {
-    let Some(contacts) = state.contacts.take() else {
+    let Some(mut contacts) = state.contacts.take() else {
         return;
     };
     let is_due = |wall: &Wall| wall.skin_left_m < 2.0 * wall.moved_m;
@@ -280,7 +287,7 @@ fn list_near_moving_walls(state: &mut State) {
             clusters: known,
             clumps,
             ..
-        } = &contacts.scratch.references;
+        } = &mut contacts.scratch.references;
         let clusters = state.clusters.as_ref();
         let searched = Searched {
             balls,
@@ -288,9 +295,13 @@ fn list_near_moving_walls(state: &mut State) {
             seeks: None,
             clumps: Some((&state.clumps, clumps)),
         };
+        // Bodies may have been removed since the last search.
+        if !known.are_those_of(searched.clusters) {
+            known.update(&searched);
+        }
         let small = of_small(known, &state.clumps, &everything(state));
         for wall in state.walls.iter_mut().filter(|wall| is_due(wall)) {
-            wall.skin_left_m = skin_m(wall, &contacts);
+            wall.skin_left_m = skin_m(wall, contacts.skin_m);
             wall.near = reached(wall, known, &searched, &small);
             wall.near.sort_unstable();
         }
@@ -300,10 +311,10 @@ fn list_near_moving_walls(state: &mut State) {
 }
 
 /// Distance that a wall may move before what is near it is listed again, m.
-fn skin_m(wall: &Wall, contacts: &Contacts) -> f64 {
+fn skin_m(wall: &Wall, least_m: f64) -> f64 {
     match wall.model.motion {
         WallMotion::Fixed => 0.0,
-        _ => contacts.skin_m.max(4.0 * wall.moved_m),
+        _ => least_m.max(4.0 * wall.moved_m),
     }
 }
 

@@ -92,22 +92,25 @@ pub(crate) fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Syn
     move |pose| is_reached(pose.place().into(), pose.radius_m() + skin_m)
 }
 
+/// A point of a wall, m, and the unit vector out of it, if it is a plane.
+pub(crate) fn plane_in_space(wall: &Wall) -> Option<[Vector3<f64>; 2]> {
+    let Shape::Plane(plane) = &wall.model.shape else {
+        return None;
+    };
+    let point = wall.frame.to_space(plane.point_m());
+    let normal = wall.frame.direction_to_space(plane.normal());
+    Some([point.into(), normal.into()])
+}
+
 /// Test whether a wall is nearer to a point than a distance, m.
 pub(crate) fn reaches(wall: &Wall) -> impl Fn([f64; 3], f64) -> bool + Sync {
     let bounds = wall.model.shape.bounds();
     let in_space = wall.bounds_in_space();
     let to_wall = wall.frame.all_to_wall();
-    let plane = match &wall.model.shape {
-        Shape::Plane(plane) => {
-            let point = Vector3::from(wall.frame.to_space(plane.point_m()));
-            let normal = Vector3::from(wall.frame.direction_to_space(plane.normal()));
-            Some((point, normal))
-        }
-        _ => None,
-    };
+    let plane = plane_in_space(wall);
     move |point, reach_m| {
         // A plane is infinite: it needs neither box nor frame.
-        if let Some((on_plane, normal)) = &plane {
+        if let Some([on_plane, normal]) = &plane {
             return (Vector3::from(point) - on_plane).dot(normal) < reach_m;
         }
         if !in_space.is_near(&point, reach_m) {

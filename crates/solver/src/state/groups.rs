@@ -16,7 +16,7 @@ const SMALL: usize = 16;
 /// What is searched.
 #[derive(Clone, Copy)]
 pub(crate) struct Searched<'a> {
-    /// One for each particle. Those of the spheres of large clumps are not looked at.
+    /// One for each particle. Those of the spheres of large clumps follow from `clumps` instead.
     pub(crate) balls: &'a [Ball],
     /// Cluster of each particle.
     pub(crate) clusters: &'a [u32],
@@ -56,7 +56,8 @@ pub struct LargeCluster {
     pub(crate) seeks: bool,
 }
 
-/// Whether a clump has so many spheres that its balls follow from its template.
+/// Whether a cluster of this number of particles is large. Balls of large clumps follow from their
+/// templates.
 pub(crate) fn is_large(spheres: usize) -> bool {
     spheres >= SMALL
 }
@@ -65,7 +66,7 @@ impl KnownClusters {
     /// Updates the boxes of the clusters of which a ball seeks. Those of the others are those of
     /// the last time.
     pub(crate) fn update(&mut self, searched: &Searched<'_>) {
-        let all_new = self.of_particle != searched.clusters;
+        let all_new = !self.are_those_of(searched.clusters);
         if all_new {
             self.of_particle = searched.clusters.to_vec();
             self.groups = Groups::new(searched.clusters);
@@ -86,6 +87,11 @@ impl KnownClusters {
         });
         let bounds: Vec<Bounds> = self.large.iter().map(|large| large.bounds).collect();
         self.columns = bounds.chunks(BOXES).map(box_columns).collect();
+    }
+
+    /// Whether these are the clusters of the particles, as known.
+    pub(crate) fn are_those_of(&self, clusters: &[u32]) -> bool {
+        self.of_particle == clusters
     }
 
     /// The large clusters, without boxes in space.

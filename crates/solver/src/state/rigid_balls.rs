@@ -30,6 +30,8 @@ pub struct RigidBalls {
     pub(crate) blocks: Arc<Blocks>,
     /// The balls of each block by columns, x, y, z and radius, m, filled up with [`NOWHERE`].
     pub(crate) columns: Vec<[[f64; BLOCK]; 4]>,
+    /// Number of balls.
+    count: usize,
     /// Largest radius, m.
     pub(crate) largest_m: f64,
 }
@@ -70,6 +72,7 @@ impl RigidBalls {
         Self {
             blocks: Arc::new(Blocks::of(&balls)),
             columns: balls.chunks(BLOCK).map(by_columns).collect(),
+            count: balls.len(),
             largest_m: template.largest_m(),
         }
     }
@@ -97,6 +100,37 @@ impl RigidBody {
     /// A ball of a block, in space.
     pub(crate) fn ball(&self, block: usize, lane: usize) -> Ball {
         self.in_space(&self.balls.columns[block].map(|column| column[lane]))
+    }
+
+    /// The places, in the order of its balls, of those nearer to a plane than `margin_m`, with the
+    /// allowance. The plane: a point, m, and its unit normal, in space.
+    pub(crate) fn near_plane(
+        &self,
+        [point, normal]: [Vector3<f64>; 2],
+        margin_m: f64,
+    ) -> Vec<usize> {
+        // In its own axes only the distance from its centre along the normal matters.
+        let level_m = (point - self.to_space.place_m).dot(&normal) + margin_m + self.allowance_m;
+        let normal = self.to_space.turned.tr_mul(&normal);
+        let lowest_m =
+            |[x, y, z, radius_m]: Ball| normal.x * x + normal.y * y + normal.z * z - radius_m;
+        let mut near = Vec::new();
+        for (block, &ball) in self.balls.blocks.around.iter().enumerate() {
+            if lowest_m(ball) < level_m {
+                let columns = &self.balls.columns[block];
+                let is_near: [bool; BLOCK] = std::array::from_fn(|lane| {
+                    lowest_m([0, 1, 2, 3].map(|k| columns[k][lane])) < level_m
+                });
+                let left = self.balls.count - block * BLOCK;
+                let places = (block * BLOCK..).zip(is_near).take(left);
+                near.extend(
+                    places
+                        .filter(|(_, is_near)| *is_near)
+                        .map(|(place, _)| place),
+                );
+            }
+        }
+        near
     }
 
     /// A ball of its axes in space, with the allowance.

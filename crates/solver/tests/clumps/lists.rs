@@ -17,6 +17,10 @@ use super::{HEAD, MEETS, block, lump, planned};
 /// Clumps and a breakable block fall at different speeds into a box with a moving plate, after a
 /// sphere ten times as large as theirs. `lump`: the body of a clump with this name and these lines.
 fn fall(search: &str, lump: fn(&str, &str) -> String) -> Plan {
+    planned(&fall_text(search, lump))
+}
+
+fn fall_text(search: &str, lump: fn(&str, &str) -> String) -> String {
     let mut text = format!(
         "{HEAD}run.gravity = [0, 0, -9.81]\n{MEETS}{search}\n\
          bonds.weak = {{ young_modulus = 1e7, poisson_ratio = 0.25, failure = {{ tensile_strength = 1e3, shear_strength = 1e3 }} }}\n\
@@ -41,7 +45,7 @@ fn fall(search: &str, lump: fn(&str, &str) -> String) -> Plan {
     let more = "position = [0.002, 0.002, 0.055]\nvelocity = [0, 0, -1]";
     let brittle = block("brittle", [4, 4, 3], 2e-3, |_| Some(1e-3), more);
     text += &brittle.replace("bonds = \"stiff\"", "bonds = \"weak\"");
-    planned(&text)
+    text
 }
 
 /// Everything that touches is in the lists. `clusters`: that of each particle before the step.
@@ -101,6 +105,33 @@ fn what_touches_is_listed_however_unevenly_bodies_move() {
 #[test]
 fn what_touches_is_listed_however_unevenly_large_clumps_move() {
     assert_all_listed_in_a_fall(large_lump);
+}
+
+/// A wall that moves is listed again before bodies are searched for that stay where others go.
+#[test]
+fn what_touches_is_listed_when_bodies_only_go() {
+    let mut text = fall_text("", large_lump);
+    text += "[outlets.exit]\ninside = \"exit\"\n\
+             [regions.exit]\nbox = { min = [0.08, -0.1, 0], max = [0.2, 0.1, 0.01] }\n";
+    for n in 0..12 {
+        let z = 0.012 + 2.2e-3 * f64::from(n);
+        writeln!(
+            text,
+            "[bodies.drop{n}]\nmaterial = \"stuff\"\nvelocity = [0, 0, -1]\nparticles = [[0.1, 0, {z}, 1e-3]]"
+        )
+        .unwrap();
+    }
+    let text = text.replace("velocity = [-0.5, 0, 0]", "velocity = [-1, 0, 0]");
+    let Plan { mut state, .. } = planned(&text);
+    while state.time_s < 0.02 {
+        let clusters = state.clusters.as_ref().unwrap().of_particle.clone();
+        interact(&mut state);
+        assert_all_listed(&state, &clusters);
+        advance(&mut state);
+    }
+    let plate = state.walls.iter().find(|wall| wall.model.name == "plate");
+    assert!(plate.is_some_and(|plate| plate.near.len() > 3));
+    assert!(state.population.outlets[0].bodies > 5);
 }
 
 fn assert_all_listed_in_a_fall(lump: fn(&str, &str) -> String) {

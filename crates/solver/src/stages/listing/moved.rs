@@ -35,6 +35,9 @@ const SOON_OF_CLUMP: (f64, f64) = (0.9, 30.0);
 /// After two more steps like the last, unlisted particles could overlap.
 const STEPS_LEFT: f64 = 2.0;
 
+/// Clumps that a task gives new references.
+const CLUMPS_AT_ONCE: usize = 64;
+
 /// What is to be searched for.
 #[derive(Default)]
 pub(super) struct Due {
@@ -104,7 +107,8 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
     {
         reference.left_m = clump_left_m(&state.clumps, clump, reference);
         let (fraction, steps) = SOON_OF_CLUMP;
-        let soon_m = (fraction * reference.allowance_m).min(steps * clump.moved_m);
+        let [now_m, soon_m] = [NOW, fraction].map(|part| part * reference.allowance_m);
+        let soon_m = soon_m.min(steps * clump.moved_m).max(now_m);
         if reference.left_m < least_m(soon_m, clump.moved_m) {
             clumps.push(n);
         }
@@ -226,8 +230,19 @@ pub(super) fn refer_clumps(
         clusters: known,
         ..
     } = &mut contacts.scratch.references;
-    for &at in some {
-        let clump = &state.clumps.all[at];
+    let mut left = &mut balls[state.particles.free..];
+    let mut work = Vec::with_capacity(some.len());
+    let mut some = some.iter().peekable();
+    for (at, (clump, reference)) in state.clumps.all.iter().zip(clumps).enumerate() {
+        let count = state.clumps.spheres_of(clump).len();
+        let (own, others) = std::mem::take(&mut left).split_at_mut(count);
+        left = others;
+        if some.next_if(|due| **due == at).is_some() {
+            work.push((clump, reference, own));
+        }
+    }
+    let work = work.into_par_iter().with_min_len(CLUMPS_AT_ONCE);
+    work.for_each(|(clump, reference, balls)| {
         let template = state.clumps.template(clump);
         let known_m = known.largest_m(clump.template as usize);
         let largest_m = known_m.unwrap_or_else(|| template.largest_m());
@@ -239,17 +254,16 @@ pub(super) fn refer_clumps(
             }
         };
         let allowance_m = allowance_m.max(2.0 * moved_m);
-        clumps[at] = ClumpReference {
+        *reference = ClumpReference {
             place_m: clump.place_m,
             turned: clump.turned,
             allowance_m,
             left_m: allowance_m,
         };
         if all_balls || !is_large(template.outer.len()) {
-            let spheres = state.clumps.spheres_of(clump);
-            put_balls(template, clump, allowance_m, &mut balls[spheres]);
+            put_balls(template, clump, allowance_m, balls);
         }
-    }
+    });
 }
 
 /// Sets balls, one for each sphere of a clump.

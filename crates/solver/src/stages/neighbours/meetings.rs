@@ -38,7 +38,7 @@ impl<'a> Meetings<'a> {
         }
     }
 
-    /// The balls that may be in a pair with one of a small cluster, by their numbers.
+    /// The balls that may be in a pair with one of a small cluster, ascending by number.
     pub(super) fn with_small(&self, balls: &[Ball]) -> Vec<(u32, Ball)> {
         if self.small.is_empty() {
             return Vec::new();
@@ -50,6 +50,9 @@ impl<'a> Meetings<'a> {
         for large in &self.known.large {
             let small = if large.seeks { all } else { seeking };
             let common = large.bounds.common(small);
+            if common == Bounds::EMPTY {
+                continue;
+            }
             where_sought = where_sought.with(&common);
             active.extend(large.within(&common, balls, groups));
         }
