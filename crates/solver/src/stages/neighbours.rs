@@ -81,11 +81,27 @@ impl<'a> Search<'a> {
         block: usize,
     ) -> Members<'a> {
         let numbers = large.members(block, &self.known.groups);
-        let columns = match &large.rigid {
-            Some(body) => body.balls.columns[block],
-            None => gather::<T>(proof, numbers, self.searched.balls),
-        };
+        let mut gathered = [[0.0; BLOCK]; 4];
+        let columns = *self.columns::<T>(proof, large, block, &mut gathered);
         Members { numbers, columns }
+    }
+
+    /// The balls of a block of a cluster by columns, in its axes: those of its template, or those
+    /// `gathered`.
+    #[inline(always)]
+    fn columns<'b, T: Lanes>(
+        &self,
+        proof: T::Proof,
+        large: &'b LargeCluster,
+        block: usize,
+        gathered: &'b mut [[f64; BLOCK]; 4],
+    ) -> &'b [[f64; BLOCK]; 4] {
+        if let Some(body) = &large.rigid {
+            return &body.balls.columns[block];
+        }
+        let numbers = large.members(block, &self.known.groups);
+        gather::<T>(proof, numbers, self.searched.balls, gathered);
+        gathered
     }
 
     /// Pairs of the large cluster of this place in the list with those that come after it.
@@ -271,14 +287,8 @@ impl LargeMeetings<'_> {
             return;
         }
         let numbers = b.members(block, &self.search.known.groups);
-        let gathered;
-        let of_b = match &b.rigid {
-            Some(body) => &body.balls.columns[block],
-            None => {
-                gathered = gather::<T>(proof, numbers, self.search.searched.balls);
-                &gathered
-            }
-        };
+        let mut gathered = [[0.0; BLOCK]; 4];
+        let of_b = self.search.columns::<T>(proof, b, block, &mut gathered);
         while reaching != 0 {
             let n = next_of(&mut reaching);
             // Spelled out: a closure around lanes may not be compiled for them.
@@ -349,10 +359,14 @@ impl Members<'_> {
     }
 }
 
-/// Some balls by columns: see [`Members`].
+/// Writes some balls by columns: see [`Members`].
 #[inline(always)]
-fn gather<T: Lanes>(proof: T::Proof, numbers: &[u32], balls: &[Ball]) -> [[f64; BLOCK]; 4] {
-    let mut columns = [[0.0; BLOCK]; 4];
+fn gather<T: Lanes>(
+    proof: T::Proof,
+    numbers: &[u32],
+    balls: &[Ball],
+    columns: &mut [[f64; BLOCK]; 4],
+) {
     for first in (0..BLOCK).step_by(T::COUNT) {
         let lanes = T::columns(proof, |lane| match numbers.get(first + lane) {
             Some(&i) => balls[i as usize],
@@ -362,7 +376,6 @@ fn gather<T: Lanes>(proof: T::Proof, numbers: &[u32], balls: &[Ball]) -> [[f64; 
             put::<T>(column, first, lanes);
         }
     }
-    columns
 }
 
 /// Writes lanes to a column, from place `first` on.

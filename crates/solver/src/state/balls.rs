@@ -28,7 +28,7 @@ pub struct Blocks {
     pub(crate) boxes: Vec<Bounds>,
     /// Ball around each of these boxes.
     pub(crate) around: Vec<Ball>,
-    /// The same, [`BOXES`] at once, filled up with empty boxes.
+    /// The boxes, [`BOXES`] at once, filled up with empty ones.
     pub(crate) columns: Vec<BoxColumns>,
 }
 
