@@ -1,5 +1,5 @@
 //! The table of doc/performance.md on many bodies: the time of a step over the number of bodies
-//! that wait in an inlet, fly bonded or rigid, are broken, or sleep; alone, and beside ten bonded
+//! that wait in an inlet, sleep, lie, ride, fly bonded or rigid, or are broken; alone, and beside ten bonded
 //! bodies that fly. `cargo bench -p dem-tests --bench bodies`, then `--page FILE` to write it, or
 //! the largest number of bodies to print it up to there. On one thread, some minutes. With the word
 //! `waiting`, what a waiting body costs in time and memory.
@@ -39,8 +39,12 @@ enum Doing {
     Waiting,
     /// They lie on the floor, asleep.
     Asleep,
+    /// The same, and an inlet finds no room among them.
+    AsleepInTheWay,
     /// They lie on the floor as rigid clumps.
     LyingAsClumps,
+    /// They ride on a belt as rigid clumps.
+    RidingAsClumps,
     /// They fly as rigid clumps.
     FlyingAsClumps,
     /// They fly bonded.
@@ -49,10 +53,15 @@ enum Doing {
     Broken,
 }
 
-const CASES: [(Doing, &str); 6] = [
+const CASES: [(Doing, &str); 8] = [
     (Doing::Waiting, "wait in an inlet"),
     (Doing::Asleep, "lie on a floor, asleep"),
+    (
+        Doing::AsleepInTheWay,
+        "the same, and an inlet finds no room",
+    ),
     (Doing::LyingAsClumps, "lie on a floor, as clumps"),
+    (Doing::RidingAsClumps, "ride on a belt, as clumps"),
     (Doing::FlyingAsClumps, "fly as clumps"),
     (Doing::Bonded, "fly, bonded"),
     (Doing::Broken, "fly, broken into spheres"),
@@ -60,7 +69,9 @@ const CASES: [(Doing, &str); 6] = [
 
 /// The scene: bodies of one kind, and `flying` bonded ones above them.
 fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
-    let lies = matches!(doing, Doing::Asleep | Doing::LyingAsClumps);
+    let sleeps = matches!(doing, Doing::Asleep | Doing::AsleepInTheWay);
+    let rides = doing == Doing::RidingAsClumps;
+    let lies = sleeps || rides || doing == Doing::LyingAsClumps;
     let gravity = if lies { "-9.81" } else { "0" };
     // Bodies above a floor fall less than a tenth of their size in the rounds.
     let mut text = format!(
@@ -74,7 +85,10 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
          failure = {{ tensile_strength = \"0.001 Pa\" }}\n\
          [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n"
     );
-    if doing == Doing::Asleep {
+    if rides {
+        text += "surface_velocity = [1, 0, 0]\n";
+    }
+    if sleeps {
         text += "[sleep]\nspeed = \"1 mm/s\"\nafter = \"0.5 ms\"\n";
     }
     let bonds = if doing == Doing::Broken {
@@ -84,9 +98,10 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
     };
     let motion = match doing {
         Doing::LyingAsClumps => "start_as = \"clump\"\n",
+        Doing::RidingAsClumps => "start_as = \"clump\"\nvelocity = [1, 0, 0]\n",
         Doing::FlyingAsClumps => "start_as = \"clump\"\nangular_velocity = [1, 0, 0]\n",
         Doing::Broken => "angular_velocity = [20, 15, 10]\n",
-        Doing::Waiting | Doing::Asleep => "",
+        Doing::Waiting | Doing::Asleep | Doing::AsleepInTheWay => "",
         Doing::Bonded => "angular_velocity = [1, 0, 0]\n",
     };
     let height_m = if lies { 0.9999 * RADIUS_M } else { 0.1 };
@@ -104,6 +119,11 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
             let at = format!("position = {position:?}\n{motion}");
             body(&mut text, &format!("a{number}"), bonds, &at);
         }
+    }
+    if doing == Doing::AsleepInTheWay {
+        body(&mut text, "waiting", bonds, "");
+        text += "[regions.gate]\nbox = { min = [0, 0, 0], max = [1e-4, 1e-4, 1e-4] }\n\
+                 [inlets.feed]\nbodies = [\"waiting\"]\nregion = \"gate\"\nrate = 1e6\ncount = 1\n";
     }
     for number in 0..flying {
         let position = place(number, flying, 1.0);
@@ -159,7 +179,9 @@ fn planned(doing: Doing, bodies: usize, flying: usize) -> State {
 fn state(doing: Doing, bodies: usize, flying: usize) -> State {
     let mut state = planned(doing, bodies, flying);
     let is_ready = |state: &State| match doing {
-        Doing::Asleep => (state.sleep.as_ref()).is_some_and(|sleep| sleep.particles >= 27 * bodies),
+        Doing::Asleep | Doing::AsleepInTheWay => {
+            (state.sleep.as_ref()).is_some_and(|sleep| sleep.particles >= 27 * bodies)
+        }
         Doing::Broken => state.broken_count as usize == 54 * bodies,
         _ => state.steps >= 200,
     };
@@ -213,7 +235,7 @@ fn write_waiting() {
     table.row("|---|---|---|---|---|---|");
     let [few @ .., most] = COUNTS;
     let kb = |state: &State| format!(" {:.0} kB |", all_bytes(state) as f64 * 1e-3);
-    for (doing, name) in [CASES[0], CASES[2], CASES[1]] {
+    for (doing, name) in [CASES[0], CASES[3], CASES[1]] {
         let (mut times, mut memory) = (String::new(), String::new());
         for count in few {
             let mut state = state(doing, count, 0);

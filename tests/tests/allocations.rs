@@ -1,4 +1,5 @@
 //! A step that renews no list takes no memory: what it needs has been there since the first steps.
+//! One that renews lists takes it a bounded number of times, however many spheres there are.
 
 use std::fmt::Write;
 
@@ -154,4 +155,107 @@ fn a_step_takes_no_memory() {
         let taking = found.iter().filter(|&&count| count > 0).count();
         assert!(taking <= looks, "{name}: {found:?}");
     }
+}
+
+/// A cube of loose spheres, so many along each edge, that fall into a heap on the floor.
+fn loose(side: usize) -> String {
+    let mut spheres = String::new();
+    for n in 0..side.pow(3) {
+        let at = [n % side, n / side % side, n / (side * side)];
+        let [x, y, z] = at.map(|k| 2.3e-3 * k as f64);
+        let shift = 1e-4 * (n % 7) as f64;
+        write!(
+            spheres,
+            "[{:e}, {:e}, {:e}, 1e-3], ",
+            x + shift,
+            y - shift,
+            z + 2e-3
+        )
+        .unwrap();
+    }
+    format!(
+        "{HEAD}bodies.heap = {{ particles = [{spheres}], material = \"stone\", velocity = [0.1, 0, -0.5] }}\n"
+    )
+}
+
+/// A block that breaks on the floor.
+fn breaking() -> String {
+    let weak = ", failure = { tensile_strength = 2e4 }";
+    block(1.0, weak, ", velocity = [0.3, 0, -2]")
+}
+
+/// Blocks that an inlet feeds as clumps, and that fall onto one on the floor.
+fn fed() -> String {
+    block(1.0, "", "")
+        + "regions.mouth.box = { min = [0, 0, 0.02], max = [0.03, 0.03, 0.05] }
+inlets.top = { bodies = [\"block\"], region = \"mouth\", rate = \"1000 /s\", count = 100, velocity = [0, 0, -1] }
+"
+}
+
+/// What happened in a step, and how often it took memory.
+struct Counted {
+    searched: bool,
+    broke: bool,
+    came: bool,
+    /// An inlet looked for room and found none.
+    waited: bool,
+    allocations: u64,
+}
+
+/// Steps of a scene until its end, after the first hundred.
+fn counted(text: &str) -> Vec<Counted> {
+    const STEPS: usize = 6000;
+    let search = step::stages()
+        .iter()
+        .position(|stage| stage.name == "neighbour search")
+        .unwrap();
+    on_one_thread(|| {
+        let mut state = started(text);
+        let one = |_| {
+            let before = state.scratch.clock.done(search);
+            let next_try_of =
+                |state: &State| state.population.inlets.first().map(|feed| feed.next_try);
+            let next_try = next_try_of(&state);
+            let allocations = measure(|| _ = step(&mut state)).count_total;
+            let events = &state.scratch.events;
+            Counted {
+                searched: state.scratch.clock.done(search) > before,
+                broke: !events.broken.is_empty(),
+                waited: next_try_of(&state) != next_try,
+                came: !events.population.is_empty(),
+                allocations,
+            }
+        };
+        (0..STEPS).map(one).skip(100).collect()
+    })
+}
+
+#[test]
+fn memory_is_taken_only_by_searches_breaks_and_inlets() {
+    for (name, text) in [("heap", loose(6)), ("breaking", breaking()), ("fed", fed())] {
+        let steps = counted(&text);
+        let is_quiet = |step: &Counted| !(step.searched || step.broke || step.came || step.waited);
+        let quiet = steps.iter().filter(|step| is_quiet(step)).count();
+        assert!(quiet > steps.len() / 2, "{name}: {quiet} quiet steps");
+        let taking = (0..)
+            .zip(&steps)
+            .filter(|(_, step)| is_quiet(step) && step.allocations > 0);
+        let taking: Vec<(usize, u64)> = taking.map(|(n, step)| (n, step.allocations)).collect();
+        // A look at which spheres have used up their distance may find none.
+        assert!(taking.len() <= steps.len() / 1000, "{name}: {taking:?}");
+        assert!(steps.iter().any(|step| step.searched), "{name}");
+        assert_eq!(steps.iter().any(|step| step.broke), name == "breaking");
+        assert_eq!(steps.iter().any(|step| step.came), name == "fed");
+    }
+}
+
+#[test]
+fn a_search_of_more_spheres_takes_memory_no_more_often() {
+    let most = |side| {
+        let steps = counted(&loose(side));
+        let searches = steps.iter().filter(|step| step.searched);
+        searches.map(|step| step.allocations).max().unwrap()
+    };
+    let [few, many] = [5, 10].map(most);
+    assert!(many < 2 * few, "{few} and {many}");
 }
