@@ -12,6 +12,7 @@ use crate::state::particles::Wrench;
 
 /// Adds clumps, each with a number of its own among the clusters, to a scene without sleep.
 pub(super) fn add_clumps(state: &mut State, coming: Vec<Clump>) -> Renumbering {
+    state.scratch.surroundings.clear();
     let before = [state.particles.len(), state.clumps.all.len()];
     for clump in coming {
         let number = state

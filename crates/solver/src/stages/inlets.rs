@@ -7,7 +7,7 @@ use crate::physics::rotation::rotation;
 use crate::state::State;
 use crate::state::clumps::{Clump, Template};
 use crate::state::events::PopulationEvent;
-use crate::state::population::InletProgress;
+use crate::state::population::{InletProgress, Surroundings};
 use crate::state::rules::{Feed, Inlet};
 use crate::state::walls::Wall;
 use dem_io::random::uniform;
@@ -23,6 +23,10 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
     let (steps, time_s) = (state.steps, state.time_s);
     let asks =
         |inlet: &Inlet, come: &InletProgress| steps >= come.next_try && is_due(inlet, come, time_s);
+    let moved_m = state.fastest_m_s * state.previous_time_step_s;
+    for near in &mut state.scratch.surroundings {
+        near.left_m -= moved_m;
+    }
     let mut both = state
         .model
         .rules
@@ -33,6 +37,8 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
         return coming;
     }
     let inlets = std::mem::take(&mut state.model.rules.inlets);
+    let mut surroundings = std::mem::take(&mut state.scratch.surroundings);
+    surroundings.resize_with(inlets.len(), Surroundings::default);
     let mut next_cluster = state
         .clusters
         .as_ref()
@@ -42,9 +48,12 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
         if !asks(inlet, &come) {
             continue;
         }
-        let there = There::around(inlet, state);
+        let near = &mut surroundings[n];
+        if near.left_m <= 0.0 {
+            *near = around(inlet, state);
+        }
         while asks(inlet, &come) {
-            let Some(clump) = next_body(n, inlet, &mut come, state, &there, &coming) else {
+            let Some(clump) = next_body(n, inlet, &mut come, state, near, &coming) else {
                 if come.tries <= TRIES {
                     come.delayed += 1;
                 }
@@ -78,6 +87,7 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
         state.population.inlets[n] = come;
     }
     state.model.rules.inlets = inlets;
+    state.scratch.surroundings = surroundings;
     coming
 }
 
@@ -106,7 +116,7 @@ fn next_body(
     inlet: &Inlet,
     come: &mut InletProgress,
     state: &State,
-    there: &There,
+    surroundings: &Surroundings,
     coming: &[Clump],
 ) -> Option<Clump> {
     let seed = state.model.rules.seed;
@@ -130,7 +140,7 @@ fn next_body(
         let Some(place_m) = region.point([1, 2, 3].map(|of| random(of, attempt))) else {
             continue;
         };
-        if is_taken(place_m, reach_m, state, there, coming) {
+        if is_taken(place_m, reach_m, state, surroundings, coming) {
             continue;
         }
         let as_file = if inlet.random_orientation {
@@ -196,33 +206,26 @@ fn any_rotation([u, v, w]: [f64; 3]) -> UnitQuaternion<f64> {
     rotation([a * sv, a * cv, b * sw, b * cw])
 }
 
-/// What may be in the way of the bodies of an inlet in this step: found once for all tries.
-struct There {
-    /// Particles.
-    particles: Vec<u32>,
-    /// Clumps.
-    clumps: Vec<u32>,
-}
-
-impl There {
-    /// What is near the region of an inlet.
-    fn around(inlet: &Inlet, state: &State) -> Self {
-        let fed = inlet.templates.iter();
-        let reaches = fed.map(|(of, _)| state.clumps.templates[*of as usize].largest_reach_m());
-        let reach_m = reaches.fold(0.0, f64::max);
-        let room = state.model.rules.regions[inlet.region].bounds();
-        let free = &state.particles.poses[..state.particles.free];
-        let particles = (0..)
-            .zip(free)
-            .filter(|(_, pose)| room.is_near(&pose.place().into(), reach_m + pose.radius_m()));
-        let clumps = (0..).zip(&state.clumps.all).filter(|(_, clump)| {
-            let own_m = state.clumps.template(clump).largest_reach_m();
-            room.is_near(&clump.place_m, reach_m + own_m)
-        });
-        Self {
-            particles: particles.map(|(i, _)| i).collect(),
-            clumps: clumps.map(|(at, _)| at).collect(),
-        }
+/// What is near the region of an inlet: all that may be in the way of the bodies that it feeds, until
+/// something has moved by the reach of the largest of them.
+fn around(inlet: &Inlet, state: &State) -> Surroundings {
+    let fed = inlet.templates.iter();
+    let reaches = fed.map(|(of, _)| state.clumps.templates[*of as usize].largest_reach_m());
+    let reach_m = reaches.fold(0.0, f64::max);
+    let near_m = 2.0 * reach_m;
+    let room = state.model.rules.regions[inlet.region].bounds();
+    let free = &state.particles.poses[..state.particles.free];
+    let particles = (0..)
+        .zip(free)
+        .filter(|(_, pose)| room.is_near(&pose.place().into(), near_m + pose.radius_m()));
+    let clumps = (0..).zip(&state.clumps.all).filter(|(_, clump)| {
+        let own_m = state.clumps.template(clump).largest_reach_m();
+        room.is_near(&clump.place_m, near_m + own_m)
+    });
+    Surroundings {
+        particles: particles.map(|(i, _)| i).collect(),
+        clumps: clumps.map(|(at, _)| at).collect(),
+        left_m: reach_m,
     }
 }
 
@@ -231,7 +234,7 @@ fn is_taken(
     place_m: [f64; 3],
     reach_m: f64,
     state: &State,
-    there: &There,
+    surroundings: &Surroundings,
     coming: &[Clump],
 ) -> bool {
     let place = Vector3::from(place_m);
@@ -251,11 +254,11 @@ fn is_taken(
         };
         around(clump) && (0..template.spheres.len()).any(touches)
     };
-    let mut particles = there
+    let mut particles = surroundings
         .particles
         .iter()
         .map(|&i| &state.particles.poses[i as usize]);
-    let mut clumps = there
+    let mut clumps = surroundings
         .clumps
         .iter()
         .map(|&at| &state.clumps.all[at as usize]);

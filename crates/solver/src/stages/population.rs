@@ -26,6 +26,7 @@ use crate::state::walls::Wall;
 /// Makes the changes. New clumps get their numbers among the clusters.
 pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renumbering {
     prepare_change(state, &changes);
+    state.scratch.surroundings.clear();
     place_all(&state.clumps, &mut state.particles);
     let pressed_before_j = pressed_j(state);
     let TopologyChange {

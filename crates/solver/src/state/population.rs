@@ -63,6 +63,18 @@ pub struct InletProgress {
     pub delayed: u32,
 }
 
+/// What is near the region of an inlet, from one look to the next.
+#[derive(Debug, Clone, Default)]
+pub struct Surroundings {
+    /// Particles.
+    pub particles: Vec<u32>,
+    /// Clumps.
+    pub clumps: Vec<u32>,
+    /// Distance that everything may still move, m, before something else may be in the way. 0 or
+    /// less: this is to be found again.
+    pub left_m: f64,
+}
+
 /// What an outlet has removed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct OutletTotals {

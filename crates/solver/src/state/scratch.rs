@@ -5,6 +5,7 @@ use super::events::Events;
 use super::meetings::Meetings;
 use super::particles::{Motion, Wrench};
 use super::partitions::Partition;
+use super::population::Surroundings;
 use super::squeeze::Squeeze;
 use crate::clock::StageClock;
 use crate::physics::chebyshev::Chebyshev;
@@ -47,6 +48,9 @@ pub struct Scratch {
     pub(crate) bridges: BridgeScratch,
     /// Contacts that triggers have read in this step.
     pub(crate) squeezing: usize,
+    /// Surroundings of each inlet. Empty once particles or clumps have come, gone or got other
+    /// numbers.
+    pub surroundings: Vec<Surroundings>,
     /// Events of the last step.
     pub events: Events,
     /// Time spent in each stage.

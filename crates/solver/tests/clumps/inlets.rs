@@ -440,3 +440,44 @@ fn what_is_known_of_fed_bodies_is_what_would_be_found_anew() {
     ids.dedup();
     assert_eq!(ids.len(), count);
 }
+
+#[test]
+fn what_an_inlet_remembers_of_its_surroundings_changes_nothing() {
+    let gate = "[regions.gate]\nbox = { min = [0, 0, 0.01], max = [0.03, 0.03, 0.03] }\n";
+    let mut text = format!(
+        "{HEAD}run.gravity = [0, 0, -9.81]\n{MEETS}{gate}{}\
+         [walls.floor]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}\nmaterial = \"stuff\"\n\
+         [inlets.feed]\nregion = \"gate\"\nbodies = [\"fed\"]\nrate = 5000\norientation = \"random\"\nvelocity = [0, 0, -1]\n",
+        lump("fed", "start_as = \"clump\""),
+    );
+    // Spheres that fly into the gate from afar, one after another.
+    for n in 0..40 {
+        let far = 0.04 + 0.004 * f64::from(n);
+        text += &format!(
+            "[bodies.s{n}]\nmaterial = \"stuff\"\nparticles = [[{far:?}, {:?}, 0.02, 1e-3]]\nvelocity = [-3, 0, 0]\n",
+            0.0007 * f64::from(n)
+        );
+    }
+    let mut keeps = planned(&text).state;
+    let mut looks = keeps.clone();
+    let (mut tries, mut kept, mut came) = (0, 0, 0);
+    while keeps.time_s < 0.05 {
+        looks.scratch.surroundings.clear();
+        let before = keeps.population.inlets[0];
+        let knew = keeps.scratch.surroundings.first().map(|near| near.left_m);
+        let moved_m = keeps.fastest_m_s * keeps.time_step_s;
+        for state in [&mut keeps, &mut looks] {
+            step(state);
+        }
+        let after = keeps.population.inlets[0];
+        assert_eq!(looks.population.inlets[0], after);
+        if after.next_try != before.next_try {
+            tries += 1;
+            kept += u32::from(knew.is_some_and(|left_m| left_m > 2.0 * moved_m));
+        }
+        came += after.bodies - before.bodies;
+    }
+    assert!(same(&keeps, &looks));
+    assert!(came > 10 && tries > 20, "{came} came, {tries} tries");
+    assert!(4 * kept > tries, "{kept} of {tries}");
+}
