@@ -261,7 +261,13 @@ fn write_table() {
         for flying in [0, FLYING] {
             let times: Vec<f64> = counts
                 .iter()
-                .map(|count| step_us(&mut state(doing, *count, flying)))
+                .map(|&count| {
+                    let mut state = state(doing, count, flying);
+                    let us = step_us(&mut state);
+                    let mut inlets = state.population.inlets.iter();
+                    assert!(inlets.all(|feed| feed.bodies == 0), "a body has come");
+                    us
+                })
                 .collect();
             let row: Vec<String> = times.iter().map(|us| format!(" {us:.1} |")).collect();
             let beside = if flying == 0 {

@@ -23,7 +23,8 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
     let (steps, time_s) = (state.steps, state.time_s);
     let asks =
         |inlet: &Inlet, come: &InletProgress| steps >= come.next_try && is_due(inlet, come, time_s);
-    let moved_m = state.fastest_m_s * state.previous_time_step_s;
+    let cycle_s = state.cycle() as f64 * state.previous_time_step_s;
+    let moved_m = state.fastest_m_s * cycle_s;
     for near in &mut state.scratch.surroundings {
         near.left_m -= moved_m;
     }
@@ -49,7 +50,8 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
             continue;
         }
         let near = &mut surroundings[n];
-        if near.left_m <= 0.0 {
+        let is_known = near.left_m > 0.0;
+        if !is_known {
             *near = around(inlet, state);
         }
         while asks(inlet, &come) {

@@ -49,7 +49,7 @@ pub struct Scratch {
     /// Contacts that triggers have read in this step.
     pub(crate) squeezing: usize,
     /// Surroundings of each inlet. Empty once particles or clumps have come, gone or got other
-    /// numbers.
+    /// numbers; to be cleared as well by whoever moves them between steps.
     pub surroundings: Vec<Surroundings>,
     /// Events of the last step.
     pub events: Events,

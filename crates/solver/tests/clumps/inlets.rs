@@ -476,7 +476,8 @@ fn what_an_inlet_remembers_of_its_surroundings_changes_nothing() {
         assert_eq!(looks.population.inlets[0], after);
         if after.next_try != before.next_try {
             tries += 1;
-            kept += u32::from(left_m(&keeps) < knew);
+            kept +=
+                u32::from(left_m(&keeps).is_some_and(|left| knew.is_some_and(|knew| left < knew)));
         }
     }
     // The last of the fast spheres is gone, and the slow one long before.
