@@ -208,8 +208,8 @@ fn any_rotation([u, v, w]: [f64; 3]) -> UnitQuaternion<f64> {
     rotation([a * sv, a * cv, b * sw, b * cw])
 }
 
-/// What is near the region of an inlet: all that may be in the way of the bodies that it feeds, until
-/// something has moved by the reach of the largest of them.
+/// What is near the region of an inlet: all that may be in the way of the bodies that it feeds,
+/// until something has moved by the reach of the largest of them.
 fn around(inlet: &Inlet, state: &State) -> Surroundings {
     let fed = inlet.templates.iter();
     let reaches = fed.map(|(of, _)| state.clumps.templates[*of as usize].largest_reach_m());
