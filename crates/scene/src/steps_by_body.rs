@@ -25,7 +25,7 @@ const MOTIONS: [&str; 5] = [
 ];
 
 /// Refuses what does not go together with steps by body: everything that holds, drives, adds or
-/// removes bodies, rigid bodies, moving walls, damping of all particles, and steps that rise.
+/// removes bodies, rigid parts, moving walls, damping of all particles, and steps that rise.
 pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     let mut found: Vec<Field<'_>> = root.given(&TABLES).map(|(_, field)| field).collect();
     if let Some(table) = root.get("run") {
@@ -44,7 +44,6 @@ pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     }
     for (_, body) in root.named("bodies")? {
         let body = Table::any(&body)?;
-        found.extend(body.get("start_as").filter(|field| field.is("clump")));
         found.extend(body.get("bonded_within"));
     }
     for (_, contact) in root.named("contacts")? {

@@ -5,7 +5,7 @@
 //! cargo run --release -p dem-run --example steps_by_body
 //! ```
 //!
-//! Builds the program, runs `steps-by-body.toml`, three minutes, and writes the table into the
+//! Builds the program, runs `steps-by-body.toml`, four minutes, and writes the table into the
 //! page. Results are in `target/steps-by-body`; `--resume` keeps the complete runs.
 #![allow(
     clippy::print_stdout,
@@ -37,7 +37,7 @@ fn main() -> Result<(), Failed> {
         "energy error",
         "particle updates skipped",
     ]);
-    for placed in ["apart", "stacked"] {
+    for placed in ["apart", "stacked", "clumps"] {
         for safety in ["0.9", "0.45"] {
             let without = find(&runs, "false", safety, placed)?;
             // The smallest step, the same for all bodies.

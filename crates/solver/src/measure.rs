@@ -204,7 +204,7 @@ pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Ve
     if probes.iter().any(needs_motions) {
         common.motions = Motions {
             particles: synchronous_motions(state),
-            clumps: synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s),
+            clumps: synchronous(state),
         };
     }
     let mut watches = state.watches.iter();

@@ -119,7 +119,9 @@ const DRIFT: &[Part] = &[
 /// Stages of the first half that are done once for all groups of bodies with steps of their own,
 /// before the groups and after them.
 const OF_ALL: [&[&Stage]; 2] = [&[&SEARCH, &LEVELS], &[&CLUSTERS, &OUTPUT, &CHECKS]];
-/// The same of the second half, after all drifts.
+/// Stages of the second half that are done for each group.
+const OF_BODIES: [&Stage; 2] = [&MOTION, &CLUMPS];
+/// Those that are done once for all groups, after all drifts.
 const AFTER_DRIFTS: [&Stage; 2] = [&WALLS, &SEARCH];
 
 /// A complete step. Returns what happened in it.
@@ -189,7 +191,9 @@ fn interact_group(state: &mut State) {
 }
 
 fn drift_group(state: &mut State) {
-    run(DRIFT, &TABLE.drift, state, |stage| *stage == MOTION);
+    run(DRIFT, &TABLE.drift, state, |stage| {
+        OF_BODIES.contains(&stage)
+    });
     note_drift(state);
 }
 

@@ -3,6 +3,7 @@
 
 mod books;
 mod breaking;
+mod clumps;
 mod meeting;
 mod order;
 mod same_bits;

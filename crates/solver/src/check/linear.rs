@@ -140,9 +140,19 @@ fn at_wall(
 }
 
 /// An upper bound of the largest eigenvalues of stiffness over mass, 1/s2, and of damping over
-/// mass, 1/s, of clumps: the sum of all contacts of a clump, each acting where it rotates the clump
-/// most easily. 0 if no clump touches anything.
+/// mass, 1/s, of clumps: the largest of [`rates_of_clumps`]. 0 if no clump touches anything.
 pub(crate) fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2] {
+    largest(rates_of_clumps(state, contacts))
+}
+
+fn largest(rates: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
+    let both = |all: [f64; 2], one: [f64; 2]| [0, 1].map(|n| all[n].max(one[n]));
+    rates.into_iter().fold([0.0; 2], both)
+}
+
+/// For each clump the same bounds: the sum of all its contacts, each acting where it rotates the
+/// clump most easily.
+fn rates_of_clumps(state: &State, contacts: &[LinearContact]) -> Vec<[f64; 2]> {
     let clumps = &state.clumps;
     let mut sums = vec![[0.0; 2]; clumps.all.len()];
     for contact in contacts {
@@ -154,15 +164,13 @@ pub(crate) fn clump_rates(state: &State, contacts: &[LinearContact]) -> [f64; 2]
             }
         }
     }
-    let mut rates = [0.0_f64; 2];
-    for (clump, sum) in clumps.all.iter().zip(sums) {
+    let of_clumps = clumps.all.iter().zip(sums);
+    let rates = of_clumps.map(|(clump, sum)| {
         let inverse_kg = largest_inverse_mass(clumps, clump);
-        for (rate, sum) in rates.iter_mut().zip(sum) {
-            // Two clumps may push each other: each takes as much as the other.
-            *rate = rate.max(2.0 * sum * inverse_kg);
-        }
-    }
-    rates
+        // Two clumps may push each other: each takes as much as the other.
+        sum.map(|sum| 2.0 * sum * inverse_kg)
+    });
+    rates.collect()
 }
 
 /// One over the mass with which a clump resists where a force rotates it most easily, 1/kg.
@@ -204,19 +212,17 @@ fn translation(answer: &Linearised) -> [f64; 2] {
 /// For two ends joined by a spring, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so the bound for each end
 /// is twice the sum of its springs.
 pub fn contact_rates(state: &State) -> [f64; 2] {
-    let contacts = linear_contacts(state);
-    let mut rates = clump_rates(state, &contacts);
-    for of_one in rates_of_particles(state, &contacts) {
-        for (rate, of_one) in rates.iter_mut().zip(of_one) {
-            *rate = rate.max(of_one);
-        }
-    }
-    rates
+    let [of_particles, of_clumps] = contact_rates_of_each(state);
+    largest(of_particles.into_iter().chain(of_clumps))
 }
 
-/// The same bounds for each free particle, from its contacts.
-pub(crate) fn particle_contact_rates(state: &State) -> Vec<[f64; 2]> {
-    rates_of_particles(state, &linear_contacts(state))
+/// The same bounds for each free particle, and for each clump.
+pub(crate) fn contact_rates_of_each(state: &State) -> [Vec<[f64; 2]>; 2] {
+    let contacts = linear_contacts(state);
+    [
+        rates_of_particles(state, &contacts),
+        rates_of_clumps(state, &contacts),
+    ]
 }
 
 fn rates_of_particles(state: &State, contacts: &[LinearContact]) -> Vec<[f64; 2]> {
@@ -370,11 +376,15 @@ impl StiffestContacts {
 /// more. With contacts beside bonds something presses at any speed, as loads and supports do: the
 /// stiffness of a linear law counts in full, and that of Hertz's law from no overlap on.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
-    at_impact_of(state, speed_m_s, None)
+    at_impact_of(state, speed_m_s, |_| true)
 }
 
-/// The same for the particles of one material, or of all.
-pub(crate) fn at_impact_of(state: &State, speed_m_s: f64, only: Option<usize>) -> [f64; 3] {
+/// The same for those first particles that are meant, by their number.
+pub(crate) fn at_impact_of(
+    state: &State,
+    speed_m_s: f64,
+    is_meant: impl Fn(usize) -> bool,
+) -> [f64; 3] {
     let Some(contacts) = &state.contacts else {
         return [0.0; 3];
     };
@@ -405,11 +415,9 @@ pub(crate) fn at_impact_of(state: &State, speed_m_s: f64, only: Option<usize>) -
         largest[1] = largest[1].max(per_mass * damping);
         largest[2] = largest[2].max(per_mass * answer.normal_n_m);
     };
-    for (i, inverse_kg) in first_to_hit(state) {
+    let first = first_to_hit(state).into_iter();
+    for (i, inverse_kg) in first.filter(|(i, _)| is_meant(*i)) {
         let material = usize::from(contacts.materials[i]);
-        if only.is_some_and(|only| only != material) {
-            continue;
-        }
         let row = &contacts.model.kind_of[material * materials..(material + 1) * materials];
         for &kind in row {
             if let Some(kind) = contacts.model.kinds.get(usize::from(kind)) {

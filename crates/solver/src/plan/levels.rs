@@ -39,19 +39,33 @@ pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoi
 }
 
 fn level_rule(state: &mut State, step: &StepChoice, safety: f64) -> LevelRule {
-    let body_of = Clusters::new(state.particles.len(), &state.bonds).of_particle;
+    let free = state.particles.free;
+    let mut body_of = Clusters::new(free, &state.bonds).of_particle;
     let own = own_eigenvalues(state, &body_of);
-    let materials = state
-        .contacts
-        .as_ref()
-        .map_or(0, |contacts| contacts.model.kind_of.len().isqrt());
-    let at_impact = |material: usize| {
-        let [k, c, _] = at_impact_of(state, step.impact_speed_m_s, Some(material));
+    for (id, clump) in (own.len() as u32..).zip(&state.clumps.all) {
+        body_of.extend(state.clumps.spheres_of(clump).map(|_| id));
+    }
+    let materials = state.contacts.as_ref();
+    let materials = materials.map_or(&[][..], |contacts| &contacts.materials);
+    let count = materials
+        .iter()
+        .max()
+        .map_or(0, |most| usize::from(*most) + 1);
+    let at_impact = |is_meant: &dyn Fn(usize) -> bool| {
+        let [k, c, _] = at_impact_of(state, step.impact_speed_m_s, is_meant);
         [k, c]
     };
+    let of_material =
+        |material: usize| at_impact(&|i| i < free && usize::from(materials[i]) == material);
+    let template_of = |i: usize| {
+        let at = state.clumps.carrier_of(i);
+        at.map(|at| state.clumps.all[at].template as usize)
+    };
+    let of_template = |template: usize| at_impact(&|i| template_of(i) == Some(template));
     LevelRule {
         own,
-        impact_rates: (0..materials).map(at_impact).collect(),
+        impact_rates: (0..count).map(of_material).collect(),
+        impact_rates_of_clumps: (0..state.clumps.templates.len()).map(of_template).collect(),
         safety: [safety, share_of_impact(state, safety)],
         body_of,
     }

@@ -37,7 +37,7 @@ pub(super) fn write_fragments(
         return Ok(());
     };
     let motions = synchronous_motions(state);
-    let moving = synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s);
+    let moving = synchronous(state);
     let now = Some((&motions[..], &moving[..]));
     let fragments = fragments(clusters, &state.particles, &state.clumps, now);
     progress.fragments_written = fragments.len() as u64;

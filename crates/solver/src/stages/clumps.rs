@@ -330,6 +330,12 @@ pub fn drift(clumps: &mut Clumps, particles: &mut Particles, time_step_s: f64) -
     })
 }
 
+/// Upper bound of the speed of the spheres of a clump, m/s.
+pub(super) fn speed_m_s(clump: &Clump, template: &Template) -> f64 {
+    let turning_m_s = clump.spin_rad_s(template).norm() * template.reach_m;
+    Vector3::from(clump.velocity_m_s).norm() + turning_m_s
+}
+
 /// Updates position and orientation of a clump. Returns an upper bound of the speed of its spheres,
 /// m/s, and its mean spin in this step, rad/s.
 fn drift_one(clump: &mut Clump, template: &Template, time_step_s: f64) -> (f64, [f64; 3]) {
@@ -354,8 +360,12 @@ fn drift_one(clump: &mut Clump, template: &Template, time_step_s: f64) -> (f64, 
 
 /// Velocities and angular momenta at the time of the positions, between a kick and the drift after
 /// it. One for each clump.
-pub(crate) fn synchronous(clumps: &Clumps, gravity_m_s2: [f64; 3], time_step_s: f64) -> Vec<Clump> {
-    let mut now = clumps.clone();
-    kick(&mut now, gravity_m_s2, -0.5 * time_step_s);
-    now.all
+pub(crate) fn synchronous(state: &State) -> Vec<Clump> {
+    let mut now = state.clumps.all.clone();
+    for clump in now.iter_mut().filter(|clump| !clump.asleep) {
+        let back_s = -0.5 * state.steps_of_s(clump.first as usize)[1];
+        let template = state.clumps.template(clump);
+        kick_one(clump, template, state.model.gravity_m_s2, back_s);
+    }
+    now
 }

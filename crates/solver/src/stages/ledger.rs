@@ -344,7 +344,7 @@ fn adhesion_j(state: &State) -> f64 {
 pub fn balance(state: &mut State) -> Balance {
     let motions = synchronous_motions_of_free(state);
     let p = &state.particles;
-    let clumps = synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s);
+    let clumps = synchronous(state);
     let of_clumps = clumps.iter();
     let of_clumps: f64 = of_clumps
         .map(|clump| clump.kinetic_j(state.clumps.template(clump)))

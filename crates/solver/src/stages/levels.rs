@@ -7,10 +7,12 @@ use nalgebra::Vector3;
 
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::check::limit::safe_step;
-use crate::check::linear::particle_contact_rates;
+use crate::check::linear::contact_rates_of_each;
 use crate::stages::bonds::bond_strain;
+use crate::stages::clumps::speed_m_s;
 use crate::stages::contacts::overlap_m;
 use crate::state::State;
+use crate::state::clumps::Clump;
 use crate::state::events::Break;
 use crate::state::ledger::Work;
 use crate::state::levels::{
@@ -174,6 +176,7 @@ fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
 /// What limits the steps of a body or fragment.
 #[derive(Debug, Clone, Copy)]
 struct Body {
+    /// Number of its free particles; 1 for a clump.
     particles: usize,
     /// Number of the body that it belonged to at the start: it is no stiffer than that.
     first: u32,
@@ -198,6 +201,14 @@ impl Body {
         fastest_m_s: 0.0,
         smallest_m: f64::INFINITY,
     };
+
+    /// Takes the rates of a first impact, and of present contacts.
+    fn add_rates(&mut self, impact: [f64; 2], present: [f64; 2]) {
+        for n in 0..2 {
+            self.impact[n] = self.impact[n].max(impact[n]);
+            self.rates[n] = self.rates[n].max(impact[n]).max(present[n]);
+        }
+    }
 
     /// The highest level whose steps it may take with this time step, s: below its limit with some
     /// room, if that is above the present level.
@@ -234,8 +245,8 @@ fn bodies(state: &State, rule: &LevelRule, ids: &[u32]) -> Vec<Body> {
     let count = ids.iter().map(|&id| id as usize + 1).max().unwrap_or(0);
     let mut bodies = vec![Body::NONE; count];
     let materials = state.contacts.as_ref().map(|contacts| &contacts.materials);
-    let of_contacts = particle_contact_rates(state);
-    for (i, &id) in ids.iter().enumerate() {
+    let [of_particles, of_clumps] = contact_rates_of_each(state);
+    for (i, &id) in ids.iter().enumerate().take(p.free) {
         let body = &mut bodies[id as usize];
         body.particles += 1;
         body.first = rule.body_of[i];
@@ -245,12 +256,18 @@ fn bodies(state: &State, rule: &LevelRule, ids: &[u32]) -> Vec<Body> {
             body.fastest_m_s = body.fastest_m_s.max(speed_m_s);
         }
         let impact = materials.and_then(|of| rule.impact_rates.get(usize::from(of[i])));
-        let impact = impact.copied().unwrap_or_default();
-        let present = of_contacts.get(i).copied().unwrap_or_default();
-        for n in 0..2 {
-            body.impact[n] = body.impact[n].max(impact[n]);
-            body.rates[n] = body.rates[n].max(impact[n]).max(present[n]);
+        body.add_rates(impact.copied().unwrap_or_default(), of_particles[i]);
+    }
+    for (clump, rates) in state.clumps.all.iter().zip(of_clumps) {
+        let body = &mut bodies[ids[clump.first as usize] as usize];
+        let template = state.clumps.template(clump);
+        body.particles = 1;
+        body.smallest_m = template.smallest_m();
+        if state.contacts.is_some() {
+            body.fastest_m_s = speed_m_s(clump, template);
         }
+        let impact = rule.impact_rates_of_clumps.get(clump.template as usize);
+        body.add_rates(impact.copied().unwrap_or_default(), rates);
     }
     for at in (0..state.bonds.len()).filter(|&at| !state.bonds.is_broken(at)) {
         let body = &mut bodies[ids[state.bonds.ends[at][0] as usize] as usize];
@@ -325,17 +342,19 @@ fn share_out(state: &mut State) {
     let Some(levels) = &mut state.levels else {
         return;
     };
-    let (p, ledger) = (&state.particles, &state.ledger);
+    let (p, clumps, ledger) = (&state.particles, &state.clumps, &state.ledger);
     let share = |group: &Group| {
         let mut share = Share::default();
         for i in (0..p.free).filter(|&i| !group.others[i]) {
-            let mass_kg = 1.0 / p.motions[i].inverse_mass;
-            share.mass_kg += mass_kg;
-            for k in 0..3 {
-                let from_m = p.poses[i].position_m[k] - ledger.about_m[k];
-                share.first_moment[k] += mass_kg * from_m;
-                share.momentum[k] += mass_kg * p.motions[i].velocity_m_s[k];
-            }
+            let (pose, motion) = (&p.poses[i], &p.motions[i]);
+            let from_m = [0, 1, 2].map(|k| pose.position_m[k] - ledger.about_m[k]);
+            share.add(1.0 / motion.inverse_mass, from_m, motion.velocity_m_s);
+        }
+        let is_own = |clump: &&Clump| !group.others[clump.first as usize];
+        for clump in clumps.all.iter().filter(is_own) {
+            let from_m = [0, 1, 2].map(|k| clump.place_m[k] - ledger.about_m[k]);
+            let mass_kg = clumps.template(clump).mass_kg;
+            share.add(mass_kg, from_m, clump.velocity_m_s);
         }
         share
     };
@@ -466,6 +485,9 @@ fn in_group(state: &mut State, n: usize, work: impl Fn(&mut State)) {
 fn swap_in(state: &mut State, group: &mut Group, n: usize) {
     use std::mem::swap;
     swap(&mut state.particles.asleep, &mut group.others);
+    for clump in &mut state.clumps.all {
+        clump.asleep = state.particles.sleeps(clump.first as usize);
+    }
     swap(&mut state.scratch.partitions, &mut group.partitions);
     if let Some(contacts) = &mut state.contacts {
         contacts.scratch.is_of_group ^= true;
@@ -508,6 +530,12 @@ pub(crate) fn note_drift(state: &mut State) {
         for (all_m, moved_m) in scratch.chunks_moved_m.iter_mut().zip(moved) {
             *all_m = all_m.max(steps * moved_m);
         }
+        let clumps = &state.clumps.all;
+        scratch.clumps_moved_m.resize(clumps.len(), 0.0);
+        let all_m = scratch.clumps_moved_m.iter_mut().zip(clumps);
+        for (all_m, clump) in all_m.filter(|(_, clump)| !clump.asleep) {
+            *all_m += clump.moved_m;
+        }
     }
 }
 
@@ -520,6 +548,7 @@ pub(crate) fn join_groups(state: &mut State) {
     levels.scratch.broken = std::mem::take(&mut state.scratch.events.broken);
     levels.scratch.fastest_m_s = 0.0;
     levels.scratch.chunks_moved_m.clear();
+    levels.scratch.clumps_moved_m.clear();
     levels.particle_steps[0] += CYCLE * levels.of_particle.len() as u64;
     if levels.scratch.before.is_empty() {
         return;
@@ -560,6 +589,10 @@ pub(crate) fn end_cycle(state: &mut State) {
         state.scratch.events.broken = std::mem::take(&mut levels.scratch.broken);
         let moved_m = &mut levels.scratch.chunks_moved_m;
         std::mem::swap(&mut state.scratch.chunks_moved_m, moved_m);
+        let moved_m = levels.scratch.clumps_moved_m.iter();
+        for (clump, moved_m) in state.clumps.all.iter_mut().zip(moved_m) {
+            clump.moved_m = *moved_m;
+        }
     }
 }
 

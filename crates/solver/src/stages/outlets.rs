@@ -97,7 +97,7 @@ fn book_leaving(state: &mut State, leaving: &[u32]) {
         .map(|at| bonds.forces(at, poses).energy.total())
         .sum();
     state.ledger.gain(-elastic_j);
-    let now = synchronous(&state.clumps, gravity, state.time_step_s);
+    let now = synchronous(state);
     for (clump, now) in state.clumps.all.iter().zip(&now) {
         if leaves(clump.cluster) {
             let template = state.clumps.template(clump);

@@ -210,7 +210,7 @@ pub(crate) fn begins_to_move(
 /// Puts clusters to sleep: sets their motion to zero and records the loss.
 fn fall_asleep(state: &mut State, falling: &[u32]) {
     let motions = synchronous_motions(state);
-    let now = synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s);
+    let now = synchronous(state);
     let (Some(clusters), Some(sleep)) = (&state.clusters, &mut state.sleep) else {
         return;
     };

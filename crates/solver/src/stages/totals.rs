@@ -17,7 +17,7 @@ use rayon::prelude::*;
 pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     let p = &state.particles;
     let mut motions = synchronous_motions_of_free(state);
-    for clump in synchronous(&state.clumps, state.model.gravity_m_s2, state.time_step_s) {
+    for clump in synchronous(state) {
         let motion_at = clump.motion(state.clumps.template(&clump));
         let spheres = &p.poses[state.clumps.spheres_of(&clump)];
         motions.extend(spheres.iter().map(|pose| motion_at(&pose.place())));

@@ -114,6 +114,15 @@ impl Template {
         radii_m.fold(0.0, f64::max) * self.scale
     }
 
+    /// Radius of the smallest outer sphere of its clumps, m.
+    pub(crate) fn smallest_m(&self) -> f64 {
+        let radii_m = self
+            .outer
+            .iter()
+            .map(|&s| self.spheres[s as usize].radius_m);
+        radii_m.fold(f64::INFINITY, f64::min) * self.scale
+    }
+
     /// Largest distance of a point from the centre of mass, as a clump or as the cluster that it
     /// can become, m.
     pub(crate) fn largest_reach_m(&self) -> f64 {

@@ -27,13 +27,17 @@ pub(crate) fn length(level: u8) -> f64 {
 /// What the levels follow from, by the plan.
 #[derive(Debug, Clone, Default)]
 pub struct LevelRule {
-    /// For each particle the number of the body that it belonged to at the start, among all
-    /// connected ones.
+    /// For each particle the number of the body that it belonged to at the start: connected free
+    /// particles first, then clumps.
     pub body_of: Vec<u32>,
-    /// For each of these bodies the largest eigenvalue of M^-1 K, alone in space, 1/s2.
+    /// For each of these bodies but the clumps the largest eigenvalue of M^-1 K, alone in space,
+    /// 1/s2.
     pub own: Vec<f64>,
-    /// For each material the largest eigenvalues that the first impacts add, 1/s2 and 1/s.
+    /// For each material the largest eigenvalues that the first impacts of free particles add, 1/s2
+    /// and 1/s.
     pub impact_rates: Vec<[f64; 2]>,
+    /// The same for the clumps of each template.
+    pub impact_rates_of_clumps: Vec<[f64; 2]>,
     /// The safety factor of the step, and of the step that impacts allow.
     pub safety: [f64; 2],
 }
@@ -71,6 +75,17 @@ pub(crate) struct Share {
     pub(crate) momentum: [f64; 3],
 }
 
+impl Share {
+    /// Adds a mass, kg, at a place from the centre of the ledger, m, with a velocity, m/s.
+    pub(crate) fn add(&mut self, mass_kg: f64, from_m: [f64; 3], velocity_m_s: [f64; 3]) {
+        self.mass_kg += mass_kg;
+        for k in 0..3 {
+            self.first_moment[k] += mass_kg * from_m[k];
+            self.momentum[k] += mass_kg * velocity_m_s[k];
+        }
+    }
+}
+
 /// Data of levels that can be rebuilt from the other parts of a state.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LevelScratch {
@@ -90,6 +105,8 @@ pub(crate) struct LevelScratch {
     pub(crate) before: Vec<u8>,
     /// For each chunk of particles the distance that the fastest of them moves in a cycle, m.
     pub(crate) chunks_moved_m: Vec<f64>,
+    /// For each clump the distance that it has moved in this cycle, m.
+    pub(crate) clumps_moved_m: Vec<f64>,
     /// Largest speed of a particle in this cycle, m/s.
     pub(crate) fastest_m_s: f64,
 }

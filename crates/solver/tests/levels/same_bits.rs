@@ -17,13 +17,20 @@ use crate::fragments::run_into;
 /// A particle of the second cake.
 const IN_B: usize = 700;
 
-/// Three cakes that fly and fall onto a plate, one of them hard.
+/// Three cakes that fly and fall onto a plate, one of them hard, and two as rigid clumps, of which
+/// one falls onto the other.
 fn cakes(end_s: f64) -> String {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/bodies/cake.vtp");
     let cake = |name: &str, kind: &str, x_m: f64, speed_m_s: f64| {
         format!(
             "[bodies.{name}]\nfile = \"{file}\"\nmaterial = \"{kind}\"\nbonds = \"{kind}\"\n\
              position = [{x_m}, 0, 1e-3]\nvelocity = [{speed_m_s}, 0, -1]\n"
+        )
+    };
+    let clump = |name: &str, z_m: f64, speed_m_s: f64| {
+        format!(
+            "[bodies.{name}]\nfile = \"{file}\"\nmaterial = \"soft\"\nstart_as = \"clump\"\n\
+             position = [0.4, 0, {z_m}]\nvelocity = [0, 0, {speed_m_s}]\n"
         )
     };
     head(&format!(
@@ -36,6 +43,8 @@ fn cakes(end_s: f64) -> String {
         + &cake("a", "soft", 0.0, 0.0)
         + &cake("b", "soft", 0.13, 0.0)
         + &cake("c", "hard", 0.26, -4.0)
+        + &clump("d", 1e-3, -1.0)
+        + &clump("e", 34e-3, -4.0)
 }
 
 #[test]
@@ -59,7 +68,10 @@ fn two_threads_give_the_bits_of_one() {
     let [(one, levels), (two, _)] = &ends;
     assert_eq!(one.particles.poses, two.particles.poses);
     assert_eq!(one.particles.motions, two.particles.motions);
+    assert_eq!(one.clumps.all, two.clumps.all);
     assert_eq!(one.ledger, two.ledger);
+    let impact_j = one.clumps.all.iter().map(|clump| clump.impact_energy_j);
+    assert!(impact_j.fold(f64::INFINITY, f64::min) > 0.0);
     // They were apart and came together.
     assert!(levels.contains(&0) && levels.iter().any(|level| *level > 1));
 }

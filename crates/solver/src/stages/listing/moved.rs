@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::physics::rotation::rotation;
 use crate::stages::chunks::CHUNK;
-use crate::stages::clumps::place_of;
+use crate::stages::clumps::{place_of, speed_m_s};
 use crate::state::State;
 use crate::state::balls::Ball;
 use crate::state::clumps::{Clump, Clumps, Template};
@@ -192,13 +192,6 @@ fn clump_left_m(clumps: &Clumps, clump: &Clump, reference: &ClumpReference) -> f
     reference.allowance_m - moved_m - turned * clumps.template(clump).reach_m
 }
 
-/// Upper bound of the speed of the spheres of a clump, m/s.
-fn clump_speed_m_s(clumps: &Clumps, clump: &Clump) -> f64 {
-    let template = clumps.template(clump);
-    let turning_m_s = clump.spin_rad_s(template).norm() * template.reach_m;
-    Vector3::from(clump.velocity_m_s).norm() + turning_m_s
-}
-
 /// Gives a free particle, which moves this far in a step, m, a new ball.
 pub(super) fn refer_particle(contacts: &mut Contacts, i: usize, pose: &Pose, moved_m: f64) {
     let allowance_m = match contacts.model.allowances {
@@ -246,7 +239,7 @@ pub(super) fn refer_clumps(
         let template = state.clumps.template(clump);
         let known_m = known.largest_m(clump.template as usize);
         let largest_m = known_m.unwrap_or_else(|| template.largest_m());
-        let moved_m = clump_speed_m_s(&state.clumps, clump) * state.time_step_s;
+        let moved_m = speed_m_s(clump, state.clumps.template(clump)) * state.cycle_s();
         let allowance_m = match allowances {
             None => 0.5 * skin_m,
             Some([least, _]) => {
