@@ -1,7 +1,7 @@
 //! Contacts linearised for the time step limit: springs and dashpots at their present overlap, or
 //! at that of an impact.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix6, Vector3, Vector6};
 use rayon::prelude::*;
 
 use crate::physics::contact::Linearised;
@@ -10,10 +10,11 @@ use crate::physics::contact::law::ContactKind;
 use crate::physics::contact::law::Law;
 use crate::physics::contact::liquid_bridge::LiquidBridge;
 use crate::physics::number::Vec3;
+use crate::physics::rotation::rotation;
 use crate::stages::walls::wall_contact;
 use crate::state::State;
 use crate::state::bridges::Bridges;
-use crate::state::clumps::{Clump, Clumps};
+use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallContact};
@@ -150,27 +151,80 @@ fn largest(rates: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
     rates.into_iter().fold([0.0; 2], both)
 }
 
-/// For each clump the same bounds: the sum of all its contacts, each acting where it rotates the
-/// clump most easily.
+/// For each clump upper bounds of the same eigenvalues: those of the clump alone, with twice the
+/// stiffness of its contacts with particles and clumps, and once that of its contacts with walls.
+///
+/// For two ends joined by a spring, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2, as in [`contact_rates`].
 fn rates_of_clumps(state: &State, contacts: &[LinearContact]) -> Vec<[f64; 2]> {
     let clumps = &state.clumps;
-    let mut sums = vec![[0.0; 2]; clumps.all.len()];
+    let mut sums = vec![[Matrix6::zeros(); 2]; clumps.all.len()];
     for contact in contacts {
-        for end in contact.ends.into_iter().flatten() {
-            if let Some(at) = clumps.carrier_of(end as usize) {
-                let answer = &contact.answer;
-                sums[at][0] += answer.normal_n_m.max(answer.tangential_n_m);
-                sums[at][1] += (answer.normal_damping_n_s_m).max(answer.tangential_damping_n_s_m);
+        for (end, side) in contact.ends.into_iter().zip([0, 1]) {
+            let at = end.and_then(|i| clumps.carrier_of(i as usize));
+            if let (Some(i), Some(at)) = (end, at) {
+                let clump = &clumps.all[at];
+                let centre = state.particles.poses[i as usize].place();
+                contact.add_to_clump(&mut sums[at], clumps.template(clump), clump, centre, side);
             }
         }
     }
-    let of_clumps = clumps.all.iter().zip(sums);
-    let rates = of_clumps.map(|(clump, sum)| {
-        let inverse_kg = largest_inverse_mass(clumps, clump);
-        // Two clumps may push each other: each takes as much as the other.
-        sum.map(|sum| 2.0 * sum * inverse_kg)
-    });
-    rates.collect()
+    let largest = |sum: Matrix6<f64>| sum.symmetric_eigenvalues().max().max(0.0);
+    sums.into_iter().map(|both| both.map(largest)).collect()
+}
+
+impl LinearContact {
+    /// Adds its stiffness and damping to those of the clump that carries one of its ends (0: the
+    /// first, 1: the second), whose sphere is at `centre`, m: in the axes of the clump, over the
+    /// roots of its mass and moments. Length of both: stiffness, damping.
+    fn add_to_clump(
+        &self,
+        sums: &mut [Matrix6<f64>; 2],
+        template: &Template,
+        clump: &Clump,
+        centre: Vector3<f64>,
+        side: usize,
+    ) {
+        let to_axes = rotation(clump.turned).inverse();
+        let normal = Vector3::from(self.touch.normal);
+        let lever_m = [1.0, -1.0][side] * self.touch.levers_m[side];
+        let arm = to_axes * (centre + lever_m * normal - Vector3::from(clump.place_m));
+        let per_root_kg = 1.0 / template.mass_kg.sqrt();
+        let per_roots = Vector3::from(template.moments_kg_m2).map(|moment| 1.0 / moment.sqrt());
+        let times = if self.ends.contains(&None) { 1.0 } else { 2.0 };
+        let answer = &self.answer;
+        let coefficients = [
+            [
+                answer.normal_n_m,
+                answer.tangential_n_m,
+                answer.rolling_n_m_rad,
+            ],
+            [
+                answer.normal_damping_n_s_m,
+                answer.tangential_damping_n_s_m,
+                answer.rolling_damping_n_m_s,
+            ],
+        ];
+        let normal = to_axes * normal;
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z(), normal];
+        for (direction, is_normal) in axes.into_iter().zip([false, false, false, true]) {
+            let turning = arm.cross(&direction).component_mul(&per_roots);
+            let pushed = joined(per_root_kg * direction, turning);
+            let rolled = joined(Vector3::zeros(), direction.component_mul(&per_roots));
+            for (sum, [along, across, rolling]) in sums.iter_mut().zip(coefficients) {
+                let (force, moment) = if is_normal {
+                    (along - across, -rolling)
+                } else {
+                    (across, rolling)
+                };
+                sum.ger(times * force, &pushed, &pushed, 1.0);
+                sum.ger(times * moment, &rolled, &rolled, 1.0);
+            }
+        }
+    }
+}
+
+fn joined(first: Vector3<f64>, second: Vector3<f64>) -> Vector6<f64> {
+    Vector6::new(first.x, first.y, first.z, second.x, second.y, second.z)
 }
 
 /// One over the mass with which a clump resists where a force rotates it most easily, 1/kg.

@@ -1,8 +1,9 @@
 //! The time step of scenes with clumps.
 
 use dem_run::check::limit::{limit, safe_step};
-use dem_run::check::linear::at_impact;
+use dem_run::check::linear::{at_impact, contact_rates};
 use dem_run::plan::Plan;
+use dem_run::step::{interact, step};
 
 use super::again::same;
 use super::books::{booked, feed};
@@ -64,4 +65,45 @@ fn impacts_of_clumps_that_are_to_come_are_foreseen() {
     // The contacts are as predicted, except for several of one clump at the same time.
     let [k, c, _] = at_impact(&books.state, step.impact_speed_m_s);
     assert!((safe_step(k, c) / step.foreseen_s - 1.0).abs() < 1e-12);
+}
+
+/// A clump of two spheres lies on a plate under its weight, with springs and without damping. Up to
+/// the limit small motions stay small, and beyond it they grow: of all six modes together.
+#[test]
+fn a_clump_on_a_plate_is_stable_up_to_the_limit() {
+    const RADIUS_M: f64 = 5e-3;
+    const STIFFNESS_N_M: f64 = 1e4;
+    let mass_kg = 2.0 * 2000.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS_M.powi(3);
+    let overlap_m = mass_kg * 9.81 / (2.0 * STIFFNESS_N_M);
+    let text = format!(
+        "version = 1
+run = {{ end_time = 1, gravity = [0, 0, -9.81], initial_overlap = \"keep\" }}
+materials.m = {{ density = 2000, young_modulus = 1e7 }}
+contacts.m-m = {{ restitution = 1, friction = 1, law = \"linear\", normal_stiffness = {STIFFNESS_N_M} }}
+walls.floor = {{ plane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}, material = \"m\" }}
+[bodies.lump]
+material = \"m\"
+particles = [[0, 0, 0, {RADIUS_M}], [15e-3, 0, 0, {RADIUS_M}]]
+position = [0, 0, {:e}]
+velocity = [1e-9, 2e-9, 3e-9]
+angular_velocity = [1e-7, 2e-7, 3e-7]
+start_as = \"clump\"
+",
+        RADIUS_M - overlap_m
+    );
+    let fastest = |share: f64| {
+        let mut state = planned(&text).state;
+        interact(&mut state);
+        let [k, c] = contact_rates(&state);
+        assert!(k > 0.0 && c == 0.0, "{k} {c}");
+        let mut state = planned(&text).state;
+        state.time_step_s = share * safe_step(k, c);
+        for _ in 0..1000 {
+            step(&mut state);
+        }
+        state.clumps.kinetic_j()
+    };
+    let [below, beyond] = [0.99, 1.01].map(fastest);
+    assert!(below < 1e-16, "{below:e}");
+    assert!(beyond > 1e-9, "{beyond:e}");
 }
