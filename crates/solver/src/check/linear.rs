@@ -151,8 +151,9 @@ fn largest(rates: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
     rates.into_iter().fold([0.0; 2], both)
 }
 
-/// For each clump upper bounds of the same eigenvalues: those of the clump alone, with twice the
-/// stiffness of its contacts with particles and clumps, and once that of its contacts with walls.
+/// For each clump an upper bound of the largest eigenvalues of stiffness over mass, 1/s2, and of
+/// damping over mass, 1/s: those of the clump alone, with twice the stiffness of its contacts with
+/// particles and clumps, and once that of its contacts with walls.
 ///
 /// For two ends joined by a spring, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2, as in [`contact_rates`].
 fn rates_of_clumps(state: &State, contacts: &[LinearContact]) -> Vec<[f64; 2]> {
@@ -174,8 +175,8 @@ fn rates_of_clumps(state: &State, contacts: &[LinearContact]) -> Vec<[f64; 2]> {
 
 impl LinearContact {
     /// Adds its stiffness and damping to those of the clump that carries one of its ends (0: the
-    /// first, 1: the second), whose sphere is at `centre`, m: in the axes of the clump, over the
-    /// roots of its mass and moments. Length of both: stiffness, damping.
+    /// first, 1: the second), whose sphere is at `centre`, m: in the principal axes of the clump,
+    /// divided by the square roots of its mass and moments. `sums`: stiffness, damping.
     fn add_to_clump(
         &self,
         sums: &mut [Matrix6<f64>; 2],
@@ -263,8 +264,8 @@ fn translation(answer: &Linearised) -> [f64; 2] {
 /// Upper bounds of the same eigenvalues for all contacts of a state together, of particles and of
 /// clumps: fast to compute, but up to a few times too large.
 ///
-/// For two ends joined by a spring, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so the bound for each end
-/// is twice the sum of its springs.
+/// For two ends joined by a spring, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so the bound for a particle
+/// is twice the sum of its springs; for a clump see [`rates_of_clumps`].
 pub fn contact_rates(state: &State) -> [f64; 2] {
     let [of_particles, of_clumps] = contact_rates_of_each(state);
     largest(of_particles.into_iter().chain(of_clumps))

@@ -115,11 +115,25 @@ fn have_met(state: &State, levels: &Levels) -> bool {
 fn is_near(state: &State, pair: [u32; 2]) -> bool {
     let p = &state.particles;
     let ends = pair.map(|i| i as usize);
-    let [a, b] = ends.map(|i| Vector3::from(p.motions[i].velocity_m_s));
+    let [a, b] = ends.map(|i| velocity_m_s(state, i));
     let radii = ends.map(|i| p.poses[i].radius_m());
     let cycle_s = CYCLE as f64 * state.time_step_s;
     let reach_m = AHEAD * cycle_s * (b - a).norm() + NEAR * (radii[0] + radii[1]);
     -overlap_m(&p.poses, pair) < reach_m
+}
+
+/// Velocity of a particle, m/s. That which is stored for a sphere of a clump depends on when it was
+/// listed.
+fn velocity_m_s(state: &State, i: usize) -> Vector3<f64> {
+    let p = &state.particles;
+    let motion = match state.clumps.carrier_of(i) {
+        Some(at) => {
+            let clump = &state.clumps.all[at];
+            clump.motion(state.clumps.template(clump))(&p.poses[i].place())
+        }
+        None => p.motions[i],
+    };
+    motion.velocity_m_s.into()
 }
 
 /// Number of the body or fragment of each particle.
