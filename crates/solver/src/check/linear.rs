@@ -265,7 +265,7 @@ fn translation(answer: &Linearised) -> [f64; 2] {
 /// clumps: fast to compute, but up to a few times too large.
 ///
 /// For two ends joined by a spring, (u_a - u_b)^2 <= 2 u_a^2 + 2 u_b^2: so the bound for a particle
-/// is twice the sum of its springs; for a clump see [`rates_of_clumps`].
+/// is twice the sum of its springs, and a clump takes the largest of its six modes.
 pub fn contact_rates(state: &State) -> [f64; 2] {
     let [of_particles, of_clumps] = contact_rates_of_each(state);
     largest(of_particles.into_iter().chain(of_clumps))
