@@ -9,7 +9,7 @@ mod order;
 mod same_bits;
 
 use dem_run::plan::{Plan, plan};
-use dem_run::stages::ledger::opened;
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 
 use crate::helpers::scene;
@@ -43,6 +43,12 @@ pub(crate) fn damped(kind: &str, damping_ratio: f64) -> String {
 pub(crate) const CONTACTS: &str = "contacts.soft-soft = { restitution = 0.8, friction = 0.3 }\n\
      contacts.hard-soft = { restitution = 0.8, friction = 0.3 }\n\
      contacts.hard-hard = { restitution = 0.8, friction = 0.3 }\n";
+
+/// A steel plate at the height 0, and the laws of its contacts.
+pub(crate) const PLATE: &str = "contacts.hard-steel = { restitution = 0.6, friction = 0.3 }\n\
+     contacts.soft-steel = { restitution = 0.6, friction = 0.3 }\n\
+     materials.steel = { young_modulus = 2e11 }\n\
+     [walls.plate]\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = \"steel\"\n";
 
 /// A pair along x with its first sphere at this place, m, and with this velocity, m/s.
 pub(crate) fn pair(name: &str, kind: &str, place_m: [f64; 3], velocity_m_s: [f64; 3]) -> String {
@@ -80,6 +86,30 @@ pub(crate) fn frequency_rad_s(state: &State, bond: usize) -> f64 {
         .iter()
         .sum();
     (state.bonds.normal(bond) * inverse_kg).sqrt()
+}
+
+/// Magnitudes of the relative errors of energy, momentum and angular momentum.
+pub(crate) fn errors(state: &mut State) -> [f64; 3] {
+    let books = balance(state);
+    [
+        books.energy_error.abs(),
+        books.momentum_error,
+        books.angular_momentum_error,
+    ]
+}
+
+/// Number of touching pairs. Their particles have one level, and were listed before they touched.
+pub(crate) fn touching_at_one_level(state: &State) -> usize {
+    let contacts = state.contacts.as_ref().unwrap();
+    let all = contacts.pairs.iter().zip(&contacts.histories);
+    let mut touched = 0;
+    for (pair, history) in all.filter(|(_, history)| history.overlap_m() > 0.0) {
+        touched += 1;
+        let [one, other] = pair.map(|i| levels(state)[i as usize]);
+        assert_eq!(one, other);
+        assert_eq!(history.origin_m(), 0.0, "listed too late");
+    }
+    touched
 }
 
 /// Level of the body of each particle.

@@ -107,20 +107,19 @@ pub struct Template {
 impl Template {
     /// Radius of the largest sphere of its clumps, m.
     pub(crate) fn largest_m(&self) -> f64 {
-        let radii_m = self
-            .outer
-            .iter()
-            .map(|&s| self.spheres[s as usize].radius_m);
-        radii_m.fold(0.0, f64::max) * self.scale
+        self.outer_radii_m().fold(0.0, f64::max) * self.scale
     }
 
     /// Radius of the smallest outer sphere of its clumps, m.
     pub(crate) fn smallest_m(&self) -> f64 {
-        let radii_m = self
-            .outer
+        self.outer_radii_m().fold(f64::INFINITY, f64::min) * self.scale
+    }
+
+    /// Radii of the outer spheres, not scaled, m.
+    fn outer_radii_m(&self) -> impl Iterator<Item = f64> {
+        self.outer
             .iter()
-            .map(|&s| self.spheres[s as usize].radius_m);
-        radii_m.fold(f64::INFINITY, f64::min) * self.scale
+            .map(|&sphere| self.spheres[sphere as usize].radius_m)
     }
 
     /// Largest distance of a point from the centre of mass, as a clump or as the cluster that it

@@ -3,7 +3,7 @@
 use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact};
 
-use super::{CONTACTS, frequency_rad_s, head, levels, pair, parting, planned};
+use super::{CONTACTS, PLATE, errors, frequency_rad_s, head, levels, pair, parting, planned};
 
 /// Pairs vibrate and fall for 1e5 steps: leapfrog makes the energy of each swing between what it is
 /// and 1/(1 - x^2) times that, with x = half of step times frequency, and nothing drifts.
@@ -61,11 +61,8 @@ fn all_is_booked(damping: &str) {
     let text = head("run.end_time = 0.02\nrun.gravity = [0, 0, -9.81]\nrun.safety_factor = 0.2")
         + &format!("bonds.hard.damping.{damping}\nbonds.soft.damping.{damping}\n")
         + CONTACTS
-        + "contacts.hard-steel = { restitution = 0.6, friction = 0.3 }\n\
-           contacts.soft-steel = { restitution = 0.6, friction = 0.3 }\n\
-           materials.steel = { young_modulus = 2e11 }\n\
-           [walls.plate]\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = \"steel\"\n\
-           surface_velocity = [0.1, 0, 0]\n"
+        + PLATE
+        + "surface_velocity = [0.1, 0, 0]\n"
         + &pair("a", "hard", [0.0, 0.0, 1.5e-3], [0.2, 0.0, -0.3])
         + &pair("b", "soft", [0.1, 0.0, 1.5e-3], [0.2, 0.0, -0.3]);
     let mut state = planned(&text).state;
@@ -73,12 +70,7 @@ fn all_is_booked(damping: &str) {
     let mut touched = [false; 2];
     while state.time_s < 0.02 {
         interact(&mut state);
-        let books = balance(&mut state);
-        let errors = [
-            books.energy_error.abs(),
-            books.momentum_error,
-            books.angular_momentum_error,
-        ];
+        let errors = errors(&mut state);
         largest = [0, 1, 2].map(|k| largest[k].max(errors[k]));
         for touch in &state.walls[0].touching {
             touched[touch.particle as usize / 2] = true;

@@ -1,9 +1,8 @@
 //! Bodies of different limits come to one level before they touch, and part again.
 
-use dem_run::stages::ledger::balance;
 use dem_run::step::{advance, interact, step};
 
-use super::{CONTACTS, RADIUS_M, head, levels, pair, planned};
+use super::{CONTACTS, RADIUS_M, errors, head, levels, pair, planned, touching_at_one_level};
 
 const TOGETHER: &str = "run.end_time = 0.02";
 
@@ -28,24 +27,10 @@ fn bodies_that_touch_have_one_level_and_keep_their_momentum() {
         if seen.last() != Some(&now) {
             seen.push(now);
         }
-        let contacts = state.contacts.as_ref().unwrap();
-        for (pair, history) in contacts.pairs.iter().zip(&contacts.histories) {
-            if history.overlap_m() > 0.0 {
-                touched += 1;
-                let [one, other] = pair.map(|i| levels(&state)[i as usize]);
-                assert_eq!(one, other);
-                assert_eq!(history.origin_m(), 0.0, "listed too late");
-            }
-        }
-        let balance = balance(&mut state);
-        largest = largest
-            .max(balance.momentum_error)
-            .max(balance.angular_momentum_error);
-        assert!(
-            balance.energy_error.abs() < 0.01,
-            "{}",
-            balance.energy_error
-        );
+        touched += touching_at_one_level(&state);
+        let [energy, momentum, angular_momentum] = errors(&mut state);
+        largest = largest.max(momentum).max(angular_momentum);
+        assert!(energy < 0.01, "{energy}");
         advance(&mut state);
     }
     assert!(touched > 3);

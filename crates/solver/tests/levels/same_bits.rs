@@ -11,7 +11,7 @@ use dem_run::state::State;
 use dem_run::step::step;
 use dem_scene::{Scene, read_bodies, scene_from_text};
 
-use super::{CONTACTS, head, pair, planned};
+use super::{CONTACTS, PLATE, head, pair, planned};
 use crate::fragments::run_into;
 
 /// A particle of the second cake.
@@ -36,10 +36,7 @@ fn cakes(end_s: f64) -> String {
     head(&format!(
         "run.end_time = {end_s}\nrun.gravity = [0, 0, -9.81]"
     )) + CONTACTS
-        + "contacts.hard-steel = { restitution = 0.6, friction = 0.3 }\n\
-           contacts.soft-steel = { restitution = 0.6, friction = 0.3 }\n\
-           materials.steel = { young_modulus = 2e11 }\n\
-           [walls.plate]\nplane = { point = [0, 0, 0], normal = [0, 0, 1] }\nmaterial = \"steel\"\n"
+        + PLATE
         + &cake("a", "soft", 0.0, 0.0)
         + &cake("b", "soft", 0.13, 0.0)
         + &cake("c", "hard", 0.26, -4.0)
