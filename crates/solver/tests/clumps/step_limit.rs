@@ -85,8 +85,8 @@ fn a_clump_on_a_plate_is_stable_up_to_the_limit() {
     }
 }
 
-/// Kinetic energy, J, of a clump of spheres at these places, m, on so many feet, after 1000 steps of
-/// this fraction of the limit.
+/// Kinetic energy, J, of a clump of spheres at these places, m, on so many feet, after 1000 steps
+/// of this fraction of the limit.
 fn energy_at(share: f64, places_m: &[[f64; 3]], feet: f64) -> f64 {
     const RADIUS_M: f64 = 5e-3;
     const STIFFNESS_N_M: f64 = 1e4;
