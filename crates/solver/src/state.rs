@@ -1,6 +1,7 @@
 //! The state of a simulation as plain arrays: bodies, bonds, contacts and all other data that a
 //! step needs.
 
+pub mod asleep;
 pub mod balls;
 pub mod bodies;
 pub mod bonds;

@@ -2,6 +2,7 @@
 
 mod again;
 mod books;
+mod lists;
 mod restless;
 mod settle;
 mod wake;

@@ -53,6 +53,10 @@ pub(crate) fn place_bodies(
     let mut bonds = Bonds::default();
     let mut placed = Vec::new();
     bonds.rules = scene.bonds.values().map(rule).collect();
+    particles.reserve_exact(read.values().map(|body| body.radii.len()).sum());
+    let has_bonds = |name: &String| (scene.bodies.get(name)).is_some_and(|b| b.bond_kind.is_some());
+    let bonded = read.iter().filter(|(name, _)| has_bonds(name));
+    bonds.reserve_exact(bonded.map(|(_, body)| body.bonds.len()).sum());
     for (name, entry) in &scene.bodies {
         if let Some(body) = read.remove(name) {
             let (particles, bonds) = (&mut particles, &mut bonds);

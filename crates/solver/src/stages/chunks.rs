@@ -5,8 +5,17 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-/// Particles handled by one task.
-pub(crate) const CHUNK: usize = 1024;
+pub(crate) use crate::state::asleep::CHUNK;
+
+/// The numbers of the chunks of `count` particles.
+pub(crate) fn chunks_of(count: usize) -> Range<usize> {
+    0..count.div_ceil(CHUNK)
+}
+
+/// The particles of a chunk, of `count` in all.
+pub(crate) fn chunk_of(chunk: usize, count: usize) -> Range<usize> {
+    chunk * CHUNK..((chunk + 1) * CHUNK).min(count)
+}
 
 /// The sum of `term` over 0..count, in an order that does not depend on the number of threads.
 pub(crate) fn ordered_sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
@@ -32,7 +41,7 @@ pub(crate) fn sums_of_chunks<const N: usize>(
     count: usize,
     sums_over: impl Fn(Range<usize>) -> [f64; N] + Sync,
 ) -> [f64; N] {
-    let of_chunk = |chunk: usize| sums_over(chunk * CHUNK..((chunk + 1) * CHUNK).min(count));
+    let of_chunk = |chunk: usize| sums_over(chunk_of(chunk, count));
     if count <= CHUNK {
         return of_chunk(0);
     }

@@ -12,6 +12,7 @@ use crate::stages::bonds::bond_strain;
 use crate::stages::clumps::speed_m_s;
 use crate::stages::contacts::overlap_m;
 use crate::state::State;
+use crate::state::asleep::Asleep;
 use crate::state::clumps::Clump;
 use crate::state::events::Break;
 use crate::state::ledger::Work;
@@ -306,7 +307,8 @@ fn group(state: &mut State) {
     kinds.dedup();
     let (bonds, free) = (&state.bonds, state.particles.free);
     let of_kind = |levels: [u8; 2]| {
-        let others: Vec<bool> = all.iter().map(|other| *other != levels).collect();
+        let others = all.iter().map(|other| *other != levels);
+        let others = Asleep::from(others.collect::<Vec<bool>>());
         let idle = Idle {
             asleep: &others,
             part_of: &[],

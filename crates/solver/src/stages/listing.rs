@@ -1,6 +1,7 @@
 //! Neighbour lists: particles near walls, pairs of particles, and the spheres of clumps that are in
 //! either.
 
+mod among_sleepers;
 mod moved;
 mod renumbered;
 
@@ -9,15 +10,16 @@ use rayon::prelude::*;
 
 pub(super) use self::renumbered::{lengthen_lists, renumber_lists};
 
+use self::among_sleepers::list_among_sleepers;
 use self::moved::{Due, due, find_left, may_be_due, refer_clumps, refer_particle, use_up};
 use super::chunks::CHUNK;
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
-use super::contacts::{find_mean_radius, list_beside, list_contacts, relist};
+use super::contacts::{find_mean_radius, list_beside, relist};
 use super::neighbours::overlapping_pairs;
-use super::sleep::{begins_to_move, disturbed, freeze_contacts, wake};
+use super::sleep::begins_to_move;
 use super::stage::{NO_SAVING, Need, Stage};
-use super::walls::{list_near, plane_in_space, reaches};
+use super::walls::{plane_in_space, reaches};
 use crate::state::State;
 use crate::state::balls::{Ball, ball_around};
 use crate::state::bridges::Bridges;
@@ -315,57 +317,5 @@ fn skin_m(wall: &Wall, least_m: f64) -> f64 {
     match wall.model.motion {
         WallMotion::Fixed => 0.0,
         _ => least_m.max(4.0 * wall.moved_m),
-    }
-}
-
-/// Rebuilds all lists, without pairs of sleeping particles. Sleeping bodies are in none of them; a
-/// sleeping body wakes first when something moving is near it. Returns the number of particles
-/// searched for.
-fn list_among_sleepers(state: &mut State) -> usize {
-    let mut listed = 0;
-    clumps::place_all(&state.clumps, &mut state.particles);
-    freeze_contacts(state);
-    loop {
-        list_awake(state);
-        listed += state.particles.len();
-        let near = disturbed(state);
-        if near.is_empty() {
-            break;
-        }
-        wake(state, &near, "near");
-    }
-    if let Some(contacts) = state.contacts.take() {
-        list_near_spheres(state, &contacts.pairs);
-        state.contacts = Some(contacts);
-    }
-    listed
-}
-
-/// Lists walls and pairs, without pairs of sleeping particles.
-fn list_awake(state: &mut State) {
-    let moved_m = state.fastest_m_s * state.time_step_s;
-    let (Some(contacts), p) = (&mut state.contacts, &state.particles) else {
-        return;
-    };
-    // The skin covers at least two steps: see `refer_particle`.
-    let skin_m = contacts.skin_m.max(4.0 * moved_m);
-    list_near(&mut state.walls, p, skin_m);
-    if contacts.model.alone {
-        contacts.skin_left_m = 0.5 * skin_m;
-        return;
-    }
-    let clusters = state.clusters.as_ref();
-    let of_particle = clusters.map_or(&[][..], |c| &c.of_particle);
-    if p.asleep.is_empty() {
-        list_contacts(contacts, of_particle, p, skin_m);
-    } else {
-        // All sleeping bodies count as one.
-        let none = clusters.map_or(0, |c| c.history.len() as u32);
-        let of_one = |(&id, &asleep): (&u32, &bool)| if asleep { none } else { id };
-        let numbers: Vec<u32> = of_particle.iter().zip(&p.asleep).map(of_one).collect();
-        list_contacts(contacts, &numbers, p, skin_m);
-    }
-    if contacts.model.relaxes {
-        state.scratch.events.work.relaxing += contacts.relaxing();
     }
 }

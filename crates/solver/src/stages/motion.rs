@@ -3,8 +3,6 @@
 //! Velocities are those halfway between two steps (leapfrog). This is kick-drift-kick with the
 //! second kick of a step merged with the first of the next.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use super::clumps::awake;
@@ -13,6 +11,7 @@ use crate::physics::rigid::{room_to_small, turn, turn_a_little};
 use crate::stages::chunks::{CHUNK, ordered_sum};
 use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
 use crate::state::State;
+use crate::state::asleep::Asleep;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 
 /// ns per particle of a body of 25,547 particles: see doc/leave-out.md.
@@ -156,15 +155,15 @@ impl Forces<'_> {
     }
 }
 
-/// Changes those of some particles from number `first` on that are awake.
+/// Changes those of a chunk, from number `first` on, that are awake.
 #[inline(always)]
 pub(super) fn for_each_awake<T>(
     first: usize,
     some: &mut [T],
-    asleep: &[bool],
+    asleep: &Asleep,
     mut change: impl FnMut(usize, &mut T),
 ) {
-    if all_sleep(asleep, first..first + some.len()) {
+    if asleep.is_whole(first / CHUNK) {
         return;
     }
     for (i, one) in (first..).zip(some) {
@@ -172,15 +171,6 @@ pub(super) fn for_each_awake<T>(
             change(i, one);
         }
     }
-}
-
-/// Whether all of these particles sleep.
-fn all_sleep(asleep: &[bool], particles: Range<usize>) -> bool {
-    /// As many as a loop without a branch compares at once.
-    const AT_ONCE: usize = 64;
-    let all = |some: &[bool]| some.iter().fold(true, |all, one| all & one);
-    let some = asleep.get(particles);
-    some.is_some_and(|asleep| asleep.chunks(AT_ONCE).all(all))
 }
 
 /// Updates positions and orientations of the free particles over `time_step_s`. Returns the largest
@@ -199,7 +189,7 @@ pub fn drift(particles: &mut Particles, time_step_s: f64, chunks_moved_m: &mut V
         .enumerate()
         .map(|(chunk, (poses, moved_m))| {
             let own = chunk * CHUNK..chunk * CHUNK + poses.len();
-            if all_sleep(asleep, own.clone()) {
+            if asleep.is_whole(chunk) {
                 *moved_m = 0.0;
                 return 0.0;
             }

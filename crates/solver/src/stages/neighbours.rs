@@ -28,13 +28,22 @@ use crate::state::rigid_balls::Placement;
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the
 /// smaller index first, sorted. `clusters`: one for each particle.
 pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]> {
-    let ball = |pose: &Pose| {
-        let [x, y, z, radius_m] = pose.position_m;
-        [x, y, z, radius_m + 0.5 * skin_m]
-    };
-    let balls: Vec<Ball> = poses.iter().map(ball).collect();
+    let balls = poses.iter().map(|pose| ball_of(pose, skin_m));
+    let balls: Vec<Ball> = balls.collect();
+    pairs_of_all(&balls, clusters)
+}
+
+/// A sphere with half of a skin, m.
+pub(super) fn ball_of(pose: &Pose, skin_m: f64) -> Ball {
+    let [x, y, z, radius_m] = pose.position_m;
+    [x, y, z, radius_m + 0.5 * skin_m]
+}
+
+/// Pairs of overlapping balls of different clusters, the smaller index first, sorted. `clusters`:
+/// one for each ball.
+pub(super) fn pairs_of_all(balls: &[Ball], clusters: &[u32]) -> Vec<[u32; 2]> {
     let searched = Searched {
-        balls: &balls,
+        balls,
         clusters,
         seeks: None,
         clumps: None,

@@ -6,6 +6,7 @@
 
 use nalgebra::Vector3;
 
+use super::chunks::{chunk_of, chunks_of};
 use super::clumps::{place_all, synchronous};
 use super::contacts::contact_energy_j;
 use super::neighbours::near_pairs;
@@ -13,6 +14,7 @@ use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{has_moved, nearness, push_at_rest, touch_energy_j, will_move};
 use crate::stages::totals::synchronous_motions;
 use crate::state::State;
+use crate::state::asleep::Asleep;
 use crate::state::bridges::Bridges;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::events::SleepEvent;
@@ -99,7 +101,9 @@ fn speeds_m_s(state: &State) -> Vec<Option<f64>> {
     };
     let norm = |v: [f64; 3]| Vector3::from(v).norm();
     let p = &state.particles;
-    for i in (0..p.free).filter(|&i| !p.sleeps(i)) {
+    let awake = chunks_of(p.free).filter(|&chunk| !p.asleep.is_whole(chunk));
+    let awake = awake.flat_map(|chunk| chunk_of(chunk, p.free));
+    for i in awake.filter(|&i| !p.sleeps(i)) {
         let motion = &p.motions[i];
         let turning_m_s = norm(motion.spin_rad_s) * p.poses[i].radius_m();
         note(
@@ -498,11 +502,15 @@ pub(crate) fn count_sleepers(state: &mut State) {
     };
     let p = &mut state.particles;
     sleep.bodies = sleep.of_cluster.iter().filter(|body| body.asleep).count();
-    p.asleep.clear();
-    if sleep.bodies > 0 {
-        let of_particle = clusters.of_particle.iter();
-        p.asleep.extend(of_particle.map(|&id| sleep.is_asleep(id)));
-    }
+    let asleep: Vec<bool> = match sleep.bodies {
+        0 => Vec::new(),
+        _ => {
+            let of_particle = clusters.of_particle.iter();
+            of_particle.map(|&id| sleep.is_asleep(id)).collect()
+        }
+    };
+    p.asleep = Asleep::from(asleep);
+    sleep.boxes.clear();
     sleep.particles = p.asleep.iter().filter(|asleep| **asleep).count();
     let bonds = &state.bonds;
     let rests = |at: &usize| p.sleeps(bonds.ends[*at][0] as usize) && !bonds.is_broken(*at);

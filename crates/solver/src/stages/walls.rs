@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use self::driven::{bar_velocity_m_s, weight_velocity_m_s};
 use self::meeting::Place;
+use super::chunks::{chunk_of, chunks_of};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
 use crate::physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
@@ -76,11 +77,11 @@ pub(crate) fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) 
             let is_near = nearness(wall, skin_m);
             let is_near =
                 |&i: &u32| !particles.sleeps(i as usize) && is_near(&particles.poses[i as usize]);
-            let all = 0..particles.len() as u32;
-            all.into_par_iter()
-                .with_min_len(CHUNK)
-                .filter(is_near)
-                .collect()
+            let chunks = chunks_of(particles.len()).into_par_iter();
+            let awake = chunks.filter(|&chunk| !particles.asleep.is_whole(chunk));
+            let awake = awake.flat_map_iter(|chunk| chunk_of(chunk, particles.len()));
+            let awake = awake.map(|i| i as u32);
+            awake.filter(is_near).collect()
         };
         wall.near = near;
     }

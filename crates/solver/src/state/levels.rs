@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::asleep::Asleep;
 use super::contacts::ContactPartition;
 use super::events::Break;
 use super::partitions::Partition;
@@ -118,7 +119,7 @@ pub(crate) struct Group {
     /// Level in the step before, and in the present one.
     pub(crate) levels: [u8; 2],
     /// For each particle whether it is in another group.
-    pub(crate) others: Vec<bool>,
+    pub(crate) others: Asleep,
     /// Division of its particles and bonds.
     pub(crate) partitions: Vec<Partition>,
     /// Division of its contacts.

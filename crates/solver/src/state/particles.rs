@@ -3,6 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::asleep::Asleep;
 use crate::physics::bond::total::End;
 use crate::physics::contact::kinematics::ContactSphere;
 use crate::physics::number::Vec3;
@@ -135,7 +136,7 @@ pub struct Particles {
     /// Number of free particles, which are not carried by clumps.
     pub free: usize,
     /// For each particle whether its body sleeps. Empty: none does.
-    pub asleep: Vec<bool>,
+    pub asleep: Asleep,
 }
 
 impl Particles {

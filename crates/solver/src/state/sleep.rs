@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::contacts::ContactHistory;
 use super::walls::{WallContact, WallLoad};
+use crate::geometry::Bounds;
 
 /// Conditions under which a body falls asleep.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -32,6 +33,9 @@ pub struct Sleep {
     pub bonds: u64,
     /// Particle updates done, and skipped.
     pub particle_steps: [u64; 2],
+    /// For each chunk of particles the box around those that sleep, m. Empty: to be found.
+    #[serde(skip)]
+    pub(crate) boxes: Vec<Bounds>,
 }
 
 /// Sleep data of a cluster.

@@ -1,13 +1,11 @@
 //! Which particles have moved too far from where they were when their neighbours were last
 //! searched for, and the balls around the others.
 
-use std::ops::Range;
-
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use crate::physics::rotation::rotation;
-use crate::stages::chunks::CHUNK;
+use crate::stages::chunks::{CHUNK, chunk_of, chunks_of};
 use crate::stages::clumps::{place_of, speed_m_s};
 use crate::state::State;
 use crate::state::balls::Ball;
@@ -127,7 +125,7 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
         let moved_m = state.scratch.chunks_moved_m.get(chunk).copied();
         if references.chunks_left_m[chunk] < STEPS_LEFT * moved_m.unwrap_or(0.0) {
             let mut least_left_m = f64::INFINITY;
-            for i in chunk_of(p, chunk) {
+            for i in chunk_of(chunk, p.free) {
                 let [left_m, allowance_m] = free_left_m(p, references, i);
                 least_left_m = least_left_m.min(left_m);
                 let moved_m = p.motions[i].speed_m_s() * state.cycle_s();
@@ -163,7 +161,7 @@ fn least_m(enough_m: f64, moved_m: f64) -> f64 {
 
 /// Finds the distances left to the chunks, after a search.
 pub(super) fn find_left(particles: &Particles, references: &mut References) {
-    let chunks = 0..particles.free.div_ceil(CHUNK);
+    let chunks = chunks_of(particles.free);
     let left = chunks.into_par_iter();
     let left = left.map(|chunk| chunk_left_m(particles, references, chunk));
     references.chunks_left_m = left.collect();
@@ -171,12 +169,8 @@ pub(super) fn find_left(particles: &Particles, references: &mut References) {
 
 /// The least distance that the particles of a chunk may still move, m.
 fn chunk_left_m(particles: &Particles, references: &References, chunk: usize) -> f64 {
-    let left = chunk_of(particles, chunk).map(|i| free_left_m(particles, references, i)[0]);
+    let left = chunk_of(chunk, particles.free).map(|i| free_left_m(particles, references, i)[0]);
     left.fold(f64::INFINITY, f64::min)
-}
-
-fn chunk_of(particles: &Particles, chunk: usize) -> Range<usize> {
-    chunk * CHUNK..((chunk + 1) * CHUNK).min(particles.free)
 }
 
 /// Distance that each sphere of a clump may still move, m, at least.
