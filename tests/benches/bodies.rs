@@ -76,7 +76,7 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
     // Bodies above a floor fall less than a tenth of their size in the rounds.
     let mut text = format!(
         "version = 1\n\
-         [run]\nend_time = \"10 s\"\ngravity = [0, 0, {gravity}]\ninitial_overlap = \"keep\"\n\
+         [run]\nend_time = \"10000 s\"\ngravity = [0, 0, {gravity}]\ninitial_overlap = \"keep\"\n\
          [materials.stuff]\ndensity = \"2000 kg/m3\"\nyoung_modulus = \"20 MPa\"\n\
          [contacts]\nstuff-stuff = {{ restitution = 0.1, friction = 0.5 }}\n\
          [bonds.firm]\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.3\n\
@@ -110,7 +110,7 @@ fn scene(doing: Doing, bodies: usize, flying: usize) -> String {
         write!(
             text,
             "[regions.gate]\nbox = {{ min = [0, 0, 3], max = [1, 1, 4] }}\n\
-             [inlets.feed]\nbodies = [\"waiting\"]\nregion = \"gate\"\nrate = 1e-3\nstart = \"5 s\"\ncount = {bodies}\n"
+             [inlets.feed]\nbodies = [\"waiting\"]\nregion = \"gate\"\nrate = 1e-3\nstart = \"5000 s\"\ncount = {bodies}\n"
         )
         .expect("text grows");
     } else {

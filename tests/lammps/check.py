@@ -194,6 +194,50 @@ frames = "10 ms"
 """
 
 
+def bin_file(path):
+    """An open bin of six sides, 60 mm across its corners and 60 mm high, as text STL, m."""
+    ring = [(0.03 * math.cos(math.pi / 3 * k), 0.03 * math.sin(math.pi / 3 * k)) for k in range(6)]
+    triangles = []
+    for (a, b), (c, d) in zip(ring, ring[1:] + ring[:1]):
+        low, high = [(a, b, 0), (c, d, 0)], [(a, b, 0.06), (c, d, 0.06)]
+        triangles += [(low[0], low[1], high[1]), (low[0], high[1], high[0]), (low[0], (0, 0, 0), low[1])]
+    with open(path, "w") as file:
+        file.write("solid bin\n")
+        for corners in triangles:
+            lines = "".join(f"vertex {x!r} {y!r} {z!r}\n" for x, y, z in corners)
+            file.write(f"facet normal 0 0 0\nouter loop\n{lines}endloop\nendfacet\n")
+        file.write("endsolid bin\n")
+
+
+def in_bin(filling):
+    """Spheres in a bin that is a surface: one that bounces from side to side, or a filling."""
+    if filling:
+        draw = random.Random(11)
+        places = [(0.012 * i + draw.uniform(-1e-3, 1e-3), 0.012 * j, 0.01 + 0.011 * k) for k in range(12) for i in [-1, 0, 1] for j in [-1, 0, 1]]
+        grains = f"particles = {particles(places, 0.004)}\n"
+    else:
+        grains = f'particles = {particles([(0, 0, 0.02)], 0.004)}\nvelocity = ["0.5 m/s", "0.3 m/s", 0]\n'
+    return f"""version = 1
+[run]
+end_time = {'"0.4 s"' if filling else '"0.2 s"'}
+gravity = [0, 0, -9.81]
+safety_factor = {0.2 if filling else 0.02}
+{SOFT}
+[contacts]
+grain-grain = {{ restitution = 0.5, friction = 0.3 }}
+grain-plate = {{ restitution = 0.8, friction = {0.3 if filling else 0} }}
+[bodies.grains]
+material = "grain"
+{grains}
+[walls.bin]
+stl = "../bin.stl"
+unit = "m"
+material = "plate"
+[output]
+frames = "1 ms"
+"""
+
+
 def clumps():
     """Three rigid clumps tumble onto a plate and onto each other."""
     shape = [(0, 0, 0), (0.008, 0, 0), (0.016, 0, 0), (0, 0.008, 0), (0, 0, 0.008)]
@@ -476,6 +520,18 @@ def case_heap(program, folder):
             yield ranks, what, 1e3 * ours, 1e3 * found, relative(found, ours), 0.03
 
 
+def case_surface(program, folder):
+    bin_file(os.path.join(folder, "bin.stl"))
+    bouncing, filling = (Runs(name, in_bin(fills), program, folder) for name, fills in [("sides", False), ("filling", True)])
+    for ranks, dump in bouncing.lammps.items():
+        apart = [math.dist(*([frame[1][axis] for axis in "xyz"] for frame in pair)) for pair in zip(bouncing.ours.rows, dump.rows)]
+        way = [math.dist(*([frame[1][axis] for axis in "xyz"] for frame in pair)) for pair in zip(dump.rows, dump.rows[1:])]
+        yield ranks, "a sphere in a bin (STL): its way, mm; difference in place", 1e3 * sum(way), 1e3 * sum(way), max(apart) / sum(way), 1e-3
+    for ranks, dump in filling.lammps.items():
+        ours, found = centre(filling.ours, 1, "z"), centre(dump, 1, "z")
+        yield ranks, "a filling of the bin: height of its centre, mm", 1e3 * ours, 1e3 * found, relative(found, ours), 0.03
+
+
 def case_clumps(program, folder):
     runs = Runs("clumps", clumps(), program, folder)
     for ranks, dump in runs.lammps.items():
@@ -497,7 +553,7 @@ def case_feed(program, folder):
         yield ranks, "mean height of the filling, mm", 1e3 * a, 1e3 * b, relative(b, a), 0.05
 
 
-CASES = [case_cantilever, case_frequency, case_bounce, case_drop, case_heap, case_clumps, case_feed]
+CASES = [case_cantilever, case_frequency, case_bounce, case_drop, case_heap, case_surface, case_clumps, case_feed]
 
 
 def table(rows):

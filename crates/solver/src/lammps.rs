@@ -20,6 +20,7 @@ mod input;
 mod molecules;
 mod page;
 pub(crate) mod refusals;
+mod surfaces;
 mod walls;
 mod words;
 

@@ -394,10 +394,7 @@ impl Input<'_> {
                 }
                 moves = format!(" move v_wall_{number}_x v_wall_{number}_y v_wall_{number}_z");
             }
-            Self::line(
-                text,
-                format!("region wall_{number} {} units box{moves}", wall.region),
-            );
+            Self::add_region(text, number, &wall.regions, &moves);
             for (material, law) in &wall.laws {
                 let material = material + 1;
                 let met = format!("wall/gran/region granular {law} region wall_{number}");
@@ -411,6 +408,25 @@ impl Input<'_> {
                 }
             }
         }
+    }
+
+    /// The region of a wall: of several, which do not move, their intersection.
+    fn add_region(text: &mut String, number: usize, regions: &[String], moves: &str) {
+        if let [region] = regions {
+            let region = format!("region wall_{number} {region} units box{moves}");
+            return Self::line(text, region);
+        }
+        let mut names = String::new();
+        for (part, region) in (1..).zip(regions) {
+            let name = format!("wall_{number}_part_{part}");
+            Self::line(text, format!("region {name} {region} units box"));
+            names += &format!(" {name}");
+        }
+        let count = regions.len();
+        Self::line(
+            text,
+            format!("region wall_{number} intersect {count}{names}"),
+        );
     }
 
     fn add_output(&self, text: &mut String) {

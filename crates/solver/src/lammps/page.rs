@@ -43,10 +43,14 @@ pub(super) fn page(input: &Input<'_>) -> String {
     }
     for wall in input.walls {
         let moves = if wall.moves.is_some() { ", moving" } else { "" };
-        item(format!(
-            "wall {}: `region {}`{moves}",
-            wall.name, wall.region
-        ));
+        item(match &wall.regions[..] {
+            [region] => format!("wall {}: `region {region}`{moves}", wall.name),
+            faces => format!(
+                "wall {}: `region intersect` of {} planes, one for each face of the surface{moves}",
+                wall.name,
+                faces.len()
+            ),
+        });
     }
     if has_bodies(state) {
         item(format!(
@@ -111,9 +115,12 @@ fn different(input: &Input<'_>) -> Vec<String> {
     if input
         .walls
         .iter()
-        .any(|wall| wall.region.starts_with("cylinder"))
+        .any(|wall| wall.regions[0].starts_with("cylinder"))
     {
         lines.push("On cylinders, LAMMPS takes the curvature of the wall into account; in Crumble a wall is flat where it is touched.".to_owned());
+    }
+    if input.walls.iter().any(|wall| wall.regions.len() > 1) {
+        lines.push("The faces of an open surface go on beyond its rim, and nothing touches the rim itself.".to_owned());
     }
     if !input.contacts.laws.is_empty() || !input.walls.is_empty() {
         lines.push("Where a contact slides, LAMMPS limits spring and damper together; in Crumble the spring first, and the damper to what is left.".to_owned());

@@ -1,16 +1,19 @@
 //! Walls as `fix wall/gran/region`.
 //!
-//! Planes, and boxes and cylinders along the axes, are regions of LAMMPS. They may move without
+//! Planes, and boxes and cylinders along the axes, are regions of LAMMPS; a surface that is convex
+//! as seen from within is the intersection of planes, which stands. The others may move without
 //! turning.
 
 use dem_io::Result;
 use dem_scene::{Factor, Scene, WallMotion};
+use nalgebra::Vector3;
 
 use super::contacts::law_in_words;
 use super::feeds::Feed;
 use super::forces::formula;
+use super::surfaces::{Face, depth_m, faces};
 use super::words::{self, ALONG, block, numbers, refused};
-use crate::geometry::{Shape, SolidBox};
+use crate::geometry::{Bounds, Shape, SolidBox};
 use crate::plan::Plan;
 use crate::plan::contacts::NO_KIND;
 use crate::state::walls::Wall;
@@ -20,8 +23,8 @@ use crate::state::walls::Wall;
 pub(super) struct WrittenWall {
     /// Its name in the scene.
     pub name: String,
-    /// Style and arguments of its region.
-    pub region: String,
+    /// Style and arguments of its region, or of those that intersect in it.
+    pub regions: Vec<String>,
     /// Formulas of the displacement along x, y, z; None: it does not move.
     pub moves: Option<[String; 3]>,
     /// For each material that it meets, the law.
@@ -31,7 +34,8 @@ pub(super) struct WrittenWall {
 /// The walls of a planned scene.
 ///
 /// # Errors
-/// A surface, a box or cylinder across the axes, a belt, a servo or a turning wall.
+/// A surface that is not convex as seen from the particles, a box or cylinder across the axes, a
+/// belt, a servo or a turning wall.
 pub(super) fn walls(scene: &Scene, plan: &Plan, feeds: &[Feed]) -> Result<Vec<WrittenWall>> {
     let materials: Vec<&String> = scene.materials.keys().collect();
     let mut present = vec![false; materials.len()];
@@ -53,8 +57,16 @@ pub(super) fn walls(scene: &Scene, plan: &Plan, feeds: &[Feed]) -> Result<Vec<Wr
                 "leave surface_velocity out, or run the scene with dem-run",
             ));
         }
-        let region = region(scene, &part, wall)?;
+        let regions = regions(scene, &part, plan, wall)?;
         let moves = moves(scene, &part, &model.motion)?;
+        if regions.len() > 1 && moves.is_some() {
+            return Err(refused(
+                scene,
+                &part,
+                "a surface is an intersection of regions, which cannot move as one",
+                "let it stand, or run the scene with dem-run",
+            ));
+        }
         let mut laws = Vec::new();
         let kinds = model.kind_of.iter().enumerate();
         for (material, &kind) in kinds.filter(|(m, kind)| **kind != NO_KIND && present[*m]) {
@@ -64,7 +76,7 @@ pub(super) fn walls(scene: &Scene, plan: &Plan, feeds: &[Feed]) -> Result<Vec<Wr
         }
         walls.push(WrittenWall {
             name: model.name.clone(),
-            region,
+            regions,
             moves,
             laws,
         });
@@ -72,22 +84,18 @@ pub(super) fn walls(scene: &Scene, plan: &Plan, feeds: &[Feed]) -> Result<Vec<Wr
     Ok(walls)
 }
 
-/// Style and arguments of the region of a wall.
-fn region(scene: &Scene, part: &str, wall: &Wall) -> Result<String> {
+/// Style and arguments of the region of a wall, or of those that intersect in it.
+fn regions(scene: &Scene, part: &str, plan: &Plan, wall: &Wall) -> Result<Vec<String>> {
     let frame = &wall.frame;
-    match &wall.model.shape {
+    let region = match &wall.model.shape {
         Shape::Plane(plane) => {
             let point = frame.to_space(plane.point_m());
             let normal = frame.direction_to_space(plane.normal());
-            Ok(format!(
-                "plane {} {} side in",
-                numbers(&point),
-                numbers(&normal)
-            ))
+            plane_region(&point, &normal)
         }
         Shape::Box(solid) => {
             let corners = corners(scene, part, wall, solid)?;
-            Ok(format!("{} side out", block(corners)))
+            format!("{} side out", block(corners))
         }
         Shape::Cylinder(cylinder) => {
             let ends_m = cylinder.ends_m().map(|end| frame.to_space(end));
@@ -99,15 +107,53 @@ fn region(scene: &Scene, part: &str, wall: &Wall) -> Result<String> {
                     "turn the scene, or run it with dem-run",
                 ));
             };
-            Ok(format!("{region} side out"))
+            format!("{region} side out")
         }
-        Shape::Mesh(_) => Err(refused(
-            scene,
-            part,
-            "fix wall/gran has planes, boxes and cylinders, but no triangles",
-            "replace the surface by planes, boxes and cylinders, or run the scene with dem-run",
-        )),
+        Shape::Mesh(mesh) => {
+            let faces = faces(mesh, frame).and_then(|faces| holds_all(plan, faces));
+            let regions = |faces: Vec<Face>| {
+                let region =
+                    |[point, normal]: &Face| plane_region(&(*point).into(), &(*normal).into());
+                faces.iter().map(region).collect()
+            };
+            return faces.map(regions).map_err(|why| {
+                let why = format!("fix wall/gran has no triangles, only planes around a room, and {why}");
+                let remedy = "replace the surface by planes, boxes and cylinders, or run the scene with dem-run";
+                refused(scene, part, why, remedy)
+            });
+        }
+    };
+    Ok(vec![region])
+}
+
+fn plane_region(point: &[f64; 3], normal: &[f64; 3]) -> String {
+    format!("plane {} {} side in", numbers(point), numbers(normal))
+}
+
+/// These faces, if all particles and inlets are in front of them.
+fn holds_all(plan: &Plan, faces: Vec<Face>) -> std::result::Result<Vec<Face>, String> {
+    let is_in = |place: &Vector3<f64>| faces.iter().all(|face| depth_m(face, place) > 0.0);
+    let particles = plan.state.particles.poses.iter();
+    let mut particles = particles.map(|pose| pose.place());
+    if !particles.all(|place| is_in(&place)) {
+        return Err("there are particles outside".to_owned());
     }
+    let rules = &plan.state.model.rules;
+    let of_inlets = rules
+        .inlets
+        .iter()
+        .map(|inlet| &rules.regions[inlet.region]);
+    let mut corners = of_inlets.flat_map(|region| corners_of(&region.bounds()));
+    if !corners.all(|corner| is_in(&corner)) {
+        return Err("there is an inlet outside".to_owned());
+    }
+    Ok(faces)
+}
+
+/// The corners of a box, m.
+fn corners_of(bounds: &Bounds) -> [Vector3<f64>; 8] {
+    let ends = [bounds.low, bounds.high];
+    std::array::from_fn(|n| Vector3::from([0, 1, 2].map(|k| ends[n >> k & 1][k])))
 }
 
 /// The corners of a box along the axes.

@@ -1,5 +1,7 @@
 //! Scenes for LAMMPS, read back by a reader of their own; what is refused; dumps back to frames.
 
+mod surfaces;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::fs;
@@ -673,7 +675,7 @@ fn everything_else_is_refused_by_name() {
         (
             "plane = { point = [0, 0, 0], normal = [0, 0, 2] }",
             "stl = \"tetra.stl\"\nunit = \"m\"",
-            "[walls.plate]: LAMMPS has no word for it: fix wall/gran has planes, boxes and cylinders",
+            "[walls.plate]: LAMMPS has no word for it: fix wall/gran has no triangles, only planes around a room, and there are particles outside",
         ),
         (
             "gravity = [0, 0, -9.81]",
@@ -716,10 +718,15 @@ fn tetrahedron() -> String {
         [0.0, 0.1, -0.01],
         [0.0, 0.0, -0.1],
     ];
+    stl(&corners, &[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
+}
+
+/// A surface as text STL.
+fn stl(corners: &[[f64; 3]], triangles: &[[usize; 3]]) -> String {
     let mut text = "solid t\n".to_owned();
-    for [a, b, c] in [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]] {
+    for triangle in triangles {
         text += "facet normal 0 0 0\nouter loop\n";
-        for at in [a, b, c] {
+        for &at in triangle {
             let [x, y, z] = corners[at];
             writeln!(text, "vertex {x} {y} {z}").unwrap();
         }

@@ -1,0 +1,168 @@
+//! Surfaces that are exported as planes, and those that are refused.
+
+use std::f64::consts::PI;
+
+use super::{Bench, Export, exported, go, refused, stl};
+
+/// Two spheres in a surface.
+fn scene(more: &str) -> String {
+    format!(
+        "version = 1\nrun.end_time = \"1 ms\"\nrun.gravity = [0, 0, -9.81]\n\
+         materials.grain = {{ density = 2500, young_modulus = 1e7, poisson_ratio = 0.3 }}\n\
+         contacts.grain-grain = {{ restitution = 0.5, friction = 0.3 }}\n\
+         [bodies.grains]\nmaterial = \"grain\"\nparticles = [[0, 0, 0.02, 0.004], [0.01, 0, 0.02, 0.004]]\n\
+         [walls.bin]\nstl = \"bin.stl\"\nunit = \"m\"\nmaterial = \"grain\"\n{more}\n"
+    )
+}
+
+/// A ring of corners of this radius at this height, m.
+fn ring(corners: usize, radius_m: f64, height_m: f64) -> Vec<[f64; 3]> {
+    let angle = |k: usize| 2.0 * PI * k as f64 / corners as f64;
+    let corner = |k| {
+        [
+            radius_m * angle(k).cos(),
+            radius_m * angle(k).sin(),
+            height_m,
+        ]
+    };
+    (0..corners).map(corner).collect()
+}
+
+/// The sides between two rings, from corner `low` and corner `high` on.
+fn sides(corners: usize, low: usize, high: usize) -> Vec<[usize; 3]> {
+    let side = |k: usize| {
+        let next = (k + 1) % corners;
+        [
+            [low + k, low + next, high + next],
+            [low + k, high + next, high + k],
+        ]
+    };
+    (0..corners).flat_map(side).collect()
+}
+
+/// A floor of triangles about a corner.
+fn floor(corners: usize, low: usize, middle: usize) -> Vec<[usize; 3]> {
+    let part = |k: usize| [low + k, (low + (k + 1) % corners), middle];
+    (0..corners).map(part).collect()
+}
+
+/// An open bin of six sides, 60 mm wide below and as wide or wider above.
+fn bin(above_m: f64) -> String {
+    let mut corners = ring(6, 0.03, 0.0);
+    corners.extend(ring(6, above_m, 0.06));
+    corners.push([0.0; 3]);
+    let mut triangles = sides(6, 0, 6);
+    triangles.extend(floor(6, 0, 12));
+    stl(&corners, &triangles)
+}
+
+/// Points and normals of the planes of the only wall.
+fn planes(export: &Export) -> Vec<[[f64; 3]; 2]> {
+    let parts = export.script.iter().filter(|words| {
+        words.len() > 2 && words[0] == "region" && words[1].starts_with("wall_1_part_")
+    });
+    let plane = |words: &Vec<String>| {
+        assert_eq!([&words[2], &words[9], &words[10]], ["plane", "side", "in"]);
+        let number = |at: usize| words[at].parse::<f64>().unwrap();
+        [
+            [number(3), number(4), number(5)],
+            [number(6), number(7), number(8)],
+        ]
+    };
+    parts.map(plane).collect()
+}
+
+#[test]
+fn a_bin_becomes_one_plane_for_each_face() {
+    for above_m in [0.03, 0.05] {
+        let bench = Bench::new();
+        bench.write("bin.stl", bin(above_m));
+        bench.write("scene.toml", scene(""));
+        let export = exported(&bench, "scene.toml");
+        let planes = planes(&export);
+        assert_eq!(planes.len(), 7);
+        let whole = export.said("region wall_1 intersect");
+        assert!(
+            whole.starts_with("7 wall_1_part_1 wall_1_part_2 "),
+            "{whole}"
+        );
+        // The height of a point in the middle above each face, by the geometry of the bin.
+        let apothem = (PI / 6.0).cos();
+        let out = (above_m - 0.03) * apothem / 0.06;
+        let wanted_m = (0.03 * apothem + out * 0.02) / out.hypot(1.0);
+        let point = [0.0, 0.0, 0.02];
+        let mut floors = 0;
+        for [place, normal] in planes {
+            let height_m: f64 = (0..3).map(|k| normal[k] * (point[k] - place[k])).sum();
+            let length: f64 = normal.iter().map(|n| n * n).sum();
+            assert!((length - 1.0).abs() < 1e-12);
+            let is_floor = normal[2] > 0.99;
+            floors += usize::from(is_floor);
+            let wanted_m = if is_floor { 0.02 } else { wanted_m };
+            assert!((height_m - wanted_m).abs() < 1e-8, "{height_m} {wanted_m}");
+        }
+        assert_eq!(floors, 1);
+        let page = std::fs::read_to_string(bench.path("out/README.md")).unwrap();
+        for said in ["`region intersect` of 7 planes", "go on beyond its rim"] {
+            assert!(page.contains(said), "{said}");
+        }
+    }
+}
+
+#[test]
+fn a_surface_that_planes_cannot_be_is_refused_with_the_reason() {
+    // A bin with a step in its floor: a pyramid of which the sides look away from each other.
+    let mut corners = ring(6, 0.03, 0.0);
+    corners.extend(ring(6, 0.03, 0.06));
+    corners.push([0.0, 0.0, 0.01]);
+    let mut triangles = sides(6, 0, 6);
+    triangles.extend(floor(6, 0, 12));
+    let peaked = stl(&corners, &triangles);
+    let mut corners = ring(4, 0.05, 0.06);
+    corners.extend(ring(4, 0.01, 0.0));
+    let hopper = stl(&corners, &sides(4, 4, 0));
+    let plate = stl(
+        &[
+            [-1.0, -1.0, 0.0],
+            [1.0, -1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+        ],
+        &[[0, 1, 2], [0, 2, 3]],
+    );
+    let feed = "[regions.above]\nbox = { min = [0, 0, 0.03], max = [0.04, 0.01, 0.05] }\n\
+                [inlets.feed]\nbodies = [\"grain\"]\nregion = \"above\"\nrate = 10\ncount = 1\n\
+                [bodies.grain]\nmaterial = \"grain\"\nparticles = [[0, 0, 0, 0.004]]\n\
+                start_as = \"clump\"\n";
+    let cases = [
+        (peaked, "", "its faces do not all look at each other"),
+        (
+            hopper,
+            "",
+            "it is open and becomes narrower towards its rim",
+        ),
+        (plate, "", "it does not surround a room"),
+        (
+            bin(0.03),
+            "velocity = [1, 0, 0]",
+            "an intersection of regions, which cannot move",
+        ),
+        (bin(0.03), "scale = 0.2", "there are particles outside"),
+        (bin(0.03), feed, "there is an inlet outside"),
+    ];
+    for (surface, more, expected) in cases {
+        let bench = Bench::new();
+        bench.write("bin.stl", surface);
+        bench.write("scene.toml", scene(more));
+        let (said, code) = refused(&go(
+            &bench,
+            &["export", "lammps", "scene.toml", "-o", "out"],
+        ));
+        assert_eq!(code, 2, "{said}");
+        assert!(
+            said.contains("[walls.bin]") && said.contains(expected),
+            "{expected}: {said}"
+        );
+        assert!(!bench.path("out").exists());
+    }
+}
