@@ -14,6 +14,8 @@
 //! not overlap at all.
 
 mod cells;
+#[cfg(target_arch = "x86_64")]
+mod eight;
 mod forces;
 mod minimiser;
 mod neighbours;

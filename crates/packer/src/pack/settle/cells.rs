@@ -1,6 +1,8 @@
 //! Spheres sorted by cell, for one search: in one lattice for each size class, so that large
 //! spheres do not make the cells of small ones larger.
 
+use std::ops::Range;
+
 use crate::grid::{Lattice, WIDEST_CLASS};
 use crate::spheres::ReducedSphere;
 
@@ -59,12 +61,17 @@ fn bounds(balls: impl Iterator<Item = ReducedSphere>) -> ([f64; 3], [f64; 3]) {
     (low, high)
 }
 
+/// Number of spheres that may be read at once from any sphere of a row on.
+pub(super) const AT_ONCE: usize = 8;
+
 /// Spheres of neighbouring cells.
 pub struct Row<'a> {
-    /// All x, all y, all z, and all reduced radii, local units.
+    /// All x, all y, all z, and all reduced radii of all cells, local units.
     pub coordinates: [&'a [f64]; 4],
     /// Their numbers.
     pub numbers: &'a [u32],
+    /// Which of them are of the row.
+    pub spheres: Range<usize>,
 }
 
 /// Spheres sorted by cell (counting sort).
@@ -72,7 +79,7 @@ struct Cells {
     lattice: Lattice,
     /// Index of the first sphere of each cell, and the end of the last.
     first: Vec<u32>,
-    /// All x, all y, all z, and all radii.
+    /// All x, all y, all z, and all radii, followed by [`AT_ONCE`] that stand for none.
     coordinates: [Vec<f64>; 4],
     numbers: Vec<u32>,
 }
@@ -91,8 +98,8 @@ impl Cells {
         let mut cells = Self {
             lattice: Lattice { low, cell, counts },
             first: vec![0; counts.iter().product::<usize>() + 1],
-            coordinates: [0; 4].map(|_| vec![0.0; members.len()]),
-            numbers: vec![0; members.len()],
+            coordinates: [0; 4].map(|_| vec![0.0; members.len() + AT_ONCE]),
+            numbers: vec![0; members.len() + AT_ONCE],
         };
         let at: Vec<u32> = balls()
             .map(|b| cells.lattice.cell_of(b[0], b[1], b[2]))
@@ -120,13 +127,17 @@ impl Cells {
     /// `ball`.
     #[inline(always)]
     fn near(&self, ball: &ReducedSphere, reach: f64, mut visit: impl FnMut(Row)) {
-        self.lattice
-            .rows_near([ball[0], ball[1], ball[2]], reach, |row| {
-                let spheres = self.first[row.start] as usize..self.first[row.end] as usize;
+        self.lattice.rows_near(
+            [ball[0], ball[1], ball[2]],
+            reach,
+            #[inline(always)]
+            |row| {
                 visit(Row {
-                    coordinates: [0, 1, 2, 3].map(|k| &self.coordinates[k][spheres.clone()]),
-                    numbers: &self.numbers[spheres],
+                    coordinates: self.coordinates.each_ref().map(Vec::as_slice),
+                    numbers: &self.numbers,
+                    spheres: self.first[row.start] as usize..self.first[row.end] as usize,
                 });
-            });
+            },
+        );
     }
 }

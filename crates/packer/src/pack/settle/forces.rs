@@ -1,10 +1,14 @@
 //! Forces of overlaps, and the largest overlap: settling spends most of its time in this loop.
 
+#[cfg(target_arch = "x86_64")]
+use super::eight;
 use super::neighbours::{ChunkOfLists, LANES};
 use super::walls::NearWall;
 use crate::geometry::boundary::Boundary;
 use crate::spheres::ReducedSphere;
-use pulp::NullaryFnOnce;
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::V4;
+use pulp::{Arch, NullaryFnOnce};
 
 /// Relative surplus of the radii while settling.
 pub(super) const MARGIN: f64 = 5e-5;
@@ -25,8 +29,7 @@ pub(super) fn wall_overlap(radius: f64, distance: f64) -> f64 {
     }
 }
 
-/// The forces on the spheres from index `first` on, one for each entry of `force`: a call that is
-/// compiled for AVX2 as well.
+/// The forces on the spheres from index `first` on, one for each entry of `force`.
 pub(super) struct ForcesOn<'a> {
     pub(super) force: &'a mut [[f64; 4]],
     pub(super) first: usize,
@@ -39,12 +42,27 @@ pub(super) struct ForcesOn<'a> {
     pub(super) plane_lasts: f64,
 }
 
-impl NullaryFnOnce for ForcesOn<'_> {
-    /// The largest overlap, in radii.
-    type Output = f64;
+impl ForcesOn<'_> {
+    /// Finds them. Returns the largest overlap, in radii.
+    pub(super) fn find(self) -> f64 {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = V4::try_new() {
+            return simd.vectorize(eight::Eight(simd, self));
+        }
+        Arch::new().dispatch(self)
+    }
 
+    /// The same, where `of_neighbours` gives the force of the neighbours in a list on a sphere,
+    /// given with its number. Returns the largest overlap with the wall.
     #[inline(always)]
-    fn call(self) -> f64 {
+    pub(super) fn find_by(
+        self,
+        mut of_neighbours: impl FnMut(
+            (u32, &ReducedSphere),
+            &[[u32; LANES]],
+            &[ReducedSphere],
+        ) -> [f64; 3],
+    ) -> f64 {
         let Self {
             force,
             first,
@@ -59,15 +77,9 @@ impl NullaryFnOnce for ForcesOn<'_> {
         let mut touched = Vec::new();
         for (k, f) in force.iter_mut().enumerate() {
             let ball = balls[first + k];
-            let mut push = ForceLanes::default();
-            for group in spheres.of(k) {
-                let others = group.map(|j| balls[j as usize]);
-                let is_other = group.map(|j| j as usize != first + k);
-                push.add(&ball, others, is_other);
-            }
-            let (total, worst_overlap) = push.sum();
-            worst = worst.max(worst_overlap / ball[3]);
-            *f = [total[0], total[1], total[2], 0.0];
+            let number = (first + k) as u32;
+            let [x, y, z] = of_neighbours((number, &ball), spheres.of(k), balls);
+            *f = [x, y, z, 0.0];
         }
         for near in walls {
             let k = near.sphere;
@@ -89,6 +101,41 @@ impl NullaryFnOnce for ForcesOn<'_> {
         }
         worst
     }
+}
+
+impl NullaryFnOnce for ForcesOn<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let mut worst = 0.0_f64;
+        let of_wall = self.find_by(
+            #[inline(always)]
+            |sphere, list, balls| {
+                let (force, overlap) = of_neighbours(sphere, list, balls);
+                worst = worst.max(overlap / sphere.1[3]);
+                force
+            },
+        );
+        worst.max(of_wall)
+    }
+}
+
+/// The force of the neighbours in a list on a sphere, given with its number, and the largest
+/// overlap.
+#[inline(always)]
+pub(super) fn of_neighbours(
+    (number, ball): (u32, &ReducedSphere),
+    list: &[[u32; LANES]],
+    balls: &[ReducedSphere],
+) -> ([f64; 3], f64) {
+    let mut push = ForceLanes::default();
+    for group in list {
+        let others = group.map(|j| balls[j as usize]);
+        let is_other = group.map(|j| j != number);
+        push.add(ball, others, is_other);
+    }
+    push.sum()
 }
 
 /// Forces and largest overlaps of the neighbours of one sphere, in `LANES` partial sums that are

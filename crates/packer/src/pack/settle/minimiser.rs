@@ -9,7 +9,6 @@ use crate::grid::WIDEST_CLASS;
 use crate::pack::shrink::thin_out;
 use crate::spheres::{ReducedSphere, centre_of};
 use dem_io::{Diagnostic, Result};
-use pulp::Arch;
 use rayon::prelude::*;
 
 /// Skin: distance beyond contact up to which neighbours are listed, in mean radii.
@@ -301,7 +300,7 @@ impl<'a> State<'a> {
             .into_par_iter()
             .enumerate()
             .map(|(chunk, (force, spheres, walls))| {
-                Arch::new().dispatch(ForcesOn {
+                let on = ForcesOn {
                     force,
                     first: chunk * CHUNK,
                     boundary,
@@ -310,7 +309,8 @@ impl<'a> State<'a> {
                     walls: &mut walls.near,
                     enlarge,
                     plane_lasts,
-                })
+                };
+                on.find()
             })
             .reduce(|| 0.0, f64::max);
         self.worst

@@ -1,9 +1,13 @@
 //! Neighbour lists (Verlet lists): the other spheres that each sphere could touch, listed from a
 //! grid of cells.
 
-use super::cells::{Row, SizeClasses};
+use super::cells::{AT_ONCE, Row, SizeClasses};
+#[cfg(target_arch = "x86_64")]
+use super::eight;
 use crate::spheres::ReducedSphere;
-use pulp::Arch;
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::V4;
+use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 /// Number of spheres processed by one task.
@@ -19,7 +23,7 @@ pub(super) struct NeighbourLists {
 }
 
 /// The lists of up to `CHUNK` spheres, one after the other. Each ends with the sphere's own number,
-/// repeated until its length is a multiple of `LANES`.
+/// repeated until its length is a multiple of `LANES` or of twice as many.
 pub(super) struct ChunkOfLists {
     all: Vec<u32>,
     /// End of each list. One per sphere.
@@ -32,10 +36,17 @@ impl NeighbourLists {
     pub(super) fn new(balls: &[ReducedSphere], skin: f64) -> Self {
         let classes = SizeClasses::new(balls, skin);
         let of_chunk = |(chunk, part): (usize, &[ReducedSphere])| {
-            Arch::new().dispatch(
-                #[inline(always)]
-                || list_chunk(&classes, part, chunk * CHUNK, skin),
-            )
+            let work = ListChunk {
+                classes: &classes,
+                part,
+                first: chunk * CHUNK,
+                skin,
+            };
+            #[cfg(target_arch = "x86_64")]
+            if let Some(simd) = V4::try_new() {
+                return simd.vectorize(eight::Eight(simd, work));
+            }
+            Arch::new().dispatch(work)
         };
         let chunks = balls.par_chunks(CHUNK).enumerate();
         Self {
@@ -61,34 +72,62 @@ impl ChunkOfLists {
 }
 
 /// The lists of the spheres `part`, numbered from `first` on.
-#[inline(always)]
-fn list_chunk(
-    classes: &SizeClasses,
-    part: &[ReducedSphere],
-    first: usize,
-    skin: f64,
-) -> ChunkOfLists {
-    let mut all = vec![0; part.len() * 16];
-    let mut end = 0;
-    let mut ends = Vec::with_capacity(part.len());
-    for (k, ball) in part.iter().enumerate() {
-        let number = (first + k) as u32;
-        classes.near(ball, |row| {
-            let most = end + row.numbers.len() + LANES;
-            if most > all.len() {
-                all.resize(2 * most, 0);
+pub(super) struct ListChunk<'a> {
+    pub(super) classes: &'a SizeClasses,
+    pub(super) part: &'a [ReducedSphere],
+    pub(super) first: usize,
+    pub(super) skin: f64,
+}
+
+impl ListChunk<'_> {
+    /// Makes them, each as long as a multiple of `multiple`. `add` adds those of a row of spheres
+    /// that are near a sphere, given with its number, to the list from an end on.
+    #[inline(always)]
+    pub(super) fn by(
+        &self,
+        multiple: usize,
+        add: impl Fn((&ReducedSphere, u32), &Row, &mut [u32], &mut usize),
+    ) -> ChunkOfLists {
+        let mut all = vec![0; self.part.len() * 16];
+        let mut end = 0;
+        let mut ends = Vec::with_capacity(self.part.len());
+        for (k, ball) in self.part.iter().enumerate() {
+            let number = (self.first + k) as u32;
+            self.classes.near(
+                ball,
+                #[inline(always)]
+                |row| {
+                    let most = end + row.spheres.len() + AT_ONCE;
+                    if most > all.len() {
+                        all.resize(2 * most, 0);
+                    }
+                    add((ball, number), &row, &mut all, &mut end);
+                },
+            );
+            while !end.is_multiple_of(multiple) {
+                all[end] = number;
+                end += 1;
             }
-            add_near(ball, number, &row, skin, &mut all, &mut end);
-        });
-        while !end.is_multiple_of(LANES) {
-            all[end] = number;
-            end += 1;
+            ends.push(end as u32);
         }
-        ends.push(end as u32);
+        all.truncate(end);
+        all.shrink_to_fit();
+        ChunkOfLists { all, ends }
     }
-    all.truncate(end);
-    all.shrink_to_fit();
-    ChunkOfLists { all, ends }
+}
+
+impl NullaryFnOnce for ListChunk<'_> {
+    type Output = ChunkOfLists;
+
+    #[inline(always)]
+    fn call(self) -> ChunkOfLists {
+        let skin = self.skin;
+        self.by(
+            LANES,
+            #[inline(always)]
+            |sphere, row, list, end| add_near(sphere, row, skin, list, end),
+        )
+    }
 }
 
 /// Adds those of a row of spheres that are less than `skin` away from `ball`, sphere `number`, to
@@ -100,8 +139,7 @@ fn list_chunk(
 )]
 #[inline(always)]
 fn add_near(
-    ball: &ReducedSphere,
-    number: u32,
+    (ball, number): (&ReducedSphere, u32),
     row: &Row,
     skin: f64,
     list: &mut [u32],
@@ -112,8 +150,11 @@ fn add_near(
         let reach = ball[3] + radius + skin;
         dx * dx + dy * dy + dz * dz < reach * reach
     };
-    let [x, y, z, radius] = row.coordinates.map(|all| all.as_chunks::<LANES>());
-    let (numbers, last) = row.numbers.as_chunks::<LANES>();
+    let spheres = || row.spheres.clone();
+    let [x, y, z, radius] = row
+        .coordinates
+        .map(|all| all[spheres()].as_chunks::<LANES>());
+    let (numbers, last) = row.numbers[spheres()].as_chunks::<LANES>();
     for (g, numbers) in numbers.iter().enumerate() {
         let mut near = [false; LANES];
         for k in 0..LANES {
