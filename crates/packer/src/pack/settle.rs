@@ -19,6 +19,8 @@ mod eight;
 mod forces;
 mod minimiser;
 mod neighbours;
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests;
 mod walls;
 
 pub use self::cells::SizeClasses;

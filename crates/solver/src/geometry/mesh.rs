@@ -38,7 +38,7 @@ const FAR: f64 = 4.0;
 const NEAR: f64 = 32.0;
 
 /// Cosine of the angle between the normals of faces that count as one: 8 degrees.
-const ALIKE: f64 = 0.99;
+pub(crate) const ALIKE: f64 = 0.99;
 
 /// A triangle with a height below this fraction of the diagonal has no area.
 const NO_HEIGHT: f64 = 1e-12;

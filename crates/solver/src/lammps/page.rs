@@ -46,7 +46,7 @@ pub(super) fn page(input: &Input<'_>) -> String {
         item(match &wall.regions[..] {
             [region] => format!("wall {}: `region {region}`{moves}", wall.name),
             faces => format!(
-                "wall {}: `region intersect` of {} planes, one for each face of the surface{moves}",
+                "wall {}: `region intersect` of {} planes, one for each face of the surface",
                 wall.name,
                 faces.len()
             ),
@@ -120,7 +120,7 @@ fn different(input: &Input<'_>) -> Vec<String> {
         lines.push("On cylinders, LAMMPS takes the curvature of the wall into account; in Crumble a wall is flat where it is touched.".to_owned());
     }
     if input.walls.iter().any(|wall| wall.regions.len() > 1) {
-        lines.push("The faces of an open surface go on beyond its rim, and nothing touches the rim itself.".to_owned());
+        lines.push("In LAMMPS the faces of a surface that is open go on upwards beyond its rim, and nothing touches the rim.".to_owned());
     }
     if !input.contacts.laws.is_empty() || !input.walls.is_empty() {
         lines.push("Where a contact slides, LAMMPS limits spring and damper together; in Crumble the spring first, and the damper to what is left.".to_owned());

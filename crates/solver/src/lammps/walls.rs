@@ -110,7 +110,9 @@ fn regions(scene: &Scene, part: &str, plan: &Plan, wall: &Wall) -> Result<Vec<St
             format!("{region} side out")
         }
         Shape::Mesh(mesh) => {
-            let faces = faces(mesh, frame).and_then(|faces| holds_all(plan, faces));
+            let up = -Vector3::from(plan.state.model.gravity_m_s2);
+            let up = up.try_normalize(0.0).unwrap_or_default();
+            let faces = faces(mesh, frame, up).and_then(|faces| holds_all(plan, faces));
             let regions = |faces: Vec<Face>| {
                 let region =
                     |[point, normal]: &Face| plane_region(&(*point).into(), &(*normal).into());

@@ -163,6 +163,10 @@ pub(super) fn for_each_awake<T>(
     asleep: &Asleep,
     mut change: impl FnMut(usize, &mut T),
 ) {
+    debug_assert!(
+        first.is_multiple_of(CHUNK) && some.len() <= CHUNK,
+        "one chunk"
+    );
     if asleep.is_whole(first / CHUNK) {
         return;
     }

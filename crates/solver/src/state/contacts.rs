@@ -131,7 +131,7 @@ pub struct ContactScratch {
     pub wanted_partitions: usize,
     /// Sum of the radii of the particles, m.
     pub radii_m: f64,
-    /// Mean radius of the particles at the last search, m.
+    /// Mean radius of the particles, m; 0 until it is known.
     pub mean_radius_m: f64,
     /// Only the listed pairs that were closer than this at the last check of all pairs are
     /// computed, m.

@@ -61,6 +61,8 @@ fn bounds(balls: impl Iterator<Item = ReducedSphere>) -> ([f64; 3], [f64; 3]) {
     (low, high)
 }
 
+/// Number of spheres compared at once, and of neighbours processed at once.
+pub(super) const LANES: usize = 4;
 /// Number of spheres that may be read at once from any sphere of a row on.
 pub(super) const AT_ONCE: usize = 8;
 

@@ -1,57 +1,21 @@
 //! The two loops in which settling spends most of its time, for eight spheres at once with AVX-512.
 //! Results are those of the loops for [`LANES`], bit for bit.
 
-#[cfg(test)]
-mod tests;
-
 use std::arch::x86_64::{__m256d, __m256i, __m512d, _CMP_GT_OQ, _CMP_LT_OQ};
 
+use pulp::cast;
 use pulp::x86::V4;
-use pulp::{NullaryFnOnce, cast};
 
-use super::cells::{AT_ONCE, Row};
-use super::forces::ForcesOn;
-use super::neighbours::{ChunkOfLists, LANES, ListChunk};
+use super::cells::{AT_ONCE, LANES, Row};
 use crate::spheres::ReducedSphere;
 
 /// Work for eight spheres at once. Closures around lanes may not be compiled for them, hence none
 /// of more than a call.
 pub(super) struct Eight<W>(pub(super) V4, pub(super) W);
 
-impl NullaryFnOnce for Eight<ListChunk<'_>> {
-    type Output = ChunkOfLists;
-
-    #[inline(always)]
-    fn call(self) -> ChunkOfLists {
-        let Self(simd, work) = self;
-        let skin = work.skin;
-        work.by(
-            AT_ONCE,
-            #[inline(always)]
-            |sphere, row, list, end| add_near(simd, sphere, row, skin, list, end),
-        )
-    }
-}
-
-impl NullaryFnOnce for Eight<ForcesOn<'_>> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn call(self) -> f64 {
-        let Self(simd, work) = self;
-        let mut worst: __m256d = cast([0.0_f64; LANES]);
-        let of_wall = work.find_by(
-            #[inline(always)]
-            |sphere, list, balls| of_neighbours(simd, sphere, list, balls, &mut worst),
-        );
-        let worst: [f64; LANES] = cast(worst);
-        worst.into_iter().fold(of_wall, f64::max)
-    }
-}
-
 /// As [`super::neighbours::add_near`].
 #[inline(always)]
-fn add_near(
+pub(super) fn add_near(
     simd: V4,
     (ball, number): (&ReducedSphere, u32),
     row: &Row,
@@ -106,7 +70,7 @@ fn square_of(simd: V4, x: __m512d, y: __m512d, z: __m512d) -> __m512d {
 /// The force of the neighbours in a list on a sphere, given with its number. Raises the largest
 /// overlaps, in radii of the sphere that overlaps, one of each lane.
 #[inline(always)]
-fn of_neighbours(
+pub(super) fn of_neighbours(
     simd: V4,
     (number, ball): (u32, &ReducedSphere),
     list: &[[u32; LANES]],
@@ -159,7 +123,7 @@ impl ForceLanes {
         let excess = avx._mm512_maskz_sub_pd(overlaps & others, of_touching, squared);
         let push = avx._mm512_div_pd(avx._mm512_mul_pd(all(simd, 0.5), excess), of_touching);
         let overlap = avx._mm512_mul_pd(push, touching);
-        self.overlap = avx._mm512_max_pd(self.overlap, overlap);
+        self.overlap = avx._mm512_max_pd(overlap, self.overlap);
         let [x, y, z] = self.force;
         self.force = [
             add_halves(simd, x, avx._mm512_mul_pd(push, dx)),
@@ -175,7 +139,7 @@ impl ForceLanes {
         let [first, second]: [__m256d; 2] = cast(self.overlap);
         let largest = avx._mm256_max_pd(first, second);
         let in_radii = avx._mm256_div_pd(largest, avx._mm256_set1_pd(radius));
-        avx._mm256_max_pd(others, in_radii)
+        avx._mm256_max_pd(in_radii, others)
     }
 
     /// The total force.

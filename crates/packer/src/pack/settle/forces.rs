@@ -1,8 +1,9 @@
 //! Forces of overlaps, and the largest overlap: settling spends most of its time in this loop.
 
+use super::cells::LANES;
 #[cfg(target_arch = "x86_64")]
-use super::eight;
-use super::neighbours::{ChunkOfLists, LANES};
+use super::eight::{self, Eight};
+use super::neighbours::ChunkOfLists;
 use super::walls::NearWall;
 use crate::geometry::boundary::Boundary;
 use crate::spheres::ReducedSphere;
@@ -47,7 +48,7 @@ impl ForcesOn<'_> {
     pub(super) fn find(self) -> f64 {
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = V4::try_new() {
-            return simd.vectorize(eight::Eight(simd, self));
+            return simd.vectorize(Eight(simd, self));
         }
         Arch::new().dispatch(self)
     }
@@ -118,6 +119,23 @@ impl NullaryFnOnce for ForcesOn<'_> {
             },
         );
         worst.max(of_wall)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl NullaryFnOnce for Eight<ForcesOn<'_>> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let Self(simd, work) = self;
+        let mut worst = pulp::cast([0.0_f64; LANES]);
+        let of_wall = work.find_by(
+            #[inline(always)]
+            |sphere, list, balls| eight::of_neighbours(simd, sphere, list, balls, &mut worst),
+        );
+        let worst: [f64; LANES] = pulp::cast(worst);
+        worst.into_iter().fold(of_wall, f64::max)
     }
 }
 

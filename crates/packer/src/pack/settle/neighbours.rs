@@ -1,9 +1,9 @@
 //! Neighbour lists (Verlet lists): the other spheres that each sphere could touch, listed from a
 //! grid of cells.
 
-use super::cells::{AT_ONCE, Row, SizeClasses};
+use super::cells::{AT_ONCE, LANES, Row, SizeClasses};
 #[cfg(target_arch = "x86_64")]
-use super::eight;
+use super::eight::{self, Eight};
 use crate::spheres::ReducedSphere;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::V4;
@@ -12,8 +12,6 @@ use rayon::prelude::*;
 
 /// Number of spheres processed by one task.
 pub(super) const CHUNK: usize = 1024;
-/// Number of spheres compared at once, and of neighbours processed at once.
-pub(super) const LANES: usize = 4;
 
 /// The other spheres that each sphere could touch before the lists are rebuilt.
 #[derive(Default)]
@@ -44,7 +42,7 @@ impl NeighbourLists {
             };
             #[cfg(target_arch = "x86_64")]
             if let Some(simd) = V4::try_new() {
-                return simd.vectorize(eight::Eight(simd, work));
+                return simd.vectorize(Eight(simd, work));
             }
             Arch::new().dispatch(work)
         };
@@ -126,6 +124,22 @@ impl NullaryFnOnce for ListChunk<'_> {
             LANES,
             #[inline(always)]
             |sphere, row, list, end| add_near(sphere, row, skin, list, end),
+        )
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl NullaryFnOnce for Eight<ListChunk<'_>> {
+    type Output = ChunkOfLists;
+
+    #[inline(always)]
+    fn call(self) -> ChunkOfLists {
+        let Self(simd, work) = self;
+        let skin = work.skin;
+        work.by(
+            AT_ONCE,
+            #[inline(always)]
+            |sphere, row, list, end| eight::add_near(simd, sphere, row, skin, list, end),
         )
     }
 }

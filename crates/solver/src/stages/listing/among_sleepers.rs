@@ -20,6 +20,9 @@ use crate::state::particles::{Particles, Pose};
 /// Consecutive particles that have a box around those that are awake.
 const PART: usize = 64;
 
+/// Beside more of these than this number, all sleepers of a chunk are searched for.
+const MOST_PARTS: usize = 64;
+
 /// Rebuilds all lists, without pairs of sleeping particles. A sleeping body wakes first when
 /// something moving is near it. Returns the number of particles searched for.
 pub(super) fn list_among_sleepers(state: &mut State) -> usize {
@@ -110,17 +113,22 @@ fn may_meet(p: &Particles, boxes: &[Bounds], skin_m: f64) -> Vec<u32> {
     let awake = awake.filter(|part| *part != Bounds::EMPTY);
     let awake: Vec<Bounds> = awake.map(|part| part.grown(1.01 * skin_m)).collect();
     let of_chunk = |chunk: usize| {
-        let near = awake.iter().filter(|part| part.overlaps(&boxes[chunk]));
-        let near: Vec<&Bounds> = near.collect();
+        let mut near: Vec<&Bounds> = Vec::new();
+        if boxes[chunk] != Bounds::EMPTY {
+            let beside = awake.iter().filter(|part| part.overlaps(&boxes[chunk]));
+            near.extend(beside.take(MOST_PARTS + 1));
+        }
+        let some = match any_awake(&chunk) || !near.is_empty() {
+            true => members(chunk),
+            false => 0..0,
+        };
         let may = move |&i: &usize| {
             let ball = around(&p.poses[i].position_m);
-            !p.sleeps(i) || near.iter().any(|part| part.overlaps(&ball))
+            !p.sleeps(i) || near.len() > MOST_PARTS || near.iter().any(|part| part.overlaps(&ball))
         };
-        members(chunk).filter(may).map(|i| i as u32)
+        some.filter(may).map(|i| i as u32)
     };
-    let is_near =
-        |chunk: &usize| any_awake(chunk) || awake.iter().any(|part| part.overlaps(&boxes[*chunk]));
-    chunks.filter(is_near).flat_map_iter(of_chunk).collect()
+    chunks.flat_map_iter(of_chunk).collect()
 }
 
 /// Pairs among some particles, without those of two that sleep.

@@ -46,13 +46,37 @@ fn floor(corners: usize, low: usize, middle: usize) -> Vec<[usize; 3]> {
     (0..corners).map(part).collect()
 }
 
-/// An open bin of six sides, 60 mm wide below and as wide or wider above.
+/// Corners and triangles of a vessel of `n` sides, 60 mm wide below and as wide or wider above. Its
+/// floor, if there are `rings`, has as many in it.
+fn vessel(n: usize, above_m: f64, rings: Option<usize>) -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
+    let mut corners = ring(n, 0.03, 0.0);
+    corners.extend(ring(n, above_m, 0.06));
+    let mut triangles = sides(n, 0, n);
+    if let Some(rings) = rings {
+        let mut around = 0;
+        for k in 1..=rings {
+            let inner = corners.len();
+            corners.extend(ring(n, 0.03 * (1.0 - k as f64 / (rings + 1) as f64), 0.0));
+            triangles.extend(sides(n, around, inner));
+            around = inner;
+        }
+        corners.push([0.0; 3]);
+        triangles.extend(floor(n, around, corners.len() - 1));
+    }
+    (corners, triangles)
+}
+
+/// An open bin of six sides.
 fn bin(above_m: f64) -> String {
-    let mut corners = ring(6, 0.03, 0.0);
-    corners.extend(ring(6, above_m, 0.06));
-    corners.push([0.0; 3]);
-    let mut triangles = sides(6, 0, 6);
-    triangles.extend(floor(6, 0, 12));
+    let (corners, triangles) = vessel(6, above_m, Some(0));
+    stl(&corners, &triangles)
+}
+
+/// The same, closed by a lid.
+fn drum(n: usize, rings: usize) -> String {
+    let (mut corners, mut triangles) = vessel(n, 0.03, Some(rings));
+    corners.push([0.0, 0.0, 0.06]);
+    triangles.extend(floor(n, n, corners.len() - 1));
     stl(&corners, &triangles)
 }
 
@@ -103,24 +127,62 @@ fn a_bin_becomes_one_plane_for_each_face() {
         }
         assert_eq!(floors, 1);
         let page = std::fs::read_to_string(bench.path("out/README.md")).unwrap();
-        for said in ["`region intersect` of 7 planes", "go on beyond its rim"] {
+        for said in ["`region intersect` of 7 planes", "go on upwards beyond its rim"] {
             assert!(page.contains(said), "{said}");
         }
     }
 }
 
 #[test]
+fn a_closed_drum_becomes_planes_however_its_floor_is_meshed() {
+    // Gravity does not matter for what is closed; the wall may be turned.
+    let turned = "rotation = { axis = [0, 1, 0], angle = \"90 deg\" }\npivot = [0, 0, 0.03]";
+    for (rings, more, floor) in [(0, "", [0.0, 0.0, 1.0]), (100, turned, [1.0, 0.0, 0.0])] {
+        let bench = Bench::new();
+        bench.write("bin.stl", drum(24, rings));
+        bench.write("scene.toml", scene(more));
+        let planes = planes(&exported(&bench, "scene.toml"));
+        assert_eq!(planes.len(), 26);
+        let is_floor = |normal: &[f64; 3]| (0..3).all(|k| (normal[k] - floor[k]).abs() < 1e-9);
+        assert_eq!(
+            planes.iter().filter(|[_, normal]| is_floor(normal)).count(),
+            1
+        );
+    }
+}
+
+#[test]
 fn a_surface_that_planes_cannot_be_is_refused_with_the_reason() {
-    // A bin with a step in its floor: a pyramid of which the sides look away from each other.
-    let mut corners = ring(6, 0.03, 0.0);
-    corners.extend(ring(6, 0.03, 0.06));
-    corners.push([0.0, 0.0, 0.01]);
-    let mut triangles = sides(6, 0, 6);
-    triangles.extend(floor(6, 0, 12));
+    let (mut corners, triangles) = vessel(6, 0.03, Some(0));
+    // A floor with a peak: its parts look away from each other.
+    corners[12][2] = 0.01;
     let peaked = stl(&corners, &triangles);
-    let mut corners = ring(4, 0.05, 0.06);
-    corners.extend(ring(4, 0.01, 0.0));
-    let hopper = stl(&corners, &sides(4, 4, 0));
+    let (corners, triangles) = vessel(6, 0.05, None);
+    let hopper = stl(&corners, &triangles);
+    let (corners, triangles) = vessel(6, 0.03, None);
+    let pipe = stl(&corners, &triangles);
+    let (mut corners, triangles) = vessel(6, 0.03, Some(0));
+    let whole: Vec<[usize; 3]> = triangles[..12].to_vec();
+    // One of its sides has a notch down to half of the height.
+    corners.push([
+        0.75 * corners[6][0] + 0.25 * corners[7][0],
+        0.75 * corners[6][1] + 0.25 * corners[7][1],
+        0.03,
+    ]);
+    let notch = corners.len() - 1;
+    let mut notched = vec![[0, 1, notch], [0, notch, 6], [1, 7, notch]];
+    notched.extend(&whole[2..]);
+    notched.extend(&triangles[12..]);
+    let notched = stl(&corners, &notched);
+    // Two pipes in line with a gap between them.
+    let (mut corners, mut gap) = vessel(6, 0.03, Some(0));
+    let above: Vec<[f64; 3]> = corners[..12]
+        .iter()
+        .map(|[x, y, z]| [*x, *y, z + 0.1])
+        .collect();
+    corners.extend(above);
+    gap.extend(sides(6, 13, 19));
+    let gap = stl(&corners, &gap);
     let plate = stl(
         &[
             [-1.0, -1.0, 0.0],
@@ -136,11 +198,16 @@ fn a_surface_that_planes_cannot_be_is_refused_with_the_reason() {
                 start_as = \"clump\"\n";
     let cases = [
         (peaked, "", "its faces do not all look at each other"),
+        (hopper, "", "it has a hole, a notch or a narrower outlet"),
+        (notched, "", "it has a hole, a notch or a narrower outlet"),
+        (gap, "", "it has a hole, a notch or a narrower outlet"),
+        (pipe, "", "it is open, not upwards"),
         (
-            hopper,
+            drum(100, 0),
             "",
-            "it is open and becomes narrower towards its rim",
+            "some of its faces meet at less than 8 degrees",
         ),
+        (drum(250, 0), "", "it has more than 200 faces"),
         (plate, "", "it does not surround a room"),
         (
             bin(0.03),
