@@ -254,6 +254,27 @@ fn imports_run_one_way_and_functions_are_short() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// A library without tests in its manifest has none in its source: they would never run.
+#[test]
+fn tests_within_a_library_are_run() {
+    let mut with_tests = 0;
+    for of_crate in folders_in(&root().join("crates")) {
+        let manifest = fs::read_to_string(of_crate.join("Cargo.toml")).unwrap();
+        let sources = sources(&of_crate.join("src"));
+        let test = sources.values().find(|source| {
+            source.text.contains("#[cfg(test") || source.text.contains("#[cfg(all(test")
+        });
+        with_tests += usize::from(test.is_some());
+        if let (Some(test), Some((_, library))) = (test, manifest.split_once("[lib]")) {
+            let library = library
+                .split_once("\n[")
+                .map_or(library, |(library, _)| library);
+            assert!(!library.contains("test = false"), "{}", test.path);
+        }
+    }
+    assert!(with_tests > 5, "{with_tests}");
+}
+
 #[test]
 fn a_circle_and_a_long_function_are_found() {
     let folder = tempfile::tempdir().unwrap();

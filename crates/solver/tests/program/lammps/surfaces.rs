@@ -127,7 +127,10 @@ fn a_bin_becomes_one_plane_for_each_face() {
         }
         assert_eq!(floors, 1);
         let page = std::fs::read_to_string(bench.path("out/README.md")).unwrap();
-        for said in ["`region intersect` of 7 planes", "go on upwards beyond its rim"] {
+        for said in [
+            "`region intersect` of 7 planes",
+            "go on upwards beyond its rim",
+        ] {
             assert!(page.contains(said), "{said}");
         }
     }
