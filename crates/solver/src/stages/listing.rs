@@ -87,7 +87,12 @@ pub(crate) fn renew_lists(state: &mut State) -> usize {
     }
     if state.sleep.is_some() {
         if contacts.skin_left_m < 0.0 {
-            return list_among_sleepers(state);
+            let searched = list_among_sleepers(state);
+            if let Some(contacts) = state.contacts.take() {
+                list_near_spheres(state, &contacts.pairs);
+                state.contacts = Some(contacts);
+            }
+            return searched;
         }
         return 0;
     }

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::list_near_spheres;
 use crate::geometry::Bounds;
 use crate::stages::chunks::{CHUNK, chunk_of};
 use crate::stages::clumps::place_all;
@@ -36,10 +35,6 @@ pub(super) fn list_among_sleepers(state: &mut State) -> usize {
             break;
         }
         wake(state, &near, "near");
-    }
-    if let Some(contacts) = state.contacts.take() {
-        list_near_spheres(state, &contacts.pairs);
-        state.contacts = Some(contacts);
     }
     listed
 }
