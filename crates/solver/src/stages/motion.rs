@@ -170,6 +170,8 @@ pub(super) fn for_each_awake<T>(
     if asleep.is_whole(first / CHUNK) {
         return;
     }
+    // As a slice, so that its place is not read again for each particle.
+    let asleep: &[bool] = asleep;
     for (i, one) in (first..).zip(some) {
         if !asleep.get(i).is_some_and(|asleep| *asleep) {
             change(i, one);
