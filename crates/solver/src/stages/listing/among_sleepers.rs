@@ -6,7 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::geometry::Bounds;
-use crate::stages::chunks::{CHUNK, chunk_of};
+use crate::stages::chunks::{chunk_of, chunks_of};
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{find_mean_radius, relist};
 use crate::stages::neighbours::{ball_of, pairs_of_all};
@@ -14,7 +14,7 @@ use crate::stages::sleep::{disturbed, freeze_contacts, wake};
 use crate::stages::walls::list_near;
 use crate::state::State;
 use crate::state::balls::{Ball, around};
-use crate::state::particles::{Particles, Pose};
+use crate::state::particles::Particles;
 
 /// Consecutive particles that have a box around those that are awake.
 const PART: usize = 64;
@@ -74,17 +74,15 @@ fn list_awake(state: &mut State) -> usize {
 
 /// For each chunk of particles the box around those that sleep, m.
 fn boxes_of_sleepers(p: &Particles) -> Vec<Bounds> {
-    let of_chunk = |(chunk, poses): (usize, &[Pose])| {
-        let asleep = (chunk * CHUNK..).zip(poses).filter(|(i, _)| p.sleeps(*i));
-        asleep.fold(Bounds::EMPTY, |all, (_, pose)| {
-            all.with(&around(&pose.position_m))
-        })
-    };
-    p.poses
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(of_chunk)
-        .collect()
+    let chunks = chunks_of(p.len()).into_par_iter();
+    let of_chunk = |chunk| box_of(p, chunk_of(chunk, p.len()).filter(|&i| p.sleeps(i)));
+    chunks.map(of_chunk).collect()
+}
+
+/// The box around some particles, m.
+fn box_of(p: &Particles, some: impl Iterator<Item = usize>) -> Bounds {
+    let boxes = some.map(|i| around(&p.poses[i].position_m));
+    boxes.fold(Bounds::EMPTY, |all, one| all.with(&one))
 }
 
 /// The particles that may be in a pair, ascending: those that are awake, and those asleep beside
@@ -93,12 +91,7 @@ fn may_meet(p: &Particles, boxes: &[Bounds], skin_m: f64) -> Vec<u32> {
     let members = |chunk: usize| chunk_of(chunk, p.len());
     let chunks = (0..boxes.len()).into_par_iter();
     let any_awake = |chunk: &usize| !p.asleep.is_whole(*chunk);
-    let box_of_awake = |some: Range<usize>| {
-        let awake = some.filter(|&i| !p.sleeps(i));
-        awake.fold(Bounds::EMPTY, |all, i| {
-            all.with(&around(&p.poses[i].position_m))
-        })
-    };
+    let box_of_awake = |some: Range<usize>| box_of(p, some.filter(|&i| !p.sleeps(i)));
     let awake = chunks.clone().filter(any_awake).flat_map_iter(|chunk| {
         let Range { start, end } = members(chunk);
         let parts = (start..end).step_by(PART);
