@@ -43,6 +43,7 @@ pub mod stages;
 pub mod state;
 pub mod step;
 pub mod stress;
+pub mod threads;
 
 pub use plan::{Plan, plan};
 pub use run::{RunSettings, run};

@@ -29,6 +29,7 @@ use crate::run::snapshot::Snapshot;
 use crate::run::{
     Finished, Outcome, RunSettings, SoFar, finish, run as run_plan, run_as_far_as_it_goes,
 };
+use crate::threads::keep_awake;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {
@@ -133,13 +134,14 @@ pub(super) fn run_scene(
                 interrupted,
                 test: Some(test),
             };
-            own.at_twice_the_rate = run_plan(plan, &scene, settings, &progress)?.test;
+            own.at_twice_the_rate =
+                keep_awake(|| run_plan(plan, &scene, settings, &progress))?.test;
             shown.begin("");
         }
         if let Some(finished) = finish(&prepared, &scene, &settings)? {
             return Ok(Err(finished));
         }
-        run_as_far_as_it_goes(prepared, &scene, settings, &progress).map(Ok)
+        keep_awake(|| run_as_far_as_it_goes(prepared, &scene, settings, &progress)).map(Ok)
     });
     shown.end();
     let outcome = outcome.inspect_err(|problem| {

@@ -60,7 +60,9 @@ pub const CONTACTS: Stage = Stage {
                     + size_of_val(&partition.border_histories[..])
                     + partition.was_close.len()
             });
-            size_of_val(&c.histories[..]) + of_partitions.sum::<usize>()
+            size_of_val(&c.histories[..])
+                + size_of_val(&c.scratch.former_histories[..])
+                + of_partitions.sum::<usize>()
         })
     },
     saving: NO_SAVING,

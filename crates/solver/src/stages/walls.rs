@@ -131,7 +131,19 @@ pub(crate) fn wall_wrenches(
     meetings: &mut Vec<Meetings>,
     dt: f64,
 ) {
-    for wall in walls {
+    let mut chunks = 0;
+    for (number, wall) in walls.iter().enumerate() {
+        for first in (0..wall.near.len()).step_by(CHUNK) {
+            if meetings.len() == chunks {
+                meetings.push(Meetings::default());
+            }
+            meetings[chunks].of = (number, first..wall.near.len().min(first + CHUNK));
+            chunks += 1;
+        }
+    }
+    let meetings = &mut meetings[..chunks];
+    meetings.par_iter_mut().for_each(|meetings| {
+        let wall = &walls[meetings.of.0];
         let place = Place {
             wall,
             olds: &wall.touching,
@@ -140,36 +152,35 @@ pub(crate) fn wall_wrenches(
             least_overlap: contacts.model.least_overlap,
             dt,
         };
-        let chunks = wall.near.len().div_ceil(CHUNK);
-        if meetings.len() < chunks {
-            meetings.resize_with(chunks, Meetings::default);
-        }
-        let work = wall.near.par_chunks(CHUNK).zip(&mut meetings[..chunks]);
-        work.for_each(|(some, meetings)| {
-            find_meetings(wall, particles, some, meetings);
-            place.meet(&meetings.all, &mut meetings.met);
-        });
+        find_meetings(wall, particles, meetings);
+        place.meet(&meetings.all, &mut meetings.met);
+    });
+    for wall in walls.iter_mut() {
         wall.push = WallLoad::default();
         wall.scratch.damping = WallLoad::default();
         wall.scratch.elastic_j = 0.0;
         wall.stiffness_n_m = 0.0;
         wall.touching.clear();
-        for met in meetings[..chunks].iter().flat_map(|some| &some.met) {
-            book(wall, met, particles);
+    }
+    for some in meetings {
+        for met in &some.met {
+            book(&mut walls[some.of.0], met, particles);
         }
     }
 }
 
-/// Sets where some particles, ascending, touch a wall, or did in the previous step.
-fn find_meetings(wall: &Wall, particles: &Particles, some: &[u32], meetings: &mut Meetings) {
+/// Sets where the particles of a chunk touch a wall, or did in the previous step.
+fn find_meetings(wall: &Wall, particles: &Particles, meetings: &mut Meetings) {
     let to_wall = wall.frame.all_to_wall();
     let bounds = wall.model.shape.bounds();
     let is_solid = matches!(wall.model.shape, Shape::Box(_) | Shape::Cylinder(_));
     let Meetings {
+        of: (_, range),
         touches,
         all: found,
         ..
     } = meetings;
+    let some = &wall.near[range.clone()];
     found.clear();
     let first = some.first().copied().unwrap_or(0);
     let mut first = wall.touching.partition_point(|old| old.particle < first);

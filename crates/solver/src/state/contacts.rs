@@ -3,10 +3,14 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::references::References;
 use crate::physics::contact::law::ContactKind;
+
+/// Number of pairs that one task relists.
+const RELISTED_AT_ONCE: usize = 4096;
 
 /// History of a contact. Two cache lines; contacts without rolling friction use only the first.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -125,6 +129,8 @@ pub struct ContactScratch {
     /// Whether the contacts of a group of bodies are worked on, not those of all: see
     /// `levels::Group`.
     pub is_of_group: bool,
+    /// Histories before the last search, kept for their memory only.
+    pub former_histories: Vec<ContactHistory>,
     /// Division of the work.
     pub partitions: Vec<ContactPartition>,
     /// Requested number of partitions: few contacts need fewer.
@@ -196,19 +202,25 @@ impl Contacts {
     /// Replaces the list of pairs; pairs that were listed before keep their history. The overlap of
     /// a newly listed pair is the origin of its law: the two had no contact before, whether they
     /// were bonded or not.
-    pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64) {
-        let mut before = self.pairs.iter().zip(&self.histories).peekable();
-        let histories = pairs
-            .iter()
-            .map(|pair| {
+    pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64 + Sync) {
+        let (known, of_known) = (&self.pairs, &self.histories);
+        let relist_chunk = |(histories, pairs): (&mut [ContactHistory], &[[u32; 2]])| {
+            let first = known.partition_point(|old| *old < pairs[0]);
+            let mut before = known[first..].iter().zip(&of_known[first..]).peekable();
+            for (history, pair) in histories.iter_mut().zip(pairs) {
                 while before.next_if(|(old, _)| *old < pair).is_some() {}
-                match before.peek() {
+                *history = match before.peek() {
                     Some((old, history)) if *old == pair => **history,
                     _ => ContactHistory::separated_at(overlap_m(*pair)),
-                }
-            })
-            .collect();
-        self.histories = histories;
+                };
+            }
+        };
+        let mut histories = std::mem::take(&mut self.scratch.former_histories);
+        histories.resize(pairs.len(), ContactHistory::default());
+        let chunks = histories.par_chunks_mut(RELISTED_AT_ONCE);
+        let chunks = chunks.zip(pairs.par_chunks(RELISTED_AT_ONCE));
+        chunks.for_each(relist_chunk);
+        self.scratch.former_histories = std::mem::replace(&mut self.histories, histories);
         self.pairs = pairs;
     }
 
@@ -228,6 +240,7 @@ impl Contacts {
     pub fn divide(&mut self, particles: usize, count: usize) {
         self.scratch.wanted_partitions = count;
         self.scratch.close_skin_left_m = 0.0;
+        let remembers = |history: &ContactHistory| *history != ContactHistory::default();
         let wanted = self.pairs.len().div_ceil(count).max(1);
         let mut starts = vec![0];
         for k in 1..count {
@@ -245,7 +258,6 @@ impl Contacts {
             .map(|w| {
                 let first_of = |p: usize| self.pairs.partition_point(|&[a, _]| (a as usize) < p);
                 let own = first_of(w[0])..first_of(w[1]);
-                let remembers = |history: &ContactHistory| *history != ContactHistory::default();
                 let was_close = self.histories[own.clone()].chunks(8).map(|eight| {
                     (0..).zip(eight).fold(0, |bits, (lane, history)| {
                         bits | u8::from(remembers(history)) << lane

@@ -1,14 +1,18 @@
 //! Where particles meet a wall in a step, and the forces there: kept from step to step for their
 //! memory only.
 
+use std::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::walls::WallContact;
 use crate::geometry::Touch;
 
-/// What some of the particles near a wall meet. Valid for one step and one wall.
+/// What some of the particles near a wall meet. Valid for one step.
 #[derive(Debug, Clone, Default)]
 pub struct Meetings {
+    /// Number of the wall, and of those particles among all that are near it.
+    pub of: (usize, Range<usize>),
     /// Where one particle touches the wall.
     pub touches: Vec<Touch>,
     /// In the order of the particles.
