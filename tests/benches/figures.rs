@@ -22,6 +22,7 @@ use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body
 use dem_run::plan::plan;
 use dem_run::state::State;
 use dem_run::step::{stages, step};
+use dem_run::threads::keep_awake;
 
 use self::page::{Table, words};
 
@@ -161,7 +162,8 @@ impl Case {
         pool.expect("threads start").install(|| {
             let mut state = self.state(threads);
             go(&mut state, self.times_s[0]);
-            let mut rates: Vec<f64> = (0..ROUNDS).map(|_| self.rate(&mut state)).collect();
+            let rates = || (0..ROUNDS).map(|_| self.rate(&mut state)).collect();
+            let mut rates: Vec<f64> = keep_awake(rates);
             rates.sort_by(f64::total_cmp);
             let search = stages().iter().position(|s| s.name == "neighbour search");
             let fraction = state.scratch.clock.fraction(search.expect("a stage"));
@@ -200,14 +202,16 @@ impl Case {
             let stage = stage.expect("a stage");
             let end_s = state.time_s + ROUNDS as f64 * self.times_s[1];
             let (mut with, mut without, mut sought) = (Vec::new(), Vec::new(), 0);
-            while state.time_s < end_s {
-                let (clock, before) = (Instant::now(), state.scratch.clock.done(stage));
-                step(&mut state);
-                let took_s = clock.elapsed().as_secs_f64();
-                let done = state.scratch.clock.done(stage) - before;
-                sought += done;
-                if done > 0 { &mut with } else { &mut without }.push(took_s);
-            }
+            keep_awake(|| {
+                while state.time_s < end_s {
+                    let (clock, before) = (Instant::now(), state.scratch.clock.done(stage));
+                    step(&mut state);
+                    let took_s = clock.elapsed().as_secs_f64();
+                    let done = state.scratch.clock.done(stage) - before;
+                    sought += done;
+                    if done > 0 { &mut with } else { &mut without }.push(took_s);
+                }
+            });
             let [search_s, other_s] = [with.as_slice(), &without].map(mean);
             let searches = with.len() as f64;
             let apart = (with.len() + without.len()) as f64 / searches;

@@ -1,27 +1,30 @@
 //! Threads that stay ready for the next stage of a step. A step is a sequence of short parallel
-//! loops. Between two of them the threads of a pool go to sleep, and to wake one takes as long as
-//! many a loop.
+//! loops. Between two of them the threads of a pool would go to sleep, and to wake one takes as
+//! long as many a loop.
 
 use std::hint::spin_loop;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::{sleep, yield_now};
+use std::thread::{available_parallelism, sleep, yield_now};
 use std::time::{Duration, Instant};
 
 use rayon::Yield;
 
-/// Time without work after which a thread rests, with breaks of [`BREAK`]: files are being written,
+/// Time without work after which a thread looks for it only now and then: files are being written,
 /// for example.
 const PATIENCE: Duration = Duration::from_millis(2);
-/// Length of a break.
+/// Time between two such looks.
 const BREAK: Duration = Duration::from_micros(200);
 /// Number of looks for work between two looks at the clock, where other programs may take over.
 const LOOKS: usize = 64;
 
-/// Does some work on the threads of the present pool, which stay awake until it is done. Nothing
-/// else may use the pool meanwhile: each of two such works would wait for the other's end.
+/// Does some work on the threads of the present pool, which stay awake until it is done, unless
+/// there are more of them than cores. Nothing else may use the pool meanwhile: each of two such
+/// calls would wait for the other's end.
 pub fn keep_awake<T>(work: impl FnOnce() -> T) -> T {
     let own = rayon::current_thread_index();
-    if own.is_none() || rayon::current_num_threads() == 1 {
+    let threads = rayon::current_num_threads();
+    let cores = available_parallelism().map_or(1, usize::from);
+    if own.is_none() || threads == 1 || threads > cores {
         return work();
     }
     let is_done = AtomicBool::new(false);
@@ -36,7 +39,7 @@ pub fn keep_awake<T>(work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Sets a flag when it is dropped, also where a thread panics: otherwise others would wait for ever.
+/// Sets a flag when it is dropped, also in a panic: otherwise the others would wait for ever.
 struct SetAtEnd<'a>(&'a AtomicBool);
 
 impl Drop for SetAtEnd<'_> {
@@ -64,5 +67,49 @@ fn help_until(is_done: &AtomicBool) {
         } else {
             sleep(BREAK);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use rayon::prelude::*;
+
+    use super::*;
+
+    fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+        pool.unwrap().install(work)
+    }
+
+    fn sum() -> u64 {
+        (0..1000_u64).into_par_iter().sum()
+    }
+
+    #[test]
+    fn the_work_is_done_with_help_and_breaks_and_again() {
+        on_two_threads(|| {
+            for breaks in [false, true] {
+                let sums = keep_awake(|| {
+                    let first = sum();
+                    if breaks {
+                        sleep(3 * PATIENCE);
+                    }
+                    first + sum()
+                });
+                assert_eq!(sums, 2 * 499_500);
+            }
+        });
+        assert_eq!(keep_awake(sum), 499_500, "outside a pool");
+    }
+
+    #[test]
+    fn a_panic_ends_it() {
+        on_two_threads(|| {
+            let panicked = catch_unwind(AssertUnwindSafe(|| keep_awake(|| panic!("on purpose"))));
+            assert!(panicked.is_err());
+            assert_eq!(sum(), 499_500);
+        });
     }
 }

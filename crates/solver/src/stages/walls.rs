@@ -64,6 +64,8 @@ pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
 
 /// Particles handled by one task.
 const CHUNK: usize = 256;
+/// Fewer particles near walls than this are left to one thread, which has them in its cache.
+const FEW: usize = 4 * CHUNK;
 /// A contact that moves to another flat part of a wall keeps its history if the cosine of the angle
 /// between the normals exceeds this.
 pub(super) const SAME_WAY: f64 = 0.9;
@@ -131,18 +133,8 @@ pub(crate) fn wall_wrenches(
     meetings: &mut Vec<Meetings>,
     dt: f64,
 ) {
-    let mut chunks = 0;
-    for (number, wall) in walls.iter().enumerate() {
-        for first in (0..wall.near.len()).step_by(CHUNK) {
-            if meetings.len() == chunks {
-                meetings.push(Meetings::default());
-            }
-            meetings[chunks].of = (number, first..wall.near.len().min(first + CHUNK));
-            chunks += 1;
-        }
-    }
-    let meetings = &mut meetings[..chunks];
-    meetings.par_iter_mut().for_each(|meetings| {
+    let meetings = set_chunks(walls, meetings);
+    let meet = |meetings: &mut Meetings| {
         let wall = &walls[meetings.of.0];
         let place = Place {
             wall,
@@ -154,7 +146,13 @@ pub(crate) fn wall_wrenches(
         };
         find_meetings(wall, particles, meetings);
         place.meet(&meetings.all, &mut meetings.met);
-    });
+    };
+    let near: usize = walls.iter().map(|wall| wall.near.len()).sum();
+    if near < FEW {
+        meetings.iter_mut().for_each(meet);
+    } else {
+        meetings.par_iter_mut().for_each(meet);
+    }
     for wall in walls.iter_mut() {
         wall.push = WallLoad::default();
         wall.scratch.damping = WallLoad::default();
@@ -167,6 +165,21 @@ pub(crate) fn wall_wrenches(
             book(&mut walls[some.of.0], met, particles);
         }
     }
+}
+
+/// Divides the particles near each wall into chunks.
+fn set_chunks<'a>(walls: &[Wall], meetings: &'a mut Vec<Meetings>) -> &'a mut [Meetings] {
+    let mut chunks = 0;
+    for (number, wall) in walls.iter().enumerate() {
+        for first in (0..wall.near.len()).step_by(CHUNK) {
+            if meetings.len() == chunks {
+                meetings.push(Meetings::default());
+            }
+            meetings[chunks].of = (number, first..wall.near.len().min(first + CHUNK));
+            chunks += 1;
+        }
+    }
+    &mut meetings[..chunks]
 }
 
 /// Sets where the particles of a chunk touch a wall, or did in the previous step.
