@@ -71,6 +71,11 @@ fn help_until(is_done: &AtomicBool) {
 }
 
 #[cfg(test)]
+#[expect(
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a test stops where it fails"
+)]
 mod tests {
     use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -80,7 +85,7 @@ mod tests {
 
     fn on_two_threads<T: Send>(work: impl FnOnce() -> T + Send) -> T {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
-        pool.unwrap().install(work)
+        pool.expect("threads start").install(work)
     }
 
     fn sum() -> u64 {
