@@ -3,7 +3,7 @@
 //! long as many a loop.
 
 use std::hint::spin_loop;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::{available_parallelism, sleep, yield_now};
 use std::time::{Duration, Instant};
 
@@ -14,12 +14,12 @@ use rayon::Yield;
 const PATIENCE: Duration = Duration::from_millis(2);
 /// Time between two such looks.
 const BREAK: Duration = Duration::from_micros(200);
-/// Number of looks for work between two looks at the clock, where other programs may take over.
+/// Number of looks for work between two looks at the clock, when other programs may run.
 const LOOKS: usize = 64;
 
 /// Does some work on the threads of the present pool, which stay awake until it is done, unless
-/// there are more of them than cores. Nothing else may use the pool meanwhile: each of two such
-/// calls would wait for the other's end.
+/// there are more of them than cores. Nothing else may use the pool meanwhile, nor may this be
+/// called in a parallel loop: each of two such calls would wait for the other's end.
 pub fn keep_awake<T>(work: impl FnOnce() -> T) -> T {
     let own = rayon::current_thread_index();
     let threads = rayon::current_num_threads();
@@ -27,14 +27,20 @@ pub fn keep_awake<T>(work: impl FnOnce() -> T) -> T {
     if own.is_none() || threads == 1 || threads > cores {
         return work();
     }
-    let is_done = AtomicBool::new(false);
+    let (arrived, is_done) = (AtomicUsize::new(0), AtomicBool::new(false));
     rayon::in_place_scope(|scope| {
         scope.spawn_broadcast(|_, thread| {
             if Some(thread.index()) != own {
+                arrived.fetch_add(1, Ordering::AcqRel);
                 help_until(&is_done);
             }
         });
         let _ends = SetAtEnd(&is_done);
+        // A thread that took a part of the work first could begin to help while it waits for the
+        // rest of that part, which would then never end.
+        while arrived.load(Ordering::Acquire) < threads - 1 {
+            yield_now();
+        }
         work()
     })
 }

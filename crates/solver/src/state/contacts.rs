@@ -216,6 +216,9 @@ impl Contacts {
             }
         };
         let mut histories = std::mem::take(&mut self.scratch.former_histories);
+        if histories.capacity() < pairs.len() {
+            histories = Vec::with_capacity(pairs.len() + pairs.len() / 8);
+        }
         histories.resize(pairs.len(), ContactHistory::default());
         let chunks = histories.par_chunks_mut(RELISTED_AT_ONCE);
         let chunks = chunks.zip(pairs.par_chunks(RELISTED_AT_ONCE));

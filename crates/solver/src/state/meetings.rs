@@ -11,7 +11,7 @@ use crate::geometry::Touch;
 /// What some of the particles near a wall meet. Valid for one step.
 #[derive(Debug, Clone, Default)]
 pub struct Meetings {
-    /// Number of the wall, and of those particles among all that are near it.
+    /// The wall's number, and the range of these particles in its list of those near.
     pub of: (usize, Range<usize>),
     /// Where one particle touches the wall.
     pub touches: Vec<Touch>,
