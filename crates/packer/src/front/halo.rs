@@ -144,7 +144,7 @@ impl Halo {
     }
 
     /// True if the caps certainly cover the halo: no point of any rim is free.
-    pub(crate) fn is_covered(&self) -> bool {
+    pub(crate) fn is_covered(&mut self) -> bool {
         let Self { caps, rims, .. } = self;
         Arch::new().dispatch(
             #[inline(always)]

@@ -113,20 +113,8 @@ impl Rims {
 
     /// True if no point of the rim of cap `j` is free.
     #[inline(always)]
-    pub(crate) fn is_covered(&self, j: usize) -> bool {
-        let rim = self.rim(j);
-        let mut covered = 0;
-        for (number, group) in self.groups.iter().enumerate() {
-            if self.cones.get(number).is_some_and(|cone| cone.misses(&rim)) {
-                continue;
-            }
-            // The ends of the arcs are not computed, since they are not used.
-            covered |= rim.arcs(group).covered;
-            if covered == u64::MAX {
-                return true;
-            }
-        }
-        false
+    pub(crate) fn is_covered(&mut self, j: usize) -> bool {
+        self.covered(j).is_none()
     }
 
     /// The sectors of the rim of cap `j` that are covered, and the ends of all arcs on it; none if
