@@ -15,17 +15,8 @@ const TABLES: [&str; 7] = [
     "supports",
     "test",
 ];
-/// Keys of `[walls.NAME]` that move a wall.
-const MOTIONS: [&str; 5] = [
-    "velocity",
-    "angular_velocity",
-    "displacement",
-    "angular_displacement",
-    "servo",
-];
-
 /// Refuses what does not go together with steps by body: everything that holds, drives, adds or
-/// removes bodies, rigid parts, moving walls, damping of all particles, and steps that rise.
+/// removes bodies, rigid parts, servos, damping of all particles, and steps that rise.
 pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     let mut found: Vec<Field<'_>> = root.given(&TABLES).map(|(_, field)| field).collect();
     if let Some(table) = root.get("run") {
@@ -40,7 +31,7 @@ pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     }
     for (_, wall) in root.named("walls")? {
         let wall = Table::any(&wall)?;
-        found.extend(MOTIONS.iter().filter_map(|key| wall.get(key)));
+        found.extend(wall.get("servo"));
     }
     for (_, body) in root.named("bodies")? {
         let body = Table::any(&body)?;

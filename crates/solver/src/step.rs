@@ -121,8 +121,6 @@ const DRIFT: &[Part] = &[
 const OF_ALL: [&[&Stage]; 2] = [&[&SEARCH, &LEVELS], &[&CLUSTERS, &OUTPUT, &CHECKS]];
 /// Stages of the second half that are done for each group.
 const OF_BODIES: [&Stage; 2] = [&MOTION, &CLUMPS];
-/// Those that are done once for all groups, after all drifts.
-const AFTER_DRIFTS: [&Stage; 2] = [&WALLS, &SEARCH];
 
 /// A complete step. Returns what happened in it.
 pub fn step(state: &mut State) -> &Events {
@@ -180,9 +178,7 @@ pub fn drift(state: &mut State) {
         tick(state);
     }
     end_cycle(state);
-    run(DRIFT, &TABLE.drift, state, |stage| {
-        AFTER_DRIFTS.contains(&stage)
-    });
+    run(DRIFT, &TABLE.drift, state, |stage| *stage == SEARCH);
 }
 
 fn interact_group(state: &mut State) {

@@ -7,6 +7,7 @@ mod clumps;
 mod meeting;
 mod order;
 mod same_bits;
+mod walls;
 
 use dem_run::plan::{Plan, plan};
 use dem_run::stages::ledger::{balance, opened};

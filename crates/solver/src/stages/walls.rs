@@ -57,8 +57,11 @@ pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
 
 /// Determines the motion of the walls in the coming drift.
 pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
-    let steps_s = state.steps_s();
-    plan_motions(&mut state.walls, state.time_s, steps_s);
+    // With steps by body it is determined once for all groups.
+    if state.levels.is_none() {
+        let steps_s = state.steps_s();
+        plan_motions(&mut state.walls, state.time_s, steps_s);
+    }
     0
 }
 
@@ -491,7 +494,7 @@ pub(crate) fn plan_motions(walls: &mut [Wall], time_s: f64, steps_s: [f64; 2]) {
 
 /// Velocity, m/s, and spin, rad/s, of a wall in the second of two steps, `steps_s`, which begins at
 /// `time_s`.
-fn planned(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> [[f64; 3]; 2] {
+pub(crate) fn planned(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> [[f64; 3]; 2] {
     let dt = steps_s[1];
     match &wall.model.motion {
         WallMotion::Fixed => [[0.0; 3]; 2],

@@ -108,8 +108,12 @@ pub(crate) struct LevelScratch {
     pub(crate) chunks_moved_m: Vec<f64>,
     /// For each clump the distance that it has moved in this cycle, m.
     pub(crate) clumps_moved_m: Vec<f64>,
+    /// For each wall the distance that it has moved in this cycle, m.
+    pub(crate) walls_moved_m: Vec<f64>,
     /// Largest speed of a particle in this cycle, m/s.
     pub(crate) fastest_m_s: f64,
+    /// Largest speed of a wall near particles in this cycle, m/s.
+    pub(crate) fastest_wall_m_s: f64,
 }
 
 /// Particles that make the same steps. What it holds takes the place of the arrays of the state

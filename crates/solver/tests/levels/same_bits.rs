@@ -17,7 +17,7 @@ use crate::fragments::run_into;
 /// A particle of the second cake.
 const IN_B: usize = 700;
 
-/// Three cakes that fly and fall onto a plate, one of them hard, and two as rigid clumps, of which
+/// Three cakes that fly and fall onto a plate on its way up, one of them hard, and two as rigid clumps, of which
 /// one falls onto the other.
 fn cakes(end_s: f64) -> String {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/bodies/cake.vtp");
@@ -37,6 +37,7 @@ fn cakes(end_s: f64) -> String {
         "run.end_time = {end_s}\nrun.gravity = [0, 0, -9.81]"
     )) + CONTACTS
         + PLATE
+        + "velocity = [0, 0, 0.05]\n"
         + &cake("a", "soft", 0.0, 0.0)
         + &cake("b", "soft", 0.13, 0.0)
         + &cake("c", "hard", 0.26, -4.0)
