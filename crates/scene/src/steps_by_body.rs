@@ -5,18 +5,11 @@ use super::run::{Integrator, Run};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// Tables that hold, drive, add or remove bodies.
-const TABLES: [&str; 7] = [
-    "inlets",
-    "loads",
-    "outlets",
-    "replacement",
-    "sleep",
-    "supports",
-    "test",
-];
-/// Refuses what does not go together with steps by body: everything that holds, drives, adds or
-/// removes bodies, rigid parts, servos, damping of all particles, and steps that rise.
+/// Tables that hold, drive or freeze bodies.
+const TABLES: [&str; 4] = ["loads", "sleep", "supports", "test"];
+
+/// Refuses what does not go together with steps by body: everything that holds or drives
+/// bodies, sleep, daughters, rigid parts, servos, damping of all particles, and steps that rise.
 pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     let mut found: Vec<Field<'_>> = root.given(&TABLES).map(|(_, field)| field).collect();
     if let Some(table) = root.get("run") {
@@ -36,6 +29,9 @@ pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     for (_, body) in root.named("bodies")? {
         let body = Table::any(&body)?;
         found.extend(body.get("bonded_within"));
+    }
+    for (_, replacement) in root.named("replacement")? {
+        found.extend(Table::any(&replacement)?.get("daughters"));
     }
     for (_, contact) in root.named("contacts")? {
         found.extend(Table::any(&contact)?.get("liquid_bridge"));

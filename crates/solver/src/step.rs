@@ -23,8 +23,8 @@ use crate::stages::ledger::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
 };
 use crate::stages::levels::{
-    LEVELS, end_cycle, in_all_groups, in_groups_now, is_common_time, join_groups, keep_breaks,
-    note_drift, set_levels, tick,
+    LEVELS, end_cycle, in_all_groups, in_groups_now, is_common_time, is_renumbered, join_groups,
+    keep_breaks, note_drift, set_levels, tick,
 };
 use crate::stages::listing::{SEARCH, renew_lists, use_up_skin};
 use crate::stages::loads::{LOADS, apply_loads};
@@ -158,6 +158,10 @@ pub fn advance(state: &mut State) {
 /// step later.
 pub fn exchange(state: &mut State) {
     run(EXCHANGE, &TABLE.exchange, state, |_| true);
+    if is_renumbered(state) {
+        // Bodies with steps of their own move on for a whole cycle without another search.
+        run(INTERACT, &TABLE.interact, state, |stage| *stage == SEARCH);
+    }
 }
 
 /// Moves everything on to the end of the step; bodies with steps of their own to the next time that

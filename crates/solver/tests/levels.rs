@@ -4,6 +4,7 @@
 mod books;
 mod breaking;
 mod clumps;
+mod exchange;
 mod meeting;
 mod order;
 mod same_bits;

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use dem_scene::Scene;
 
-use super::time_step::{StepChoice, share_of_impact};
+use super::time_step::{Coming, StepChoice, coming, share_of_impact};
 use crate::check::linear::at_impact_of;
 use crate::check::own_limit::own_eigenvalues;
 use crate::stages::levels::any_longer;
 use crate::state::State;
 use crate::state::clusters::Clusters;
-use crate::state::levels::{CYCLE, LevelRule, Levels};
+use crate::state::levels::{CYCLE, LevelRule, Levels, note_wholes_of_clumps};
 
 /// Gives bodies steps of their own, if the scene asks for them and any body can take a longer one;
 /// then the step is adapted to the end time.
@@ -18,18 +18,21 @@ pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoi
     if !scene.run.steps_by_body {
         return;
     }
-    let safety = scene.run.safety_factor;
-    let rule = level_rule(state, step, safety);
+    let whole_of = Clusters::new(state.particles.free, &state.bonds).of_particle;
+    let rule = level_rule(state, step, &whole_of, scene.run.safety_factor);
     state.model.levels = Some(Arc::new(rule));
+    state.levels = Some(Levels {
+        of_particle: vec![0; state.particles.len()],
+        whole_of,
+        ..Levels::default()
+    });
+    note_wholes_of_clumps(state);
     state.time_step_s = step.step_s;
     if !any_longer(state) {
         state.model.levels = None;
+        state.levels = None;
         return;
     }
-    state.levels = Some(Levels {
-        of_particle: vec![0; state.particles.len()],
-        ..Levels::default()
-    });
     if !step.given {
         let cycles = scene.run.end_time_s / (CYCLE as f64 * step.step_s);
         // A step that fits is kept.
@@ -38,35 +41,82 @@ pub(super) fn place_levels(scene: &Scene, state: &mut State, step: &mut StepChoi
     }
 }
 
-fn level_rule(state: &mut State, step: &StepChoice, safety: f64) -> LevelRule {
-    let free = state.particles.free;
-    let mut body_of = Clusters::new(free, &state.bonds).of_particle;
-    let own = own_eigenvalues(state, &body_of);
-    for (id, clump) in (own.len() as u32..).zip(&state.clumps.all) {
-        body_of.extend(state.clumps.spheres_of(clump).map(|_| id));
+/// What levels follow from. `whole_of`: for each free particle the number of its body.
+fn level_rule(state: &mut State, step: &StepChoice, whole_of: &[u32], safety: f64) -> LevelRule {
+    let mut own = own_eigenvalues(state, whole_of);
+    let mut clusters = coming(state, true);
+    let clumps = coming(state, false);
+    let mut own_of_template = Vec::new();
+    if let Some(clusters) = &mut clusters {
+        let first = own.len();
+        own.extend(own_of_shapes(clusters));
+        let of_shapes = clusters.shape_of.iter().take(state.clumps.templates.len());
+        own_of_template = of_shapes.map(|shape| (first + shape) as u32).collect();
     }
-    let materials = state.contacts.as_ref();
-    let materials = materials.map_or(&[][..], |contacts| &contacts.materials);
-    let count = materials
-        .iter()
-        .max()
-        .map_or(0, |most| usize::from(*most) + 1);
-    let at_impact = |is_meant: &dyn Fn(usize) -> bool| {
-        let [k, c, _] = at_impact_of(state, step.impact_speed_m_s, is_meant);
-        [k, c]
+    let speed_m_s = step.impact_speed_m_s;
+    let of_material = |material: usize| {
+        let present = impact_of_material(state, material, speed_m_s);
+        let later = clusters.as_ref();
+        let later = later.map(|all| impact_of_material(&all.state, material, speed_m_s));
+        larger(present, later.unwrap_or_default())
     };
-    let of_material =
-        |material: usize| at_impact(&|i| i < free && usize::from(materials[i]) == material);
-    let template_of = |i: usize| {
-        let at = state.clumps.carrier_of(i);
-        at.map(|at| state.clumps.all[at].template as usize)
+    let of_template = |template: usize| {
+        let present = impact_of_clumps(state, speed_m_s, |other| other == template);
+        let later = clumps.as_ref().map(|all| {
+            let shape = all.shape_of[template];
+            impact_of_clumps(&all.state, speed_m_s, |other| all.shape_of[other] == shape)
+        });
+        larger(present, later.unwrap_or_default())
     };
-    let of_template = |template: usize| at_impact(&|i| template_of(i) == Some(template));
+    let contacts = state.contacts.as_ref();
+    let materials = contacts.map_or(0, |contacts| contacts.model.kind_of.len().isqrt());
     LevelRule {
         own,
-        impact_rates: (0..count).map(of_material).collect(),
+        own_of_template,
+        impact_rates: (0..materials).map(of_material).collect(),
         impact_rates_of_clumps: (0..state.clumps.templates.len()).map(of_template).collect(),
         safety: [safety, share_of_impact(state, safety)],
-        body_of,
     }
+}
+
+/// For each shape the largest eigenvalue of its cluster, 1/s2; infinite if it never has one.
+fn own_of_shapes(coming: &mut Coming) -> Vec<f64> {
+    let state = &mut coming.state;
+    let free = state.particles.free;
+    let of_particle = state.clusters.as_ref().map(|all| &all.of_particle[..free]);
+    let of_particle = of_particle.map_or(Vec::new(), <[u32]>::to_vec);
+    let most = coming.shape_of.iter().max().map_or(0, |most| most + 1);
+    let found = own_eigenvalues(state, &of_particle);
+    let mut own = vec![f64::INFINITY; most];
+    for &shape in &of_particle {
+        own[shape as usize] = found[shape as usize];
+    }
+    own
+}
+
+/// Largest eigenvalues that the first impacts of free particles of a material add, at this speed,
+/// m/s: 1/s2 and 1/s.
+fn impact_of_material(state: &State, material: usize, speed_m_s: f64) -> [f64; 2] {
+    let materials = state
+        .contacts
+        .iter()
+        .flat_map(|contacts| &contacts.materials);
+    let materials: Vec<usize> = materials.map(|of| usize::from(*of)).collect();
+    let free = state.particles.free;
+    let [k, c, _] = at_impact_of(state, speed_m_s, |i| i < free && materials[i] == material);
+    [k, c]
+}
+
+/// The same of the clumps of some templates.
+fn impact_of_clumps(state: &State, speed_m_s: f64, is_meant: impl Fn(usize) -> bool) -> [f64; 2] {
+    let template_of = |i: usize| {
+        let at = state.clumps.carrier_of(i)?;
+        Some(state.clumps.all[at].template as usize)
+    };
+    let [k, c, _] = at_impact_of(state, speed_m_s, |i| template_of(i).is_some_and(&is_meant));
+    [k, c]
+}
+
+fn larger(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|n| a[n].max(b[n]))
 }

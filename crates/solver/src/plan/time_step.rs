@@ -172,7 +172,7 @@ pub(crate) fn choose_step(
     allow_any_step: bool,
 ) -> Result<StepChoice> {
     let run = &scene.run;
-    let replaced = StepBasis::of(scene, state, coming(state, true).as_mut());
+    let replaced = StepBasis::of(scene, state, arriving_as_clusters(state).as_mut());
     let basis = if run.adaptive {
         StepBasis::of(scene, state, arriving(state).as_mut())
     } else {
@@ -237,16 +237,25 @@ pub(crate) fn choose_step(
 /// One body of each template as it is added: a clump, or a bonded cluster if its inlet feeds bonded
 /// bodies. Their positions are such that they do not touch. None: there are no templates.
 pub(crate) fn arriving(state: &State) -> Option<State> {
-    coming(state, false)
+    coming(state, false).map(|coming| coming.state)
 }
 
 /// The same with all bodies bonded that can be.
 pub(crate) fn arriving_as_clusters(state: &State) -> Option<State> {
-    coming(state, true)
+    coming(state, true).map(|coming| coming.state)
 }
 
-/// One body of each shape; if clumps are `replaced`, as a cluster if it can become one.
-fn coming(state: &State, replaced: bool) -> Option<State> {
+/// One body of each shape that may be added.
+pub(super) struct Coming {
+    /// The bodies. The number of a cluster is that of its shape.
+    pub(super) state: State,
+    /// For each template the number of its shape.
+    pub(super) shape_of: Vec<usize>,
+}
+
+/// One body of each shape; if clumps are `replaced`, as a cluster if it can become one. None: there
+/// are no templates.
+pub(super) fn coming(state: &State, replaced: bool) -> Option<Coming> {
     let becomes_one = |n: usize| {
         let starts = state
             .model
@@ -273,8 +282,11 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
             && one.bonds == other.bonds
     };
     let mut shapes: Vec<usize> = Vec::new();
+    let mut shape_of = Vec::with_capacity(templates.len());
     for n in 0..templates.len() {
-        if !shapes.iter().any(|&other| same(other, n)) {
+        let known = shapes.iter().position(|&other| same(other, n));
+        shape_of.push(known.unwrap_or(shapes.len()));
+        if known.is_none() {
             shapes.push(n);
         }
     }
@@ -321,7 +333,10 @@ fn coming(state: &State, replaced: bool) -> Option<State> {
     };
     apply_topology_change(&mut bonded, come);
     apply_topology_change(&mut bonded, swap);
-    Some(bonded)
+    Some(Coming {
+        state: bonded,
+        shape_of,
+    })
 }
 
 /// The shapes, and for each that daughters can replace the smallest sphere that can come of it.

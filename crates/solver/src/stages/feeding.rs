@@ -8,6 +8,7 @@ use crate::state::State;
 use crate::state::clumps::{Clump, Clumps};
 use crate::state::clusters::Cluster;
 use crate::state::events::Renumbering;
+use crate::state::levels::renumber_levels;
 use crate::state::particles::Wrench;
 
 /// Adds clumps, each with a number of its own among the clusters, to a scene without sleep.
@@ -46,8 +47,10 @@ pub(super) fn add_clumps(state: &mut State, coming: Vec<Clump>) -> Renumbering {
         contacts.divide(count, state.scratch.threads);
         lengthen_lists(contacts, &state.particles, &state.clumps, before);
     }
+    let particles: Vec<u32> = (0..before[0] as u32).collect();
+    renumber_levels(state, &particles, &[]);
     Renumbering {
-        particles: (0..before[0] as u32).collect(),
+        particles,
         bonds: (0..state.bonds.len() as u32).collect(),
         free: state.particles.free as u32,
         created: Vec::new(),

@@ -55,7 +55,10 @@ pub(crate) fn set_levels(state: &mut State) -> usize {
         return 0;
     };
     let is_new = levels.shares.is_empty();
-    let looks = is_new || state.steps.is_multiple_of(LOOK_EVERY) || have_met(state, levels);
+    let looks = is_new
+        || !levels.fired.is_empty()
+        || state.steps.is_multiple_of(LOOK_EVERY)
+        || have_met(state, levels);
     let wanted = looks.then(|| wanted_levels(state, is_new));
     let Some(levels) = &mut state.levels else {
         return 0;
@@ -372,6 +375,12 @@ pub(crate) fn join_groups(state: &mut State) {
     levels.scratch.fastest_wall_m_s = 0.0;
     levels.scratch.walls_moved_m.clear();
     levels.particle_steps[0] += CYCLE * levels.of_particle.len() as u64;
+    if std::mem::take(&mut levels.scratch.is_renumbered) {
+        levels.scratch.before.clear();
+        group(state);
+        share_out(state);
+        return;
+    }
     if levels.scratch.before.is_empty() {
         return;
     }
@@ -403,6 +412,12 @@ pub(crate) fn tick(state: &mut State) {
     state.time_s += state.time_step_s;
     state.previous_time_step_s = state.time_step_s;
     state.steps += 1;
+}
+
+/// Whether particles have got other numbers since the groups were made.
+pub(crate) fn is_renumbered(state: &State) -> bool {
+    let levels = state.levels.as_ref();
+    levels.is_some_and(|levels| levels.scratch.is_renumbered)
 }
 
 /// Whether all groups are at the present time.

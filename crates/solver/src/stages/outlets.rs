@@ -13,7 +13,8 @@ const OUTLET_EVERY: u64 = 50;
 /// Clusters that have reached an outlet, in ascending order; records their removal.
 pub(super) fn leaving(state: &mut State) -> Vec<u32> {
     let mut leaving = Vec::new();
-    if state.model.rules.outlets.is_empty() || !state.steps.is_multiple_of(OUTLET_EVERY) {
+    let every = OUTLET_EVERY.next_multiple_of(state.cycle());
+    if state.model.rules.outlets.is_empty() || !state.steps.is_multiple_of(every) {
         return leaving;
     }
     let Some(clusters) = &state.clusters else {

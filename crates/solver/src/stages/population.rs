@@ -20,6 +20,7 @@ use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::clusters::{Cluster, Clusters};
 use crate::state::contacts::ContactHistory;
 use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
+use crate::state::levels::renumber_levels;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::walls::Wall;
 
@@ -90,6 +91,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         state.ledger.gain(strain_of(created, state));
     }
     count_sleepers(state);
+    renumber_levels(state, &particles, &created);
     let pressed_j = pressed_j(state);
     state.ledger.gain(pressed_j - pressed_before_j);
     Renumbering {

@@ -55,6 +55,16 @@ pub(crate) const SQUEEZE: Stage = Stage {
     saving: NO_SAVING,
 };
 
+/// The conditions of a trigger, in the order in which they are asked.
+const CAUSES: [&str; 6] = [
+    "enters",
+    "force",
+    "contact_force",
+    "principal_stress",
+    "impact_energy",
+    "time",
+];
+
 /// The number of contacts that triggers have read in this step.
 pub(crate) fn count_squeezing(state: &mut State) -> usize {
     std::mem::take(&mut state.scratch.squeezing)
@@ -69,8 +79,9 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
     let clumps = state.clumps.all.len();
     let mut squeezes = std::mem::take(&mut state.scratch.squeezes);
     let read = find_squeezes(state, &mut squeezes);
-    let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) =
-        triggered(state, &squeezes).unzip();
+    let mut due: Vec<(usize, &'static str)> = triggered(state, &squeezes).collect();
+    wait_for_single_steps(state, &mut due);
+    let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) = due.into_iter().unzip();
     state.scratch.squeezes = squeezes;
     state.scratch.squeezing = read;
     if !to_clusters.is_empty() {
@@ -78,6 +89,32 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
     }
     let can_fire = state.model.rules.triggers.iter().any(Option::is_some);
     if can_fire { clumps } else { 0 }
+}
+
+/// With steps by body, takes out the clumps that take longer steps than single time steps. They
+/// become bonded at the next common time, until when they and what is near them have come to those.
+fn wait_for_single_steps(state: &mut State, due: &mut Vec<(usize, &'static str)>) {
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    let clumps = &state.clumps.all;
+    levels.fired.clear();
+    due.retain(|&(n, cause)| {
+        let clump = &clumps[n];
+        let is_ready = levels.of_particle[clump.first as usize] == 0;
+        if !is_ready {
+            levels.fired.push((clump.cluster, cause.to_owned()));
+        }
+        is_ready
+    });
+}
+
+/// The cause for which a clump is to become bonded, if it has been waiting for that.
+fn fired_before(state: &State, clump: &Clump) -> Option<&'static str> {
+    let fired = state.levels.iter().flat_map(|levels| &levels.fired);
+    let mut own = fired.filter(|(cluster, _)| *cluster == clump.cluster);
+    let (_, cause) = own.next()?;
+    CAUSES.into_iter().find(|known| known == cause)
 }
 
 /// Clumps that become clusters: their numbers and the causes.
@@ -88,6 +125,9 @@ fn triggered(state: &State, squeezes: &[Squeeze]) -> impl Iterator<Item = (usize
         let start = rules.starts.get(template);
         if start.is_some_and(|start| start.bonded || start.sphere) {
             return Some((n, STARTS_BONDED));
+        }
+        if let Some(cause) = fired_before(state, clump) {
+            return Some((n, cause));
         }
         let squeeze = squeezes.get(n);
         let cause = match rules.triggers.get(template) {
@@ -132,17 +172,11 @@ fn met(
         .contains_key(&clump.cluster);
     let time = trigger.time_s.filter(|_| !is_again);
     let time = time.map(|from| state.time_s >= from);
-    let all = [
-        ("enters", enters),
-        ("force", force),
-        ("contact_force", contact_force),
-        ("principal_stress", principal_stress),
-        ("impact_energy", energy),
-        ("time", time),
-    ];
-    let mut asked = all
-        .iter()
-        .filter_map(|(name, met)| met.map(|met| (*name, met)));
+    let all = [enters, force, contact_force, principal_stress, energy, time];
+    let mut asked = CAUSES
+        .into_iter()
+        .zip(all)
+        .filter_map(|(name, met)| met.map(|met| (name, met)));
     if trigger.needs_all {
         let first = asked.clone().next()?.0;
         asked.all(|(_, met)| met).then_some(first)

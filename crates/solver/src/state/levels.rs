@@ -6,9 +6,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::State;
 use super::asleep::Asleep;
 use super::contacts::ContactPartition;
-use super::events::Break;
+use super::events::{Break, NewCluster};
 use super::partitions::Partition;
 use super::walls::{Wall, WallContact, WallLoad};
 
@@ -28,19 +29,32 @@ pub(crate) fn length(level: u8) -> f64 {
 /// What the levels follow from, by the plan.
 #[derive(Debug, Clone, Default)]
 pub struct LevelRule {
-    /// For each particle the number of the body that it belonged to at the start: connected free
-    /// particles first, then clumps.
-    pub body_of: Vec<u32>,
-    /// For each of these bodies but the clumps the largest eigenvalue of M^-1 K, alone in space,
-    /// 1/s2.
+    /// For each bonded body at the start, then for each shape that a cluster may have later, the
+    /// largest eigenvalue of M^-1 K, alone in space, 1/s2.
     pub own: Vec<f64>,
+    /// For each template of clumps the number of its cluster in `own`. Length templates.
+    pub own_of_template: Vec<u32>,
     /// For each material the largest eigenvalues that the first impacts of free particles add, 1/s2
     /// and 1/s.
     pub impact_rates: Vec<[f64; 2]>,
-    /// The same for the clumps of each template.
+    /// The same for the clumps of each template. Length templates.
     pub impact_rates_of_clumps: Vec<[f64; 2]>,
     /// The safety factor of the step, and of the step that impacts allow.
     pub safety: [f64; 2],
+}
+
+impl LevelRule {
+    /// Largest eigenvalues that the first impact of a free particle adds, 1/s2 and 1/s.
+    pub(crate) fn impact_of_particle(&self, material: u8) -> [f64; 2] {
+        let found = self.impact_rates.get(usize::from(material));
+        found.copied().unwrap_or_default()
+    }
+
+    /// The same for a clump; infinite for a fragment, whose template is not known at the start.
+    pub(crate) fn impact_of_clump(&self, template: u32) -> [f64; 2] {
+        let found = self.impact_rates_of_clumps.get(template as usize);
+        found.copied().unwrap_or([f64::INFINITY; 2])
+    }
 }
 
 /// The levels of all bodies.
@@ -48,6 +62,12 @@ pub struct LevelRule {
 pub struct Levels {
     /// For each particle the level of its body.
     pub of_particle: Vec<u8>,
+    /// For each particle the number, in the rule, of the bonded body that it belonged to when that
+    /// was whole, or that its clump can become.
+    pub(crate) whole_of: Vec<u32>,
+    /// Clusters of the clumps whose trigger has fired, which become bonded once they take single
+    /// time steps, and the causes.
+    pub(crate) fired: Vec<(u32, String)>,
     /// Expected motion of each group of particles, in their order. Empty before the first step.
     pub(crate) shares: Vec<Share>,
     /// Number of particles times time steps, and of the steps of particles.
@@ -64,6 +84,62 @@ impl Levels {
         let [all, done] = self.particle_steps.map(|count| count as f64);
         if all > 0.0 { 1.0 - done / all } else { 0.0 }
     }
+}
+
+/// For each template, those of fragments included, the number of its cluster in the rule.
+fn wholes(state: &State) -> Vec<u32> {
+    let Some(rule) = &state.model.levels else {
+        return Vec::new();
+    };
+    let templates = 0..state.clumps.templates.len() as u32;
+    let whole = |template: u32| rule.own_of_template[state.base_of(template) as usize];
+    templates.map(whole).collect()
+}
+
+/// Sets for each sphere of a clump what the clump can become.
+pub(crate) fn note_wholes_of_clumps(state: &mut State) {
+    let wholes = wholes(state);
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    levels.whole_of.resize(state.particles.len(), 0);
+    for clump in &state.clumps.all {
+        let spheres = state.clumps.spheres_of(clump);
+        levels.whole_of[spheres].fill(wholes[clump.template as usize]);
+    }
+}
+
+/// Renumbers the particles after some were added, removed or replaced. New ones take single time
+/// steps until the levels are set again.
+pub(crate) fn renumber_levels(state: &mut State, particles: &[u32], created: &[NewCluster]) {
+    let count = state.particles.len();
+    let wholes = wholes(state);
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    levels.of_particle = renumbered(&levels.of_particle, particles, count);
+    if !levels.scratch.before.is_empty() {
+        levels.scratch.before = renumbered(&levels.scratch.before, particles, count);
+    }
+    levels.whole_of = renumbered(&levels.whole_of, particles, count);
+    for created in created {
+        let spheres = created.template.spheres.len();
+        let own = created.first_particle..created.first_particle + spheres;
+        levels.whole_of[own].fill(wholes[created.clump.template as usize]);
+    }
+    levels.scratch.groups.clear();
+    levels.scratch.is_renumbered = true;
+    note_wholes_of_clumps(state);
+}
+
+fn renumbered<T: Copy + Default>(of_old: &[T], particles: &[u32], count: usize) -> Vec<T> {
+    let mut of_new = vec![T::default(); count];
+    for (one, &now) in of_old.iter().zip(particles) {
+        if let Some(place) = of_new.get_mut(now as usize) {
+            *place = *one;
+        }
+    }
+    of_new
 }
 
 /// Part of the ledger that belongs to the particles of a group.
@@ -100,6 +176,8 @@ pub(crate) struct LevelScratch {
     pub(crate) broken_count: u64,
     /// Bonds that broke at the last common time, kept until the next.
     pub(crate) broken: Vec<Break>,
+    /// Whether particles have other numbers than when the groups were made.
+    pub(crate) is_renumbered: bool,
     /// Whether pairs have been listed anew since the groups were made.
     pub(crate) is_relisted: bool,
     /// For each particle its level in the step just made. Empty: the present one.

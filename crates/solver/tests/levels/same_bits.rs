@@ -11,7 +11,7 @@ use dem_run::state::State;
 use dem_run::step::step;
 use dem_scene::{Scene, read_bodies, scene_from_text};
 
-use super::{CONTACTS, PLATE, head, pair, planned};
+use super::{CONTACTS, PLATE, exchange, head, pair, planned};
 use crate::fragments::run_into;
 
 /// A particle of the second cake.
@@ -100,8 +100,15 @@ fn planned_of(scene: &Scene) -> Plan {
 
 #[test]
 fn after_an_interruption_the_results_are_the_same_bytes() {
-    let text = cakes(4e-3) + "[output]\nseries = 1e-4\nframes = 1e-3\n";
-    let scene = scene_from_text(&text, "cakes.toml", &[]).unwrap();
+    let cakes = cakes(4e-3) + "[output]\nseries = 1e-4\nframes = 1e-3\n";
+    are_the_same_bytes(&cakes);
+    let coming_and_going = exchange::text(0.03) + "[output]\nseries = 1e-4\nframes = 7.5e-3\n";
+    are_the_same_bytes(&coming_and_going);
+}
+
+/// Runs a scene of four frames at once, and with two interruptions.
+fn are_the_same_bytes(text: &str) {
+    let scene = scene_from_text(text, "test.toml", &[]).unwrap();
     let parent = tempfile::tempdir().unwrap();
     let [whole, parted] = ["whole", "parted"].map(|name| parent.path().join(name));
     let of_whole = ResultsFolder::create(&whole, Existing::Refuse).unwrap();

@@ -104,20 +104,42 @@ fn velocity_m_s(state: &State, i: usize) -> Vector3<f64> {
 }
 
 /// Number of the body or fragment of each particle.
-fn ids<'a>(state: &'a State, rule: &'a LevelRule) -> &'a [u32] {
+fn ids<'a>(state: &'a State, levels: &'a Levels) -> &'a [u32] {
     let clusters = state.clusters.as_ref();
-    clusters.map_or(&rule.body_of, |clusters| &clusters.of_particle)
+    clusters.map_or(&levels.whole_of, |clusters| &clusters.of_particle)
 }
 
-/// Whether a body can take steps of a level above the lowest while it is near no other.
+/// Whether a body, or one that may come or be replaced, can take steps of a level above the lowest
+/// while it is near no other.
 pub(crate) fn any_longer(state: &State) -> bool {
-    let Some(rule) = &state.model.levels else {
+    let (Some(rule), Some(levels)) = (&state.model.levels, &state.levels) else {
         return false;
     };
-    let bodies = bodies(state, rule, ids(state, rule));
-    let present = bodies.iter().filter(|body| body.particles > 0);
-    let levels = present.map(|body| body.highest(HIGHEST, state.time_step_s, rule));
-    levels.max() > Some(0)
+    let present = bodies(state, rule, levels).into_iter();
+    let present = present.filter(|body| body.particles > 0);
+    let mut all = present.chain(bodies_to_come(state, rule));
+    all.any(|body| body.highest(HIGHEST, state.time_step_s, rule) > 0)
+}
+
+/// What may come through inlets, or replace clumps: a clump and a cluster of each template.
+fn bodies_to_come(state: &State, rule: &LevelRule) -> Vec<Body> {
+    if state.model.rules.are_none() {
+        return Vec::new();
+    }
+    let templates = (0_u32..).zip(&state.clumps.templates);
+    let both = templates.flat_map(|(n, template)| {
+        let alone = |particles: usize| Body {
+            particles,
+            whole: rule.own_of_template[n as usize],
+            smallest_m: template.smallest_m(),
+            ..Body::NONE
+        };
+        let mut both = [alone(1), alone(template.spheres.len())];
+        both[0].add_rates(rule.impact_of_clump(n), [0.0; 2]);
+        both[1].add_rates(rule.impact_of_particle(template.material), [0.0; 2]);
+        both
+    });
+    both.collect()
 }
 
 /// For each particle the level of its body: the highest that the limit of the body allows, and no
@@ -126,8 +148,8 @@ pub(super) fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
     let (Some(rule), Some(levels)) = (&state.model.levels, &state.levels) else {
         return Vec::new();
     };
-    let ids = ids(state, rule);
-    let bodies = bodies(state, rule, ids);
+    let ids = ids(state, levels);
+    let bodies = bodies(state, rule, levels);
     let mut present = vec![0; bodies.len()];
     for (&id, &level) in ids.iter().zip(&levels.of_particle) {
         present[id as usize] = if is_new { HIGHEST } else { level };
@@ -138,6 +160,9 @@ pub(super) fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
         .collect();
     for i in near_moving_walls(state) {
         of_body[ids[i as usize] as usize] = 0;
+    }
+    for (cluster, _) in &levels.fired {
+        of_body[*cluster as usize] = 0;
     }
     let mut names: Vec<u32> = (0..of_body.len() as u32).collect();
     for &pair in state.contacts.iter().flat_map(|contacts| &contacts.pairs) {
@@ -162,8 +187,8 @@ pub(super) fn wanted_levels(state: &State, is_new: bool) -> Vec<u8> {
 struct Body {
     /// Number of its free particles; 1 for a clump.
     particles: usize,
-    /// Number of the body that it belonged to at the start: it is no stiffer than that.
-    first: u32,
+    /// Number of the whole body that it belongs to: it is no stiffer than that.
+    whole: u32,
     /// Largest strain of its bonds.
     strain: f64,
     /// Upper bounds of the largest eigenvalues of its contacts, present and foreseen, 1/s2 and 1/s.
@@ -178,7 +203,7 @@ struct Body {
 impl Body {
     const NONE: Self = Self {
         particles: 0,
-        first: 0,
+        whole: 0,
         strain: 0.0,
         rates: [0.0; 2],
         impact: [0.0; 2],
@@ -212,7 +237,7 @@ impl Body {
         let strained = (1.0 + self.strain).powi(2);
         let own = match self.particles {
             1 => 0.0,
-            _ => rule.own[self.first as usize] * strained,
+            _ => rule.own[self.whole as usize] * strained,
         };
         let [contacts, dashpots] = self.rates;
         let h = step_s / safety;
@@ -224,8 +249,9 @@ impl Body {
 }
 
 /// The bodies and fragments, by the numbers of their particles.
-fn bodies(state: &State, rule: &LevelRule, ids: &[u32]) -> Vec<Body> {
+fn bodies(state: &State, rule: &LevelRule, levels: &Levels) -> Vec<Body> {
     let p = &state.particles;
+    let ids = ids(state, levels);
     let count = ids.iter().map(|&id| id as usize + 1).max().unwrap_or(0);
     let mut bodies = vec![Body::NONE; count];
     let materials = state.contacts.as_ref().map(|contacts| &contacts.materials);
@@ -233,14 +259,14 @@ fn bodies(state: &State, rule: &LevelRule, ids: &[u32]) -> Vec<Body> {
     for (i, &id) in ids.iter().enumerate().take(p.free) {
         let body = &mut bodies[id as usize];
         body.particles += 1;
-        body.first = rule.body_of[i];
+        body.whole = levels.whole_of[i];
         body.smallest_m = body.smallest_m.min(p.poses[i].radius_m());
         if state.contacts.is_some() {
             let speed_m_s = Vector3::from(p.motions[i].velocity_m_s).norm();
             body.fastest_m_s = body.fastest_m_s.max(speed_m_s);
         }
-        let impact = materials.and_then(|of| rule.impact_rates.get(usize::from(of[i])));
-        body.add_rates(impact.copied().unwrap_or_default(), of_particles[i]);
+        let impact = materials.map(|of| rule.impact_of_particle(of[i]));
+        body.add_rates(impact.unwrap_or_default(), of_particles[i]);
     }
     for (clump, rates) in state.clumps.all.iter().zip(of_clumps) {
         let body = &mut bodies[ids[clump.first as usize] as usize];
@@ -250,8 +276,8 @@ fn bodies(state: &State, rule: &LevelRule, ids: &[u32]) -> Vec<Body> {
         if state.contacts.is_some() {
             body.fastest_m_s = speed_m_s(clump, template);
         }
-        let impact = rule.impact_rates_of_clumps.get(clump.template as usize);
-        body.add_rates(impact.copied().unwrap_or_default(), rates);
+        let impact = rule.impact_of_clump(clump.template);
+        body.add_rates(impact, rates);
     }
     for at in (0..state.bonds.len()).filter(|&at| !state.bonds.is_broken(at)) {
         let body = &mut bodies[ids[state.bonds.ends[at][0] as usize] as usize];
