@@ -1,12 +1,13 @@
-//! The table of doc/performance.md, "Steps by body", made by running its study. From the folder of
-//! the clone:
+//! The tables of doc/performance.md, "Steps by body", made by running their studies. From the
+//! folder of the clone:
 //!
 //! ```sh
 //! cargo run --release -p dem-run --example steps_by_body
 //! ```
 //!
-//! Builds the program, runs `steps-by-body.toml`, four minutes, and writes the table into the
-//! page. Results are in `target/steps-by-body`; `--resume` keeps the complete runs.
+//! Builds the program, runs `steps-by-body.toml`, four minutes, and `steps-by-body-fed.toml`, one
+//! minute, and writes the tables into the page. Results are in `target/steps-by-body` and
+//! `target/steps-by-body-fed`; `--resume` keeps the complete runs.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -24,20 +25,36 @@ fn main() -> Result<(), Failed> {
     let resume = std::env::args()
         .nth(1)
         .is_some_and(|word| word == "--resume");
-    let study = "steps-by-body";
+    let heights = [
+        ("soft_height", "error of soft height"),
+        ("hard_height", "of hard height"),
+    ];
+    let placed = ["apart", "stacked", "clumps"];
+    write_table("steps-by-body", &placed, heights, resume)?;
+    let of_belt = [
+        ("push", "error of mean push"),
+        ("kinetic_energy", "of kinetic energy"),
+    ];
+    write_table("steps-by-body-fed", &[], of_belt, resume)
+}
+
+/// Runs a study and writes its table, with a row for each run: those of each placement, if it has
+/// several. `measures`: whose errors are shown, and the heads of their columns.
+fn write_table(
+    study: &str,
+    placements: &[&str],
+    measures: [(&str, &str); 2],
+    resume: bool,
+) -> Result<(), Failed> {
     let runs = runs(study, &results(study)?.join(study), resume)?;
-    let mut table = Table::new(&[
-        "placed",
-        "safety factor",
-        "steps by body",
-        "processor time",
-        "gain",
-        "error of soft height",
-        "of hard height",
-        "energy error",
-        "particle updates skipped",
-    ]);
-    for placed in ["apart", "stacked", "clumps"] {
+    let mut heads = vec!["safety factor", "steps by body", "processor time", "gain"];
+    heads.extend(measures.map(|(_, head)| head));
+    heads.extend(["energy error", "particle updates skipped"]);
+    if !placements.is_empty() {
+        heads.insert(0, "placed");
+    }
+    let mut table = Table::new(&heads);
+    let of_placement = |placed: Option<&str>, table: &mut Table| -> Result<(), Failed> {
         for safety in ["0.9", "0.45"] {
             let without = find(&runs, "false", safety, placed)?;
             // The smallest step, the same for all bodies.
@@ -45,26 +62,44 @@ fn main() -> Result<(), Failed> {
             for by_body in ["false", "true"] {
                 let run = find(&runs, by_body, safety, placed)?;
                 let is_asked_for = if by_body == "true" { "yes" } else { "no" };
-                table.row(&[
-                    placed.to_owned(),
+                let mut row: Vec<String> = placed.map(str::to_owned).into_iter().collect();
+                row.extend([
                     safety.to_owned(),
                     is_asked_for.to_owned(),
                     format!("{} s", significant(run.time_s, 2)),
                     format!("{:.1}", without.time_s / run.time_s),
-                    error(run, finest, "soft_height")?,
-                    error(run, finest, "hard_height")?,
+                ]);
+                for (measure, _) in measures {
+                    row.push(error(run, finest, measure)?);
+                }
+                row.extend([
                     format!("{:.0e}", energy_error(run)),
                     format!("{:.0} %", 100.0 * skipped(run)),
                 ]);
+                table.row(&row);
             }
         }
+        Ok(())
+    };
+    if placements.is_empty() {
+        of_placement(None, &mut table)?;
     }
-    table.write("doc/performance.md", "steps_by_body")
+    for placed in placements {
+        of_placement(Some(placed), &mut table)?;
+    }
+    table.write("doc/performance.md", &study.replace('-', "_"))
 }
 
-fn find<'a>(runs: &'a [Run], by_body: &str, safety: &str, placed: &str) -> Result<&'a Run, Failed> {
+fn find<'a>(
+    runs: &'a [Run],
+    by_body: &str,
+    safety: &str,
+    placed: Option<&str>,
+) -> Result<&'a Run, Failed> {
+    let settings = [Some(by_body), Some(safety), placed];
+    let settings: Vec<&str> = settings.into_iter().flatten().collect();
     let mut runs = runs.iter();
-    let run = runs.find(|run| run.settings == [by_body, safety, placed]);
+    let run = runs.find(|run| run.settings == settings);
     run.ok_or_else(|| "the study lacks a run".into())
 }
 

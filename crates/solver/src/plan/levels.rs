@@ -54,13 +54,12 @@ fn level_rule(state: &mut State, step: &StepChoice, whole_of: &[u32], safety: f6
         own_of_template = of_shapes.map(|shape| (first + shape) as u32).collect();
     }
     let speed_m_s = step.impact_speed_m_s;
-    let of_material = |material: usize| {
-        let present = impact_of_material(state, material, speed_m_s);
-        let later = clusters.as_ref();
-        let later = later.map(|all| impact_of_material(&all.state, material, speed_m_s));
-        larger(present, later.unwrap_or_default())
-    };
+    let starts = &state.model.rules.starts;
     let of_template = |template: usize| {
+        if starts.get(template).is_some_and(|start| start.bonded) {
+            // None comes as a clump; one that becomes a clump again takes single time steps.
+            return [f64::INFINITY; 2];
+        }
         let present = impact_of_clumps(state, speed_m_s, |other| other == template);
         let later = clumps.as_ref().map(|all| {
             let shape = all.shape_of[template];
@@ -68,13 +67,28 @@ fn level_rule(state: &mut State, step: &StepChoice, whole_of: &[u32], safety: f6
         });
         larger(present, later.unwrap_or_default())
     };
+    let templates = &state.clumps.templates;
+    let of_templates: Vec<[f64; 2]> = (0..templates.len()).map(of_template).collect();
+    let of_material = |material: usize| {
+        let present = impact_of_material(state, material, speed_m_s);
+        let later = clusters.as_ref();
+        let later = later.map(|all| impact_of_material(&all.state, material, speed_m_s));
+        let spheres = templates.iter().zip(starts).zip(&of_templates);
+        let own = spheres.filter(|((template, start), _)| {
+            start.sphere && usize::from(template.material) == material
+        });
+        own.fold(
+            larger(present, later.unwrap_or_default()),
+            |all, (_, one)| larger(all, *one),
+        )
+    };
     let contacts = state.contacts.as_ref();
     let materials = contacts.map_or(0, |contacts| contacts.model.kind_of.len().isqrt());
     LevelRule {
         own,
         own_of_template,
         impact_rates: (0..materials).map(of_material).collect(),
-        impact_rates_of_clumps: (0..state.clumps.templates.len()).map(of_template).collect(),
+        impact_rates_of_clumps: of_templates,
         safety: [safety, share_of_impact(state, safety)],
     }
 }

@@ -5,7 +5,7 @@
 
 mod wanted;
 
-pub(crate) use self::wanted::any_longer;
+pub(crate) use self::wanted::{any_longer, foresee_walls};
 
 use self::wanted::{have_met, wanted_levels};
 use super::stage::{NO_SAVING, Need, Stage};
@@ -119,6 +119,7 @@ fn group(state: &mut State) {
         Group {
             levels,
             partitions: divide_busy(bonds, free, threads, idle),
+            threads,
             others,
             ..Group::default()
         }
@@ -137,7 +138,7 @@ fn list_in_groups(state: &mut State) {
     let count = state.particles.len();
     for group in &mut levels.scratch.groups {
         if let Some(contacts) = &mut state.contacts {
-            contacts.divide(count, group.partitions.len());
+            contacts.divide(count, group.threads);
             group.contacts = std::mem::take(&mut contacts.scratch.partitions);
             group.close_skin_left_m = 0.0;
         }

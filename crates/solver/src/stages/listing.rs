@@ -16,6 +16,7 @@ use super::chunks::CHUNK;
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::contacts::{find_mean_radius, list_beside, relist};
+use super::levels::foresee_walls;
 use super::neighbours::overlapping_pairs;
 use super::sleep::begins_to_move;
 use super::stage::{NO_SAVING, Need, Stage};
@@ -184,13 +185,18 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     list_beside(state, contacts, &mut pairs);
     list_near_spheres(state, &pairs);
     relist(contacts, pairs, &state.particles);
-    if let Some(levels) = &mut state.levels {
-        levels.scratch.is_relisted = true;
-    }
+    note_relisting(state);
     if contacts.model.relaxes {
         state.scratch.events.work.relaxing += contacts.relaxing();
     }
     seeks.iter().filter(|&&seeks| seeks).count()
+}
+
+/// With steps by body, the groups have lists of their own, which are to be made again.
+fn note_relisting(state: &mut State) {
+    if let Some(levels) = &mut state.levels {
+        levels.scratch.is_relisted = true;
+    }
 }
 
 /// For each particle whether it is due.
@@ -284,6 +290,7 @@ fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]]) {
 
 /// Lists what is near the walls that have moved too far since they were last listed.
 fn list_near_moving_walls(state: &mut State) {
+    foresee_walls(state);
     let Some(mut contacts) = state.contacts.take() else {
         return;
     };
@@ -313,6 +320,7 @@ fn list_near_moving_walls(state: &mut State) {
             wall.near.sort_unstable();
         }
         list_near_spheres(state, &contacts.pairs);
+        note_relisting(state);
     }
     state.contacts = Some(contacts);
 }

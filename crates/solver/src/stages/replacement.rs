@@ -91,8 +91,8 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
     if can_fire { clumps } else { 0 }
 }
 
-/// With steps by body, takes out the clumps that take longer steps than single time steps. They
-/// become bonded at the next common time, until when they and what is near them have come to those.
+/// With steps by body, takes out the clumps that do not take single time steps. They become bonded
+/// at the next common time, by which they and all near them do.
 fn wait_for_single_steps(state: &mut State, due: &mut Vec<(usize, &'static str)>) {
     let Some(levels) = &mut state.levels else {
         return;
@@ -102,8 +102,9 @@ fn wait_for_single_steps(state: &mut State, due: &mut Vec<(usize, &'static str)>
     due.retain(|&(n, cause)| {
         let clump = &clumps[n];
         let is_ready = levels.of_particle[clump.first as usize] == 0;
-        if !is_ready {
-            levels.fired.push((clump.cluster, cause.to_owned()));
+        let cause = CAUSES.iter().position(|known| *known == cause);
+        if let (false, Some(cause)) = (is_ready, cause) {
+            levels.fired.push((clump.cluster, cause));
         }
         is_ready
     });
@@ -113,8 +114,7 @@ fn wait_for_single_steps(state: &mut State, due: &mut Vec<(usize, &'static str)>
 fn fired_before(state: &State, clump: &Clump) -> Option<&'static str> {
     let fired = state.levels.iter().flat_map(|levels| &levels.fired);
     let mut own = fired.filter(|(cluster, _)| *cluster == clump.cluster);
-    let (_, cause) = own.next()?;
-    CAUSES.into_iter().find(|known| known == cause)
+    own.next().map(|(_, cause)| CAUSES[*cause])
 }
 
 /// Clumps that become clusters: their numbers and the causes.

@@ -66,8 +66,8 @@ pub struct Levels {
     /// was whole, or that its clump can become.
     pub(crate) whole_of: Vec<u32>,
     /// Clusters of the clumps whose trigger has fired, which become bonded once they take single
-    /// time steps, and the causes.
-    pub(crate) fired: Vec<(u32, String)>,
+    /// time steps, and the numbers of the conditions.
+    pub(crate) fired: Vec<(u32, usize)>,
     /// Expected motion of each group of particles, in their order. Empty before the first step.
     pub(crate) shares: Vec<Share>,
     /// Number of particles times time steps, and of the steps of particles.
@@ -99,6 +99,10 @@ fn wholes(state: &State) -> Vec<u32> {
 /// Sets for each sphere of a clump what the clump can become.
 pub(crate) fn note_wholes_of_clumps(state: &mut State) {
     let wholes = wholes(state);
+    note_wholes(state, &wholes);
+}
+
+fn note_wholes(state: &mut State, wholes: &[u32]) {
     let Some(levels) = &mut state.levels else {
         return;
     };
@@ -129,7 +133,7 @@ pub(crate) fn renumber_levels(state: &mut State, particles: &[u32], created: &[N
     }
     levels.scratch.groups.clear();
     levels.scratch.is_renumbered = true;
-    note_wholes_of_clumps(state);
+    note_wholes(state, &wholes);
 }
 
 fn renumbered<T: Copy + Default>(of_old: &[T], particles: &[u32], count: usize) -> Vec<T> {
@@ -202,6 +206,8 @@ pub(crate) struct Group {
     pub(crate) levels: [u8; 2],
     /// For each particle whether it is in another group.
     pub(crate) others: Asleep,
+    /// Number of threads that its particles and bonds are worth.
+    pub(crate) threads: usize,
     /// Division of its particles and bonds.
     pub(crate) partitions: Vec<Partition>,
     /// Division of its contacts.

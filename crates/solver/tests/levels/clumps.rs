@@ -118,3 +118,28 @@ fn a_clump_takes_the_steps_of_what_it_touches() {
     assert!(seen.contains(&[0, 3]), "{seen:?}");
     assert_eq!(seen.last(), Some(&[3, 3]), "{seen:?}");
 }
+
+/// A hard clump and a soft one fall onto a plate: no particle is free.
+#[test]
+fn clumps_take_steps_of_their_own_where_nothing_is_bonded() {
+    let hard = angle("a", [0.0, 0.0, 1.5e-3], [0.1, 0.0, -0.3]).replace("soft", "hard");
+    let text = head("run.end_time = 0.02\nrun.gravity = [0, 0, -9.81]\nrun.safety_factor = 0.2")
+        + CONTACTS
+        + PLATE
+        + &hard
+        + &angle("b", [0.1, 0.0, 1.5e-3], [0.1, 0.0, -0.3]);
+    let mut state = planned(&text).state;
+    let (mut largest, mut touched, mut seen) = ([0.0_f64; 3], 0, [0; 2]);
+    while state.time_s < 0.02 {
+        interact(&mut state);
+        let errors = errors(&mut state);
+        largest = [0, 1, 2].map(|k| largest[k].max(errors[k]));
+        seen = [0, 1].map(|n| seen[n].max(level(&state, n)));
+        touched += state.walls[0].touching.len();
+        advance(&mut state);
+    }
+    assert_eq!(state.particles.free, 0);
+    assert!(touched > 10 && seen[1] > seen[0], "{touched} {seen:?}");
+    assert!(largest[0] < 2e-3, "{largest:?}");
+    assert!(largest[1] < 1e-11 && largest[2] < 1e-11, "{largest:?}");
+}

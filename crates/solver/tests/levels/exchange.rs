@@ -1,12 +1,14 @@
 //! Bodies come, go and are replaced while others take longer steps.
 
+use std::path::Path;
+
 use dem_run::plan::plan;
 use dem_run::state::State;
 use dem_run::state::events::PopulationEvent;
-use dem_run::step::{advance, interact};
+use dem_run::step::{advance, interact, step};
 use dem_scene::read_bodies;
 
-use super::{CONTACTS, PLATE, errors, head, levels, pair};
+use super::{CONTACTS, PLATE, errors, head, levels, pair, planned};
 
 /// Soft pairs come as clumps through an inlet, become bonded below 8 mm, bounce on a belt, become
 /// clumps again above 8 mm, and leave the room. A hard pair that falls beside them sets the step.
@@ -38,13 +40,6 @@ outside = \"room\"
 when = { enters = \"low\" }
 restore = { leaves = \"low\", min_particles = 2, strain_energy = 0.1, fluctuation_velocity = 0.1 }
 "
-}
-
-/// The state at the start, on so many threads.
-fn started(text: &str, threads: usize) -> State {
-    let scene = crate::helpers::scene(text);
-    let bodies = read_bodies(&scene).unwrap();
-    plan(&scene, bodies, threads, false).unwrap().state
 }
 
 /// What happened to bodies.
@@ -81,7 +76,7 @@ fn levels_of(state: &State, cluster: u32) -> Vec<u8> {
 
 #[test]
 fn what_comes_goes_and_is_replaced_is_booked() {
-    let mut state = started(&text(0.05), 1);
+    let mut state = planned(&text(0.05)).state;
     let mut happened = Happened::default();
     let mut largest = [0.0_f64; 3];
     let mut long_before = 0;
@@ -129,19 +124,58 @@ fn what_comes_goes_and_is_replaced_is_booked() {
 
 #[test]
 fn two_threads_give_the_bits_of_one() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../data/scenes/mixed-feed.toml"
+    );
+    let scene = dem_scene::read_scene(Path::new(path), &[]).unwrap();
     let [one, two] = [1, 2].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.unwrap().install(|| {
-            let mut state = started(&text(0.03), threads);
+            let bodies = read_bodies(&scene).unwrap();
+            let mut state = plan(&scene, bodies, threads, false).unwrap().state;
+            assert_eq!(state.scratch.threads, threads);
             while state.time_s < 0.03 {
-                dem_run::step::step(&mut state);
+                step(&mut state);
             }
             state
         })
     });
-    assert!(one.particles.len() > 10);
+    assert!(one.population.replaced > 5);
     assert_eq!(one.particles.poses, two.particles.poses);
     assert_eq!(one.particles.motions, two.particles.motions);
     assert_eq!(one.clumps.all, two.clumps.all);
     assert_eq!(one.ledger, two.ledger);
+}
+
+/// What comes is of one kind, and no step can be longer: single spheres, or bonded pairs.
+#[test]
+fn where_nothing_that_comes_can_take_longer_steps_nothing_changes() {
+    let single = "[bodies.grain]\nmaterial = \"soft\"\nparticles = [[0, 0, 0, 1e-3]]\n";
+    let bonded =
+        pair("grain", "soft", [0.0; 3], [0.0; 3]).replace("velocity = [0.0, 0.0, 0.0]\n", "");
+    for body in [single, &bonded] {
+        let fed = format!(
+            "{body}[regions.gate]\nbox = {{ min = [0, 0, 0.01], max = [0.01, 0.01, 0.02] }}
+[inlets.feed]\nbodies = [\"grain\"]\nregion = \"gate\"\nrate = 400\nvelocity = [0, 0, -1]\n"
+        );
+        let gravity = "run.end_time = 0.02\nrun.gravity = [0, 0, -9.81]";
+        let alone = head(gravity) + CONTACTS + PLATE + &fed;
+        assert!(planned(&alone).state.levels.is_none(), "{body}");
+        // Beside a hard pair they can take longer ones.
+        let hard = pair("a", "hard", [0.1, 0.0, 0.01], [0.0; 3]);
+        let mut state = planned(&(head(gravity) + CONTACTS + PLATE + &hard + &fed)).state;
+        let mut largest = 0.0_f64;
+        let mut longest = 0;
+        while state.time_s < 0.02 {
+            interact(&mut state);
+            largest = largest.max(errors(&mut state)[0]);
+            longest = longest.max(levels(&state)[2..].iter().copied().max().unwrap_or(0));
+            advance(&mut state);
+        }
+        assert!(
+            longest > 0 && largest < 4e-3,
+            "{longest} {largest:e} {body}"
+        );
+    }
 }

@@ -17,8 +17,8 @@ use crate::fragments::run_into;
 /// A particle of the second cake.
 const IN_B: usize = 700;
 
-/// Three cakes that fly and fall onto a plate on its way up, one of them hard, and two as rigid clumps, of which
-/// one falls onto the other.
+/// Three cakes that fly and fall onto a plate on its way up, one of them hard, and two as rigid
+/// clumps, of which one falls onto the other.
 fn cakes(end_s: f64) -> String {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/bodies/cake.vtp");
     let cake = |name: &str, kind: &str, x_m: f64, speed_m_s: f64| {

@@ -73,6 +73,32 @@ fn a_body_is_at_the_step_of_a_wall_before_they_touch() {
     }
 }
 
+/// A hard pair at rest in the way of a plate, and a soft one at rest far away: no particle moves
+/// before the plate comes, and no step changes. The hard pair moves as without steps by body.
+#[test]
+fn a_body_at_rest_is_not_missed() {
+    let text = text("velocity = [0, 0, 0.5]\n", 0.5)
+        .replace("[0.1, 0.0, 0.5]", "[0.1, 0.0, 0.005]")
+        .replace("velocity = [0.0, 0.01, 0.0]", "velocity = [0.0, 0.0, 0.0]")
+        .replace("run.safety", "run.time_step = 1e-6\nrun.safety");
+    let off = text.replace("run.steps_by_body = true", "");
+    let [on, off] = [&text, &off].map(|text| {
+        let mut state = planned(text).state;
+        let mut touched = 0;
+        while state.steps < 20_000 {
+            interact(&mut state);
+            touched += usize::from(!state.walls[0].touching.is_empty());
+            advance(&mut state);
+        }
+        assert!(touched > 10, "{touched}");
+        state
+    });
+    assert!(levels(&on)[0] == 0 && levels(&on)[2] > 0);
+    assert!(on.particles.motions[0].velocity_m_s[2] > 0.5);
+    assert_eq!(on.particles.motions[..2], off.particles.motions[..2]);
+    assert_eq!(on.particles.poses[..2], off.particles.poses[..2]);
+}
+
 /// The wall moves by time steps, and so the two meet at the same time, and part with the same
 /// motion, as without steps by body.
 #[test]

@@ -76,6 +76,31 @@ fn near_moving_walls(state: &State) -> impl Iterator<Item = u32> {
     })
 }
 
+/// Takes, for each moving wall, the distance that it may go in the coming cycle as the one that it
+/// went in the last, if that is less: what is near it is listed before.
+pub(crate) fn foresee_walls(state: &mut State) {
+    if state.levels.is_none() {
+        return;
+    }
+    for n in 0..state.walls.len() {
+        let wall = &state.walls[n];
+        if wall.model.motion == WallMotion::Fixed {
+            continue;
+        }
+        let [wall_m_s, spin_rad_s] = fastest_ahead(wall, state);
+        let mut surface_m_s = wall_m_s;
+        if spin_rad_s > 0.0 {
+            let pivot = Vector3::from(wall.frame.position_m);
+            let poses = state.particles.poses.iter();
+            let far_m = poses.map(|pose| (pose.place() - pivot).norm());
+            surface_m_s += spin_rad_s * far_m.fold(0.0, f64::max);
+        }
+        let ahead_m = state.cycle_s() * surface_m_s;
+        let wall = &mut state.walls[n];
+        wall.moved_m = wall.moved_m.max(ahead_m);
+    }
+}
+
 /// Largest speed of the pivot of a wall, m/s, and its largest spin, rad/s, in the time within which
 /// things that could touch are near.
 fn fastest_ahead(wall: &Wall, state: &State) -> [f64; 2] {
@@ -121,25 +146,37 @@ pub(crate) fn any_longer(state: &State) -> bool {
     all.any(|body| body.highest(HIGHEST, state.time_step_s, rule) > 0)
 }
 
-/// What may come through inlets, or replace clumps: a clump and a cluster of each template.
+/// What may come through inlets, or replace clumps: of each template a single sphere or a clump,
+/// unless it comes bonded, and a cluster, if it can become one.
 fn bodies_to_come(state: &State, rule: &LevelRule) -> Vec<Body> {
     if state.model.rules.are_none() {
         return Vec::new();
     }
-    let templates = (0_u32..).zip(&state.clumps.templates);
-    let both = templates.flat_map(|(n, template)| {
-        let alone = |particles: usize| Body {
-            particles,
-            whole: rule.own_of_template[n as usize],
-            smallest_m: template.smallest_m(),
-            ..Body::NONE
+    let mut found = Vec::new();
+    for (n, template) in (0_u32..).zip(&state.clumps.templates) {
+        let whole = rule.own_of_template[n as usize];
+        let mut add = |particles: usize, impact: [f64; 2]| {
+            let mut alone = Body {
+                particles,
+                whole,
+                smallest_m: template.smallest_m(),
+                ..Body::NONE
+            };
+            alone.add_rates(impact, [0.0; 2]);
+            found.push(alone);
         };
-        let mut both = [alone(1), alone(template.spheres.len())];
-        both[0].add_rates(rule.impact_of_clump(n), [0.0; 2]);
-        both[1].add_rates(rule.impact_of_particle(template.material), [0.0; 2]);
-        both
-    });
-    both.collect()
+        let start = state.model.rules.starts.get(n as usize);
+        let as_particles = rule.impact_of_particle(template.material);
+        if start.is_some_and(|start| start.sphere) {
+            add(1, as_particles);
+        } else if !start.is_some_and(|start| start.bonded) {
+            add(1, rule.impact_of_clump(n));
+        }
+        if rule.own[whole as usize].is_finite() {
+            add(template.spheres.len(), as_particles);
+        }
+    }
+    found
 }
 
 /// For each particle the level of its body: the highest that the limit of the body allows, and no
