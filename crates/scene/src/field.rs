@@ -150,7 +150,8 @@ impl<'a> Field<'a> {
     pub(super) fn boolean(&self) -> Result<bool> {
         match self.node.value {
             Value::Boolean(boolean) => Ok(boolean),
-            _ => Err(self.wrong("true or false", "write it without quotes")),
+            Value::Text(_) => Err(self.wrong("true or false", "write it without quotes")),
+            _ => Err(self.wrong("true or false", "write one of them")),
         }
     }
 

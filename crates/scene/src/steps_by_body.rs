@@ -39,6 +39,11 @@ pub(super) fn refuse_others(root: &Table<'_>, run: &Run) -> Result<()> {
     let Some(field) = found.first() else {
         return Ok(());
     };
-    let problem = format!("{} does not go together with run.steps_by_body", field.path);
-    Err(field.refuse(problem, "remove one of them"))
+    let path = &field.path;
+    let what = match TABLES.contains(&path.as_str()) {
+        true => format!("[{path}]"),
+        false => path.clone(),
+    };
+    let problem = format!("{what} does not go together with run.steps_by_body");
+    Err(field.refuse(problem, "remove it, or run.steps_by_body"))
 }

@@ -24,7 +24,7 @@ use crate::stages::ledger::{
 };
 use crate::stages::levels::{
     LEVELS, end_cycle, in_all_groups, in_groups_now, is_common_time, is_renumbered, join_groups,
-    keep_breaks, note_drift, set_levels, tick,
+    keep_breaks, keep_pushes, note_drift, set_levels, tick, watch_between,
 };
 use crate::stages::listing::{SEARCH, renew_lists, use_up_skin};
 use crate::stages::loads::{LOADS, apply_loads};
@@ -34,7 +34,9 @@ use crate::stages::motion::{
 };
 use crate::stages::pieces::{CLUSTERS, find_pieces};
 use crate::stages::plasticity::{PLASTICITY, compute_plastic_bonds};
-use crate::stages::replacement::{REPLACEMENT, SQUEEZE, count_squeezing, replace_clumps};
+use crate::stages::replacement::{
+    REPLACEMENT, SQUEEZE, count_squeezing, note_fired, replace_clumps,
+};
 use crate::stages::restoring::restore_clumps;
 use crate::stages::rigid_parts::{
     RIGID_PARTS, drift_rigid_parts, gather_rigid_parts, kick_rigid_parts,
@@ -171,15 +173,19 @@ pub fn drift(state: &mut State) {
         return run(DRIFT, &TABLE.drift, state, |_| true);
     }
     join_groups(state);
-    in_groups_now(state, drift_group);
-    tick(state);
-    while !is_common_time(state) {
+    loop {
+        in_groups_now(state, drift_group);
+        tick(state);
+        if is_common_time(state) {
+            break;
+        }
         in_groups_now(state, |state| {
             interact_group(state);
             keep_breaks(state);
-            drift_group(state);
+            keep_pushes(state);
+            note_fired(state);
         });
-        tick(state);
+        watch_between(state);
     }
     end_cycle(state);
     run(DRIFT, &TABLE.drift, state, |stage| *stage == SEARCH);

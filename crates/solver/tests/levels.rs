@@ -7,6 +7,7 @@ mod clumps;
 mod exchange;
 mod meeting;
 mod order;
+mod peaks;
 mod same_bits;
 mod walls;
 

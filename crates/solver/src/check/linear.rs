@@ -440,6 +440,21 @@ pub(crate) fn at_impact_of(
     speed_m_s: f64,
     is_meant: impl Fn(usize) -> bool,
 ) -> [f64; 3] {
+    let first = first_to_hit(state).into_iter();
+    at_impacts(state, speed_m_s, first.filter(|(i, _)| is_meant(*i)))
+}
+
+/// The same for a clump.
+pub(crate) fn at_impact_of_clump(state: &State, speed_m_s: f64, clump: &Clump) -> [f64; 3] {
+    at_impacts(state, speed_m_s, hits_first(state, clump).into_iter())
+}
+
+/// The same for particles with these inverse masses, 1/kg.
+fn at_impacts(
+    state: &State,
+    speed_m_s: f64,
+    first: impl Iterator<Item = (usize, f64)>,
+) -> [f64; 3] {
     let Some(contacts) = &state.contacts else {
         return [0.0; 3];
     };
@@ -470,8 +485,7 @@ pub(crate) fn at_impact_of(
         largest[1] = largest[1].max(per_mass * damping);
         largest[2] = largest[2].max(per_mass * answer.normal_n_m);
     };
-    let first = first_to_hit(state).into_iter();
-    for (i, inverse_kg) in first.filter(|(i, _)| is_meant(*i)) {
+    for (i, inverse_kg) in first {
         let material = usize::from(contacts.materials[i]);
         let row = &contacts.model.kind_of[material * materials..(material + 1) * materials];
         for &kind in row {
@@ -550,17 +564,23 @@ fn first_to_hit(state: &State) -> Vec<(usize, f64)> {
     let mut seen = vec![false; state.clumps.templates.len()];
     for clump in &state.clumps.all {
         if !std::mem::replace(&mut seen[clump.template as usize], true) {
-            let spheres = state.clumps.spheres_of(clump);
-            let template = state.clumps.template(clump);
-            let [x, y, z] = template.moments_kg_m2;
-            let levers = template.spheres.iter();
-            let levers = levers.map(|sphere| Vector3::from(sphere.place_m).norm_squared());
-            let inverse_kg = 1.0 / template.mass_kg + levers.fold(0.0, f64::max) / x.min(y).min(z);
-            let largest = spheres.max_by(|a, b| radius(a).total_cmp(&radius(b)));
-            found.extend(largest.map(|i| (i, inverse_kg)));
+            found.extend(hits_first(state, clump));
         }
     }
     found
+}
+
+/// The largest sphere of a clump, and the largest inverse mass with which one can hit, 1/kg.
+fn hits_first(state: &State, clump: &Clump) -> Option<(usize, f64)> {
+    let radius = |i: &usize| state.particles.poses[*i].radius_m();
+    let template = state.clumps.template(clump);
+    let [x, y, z] = template.moments_kg_m2;
+    let levers = template.spheres.iter();
+    let levers = levers.map(|sphere| Vector3::from(sphere.place_m).norm_squared());
+    let inverse_kg = 1.0 / template.mass_kg + levers.fold(0.0, f64::max) / x.min(y).min(z);
+    let spheres = state.clumps.spheres_of(clump);
+    let largest = spheres.max_by(|a, b| radius(a).total_cmp(&radius(b)));
+    largest.map(|i| (i, inverse_kg))
 }
 
 fn overlap_at_impact_m(

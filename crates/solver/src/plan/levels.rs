@@ -7,10 +7,10 @@ use dem_scene::Scene;
 use super::time_step::{Coming, StepChoice, coming, share_of_impact};
 use crate::check::linear::at_impact_of;
 use crate::check::own_limit::own_eigenvalues;
-use crate::stages::levels::any_longer;
+use crate::stages::levels::{any_longer, note_wholes_of_clumps};
 use crate::state::State;
 use crate::state::clusters::Clusters;
-use crate::state::levels::{CYCLE, LevelRule, Levels, note_wholes_of_clumps};
+use crate::state::levels::{CYCLE, LevelRule, Levels};
 
 /// Gives bodies steps of their own, if the scene asks for them and any body can take a longer one;
 /// then the step is adapted to the end time.
@@ -56,10 +56,6 @@ fn level_rule(state: &mut State, step: &StepChoice, whole_of: &[u32], safety: f6
     let speed_m_s = step.impact_speed_m_s;
     let starts = &state.model.rules.starts;
     let of_template = |template: usize| {
-        if starts.get(template).is_some_and(|start| start.bonded) {
-            // None comes as a clump; one that becomes a clump again takes single time steps.
-            return [f64::INFINITY; 2];
-        }
         let present = impact_of_clumps(state, speed_m_s, |other| other == template);
         let later = clumps.as_ref().map(|all| {
             let shape = all.shape_of[template];
@@ -89,6 +85,7 @@ fn level_rule(state: &mut State, step: &StepChoice, whole_of: &[u32], safety: f6
         own_of_template,
         impact_rates: (0..materials).map(of_material).collect(),
         impact_rates_of_clumps: of_templates,
+        impact_speed_m_s: speed_m_s,
         safety: [safety, share_of_impact(state, safety)],
     }
 }

@@ -3,12 +3,12 @@
 
 use std::sync::Arc;
 
+use super::levels::renumber_levels;
 use super::listing::lengthen_lists;
 use crate::state::State;
 use crate::state::clumps::{Clump, Clumps};
 use crate::state::clusters::Cluster;
 use crate::state::events::Renumbering;
-use crate::state::levels::renumber_levels;
 use crate::state::particles::Wrench;
 
 /// Adds clumps, each with a number of its own among the clusters, to a scene without sleep.

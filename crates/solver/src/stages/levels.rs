@@ -3,13 +3,16 @@
 //! Leapfrog with a step of its own for each group. The kick at a common time at which the step of a
 //! body changes from h to H covers (h + H)/2, so that positions keep their second order.
 
+mod renumbered;
 mod wanted;
 
+pub(crate) use self::renumbered::{note_wholes_of_clumps, renumber_levels};
 pub(crate) use self::wanted::{any_longer, foresee_walls};
 
 use self::wanted::{have_met, wanted_levels};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{move_walls, plan_motions};
+use super::watching::watch;
 use crate::state::State;
 use crate::state::asleep::Asleep;
 use crate::state::clumps::Clump;
@@ -17,7 +20,7 @@ use crate::state::events::Break;
 use crate::state::ledger::Work;
 use crate::state::levels::{CYCLE, Group, Levels, MOST_GROUPS, OfWall, Share, length};
 use crate::state::partitions::{Idle, Partition, STALE, divide_busy};
-use crate::state::walls::Wall;
+use crate::state::walls::{Wall, WallLoad};
 
 /// Steps by body.
 pub(crate) const LEVELS: Stage = Stage {
@@ -209,10 +212,14 @@ pub(crate) fn in_all_groups(state: &mut State, work: impl Fn(&mut State)) {
     });
     walls.clear();
     walls.resize(state.walls.len(), OfWall::default());
+    if let Some(levels) = &mut state.levels {
+        levels.scratch.pushes.iter_mut().for_each(Vec::clear);
+    }
     // What has been found since the last common time counts as well.
     let mut pressed = take_pressed(state);
     for n in 0..groups(state) {
         in_group(state, n, &work);
+        add_pushes(state);
         broken.append(&mut state.scratch.events.broken);
         // What comes after this time is not to be recorded by the groups that follow.
         pending.add(&std::mem::take(&mut state.ledger.pending), 1.0);
@@ -255,6 +262,45 @@ pub(crate) fn in_groups_now(state: &mut State, work: impl Fn(&mut State)) {
     if let Some(contacts) = &mut state.contacts {
         contacts.scratch.excessive_overlap = pressed;
     }
+}
+
+/// Takes the loads of the walls on the group that is being stepped as those of its level.
+pub(crate) fn keep_pushes(state: &mut State) {
+    if let Some(levels) = &mut state.levels {
+        levels.scratch.pushes[usize::from(levels.scratch.stepping)].clear();
+    }
+    add_pushes(state);
+}
+
+/// Adds the loads of the walls on the group that was stepped last to those of its level.
+fn add_pushes(state: &mut State) {
+    if let Some(levels) = &mut state.levels {
+        let pushes = &mut levels.scratch.pushes[usize::from(levels.scratch.stepping)];
+        pushes.resize(state.walls.len(), WallLoad::default());
+        for (sum, wall) in pushes.iter_mut().zip(&state.walls) {
+            sum.add(wall.push.force_n, wall.push.torque_n_m, wall.push.belt_w);
+        }
+    }
+}
+
+/// Records between two common times the forces and contacts that measures need: of each body those
+/// of its last step.
+pub(crate) fn watch_between(state: &mut State) {
+    if state.watches.is_empty() || !state.scratch.events.renumberings.is_empty() {
+        return;
+    }
+    gather(state);
+    if let Some(levels) = &state.levels {
+        // Of all groups: each has moved in this cycle.
+        state.fastest_m_s = levels.scratch.fastest_m_s + levels.scratch.fastest_wall_m_s;
+        for (n, wall) in state.walls.iter_mut().enumerate() {
+            wall.push = WallLoad::default();
+            for push in levels.scratch.pushes.iter().filter_map(|of| of.get(n)) {
+                wall.push.add(push.force_n, push.torque_n_m, push.belt_w);
+            }
+        }
+    }
+    watch(state);
 }
 
 /// Determines the motion of the walls in the coming time step.

@@ -17,10 +17,8 @@ pub(crate) const CLUSTERS: Stage = Stage {
         Need::of(
             state.clusters.is_some() && breaks && any_bond(state, |_| true),
             || {
-                format!(
-                    "every {} steps, if bonds have broken",
-                    state.model.search.interval
-                )
+                let interval = interval(state);
+                format!("every {interval} steps, if bonds have broken")
             },
             "no bond can break",
         )
@@ -28,6 +26,11 @@ pub(crate) const CLUSTERS: Stage = Stage {
     bytes: |state| clusters_bytes(state, ClusterUser::Fragments),
     saving: NO_SAVING,
 };
+
+/// Number of time steps from one search to the next.
+fn interval(state: &State) -> u64 {
+    state.model.search.interval.next_multiple_of(state.cycle())
+}
 
 /// Searches for fragments if it is due. Particles that are no longer in the same cluster may touch
 /// from the next step on. Returns the number of clusters searched.
@@ -38,9 +41,8 @@ pub(crate) fn find_pieces(state: &mut State) -> usize {
     let broken = state.scratch.events.broken.iter().map(|broken| broken.bond);
     state.unsearched.extend(broken);
     let unsearched = state.unsearched.len() as u64;
-    let interval = state.model.search.interval.next_multiple_of(state.cycle());
     let search = Triggers {
-        interval,
+        interval: interval(state),
         ..state.model.search
     };
     if !search.due(state.steps, unsearched) {

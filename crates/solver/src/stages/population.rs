@@ -12,6 +12,7 @@ use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
 use crate::stages::feeding::arrived;
+use crate::stages::levels::renumber_levels;
 use crate::stages::listing::renumber_lists;
 use crate::stages::sleep::{count_sleepers, prepare_change};
 use crate::stages::walls::touch_energy_j;
@@ -20,7 +21,6 @@ use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::clusters::{Cluster, Clusters};
 use crate::state::contacts::ContactHistory;
 use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
-use crate::state::levels::renumber_levels;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::walls::Wall;
 

@@ -83,12 +83,37 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
     wait_for_single_steps(state, &mut due);
     let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) = due.into_iter().unzip();
     state.scratch.squeezes = squeezes;
-    state.scratch.squeezing = read;
+    state.scratch.squeezing += read;
     if !to_clusters.is_empty() {
         swap(state, to_clusters, &causes);
     }
     let can_fire = state.model.rules.triggers.iter().any(Option::is_some);
     if can_fire { clumps } else { 0 }
+}
+
+/// With steps by body, notes the clumps of the group that has just been stepped whose trigger fires
+/// between two common times.
+pub(crate) fn note_fired(state: &mut State) {
+    if state.model.rules.triggers.iter().all(Option::is_none) {
+        return;
+    }
+    let mut squeezes = std::mem::take(&mut state.scratch.squeezes);
+    state.scratch.squeezing += find_squeezes(state, &mut squeezes);
+    let stepped = |(n, _): &(usize, &str)| !state.clumps.all[*n].asleep;
+    let fired = triggered(state, &squeezes).filter(stepped);
+    let fired: Vec<(usize, &'static str)> = fired.collect();
+    state.scratch.squeezes = squeezes;
+    let Some(levels) = &mut state.levels else {
+        return;
+    };
+    for (n, cause) in fired {
+        let cluster = state.clumps.all[n].cluster;
+        let cause = CAUSES.iter().position(|known| *known == cause);
+        let is_known = levels.fired.iter().any(|(known, _)| *known == cluster);
+        if let (false, Some(cause)) = (is_known, cause) {
+            levels.fired.push((cluster, cause));
+        }
+    }
 }
 
 /// With steps by body, takes out the clumps that do not take single time steps. They become bonded

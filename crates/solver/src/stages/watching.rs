@@ -56,7 +56,12 @@ fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {
     let sure_m = 2.0 * state.fastest_m_s * longest_s;
     let now_m = met.overlap_m.max(-sure_m);
     if let Some(before_m) = seen.overlap_m {
-        seen.touched_s += cycle * state.previous_time_step_s * share_above_0(before_m, now_m);
+        // With steps by body, a cycle in which particles get other numbers is not looked into.
+        let since_s = match (&state.levels, seen.history.last) {
+            (Some(_), Some((before_s, _))) => state.time_s - before_s,
+            _ => state.previous_time_step_s,
+        };
+        seen.touched_s += since_s * share_above_0(before_m, now_m);
     }
     seen.overlap_m = Some(now_m);
     seen.value = match quantity {

@@ -6,10 +6,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::State;
 use super::asleep::Asleep;
 use super::contacts::ContactPartition;
-use super::events::{Break, NewCluster};
+use super::events::Break;
 use super::partitions::Partition;
 use super::walls::{Wall, WallContact, WallLoad};
 
@@ -39,6 +38,8 @@ pub struct LevelRule {
     pub impact_rates: Vec<[f64; 2]>,
     /// The same for the clumps of each template. Length templates.
     pub impact_rates_of_clumps: Vec<[f64; 2]>,
+    /// Speed of those impacts, m/s.
+    pub impact_speed_m_s: f64,
     /// The safety factor of the step, and of the step that impacts allow.
     pub safety: [f64; 2],
 }
@@ -48,12 +49,6 @@ impl LevelRule {
     pub(crate) fn impact_of_particle(&self, material: u8) -> [f64; 2] {
         let found = self.impact_rates.get(usize::from(material));
         found.copied().unwrap_or_default()
-    }
-
-    /// The same for a clump; infinite for a fragment, whose template is not known at the start.
-    pub(crate) fn impact_of_clump(&self, template: u32) -> [f64; 2] {
-        let found = self.impact_rates_of_clumps.get(template as usize);
-        found.copied().unwrap_or([f64::INFINITY; 2])
     }
 }
 
@@ -86,66 +81,6 @@ impl Levels {
     }
 }
 
-/// For each template, those of fragments included, the number of its cluster in the rule.
-fn wholes(state: &State) -> Vec<u32> {
-    let Some(rule) = &state.model.levels else {
-        return Vec::new();
-    };
-    let templates = 0..state.clumps.templates.len() as u32;
-    let whole = |template: u32| rule.own_of_template[state.base_of(template) as usize];
-    templates.map(whole).collect()
-}
-
-/// Sets for each sphere of a clump what the clump can become.
-pub(crate) fn note_wholes_of_clumps(state: &mut State) {
-    let wholes = wholes(state);
-    note_wholes(state, &wholes);
-}
-
-fn note_wholes(state: &mut State, wholes: &[u32]) {
-    let Some(levels) = &mut state.levels else {
-        return;
-    };
-    levels.whole_of.resize(state.particles.len(), 0);
-    for clump in &state.clumps.all {
-        let spheres = state.clumps.spheres_of(clump);
-        levels.whole_of[spheres].fill(wholes[clump.template as usize]);
-    }
-}
-
-/// Renumbers the particles after some were added, removed or replaced. New ones take single time
-/// steps until the levels are set again.
-pub(crate) fn renumber_levels(state: &mut State, particles: &[u32], created: &[NewCluster]) {
-    let count = state.particles.len();
-    let wholes = wholes(state);
-    let Some(levels) = &mut state.levels else {
-        return;
-    };
-    levels.of_particle = renumbered(&levels.of_particle, particles, count);
-    if !levels.scratch.before.is_empty() {
-        levels.scratch.before = renumbered(&levels.scratch.before, particles, count);
-    }
-    levels.whole_of = renumbered(&levels.whole_of, particles, count);
-    for created in created {
-        let spheres = created.template.spheres.len();
-        let own = created.first_particle..created.first_particle + spheres;
-        levels.whole_of[own].fill(wholes[created.clump.template as usize]);
-    }
-    levels.scratch.groups.clear();
-    levels.scratch.is_renumbered = true;
-    note_wholes(state, &wholes);
-}
-
-fn renumbered<T: Copy + Default>(of_old: &[T], particles: &[u32], count: usize) -> Vec<T> {
-    let mut of_new = vec![T::default(); count];
-    for (one, &now) in of_old.iter().zip(particles) {
-        if let Some(place) = of_new.get_mut(now as usize) {
-            *place = *one;
-        }
-    }
-    of_new
-}
-
 /// Part of the ledger that belongs to the particles of a group.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Share {
@@ -176,6 +111,8 @@ pub(crate) struct LevelScratch {
     pub(crate) stepping: u8,
     /// Length as the walls.
     pub(crate) walls: Vec<OfWall>,
+    /// For each level the loads of the walls on its particles in their last step. Length walls.
+    pub(crate) pushes: [Vec<WallLoad>; HIGHEST as usize + 1],
     /// Number of bonds that had broken when the groups were made.
     pub(crate) broken_count: u64,
     /// Bonds that broke at the last common time, kept until the next.

@@ -135,7 +135,7 @@ fn two_threads_give_the_bits_of_one() {
             let bodies = read_bodies(&scene).unwrap();
             let mut state = plan(&scene, bodies, threads, false).unwrap().state;
             assert_eq!(state.scratch.threads, threads);
-            while state.time_s < 0.03 {
+            while state.time_s < 0.04 {
                 step(&mut state);
             }
             state

@@ -167,7 +167,7 @@ const SHORT: [[&str; 4]; 42] = [
     ["hopkinson-tension", "60 us", "", ""],
     ["jaw-crusher", "0.1 s", "", ""],
     ["lifted-cylinder", "30 ms", "", ""],
-    ["mixed-feed", "25 ms", "", ""],
+    ["mixed-feed", "30 ms", "", ""],
     ["one-cake", "60 ms", "", ""],
     ["pour-box", "20 ms", "", ""],
     ["penetration", "5 ms", "", ""],

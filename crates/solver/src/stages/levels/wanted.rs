@@ -4,12 +4,13 @@
 use nalgebra::Vector3;
 
 use crate::check::limit::safe_step;
-use crate::check::linear::contact_rates_of_each;
+use crate::check::linear::{at_impact_of_clump, contact_rates_of_each};
 use crate::stages::bonds::bond_strain;
 use crate::stages::clumps::speed_m_s;
 use crate::stages::contacts::overlap_m;
 use crate::stages::walls::{planned, reaches};
 use crate::state::State;
+use crate::state::clumps::Clump;
 use crate::state::levels::{CYCLE, HIGHEST, LevelRule, Levels, length};
 use crate::state::walls::Wall;
 use dem_io::disjoint::{find, join};
@@ -170,7 +171,7 @@ fn bodies_to_come(state: &State, rule: &LevelRule) -> Vec<Body> {
         if start.is_some_and(|start| start.sphere) {
             add(1, as_particles);
         } else if !start.is_some_and(|start| start.bonded) {
-            add(1, rule.impact_of_clump(n));
+            add(1, rule.impact_rates_of_clumps[n as usize]);
         }
         if rule.own[whole as usize].is_finite() {
             add(template.spheres.len(), as_particles);
@@ -285,6 +286,20 @@ impl Body {
     }
 }
 
+/// Largest eigenvalues that the first impact of a clump adds, 1/s2 and 1/s. The template of a
+/// fragment, and of a body that comes bonded and becomes a clump later, is not in the rule.
+fn impact_of_clump(state: &State, rule: &LevelRule, clump: &Clump) -> [f64; 2] {
+    let n = clump.template as usize;
+    let start = state.model.rules.starts.get(n);
+    match rule.impact_rates_of_clumps.get(n) {
+        Some(rates) if !start.is_some_and(|start| start.bonded) => *rates,
+        _ => {
+            let [k, c, _] = at_impact_of_clump(state, rule.impact_speed_m_s, clump);
+            [k, c]
+        }
+    }
+}
+
 /// The bodies and fragments, by the numbers of their particles.
 fn bodies(state: &State, rule: &LevelRule, levels: &Levels) -> Vec<Body> {
     let p = &state.particles;
@@ -313,8 +328,7 @@ fn bodies(state: &State, rule: &LevelRule, levels: &Levels) -> Vec<Body> {
         if state.contacts.is_some() {
             body.fastest_m_s = speed_m_s(clump, template);
         }
-        let impact = rule.impact_of_clump(clump.template);
-        body.add_rates(impact, rates);
+        body.add_rates(impact_of_clump(state, rule, clump), rates);
     }
     for at in (0..state.bonds.len()).filter(|&at| !state.bonds.is_broken(at)) {
         let body = &mut bodies[ids[state.bonds.ends[at][0] as usize] as usize];
