@@ -12,7 +12,7 @@ pub(crate) use self::wanted::{any_longer, foresee_walls};
 use self::wanted::{have_met, wanted_levels};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{move_walls, plan_motions};
-use super::watching::watch;
+use super::watching::watch_within_cycle;
 use crate::state::State;
 use crate::state::asleep::Asleep;
 use crate::state::clumps::Clump;
@@ -59,6 +59,7 @@ pub(crate) fn set_levels(state: &mut State) -> usize {
     };
     let is_new = levels.shares.is_empty();
     let looks = is_new
+        || levels.looks_next
         || !levels.fired.is_empty()
         || state.steps.is_multiple_of(LOOK_EVERY)
         || have_met(state, levels);
@@ -66,6 +67,7 @@ pub(crate) fn set_levels(state: &mut State) -> usize {
     let Some(levels) = &mut state.levels else {
         return 0;
     };
+    levels.looks_next = false;
     let changed = wanted.filter(|wanted| *wanted != levels.of_particle);
     let is_changed = changed.is_some();
     if let Some(now) = changed {
@@ -300,7 +302,7 @@ pub(crate) fn watch_between(state: &mut State) {
             }
         }
     }
-    watch(state);
+    watch_within_cycle(state);
 }
 
 /// Determines the motion of the walls in the coming time step.

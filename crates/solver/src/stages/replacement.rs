@@ -94,7 +94,9 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
 /// With steps by body, notes the clumps of the group that has just been stepped whose trigger fires
 /// between two common times.
 pub(crate) fn note_fired(state: &mut State) {
-    if state.model.rules.triggers.iter().all(Option::is_none) {
+    let triggers = &state.model.rules.triggers;
+    let none_stepped = state.clumps.all.iter().all(|clump| clump.asleep);
+    if none_stepped || triggers.iter().all(Option::is_none) {
         return;
     }
     let mut squeezes = std::mem::take(&mut state.scratch.squeezes);

@@ -60,6 +60,8 @@ pub struct Levels {
     /// For each particle the number, in the rule, of the bonded body that it belonged to when that
     /// was whole, or that its clump can become.
     pub(crate) whole_of: Vec<u32>,
+    /// Whether a body has become a clump, whose limit is to be looked at.
+    pub(crate) looks_next: bool,
     /// Clusters of the clumps whose trigger has fired, which become bonded once they take single
     /// time steps, and the numbers of the conditions.
     pub(crate) fired: Vec<(u32, usize)>,

@@ -62,6 +62,37 @@ fn forces_are_recorded_in_every_step() {
     );
 }
 
+/// A soft pair presses on the plate, in longer steps, while a hard one hits it: the largest push is
+/// that of both, and how long the soft one touches is right within a part of its step.
+#[test]
+fn a_peak_is_that_of_all_levels() {
+    let measures = MEASURES.replace("while = { of = \"a\"", "while = { of = \"b\"");
+    let text = text(1.2e-3, false, &measures)
+        .replace(
+            "position = [0.5, 0.0, 0.5]\nvelocity = [0.0, 0.0, 0.0]",
+            "position = [0.5, 0.0, 1.0001e-3]\nvelocity = [0.0, 0.0, -0.5]",
+        )
+        .replace("run.end_time", "run.safety_factor = 0.3\nrun.end_time")
+        .replace("6.5e-6", "2e-6");
+    let off = text.replace("run.steps_by_body = true", "");
+    let [on, off] = [&text, &off].map(|text| ended(text));
+    let level = levels(&on)[2];
+    assert!(level > 0);
+    let [hard_n, pushed_n, off_n] = [
+        on.watches[0].seen.history.largest.unwrap(),
+        -on.watches[1].seen.history.smallest.unwrap(),
+        -off.watches[1].seen.history.smallest.unwrap(),
+    ];
+    assert!(pushed_n > 1.015 * hard_n, "{pushed_n} {hard_n}");
+    assert!((pushed_n / off_n - 1.0).abs() < 0.002, "{pushed_n} {off_n}");
+    let [on_s, off_s] = [&on, &off].map(|state| state.watches[2].seen.touched_s);
+    let own_s = 2e-6 * f64::from(1_u32 << level);
+    assert!(
+        off_s > 20.0 * own_s && (on_s - off_s).abs() < 0.5 * own_s,
+        "{on_s:e} {off_s:e}"
+    );
+}
+
 /// Only one or two steps have so large a force.
 #[test]
 fn a_trigger_fires_between_two_common_times() {
