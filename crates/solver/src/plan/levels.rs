@@ -108,13 +108,10 @@ fn own_of_shapes(coming: &mut Coming) -> Vec<f64> {
 /// Largest eigenvalues that the first impacts of free particles of a material add, at this speed,
 /// m/s: 1/s2 and 1/s.
 fn impact_of_material(state: &State, material: usize, speed_m_s: f64) -> [f64; 2] {
-    let materials = state
-        .contacts
-        .iter()
-        .flat_map(|contacts| &contacts.materials);
-    let materials: Vec<usize> = materials.map(|of| usize::from(*of)).collect();
-    let free = state.particles.free;
-    let [k, c, _] = at_impact_of(state, speed_m_s, |i| i < free && materials[i] == material);
+    let contacts = state.contacts.as_ref();
+    let materials = contacts.map_or(&[][..], |contacts| &contacts.materials);
+    let is_own = |i: usize| i < state.particles.free && usize::from(materials[i]) == material;
+    let [k, c, _] = at_impact_of(state, speed_m_s, is_own);
     [k, c]
 }
 

@@ -12,6 +12,7 @@ use crate::check::linear::{
 };
 use crate::geometry::{Bounds, Shape};
 use crate::stages::population::apply_topology_change;
+use crate::stages::walls::fastest_point_m_s;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;
@@ -433,13 +434,9 @@ fn impact_speed(scene: &Scene, state: &State) -> f64 {
 
 /// Largest speed of a wall near particles, m/s.
 fn wall_speed(wall: &Wall, state: &State) -> f64 {
-    let pivot = Vector3::from(wall.frame.position_m);
-    let poses = state.particles.poses.iter();
-    let far_m = poses
-        .map(|pose| (pose.place() - pivot).norm())
-        .fold(0.0, f64::max);
     let speed = |along: &[f64; 3], about: &[f64; 3]| {
-        Vector3::from(*along).norm() + Vector3::from(*about).norm() * far_m
+        let norms = [along, about].map(|of| Vector3::from(*of).norm());
+        fastest_point_m_s(wall, &state.particles, norms)
     };
     match &wall.model.motion {
         WallMotion::Fixed => 0.0,

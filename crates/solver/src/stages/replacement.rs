@@ -9,6 +9,7 @@ use crate::state::State;
 use crate::state::clumps::Clump;
 use crate::state::events::TopologyChange;
 use crate::state::events::{PopulationEvent, STARTS_BONDED};
+use crate::state::levels::Levels;
 use crate::state::rules::Trigger;
 use crate::state::squeeze::Squeeze;
 
@@ -77,13 +78,9 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
         return 0;
     }
     let clumps = state.clumps.all.len();
-    let mut squeezes = std::mem::take(&mut state.scratch.squeezes);
-    let read = find_squeezes(state, &mut squeezes);
-    let mut due: Vec<(usize, &'static str)> = triggered(state, &squeezes).collect();
+    let mut due = all_triggered(state);
     wait_for_single_steps(state, &mut due);
     let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) = due.into_iter().unzip();
-    state.scratch.squeezes = squeezes;
-    state.scratch.squeezing += read;
     if !to_clusters.is_empty() {
         swap(state, to_clusters, &causes);
     }
@@ -99,23 +96,28 @@ pub(crate) fn note_fired(state: &mut State) {
     if none_stepped || triggers.iter().all(Option::is_none) {
         return;
     }
-    let mut squeezes = std::mem::take(&mut state.scratch.squeezes);
-    state.scratch.squeezing += find_squeezes(state, &mut squeezes);
-    let stepped = |(n, _): &(usize, &str)| !state.clumps.all[*n].asleep;
-    let fired = triggered(state, &squeezes).filter(stepped);
-    let fired: Vec<(usize, &'static str)> = fired.collect();
-    state.scratch.squeezes = squeezes;
+    let fired = all_triggered(state);
     let Some(levels) = &mut state.levels else {
         return;
     };
     for (n, cause) in fired {
-        let cluster = state.clumps.all[n].cluster;
-        let cause = CAUSES.iter().position(|known| *known == cause);
-        let is_known = levels.fired.iter().any(|(known, _)| *known == cluster);
-        if let (false, Some(cause)) = (is_known, cause) {
-            levels.fired.push((cluster, cause));
+        let clump = &state.clumps.all[n];
+        let is_known = || {
+            levels
+                .fired
+                .iter()
+                .any(|(known, _)| *known == clump.cluster)
+        };
+        if !(clump.asleep || is_known()) {
+            note_waiting(levels, clump, cause);
         }
     }
+}
+
+/// Notes a clump that becomes bonded once it takes single time steps.
+fn note_waiting(levels: &mut Levels, clump: &Clump, cause: &str) {
+    let number = CAUSES.iter().position(|known| *known == cause);
+    levels.fired.extend(number.map(|n| (clump.cluster, n)));
 }
 
 /// With steps by body, takes out the clumps that do not take single time steps. They become bonded
@@ -129,9 +131,8 @@ fn wait_for_single_steps(state: &mut State, due: &mut Vec<(usize, &'static str)>
     due.retain(|&(n, cause)| {
         let clump = &clumps[n];
         let is_ready = levels.of_particle[clump.first as usize] == 0;
-        let cause = CAUSES.iter().position(|known| *known == cause);
-        if let (false, Some(cause)) = (is_ready, cause) {
-            levels.fired.push((clump.cluster, cause));
+        if !is_ready {
+            note_waiting(levels, clump, cause);
         }
         is_ready
     });
@@ -142,6 +143,15 @@ fn fired_before(state: &State, clump: &Clump) -> Option<&'static str> {
     let fired = state.levels.iter().flat_map(|levels| &levels.fired);
     let mut own = fired.filter(|(cluster, _)| *cluster == clump.cluster);
     own.next().map(|(_, cause)| CAUSES[*cause])
+}
+
+/// Clumps whose trigger fires: their numbers and the causes.
+fn all_triggered(state: &mut State) -> Vec<(usize, &'static str)> {
+    let mut squeezes = std::mem::take(&mut state.scratch.squeezes);
+    state.scratch.squeezing += find_squeezes(state, &mut squeezes);
+    let found = triggered(state, &squeezes).collect();
+    state.scratch.squeezes = squeezes;
+    found
 }
 
 /// Clumps that become clusters: their numbers and the causes.

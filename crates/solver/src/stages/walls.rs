@@ -582,21 +582,29 @@ pub(crate) fn will_move(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> bool {
     planned(wall, time_s, steps_s) != [[0.0; 3]; 2]
 }
 
+/// Largest speed of a wall's point near particles, m/s, from the speed of its pivot, m/s, and its
+/// spin, rad/s.
+pub(crate) fn fastest_point_m_s(
+    wall: &Wall,
+    particles: &Particles,
+    [speed_m_s, spin_rad_s]: [f64; 2],
+) -> f64 {
+    if spin_rad_s == 0.0 {
+        return speed_m_s;
+    }
+    let pivot = Vector3::from(wall.frame.position_m);
+    let poses = particles.poses.iter();
+    let far_m = poses.map(|pose| (pose.place() - pivot).norm());
+    speed_m_s + spin_rad_s * far_m.fold(0.0, f64::max)
+}
+
 /// Moves the walls. Returns the largest speed of a wall's point near particles, m/s.
 pub(crate) fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
     let mut fastest = 0.0_f64;
     for wall in walls {
         let ([_, velocity], [_, spin]) = (wall.velocities_m_s, wall.spins_rad_s);
-        let spin_norm = Vector3::from(spin).norm();
-        let mut speed_m_s = Vector3::from(velocity).norm();
-        if spin_norm > 0.0 {
-            let pivot = Vector3::from(wall.frame.position_m);
-            let far = particles
-                .poses
-                .iter()
-                .map(|pose| (pose.place() - pivot).norm());
-            speed_m_s += spin_norm * far.fold(0.0, f64::max);
-        }
+        let norms = [velocity, spin].map(|of| Vector3::from(of).norm());
+        let speed_m_s = fastest_point_m_s(wall, particles, norms);
         fastest = fastest.max(speed_m_s);
         wall.moved_m = dt * speed_m_s;
         wall.skin_left_m -= wall.moved_m;

@@ -4,39 +4,31 @@
 use crate::state::State;
 use crate::state::events::NewCluster;
 
-/// For each template, those of fragments included, the number of its cluster in the rule.
-fn wholes(state: &State) -> Vec<u32> {
-    let Some(rule) = &state.model.levels else {
-        return Vec::new();
-    };
-    let templates = 0..state.clumps.templates.len() as u32;
-    let whole = |template: u32| rule.own_of_template[state.base_of(template) as usize];
-    templates.map(whole).collect()
+/// Number, in the rule, of the cluster that a clump of a template can become.
+fn whole(state: &State, template: u32) -> u32 {
+    let rule = state.model.levels.as_ref();
+    rule.map_or(0, |rule| {
+        rule.own_of_template[state.base_of(template) as usize]
+    })
 }
 
 /// Sets for each sphere of a clump what the clump can become.
 pub(crate) fn note_wholes_of_clumps(state: &mut State) {
-    let wholes = wholes(state);
-    note_wholes(state, &wholes);
-}
-
-fn note_wholes(state: &mut State, wholes: &[u32]) {
-    let Some(levels) = &mut state.levels else {
+    let Some(mut levels) = state.levels.take() else {
         return;
     };
     levels.whole_of.resize(state.particles.len(), 0);
     for clump in &state.clumps.all {
-        let spheres = state.clumps.spheres_of(clump);
-        levels.whole_of[spheres].fill(wholes[clump.template as usize]);
+        levels.whole_of[state.clumps.spheres_of(clump)].fill(whole(state, clump.template));
     }
+    state.levels = Some(levels);
 }
 
 /// Renumbers the particles after some were added, removed or replaced. New ones take single time
 /// steps until the levels are set again.
 pub(crate) fn renumber_levels(state: &mut State, particles: &[u32], created: &[NewCluster]) {
     let count = state.particles.len();
-    let wholes = wholes(state);
-    let Some(levels) = &mut state.levels else {
+    let Some(mut levels) = state.levels.take() else {
         return;
     };
     levels.of_particle = renumbered(&levels.of_particle, particles, count);
@@ -47,11 +39,12 @@ pub(crate) fn renumber_levels(state: &mut State, particles: &[u32], created: &[N
     for created in created {
         let spheres = created.template.spheres.len();
         let own = created.first_particle..created.first_particle + spheres;
-        levels.whole_of[own].fill(wholes[created.clump.template as usize]);
+        levels.whole_of[own].fill(whole(state, created.clump.template));
     }
     levels.scratch.groups.clear();
     levels.scratch.is_renumbered = true;
-    note_wholes(state, &wholes);
+    state.levels = Some(levels);
+    note_wholes_of_clumps(state);
 }
 
 fn renumbered<T: Copy + Default>(of_old: &[T], particles: &[u32], count: usize) -> Vec<T> {

@@ -8,7 +8,7 @@ use crate::check::linear::{at_impact_of_clump, contact_rates_of_each};
 use crate::stages::bonds::bond_strain;
 use crate::stages::clumps::speed_m_s;
 use crate::stages::contacts::overlap_m;
-use crate::stages::walls::{planned, reaches};
+use crate::stages::walls::{fastest_point_m_s, planned, reaches};
 use crate::state::State;
 use crate::state::clumps::Clump;
 use crate::state::levels::{CYCLE, HIGHEST, LevelRule, Levels, length};
@@ -88,15 +88,8 @@ pub(crate) fn foresee_walls(state: &mut State) {
         if wall.model.motion == WallMotion::Fixed {
             continue;
         }
-        let [wall_m_s, spin_rad_s] = fastest_ahead(wall, state);
-        let mut surface_m_s = wall_m_s;
-        if spin_rad_s > 0.0 {
-            let pivot = Vector3::from(wall.frame.position_m);
-            let poses = state.particles.poses.iter();
-            let far_m = poses.map(|pose| (pose.place() - pivot).norm());
-            surface_m_s += spin_rad_s * far_m.fold(0.0, f64::max);
-        }
-        let ahead_m = state.cycle_s() * surface_m_s;
+        let ahead = fastest_ahead(wall, state);
+        let ahead_m = state.cycle_s() * fastest_point_m_s(wall, &state.particles, ahead);
         let wall = &mut state.walls[n];
         wall.moved_m = wall.moved_m.max(ahead_m);
     }
