@@ -234,6 +234,8 @@ fn counted(text: &str) -> Vec<Counted> {
 fn memory_is_taken_only_by_searches_breaks_and_inlets() {
     for (name, text) in [("heap", loose(6)), ("breaking", breaking()), ("fed", fed())] {
         let steps = counted(&text);
+        let s: Vec<_> = steps.iter().enumerate().filter(|(_, s)| s.searched).map(|(n, s)| (n, s.allocations, s.broke, s.came)).collect();
+        println!("{name}: {} searches {s:?}", s.len());
         let is_quiet = |step: &Counted| !(step.searched || step.broke || step.came || step.waited);
         let quiet = steps.iter().filter(|step| is_quiet(step)).count();
         assert!(quiet > steps.len() / 2, "{name}: {quiet} quiet steps");

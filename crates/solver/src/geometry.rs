@@ -56,13 +56,11 @@ impl Shape {
 
     /// Whether the wall is nearer to `centre` than `reach_m`.
     pub(crate) fn is_within(&self, centre: [f64; 3], reach_m: f64) -> bool {
-        match self.only_touch(centre) {
-            Some(touch) => touch.distance_m < reach_m,
-            None => {
-                let mut found = Vec::new();
-                self.touches(centre, reach_m, &mut found);
-                !found.is_empty()
-            }
+        match self {
+            Self::Mesh(mesh) => mesh.is_within(centre, reach_m),
+            _ => self
+                .only_touch(centre)
+                .is_some_and(|touch| touch.distance_m < reach_m),
         }
     }
 

@@ -16,6 +16,8 @@ mod features;
 mod inside;
 mod triangle;
 
+use std::cell::Cell;
+
 use dem_io::boxes::Tree;
 use dem_io::surface::OpenSurface;
 use dem_io::{Diagnostic, Result};
@@ -207,6 +209,17 @@ impl Mesh {
         for touch in &mut found[from..] {
             self.name_feature(touch, &c, NEAR * same_m);
         }
+    }
+
+    /// Whether any triangle is nearer to `centre` than `reach_m`.
+    pub(super) fn is_within(&self, centre: [f64; 3], reach_m: f64) -> bool {
+        let found = Cell::new(false);
+        let c = Vector3::from(centre);
+        let is_near = |bounds: &Bounds| !found.get() && bounds.is_near(&centre, reach_m);
+        self.tree.visit_leaves(is_near, |t| {
+            found.set(found.get() || self.nearest(t, &c).distance_m < reach_m);
+        });
+        found.get()
     }
 
     /// Sets the feature of a touch. Within a flat part its point is the foot on the plane,

@@ -14,7 +14,29 @@ pub(crate) fn chunks_of(count: usize) -> Range<usize> {
 
 /// The particles of a chunk, of `count` in all.
 pub(crate) fn chunk_of(chunk: usize, count: usize) -> Range<usize> {
-    chunk * CHUNK..((chunk + 1) * CHUNK).min(count)
+    nth_range(chunk, CHUNK, count)
+}
+
+/// The `n`th of the ranges of `each` numbers that 0..count is divided into.
+pub(crate) fn nth_range(n: usize, each: usize, count: usize) -> Range<usize> {
+    n * each..((n + 1) * each).min(count)
+}
+
+/// Does `count` tasks, each with a buffer of its own, and returns these. `buffers` are kept for
+/// their memory.
+pub(crate) fn in_tasks<T: Default + Send>(
+    count: usize,
+    buffers: &mut Vec<T>,
+    work: impl Fn(usize, &mut T) + Sync,
+) -> &[T] {
+    if buffers.len() < count {
+        buffers.resize_with(count, T::default);
+    }
+    let own = &mut buffers[..count];
+    own.par_iter_mut()
+        .enumerate()
+        .for_each(|(task, buffer)| work(task, buffer));
+    own
 }
 
 /// The sum of `term` over 0..count, in an order that does not depend on the number of threads.

@@ -14,6 +14,7 @@ use crate::state::State;
 use crate::state::clumps::Template;
 use crate::state::clumps::{Clump, Clumps};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::search_buffers::NearBuffers;
 
 /// Clumps handled by one task.
 const CHUNK: usize = 32;
@@ -92,17 +93,20 @@ pub(crate) fn list_near(
     clumps: &mut Clumps,
     particles: &mut Particles,
     near: impl Iterator<Item = u32>,
+    NearBuffers { bits, former }: &mut NearBuffers,
 ) {
     let free = particles.free;
-    let mut is_near = Bits::new(particles.len() - free);
+    let mut is_near = Bits::all_clear(bits, particles.len() - free);
     for i in near.map(|i| i as usize).filter(|&i| i >= free) {
         is_near.set(i - free);
     }
-    let now = is_near.all().map(|i| (free + i) as u32).collect();
+    let mut now = std::mem::take(former);
+    now.clear();
+    now.extend(is_near.all().map(|i| (free + i) as u32));
     for &i in &clumps.near {
         is_near.clear(i as usize - free);
     }
-    clumps.set_near(now);
+    *former = clumps.set_near(now);
     for clump in clumps.all.iter().filter(|clump| !clump.asleep) {
         let [from, to] = clump.near.map(|n| n as usize);
         // Those that were near before are in place and have a velocity.
@@ -124,11 +128,13 @@ pub(crate) fn list_near(
 }
 
 /// A bit for each of many numbers, most of which are clear.
-struct Bits(Vec<u64>);
+struct Bits<'a>(&'a mut [u64]);
 
-impl Bits {
-    fn new(count: usize) -> Self {
-        Self(vec![0; count.div_ceil(64)])
+impl<'a> Bits<'a> {
+    fn all_clear(memory: &'a mut Vec<u64>, count: usize) -> Self {
+        memory.clear();
+        memory.resize(count.div_ceil(64), 0);
+        Self(memory)
     }
 
     fn set(&mut self, i: usize) {

@@ -20,7 +20,7 @@ use crate::state::events::Break;
 use crate::state::ledger::Work;
 use crate::state::levels::{CYCLE, Group, Levels, MOST_GROUPS, OfWall, Share, length};
 use crate::state::partitions::{Idle, Partition, STALE, divide_busy};
-use crate::state::walls::{Wall, WallLoad};
+use crate::state::walls::WallLoad;
 
 /// Steps by body.
 pub(crate) const LEVELS: Stage = Stage {
@@ -143,18 +143,20 @@ fn list_in_groups(state: &mut State) {
     let count = state.particles.len();
     for group in &mut levels.scratch.groups {
         if let Some(contacts) = &mut state.contacts {
+            contacts.scratch.partitions = std::mem::take(&mut group.contacts);
             contacts.divide(count, group.threads);
             group.contacts = std::mem::take(&mut contacts.scratch.partitions);
             group.close_skin_left_m = 0.0;
         }
         let is_own = |i: u32| !group.others[i as usize];
-        let of_wall = |wall: &Wall| {
-            let near = wall.near.iter().copied().filter(|&i| is_own(i));
-            let touching = wall.touching.iter();
-            let touching = touching.filter(|touch| is_own(touch.particle)).copied();
-            (near.collect(), touching.collect())
-        };
-        group.walls = state.walls.iter().map(of_wall).collect();
+        group.walls.resize_with(state.walls.len(), Default::default);
+        for (wall, (near, touching)) in state.walls.iter().zip(&mut group.walls) {
+            near.clear();
+            near.extend(wall.near.iter().copied().filter(|&i| is_own(i)));
+            let of_wall = wall.touching.iter();
+            touching.clear();
+            touching.extend(of_wall.filter(|touch| is_own(touch.particle)).copied());
+        }
     }
 }
 

@@ -6,18 +6,17 @@ mod moved;
 mod renumbered;
 
 use dem_scene::WallMotion;
-use rayon::prelude::*;
 
 pub(super) use self::renumbered::{lengthen_lists, renumber_lists};
 
 use self::among_sleepers::list_among_sleepers;
-use self::moved::{Due, due, find_left, may_be_due, refer_clumps, refer_particle, use_up};
-use super::chunks::CHUNK;
+use self::moved::{find_due, find_left, may_be_due, refer_clumps, refer_particle, use_up};
+use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::contacts::{find_mean_radius, list_beside, relist};
 use super::levels::foresee_walls;
-use super::neighbours::overlapping_pairs;
+use super::neighbours::{MOST_TASKS, find_pairs};
 use super::sleep::begins_to_move;
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{plane_in_space, reaches};
@@ -26,9 +25,10 @@ use crate::state::balls::{Ball, ball_around};
 use crate::state::bridges::Bridges;
 use crate::state::clumps::Clumps;
 use crate::state::contacts::Contacts;
-use crate::state::groups::{KnownClusters, Searched};
+use crate::state::groups::{KnownClusters, LargeCluster, Searched};
 use crate::state::references::References;
 use crate::state::rigid_balls::ClumpReference;
+use crate::state::search_buffers::{Due, NearBuffers, SearchBuffers};
 use crate::state::walls::Wall;
 
 /// The neighbour search.
@@ -89,8 +89,9 @@ pub(crate) fn renew_lists(state: &mut State) -> usize {
     if state.sleep.is_some() {
         if contacts.skin_left_m < 0.0 {
             let searched = list_among_sleepers(state);
-            if let Some(contacts) = state.contacts.take() {
-                list_near_spheres(state, &contacts.pairs);
+            if let Some(mut contacts) = state.contacts.take() {
+                let near = &mut contacts.scratch.buffers.near;
+                list_near_spheres(state, &contacts.pairs, near);
                 state.contacts = Some(contacts);
             }
             return searched;
@@ -110,19 +111,31 @@ fn search_for_moved(state: &mut State) -> usize {
     let mut searched = 0;
     if may_be_due(state, &contacts) {
         contacts.skin_left_m = 0.0;
-        searched = match due(state, &mut contacts.scratch.references) {
-            Some(due) if due.is_empty() => 0,
-            Some(due) => search_for(state, &mut contacts, &due),
-            None => search_for_all(state, &mut contacts),
-        };
+        let mut buffers = std::mem::take(&mut contacts.scratch.buffers);
+        if !knows_all(state, &contacts.scratch.references) {
+            begin_anew(state, &mut contacts);
+            everything(state, &mut buffers);
+        } else {
+            find_due(state, &mut contacts.scratch.references, &mut buffers);
+        }
+        if !buffers.due.is_empty() {
+            searched = search_for(state, &mut contacts, &mut buffers);
+        }
+        contacts.scratch.buffers = buffers;
         contacts.scratch.references.due.clear();
     }
     state.contacts = Some(contacts);
     searched
 }
 
-/// Searches for the neighbours of all particles.
-fn search_for_all(state: &mut State, contacts: &mut Contacts) -> usize {
+/// Whether it is known where everything was at its last search. Not so at the start.
+fn knows_all(state: &State, references: &References) -> bool {
+    references.balls.len() == state.particles.len()
+        && references.clumps.len() == state.clumps.all.len()
+}
+
+/// Forgets the last search, before everything is searched for.
+fn begin_anew(state: &mut State, contacts: &mut Contacts) {
     find_mean_radius(contacts, &state.particles, 0);
     let references = &mut contacts.scratch.references;
     references.balls = vec![[0.0; 4]; state.particles.len()];
@@ -131,19 +144,21 @@ fn search_for_all(state: &mut State, contacts: &mut Contacts) -> usize {
     for wall in &mut state.walls {
         wall.skin_left_m = skin_m(wall, contacts.skin_m);
     }
-    search_for(state, contacts, &everything(state))
 }
 
-fn everything(state: &State) -> Due {
-    Due {
-        particles: (0..state.particles.free as u32).collect(),
-        clumps: (0..state.clumps.all.len()).collect(),
-    }
+/// Everything is due.
+fn everything(state: &State, SearchBuffers { due, seeks, .. }: &mut SearchBuffers) {
+    due.clear();
+    due.particles.extend(0..state.particles.free as u32);
+    due.clumps.extend(0..state.clumps.all.len());
+    seeks.clear();
+    seeks.resize(state.particles.len(), true);
 }
 
 /// Searches for the neighbours of what is due: moves its balls, and lists the pairs and walls that
 /// they overlap.
-fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
+fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBuffers) -> usize {
+    let due = &buffers.due;
     for &i in &due.particles {
         let i = i as usize;
         let speed_m_s = state.particles.motions[i].speed_m_s();
@@ -153,8 +168,8 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
     let clusters = state.clusters.as_ref();
     refer_clumps(contacts, state, &due.clumps, clusters.is_none());
     find_left(&state.particles, &mut contacts.scratch.references);
-    let seeks = seeks(state, due);
-    let some = seeks.contains(&false).then_some(&seeks[..]);
+    let seeks = &buffers.seeks[..];
+    let some = seeks.contains(&false).then_some(seeks);
     let References {
         balls,
         clusters: known,
@@ -168,22 +183,33 @@ fn search_for(state: &mut State, contacts: &mut Contacts, due: &Due) -> usize {
         clumps: Some((&state.clumps, references)),
     };
     known.update(&searched);
-    let small = of_small(known, &state.clumps, due);
+    list_small(known, &state.clumps, due, &mut buffers.small);
     for wall in &mut state.walls {
-        let near = reached(wall, known, &searched, &small);
-        wall.near.retain(|&i| !seeks[i as usize]);
-        wall.near.extend(near);
-        wall.near.sort_unstable();
+        let mut near = std::mem::take(&mut wall.near);
+        near.retain(|&i| !seeks[i as usize]);
+        add_reached(
+            wall,
+            known,
+            &searched,
+            &buffers.small,
+            &mut buffers.reached,
+            &mut near,
+        );
+        near.sort_unstable();
+        wall.near = near;
     }
-    let mut pairs = Vec::new();
+    let mut pairs = std::mem::take(&mut contacts.scratch.former_pairs);
+    pairs.clear();
     if clusters.is_some() && !contacts.model.alone {
-        pairs = overlapping_pairs(&searched, known);
-        if some.is_some() {
-            pairs = with_others(&contacts.pairs, pairs, &seeks);
+        find_pairs(&searched, known, &mut buffers.pairs);
+        let found = &mut buffers.pairs.found;
+        match some {
+            Some(seeks) => add_with_others(&contacts.pairs, found, seeks, &mut pairs),
+            None => std::mem::swap(&mut pairs, found),
         }
     }
     list_beside(state, contacts, &mut pairs);
-    list_near_spheres(state, &pairs);
+    list_near_spheres(state, &pairs, &mut buffers.near);
     relist(contacts, pairs, &state.particles);
     note_relisting(state);
     if contacts.model.relaxes {
@@ -199,81 +225,91 @@ fn note_relisting(state: &mut State) {
     }
 }
 
-/// For each particle whether it is due.
-fn seeks(state: &State, due: &Due) -> Vec<bool> {
-    let mut seeks = vec![false; state.particles.len()];
-    for &i in &due.particles {
-        seeks[i as usize] = true;
-    }
-    for &at in &due.clumps {
-        seeks[state.clumps.spheres_of(&state.clumps.all[at])].fill(true);
-    }
-    seeks
-}
-
-/// What is due and is in no large cluster.
-fn of_small(known: &KnownClusters, clumps: &Clumps, due: &Due) -> Vec<u32> {
+/// Lists what is due and is in no large cluster.
+fn list_small(known: &KnownClusters, clumps: &Clumps, due: &Due, small: &mut Vec<u32>) {
     let free = due.particles.iter().copied();
     let clumps_due = due.clumps.iter().map(|&at| &clumps.all[at]);
     let spheres = clumps_due.filter(|clump| !known.is_in_large(clump.first));
     let spheres = spheres.flat_map(|clump| clumps.spheres_of(clump));
-    free.filter(|&i| !known.is_in_large(i))
-        .chain(spheres.map(|i| i as u32))
-        .collect()
+    let free = free.filter(|&i| !known.is_in_large(i));
+    small.clear();
+    small.extend(free.chain(spheres.map(|i| i as u32)));
 }
 
-/// The particles that a wall reaches before its skin is used up, of those that seek: of small
-/// clusters `small`, and of large ones those of blocks that it may reach.
-fn reached(wall: &Wall, known: &KnownClusters, searched: &Searched<'_>, small: &[u32]) -> Vec<u32> {
+/// Adds the particles that a wall reaches before its skin is used up, of those that seek: of small
+/// clusters `small`, and of large ones those of blocks that it may reach. `of_tasks`: kept for
+/// their memory.
+fn add_reached(
+    wall: &Wall,
+    known: &KnownClusters,
+    searched: &Searched<'_>,
+    small: &[u32],
+    of_tasks: &mut Vec<Vec<u32>>,
+    reached: &mut Vec<u32>,
+) {
     let reaches = reaches(wall);
     let is_reached = |[x, y, z, radius_m]: Ball| reaches([x, y, z], radius_m + wall.skin_left_m);
-    let of_small = small.par_iter().with_min_len(CHUNK).copied();
-    let of_small = of_small.filter(|&i| is_reached(searched.balls[i as usize]));
-    let mut reached: Vec<u32> = of_small.collect();
     let seeks = |i: u32| searched.seeks.is_none_or(|seeks| seeks[i as usize]);
-    let of_large = known.large.par_iter().filter(|large| {
-        let any_seeks = searched.seeks.is_none() || large.seeks;
-        any_seeks && is_reached(ball_around(&large.bounds))
-    });
     let plane = plane_in_space(wall);
-    let of_large = of_large.flat_map_iter(|large| {
+    let of_large = |large: &LargeCluster, found: &mut Vec<u32>| {
+        let any_seeks = searched.seeks.is_none() || large.seeks;
+        if !any_seeks || !is_reached(ball_around(&large.bounds)) {
+            return;
+        }
         if let (Some(body), Some(plane)) = (&large.rigid, plane) {
             let members = known.groups.members(large.group);
-            let places = body.near_plane(plane, wall.skin_left_m).into_iter();
-            return places.map(|place| members[place]).collect();
+            body.each_near_plane(plane, wall.skin_left_m, |place| found.push(members[place]));
+            return;
         }
-        let mut near = Vec::new();
         for (block, ball) in large.blocks.around.iter().enumerate() {
             if is_reached(large.in_space(ball)) {
                 let balls = large.balls_of(block, searched.balls, &known.groups);
                 let balls = balls.filter(|&(i, ball)| seeks(i) && is_reached(ball));
-                near.extend(balls.map(|(i, _)| i));
+                found.extend(balls.map(|(i, _)| i));
             }
         }
-        near
+    };
+    let chunks = chunks_of(small.len());
+    let each = known.large.len().div_ceil(MOST_TASKS).max(1);
+    let count = chunks.len() + known.large.len().div_ceil(each);
+    let tasks = in_tasks(count, of_tasks, |task, found| {
+        found.clear();
+        if chunks.contains(&task) {
+            let some = small[chunk_of(task, small.len())].iter().copied();
+            found.extend(some.filter(|&i| is_reached(searched.balls[i as usize])));
+        } else {
+            let some = nth_range(task - chunks.len(), each, known.large.len());
+            for large in &known.large[some] {
+                of_large(large, found);
+            }
+        }
     });
-    reached.par_extend(of_large);
-    reached
+    for found in tasks {
+        reached.extend_from_slice(found);
+    }
 }
 
-/// The pairs found for the particles that seek, and the known pairs of the others: sorted.
-fn with_others(known: &[[u32; 2]], found: Vec<[u32; 2]>, seeks: &[bool]) -> Vec<[u32; 2]> {
+/// Adds the pairs found for the particles that seek, and the known pairs of the others: sorted.
+fn add_with_others(
+    known: &[[u32; 2]],
+    found: &[[u32; 2]],
+    seeks: &[bool],
+    pairs: &mut Vec<[u32; 2]>,
+) {
     let stays = |pair: &&[u32; 2]| !pair.iter().any(|&i| seeks[i as usize]);
     let mut known = known.iter().filter(stays).copied().peekable();
-    let mut pairs = Vec::with_capacity(found.len() + known.size_hint().1.unwrap_or(0));
-    for pair in found {
+    for &pair in found {
         while let Some(other) = known.next_if(|other| *other < pair) {
             pairs.push(other);
         }
         pairs.push(pair);
     }
     pairs.extend(known);
-    pairs
 }
 
 /// Lists the spheres of clumps that are in pairs, near walls or at liquid bridges, and puts them in
 /// place.
-fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]]) {
+fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]], buffers: &mut NearBuffers) {
     if state.clumps.all.is_empty() {
         return;
     }
@@ -285,7 +321,7 @@ fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]]) {
         .chain(at_walls)
         .copied()
         .chain(at_bridges);
-    clumps::list_near(&mut state.clumps, &mut state.particles, near);
+    clumps::list_near(&mut state.clumps, &mut state.particles, near, buffers);
 }
 
 /// Lists what is near the walls that have moved too far since they were last listed.
@@ -296,6 +332,8 @@ fn list_near_moving_walls(state: &mut State) {
     };
     let is_due = |wall: &Wall| wall.skin_left_m < 2.0 * wall.moved_m;
     if state.walls.iter().any(is_due) {
+        let mut buffers = std::mem::take(&mut contacts.scratch.buffers);
+        everything(state, &mut buffers);
         let References {
             balls,
             clusters: known,
@@ -313,13 +351,23 @@ fn list_near_moving_walls(state: &mut State) {
         if !known.are_those_of(searched.clusters) {
             known.update(&searched);
         }
-        let small = of_small(known, &state.clumps, &everything(state));
+        let SearchBuffers {
+            due,
+            small,
+            reached,
+            ..
+        } = &mut buffers;
+        list_small(known, &state.clumps, due, small);
         for wall in state.walls.iter_mut().filter(|wall| is_due(wall)) {
             wall.skin_left_m = skin_m(wall, contacts.skin_m);
-            wall.near = reached(wall, known, &searched, &small);
-            wall.near.sort_unstable();
+            let mut near = std::mem::take(&mut wall.near);
+            near.clear();
+            add_reached(wall, known, &searched, small, reached, &mut near);
+            near.sort_unstable();
+            wall.near = near;
         }
-        list_near_spheres(state, &contacts.pairs);
+        list_near_spheres(state, &contacts.pairs, &mut buffers.near);
+        contacts.scratch.buffers = buffers;
         note_relisting(state);
     }
     state.contacts = Some(contacts);

@@ -9,21 +9,24 @@
 //! Two large clusters are searched only where their boxes overlap, body by body. Small clusters,
 //! and large ones where they may meet small ones, are put into grids.
 
-mod grid;
 mod meetings;
 
 use rayon::prelude::*;
 
-use self::grid::{Grids, Seeker};
-use self::meetings::Meetings;
-use super::chunks::CHUNK;
+use self::meetings::list_with_small;
+use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
 use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
 use crate::state::balls::{BLOCK, BOXES, Ball, BoxColumns, NOWHERE};
+use crate::state::grids::Seeker;
 use crate::state::groups::{KnownClusters, LargeCluster, Searched};
 use crate::state::particles::Pose;
 use crate::state::rigid_balls::Placement;
+use crate::state::search_buffers::{PairBuffers, PairTask};
+
+/// Largest number of tasks that large clusters are divided into.
+pub(super) const MOST_TASKS: usize = 256;
 
 /// Pairs of particles of different clusters whose surfaces are less than `skin_m` apart, the
 /// smaller index first, sorted. `clusters`: one for each particle.
@@ -50,24 +53,27 @@ pub(super) fn pairs_of_all(balls: &[Ball], clusters: &[u32]) -> Vec<[u32; 2]> {
     };
     let mut known = KnownClusters::default();
     known.update(&searched);
-    overlapping_pairs(&searched, &known)
+    let mut buffers = PairBuffers::default();
+    find_pairs(&searched, &known, &mut buffers);
+    buffers.found
 }
 
-/// Pairs of overlapping balls of different clusters, the smaller index first, sorted: those with at
-/// least one ball that seeks. `known`: of these balls.
-pub(crate) fn overlapping_pairs(searched: &Searched<'_>, known: &KnownClusters) -> Vec<[u32; 2]> {
+/// Finds the pairs of overlapping balls of different clusters, the smaller index first, sorted:
+/// those with at least one ball that seeks. `known`: of these balls.
+pub(crate) fn find_pairs(
+    searched: &Searched<'_>,
+    known: &KnownClusters,
+    buffers: &mut PairBuffers,
+) {
     let search = Search { searched, known };
-    let mut pairs = search.among_small();
-    let of_large: Vec<Vec<[u32; 2]>> = (0..known.large.len())
-        .into_par_iter()
-        .map(|n| search.of_large(n))
-        .collect();
-    pairs.extend(of_large.into_iter().flatten());
+    buffers.found.clear();
+    search.among_small(buffers);
+    search.among_large(buffers);
+    let pairs = &mut buffers.found;
     if !pairs.is_sorted() {
         // One number is compared faster than two.
         pairs.par_sort_unstable_by_key(|&[i, j]| u64::from(i) << 32 | u64::from(j));
     }
-    pairs
 }
 
 /// What is searched, and what is known of it.
@@ -113,36 +119,52 @@ impl<'a> Search<'a> {
         gathered
     }
 
-    /// Pairs of the large cluster of this place in the list with those that come after it.
-    fn of_large(&self, n: usize) -> Vec<[u32; 2]> {
-        let mut pairs = Vec::new();
-        with_most_lanes(LargeMeetings {
-            search: self,
-            of: n,
-            pairs: &mut pairs,
-            placed: [Vec::new(), Vec::new()],
+    /// Pairs of two large clusters.
+    fn among_large(&self, buffers: &mut PairBuffers) {
+        let count = self.known.large.len();
+        let each = count.div_ceil(MOST_TASKS).max(1);
+        let tasks = in_tasks(count.div_ceil(each), &mut buffers.of_tasks, |n, task| {
+            task.found.clear();
+            for of in nth_range(n, each, count) {
+                with_most_lanes(LargeMeetings {
+                    search: self,
+                    of,
+                    task,
+                });
+            }
         });
-        pairs
+        for task in tasks {
+            buffers.found.extend_from_slice(&task.found);
+        }
     }
 
     /// Pairs of which at least one is of a small cluster.
-    fn among_small(&self) -> Vec<[u32; 2]> {
+    fn among_small(&self, buffers: &mut PairBuffers) {
         let Searched {
             balls,
             clusters,
             seeks,
             ..
         } = *self.searched;
-        let active = Meetings::new(balls, self.known, seeks).with_small(balls);
+        list_with_small(balls, self.known, seeks, buffers);
+        let PairBuffers {
+            active,
+            grids,
+            of_tasks,
+            found: all,
+            ..
+        } = buffers;
         if active.len() < 2 {
-            return Vec::new();
+            return;
         }
-        let grids = Grids::new(clusters, &active);
+        grids.fill(clusters, active);
         let groups = &self.known.groups;
         let is_large = |i: u32| groups.is_large(clusters[i as usize]);
         let any_large = !self.known.large.is_empty();
-        let of_chunk = |some: &[(u32, Ball)]| {
-            let mut pairs = Vec::new();
+        let chunks = chunks_of(active.len());
+        let tasks = in_tasks(chunks.len(), of_tasks, |chunk, PairTask { found, .. }| {
+            found.clear();
+            let some = &active[chunk_of(chunk, active.len())];
             for &(i, ball) in some.iter().filter(|(i, _)| self.seeks(*i)) {
                 let seeker = Seeker {
                     particle: i,
@@ -150,18 +172,18 @@ impl<'a> Search<'a> {
                     ball,
                 };
                 match seeks {
-                    None => grids.add_pairs_of_all(&seeker, &mut pairs),
-                    Some(seeks) => grids.add_pairs(&seeker, |j| seeks[j as usize], &mut pairs),
+                    None => grids.add_pairs_of_all(&seeker, found),
+                    Some(seeks) => grids.add_pairs(&seeker, |j| seeks[j as usize], found),
                 }
             }
             if any_large {
-                pairs.retain(|&[a, b]| !(is_large(a) && is_large(b)));
+                found.retain(|&[a, b]| !(is_large(a) && is_large(b)));
             }
-            pairs.sort_unstable();
-            pairs
-        };
-        let chunks: Vec<Vec<[u32; 2]>> = active.par_chunks(CHUNK).map(of_chunk).collect();
-        chunks.concat()
+            found.sort_unstable();
+        });
+        for task in tasks {
+            all.extend_from_slice(&task.found);
+        }
     }
 }
 
@@ -169,9 +191,7 @@ impl<'a> Search<'a> {
 struct LargeMeetings<'a> {
     search: &'a Search<'a>,
     of: usize,
-    pairs: &'a mut Vec<[u32; 2]>,
-    /// Boxes of each of two clusters in the axes of the other.
-    placed: [Vec<BoxColumns>; 2],
+    task: &'a mut PairTask,
 }
 
 /// How the first of two clusters lies in the axes of the second.
@@ -225,7 +245,7 @@ impl LargeMeetings<'_> {
         if room == Bounds::EMPTY || !bounds_at(b, to_a.as_ref()).overlaps(&a.blocks.bounds) {
             return;
         }
-        let mut placed = std::mem::take(&mut self.placed);
+        let mut placed = std::mem::take(&mut self.task.placed);
         let [placed_a, placed_b] = &mut placed;
         let a_in_b = all_at::<T>(proof, &a.blocks.columns, to_b.as_ref(), placed_a);
         // What one of them has there narrows down where the other can meet it.
@@ -247,7 +267,7 @@ impl LargeMeetings<'_> {
                 }
             }
         }
-        self.placed = placed;
+        self.task.placed = placed;
     }
 
     /// Adds the pairs of a block of the first of two clusters with the second.
@@ -320,7 +340,7 @@ impl LargeMeetings<'_> {
             while bits != 0 {
                 let [i, j] = [of_a.numbers[n], numbers[next_of(&mut bits)]];
                 if self.search.seeks(i) || self.search.seeks(j) {
-                    self.pairs.push([i.min(j), i.max(j)]);
+                    self.task.found.push([i.min(j), i.max(j)]);
                 }
             }
         }

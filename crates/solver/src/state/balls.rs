@@ -62,16 +62,16 @@ impl Blocks {
         let boxes = self.boxes.iter();
         self.bounds = boxes.fold(Bounds::EMPTY, |all, one| all.with(one));
         self.columns.clear();
-        self.columns
-            .extend(self.boxes.chunks(BOXES).map(box_columns));
+        let columns = |some: &[Bounds]| box_columns(some.iter().copied());
+        self.columns.extend(self.boxes.chunks(BOXES).map(columns));
     }
 }
 
-/// Some boxes by columns, filled up with empty ones.
-pub(crate) fn box_columns(some: &[Bounds]) -> BoxColumns {
+/// At most [`BOXES`] boxes by columns, filled up with empty ones.
+pub(crate) fn box_columns(some: impl Iterator<Item = Bounds>) -> BoxColumns {
     let Bounds { low, high } = Bounds::EMPTY;
     let mut columns = [low[0], low[1], low[2], high[0], high[1], high[2]].map(|c| [c; BOXES]);
-    for (n, bounds) in some.iter().enumerate() {
+    for (n, bounds) in some.enumerate() {
         for k in 0..3 {
             columns[k][n] = bounds.low[k];
             columns[3 + k][n] = bounds.high[k];

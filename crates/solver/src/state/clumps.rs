@@ -281,14 +281,15 @@ impl Clumps {
     }
 
     /// Sets the spheres, in ascending order, that are near something, and the range of each clump.
-    pub(crate) fn set_near(&mut self, near: Vec<u32>) {
+    /// Returns those that were near before.
+    pub(crate) fn set_near(&mut self, near: Vec<u32>) -> Vec<u32> {
         for clump in &mut self.all {
             let Range { start, end } =
                 self.templates[clump.template as usize].spheres_from(clump.first);
             clump.near =
                 [start, end].map(|i| near.partition_point(|&sphere| (sphere as usize) < i) as u32);
         }
-        self.near = near;
+        std::mem::replace(&mut self.near, near)
     }
 
     /// Mass of all clumps, kg.

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::references::References;
+use super::search_buffers::SearchBuffers;
 use crate::physics::contact::law::ContactKind;
 
 /// Number of pairs that one task relists.
@@ -129,8 +130,12 @@ pub struct ContactScratch {
     /// Whether the contacts of a group of bodies are worked on, not those of all: see
     /// `levels::Group`.
     pub is_of_group: bool,
+    /// Pairs before the last search, kept for their memory only.
+    pub former_pairs: Vec<[u32; 2]>,
     /// Histories before the last search, kept for their memory only.
     pub former_histories: Vec<ContactHistory>,
+    /// Vectors of a search, kept for their memory only.
+    pub buffers: SearchBuffers,
     /// Division of the work.
     pub partitions: Vec<ContactPartition>,
     /// Requested number of partitions: few contacts need fewer.
@@ -164,7 +169,7 @@ pub(crate) struct Beside {
 
 /// Contacts that one thread works on at a time: those of its particles with others of a larger
 /// index, and copies of those with smaller ones.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ContactPartition {
     /// Its particles.
     pub particles: Range<usize>,
@@ -224,7 +229,7 @@ impl Contacts {
         let chunks = chunks.zip(pairs.par_chunks(RELISTED_AT_ONCE));
         chunks.for_each(relist_chunk);
         self.scratch.former_histories = std::mem::replace(&mut self.histories, histories);
-        self.pairs = pairs;
+        self.scratch.former_pairs = std::mem::replace(&mut self.pairs, pairs);
     }
 
     /// Requests a search for the neighbours of all particles before the next step.
@@ -243,53 +248,60 @@ impl Contacts {
     pub fn divide(&mut self, particles: usize, count: usize) {
         self.scratch.wanted_partitions = count;
         self.scratch.close_skin_left_m = 0.0;
-        let remembers = |history: &ContactHistory| *history != ContactHistory::default();
         let wanted = self.pairs.len().div_ceil(count).max(1);
-        let mut starts = vec![0];
-        for k in 1..count {
-            let first = (k * wanted).min(self.pairs.len());
-            let particle = self
-                .pairs
-                .get(first)
-                .map_or(particles, |&[a, _]| a as usize);
-            starts.push(particle);
+        let end_of = |k: usize| match self.pairs.get(k * wanted) {
+            Some(&[a, _]) if k < count => a as usize,
+            _ => particles,
+        };
+        let mut partitions = std::mem::take(&mut self.scratch.partitions);
+        let (mut divided, mut start) = (0, 0);
+        for end in (1..=count).map(end_of) {
+            if end == start {
+                continue;
+            }
+            if divided == partitions.len() {
+                partitions.push(ContactPartition::default());
+            }
+            partitions[divided].set(start..end, self);
+            (divided, start) = (divided + 1, end);
         }
-        starts.push(particles);
-        starts.dedup();
-        self.scratch.partitions = starts
-            .windows(2)
-            .map(|w| {
-                let first_of = |p: usize| self.pairs.partition_point(|&[a, _]| (a as usize) < p);
-                let own = first_of(w[0])..first_of(w[1]);
-                let was_close = self.histories[own.clone()].chunks(8).map(|eight| {
-                    (0..).zip(eight).fold(0, |bits, (lane, history)| {
-                        bits | u8::from(remembers(history)) << lane
-                    })
-                });
-                ContactPartition {
-                    particles: w[0]..w[1],
-                    was_close: was_close.collect(),
-                    own,
-                    border: Vec::new(),
-                    border_histories: Vec::new(),
-                    excessive_overlap: None,
-                    close: vec![Default::default(); self.model.kinds.len()],
-                    computed: 0,
-                    rolled: 0,
-                }
-            })
-            .collect();
-        for s in 0..self.scratch.partitions.len() {
-            for at in self.scratch.partitions[s].own.clone() {
+        partitions.truncate(divided);
+        for s in 0..divided {
+            for at in partitions[s].own.clone() {
                 let b = self.pairs[at][1] as usize;
-                if b >= self.scratch.partitions[s].particles.end {
-                    let of_b = self
-                        .scratch
-                        .partitions
-                        .partition_point(|partition| partition.particles.end <= b);
-                    self.scratch.partitions[of_b].border.push(at as u32);
+                if b >= partitions[s].particles.end {
+                    let of_b = partitions.partition_point(|other| other.particles.end <= b);
+                    partitions[of_b].border.push(at as u32);
                 }
             }
         }
+        self.scratch.partitions = partitions;
+    }
+}
+
+impl ContactPartition {
+    /// Gives it these particles and their contacts, without a border.
+    fn set(&mut self, particles: Range<usize>, contacts: &Contacts) {
+        let pairs = &contacts.pairs;
+        let first_of = |p: usize| pairs.partition_point(|&[a, _]| (a as usize) < p);
+        self.own = first_of(particles.start)..first_of(particles.end);
+        self.particles = particles;
+        self.border.clear();
+        self.border_histories.clear();
+        self.close
+            .resize_with(contacts.model.kinds.len(), Default::default);
+        self.close.iter_mut().flatten().for_each(Vec::clear);
+        let remembers = |history: &ContactHistory| *history != ContactHistory::default();
+        let of_eight = |eight: &[ContactHistory]| {
+            (0..).zip(eight).fold(0, |bits, (lane, history)| {
+                bits | u8::from(remembers(history)) << lane
+            })
+        };
+        let own = &contacts.histories[self.own.clone()];
+        self.was_close.clear();
+        self.was_close.extend(own.chunks(8).map(of_eight));
+        self.computed = 0;
+        self.rolled = 0;
+        self.excessive_overlap = None;
     }
 }

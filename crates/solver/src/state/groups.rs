@@ -81,12 +81,13 @@ impl KnownClusters {
                 large.find_boxes(members, searched);
             }
         });
-        self.large.sort_by(|a, b| {
+        self.large.sort_unstable_by(|a, b| {
             let low = |large: &LargeCluster| large.bounds.low[0];
             low(a).total_cmp(&low(b)).then(a.group.cmp(&b.group))
         });
-        let bounds: Vec<Bounds> = self.large.iter().map(|large| large.bounds).collect();
-        self.columns = bounds.chunks(BOXES).map(box_columns).collect();
+        let boxes = |some: &[LargeCluster]| box_columns(some.iter().map(|large| large.bounds));
+        self.columns.clear();
+        self.columns.extend(self.large.chunks(BOXES).map(boxes));
     }
 
     /// Whether these are the clusters of the particles, as known.

@@ -102,19 +102,19 @@ impl RigidBody {
         self.in_space(&self.balls.columns[block].map(|column| column[lane]))
     }
 
-    /// The places, in the order of its balls, of those nearer to a plane than `margin_m`, with the
-    /// allowance. The plane: a point, m, and its unit normal, in space.
-    pub(crate) fn near_plane(
+    /// Calls `found` with the place, in the order of its balls, of each that is nearer to a plane
+    /// than `margin_m`, with the allowance. The plane: a point, m, and its unit normal, in space.
+    pub(crate) fn each_near_plane(
         &self,
         [point, normal]: [Vector3<f64>; 2],
         margin_m: f64,
-    ) -> Vec<usize> {
+        mut found: impl FnMut(usize),
+    ) {
         // In its own axes only the distance from its centre along the normal matters.
         let level_m = (point - self.to_space.place_m).dot(&normal) + margin_m + self.allowance_m;
         let normal = self.to_space.turned.tr_mul(&normal);
         let lowest_m =
             |[x, y, z, radius_m]: Ball| normal.x * x + normal.y * y + normal.z * z - radius_m;
-        let mut near = Vec::new();
         for (block, &ball) in self.balls.blocks.around.iter().enumerate() {
             if lowest_m(ball) < level_m {
                 let columns = &self.balls.columns[block];
@@ -123,14 +123,10 @@ impl RigidBody {
                 });
                 let left = self.balls.count - block * BLOCK;
                 let places = (block * BLOCK..).zip(is_near).take(left);
-                near.extend(
-                    places
-                        .filter(|(_, is_near)| *is_near)
-                        .map(|(place, _)| place),
-                );
+                let near = places.filter(|(_, is_near)| *is_near);
+                near.for_each(|(place, _)| found(place));
             }
         }
-        near
     }
 
     /// A ball of its axes in space, with the allowance.

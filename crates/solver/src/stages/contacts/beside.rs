@@ -27,9 +27,9 @@ pub(in crate::stages) fn list_beside(
     let is_within =
         |[a, b]: [u32; 2]| clusters.of_particle[a as usize] == clusters.of_particle[b as usize];
     let all = (0..bonds.len()).filter(|&at| bonds.rules[bonds.rule_of(at)].contact_beside);
-    let some: Vec<usize> = all.filter(|&at| is_within(bonds.ends[at])).collect();
+    let some = all.filter(|&at| is_within(bonds.ends[at]));
     pairs.retain(|&pair| !is_within(pair));
-    pairs.extend(some.iter().map(|&at| bonds.ends[at]));
+    pairs.extend(some.clone().map(|at| bonds.ends[at]));
     pairs.sort_unstable();
     for at in some {
         let ends = bonds.ends[at];

@@ -15,6 +15,7 @@ use crate::state::groups::is_large;
 use crate::state::particles::{Particles, Pose};
 use crate::state::references::References;
 use crate::state::rigid_balls::ClumpReference;
+use crate::state::search_buffers::SearchBuffers;
 
 /// Number of steps that a particle may go on at its present speed until its next search.
 const STEPS: f64 = 30.0;
@@ -35,21 +36,6 @@ const STEPS_LEFT: f64 = 2.0;
 
 /// Clumps that a task gives new references.
 const CLUMPS_AT_ONCE: usize = 64;
-
-/// What is to be searched for.
-#[derive(Default)]
-pub(super) struct Due {
-    /// Free particles, ascending.
-    pub(super) particles: Vec<u32>,
-    /// Numbers of clumps, ascending.
-    pub(super) clumps: Vec<usize>,
-}
-
-impl Due {
-    pub(super) fn is_empty(&self) -> bool {
-        self.particles.is_empty() && self.clumps.is_empty()
-    }
-}
 
 /// Whether it is to be found out what is due. Otherwise nothing has used up its distance, and
 /// nothing is requested.
@@ -74,31 +60,35 @@ pub(super) fn use_up(chunks_moved_m: &[f64], clumps: &Clumps, references: &mut R
     }
 }
 
-/// Finds what is due. None: everything, as at the start.
-pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
-    let p = &state.particles;
-    if references.balls.len() != p.len() || references.clumps.len() != state.clumps.all.len() {
-        return None;
-    }
+/// Finds what is due, if anything is urgent.
+pub(super) fn find_due(
+    state: &State,
+    references: &mut References,
+    SearchBuffers { due, seeks, .. }: &mut SearchBuffers,
+) {
+    due.clear();
     if !is_urgent(state, references) {
-        return Some(Due::default());
+        return;
     }
+    let p = &state.particles;
     let step_s = state.cycle_s();
-    let (loose, carried): (Vec<u32>, Vec<u32>) =
-        references.due.iter().partition(|i| (**i as usize) < p.free);
-    let is_due = |i: &u32| {
-        let i = *i as usize;
+    let is_due = |i: usize| {
         let [left_m, allowance_m] = free_left_m(p, references, i);
         left_m < least_m(SOON * allowance_m, p.motions[i].speed_m_s() * step_s)
     };
-    let free = (0..p.free as u32).into_par_iter().with_min_len(CHUNK);
-    let mut particles: Vec<u32> = free.filter(is_due).collect();
-    particles.extend(loose);
-    particles.sort_unstable();
-    particles.dedup();
-    let carriers = carried.iter();
-    let carriers = carriers.filter_map(|&i| state.clumps.carrier_of(i as usize));
-    let mut clumps: Vec<usize> = carriers.collect();
+    seeks.clear();
+    seeks.resize(p.len(), false);
+    let free = seeks[..p.free].par_iter_mut().with_min_len(CHUNK);
+    free.enumerate().for_each(|(i, seeks)| *seeks = is_due(i));
+    for &i in &references.due {
+        match state.clumps.carrier_of(i as usize) {
+            Some(clump) => due.clumps.push(clump),
+            None => seeks[i as usize] = true,
+        }
+    }
+    let free = (0..).zip(&seeks[..p.free]);
+    due.particles
+        .extend(free.filter(|(_, seeks)| **seeks).map(|(i, _)| i));
     for (n, (clump, reference)) in (state.clumps.all.iter())
         .zip(&mut references.clumps)
         .enumerate()
@@ -108,12 +98,14 @@ pub(super) fn due(state: &State, references: &mut References) -> Option<Due> {
         let [now_m, soon_m] = [NOW, fraction].map(|part| part * reference.allowance_m);
         let soon_m = soon_m.min(steps * clump.moved_m).max(now_m);
         if reference.left_m < least_m(soon_m, clump.moved_m) {
-            clumps.push(n);
+            due.clumps.push(n);
         }
     }
-    clumps.sort_unstable();
-    clumps.dedup();
-    Some(Due { particles, clumps })
+    due.clumps.sort_unstable();
+    due.clumps.dedup();
+    for &at in &due.clumps {
+        seeks[state.clumps.spheres_of(&state.clumps.all[at])].fill(true);
+    }
 }
 
 /// Whether anything is due, among the chunks and clumps that have used up what was surely left.
@@ -162,9 +154,11 @@ fn least_m(enough_m: f64, moved_m: f64) -> f64 {
 /// Finds the distances left to the chunks, after a search.
 pub(super) fn find_left(particles: &Particles, references: &mut References) {
     let chunks = chunks_of(particles.free);
+    let mut chunks_left_m = std::mem::take(&mut references.chunks_left_m);
     let left = chunks.into_par_iter();
     let left = left.map(|chunk| chunk_left_m(particles, references, chunk));
-    references.chunks_left_m = left.collect();
+    left.collect_into_vec(&mut chunks_left_m);
+    references.chunks_left_m = chunks_left_m;
 }
 
 /// The least distance that the particles of a chunk may still move, m.
@@ -217,23 +211,11 @@ pub(super) fn refer_clumps(
         clusters: known,
         ..
     } = &mut contacts.scratch.references;
-    let mut left = &mut balls[state.particles.free..];
-    let mut work = Vec::with_capacity(some.len());
-    let mut some = some.iter().peekable();
-    for (at, (clump, reference)) in state.clumps.all.iter().zip(clumps).enumerate() {
-        let count = state.clumps.spheres_of(clump).len();
-        let (own, others) = std::mem::take(&mut left).split_at_mut(count);
-        left = others;
-        if some.next_if(|due| **due == at).is_some() {
-            work.push((clump, reference, own));
-        }
-    }
-    let work = work.into_par_iter().with_min_len(CLUMPS_AT_ONCE);
-    work.for_each(|(clump, reference, balls)| {
+    let refer = |clump: &Clump, reference: &mut ClumpReference, balls: &mut [Ball]| {
         let template = state.clumps.template(clump);
         let known_m = known.largest_m(clump.template as usize);
         let largest_m = known_m.unwrap_or_else(|| template.largest_m());
-        let moved_m = speed_m_s(clump, state.clumps.template(clump)) * state.cycle_s();
+        let moved_m = speed_m_s(clump, template) * state.cycle_s();
         let allowance_m = match allowances {
             None => 0.5 * skin_m,
             Some([least, _]) => {
@@ -250,7 +232,65 @@ pub(super) fn refer_clumps(
         if all_balls || !is_large(template.outer.len()) {
             put_balls(template, clump, allowance_m, balls);
         }
-    });
+    };
+    let clumps = ClumpsToRefer {
+        first: 0,
+        all: &state.clumps.all,
+        references: clumps,
+        balls: &mut balls[state.particles.free..],
+    };
+    clumps.refer(some, &refer);
+}
+
+/// Consecutive clumps that get new references.
+struct ClumpsToRefer<'a> {
+    /// Number of the first.
+    first: usize,
+    all: &'a [Clump],
+    references: &'a mut [ClumpReference],
+    /// Of their spheres, which follow one another.
+    balls: &'a mut [Ball],
+}
+
+impl ClumpsToRefer<'_> {
+    /// Calls `refer` with each of `some`, ascending, on as many threads as there are.
+    fn refer(
+        self,
+        some: &[usize],
+        refer: &(impl Fn(&Clump, &mut ClumpReference, &mut [Ball]) + Sync),
+    ) {
+        let (Some(first), Some(_)) = (self.all.first(), some.first()) else {
+            return;
+        };
+        let ball_of = |clump: &Clump| (clump.first - first.first) as usize;
+        if self.all.len() <= CLUMPS_AT_ONCE {
+            for &at in some {
+                let at = at - self.first;
+                let end = self.all.get(at + 1).map_or(self.balls.len(), ball_of);
+                let own = &mut self.balls[ball_of(&self.all[at])..end];
+                refer(&self.all[at], &mut self.references[at], own);
+            }
+            return;
+        }
+        let half = self.all.len() / 2;
+        let (all, other_all) = self.all.split_at(half);
+        let (references, other_references) = self.references.split_at_mut(half);
+        let (balls, other_balls) = self.balls.split_at_mut(ball_of(&other_all[0]));
+        let own = ClumpsToRefer {
+            first: self.first,
+            all,
+            references,
+            balls,
+        };
+        let other = ClumpsToRefer {
+            first: self.first + half,
+            all: other_all,
+            references: other_references,
+            balls: other_balls,
+        };
+        let (some, other_some) = some.split_at(some.partition_point(|&at| at < other.first));
+        rayon::join(|| own.refer(some, refer), || other.refer(other_some, refer));
+    }
 }
 
 /// Sets balls, one for each sphere of a clump.

@@ -1,22 +1,29 @@
 //! Grids of cells that hold balls: one for each level of size, so that a ball much larger than the
 //! others does not make the cells of the others larger.
 
+use super::balls::Ball;
 use crate::geometry::Bounds;
-use crate::state::balls::Ball;
 
 /// Balls of a level are at least half as large as the largest of it, except those of the last.
 const MOST_LEVELS: usize = 16;
 /// Largest number of cells per ball: a wide, empty scene gets larger cells.
 const CELLS_PER_BALL: usize = 4;
 
-/// Grids of all levels, the largest balls first.
-pub(super) struct Grids {
-    levels: Vec<Grid>,
+/// Grids of all levels, the largest balls first. They are filled again for each search, and keep
+/// their memory.
+#[derive(Debug, Clone, Default)]
+pub struct Grids {
+    levels: [Grid; MOST_LEVELS],
     largest_m: f64,
 }
 
 /// Grid of cells as wide as the largest ball of its level, and the balls in each.
+#[derive(Debug, Clone, Default)]
 struct Grid {
+    /// Places of its balls among those given.
+    members: Vec<u32>,
+    /// The cell of each.
+    cells: Vec<u32>,
     origin: [f64; 3],
     per_width: f64,
     counts: [usize; 3],
@@ -24,12 +31,12 @@ struct Grid {
     largest_m: f64,
     /// For each cell, the first of its balls in `standing`, followed by the total number.
     starts: Vec<u32>,
-    /// Sorted by cell.
+    /// The balls, sorted by cell.
     standing: Vec<Standing>,
 }
 
 /// Data of a ball in a cell: a copy, so that the balls of a cell are contiguous in memory.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Standing {
     ball: Ball,
     particle: u32,
@@ -38,26 +45,27 @@ struct Standing {
 
 /// A ball whose partners are sought.
 #[derive(Clone, Copy)]
-pub(super) struct Seeker {
-    pub(super) particle: u32,
-    pub(super) cluster: u32,
-    pub(super) ball: Ball,
+pub(crate) struct Seeker {
+    pub(crate) particle: u32,
+    pub(crate) cluster: u32,
+    pub(crate) ball: Ball,
 }
 
 impl Grids {
-    /// These balls, given with their numbers. Their radii are above 0.
-    pub(super) fn new(clusters: &[u32], active: &[(u32, Ball)]) -> Self {
-        let largest_m = active.iter().map(|(_, ball)| ball[3]).fold(0.0, f64::max);
-        let mut of_level = vec![Vec::new(); MOST_LEVELS];
-        for &(particle, ball) in active {
-            of_level[level_of(ball[3], largest_m)].push(Standing {
-                ball,
-                particle,
-                cluster: clusters[particle as usize],
-            });
+    /// Holds these balls, given with their numbers, in place of those before. Their radii are
+    /// above 0.
+    pub(crate) fn fill(&mut self, clusters: &[u32], active: &[(u32, Ball)]) {
+        self.largest_m = active.iter().map(|(_, ball)| ball[3]).fold(0.0, f64::max);
+        for level in &mut self.levels {
+            level.members.clear();
         }
-        let levels = of_level.iter().map(|members| Grid::new(members)).collect();
-        Self { levels, largest_m }
+        for (place, (_, ball)) in (0..).zip(active) {
+            let level = level_of(ball[3], self.largest_m);
+            self.levels[level].members.push(place);
+        }
+        for level in &mut self.levels {
+            level.fill(clusters, active);
+        }
     }
 
     /// Adds the pairs of a ball with the overlapping balls of other clusters, the smaller number
@@ -65,7 +73,7 @@ impl Grids {
     /// one of the level of smaller balls adds the pair, within a level the one with the smaller
     /// number.
     #[inline]
-    pub(super) fn add_pairs(
+    pub(crate) fn add_pairs(
         &self,
         seeker: &Seeker,
         seeks: impl Fn(u32) -> bool,
@@ -89,7 +97,7 @@ impl Grids {
 
     /// The pairs of a ball as by [`Self::add_pairs`] if all balls seek.
     #[inline]
-    pub(super) fn add_pairs_of_all(&self, seeker: &Seeker, pairs: &mut Vec<[u32; 2]>) {
+    pub(crate) fn add_pairs_of_all(&self, seeker: &Seeker, pairs: &mut Vec<[u32; 2]>) {
         let own = level_of(seeker.ball[3], self.largest_m);
         let i = seeker.particle;
         for grid in &self.levels[..own] {
@@ -109,56 +117,59 @@ fn level_of(radius_m: f64, largest_m: f64) -> usize {
 }
 
 impl Grid {
-    fn new(members: &[Standing]) -> Self {
-        let mut grid = Self {
-            origin: [0.0; 3],
-            per_width: 1.0,
-            counts: [0; 3],
-            largest_m: 0.0,
-            starts: vec![0],
-            standing: vec![Standing::default(); members.len()],
-        };
-        if members.is_empty() {
-            return grid;
+    /// Sorts its balls into cells.
+    fn fill(&mut self, clusters: &[u32], active: &[(u32, Ball)]) {
+        self.standing.clear();
+        if self.members.is_empty() {
+            return;
         }
-        let own = || members.iter().map(|standing| standing.ball);
+        self.choose_cells(active);
+        let mut cells = std::mem::take(&mut self.cells);
+        let cell_of = |&place: &u32| self.number(self.cell(active[place as usize].1)) as u32;
+        cells.clear();
+        cells.extend(self.members.iter().map(cell_of));
+        self.starts.clear();
+        self.starts
+            .resize(self.counts.iter().product::<usize>() + 1, 0);
+        // The end of each cell, from which its start is reached when its balls have been placed.
+        for &cell in &cells {
+            self.starts[cell as usize] += 1;
+        }
+        for cell in 1..self.starts.len() {
+            self.starts[cell] += self.starts[cell - 1];
+        }
+        self.standing
+            .resize(self.members.len(), Standing::default());
+        for (&cell, &given) in cells.iter().zip(&self.members).rev() {
+            let place = &mut self.starts[cell as usize];
+            *place -= 1;
+            let (particle, ball) = active[given as usize];
+            self.standing[*place as usize] = Standing {
+                ball,
+                particle,
+                cluster: clusters[particle as usize],
+            };
+        }
+        self.cells = cells;
+    }
+
+    /// Sets the width of its cells, and where they are.
+    fn choose_cells(&mut self, active: &[(u32, Ball)]) {
+        let own = || self.members.iter().map(|&place| active[place as usize].1);
         let bounds = Bounds::of(own().map(|[x, y, z, _]| [x, y, z]));
-        grid.largest_m = own().map(|ball| ball[3]).fold(0.0, f64::max);
-        let mut width = 2.0 * grid.largest_m;
+        self.largest_m = own().map(|ball| ball[3]).fold(0.0, f64::max);
+        let mut width = 2.0 * self.largest_m;
         let counts_of = |width: f64| {
             [0, 1, 2].map(|k| ((bounds.high[k] - bounds.low[k]) / width).min(1e6) as usize + 1)
         };
-        let room = CELLS_PER_BALL * members.len() + 64;
+        let room = CELLS_PER_BALL * self.members.len() + 64;
         let product = |counts: [usize; 3]| counts.iter().map(|&n| n as f64).product::<f64>();
         while product(counts_of(width)) > room as f64 {
             width *= 1.25;
         }
-        grid.origin = bounds.low;
-        grid.per_width = 1.0 / width;
-        grid.counts = counts_of(width);
-        grid.fill(members);
-        grid
-    }
-
-    fn fill(&mut self, members: &[Standing]) {
-        let cells: Vec<u32> = members
-            .iter()
-            .map(|standing| self.number(self.cell(standing.ball)) as u32)
-            .collect();
-        let mut starts = vec![0_u32; self.counts.iter().product::<usize>() + 1];
-        for &cell in &cells {
-            starts[cell as usize + 1] += 1;
-        }
-        for cell in 1..starts.len() {
-            starts[cell] += starts[cell - 1];
-        }
-        let mut next = starts.clone();
-        for (&cell, standing) in cells.iter().zip(members) {
-            let place = &mut next[cell as usize];
-            self.standing[*place as usize] = *standing;
-            *place += 1;
-        }
-        self.starts = starts;
+        self.origin = bounds.low;
+        self.per_width = 1.0 / width;
+        self.counts = counts_of(width);
     }
 
     fn cell(&self, ball: Ball) -> [usize; 3] {
