@@ -33,6 +33,8 @@ pub struct KnownClusters {
     of_particle: Vec<u32>,
     /// The particles of each cluster.
     pub(crate) groups: Groups,
+    /// Those before the clusters changed last.
+    former_groups: Groups,
     /// Boxes around the large ones, by the lower end of the box along x.
     pub(crate) large: Vec<LargeCluster>,
     /// These boxes by columns.
@@ -54,6 +56,8 @@ pub struct LargeCluster {
     pub(crate) rigid: Option<RigidBody>,
     /// Whether any of its balls seeks.
     pub(crate) seeks: bool,
+    /// Whether its boxes are yet to be found.
+    is_new: bool,
 }
 
 /// Whether a cluster of this number of particles is large. Balls of large clumps follow from their
@@ -63,22 +67,20 @@ pub(crate) fn is_large(spheres: usize) -> bool {
 }
 
 impl KnownClusters {
-    /// Updates the boxes of the clusters of which a ball seeks. Those of the others are those of
-    /// the last time.
+    /// Updates the boxes of the clusters that are new, or of which a ball seeks. Those of the others
+    /// are those of the last time.
     pub(crate) fn update(&mut self, searched: &Searched<'_>) {
-        let all_new = !self.are_those_of(searched.clusters);
-        if all_new {
-            self.of_particle = searched.clusters.to_vec();
-            self.groups = Groups::new(searched.clusters);
-            self.large = self.all_large(searched.clumps.map(|(clumps, _)| clumps));
+        if !self.are_those_of(searched.clusters) {
+            self.group_again(searched);
         }
         let groups = &self.groups;
         self.large.par_iter_mut().for_each(|large| {
             let members = groups.members(large.group);
             let seeks = |&i: &u32| searched.seeks.is_none_or(|seeks| seeks[i as usize]);
             large.seeks = members.iter().any(seeks);
-            if large.seeks || all_new {
+            if large.seeks || large.is_new {
                 large.find_boxes(members, searched);
+                large.is_new = false;
             }
         });
         self.large.sort_unstable_by(|a, b| {
@@ -90,31 +92,44 @@ impl KnownClusters {
         self.columns.extend(self.large.chunks(BOXES).map(boxes));
     }
 
+    /// Sorts the particles by their present clusters. Large clusters whose particles are the same
+    /// as before stay.
+    fn group_again(&mut self, searched: &Searched<'_>) {
+        self.of_particle.clear();
+        self.of_particle.extend_from_slice(searched.clusters);
+        std::mem::swap(&mut self.groups, &mut self.former_groups);
+        self.groups.set(searched.clusters);
+        let Self {
+            groups,
+            former_groups,
+            large,
+            templates,
+            ..
+        } = self;
+        let clumps = searched.clumps.map(|(clumps, _)| clumps);
+        let carrier_of = |group: u32| clumps?.carrier_of(*groups.members(group).first()? as usize);
+        large.retain(|large| {
+            let group = large.group;
+            let clump = large.rigid.as_ref().map(|body| body.clump);
+            groups.all().contains(&group)
+                && groups.members(group) == former_groups.members(group)
+                && carrier_of(group) == clump
+        });
+        large.sort_unstable_by_key(|large| large.group);
+        let known = large.len();
+        for group in groups.all().filter(|&group| groups.is_large(group)) {
+            let place = large[..known].binary_search_by_key(&group, |large| large.group);
+            if place.is_err() {
+                let rigid = clumps.zip(carrier_of(group));
+                let rigid = rigid.map(|(clumps, clump)| rigid_body(clumps, clump, templates));
+                large.push(LargeCluster::new(group, rigid));
+            }
+        }
+    }
+
     /// Whether these are the clusters of the particles, as known.
     pub(crate) fn are_those_of(&self, clusters: &[u32]) -> bool {
         self.of_particle == clusters
-    }
-
-    /// The large clusters, without boxes in space.
-    fn all_large(&mut self, clumps: Option<&Clumps>) -> Vec<LargeCluster> {
-        let Self {
-            groups, templates, ..
-        } = self;
-        let rigid = |group: u32| {
-            let clumps = clumps?;
-            let clump = clumps.carrier_of(groups.members(group)[0] as usize)?;
-            let number = clumps.all[clump].template as usize;
-            templates.resize(templates.len().max(number + 1), None);
-            let new = || Arc::new(RigidBalls::new(&clumps.templates[number]));
-            let balls = templates[number].get_or_insert_with(new);
-            Some(RigidBody::new(clump, Arc::clone(balls)))
-        };
-        let large = groups.all().filter(|&group| groups.is_large(group));
-        let numbers: Vec<u32> = large.collect();
-        let rigid: Vec<Option<RigidBody>> = numbers.iter().copied().map(rigid).collect();
-        let all = numbers.into_iter().zip(rigid);
-        all.map(|(group, rigid)| LargeCluster::new(group, rigid))
-            .collect()
     }
 
     /// What stays known when the particles get new numbers.
@@ -138,6 +153,19 @@ impl KnownClusters {
     }
 }
 
+/// A clump, with the balls of its template, which are found once.
+fn rigid_body(
+    clumps: &Clumps,
+    clump: usize,
+    templates: &mut Vec<Option<Arc<RigidBalls>>>,
+) -> RigidBody {
+    let number = clumps.all[clump].template as usize;
+    templates.resize(templates.len().max(number + 1), None);
+    let new = || Arc::new(RigidBalls::new(&clumps.templates[number]));
+    let balls = templates[number].get_or_insert_with(new);
+    RigidBody::new(clump, Arc::clone(balls))
+}
+
 impl LargeCluster {
     fn new(group: u32, rigid: Option<RigidBody>) -> Self {
         let blocks = rigid.as_ref().map(|body| Arc::clone(&body.balls.blocks));
@@ -147,6 +175,7 @@ impl LargeCluster {
             blocks: blocks.unwrap_or_default(),
             rigid,
             seeks: true,
+            is_new: true,
         }
     }
 
@@ -228,24 +257,26 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// `clusters`: one for each particle.
-    pub(crate) fn new(clusters: &[u32]) -> Self {
+    /// Sorts the particles anew. `clusters`: one for each particle.
+    fn set(&mut self, clusters: &[u32]) {
+        let Self { members, starts } = self;
         let count = clusters.iter().max().map_or(0, |&last| last as usize + 1);
-        let mut starts = vec![0_u32; count + 1];
+        starts.clear();
+        starts.resize(count + 1, 0);
         for &cluster in clusters {
-            starts[cluster as usize + 1] += 1;
+            starts[cluster as usize] += 1;
         }
-        for cluster in 0..count {
-            starts[cluster + 1] += starts[cluster];
+        // The end of each, from which its start is reached when its particles have been placed.
+        for cluster in 1..=count {
+            starts[cluster] += starts[cluster - 1];
         }
-        let mut next = starts.clone();
-        let mut members = vec![0; clusters.len()];
-        for (i, &cluster) in (0..).zip(clusters) {
-            let place = &mut next[cluster as usize];
-            members[*place as usize] = i;
-            *place += 1;
+        members.clear();
+        members.resize(clusters.len(), 0);
+        for i in (0..clusters.len()).rev() {
+            let place = &mut starts[clusters[i] as usize];
+            *place -= 1;
+            members[*place as usize] = i as u32;
         }
-        Self { members, starts }
     }
 
     /// All clusters, some of which may have no particle.
