@@ -143,9 +143,9 @@ fn list_in_groups(state: &mut State) {
     let count = state.particles.len();
     for group in &mut levels.scratch.groups {
         if let Some(contacts) = &mut state.contacts {
-            contacts.scratch.partitions = std::mem::take(&mut group.contacts);
+            std::mem::swap(&mut contacts.scratch.partitions, &mut group.contacts);
             contacts.divide(count, group.threads);
-            group.contacts = std::mem::take(&mut contacts.scratch.partitions);
+            std::mem::swap(&mut contacts.scratch.partitions, &mut group.contacts);
             group.close_skin_left_m = 0.0;
         }
         let is_own = |i: u32| !group.others[i as usize];

@@ -33,7 +33,10 @@ pub(super) const MOST_TASKS: usize = 256;
 pub fn near_pairs(poses: &[Pose], clusters: &[u32], skin_m: f64) -> Vec<[u32; 2]> {
     let balls = poses.iter().map(|pose| ball_of(pose, skin_m));
     let balls: Vec<Ball> = balls.collect();
-    pairs_of_all(&balls, clusters)
+    let mut buffers = PairBuffers::default();
+    let mut known = KnownClusters::default();
+    find_pairs_of_all(&balls, clusters, &mut known, &mut buffers);
+    buffers.found
 }
 
 /// A sphere with half of a skin, m.
@@ -42,20 +45,22 @@ pub(super) fn ball_of(pose: &Pose, skin_m: f64) -> Ball {
     [x, y, z, radius_m + 0.5 * skin_m]
 }
 
-/// Pairs of overlapping balls of different clusters, the smaller index first, sorted. `clusters`:
-/// one for each ball.
-pub(super) fn pairs_of_all(balls: &[Ball], clusters: &[u32]) -> Vec<[u32; 2]> {
+/// Finds the pairs of overlapping balls of different clusters, the smaller index first, sorted.
+/// `clusters`: one for each ball; `known`: kept for its memory.
+pub(super) fn find_pairs_of_all(
+    balls: &[Ball],
+    clusters: &[u32],
+    known: &mut KnownClusters,
+    buffers: &mut PairBuffers,
+) {
     let searched = Searched {
         balls,
         clusters,
         seeks: None,
         clumps: None,
     };
-    let mut known = KnownClusters::default();
     known.update(&searched);
-    let mut buffers = PairBuffers::default();
-    find_pairs(&searched, &known, &mut buffers);
-    buffers.found
+    find_pairs(&searched, known, buffers);
 }
 
 /// Finds the pairs of overlapping balls of different clusters, the smaller index first, sorted:

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use self::driven::{bar_velocity_m_s, weight_velocity_m_s};
 use self::meeting::Place;
-use super::chunks::{chunk_of, chunks_of};
+use super::chunks::{chunk_of, chunks_of, in_tasks};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::geometry::{Frame, Shape, Touch};
 use crate::physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
@@ -76,19 +76,41 @@ pub(super) const SAME_WAY: f64 = 0.9;
 const SERVO: f64 = 0.1;
 
 /// Lists the particles whose surface is less than `skin_m` from a wall, without sleeping ones.
-pub(crate) fn list_near(walls: &mut [Wall], particles: &Particles, skin_m: f64) {
+/// `of_tasks`: kept for their memory.
+pub(crate) fn list_near(
+    walls: &mut [Wall],
+    particles: &Particles,
+    skin_m: f64,
+    of_tasks: &mut Vec<Vec<u32>>,
+) {
     for wall in walls {
-        let near: Vec<u32> = {
-            let is_near = nearness(wall, skin_m);
-            let is_near =
-                |&i: &u32| !particles.sleeps(i as usize) && is_near(&particles.poses[i as usize]);
-            let chunks = chunks_of(particles.len()).into_par_iter();
-            let awake = chunks.filter(|&chunk| !particles.asleep.is_whole(chunk));
-            let awake = awake.flat_map_iter(|chunk| chunk_of(chunk, particles.len()));
-            let awake = awake.map(|i| i as u32);
-            awake.filter(is_near).collect()
-        };
+        let mut near = std::mem::take(&mut wall.near);
+        find_near(wall, particles, skin_m, of_tasks, &mut near);
         wall.near = near;
+    }
+}
+
+/// The same for one wall.
+fn find_near(
+    wall: &Wall,
+    particles: &Particles,
+    skin_m: f64,
+    of_tasks: &mut Vec<Vec<u32>>,
+    all_near: &mut Vec<u32>,
+) {
+    let is_near = nearness(wall, skin_m);
+    let is_near = |&i: &usize| !particles.sleeps(i) && is_near(&particles.poses[i]);
+    let count = chunks_of(particles.len()).len();
+    let of_chunks = in_tasks(count, of_tasks, |chunk, near| {
+        near.clear();
+        if !particles.asleep.is_whole(chunk) {
+            let some = chunk_of(chunk, particles.len());
+            near.extend(some.filter(is_near).map(|i| i as u32));
+        }
+    });
+    all_near.clear();
+    for near in of_chunks {
+        all_near.extend_from_slice(near);
     }
 }
 

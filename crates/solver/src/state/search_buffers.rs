@@ -2,6 +2,7 @@
 
 use super::balls::{Ball, BoxColumns};
 use super::grids::Grids;
+use crate::geometry::Bounds;
 
 /// What is to be searched for.
 #[derive(Debug, Clone, Default)]
@@ -38,6 +39,30 @@ pub struct SearchBuffers {
     pub(crate) pairs: PairBuffers,
     /// Of the list of spheres of clumps that are near something.
     pub(crate) near: NearBuffers,
+    /// Of a search where bodies may sleep.
+    pub(crate) awake: AwakeBuffers,
+}
+
+/// Vectors of a search among what is awake and what sleeps beside it.
+#[derive(Debug, Clone, Default)]
+pub struct AwakeBuffers {
+    /// Boxes around those that are awake: those that each task found, and all of them.
+    pub(crate) box_tasks: Vec<Vec<Bounds>>,
+    pub(crate) boxes: Vec<Bounds>,
+    /// The particles that may be in a pair: those that each task found, and all of them.
+    pub(crate) tasks: Vec<AwakeTask>,
+    pub(crate) particles: Vec<u32>,
+    /// The number of the cluster of each, and its ball.
+    pub(crate) clusters: Vec<u32>,
+    pub(crate) balls: Vec<Ball>,
+}
+
+/// Vectors of a task that looks for what may be in a pair with something awake.
+#[derive(Debug, Clone, Default)]
+pub struct AwakeTask {
+    /// Numbers of the boxes that reach to the sleepers of its chunk.
+    pub(crate) boxes: Vec<u32>,
+    pub(crate) particles: Vec<u32>,
 }
 
 /// Vectors that list which spheres of clumps are near something.

@@ -6,15 +6,17 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use crate::geometry::Bounds;
-use crate::stages::chunks::{chunk_of, chunks_of};
+use crate::stages::chunks::{chunk_of, chunks_of, in_tasks};
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{find_mean_radius, relist};
-use crate::stages::neighbours::{ball_of, pairs_of_all};
+use crate::stages::neighbours::{ball_of, find_pairs_of_all};
 use crate::stages::sleep::{disturbed, freeze_contacts, wake};
 use crate::stages::walls::list_near;
 use crate::state::State;
-use crate::state::balls::{Ball, around};
+use crate::state::balls::around;
+use crate::state::contacts::{ContactScratch, Contacts};
 use crate::state::particles::Particles;
+use crate::state::search_buffers::{AwakeBuffers, SearchBuffers};
 
 /// Consecutive particles that have a box around those that are awake.
 const PART: usize = 64;
@@ -43,33 +45,34 @@ pub(super) fn list_among_sleepers(state: &mut State) -> usize {
 /// may be in a pair.
 fn list_awake(state: &mut State) -> usize {
     let moved_m = state.fastest_m_s * state.time_step_s;
-    let (Some(contacts), Some(sleep)) = (&mut state.contacts, &mut state.sleep) else {
+    let (Some(mut contacts), Some(sleep)) = (state.contacts.take(), &mut state.sleep) else {
         return 0;
     };
     let p = &state.particles;
     // The skin covers at least two steps: see `refer_particle`.
     let skin_m = contacts.skin_m.max(4.0 * moved_m);
-    list_near(&mut state.walls, p, skin_m);
+    let of_tasks = &mut contacts.scratch.buffers.reached;
+    list_near(&mut state.walls, p, skin_m, of_tasks);
     contacts.skin_left_m = 0.5 * skin_m;
-    if contacts.model.alone {
-        return 0;
+    let mut searched = 0;
+    if !contacts.model.alone {
+        if sleep.boxes.is_empty() {
+            sleep.boxes = boxes_of_sleepers(p);
+        }
+        if contacts.scratch.mean_radius_m == 0.0 {
+            find_mean_radius(&mut contacts, p, 0);
+        }
+        let awake = &mut contacts.scratch.buffers.awake;
+        list_what_may_meet(p, &sleep.boxes, skin_m, awake);
+        searched = awake.particles.len();
+        let pairs = pairs_of_awake(state, &mut contacts, skin_m);
+        relist(&mut contacts, pairs, &state.particles);
+        if contacts.model.relaxes {
+            state.scratch.events.work.relaxing += contacts.relaxing();
+        }
     }
-    if sleep.boxes.is_empty() {
-        sleep.boxes = boxes_of_sleepers(p);
-    }
-    let some = may_meet(p, &sleep.boxes, skin_m);
-    if contacts.scratch.mean_radius_m == 0.0 {
-        find_mean_radius(contacts, p, 0);
-    }
-    let pairs = pairs_of(state, &some, skin_m);
-    let Some(contacts) = &mut state.contacts else {
-        return 0;
-    };
-    relist(contacts, pairs, &state.particles);
-    if contacts.model.relaxes {
-        state.scratch.events.work.relaxing += contacts.relaxing();
-    }
-    some.len()
+    state.contacts = Some(contacts);
+    searched
 }
 
 /// For each chunk of particles the box around those that sleep, m.
@@ -85,56 +88,92 @@ fn box_of(p: &Particles, some: impl Iterator<Item = usize>) -> Bounds {
     boxes.fold(Bounds::EMPTY, |all, one| all.with(&one))
 }
 
-/// The particles that may be in a pair, ascending: those that are awake, and those asleep beside
-/// them. `boxes`: around the sleepers of each chunk.
-fn may_meet(p: &Particles, boxes: &[Bounds], skin_m: f64) -> Vec<u32> {
-    let members = |chunk: usize| chunk_of(chunk, p.len());
-    let chunks = (0..boxes.len()).into_par_iter();
-    let any_awake = |chunk: &usize| !p.asleep.is_whole(*chunk);
+/// Lists the particles that may be in a pair, ascending: those that are awake, and those asleep
+/// beside them. `of_sleepers`: boxes around the sleepers of each chunk.
+fn list_what_may_meet(
+    p: &Particles,
+    of_sleepers: &[Bounds],
+    skin_m: f64,
+    buffers: &mut AwakeBuffers,
+) {
+    let any_awake = |chunk: usize| !p.asleep.is_whole(chunk);
     let box_of_awake = |some: Range<usize>| box_of(p, some.filter(|&i| !p.sleeps(i)));
-    let awake = chunks.clone().filter(any_awake).flat_map_iter(|chunk| {
-        let Range { start, end } = members(chunk);
-        let parts = (start..end).step_by(PART);
-        parts.map(move |first| box_of_awake(first..(first + PART).min(end)))
-    });
-    // A little more than the skin, for rounding.
-    let awake = awake.filter(|part| *part != Bounds::EMPTY);
-    let awake: Vec<Bounds> = awake.map(|part| part.grown(1.01 * skin_m)).collect();
-    let of_chunk = |chunk: usize| {
-        let mut near: Vec<&Bounds> = Vec::new();
-        if boxes[chunk] != Bounds::EMPTY {
-            let beside = awake.iter().filter(|part| part.overlaps(&boxes[chunk]));
-            near.extend(beside.take(MOST_PARTS + 1));
+    let boxes = in_tasks(of_sleepers.len(), &mut buffers.box_tasks, |chunk, found| {
+        found.clear();
+        if any_awake(chunk) {
+            let Range { start, end } = chunk_of(chunk, p.len());
+            let parts = (start..end).step_by(PART);
+            let parts = parts.map(|first| box_of_awake(first..(first + PART).min(end)));
+            let awake = parts.filter(|part| *part != Bounds::EMPTY);
+            // A little more than the skin, for rounding.
+            found.extend(awake.map(|part| part.grown(1.01 * skin_m)));
         }
-        let some = match any_awake(&chunk) || !near.is_empty() {
-            true => members(chunk),
-            false => 0..0,
-        };
-        let may = move |&i: &usize| {
-            let ball = around(&p.poses[i].position_m);
-            !p.sleeps(i) || near.len() > MOST_PARTS || near.iter().any(|part| part.overlaps(&ball))
-        };
-        some.filter(may).map(|i| i as u32)
-    };
-    chunks.flat_map_iter(of_chunk).collect()
+    });
+    buffers.boxes.clear();
+    boxes
+        .iter()
+        .for_each(|some| buffers.boxes.extend_from_slice(some));
+    let boxes = &buffers.boxes[..];
+    let tasks = in_tasks(of_sleepers.len(), &mut buffers.tasks, |chunk, task| {
+        let near = &mut task.boxes;
+        near.clear();
+        if of_sleepers[chunk] != Bounds::EMPTY {
+            let beside = (0..).zip(boxes);
+            let beside = beside.filter(|(_, part)| part.overlaps(&of_sleepers[chunk]));
+            near.extend(beside.map(|(n, _)| n).take(MOST_PARTS + 1));
+        }
+        task.particles.clear();
+        if any_awake(chunk) || !near.is_empty() {
+            let may = |&i: &usize| {
+                let ball = around(&p.poses[i].position_m);
+                let mut near_parts = near.iter().map(|&n| &boxes[n as usize]);
+                !p.sleeps(i)
+                    || near.len() > MOST_PARTS
+                    || near_parts.any(|part| part.overlaps(&ball))
+            };
+            let some = chunk_of(chunk, p.len());
+            task.particles.extend(some.filter(may).map(|i| i as u32));
+        }
+    });
+    buffers.particles.clear();
+    tasks
+        .iter()
+        .for_each(|task| buffers.particles.extend_from_slice(&task.particles));
 }
 
-/// Pairs among some particles, without those of two that sleep.
-fn pairs_of(state: &State, some: &[u32], skin_m: f64) -> Vec<[u32; 2]> {
+/// Pairs among the particles that may be in one, without those of two that sleep.
+fn pairs_of_awake(state: &State, contacts: &mut Contacts, skin_m: f64) -> Vec<[u32; 2]> {
     let p = &state.particles;
-    let Some(clusters) = &state.clusters else {
-        return Vec::new();
-    };
-    // All sleeping bodies count as one.
-    let none = clusters.history.len() as u32;
-    let cluster_of = |&i: &u32| match p.sleeps(i as usize) {
-        true => none,
-        false => clusters.of_particle[i as usize],
-    };
-    let numbers: Vec<u32> = some.iter().map(cluster_of).collect();
-    let balls = some.iter().map(|&i| ball_of(&p.poses[i as usize], skin_m));
-    let balls: Vec<Ball> = balls.collect();
-    let pairs = pairs_of_all(&balls, &numbers);
-    let to_all = |pair: [u32; 2]| pair.map(|i| some[i as usize]);
-    pairs.into_iter().map(to_all).collect()
+    let ContactScratch {
+        former_pairs,
+        references,
+        buffers: SearchBuffers { awake, pairs, .. },
+        ..
+    } = &mut contacts.scratch;
+    former_pairs.clear();
+    if let Some(clusters) = &state.clusters {
+        // All sleeping bodies count as one.
+        let none = clusters.history.len() as u32;
+        let cluster_of = |&i: &u32| match p.sleeps(i as usize) {
+            true => none,
+            false => clusters.of_particle[i as usize],
+        };
+        awake.clusters.clear();
+        awake
+            .clusters
+            .extend(awake.particles.iter().map(cluster_of));
+        awake.balls.clear();
+        let balls = awake.particles.iter();
+        let balls = balls.map(|&i| ball_of(&p.poses[i as usize], skin_m));
+        awake.balls.extend(balls);
+        find_pairs_of_all(
+            &awake.balls,
+            &awake.clusters,
+            &mut references.clusters,
+            pairs,
+        );
+        let to_all = |pair: &[u32; 2]| pair.map(|i| awake.particles[i as usize]);
+        former_pairs.extend(pairs.found.iter().map(to_all));
+    }
+    std::mem::take(former_pairs)
 }
