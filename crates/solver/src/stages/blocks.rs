@@ -56,6 +56,13 @@ impl BondGroup {
         self.wanted.start < first + T::COUNT && first < self.wanted.end
     }
 
+    /// A bit for each place, lowest first: whether its bond is wanted.
+    #[inline(always)]
+    fn wanted_bits(&self) -> u32 {
+        let below = |place: usize| (1_u32 << place) - 1;
+        below(self.wanted.end) & !below(self.wanted.start)
+    }
+
     /// Adds the wrenches of the bonds from `first` on, one for each lane, to those of their ends
     /// that are particles of a partition. `wrenches` are those of the partition. Torques act on
     /// both ends. The force acts on the second end; the first feels the opposite force.
@@ -70,20 +77,21 @@ impl BondGroup {
     ) {
         let force_on_b = rows(force_on_b);
         let (torque_on_a, torque_on_b) = (rows(torques[0]), rows(torques[1]));
+        let wanted = self.wanted_bits();
         for lane in 0..T::COUNT {
-            let [a, b] = self.ends[first + lane].map(|end| end as usize);
-            if !self.wanted.contains(&(first + lane)) {
+            if wanted >> (first + lane) & 1 == 0 {
                 continue;
             }
-            if particles.contains(&a) {
-                let a = &mut wrenches[a - particles.start];
+            // Those of other partitions have no place in `wrenches`: one comparison finds both.
+            let ends = self.ends[first + lane];
+            let [a, b] = ends.map(|end| (end as usize).wrapping_sub(particles.start));
+            if let Some(a) = wrenches.get_mut(a) {
                 for k in 0..4 {
                     a.force_n[k] -= force_on_b[lane][k];
                     a.torque_n_m[k] += torque_on_a[lane][k];
                 }
             }
-            if particles.contains(&b) {
-                let b = &mut wrenches[b - particles.start];
+            if let Some(b) = wrenches.get_mut(b) {
                 for k in 0..4 {
                     b.force_n[k] += force_on_b[lane][k];
                     b.torque_n_m[k] += torque_on_b[lane][k];
@@ -121,22 +129,29 @@ pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &
     })
 }
 
-/// Prefetches the cache line of a value that will be needed soon.
+/// Prefetches the cache line of one of many values that will be needed soon. There may be no such
+/// value: this is not checked, which would take longer than to fetch it.
+#[inline(always)]
+pub(super) fn fetch_soon_of<T>(all: &[T], i: usize) {
+    fetch(all.as_ptr().wrapping_add(i));
+}
+
+/// Prefetches a cache line.
 #[inline(always)]
 #[expect(
     unsafe_code,
     reason = "a hint that reads and writes nothing; the safe language has none"
 )]
-pub(super) fn fetch_soon<T>(value: &T) {
+fn fetch<T>(line: *const T) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch affects only the cache, whatever the address, and every x86-64 processor
     // has it.
     unsafe {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(value).cast());
+        _mm_prefetch::<_MM_HINT_T0>(line.cast());
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = value;
+    let _ = line;
 }
 
 /// Prefetch distance, in bonds.
@@ -146,17 +161,9 @@ const AHEAD: usize = 64;
 /// while first ends follow one another: they are to be prefetched.
 #[inline(always)]
 pub(super) fn coming_second_ends(bonds: &Bonds, block: usize) -> impl Iterator<Item = usize> {
-    let soon = block * BLOCK + AHEAD;
-    let coming = bonds.ends.get(soon..soon + BLOCK).unwrap_or_default();
-    coming.iter().map(|&[_, b]| b as usize)
-}
-
-/// Prefetches the wrench of a particle, if it is one of the partition.
-#[inline(always)]
-pub(super) fn fetch_wrench_soon(wrenches: &[Wrench], i: usize, particles: &Range<usize>) {
-    if let Some(wrench) = wrenches.get(i.wrapping_sub(particles.start)) {
-        fetch_soon(wrench);
-    }
+    let coming = bonds.ends.get(block * BLOCK + AHEAD..);
+    let coming: Option<&[[u32; 2]; BLOCK]> = coming.and_then(<[_]>::first_chunk);
+    coming.into_iter().flatten().map(|&[_, b]| b as usize)
 }
 
 /// Works on all partitions, on as many threads as there are. Each gets the wrenches of its own

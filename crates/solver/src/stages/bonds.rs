@@ -11,8 +11,7 @@ use crate::physics::bond::stiffness::Stiffness;
 use crate::physics::bond::total::{BondResponse, bond_response};
 use crate::physics::number::{Rotation, Vec3};
 use crate::stages::blocks::{
-    BondGroup, blocks_of, coming_second_ends, fetch_soon, fetch_wrench_soon, for_each_partition,
-    separations,
+    BondGroup, blocks_of, coming_second_ends, fetch_soon_of, for_each_partition, separations,
 };
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::state::State;
@@ -295,10 +294,10 @@ impl PartitionWork<'_> {
     /// Prefetches what the bonds that follow a block soon need.
     #[inline(always)]
     fn fetch_coming(&self, block: usize) {
-        let particles = &self.partition.particles;
+        let start = self.partition.particles.start;
         for b in coming_second_ends(self.bonds, block) {
-            fetch_soon(&self.poses[b]);
-            fetch_wrench_soon(self.wrenches, b, particles);
+            fetch_soon_of(self.poses, b);
+            fetch_soon_of(self.wrenches, b.wrapping_sub(start));
         }
     }
 
@@ -327,7 +326,7 @@ impl PartitionWork<'_> {
                 self.wrenches,
                 particles,
             );
-            if own {
+            if own && found.any_beyond || own && !self.bonds.strength_factors.is_empty() {
                 let beyond = &found.beyond[..T::COUNT];
                 list_failing(self.bonds, eight, numbers, first, beyond, failing);
             }
@@ -342,6 +341,8 @@ struct Found<T> {
     /// Square of the utilisation minus [`NEARLY`], times (pi r^3)^2; below 0 if the bond cannot
     /// break.
     beyond: [f64; MOST],
+    /// Whether any of these is not below 0.
+    any_beyond: bool,
 }
 
 /// Properties that the bonds of a rule share.
@@ -408,17 +409,20 @@ impl Kind {
         poses: &[Pose],
     ) -> Found<T> {
         let response = self.response(proof, eight, numbers, first, poses);
-        let mut beyond = [-1.0; MOST];
+        let (mut beyond, mut any_beyond) = ([-1.0; MOST], false);
         if let Some(screen) = &self.screen {
             let radius_m = T::load(proof, &numbers.radii_m, first);
             let [used, factor] =
                 screen.utilisation_and_factor::<T, FRICTIONAL>(&response.load, radius_m);
-            beyond = (used - factor.scale(NEARLY)).values();
+            let lanes = used - factor.scale(NEARLY);
+            any_beyond = lanes.zero().above(lanes) != 0xff >> (MOST - T::COUNT);
+            beyond = lanes.values();
         }
         Found {
             force_on_b: response.force_on_b,
             torques: response.torques,
             beyond,
+            any_beyond,
         }
     }
 }

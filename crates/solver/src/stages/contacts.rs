@@ -24,7 +24,7 @@ use crate::physics::contact::law::{ContactWork, Rolling};
 use crate::physics::contact::rolling::RollingFriction;
 use crate::physics::contact::{ContactSprings, Damped, NormalLaw};
 use crate::physics::number::Vec3;
-use crate::stages::blocks::{fetch_soon, rows, vectors};
+use crate::stages::blocks::{fetch_soon_of, rows, vectors};
 use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::neighbours::near_pairs;
 use crate::state::State;
@@ -388,12 +388,10 @@ impl PartitionWork<'_> {
             let soon = n * T::COUNT + SOON;
             for &at in close.get(soon..soon + T::COUNT).unwrap_or_default() {
                 let b = pairs[at as usize][1] as usize;
-                fetch_soon(&scene.poses[b]);
-                fetch_soon(&scene.motions[b]);
-                fetch_soon(&histories[at as usize - own.start]);
-                if let Some(wrench) = wrenches.get(b.wrapping_sub(particles.start)) {
-                    fetch_soon(wrench);
-                }
+                fetch_soon_of(scene.poses, b);
+                fetch_soon_of(scene.motions, b);
+                fetch_soon_of(histories, at as usize - own.start);
+                fetch_soon_of(wrenches, b.wrapping_sub(particles.start));
             }
             let (mut numbers, mut ends) = ([0; MOST], [[0; 2]; MOST]);
             for lane in 0..T::COUNT {

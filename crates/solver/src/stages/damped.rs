@@ -3,8 +3,8 @@
 use crate::physics::bond::damping::{DampingCoefficients, resistance};
 use crate::physics::number::Vec3;
 use crate::stages::blocks::{
-    BondGroup, blocks_of, coming_second_ends, fetch_soon, fetch_wrench_soon, for_each_partition,
-    separations, vectors,
+    BondGroup, blocks_of, coming_second_ends, fetch_soon_of, for_each_partition, separations,
+    vectors,
 };
 use crate::stages::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::state::bonds::{BLOCK, BondBlock, Bonds};
@@ -81,10 +81,11 @@ impl BatchWork<'_> {
     /// Prefetches what the bonds that follow a block soon need.
     #[inline(always)]
     fn fetch_coming(&self, block: usize) {
+        let start = self.partition.particles.start;
         for b in coming_second_ends(self.bonds, block) {
-            fetch_soon(&self.poses[b]);
-            fetch_soon(&self.motions[b]);
-            fetch_wrench_soon(self.damping, b, &self.partition.particles);
+            fetch_soon_of(self.poses, b);
+            fetch_soon_of(self.motions, b);
+            fetch_soon_of(self.damping, b.wrapping_sub(start));
         }
     }
 

@@ -6,7 +6,7 @@ use super::bonds::Kind;
 use super::chunks::{add, sums_of_chunks};
 use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::physics::bond::total::BondEnergy;
-use crate::stages::blocks::{BondGroup, blocks_of, coming_second_ends, fetch_soon};
+use crate::stages::blocks::{BondGroup, blocks_of, coming_second_ends, fetch_soon_of};
 use crate::state::State;
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::Pose;
@@ -63,7 +63,7 @@ impl LaneWork for Energies<'_> {
         let (bonds, poses) = (self.bonds, self.poses);
         for block in blocks_of(&self.range) {
             for b in coming_second_ends(bonds, block) {
-                fetch_soon(&poses[b]);
+                fetch_soon_of(poses, b);
             }
             let eight = BondGroup::of_block(bonds, block, &self.range);
             let numbers = &bonds.blocks[block];

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::bonds::Kind;
 use super::lanes::{LaneWork, Lanes, with_most_lanes};
-use crate::stages::blocks::{BondGroup, blocks_of, coming_second_ends, fetch_soon};
+use crate::stages::blocks::{BondGroup, blocks_of, coming_second_ends, fetch_soon_of};
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::Pose;
 
@@ -44,7 +44,7 @@ impl LaneWork for Squares<'_> {
         };
         for block in blocks_of(&self.range) {
             for b in coming_second_ends(self.bonds, block) {
-                fetch_soon(&self.poses[b]);
+                fetch_soon_of(self.poses, b);
             }
             let eight = BondGroup::of_block(self.bonds, block, &self.range);
             let numbers = &self.bonds.blocks[block];

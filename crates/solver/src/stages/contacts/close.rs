@@ -2,7 +2,7 @@
 
 use super::input::StepInput;
 use crate::physics::number::Vec3;
-use crate::stages::blocks::fetch_soon;
+use crate::stages::blocks::fetch_soon_of;
 use crate::stages::lanes::{Lanes, MOST};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::Pose;
@@ -73,7 +73,7 @@ fn find_own<T: Lanes>(proof: T::Proof, partition: &mut ContactPartition, scene: 
             .get(first + AHEAD..first + AHEAD + MOST)
             .unwrap_or_default()
         {
-            fetch_soon(&poses[soon as usize]);
+            fetch_soon_of(poses, soon as usize);
         }
         let eight = &pairs[first..(first + MOST).min(own.end)];
         let stepped = scene.stepped(eight);
