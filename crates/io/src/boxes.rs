@@ -88,20 +88,36 @@ impl Tree {
     /// Calls `found` with the place in [`Self::order`] of every box in a leaf for which `meets` is
     /// true, rising.
     pub fn visit_leaves(&self, meets: impl Fn(&Bounds) -> bool, mut found: impl FnMut(u32)) {
-        self.visit_node(0, &meets, &mut found);
+        self.any_leaf(meets, |place| {
+            found(place);
+            false
+        });
     }
 
-    fn visit_node(&self, at: u32, meets: &impl Fn(&Bounds) -> bool, found: &mut impl FnMut(u32)) {
+    /// Whether `wanted` is true of the place of any box in a leaf for which `meets` is true. They
+    /// are asked in rising order, up to the first.
+    pub fn any_leaf(
+        &self,
+        meets: impl Fn(&Bounds) -> bool,
+        mut wanted: impl FnMut(u32) -> bool,
+    ) -> bool {
+        self.any_below(0, &meets, &mut wanted)
+    }
+
+    fn any_below(
+        &self,
+        at: u32,
+        meets: &impl Fn(&Bounds) -> bool,
+        wanted: &mut impl FnMut(u32) -> bool,
+    ) -> bool {
         let node = self.nodes.get(at as usize);
         let Some(node) = node.filter(|node| meets(&node.bounds)) else {
-            return;
+            return false;
         };
         if node.count > 0 {
-            (node.at..node.at + node.count).for_each(found);
-        } else {
-            self.visit_node(at + 1, meets, found);
-            self.visit_node(node.at, meets, found);
+            return (node.at..node.at + node.count).any(wanted);
         }
+        self.any_below(at + 1, meets, wanted) || self.any_below(node.at, meets, wanted)
     }
 
     /// Calls `found` with each pair of boxes that are no farther apart than `gap` along any axis,

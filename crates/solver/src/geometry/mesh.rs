@@ -16,8 +16,6 @@ mod features;
 mod inside;
 mod triangle;
 
-use std::cell::Cell;
-
 use dem_io::boxes::Tree;
 use dem_io::surface::OpenSurface;
 use dem_io::{Diagnostic, Result};
@@ -213,13 +211,10 @@ impl Mesh {
 
     /// Whether any triangle is nearer to `centre` than `reach_m`.
     pub(super) fn is_within(&self, centre: [f64; 3], reach_m: f64) -> bool {
-        let found = Cell::new(false);
         let c = Vector3::from(centre);
-        let is_near = |bounds: &Bounds| !found.get() && bounds.is_near(&centre, reach_m);
-        self.tree.visit_leaves(is_near, |t| {
-            found.set(found.get() || self.nearest(t, &c).distance_m < reach_m);
-        });
-        found.get()
+        let is_near = |bounds: &Bounds| bounds.is_near(&centre, reach_m);
+        let is_within = |t| self.nearest(t, &c).distance_m < reach_m;
+        self.tree.any_leaf(is_near, is_within)
     }
 
     /// Sets the feature of a touch. Within a flat part its point is the foot on the plane,

@@ -64,8 +64,9 @@ impl BondGroup {
     }
 
     /// Adds the wrenches of the bonds from `first` on, one for each lane, to those of their ends
-    /// that are particles of a partition. `wrenches` are those of the partition. Torques act on
-    /// both ends. The force acts on the second end; the first feels the opposite force.
+    /// that are particles of a partition. `wrenches` are those of the partition, whose first
+    /// particle is `start`. Torques act on both ends. The force acts on the second end; the first
+    /// feels the opposite force.
     #[inline(always)]
     pub(super) fn add<T: Lanes>(
         &self,
@@ -73,7 +74,7 @@ impl BondGroup {
         force_on_b: Vec3<T>,
         torques: [Vec3<T>; 2],
         wrenches: &mut [Wrench],
-        particles: &Range<usize>,
+        start: usize,
     ) {
         let force_on_b = rows(force_on_b);
         let (torque_on_a, torque_on_b) = (rows(torques[0]), rows(torques[1]));
@@ -82,9 +83,8 @@ impl BondGroup {
             if wanted >> (first + lane) & 1 == 0 {
                 continue;
             }
-            // Those of other partitions have no place in `wrenches`: one comparison finds both.
-            let ends = self.ends[first + lane];
-            let [a, b] = ends.map(|end| (end as usize).wrapping_sub(particles.start));
+            // An end in another partition has no place in `wrenches`.
+            let [a, b] = self.ends[first + lane].map(|end| (end as usize).wrapping_sub(start));
             if let Some(a) = wrenches.get_mut(a) {
                 for k in 0..4 {
                     a.force_n[k] -= force_on_b[lane][k];
@@ -129,8 +129,9 @@ pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &
     })
 }
 
-/// Prefetches the cache line of one of many values that will be needed soon. There may be no such
-/// value: this is not checked, which would take longer than to fetch it.
+/// Prefetches the cache line of one of many values that will be needed soon. Whether there is such
+/// a value is not checked, which would take longer: a particle of another partition has its wrench
+/// fetched too.
 #[inline(always)]
 pub(super) fn fetch_soon_of<T>(all: &[T], i: usize) {
     fetch(all.as_ptr().wrapping_add(i));

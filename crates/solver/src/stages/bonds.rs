@@ -324,9 +324,9 @@ impl PartitionWork<'_> {
                 found.force_on_b,
                 found.torques,
                 self.wrenches,
-                particles,
+                particles.start,
             );
-            if own && found.any_beyond || own && !self.bonds.strength_factors.is_empty() {
+            if own && (found.any_beyond || !self.bonds.strength_factors.is_empty()) {
                 let beyond = &found.beyond[..T::COUNT];
                 list_failing(self.bonds, eight, numbers, first, beyond, failing);
             }
@@ -414,9 +414,9 @@ impl Kind {
             let radius_m = T::load(proof, &numbers.radii_m, first);
             let [used, factor] =
                 screen.utilisation_and_factor::<T, FRICTIONAL>(&response.load, radius_m);
-            let lanes = used - factor.scale(NEARLY);
-            any_beyond = lanes.zero().above(lanes) != 0xff >> (MOST - T::COUNT);
-            beyond = lanes.values();
+            let excess = used - factor.scale(NEARLY);
+            any_beyond = excess.zero().above(excess) != 0xff >> (MOST - T::COUNT);
+            beyond = excess.values();
         }
         Found {
             force_on_b: response.force_on_b,

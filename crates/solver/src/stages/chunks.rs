@@ -22,8 +22,8 @@ pub(crate) fn nth_range(n: usize, each: usize, count: usize) -> Range<usize> {
     n * each..((n + 1) * each).min(count)
 }
 
-/// Does `count` tasks, each with a buffer of its own, and returns these. `buffers` are kept for
-/// their memory.
+/// Does `count` tasks, each with a buffer of its own, and returns those buffers. They are kept for
+/// their memory: each still holds what an earlier task left in it, which `work` is to clear.
 pub(crate) fn in_tasks<T: Default + Send>(
     count: usize,
     buffers: &mut Vec<T>,

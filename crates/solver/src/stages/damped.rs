@@ -124,8 +124,8 @@ impl BatchWork<'_> {
                 T::load(proof, &numbers.levers_m[1], first),
             ];
             let (force_on_b, torques) = resistance(&coefficients, levers_m, apart, moving);
-            let particles = &self.partition.particles;
-            eight.add(first, force_on_b, torques, self.damping, particles);
+            let start = self.partition.particles.start;
+            eight.add(first, force_on_b, torques, self.damping, start);
         }
     }
 }

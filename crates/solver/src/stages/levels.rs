@@ -143,6 +143,7 @@ fn list_in_groups(state: &mut State) {
     let count = state.particles.len();
     for group in &mut levels.scratch.groups {
         if let Some(contacts) = &mut state.contacts {
+            // The division of all contacts stays, for its memory.
             std::mem::swap(&mut contacts.scratch.partitions, &mut group.contacts);
             contacts.divide(count, group.threads);
             std::mem::swap(&mut contacts.scratch.partitions, &mut group.contacts);

@@ -45,7 +45,9 @@ pub(crate) const SEARCH: Stage = Stage {
     bytes: |state| {
         let contacts = state.contacts.as_ref();
         let of_contacts = contacts.map_or(0, |c| {
-            size_of_val(&c.pairs[..]) + size_of_val(&c.lost_j[..]) + c.materials.len()
+            let lists = size_of_val(&c.pairs[..]) + size_of_val(&c.scratch.former_pairs[..]);
+            let kept = c.scratch.buffers.bytes();
+            lists + kept + size_of_val(&c.lost_j[..]) + c.materials.len()
         });
         of_contacts + clusters_bytes(state, ClusterUser::Contacts)
     },
@@ -112,11 +114,13 @@ fn search_for_moved(state: &mut State) -> usize {
     if may_be_due(state, &contacts) {
         contacts.skin_left_m = 0.0;
         let mut buffers = std::mem::take(&mut contacts.scratch.buffers);
-        if !knows_all(state, &contacts.scratch.references) {
-            begin_anew(state, &mut contacts);
-            everything(state, &mut buffers);
-        } else {
+        if knows_all(state, &contacts.scratch.references) {
             find_due(state, &mut contacts.scratch.references, &mut buffers);
+        } else {
+            begin_anew(state, &mut contacts);
+            everything(state, &mut buffers.due);
+            buffers.seeks.clear();
+            buffers.seeks.resize(state.particles.len(), true);
         }
         if !buffers.due.is_empty() {
             searched = search_for(state, &mut contacts, &mut buffers);
@@ -140,19 +144,18 @@ fn begin_anew(state: &mut State, contacts: &mut Contacts) {
     let references = &mut contacts.scratch.references;
     references.balls = vec![[0.0; 4]; state.particles.len()];
     references.clumps = vec![ClumpReference::default(); state.clumps.all.len()];
+    references.chunks_left_m.clear();
     references.clusters = KnownClusters::default();
     for wall in &mut state.walls {
         wall.skin_left_m = skin_m(wall, contacts.skin_m);
     }
 }
 
-/// Everything is due.
-fn everything(state: &State, SearchBuffers { due, seeks, .. }: &mut SearchBuffers) {
+/// Lists everything as due.
+fn everything(state: &State, due: &mut Due) {
     due.clear();
     due.particles.extend(0..state.particles.free as u32);
     due.clumps.extend(0..state.clumps.all.len());
-    seeks.clear();
-    seeks.resize(state.particles.len(), true);
 }
 
 /// Searches for the neighbours of what is due: moves its balls, and lists the pairs and walls that
@@ -183,7 +186,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
         clumps: Some((&state.clumps, references)),
     };
     known.update(&searched);
-    list_small(known, &state.clumps, due, &mut buffers.small);
+    list_loose(known, &state.clumps, due, &mut buffers.loose);
     for wall in &mut state.walls {
         let mut near = std::mem::take(&mut wall.near);
         near.retain(|&i| !seeks[i as usize]);
@@ -191,7 +194,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
             wall,
             known,
             &searched,
-            &buffers.small,
+            &buffers.loose,
             &mut buffers.reached,
             &mut near,
         );
@@ -226,24 +229,24 @@ fn note_relisting(state: &mut State) {
 }
 
 /// Lists what is due and is in no large cluster.
-fn list_small(known: &KnownClusters, clumps: &Clumps, due: &Due, small: &mut Vec<u32>) {
+fn list_loose(known: &KnownClusters, clumps: &Clumps, due: &Due, loose: &mut Vec<u32>) {
     let free = due.particles.iter().copied();
     let clumps_due = due.clumps.iter().map(|&at| &clumps.all[at]);
     let spheres = clumps_due.filter(|clump| !known.is_in_large(clump.first));
     let spheres = spheres.flat_map(|clump| clumps.spheres_of(clump));
     let free = free.filter(|&i| !known.is_in_large(i));
-    small.clear();
-    small.extend(free.chain(spheres.map(|i| i as u32)));
+    loose.clear();
+    loose.extend(free.chain(spheres.map(|i| i as u32)));
 }
 
 /// Adds the particles that a wall reaches before its skin is used up, of those that seek: of small
-/// clusters `small`, and of large ones those of blocks that it may reach. `of_tasks`: kept for
+/// clusters `loose`, and of large ones those of blocks that it may reach. `of_tasks`: kept for
 /// their memory.
 fn add_reached(
     wall: &Wall,
     known: &KnownClusters,
     searched: &Searched<'_>,
-    small: &[u32],
+    loose: &[u32],
     of_tasks: &mut Vec<Vec<u32>>,
     reached: &mut Vec<u32>,
 ) {
@@ -269,13 +272,13 @@ fn add_reached(
             }
         }
     };
-    let chunks = chunks_of(small.len());
+    let chunks = chunks_of(loose.len());
     let each = known.large.len().div_ceil(MOST_TASKS).max(1);
     let count = chunks.len() + known.large.len().div_ceil(each);
     let tasks = in_tasks(count, of_tasks, |task, found| {
         found.clear();
         if chunks.contains(&task) {
-            let some = small[chunk_of(task, small.len())].iter().copied();
+            let some = loose[chunk_of(task, loose.len())].iter().copied();
             found.extend(some.filter(|&i| is_reached(searched.balls[i as usize])));
         } else {
             let some = nth_range(task - chunks.len(), each, known.large.len());
@@ -333,7 +336,7 @@ fn list_near_moving_walls(state: &mut State) {
     let is_due = |wall: &Wall| wall.skin_left_m < 2.0 * wall.moved_m;
     if state.walls.iter().any(is_due) {
         let mut buffers = std::mem::take(&mut contacts.scratch.buffers);
-        everything(state, &mut buffers);
+        everything(state, &mut buffers.due);
         let References {
             balls,
             clusters: known,
@@ -353,16 +356,16 @@ fn list_near_moving_walls(state: &mut State) {
         }
         let SearchBuffers {
             due,
-            small,
+            loose,
             reached,
             ..
         } = &mut buffers;
-        list_small(known, &state.clumps, due, small);
+        list_loose(known, &state.clumps, due, loose);
         for wall in state.walls.iter_mut().filter(|wall| is_due(wall)) {
             wall.skin_left_m = skin_m(wall, contacts.skin_m);
             let mut near = std::mem::take(&mut wall.near);
             near.clear();
-            add_reached(wall, known, &searched, small, reached, &mut near);
+            add_reached(wall, known, &searched, loose, reached, &mut near);
             near.sort_unstable();
             wall.near = near;
         }

@@ -441,19 +441,20 @@ pub(crate) fn freeze_contacts(state: &mut State) {
         }
     }
     for (n, wall) in state.walls.iter_mut().enumerate() {
-        let all = std::mem::take(&mut wall.touching);
-        let (asleep, awake): (Vec<_>, Vec<_>) = all
-            .into_iter()
-            .partition(|touch| p.sleeps(touch.particle as usize));
-        wall.touching = awake;
-        sleep
-            .touches
-            .extend(asleep.into_iter().map(|touch| FrozenWallContact {
-                wall: n,
-                touch,
-                push: push_at_rest(wall, contacts, p, &touch),
-                elastic_j: touch_energy_j(wall, contacts, p, &touch),
-            }));
+        let mut touching = std::mem::take(&mut wall.touching);
+        touching.retain(|touch| {
+            let sleeps = p.sleeps(touch.particle as usize);
+            if sleeps {
+                sleep.touches.push(FrozenWallContact {
+                    wall: n,
+                    touch: *touch,
+                    push: push_at_rest(wall, contacts, p, touch),
+                    elastic_j: touch_energy_j(wall, contacts, p, touch),
+                });
+            }
+            !sleeps
+        });
+        wall.touching = touching;
     }
     if sleep.pairs.len() + sleep.touches.len() > known || state.bridges.is_some() {
         sleep.pairs.sort_by_key(|kept| kept.pair);

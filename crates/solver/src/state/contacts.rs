@@ -131,11 +131,11 @@ pub struct ContactScratch {
     /// `levels::Group`.
     pub is_of_group: bool,
     /// Pairs before the last search, kept for their memory only.
-    pub former_pairs: Vec<[u32; 2]>,
+    pub(crate) former_pairs: Vec<[u32; 2]>,
     /// Histories before the last search, kept for their memory only.
     pub former_histories: Vec<ContactHistory>,
     /// Vectors of a search, kept for their memory only.
-    pub buffers: SearchBuffers,
+    pub(crate) buffers: SearchBuffers,
     /// Division of the work.
     pub partitions: Vec<ContactPartition>,
     /// Requested number of partitions: few contacts need fewer.
@@ -249,9 +249,9 @@ impl Contacts {
         self.scratch.wanted_partitions = count;
         self.scratch.close_skin_left_m = 0.0;
         let wanted = self.pairs.len().div_ceil(count).max(1);
-        let end_of = |k: usize| match self.pairs.get(k * wanted) {
-            Some(&[a, _]) if k < count => a as usize,
-            _ => particles,
+        let end_of = |k: usize| {
+            let next = self.pairs.get(k * wanted);
+            next.map_or(particles, |&[a, _]| a as usize)
         };
         let mut partitions = std::mem::take(&mut self.scratch.partitions);
         let (mut divided, mut start) = (0, 0);

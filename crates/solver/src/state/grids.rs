@@ -12,7 +12,7 @@ const CELLS_PER_BALL: usize = 4;
 /// Grids of all levels, the largest balls first. They are filled again for each search, and keep
 /// their memory.
 #[derive(Debug, Clone, Default)]
-pub struct Grids {
+pub(crate) struct Grids {
     levels: [Grid; MOST_LEVELS],
     largest_m: f64,
 }
@@ -66,6 +66,15 @@ impl Grids {
         for level in &mut self.levels {
             level.fill(clusters, active);
         }
+    }
+
+    /// Size of the vectors, bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        let of_level = |level: &Grid| {
+            let of_balls = size_of_val(&level.members[..]) + size_of_val(&level.standing[..]);
+            of_balls + size_of_val(&level.cells[..]) + size_of_val(&level.starts[..])
+        };
+        self.levels.iter().map(of_level).sum()
     }
 
     /// Adds the pairs of a ball with the overlapping balls of other clusters, the smaller number

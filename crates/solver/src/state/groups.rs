@@ -294,3 +294,57 @@ impl Groups {
         is_large(self.members(cluster).len())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Boxes around the large clusters, by their numbers.
+    fn boxes(known: &KnownClusters) -> Vec<(u32, Bounds, Vec<Bounds>)> {
+        let of = |large: &LargeCluster| (large.group, large.bounds, large.blocks.boxes.clone());
+        let mut all: Vec<_> = known.large.iter().map(of).collect();
+        all.sort_by_key(|(group, ..)| *group);
+        all
+    }
+
+    #[test]
+    fn when_a_cluster_breaks_the_others_keep_their_boxes() {
+        // Two rows of 40 balls, of which the first has moved and broken in two.
+        let place =
+            |n: usize, shift: f64| [n as f64 + shift, if n < 40 { 0.0 } else { 9.0 }, 0.0, 1.0];
+        let before: Vec<Ball> = (0..80).map(|n| place(n, 0.0)).collect();
+        let clusters: Vec<u32> = (0..80).map(|n| n / 40).collect();
+        let after: Vec<Ball> = (0..80)
+            .map(|n| place(n, if n < 40 { 0.5 } else { 0.0 }))
+            .collect();
+        let broken: Vec<u32> = (0..80).map(|n| if n < 20 { 2 } else { n / 40 }).collect();
+        let seeks: Vec<bool> = (0..80).map(|n| n < 40).collect();
+        let searched = Searched {
+            balls: &before,
+            clusters: &clusters,
+            seeks: None,
+            clumps: None,
+        };
+        let mut known = KnownClusters::default();
+        known.update(&searched);
+        let blocks_of = |known: &KnownClusters, group: u32| {
+            let large = known.large.iter().find(|large| large.group == group);
+            Arc::clone(&large.unwrap().blocks)
+        };
+        let whole = blocks_of(&known, 1);
+        let [all, some] = [None, Some(&seeks[..])].map(|seeks| Searched {
+            balls: &after,
+            clusters: &broken,
+            seeks,
+            clumps: None,
+        });
+        known.update(&some);
+        let mut anew = KnownClusters::default();
+        anew.update(&all);
+        assert_eq!(boxes(&known), boxes(&anew));
+        assert_eq!(known.large.len(), 3);
+        assert!(Arc::ptr_eq(&whole, &blocks_of(&known, 1)));
+        let seeking = known.large.iter().filter(|large| large.seeks);
+        assert!(seeking.map(|large| large.group).all(|group| group != 1));
+    }
+}

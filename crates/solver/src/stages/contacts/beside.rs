@@ -28,21 +28,22 @@ pub(in crate::stages) fn list_beside(
         |[a, b]: [u32; 2]| clusters.of_particle[a as usize] == clusters.of_particle[b as usize];
     let all = (0..bonds.len()).filter(|&at| bonds.rules[bonds.rule_of(at)].contact_beside);
     let some = all.filter(|&at| is_within(bonds.ends[at]));
-    pairs.retain(|&pair| !is_within(pair));
-    pairs.extend(some.clone().map(|at| bonds.ends[at]));
-    pairs.sort_unstable();
-    for at in some {
-        let ends = bonds.ends[at];
-        let Ok(pair) = pairs.binary_search(&ends) else {
-            continue;
-        };
-        let radii_m = ends.map(|end| poses[end as usize].radius_m());
+    let beside = &mut contacts.scratch.beside;
+    beside.extend(some.map(|at| {
+        let radii_m = bonds.ends[at].map(|end| poses[end as usize].radius_m());
         let overlap_m = radii_m[0] + radii_m[1] - bonds.initial_length_m(at);
-        contacts.scratch.beside.push(Beside {
-            pair: pair as u32,
+        Beside {
+            pair: 0,
             bond: at as u32,
             origin_m: overlap_m.max(0.0),
-        });
+        }
+    }));
+    let ends_of = |beside: &Beside| bonds.ends[beside.bond as usize];
+    pairs.retain(|&pair| !is_within(pair));
+    pairs.extend(beside.iter().map(ends_of));
+    pairs.sort_unstable();
+    for one in beside {
+        one.pair = pairs.partition_point(|pair| *pair < ends_of(one)) as u32;
     }
 }
 

@@ -45,7 +45,10 @@ pub(super) fn list_among_sleepers(state: &mut State) -> usize {
 /// may be in a pair.
 fn list_awake(state: &mut State) -> usize {
     let moved_m = state.fastest_m_s * state.time_step_s;
-    let (Some(mut contacts), Some(sleep)) = (state.contacts.take(), &mut state.sleep) else {
+    let Some(sleep) = &mut state.sleep else {
+        return 0;
+    };
+    let Some(mut contacts) = state.contacts.take() else {
         return 0;
     };
     let p = &state.particles;
@@ -146,7 +149,6 @@ fn pairs_of_awake(state: &State, contacts: &mut Contacts, skin_m: f64) -> Vec<[u
     let p = &state.particles;
     let ContactScratch {
         former_pairs,
-        references,
         buffers: SearchBuffers { awake, pairs, .. },
         ..
     } = &mut contacts.scratch;
@@ -166,12 +168,7 @@ fn pairs_of_awake(state: &State, contacts: &mut Contacts, skin_m: f64) -> Vec<[u
         let balls = awake.particles.iter();
         let balls = balls.map(|&i| ball_of(&p.poses[i as usize], skin_m));
         awake.balls.extend(balls);
-        find_pairs_of_all(
-            &awake.balls,
-            &awake.clusters,
-            &mut references.clusters,
-            pairs,
-        );
+        find_pairs_of_all(&awake.balls, &awake.clusters, &mut awake.known, pairs);
         let to_all = |pair: &[u32; 2]| pair.map(|i| awake.particles[i as usize]);
         former_pairs.extend(pairs.found.iter().map(to_all));
     }

@@ -12,7 +12,11 @@ pub(super) fn list_with_small(
     seeks: Option<&[bool]>,
     buffers: &mut PairBuffers,
 ) {
-    let PairBuffers { small, active, .. } = buffers;
+    let PairBuffers {
+        small_clusters: small,
+        active,
+        ..
+    } = buffers;
     let groups = &known.groups;
     let is_small = |&group: &u32| !groups.is_large(group) && !groups.members(group).is_empty();
     small.clear();
