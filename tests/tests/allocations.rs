@@ -322,6 +322,7 @@ fn memory_is_taken_only_by_breaks_inlets_and_lists_that_grow() {
             ["breaking", "fed", "on a plate", "asleep"].map(|of| name == of);
         assert_eq!(steps.iter().any(|step| step.broke), broke, "{name}");
         assert_eq!(steps.iter().any(|step| step.came), came, "{name}");
+        assert_eq!(count(&|step| step.listed_at_wall) > 100, at_wall, "{name}");
         assert_eq!(
             count(&|step| step.any_asleep && step.searched) > 100,
             slept,

@@ -91,19 +91,13 @@ fn box_of(p: &Particles, some: impl Iterator<Item = usize>) -> Bounds {
     boxes.fold(Bounds::EMPTY, |all, one| all.with(&one))
 }
 
-/// Lists the particles that may be in a pair, ascending: those that are awake, and those asleep
-/// beside them. `of_sleepers`: boxes around the sleepers of each chunk.
-fn list_what_may_meet(
-    p: &Particles,
-    of_sleepers: &[Bounds],
-    skin_m: f64,
-    buffers: &mut AwakeBuffers,
-) {
-    let any_awake = |chunk: usize| !p.asleep.is_whole(chunk);
+/// Lists boxes around those that are awake, grown by the skin, m.
+fn list_boxes_of_awake(p: &Particles, skin_m: f64, buffers: &mut AwakeBuffers) {
     let box_of_awake = |some: Range<usize>| box_of(p, some.filter(|&i| !p.sleeps(i)));
-    let boxes = in_tasks(of_sleepers.len(), &mut buffers.box_tasks, |chunk, found| {
+    let chunks = chunks_of(p.len());
+    let of_chunks = in_tasks(chunks.len(), &mut buffers.box_tasks, |chunk, found| {
         found.clear();
-        if any_awake(chunk) {
+        if !p.asleep.is_whole(chunk) {
             let Range { start, end } = chunk_of(chunk, p.len());
             let parts = (start..end).step_by(PART);
             let parts = parts.map(|first| box_of_awake(first..(first + PART).min(end)));
@@ -113,35 +107,44 @@ fn list_what_may_meet(
         }
     });
     buffers.boxes.clear();
-    boxes
-        .iter()
-        .for_each(|some| buffers.boxes.extend_from_slice(some));
-    let boxes = &buffers.boxes[..];
-    let tasks = in_tasks(of_sleepers.len(), &mut buffers.tasks, |chunk, task| {
-        let near = &mut task.boxes;
-        near.clear();
+    for found in of_chunks {
+        buffers.boxes.extend_from_slice(found);
+    }
+}
+
+/// Lists the particles that may be in a pair, ascending: those that are awake, and those asleep
+/// beside them. `of_sleepers`: boxes around the sleepers of each chunk.
+fn list_what_may_meet(
+    p: &Particles,
+    of_sleepers: &[Bounds],
+    skin_m: f64,
+    buffers: &mut AwakeBuffers,
+) {
+    list_boxes_of_awake(p, skin_m, buffers);
+    let awake = &buffers.boxes[..];
+    let of_chunks = in_tasks(of_sleepers.len(), &mut buffers.tasks, |chunk, task| {
+        let beside = &mut task.boxes;
+        beside.clear();
         if of_sleepers[chunk] != Bounds::EMPTY {
-            let beside = (0..).zip(boxes);
-            let beside = beside.filter(|(_, part)| part.overlaps(&of_sleepers[chunk]));
-            near.extend(beside.map(|(n, _)| n).take(MOST_PARTS + 1));
+            let reaching = (0..).zip(awake);
+            let reaching = reaching.filter(|(_, part)| part.overlaps(&of_sleepers[chunk]));
+            beside.extend(reaching.map(|(n, _)| n).take(MOST_PARTS + 1));
         }
         task.particles.clear();
-        if any_awake(chunk) || !near.is_empty() {
+        if !p.asleep.is_whole(chunk) || !beside.is_empty() {
             let may = |&i: &usize| {
                 let ball = around(&p.poses[i].position_m);
-                let mut near_parts = near.iter().map(|&n| &boxes[n as usize]);
-                !p.sleeps(i)
-                    || near.len() > MOST_PARTS
-                    || near_parts.any(|part| part.overlaps(&ball))
+                let mut parts = beside.iter().map(|&n| &awake[n as usize]);
+                !p.sleeps(i) || beside.len() > MOST_PARTS || parts.any(|part| part.overlaps(&ball))
             };
             let some = chunk_of(chunk, p.len());
             task.particles.extend(some.filter(may).map(|i| i as u32));
         }
     });
     buffers.particles.clear();
-    tasks
-        .iter()
-        .for_each(|task| buffers.particles.extend_from_slice(&task.particles));
+    for task in of_chunks {
+        buffers.particles.extend_from_slice(&task.particles);
+    }
 }
 
 /// Pairs among the particles that may be in one, without those of two that sleep.
