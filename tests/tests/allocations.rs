@@ -1,6 +1,6 @@
-//! A step takes no memory, whether it searches for neighbours or not: what it needs is kept from the
-//! steps before. Memory is taken where a bond breaks, a body comes or an inlet looks for room, by
-//! looks now and then, and by lists that become longer than ever before.
+//! A step takes no memory, whether it searches for neighbours or not: it keeps what it needs for
+//! the next. Memory is taken where a bond breaks, a body comes or an inlet looks for room, by looks
+//! now and then, and by lists that become longer than ever before.
 
 use std::fmt::Write;
 

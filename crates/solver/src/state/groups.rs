@@ -67,8 +67,8 @@ pub(crate) fn is_large(spheres: usize) -> bool {
 }
 
 impl KnownClusters {
-    /// Updates the boxes of the clusters that are new, or of which a ball seeks. Those of the others
-    /// are those of the last time.
+    /// Updates the boxes of the clusters that are new, or of which a ball seeks. Others keep those
+    /// of the last time.
     pub(crate) fn update(&mut self, searched: &Searched<'_>) {
         if !self.are_those_of(searched.clusters) {
             self.group_again(searched);
