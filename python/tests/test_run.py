@@ -14,7 +14,7 @@ import pytest
 from conftest import ROOT, RUST
 
 import crumble
-from crumble._errors import in_python
+from crumble._errors import in_python, warn_of_doubts
 from crumble._set import overrides, toml
 
 SPIN = ROOT / "data" / "scenes" / "spinning-bar.toml"
@@ -188,13 +188,20 @@ def test_an_unstable_run_raises_and_has_results(tmp_path: Path) -> None:
     assert results.summary["ended_by"] == "instability" and not results.verdict.sound
 
 
+def test_several_doubts_are_one_warning() -> None:
+    with pytest.warns(crumble.DoubtfulResult) as caught:
+        warn_of_doubts("scene.toml", ["a bond is long", "a step is long"])
+    text = "scene.toml: doubtful, for 2 reasons:\n- a bond is long\n- a step is long"
+    assert [str(one.message) for one in caught] == [text]
+
+
 def test_check_is_a_dry_run(template: Path) -> None:
     plan = crumble.check(template / "scene.toml", run={"safety_factor": 0.45})
     usual = crumble.check(template / "scene.toml")
     # The end of the run is a whole number of steps.
     half_s = usual["time_step_s"] / 2
     assert plan["time_step_s"] == pytest.approx(half_s, rel=1 / usual["steps"])
-    assert usual["particles"] == 830 and usual["warnings"]
+    assert usual["particles"] == 829 and usual["warnings"]
     with pytest.raises(crumble.Error, match="end_tim"):
         crumble.check(template / "scene.toml", run={"end_tim": 1})
 
