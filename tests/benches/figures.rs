@@ -49,8 +49,6 @@ enum Counted {
 struct Case {
     name: &'static str,
     counted: Counted,
-    /// Rates that were aimed at, on one thread and two.
-    wanted: Option<[u32; 2]>,
     scene: String,
     bodies: BTreeMap<String, Body>,
     /// Simulated time before the first round, s, and in each round.
@@ -107,10 +105,6 @@ fn cases(is_asked_for: impl Fn(&str) -> bool) -> Vec<Case> {
             cases.push(Case {
                 name,
                 counted,
-                wanted: WANTED
-                    .iter()
-                    .find(|(case, _)| *case == name)
-                    .map(|(_, rates)| *rates),
                 scene,
                 bodies: cake(body),
                 times_s,
@@ -195,7 +189,8 @@ impl Case {
             let reading = reading.map_or(String::from("|"), |reading| {
                 format!("{reading:.0} | {:.0} %", 1e2 * rate / reading)
             });
-            let wanted = self.wanted.map_or(String::new(), |rates| rates[threads - 1].to_string());
+            let wanted = WANTED.iter().find(|(case, _)| *case == self.name);
+            let wanted = wanted.map_or(String::new(), |(_, rates)| rates[threads - 1].to_string());
             format!(
                 "| {} | {} | {} | {threads} | {rate:.1} | {wanted} | {unit} | {reading} | {:.0} % |",
                 self.name,

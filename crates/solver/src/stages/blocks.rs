@@ -133,17 +133,12 @@ pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &
 /// a value is not checked, which would take longer: a particle of another partition has its wrench
 /// fetched too.
 #[inline(always)]
-pub(super) fn fetch_soon_of<T>(all: &[T], i: usize) {
-    fetch(all.as_ptr().wrapping_add(i));
-}
-
-/// Prefetches a cache line.
-#[inline(always)]
 #[expect(
     unsafe_code,
     reason = "a hint that reads and writes nothing; the safe language has none"
 )]
-fn fetch<T>(line: *const T) {
+pub(super) fn fetch_soon_of<T>(all: &[T], i: usize) {
+    let line = all.as_ptr().wrapping_add(i);
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch affects only the cache, whatever the address, and every x86-64 processor
     // has it.
