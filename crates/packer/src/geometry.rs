@@ -1,11 +1,15 @@
 //! The solid that a surface bounds: its wall, its inside, and the depth below the wall.
 //!
-//! [`tree`] <- [`winding`] <- [`union`] <- [`boundary`] <- [`inside`] <- [`depth_map`].
+//! [`tree`] <- [`winding`] <- [`union`] <- [`boundary`] <- [`inside`] <- [`depth_map`];
+//! [`boundary`] <- [`eight`] <- [`triangle_boxes`] <- [`near_triangles`].
 
 pub(crate) mod boundary;
 pub(crate) mod depth_map;
+mod eight;
 pub(crate) mod inside;
+pub(crate) mod near_triangles;
 mod plane;
 mod tree;
 pub(crate) mod union;
+mod wall_eights;
 mod winding;

@@ -20,10 +20,12 @@ pub(crate) struct Lattice {
 
 impl Lattice {
     /// The cell of a point along each axis; points outside belong to the outermost cells.
+    #[inline(always)]
     pub(crate) fn cell_of(&self, x: f64, y: f64, z: f64) -> [usize; 3] {
-        let p = [x, y, z];
-        [0, 1, 2]
-            .map(|k| (((p[k] - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1))
+        let along = |k: usize, x: f64| {
+            (((x - self.low[k]) / self.cell).max(0.0) as usize).min(self.counts[k] - 1)
+        };
+        [along(0, x), along(1, y), along(2, z)]
     }
 
     /// Number of a cell.

@@ -3,7 +3,7 @@
 
 use super::assembly::Assembly;
 use super::halo::{Halo, Neighbours};
-use crate::geometry::boundary::Nearest;
+use crate::geometry::near_triangles::{NearTriangles, WallSearch};
 use crate::spheres::{ReducedSphere, Vector3, centre_of};
 
 /// A place at the wall is preferred to one that is nearer to the seed by up to this many radii:
@@ -87,16 +87,13 @@ impl Assembly<'_> {
         initial: &ReducedSphere,
         largest: f64,
     ) {
-        workspace.walls.clear();
+        workspace.walls.found.clear();
         if self.is_near_wall(initial) {
             let centre = centre_of(initial);
             let reach = initial[3] + self.reduced(largest) + self.wall_clearance(largest);
-            self.boundary.walls(
-                self.boundary.triangles_near(&centre, reach),
-                &centre,
-                reach,
-                &mut workspace.walls,
-            );
+            let near = NearTriangles::new(self.boundary, &centre, reach);
+            let walls = &mut workspace.walls;
+            near.walls(self.boundary, (&centre, reach), 0.0, None, walls);
         }
     }
 
@@ -129,7 +126,7 @@ impl Assembly<'_> {
         });
         let order_at = |place: &Vector3| (place - centre_of(initial)).dot(&from_seed);
         let mut least = best.as_ref().map_or(f64::INFINITY, order_at);
-        for wall in walls.iter() {
+        for wall in &walls.found {
             let towards = (wall.point - halo.centre) / wall.distance;
             for j in 0..halo.neighbours() {
                 let Some(places) =
@@ -194,7 +191,7 @@ pub(super) struct Workspace {
     /// Largest (not reduced) radius of a new sphere whose neighbours these are; 0 if none.
     pub(super) gathered: f64,
     pub(super) halo: Halo,
-    pub(super) walls: Vec<Nearest>,
+    pub(super) walls: WallSearch,
     /// Direction and distance of flat walls.
     pub(super) planes: Vec<(Vector3, f64)>,
 }

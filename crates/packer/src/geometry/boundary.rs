@@ -4,9 +4,13 @@
 use super::plane::{Plane, Surroundings};
 use super::tree::{Corners, TriangleTree, projection};
 use super::union::outer_pieces;
+use super::wall_eights::WallEights;
 use crate::grid::curve_position;
 use crate::spheres::Vector3;
 use dem_io::{Diagnostic, Result, Surface};
+
+/// Triangles farther than the nearest by less than this (local units) are as near.
+pub(crate) const AS_NEAR: f64 = 1e-9;
 
 /// The point of the surface nearest to some other point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,6 +21,17 @@ pub struct Nearest {
     pub distance: f64,
     /// The triangle of the wall on which it lies.
     pub triangle: u32,
+}
+
+impl Nearest {
+    /// True if a point, given from the centre of a ball, is behind the plane of this wall by at
+    /// least `by`: the plane is taken to be nearer to the centre by 3 %.
+    #[inline(always)]
+    pub(super) fn hides(&self, centre: &Vector3, from_centre: &Vector3, by: f64) -> bool {
+        const NEARER: f64 = 0.97;
+        let height = (self.point - centre).dot(from_centre) / self.distance;
+        height - by > NEARER * self.distance
+    }
 }
 
 /// The facets of a surface in a tree, for distance queries and rays.
@@ -30,6 +45,8 @@ pub struct Boundary {
     planes: Vec<Plane>,
     /// The surroundings of these triangles.
     surroundings: Vec<Surroundings>,
+    /// The same triangles, to find those near a place.
+    eights: WallEights,
 }
 
 impl Boundary {
@@ -69,6 +86,7 @@ impl Boundary {
         Ok(Self {
             planes: wall.all().map(Plane::new).collect(),
             surroundings: wall.all().map(Surroundings::new).collect(),
+            eights: WallEights::new(wall.all()),
             facets,
             union,
         })
@@ -180,65 +198,15 @@ impl Boundary {
             })
     }
 
-    /// The walls that a ball of this radius (local units) would meet, nearest first, 8 at most: the
-    /// nearest points of triangles, except those behind the plane of a nearer wall. That plane is
-    /// taken to be nearer to the centre by 3 %, so that a smooth curved surface is one wall.
-    /// `triangles` limits the search.
-    pub fn walls(
-        &self,
-        triangles: impl Iterator<Item = u32>,
-        centre: &Vector3,
-        radius: f64,
-        found: &mut Vec<Nearest>,
-    ) {
-        let in_reach = triangles.filter_map(|t| Some((self.least_below(t, centre, radius)?, t)));
-        let mut nearest_first: Vec<(f64, u32)> = in_reach.collect();
-        nearest_first.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        self.walls_among(nearest_first.into_iter(), centre, radius, found);
+    /// The triangles of the wall that come within `reach` (local units) of a place, or could, each
+    /// with a lower bound of its distance.
+    pub(super) fn bounds_near(&self, place: &Vector3, reach: f64) -> Vec<(f64, u32)> {
+        self.eights.near(place, reach)
     }
 
-    /// As [`Boundary::walls`], for triangles with lower bounds of their distances. It is fast where
-    /// the nearest come first: others are then known to be hidden without being measured.
-    pub(crate) fn walls_among(
-        &self,
-        triangles: impl Iterator<Item = (f64, u32)>,
-        centre: &Vector3,
-        radius: f64,
-        found: &mut Vec<Nearest>,
-    ) {
-        const MOST: usize = 8;
-        found.clear();
-        for (least, triangle) in triangles {
-            let is_hidden = |wall: &Nearest| {
-                least >= wall.distance && self.is_hidden_behind(wall, triangle, centre)
-            };
-            if least >= radius || found.iter().any(is_hidden) {
-                continue;
-            }
-            let near = self.nearest_on(triangle, centre);
-            if near.distance < radius && near.distance > 0.0 {
-                found.push(near);
-            }
-        }
-        found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let mut kept = 0;
-        for k in 0..found.len() {
-            let near = found[k];
-            let from_centre = near.point - centre;
-            if !(found[..kept].iter()).any(|wall| is_behind(wall, centre, &from_centre, 0.0)) {
-                found[kept] = near;
-                kept += 1;
-            }
-        }
-        found.truncate(kept.min(MOST));
-    }
-
-    /// True if all of a triangle is behind the plane of a wall.
-    fn is_hidden_behind(&self, wall: &Nearest, triangle: u32, centre: &Vector3) -> bool {
-        let around = &self.surroundings[triangle as usize];
-        let towards = (wall.point - centre) / wall.distance;
-        let before_middle = around.most_along(&towards);
-        is_behind(wall, centre, &(around.middle() - centre), before_middle)
+    /// The surroundings of a triangle of the wall.
+    pub(super) fn surroundings(&self, triangle: u32) -> &Surroundings {
+        &self.surroundings[triangle as usize]
     }
 
     /// False if a triangle of the wall is certainly farther from a point than `reach` (local
@@ -251,7 +219,7 @@ impl Boundary {
     /// `reach` (local units).
     #[inline]
     pub(crate) fn least_below(&self, triangle: u32, point: &Vector3, reach: f64) -> Option<f64> {
-        let around = &self.surroundings[triangle as usize];
+        let around = self.surroundings(triangle);
         if around.is_beyond(point, reach) {
             return None;
         }
@@ -261,7 +229,14 @@ impl Boundary {
     /// A lower bound of the distance of a triangle of the wall from a point, at little cost.
     #[inline]
     pub(crate) fn least_distance(&self, triangle: u32, point: &Vector3) -> f64 {
-        self.surroundings[triangle as usize].least_distance(point)
+        self.surroundings(triangle).least_distance(point)
+    }
+
+    /// Reads from each cache line of a triangle of the wall that will be measured soon, so that the
+    /// lines of several triangles are on their way at the same time.
+    #[inline(always)]
+    pub(super) fn fetch(&self, triangle: u32) {
+        self.planes[triangle as usize].touch_lines();
     }
 
     /// The nearest point of one triangle of the wall.
@@ -294,7 +269,6 @@ impl Boundary {
         triangles: impl Iterator<Item = u32>,
         point: &Vector3,
     ) -> Option<bool> {
-        const AS_NEAR: f64 = 1e-9;
         let mut near: Vec<(f64, Option<bool>)> = triangles
             .map(|triangle| {
                 let height = self.planes[triangle as usize].height_over_triangle(point);
@@ -309,14 +283,6 @@ impl Boundary {
         let (_, first) = *near.first()?;
         near.iter().all(|n| n.1 == first).then_some(first)?
     }
-}
-
-/// True if a point, given from the centre, is behind the plane of a wall by at least `by`: the
-/// plane is taken to be nearer to the centre by 3 %.
-fn is_behind(wall: &Nearest, centre: &Vector3, point: &Vector3, by: f64) -> bool {
-    const NEARER: f64 = 0.97;
-    let height = (wall.point - centre).dot(point) / wall.distance;
-    height - by > NEARER * wall.distance
 }
 
 /// Sorts triangles (indices of vertices) along a curve, so that neighbours in space are neighbours

@@ -2,6 +2,7 @@
 
 use super::tree::Corners;
 use crate::spheres::Vector3;
+use std::hint::black_box;
 
 /// A triangle and the plane in which it lies: p is above it where u = (p - corner) . along_u >= 0,
 /// v >= 0 and u + v <= 1.
@@ -39,6 +40,14 @@ impl Plane {
         }
     }
 
+    /// Reads a number from each of its cache lines.
+    #[inline(always)]
+    pub(super) fn touch_lines(&self) {
+        black_box(self.corners[0][0]);
+        black_box(self.normal.x);
+        black_box(self.along_v.z);
+    }
+
     /// The first corner.
     pub(super) fn corner(&self) -> Vector3 {
         self.corners[0].into()
@@ -60,12 +69,13 @@ impl Plane {
 
 /// The flat cylinder around a triangle, in single precision: by far the smallest part of what is
 /// known about it, so that many are excluded without reading the rest.
+#[derive(Clone, Copy)]
 pub(super) struct Surroundings {
-    middle: [f32; 3],
-    radius: f32,
+    pub(super) middle: [f32; 3],
+    pub(super) radius: f32,
     /// Direction of the axis. Zero for a triangle without area: the cylinder is a ball then.
-    normal: [f32; 3],
-    half_height: f32,
+    pub(super) normal: [f32; 3],
+    pub(super) half_height: f32,
 }
 
 impl Surroundings {
@@ -88,21 +98,27 @@ impl Surroundings {
         around
     }
 
+    #[inline(always)]
     pub(super) fn middle(&self) -> Vector3 {
-        Vector3::from(self.middle.map(f64::from))
+        let [x, y, z] = self.middle;
+        Vector3::new(x.into(), y.into(), z.into())
     }
 
+    #[inline(always)]
     fn normal(&self) -> Vector3 {
-        Vector3::from(self.normal.map(f64::from))
+        let [x, y, z] = self.normal;
+        Vector3::new(x.into(), y.into(), z.into())
     }
 
     /// True if the triangle is certainly farther from a point than `reach`.
+    #[inline(always)]
     pub(super) fn is_beyond(&self, point: &Vector3, reach: f64) -> bool {
         let reach = reach + f64::from(self.radius);
         (point - self.middle()).norm_squared() > (1.0 + MARGIN) * reach * reach
     }
 
     /// A lower bound of the distance of the triangle from a point: that of the cylinder.
+    #[inline(always)]
     pub(super) fn least_distance(&self, point: &Vector3) -> f64 {
         let (radius, half_height) = (f64::from(self.radius), f64::from(self.half_height));
         let from_middle = point - self.middle();
@@ -117,6 +133,7 @@ impl Surroundings {
 
     /// The largest distance of a point of the triangle from the middle in a direction (a unit
     /// vector), or more.
+    #[inline(always)]
     pub(super) fn most_along(&self, direction: &Vector3) -> f64 {
         let (radius, half_height) = (f64::from(self.radius), f64::from(self.half_height));
         let along_normal = self.normal().dot(direction);

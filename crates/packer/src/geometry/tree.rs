@@ -3,7 +3,7 @@
 use crate::spheres::Vector3;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::BvhNode;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use parry3d_f64::query::{PointQueryWithLocation, Ray};
 use parry3d_f64::shape::{TriMesh, Triangle};
 
@@ -99,6 +99,27 @@ impl TriangleTree {
             }
         };
         self.0.bvh().find_best(radius, distance, measure).is_some()
+    }
+}
+
+/// Boxes in a tree, numbered as they were given. Lengths in local units.
+pub(super) struct BoxTree(Bvh);
+
+impl BoxTree {
+    /// The tree over boxes given by their smallest and largest corners.
+    pub(super) fn new(boxes: impl Iterator<Item = [[f64; 3]; 2]>) -> Self {
+        let boxes = boxes.map(|[least, most]| Aabb::new(least.into(), most.into()));
+        Self(Bvh::from_iter(BvhBuildStrategy::Binned, boxes.enumerate()))
+    }
+
+    /// The boxes that meet the box with these corners.
+    pub(super) fn meeting(
+        &self,
+        least: &Vector3,
+        most: &Vector3,
+    ) -> impl Iterator<Item = u32> + '_ {
+        let query = BvhNode::leaf(Aabb::new(to_parry(least), to_parry(most)), 0);
+        self.0.leaves(move |node| node.intersects(&query))
     }
 }
 

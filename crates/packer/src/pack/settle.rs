@@ -17,6 +17,7 @@ mod cells;
 #[cfg(target_arch = "x86_64")]
 mod eight;
 mod forces;
+mod inside;
 mod minimiser;
 mod neighbours;
 #[cfg(all(test, target_arch = "x86_64"))]

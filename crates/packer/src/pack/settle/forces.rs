@@ -4,8 +4,9 @@ use super::cells::LANES;
 #[cfg(target_arch = "x86_64")]
 use super::eight::{self, Eight};
 use super::neighbours::ChunkOfLists;
-use super::walls::NearWall;
+use super::walls::ChunkOfWalls;
 use crate::geometry::boundary::Boundary;
+use crate::geometry::near_triangles::WallSearch;
 use crate::spheres::ReducedSphere;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::V4;
@@ -37,7 +38,7 @@ pub(super) struct ForcesOn<'a> {
     pub(super) boundary: &'a Boundary,
     pub(super) balls: &'a [ReducedSphere],
     pub(super) spheres: &'a ChunkOfLists,
-    pub(super) walls: &'a mut [NearWall],
+    pub(super) walls: &'a mut ChunkOfWalls,
     pub(super) enlarge: f64,
     /// Fraction of its radius that a sphere may move while planes stand for the wall.
     pub(super) plane_lasts: f64,
@@ -75,23 +76,23 @@ impl ForcesOn<'_> {
             plane_lasts,
         } = self;
         let mut worst = 0.0_f64;
-        let mut touched = Vec::new();
+        let mut search = WallSearch::default();
         for (k, f) in force.iter_mut().enumerate() {
             let ball = balls[first + k];
             let number = (first + k) as u32;
             let [x, y, z] = of_neighbours((number, &ball), spheres.of(k), balls);
             *f = [x, y, z, 0.0];
         }
-        for near in walls {
+        for near in &mut walls.near {
             let k = near.sphere;
             let ball = &balls[first + k];
             let radius = ball[3] * enlarge;
             let lasts = plane_lasts * radius;
             near.touching(
                 boundary,
-                (ball, radius),
+                (ball, radius, &walls.listed_at[k]),
                 lasts,
-                &mut touched,
+                &mut search,
                 |inward, height| {
                     for axis in 0..3 {
                         force[k][axis] += (radius - height) * inward[axis];

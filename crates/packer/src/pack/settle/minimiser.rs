@@ -1,10 +1,10 @@
 //! The minimiser of the overlaps' energy: damped dynamics.
 
 use super::forces::{ForcesOn, MARGIN, wall_overlap};
+use super::inside::find_inside;
 use super::neighbours::{CHUNK, NeighbourLists, squared_distance};
 use super::walls::WallLists;
 use crate::geometry::boundary::Boundary;
-use crate::geometry::inside::is_inside;
 use crate::grid::WIDEST_CLASS;
 use crate::pack::shrink::thin_out;
 use crate::spheres::{ReducedSphere, centre_of};
@@ -163,8 +163,8 @@ pub fn minimise_overlaps(
             progress((worst.ln() / MARGIN.ln()).clamp(0.0, 1.0))?;
         }
     }
+    settled.taken_out += state.take_out_those_outside();
     *balls = state.balls;
-    settled.taken_out += remove_outside(boundary, balls);
     for ball in balls.iter_mut() {
         ball[3] /= 1.0 + MARGIN;
     }
@@ -179,18 +179,6 @@ fn damping(step: usize, largest_overlap: f64, nearly_done: usize) -> f64 {
     } else {
         (DAMPING / step as f64).clamp(DAMPING_LIMITS[0], DAMPING_LIMITS[1])
     }
-}
-
-/// Removes spheres that began almost on the wall and were pushed through it. Returns their number.
-fn remove_outside(boundary: &Boundary, spheres: &mut Vec<ReducedSphere>) -> usize {
-    let inside: Vec<bool> = spheres
-        .par_iter()
-        .map(|sphere| is_inside(boundary, &centre_of(sphere)))
-        .collect();
-    let mut inside = inside.into_iter();
-    let before = spheres.len();
-    spheres.retain(|_| inside.next().unwrap_or(false));
-    before - spheres.len()
 }
 
 impl<'a> State<'a> {
@@ -240,9 +228,9 @@ impl<'a> State<'a> {
             .into_par_iter()
             .map(|i| {
                 let ball = &self.balls[i];
-                let earlier = self.near.of(i).filter(|j| (*j as usize) < i);
-                let overlap = |j: u32| {
-                    let other = &self.balls[j as usize];
+                let earlier = self.near.of(i).iter().filter(|j| (**j as usize) < i);
+                let overlap = |j: &u32| {
+                    let other = &self.balls[*j as usize];
                     (ball[3] + other[3] - squared_distance(ball, other).sqrt())
                         / ball[3].min(other[3])
                 };
@@ -271,6 +259,16 @@ impl<'a> State<'a> {
         worst.len()
     }
 
+    /// Takes out spheres that began almost on the wall and were pushed through it. Returns their
+    /// number.
+    fn take_out_those_outside(&mut self) -> usize {
+        let inside = find_inside(self.boundary, &self.balls, &self.near, &self.walls);
+        let mut inside = inside.into_iter();
+        let before = self.balls.len();
+        self.balls.retain(|_| inside.next().unwrap_or(false));
+        before - self.balls.len()
+    }
+
     /// Lists, for each sphere, the others that it could touch before the lists are rebuilt.
     fn list_neighbours(&mut self) {
         let balls = &self.balls;
@@ -279,12 +277,12 @@ impl<'a> State<'a> {
         self.near = NeighbourLists::new(balls, self.skin);
         self.walls.renew(balls);
         self.listed_at.clone_from(balls);
-        let neighbours = (0..balls.len()).map(|i| self.near.of(i).count());
+        let neighbours = (0..balls.len()).map(|i| self.near.of(i).len());
         let response = |n: usize| LARGEST_RESPONSE * (FEW_NEIGHBOURS / n as f64).min(1.0);
         self.response = neighbours.map(response).collect();
-        for (i, walls) in self.walls.triangles() {
-            let walls = walls.take(MOST_WALLS).count();
-            self.response[i] = response(self.near.of(i).count() + walls);
+        for (i, triangles) in self.walls.triangles() {
+            let walls = triangles.count().min(MOST_WALLS);
+            self.response[i] = response(self.near.of(i).len() + walls);
         }
     }
 
@@ -306,7 +304,7 @@ impl<'a> State<'a> {
                     boundary,
                     balls,
                     spheres,
-                    walls: &mut walls.near,
+                    walls,
                     enlarge,
                     plane_lasts,
                 };

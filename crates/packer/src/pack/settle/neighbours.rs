@@ -52,11 +52,14 @@ impl NeighbourLists {
         }
     }
 
-    pub(super) fn of(&self, sphere: usize) -> impl Iterator<Item = u32> + '_ {
-        let list = self.chunks[sphere / CHUNK]
-            .of(sphere % CHUNK)
-            .as_flattened();
-        (list.iter().copied()).take_while(move |other| *other as usize != sphere)
+    /// The neighbours of a sphere.
+    pub(super) fn of(&self, sphere: usize) -> &[u32] {
+        let list = self.chunks[sphere / CHUNK].of(sphere % CHUNK);
+        let list = list.as_flattened();
+        // Its own number fills the list up.
+        let filled_up = list.iter().rev();
+        let filled_up = filled_up.take_while(|other| **other as usize == sphere);
+        &list[..list.len() - filled_up.count()]
     }
 }
 

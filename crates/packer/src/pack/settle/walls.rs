@@ -3,7 +3,8 @@
 //! far: most hardly leave their place while they settle.
 
 use super::neighbours::{CHUNK, squared_distance};
-use crate::geometry::boundary::{Boundary, Nearest};
+use crate::geometry::boundary::{AS_NEAR, Boundary};
+use crate::geometry::near_triangles::{NearTriangles, WallSearch};
 use crate::spheres::{ReducedSphere, Vector3, centre_of};
 use rayon::prelude::*;
 
@@ -26,19 +27,18 @@ pub struct WallLists<'a> {
 
 /// The wall near up to `CHUNK` spheres.
 pub(super) struct ChunkOfWalls {
-    /// Those that have triangles near, in their order.
+    /// Those that have triangles near, in any order.
     pub(super) near: Vec<NearWall>,
     /// Each sphere when its triangles were listed.
-    listed_at: Vec<ReducedSphere>,
+    pub(super) listed_at: Vec<ReducedSphere>,
 }
 
 /// The wall near one sphere.
 pub(super) struct NearWall {
     /// Number of the sphere within the chunk.
     pub(super) sphere: usize,
-    /// The triangles near, nearest first, and the sphere when they were listed.
-    triangles: Vec<NearTriangle>,
-    listed_at: ReducedSphere,
+    /// The triangles near.
+    triangles: NearTriangles,
     /// The triangle that was nearest last.
     nearest: u32,
     /// The walls that it touches, or nearly.
@@ -49,11 +49,12 @@ pub(super) struct NearWall {
     lasts_squared: f64,
 }
 
-/// A triangle of the wall near a sphere.
-struct NearTriangle {
-    /// A lower bound of its distance from the sphere when it was listed.
-    least: f32,
-    number: u32,
+/// How far a sphere is from the wall.
+pub(super) struct Clearance {
+    /// A lower bound of the distance of its centre from the wall, local units.
+    pub(super) distance: f64,
+    /// True if it has triangles near.
+    pub(super) is_near: bool,
 }
 
 /// The plane through the point of the wall nearest to a sphere.
@@ -67,19 +68,18 @@ impl<'a> WallLists<'a> {
     /// Lists the triangles near spheres, which touch the wall at their radius
     /// times `enlarge`. Lengths in local units.
     pub fn new(boundary: &'a Boundary, balls: &[ReducedSphere], enlarge: f64, skin: f64) -> Self {
+        const FAR: ReducedSphere = [f64::INFINITY; 4];
+        let of_chunk = |balls: &[ReducedSphere]| ChunkOfWalls {
+            near: Vec::new(),
+            listed_at: vec![FAR; balls.len()],
+        };
         let mut lists = Self {
             boundary,
             enlarge,
             skin,
-            chunks: Vec::new(),
+            chunks: balls.chunks(CHUNK).map(of_chunk).collect(),
         };
-        let of_chunk = |balls: &[ReducedSphere]| ChunkOfWalls {
-            near: (balls.iter().enumerate())
-                .filter_map(|(k, ball)| lists.near(k, ball))
-                .collect(),
-            listed_at: balls.to_vec(),
-        };
-        lists.chunks = balls.par_chunks(CHUNK).map(of_chunk).collect();
+        lists.renew(balls);
         lists
     }
 
@@ -89,15 +89,16 @@ impl<'a> WallLists<'a> {
         let mut chunks = std::mem::take(&mut self.chunks);
         let most_squared = ((REACH - 0.5) * self.skin).powi(2);
         let renew_chunk = |(chunk, of_chunk): (usize, &mut ChunkOfWalls)| {
-            let mut before = std::mem::take(&mut of_chunk.near).into_iter().peekable();
-            for (k, listed_at) in of_chunk.listed_at.iter_mut().enumerate() {
-                let i = chunk * CHUNK + k;
-                let known = before.next_if(|near| near.sphere == k);
-                if squared_distance(listed_at, &balls[i]) > most_squared {
-                    *listed_at = balls[i];
-                    of_chunk.near.extend(self.near(k, &balls[i]));
-                } else {
-                    of_chunk.near.extend(known);
+            let of_sphere = |k: usize| &balls[chunk * CHUNK + k];
+            let has_moved = |k: usize, listed_at: &ReducedSphere| {
+                squared_distance(listed_at, of_sphere(k)) > most_squared
+            };
+            let listed_at = &mut of_chunk.listed_at;
+            (of_chunk.near).retain(|near| !has_moved(near.sphere, &listed_at[near.sphere]));
+            for (k, listed_at) in listed_at.iter_mut().enumerate() {
+                if has_moved(k, listed_at) {
+                    *listed_at = *of_sphere(k);
+                    of_chunk.near.extend(self.near(k, listed_at));
                 }
             }
         };
@@ -105,32 +106,46 @@ impl<'a> WallLists<'a> {
         self.chunks = chunks;
     }
 
+    /// Distance from the centre of a sphere up to which triangles are listed.
+    fn reach(&self, ball: &ReducedSphere) -> f64 {
+        ball[3] * self.enlarge + REACH * self.skin
+    }
+
     /// The wall near sphere `k` of a chunk; none if it is far.
     fn near(&self, k: usize, ball: &ReducedSphere) -> Option<NearWall> {
-        let (centre, radius) = (centre_of(ball), ball[3] * self.enlarge);
-        let reach = radius + REACH * self.skin;
-        let listed = |number: u32| {
-            let least = self.boundary.least_below(number, &centre, reach)?;
-            Some(NearTriangle {
-                least: (least as f32).next_down(),
-                number,
-            })
-        };
-        let triangles = self.boundary.triangles_near(&centre, reach);
-        let mut triangles: Vec<NearTriangle> = triangles.filter_map(listed).collect();
-        triangles.sort_unstable_by(|a, b| {
-            let nearer = a.least.total_cmp(&b.least);
-            nearer.then(a.number.cmp(&b.number))
-        });
+        let triangles = NearTriangles::new(self.boundary, &centre_of(ball), self.reach(ball));
+        let nearest = triangles.numbers().next()?;
         Some(NearWall {
             sphere: k,
-            nearest: triangles.first()?.number,
+            nearest,
             triangles,
-            listed_at: *ball,
             planes: Vec::new(),
             found_at: *ball,
             lasts_squared: -1.0,
         })
+    }
+
+    /// How far each sphere is from the wall at least.
+    pub(super) fn clearances(&self, balls: &[ReducedSphere]) -> Vec<Clearance> {
+        let far = |ball| Clearance {
+            distance: self.reach(ball),
+            is_near: false,
+        };
+        let mut clearances: Vec<Clearance> = balls.iter().map(far).collect();
+        for (of_chunk, clearances) in self.chunks.iter().zip(clearances.chunks_mut(CHUNK)) {
+            for near in &of_chunk.near {
+                clearances[near.sphere] = Clearance {
+                    distance: near.triangles.least_distance().unwrap_or(0.0),
+                    is_near: true,
+                };
+            }
+        }
+        let listed_at = self.chunks.iter().flat_map(|of_chunk| &of_chunk.listed_at);
+        for ((clearance, ball), listed_at) in clearances.iter_mut().zip(balls).zip(listed_at) {
+            let moved = squared_distance(ball, listed_at).sqrt();
+            clearance.distance = (clearance.distance - moved).max(0.0);
+        }
+        clearances
     }
 
     /// Finds all planes anew for the next forces, however little the spheres have moved.
@@ -140,13 +155,12 @@ impl<'a> WallLists<'a> {
         }
     }
 
-    /// The spheres that have triangles near, each with the numbers of these.
-    pub fn triangles(&self) -> impl Iterator<Item = (usize, impl Iterator<Item = u32>)> {
+    /// The spheres that have triangles near, each with these.
+    pub fn triangles(&self) -> impl Iterator<Item = (usize, &NearTriangles)> {
         let chunks = self.chunks.iter().enumerate();
         chunks.flat_map(|(chunk, walls)| {
-            let sphere = move |near: &NearWall| chunk * CHUNK + near.sphere;
             let near = walls.near.iter();
-            near.map(move |near| (sphere(near), near.triangles.iter().map(|t| t.number)))
+            near.map(move |near| (chunk * CHUNK + near.sphere, &near.triangles))
         })
     }
 }
@@ -161,13 +175,14 @@ impl WallPlane {
 impl NearWall {
     /// Calls `push` with each wall that a sphere of this radius touches: the direction into the
     /// solid, and the height of its centre. The planes that stand for the wall are found anew once
-    /// the sphere has moved by `lasts`. `touched` is a work array.
+    /// the sphere has moved by `lasts`. Its triangles were listed at `listed_at`. `search` holds
+    /// work arrays.
     pub(super) fn touching(
         &mut self,
         boundary: &Boundary,
-        (ball, radius): (&ReducedSphere, f64),
+        (ball, radius, listed_at): (&ReducedSphere, f64, &ReducedSphere),
         lasts: f64,
-        touched: &mut Vec<Nearest>,
+        search: &mut WallSearch,
         mut push: impl FnMut([f64; 3], f64),
     ) {
         let most_squared = if self.planes.is_empty() {
@@ -176,7 +191,7 @@ impl NearWall {
             self.lasts_squared.min(lasts * lasts)
         };
         if squared_distance(&self.found_at, ball) >= most_squared {
-            self.find_planes(boundary, (ball, radius), lasts, touched);
+            self.find_planes(boundary, (ball, radius, listed_at), lasts, search);
         }
         for plane in &self.planes {
             let height = plane.height(ball);
@@ -190,41 +205,36 @@ impl NearWall {
     fn find_planes(
         &mut self,
         boundary: &Boundary,
-        (ball, radius): (&ReducedSphere, f64),
+        (ball, radius, listed_at): (&ReducedSphere, f64, &ReducedSphere),
         lasts: f64,
-        touched: &mut Vec<Nearest>,
+        search: &mut WallSearch,
     ) {
         self.planes.clear();
         self.found_at = *ball;
         let (centre, reach) = (centre_of(ball), radius + lasts);
-        let moved = squared_distance(&self.listed_at, ball).sqrt();
-        let clear = (self.triangles.first()).map_or(reach, |t| f64::from(t.least) - moved);
+        let moved = squared_distance(listed_at, ball).sqrt();
+        let clear = self.triangles.least_distance().unwrap_or(reach) - moved;
         if clear >= reach {
             self.lasts_squared = (clear - radius).powi(2);
             return;
         }
         self.lasts_squared = lasts * lasts;
-        let may_reach = |t: &&NearTriangle| f64::from(t.least) < reach + moved;
-        let near = self
-            .triangles
-            .iter()
-            .take_while(may_reach)
-            .map(|t| t.number);
-        let others = near.filter(|t| *t != self.nearest);
-        let measured = |t: u32| (boundary.least_distance(t, &centre), t);
-        let nearest_first = std::iter::once(self.nearest).chain(others).map(measured);
-        boundary.walls_among(nearest_first, &centre, reach, touched);
-        self.nearest = touched.first().map_or(self.nearest, |wall| wall.triangle);
+        let ball = (&centre, reach);
+        self.triangles
+            .walls(boundary, ball, moved, Some(self.nearest), search);
+        let nearest = search.found.first();
+        self.nearest = nearest.map_or(self.nearest, |wall| wall.triangle);
         // A centre that was pushed through the wall is pulled back.
-        let is_beyond = touched.first().is_some_and(|wall| {
-            let all = self.triangles.iter().map(|t| t.number);
+        let is_beyond = nearest.is_some_and(|wall| {
+            let as_near = self.triangles.within(wall.distance + AS_NEAR, search);
             wall.distance < BEYOND * radius
-                && boundary.is_behind_nearest(all, &centre) == Some(false)
+                && boundary.is_behind_nearest(as_near, &centre) == Some(false)
         });
         let side = if is_beyond { -1.0 } else { 1.0 };
-        self.planes.extend(touched.iter().map(|wall| WallPlane {
-            point: wall.point,
-            inward: (centre - wall.point) * (side / wall.distance),
-        }));
+        self.planes
+            .extend(search.found.iter().map(|wall| WallPlane {
+                point: wall.point,
+                inward: (centre - wall.point) * (side / wall.distance),
+            }));
     }
 }

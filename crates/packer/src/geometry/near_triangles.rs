@@ -1,0 +1,242 @@
+//! The triangles of the wall near a place, eight at a time, and the walls that a ball meets among
+//! them.
+
+use super::boundary::{Boundary, Nearest};
+use super::eight::{AT_ONCE, EightSurroundings, bits};
+use crate::spheres::Vector3;
+use pulp::{Arch, NullaryFnOnce};
+
+/// Most walls that a ball meets.
+const MOST: usize = 8;
+
+/// The triangles of the wall near a place, nearest first.
+pub struct NearTriangles {
+    count: usize,
+    eights: Vec<EightTriangles>,
+}
+
+/// Eight of them; the last ones may hold fewer.
+struct EightTriangles {
+    numbers: [u32; AT_ONCE],
+    /// Lower bounds of their distances from the place. Infinite where there is no triangle.
+    least: [f32; AT_ONCE],
+    around: EightSurroundings,
+}
+
+/// A triangle by the lower bound of its distance, in single precision, and then by its number: the
+/// bits of numbers that are not negative are in their order.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Ordered(u64);
+
+/// What a search for walls finds, with its work arrays.
+#[derive(Default)]
+pub struct WallSearch {
+    /// The walls, nearest first.
+    pub found: Vec<Nearest>,
+    /// Lower bounds of the distances of triangles from the ball's centre, for each eight.
+    least: Vec<[f64; AT_ONCE]>,
+    /// Those that could be walls and were not examined yet: one bit each, for each eight.
+    open: Vec<u8>,
+}
+
+impl Ordered {
+    /// `least` is not negative, but it may be -0.
+    fn new(least: f64, number: u32) -> Self {
+        let least = (least as f32).abs().to_bits();
+        Self(u64::from(least) << 32 | u64::from(number))
+    }
+
+    fn least(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    fn number(self) -> u32 {
+        self.0 as u32
+    }
+}
+
+impl NearTriangles {
+    /// The triangles that come within `reach` (local units) of a place, or could.
+    pub fn new(boundary: &Boundary, place: &Vector3, reach: f64) -> Self {
+        let near = boundary.bounds_near(place, reach).into_iter();
+        let ordered = near.map(|(least, number)| Ordered::new(least, number));
+        let mut near: Vec<Ordered> = ordered.collect();
+        near.sort_unstable();
+        let eights = near.chunks(AT_ONCE).map(|some| {
+            let mut eight = EightTriangles {
+                numbers: [0; AT_ONCE],
+                least: [f32::INFINITY; AT_ONCE],
+                around: EightSurroundings::default(),
+            };
+            for (k, near) in some.iter().enumerate() {
+                eight.numbers[k] = near.number();
+                eight.least[k] = near.least().next_down();
+                eight.around.set(k, boundary.surroundings(near.number()));
+            }
+            eight
+        });
+        Self {
+            count: near.len(),
+            eights: eights.collect(),
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Their numbers, nearest first.
+    pub fn numbers(&self) -> impl Iterator<Item = u32> {
+        let numbers = self.eights.iter().flat_map(|eight| eight.numbers);
+        numbers.take(self.count)
+    }
+
+    /// A lower bound of the distance of the wall from the place; none if there are no triangles.
+    pub(crate) fn least_distance(&self) -> Option<f64> {
+        Some(f64::from(self.eights.first()?.least[0]))
+    }
+
+    /// The walls that a ball (centre, radius in local units) would meet, nearest first, 8 at most:
+    /// the nearest points of triangles, except those behind the plane of a nearer wall. That plane
+    /// is taken to be nearer to the centre by 3 %, so that a smooth curved surface is one wall. What
+    /// is behind a wall that is left out is left out as well.
+    ///
+    /// `moved` is the distance of the centre from the place. The triangle `first` is measured before
+    /// all others: many are then known to be hidden without being measured.
+    pub fn walls(
+        &self,
+        boundary: &Boundary,
+        (centre, radius): (&Vector3, f64),
+        moved: f64,
+        first: Option<u32>,
+        search: &mut WallSearch,
+    ) {
+        Arch::new().dispatch(Walls {
+            near: self,
+            boundary,
+            centre,
+            radius,
+            moved,
+            first,
+            search,
+        });
+    }
+
+    /// After [`NearTriangles::walls`]: the triangles that could be within `reach` of the ball's
+    /// centre, which is not more than its radius.
+    pub(crate) fn within<'a>(
+        &'a self,
+        reach: f64,
+        search: &'a WallSearch,
+    ) -> impl Iterator<Item = u32> + 'a {
+        let eights = self.eights.iter().zip(&search.least);
+        let numbered = eights.flat_map(|(eight, least)| eight.numbers.into_iter().zip(*least));
+        let within = move |(number, least): (u32, f64)| (least <= reach).then_some(number);
+        numbered.take(self.count).filter_map(within)
+    }
+}
+
+/// A search for the walls that a ball meets.
+struct Walls<'a> {
+    near: &'a NearTriangles,
+    boundary: &'a Boundary,
+    centre: &'a Vector3,
+    radius: f64,
+    moved: f64,
+    first: Option<u32>,
+    search: &'a mut WallSearch,
+}
+
+impl NullaryFnOnce for Walls<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        self.search.found.clear();
+        self.find_open();
+        if let Some(first) = self.first {
+            self.measure(first, 0);
+        }
+        for (k, eight) in self.near.eights.iter().enumerate() {
+            while let Some(open) = self.search.open.get(k).filter(|open| **open != 0) {
+                let lane = open.trailing_zeros() as usize;
+                self.search.open[k] &= open - 1;
+                let number = eight.numbers[lane];
+                if self.first != Some(number) {
+                    self.measure(number, k);
+                }
+            }
+        }
+        self.leave_out_hidden();
+    }
+}
+
+impl Walls<'_> {
+    /// Finds the triangles that could be within the radius.
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "several arrays side by side, lane by lane"
+    )]
+    #[inline(always)]
+    fn find_open(&mut self) {
+        let WallSearch { least, open, .. } = &mut *self.search;
+        least.clear();
+        open.clear();
+        let reach = self.radius + self.moved;
+        for eight in &self.near.eights {
+            if f64::from(eight.least[0]) >= reach {
+                break;
+            }
+            let distances = eight.around.least_distances(self.centre);
+            let mut may_reach = [false; AT_ONCE];
+            for k in 0..AT_ONCE {
+                may_reach[k] = (f64::from(eight.least[k]) < reach) & (distances[k] < self.radius);
+            }
+            least.push(distances);
+            open.push(bits(&may_reach));
+            for k in 0..AT_ONCE {
+                if may_reach[k] {
+                    self.boundary.fetch(eight.numbers[k]);
+                }
+            }
+        }
+    }
+
+    /// Measures a triangle. If it is a wall, those that it hides, of the eight numbered `from` and
+    /// of later ones, need not be examined.
+    #[inline(always)]
+    fn measure(&mut self, triangle: u32, from: usize) {
+        let wall = self.boundary.nearest_on(triangle, self.centre);
+        if wall.distance >= self.radius || wall.distance <= 0.0 {
+            return;
+        }
+        let WallSearch { found, least, open } = &mut *self.search;
+        found.push(wall);
+        for k in from..open.len() {
+            if open[k] == 0 {
+                continue;
+            }
+            let around = &self.near.eights[k].around;
+            open[k] &= !around.hidden_behind(&least[k], &wall, self.centre);
+        }
+    }
+
+    /// Leaves out walls behind the planes of nearer ones.
+    #[inline(always)]
+    fn leave_out_hidden(&mut self) {
+        let found = &mut self.search.found;
+        found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut kept = 0;
+        for k in 0..found.len() {
+            let near = found[k];
+            let from_centre = near.point - self.centre;
+            let hides = |wall: &Nearest| wall.hides(self.centre, &from_centre, 0.0);
+            if !found[..kept].iter().any(hides) {
+                found[kept] = near;
+                kept += 1;
+            }
+        }
+        found.truncate(kept.min(MOST));
+    }
+}

@@ -1,0 +1,198 @@
+//! The triangles of the wall, eight at a time in their order, to find those near a place.
+
+use super::eight::{AT_ONCE, EightSurroundings, bits};
+use super::plane::Surroundings;
+use super::tree::{BoxTree, Corners};
+use crate::spheres::Vector3;
+use pulp::{Arch, NullaryFnOnce};
+
+/// Distance of a triangle from the first of its eight, in sums of their radii, up to which it is
+/// close to it.
+const CLOSE: f64 = 4.0;
+
+/// The triangles of the wall by eights that follow each other and are close together.
+pub(super) struct WallEights {
+    eights: Vec<EightBoxes>,
+    tree: BoxTree,
+}
+
+/// Up to eight triangles with their boxes.
+struct EightBoxes {
+    /// The number of the first; the others follow it.
+    first: u32,
+    around: EightSurroundings,
+    /// The least and the most of x, of y and of z, rounded outwards. A box that holds nothing has a
+    /// least that is larger than its most.
+    least: [[f32; AT_ONCE]; 3],
+    most: [[f32; AT_ONCE]; 3],
+}
+
+impl WallEights {
+    pub(super) fn new(triangles: impl Iterator<Item = Corners>) -> Self {
+        let triangles: Vec<Corners> = triangles.collect();
+        let (mut eights, mut boxes) = (Vec::new(), Vec::new());
+        let mut left = &triangles[..];
+        while !left.is_empty() {
+            let (eight, others) = left.split_at(close_together(left));
+            let first = (triangles.len() - left.len()) as u32;
+            eights.push(EightBoxes::new(first, eight));
+            boxes.push(corners_of_box(eight.as_flattened()));
+            left = others;
+        }
+        Self {
+            eights,
+            tree: BoxTree::new(boxes.into_iter()),
+        }
+    }
+
+    /// The triangles whose boxes come within `reach` (local units) of a place and that could do so
+    /// themselves, each with a lower bound of its distance.
+    pub(super) fn near(&self, place: &Vector3, reach: f64) -> Vec<(f64, u32)> {
+        Arch::new().dispatch(Near {
+            wall: self,
+            place,
+            reach,
+        })
+    }
+}
+
+impl EightBoxes {
+    fn new(first: u32, triangles: &[Corners]) -> Self {
+        let mut eight = Self {
+            first,
+            around: EightSurroundings::default(),
+            least: [[f32::INFINITY; AT_ONCE]; 3],
+            most: [[f32::NEG_INFINITY; AT_ONCE]; 3],
+        };
+        for (k, corners) in triangles.iter().enumerate() {
+            eight.around.set(k, &Surroundings::new(*corners));
+            let [least, most] = corners_of_box(corners);
+            for axis in 0..3 {
+                eight.least[axis][k] = (least[axis] as f32).next_down();
+                eight.most[axis][k] = (most[axis] as f32).next_up();
+            }
+        }
+        eight
+    }
+}
+
+/// The number of triangles, eight at most, that are close to the first.
+fn close_together(triangles: &[Corners]) -> usize {
+    let around = |corners: &Corners| Surroundings::new(*corners);
+    let first = around(&triangles[0]);
+    let is_close = |corners: &&Corners| {
+        let other = around(corners);
+        let radii = f64::from(first.radius) + f64::from(other.radius);
+        (other.middle() - first.middle()).norm() <= CLOSE * radii
+    };
+    let others = triangles[1..].iter().take(AT_ONCE - 1);
+    1 + others.take_while(is_close).count()
+}
+
+/// The smallest and the largest corner of the box around some points.
+fn corners_of_box(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for point in points {
+        for axis in 0..3 {
+            corners[0][axis] = corners[0][axis].min(point[axis]);
+            corners[1][axis] = corners[1][axis].max(point[axis]);
+        }
+    }
+    corners
+}
+
+/// A search for the triangles near a place.
+struct Near<'a> {
+    wall: &'a WallEights,
+    place: &'a Vector3,
+    reach: f64,
+}
+
+impl NullaryFnOnce for Near<'_> {
+    type Output = Vec<(f64, u32)>;
+
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "several arrays side by side, lane by lane"
+    )]
+    #[inline(always)]
+    fn call(self) -> Vec<(f64, u32)> {
+        let Self { wall, place, reach } = self;
+        let mut found = Vec::new();
+        let low = place.add_scalar(-reach);
+        let high = place.add_scalar(reach);
+        for number in wall.tree.meeting(&low, &high) {
+            let eight = &wall.eights[number as usize];
+            let mut near = [true; AT_ONCE];
+            for axis in 0..3 {
+                for k in 0..AT_ONCE {
+                    near[k] &= (f64::from(eight.least[axis][k]) <= high[axis])
+                        & (f64::from(eight.most[axis][k]) >= low[axis]);
+                }
+            }
+            if bits(&near) == 0 {
+                continue;
+            }
+            let mut distances = [0.0; AT_ONCE];
+            for k in 0..AT_ONCE {
+                let around = eight.around.of(k);
+                distances[k] = around.least_distance(place);
+                near[k] &= !around.is_beyond(place, reach) & (distances[k] < reach);
+            }
+            let mut near = bits(&near);
+            while near != 0 {
+                let k = near.trailing_zeros();
+                near &= near - 1;
+                found.push((distances[k as usize], eight.first + k));
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn corner() -> impl Strategy<Value = [f64; 3]> {
+        prop::array::uniform3(-1.0..1.0)
+    }
+
+    /// A triangle of this size at a place.
+    fn triangle() -> impl Strategy<Value = Corners> {
+        (corner(), prop::array::uniform3(corner()), -6.0_f64..0.0).prop_map(
+            |(place, corners, octaves)| {
+                corners.map(|corner| [0, 1, 2].map(|k| place[k] + octaves.exp2() * corner[k]))
+            },
+        )
+    }
+
+    proptest! {
+        #[test]
+        fn the_same_triangles_as_one_by_one(
+            triangles in prop::collection::vec(triangle(), 1..100),
+            place in corner(), reach in 0.01..0.6,
+        ) {
+            let wall = WallEights::new(triangles.iter().copied());
+            let place = Vector3::from(place);
+            let bound = |(number, corners): (usize, &Corners)| {
+                let [least, most] = corners_of_box(corners);
+                let around = Surroundings::new(*corners);
+                let distance = around.least_distance(&place);
+                let meets = (0..3)
+                    .all(|k| least[k] <= place[k] + reach && most[k] >= place[k] - reach);
+                (meets && !around.is_beyond(&place, reach) && distance < reach)
+                    .then_some((distance.to_bits(), number as u32))
+            };
+            let wanted: Vec<_> = triangles.iter().enumerate().filter_map(bound).collect();
+            let near = Near { wall: &wall, place: &place, reach };
+            // Compiled for this processor, and for all of its kind.
+            for mut found in [wall.near(&place, reach), near.call()] {
+                found.sort_unstable_by_key(|(_, number)| *number);
+                let found = found.iter().map(|(least, number)| (least.to_bits(), *number));
+                prop_assert_eq!(found.collect::<Vec<_>>(), wanted.clone());
+            }
+        }
+    }
+}
