@@ -25,12 +25,18 @@ pub struct Nearest {
 
 impl Nearest {
     /// True if a point, given from the centre of a ball, is behind the plane of this wall by at
-    /// least `by`: the plane is taken to be nearer to the centre by 3 %.
+    /// least `by`: the plane is taken to be nearer to the centre by 3 %. `towards` is the direction
+    /// of this wall, a unit vector.
     #[inline(always)]
-    pub(super) fn hides(&self, centre: &Vector3, from_centre: &Vector3, by: f64) -> bool {
+    pub(super) fn hides(&self, towards: &Vector3, from_centre: &Vector3, by: f64) -> bool {
         const NEARER: f64 = 0.97;
-        let height = (self.point - centre).dot(from_centre) / self.distance;
-        height - by > NEARER * self.distance
+        towards.dot(from_centre) - by > NEARER * self.distance
+    }
+
+    /// The direction of this wall from the centre of a ball, a unit vector.
+    #[inline(always)]
+    pub(super) fn towards(&self, centre: &Vector3) -> Vector3 {
+        (self.point - centre) / self.distance
     }
 }
 

@@ -60,14 +60,14 @@ impl EightSurroundings {
         wall: &Nearest,
         centre: &Vector3,
     ) -> u8 {
-        let towards = (wall.point - centre) / wall.distance;
+        let towards = wall.towards(centre);
         let mut hidden = [false; AT_ONCE];
         for k in 0..AT_ONCE {
             let around = self.of(k);
             let before_middle = around.most_along(&towards);
             let from_centre = around.middle() - centre;
             hidden[k] =
-                (least[k] >= wall.distance) & wall.hides(centre, &from_centre, before_middle);
+                (least[k] >= wall.distance) & wall.hides(&towards, &from_centre, before_middle);
         }
         bits(&hidden)
     }

@@ -231,7 +231,7 @@ impl Walls<'_> {
         for k in 0..found.len() {
             let near = found[k];
             let from_centre = near.point - self.centre;
-            let hides = |wall: &Nearest| wall.hides(self.centre, &from_centre, 0.0);
+            let hides = |wall: &Nearest| wall.hides(&wall.towards(self.centre), &from_centre, 0.0);
             if !found[..kept].iter().any(hides) {
                 found[kept] = near;
                 kept += 1;
