@@ -52,10 +52,11 @@ pub mod internals {
         Begun, MOST_PACKINGS, NEAR_ENOUGH, Try, USUAL_FRACTION, judged, next_overlap, overlap_for,
     };
     pub use crate::front::halo::{Halo, Neighbours};
-    pub use crate::geometry::boundary::{Boundary, Nearest};
+    pub use crate::geometry::boundary::Boundary;
     pub use crate::geometry::depth_map::DepthMap;
     pub use crate::geometry::inside::{first_hit, is_inside};
     pub use crate::geometry::near_triangles::{NearTriangles, WallSearch};
+    pub use crate::geometry::nearest::Nearest;
     pub use crate::geometry::union::outer_pieces;
     pub use crate::grid::Grid;
     pub use crate::pack::settle::{Settled, SizeClasses, WallLists, WhenJammed, minimise_overlaps};

@@ -1,6 +1,7 @@
 //! The wall of the solid: its distance from a point, the side on which a point lies, and the parts
 //! that a ball would meet.
 
+use super::nearest::Nearest;
 use super::plane::{Plane, Surroundings};
 use super::tree::{Corners, TriangleTree, projection};
 use super::union::outer_pieces;
@@ -11,34 +12,6 @@ use dem_io::{Diagnostic, Result, Surface};
 
 /// Triangles farther than the nearest by less than this (local units) are as near.
 pub(crate) const AS_NEAR: f64 = 1e-9;
-
-/// The point of the surface nearest to some other point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Nearest {
-    /// Its position, in local units.
-    pub point: Vector3,
-    /// Its distance, in local units.
-    pub distance: f64,
-    /// The triangle of the wall on which it lies.
-    pub triangle: u32,
-}
-
-impl Nearest {
-    /// True if a point, given from the centre of a ball, is behind the plane of this wall by at
-    /// least `by`: the plane is taken to be nearer to the centre by 3 %. `towards` is the direction
-    /// of this wall, a unit vector.
-    #[inline(always)]
-    pub(super) fn hides(&self, towards: &Vector3, from_centre: &Vector3, by: f64) -> bool {
-        const NEARER: f64 = 0.97;
-        towards.dot(from_centre) - by > NEARER * self.distance
-    }
-
-    /// The direction of this wall from the centre of a ball, a unit vector.
-    #[inline(always)]
-    pub(super) fn towards(&self, centre: &Vector3) -> Vector3 {
-        (self.point - centre) / self.distance
-    }
-}
 
 /// The facets of a surface in a tree, for distance queries and rays.
 pub struct Boundary {
@@ -224,7 +197,7 @@ impl Boundary {
     /// A lower bound of the distance of a triangle of the wall from a point, if it is less than
     /// `reach` (local units).
     #[inline]
-    pub(crate) fn least_below(&self, triangle: u32, point: &Vector3, reach: f64) -> Option<f64> {
+    fn least_below(&self, triangle: u32, point: &Vector3, reach: f64) -> Option<f64> {
         let around = self.surroundings(triangle);
         if around.is_beyond(point, reach) {
             return None;
@@ -238,11 +211,11 @@ impl Boundary {
         self.surroundings(triangle).least_distance(point)
     }
 
-    /// Reads from each cache line of a triangle of the wall that will be measured soon, so that the
-    /// lines of several triangles are on their way at the same time.
+    /// Reads from a triangle of the wall that will be measured soon, so that several triangles are
+    /// on their way from memory at the same time.
     #[inline(always)]
     pub(super) fn fetch(&self, triangle: u32) {
-        self.planes[triangle as usize].touch_lines();
+        self.planes[triangle as usize].fetch();
     }
 
     /// The nearest point of one triangle of the wall.

@@ -1,8 +1,9 @@
 //! The triangles of the wall near a place, eight at a time, and the walls that a ball meets among
 //! them.
 
-use super::boundary::{Boundary, Nearest};
-use super::eight::{AT_ONCE, EightSurroundings, bits};
+use super::boundary::Boundary;
+use super::eight_triangles::{AT_ONCE, EightSurroundings, bits};
+use super::nearest::Nearest;
 use crate::spheres::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
@@ -26,7 +27,7 @@ struct EightTriangles {
 /// A triangle by the lower bound of its distance, in single precision, and then by its number: the
 /// bits of numbers that are not negative are in their order.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Ordered(u64);
+struct NearestFirst(u64);
 
 /// What a search for walls finds, with its work arrays.
 #[derive(Default)]
@@ -39,10 +40,9 @@ pub struct WallSearch {
     open: Vec<u8>,
 }
 
-impl Ordered {
-    /// `least` is not negative, but it may be -0.
-    fn new(least: f64, number: u32) -> Self {
-        let least = (least as f32).abs().to_bits();
+impl NearestFirst {
+    fn new((least, number): (f64, u32)) -> Self {
+        let least = (least as f32).to_bits();
         Self(u64::from(least) << 32 | u64::from(number))
     }
 
@@ -58,9 +58,8 @@ impl Ordered {
 impl NearTriangles {
     /// The triangles that come within `reach` (local units) of a place, or could.
     pub fn new(boundary: &Boundary, place: &Vector3, reach: f64) -> Self {
-        let near = boundary.bounds_near(place, reach).into_iter();
-        let ordered = near.map(|(least, number)| Ordered::new(least, number));
-        let mut near: Vec<Ordered> = ordered.collect();
+        let bounds = boundary.bounds_near(place, reach).into_iter();
+        let mut near: Vec<NearestFirst> = bounds.map(NearestFirst::new).collect();
         near.sort_unstable();
         let eights = near.chunks(AT_ONCE).map(|some| {
             let mut eight = EightTriangles {
@@ -68,10 +67,11 @@ impl NearTriangles {
                 least: [f32::INFINITY; AT_ONCE],
                 around: EightSurroundings::default(),
             };
-            for (k, near) in some.iter().enumerate() {
-                eight.numbers[k] = near.number();
-                eight.least[k] = near.least().next_down();
-                eight.around.set(k, boundary.surroundings(near.number()));
+            for (k, triangle) in some.iter().enumerate() {
+                let number = triangle.number();
+                eight.numbers[k] = number;
+                eight.least[k] = triangle.least().next_down();
+                eight.around.set(k, boundary.surroundings(number));
             }
             eight
         });
@@ -99,11 +99,11 @@ impl NearTriangles {
 
     /// The walls that a ball (centre, radius in local units) would meet, nearest first, 8 at most:
     /// the nearest points of triangles, except those behind the plane of a nearer wall. That plane
-    /// is taken to be nearer to the centre by 3 %, so that a smooth curved surface is one wall. What
-    /// is behind a wall that is left out is left out as well.
+    /// is taken to be nearer to the centre by 3 %, so that a smooth curved surface is one wall.
+    /// What is behind a wall that is left out is left out as well.
     ///
-    /// `moved` is the distance of the centre from the place. The triangle `first` is measured before
-    /// all others: many are then known to be hidden without being measured.
+    /// `moved` is the distance of the centre from the place. The triangle `first` is measured
+    /// before all others: many are then known to be hidden without being measured.
     pub fn walls(
         &self,
         boundary: &Boundary,
@@ -124,7 +124,7 @@ impl NearTriangles {
     }
 
     /// After [`NearTriangles::walls`]: the triangles that could be within `reach` of the ball's
-    /// centre, which is not more than its radius.
+    /// centre. `reach` is at most the radius of the ball.
     pub(crate) fn within<'a>(
         &'a self,
         reach: f64,
@@ -208,17 +208,15 @@ impl Walls<'_> {
     #[inline(always)]
     fn measure(&mut self, triangle: u32, from: usize) {
         let wall = self.boundary.nearest_on(triangle, self.centre);
-        if wall.distance >= self.radius || wall.distance <= 0.0 {
-            return;
-        }
-        let WallSearch { found, least, open } = &mut *self.search;
-        found.push(wall);
-        for k in from..open.len() {
-            if open[k] == 0 {
-                continue;
+        if wall.distance < self.radius && wall.distance > 0.0 {
+            let WallSearch { found, least, open } = &mut *self.search;
+            found.push(wall);
+            for k in from..open.len() {
+                if open[k] != 0 {
+                    let around = &self.near.eights[k].around;
+                    open[k] &= !around.hidden_behind(&least[k], &wall, self.centre);
+                }
             }
-            let around = &self.near.eights[k].around;
-            open[k] &= !around.hidden_behind(&least[k], &wall, self.centre);
         }
     }
 
@@ -238,5 +236,111 @@ impl Walls<'_> {
             }
         }
         found.truncate(kept.min(MOST));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::boundary::AS_NEAR;
+    use dem_io::surface::{ReadSettings, surface_from_stl};
+    use rand::{RngExt, SeedableRng};
+
+    /// The same, one triangle after the other.
+    fn walls_one_by_one(
+        boundary: &Boundary,
+        near: &NearTriangles,
+        (centre, radius): (&Vector3, f64),
+        first: Option<u32>,
+    ) -> Vec<Nearest> {
+        let mut found: Vec<Nearest> = Vec::new();
+        let others = near.numbers().filter(|number| first != Some(*number));
+        for number in first.into_iter().chain(others) {
+            let around = boundary.surroundings(number);
+            let least = around.least_distance(centre);
+            let is_hidden = |wall: &Nearest| {
+                let towards = wall.towards(centre);
+                let from_centre = around.middle() - centre;
+                let before_middle = around.most_along(&towards);
+                least >= wall.distance && wall.hides(&towards, &from_centre, before_middle)
+            };
+            if least < radius && !found.iter().any(is_hidden) {
+                let wall = boundary.nearest_on(number, centre);
+                found.extend((wall.distance < radius && wall.distance > 0.0).then_some(wall));
+            }
+        }
+        found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let mut kept: Vec<Nearest> = Vec::new();
+        for wall in found {
+            let from_centre = wall.point - centre;
+            let hides = |near: &Nearest| near.hides(&near.towards(centre), &from_centre, 0.0);
+            if !kept.iter().any(hides) {
+                kept.push(wall);
+            }
+        }
+        kept.truncate(MOST);
+        kept
+    }
+
+    #[test]
+    fn the_same_walls_as_one_by_one() -> dem_io::Result<()> {
+        let shape = |stl: &[u8]| {
+            let settings = ReadSettings {
+                unit_m: 1e-3,
+                scale: 1.0,
+                fill_holes: false,
+            };
+            surface_from_stl(stl, "shape", settings)
+        };
+        let mut random = rand::rngs::ChaCha8Rng::seed_from_u64(8);
+        let (mut several, mut hidden, mut most) = (0, 0, 0);
+        for surface in [
+            shape(include_bytes!("../../../../data/shapes/torus.stl"))?,
+            shape(include_bytes!("../../../../data/shapes/rock.stl"))?,
+            shape(include_bytes!("../../../../data/shapes/hollow-pair.stl"))?,
+        ] {
+            let boundary = Boundary::new(&surface)?;
+            let mut search = WallSearch::default();
+            for _ in 0..500 {
+                let extent = surface.extent();
+                let centre = Vector3::from(extent.map(|most| random.random_range(0.0..most)));
+                let radius = random.random_range(0.01..0.3) * extent[0];
+                let moved = random.random_range(0.0..0.1) * extent[0];
+                let place = centre + moved * Vector3::new(0.6, 0.0, -0.8);
+                let near = NearTriangles::new(&boundary, &place, radius + moved);
+                for first in [None, near.numbers().last()] {
+                    let wanted = walls_one_by_one(&boundary, &near, (&centre, radius), first);
+                    // Compiled for all processors of its kind, and for this one.
+                    let plain = Walls {
+                        near: &near,
+                        boundary: &boundary,
+                        centre: &centre,
+                        radius,
+                        moved,
+                        first,
+                        search: &mut search,
+                    };
+                    plain.call();
+                    assert_eq!(search.found, wanted);
+                    near.walls(&boundary, (&centre, radius), moved, first, &mut search);
+                    assert_eq!(search.found, wanted);
+                    several += usize::from(wanted.len() > 1);
+                    most += usize::from(wanted.len() == MOST);
+                    hidden += near.count - wanted.len();
+                    if let Some(nearest) = wanted.first() {
+                        let reach = nearest.distance + AS_NEAR;
+                        let within: Vec<u32> = near.within(reach, &search).collect();
+                        let is_within = |t: &u32| boundary.nearest_on(*t, &centre).distance < reach;
+                        let mut all = near.numbers().filter(is_within);
+                        assert!(all.all(|number| within.contains(&number)));
+                    }
+                }
+            }
+        }
+        assert!(
+            several > 100 && hidden > 10_000 && most > 10,
+            "{several} {hidden} {most}"
+        );
+        Ok(())
     }
 }

@@ -40,9 +40,9 @@ impl Plane {
         }
     }
 
-    /// Reads a number from each of its cache lines.
+    /// Reads from its parts, so that its cache lines are fetched.
     #[inline(always)]
-    pub(super) fn touch_lines(&self) {
+    pub(super) fn fetch(&self) {
         black_box(self.corners[0][0]);
         black_box(self.normal.x);
         black_box(self.along_v.z);

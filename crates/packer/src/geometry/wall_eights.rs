@@ -1,6 +1,6 @@
 //! The triangles of the wall, eight at a time in their order, to find those near a place.
 
-use super::eight::{AT_ONCE, EightSurroundings, bits};
+use super::eight_triangles::{AT_ONCE, EightSurroundings, bits};
 use super::plane::Surroundings;
 use super::tree::{BoxTree, Corners};
 use crate::spheres::Vector3;
@@ -21,10 +21,9 @@ struct EightBoxes {
     /// The number of the first; the others follow it.
     first: u32,
     around: EightSurroundings,
-    /// The least and the most of x, of y and of z, rounded outwards. A box that holds nothing has a
-    /// least that is larger than its most.
-    least: [[f32; AT_ONCE]; 3],
-    most: [[f32; AT_ONCE]; 3],
+    /// The least and the most of x, of y and of z. NaN, near to nothing, where there is no triangle.
+    least: [[f64; AT_ONCE]; 3],
+    most: [[f64; AT_ONCE]; 3],
 }
 
 impl WallEights {
@@ -61,15 +60,15 @@ impl EightBoxes {
         let mut eight = Self {
             first,
             around: EightSurroundings::default(),
-            least: [[f32::INFINITY; AT_ONCE]; 3],
-            most: [[f32::NEG_INFINITY; AT_ONCE]; 3],
+            least: [[f64::NAN; AT_ONCE]; 3],
+            most: [[f64::NAN; AT_ONCE]; 3],
         };
         for (k, corners) in triangles.iter().enumerate() {
             eight.around.set(k, &Surroundings::new(*corners));
             let [least, most] = corners_of_box(corners);
             for axis in 0..3 {
-                eight.least[axis][k] = (least[axis] as f32).next_down();
-                eight.most[axis][k] = (most[axis] as f32).next_up();
+                eight.least[axis][k] = least[axis];
+                eight.most[axis][k] = most[axis];
             }
         }
         eight
@@ -126,8 +125,8 @@ impl NullaryFnOnce for Near<'_> {
             let mut near = [true; AT_ONCE];
             for axis in 0..3 {
                 for k in 0..AT_ONCE {
-                    near[k] &= (f64::from(eight.least[axis][k]) <= high[axis])
-                        & (f64::from(eight.most[axis][k]) >= low[axis]);
+                    near[k] &=
+                        (eight.least[axis][k] <= high[axis]) & (eight.most[axis][k] >= low[axis]);
                 }
             }
             if bits(&near) == 0 {
@@ -172,10 +171,16 @@ mod tests {
         #[test]
         fn the_same_triangles_as_one_by_one(
             triangles in prop::collection::vec(triangle(), 1..100),
-            place in corner(), reach in 0.01..0.6,
+            place in corner(), reach in prop_oneof![0.01_f64..0.6, Just(f64::INFINITY)],
+            // Beside a box, nearer than single precision could tell.
+            beside in prop::option::of((prop::sample::select(vec![-1e-9, 0.0, 1e-9]), 0..3_usize)),
         ) {
             let wall = WallEights::new(triangles.iter().copied());
-            let place = Vector3::from(place);
+            let mut place = Vector3::from(place);
+            if let Some((by, axis)) = beside && f64::is_finite(reach) {
+                place = Vector3::from(triangles[0][0]);
+                place[axis] = corners_of_box(&triangles[0])[1][axis] + reach + by;
+            }
             let bound = |(number, corners): (usize, &Corners)| {
                 let [least, most] = corners_of_box(corners);
                 let around = Surroundings::new(*corners);

@@ -38,8 +38,8 @@ pub(super) fn find_inside(
             }
         }
     }
-    let sure = |(i, inside): (usize, Option<bool>)| inside.unwrap_or_else(|| of_ray(i));
-    inside.into_par_iter().enumerate().map(sure).collect()
+    let or_by_ray = |(i, inside): (usize, Option<bool>)| inside.unwrap_or_else(|| of_ray(i));
+    inside.into_par_iter().enumerate().map(or_by_ray).collect()
 }
 
 #[cfg(test)]
@@ -48,45 +48,49 @@ mod tests {
     use dem_io::surface::{ReadSettings, surface_from_stl};
     use rand::{RngExt, SeedableRng};
 
-    /// Spheres inside and outside a ring, some of them on its wall, before and after they have
-    /// moved by up to the skin.
+    /// Spheres inside and outside a ring, and a ball with a cavity beside another ball, some of them
+    /// on the wall, before and after they have moved by up to the skin.
     #[test]
     fn spheres_are_on_the_side_that_a_ray_finds() -> dem_io::Result<()> {
-        const RADIUS: f64 = 0.03;
         const SKIN: f64 = 0.03;
-        let stl = include_bytes!("../../../../../data/shapes/torus.stl");
-        let settings = ReadSettings {
-            unit_m: 1e-3,
-            scale: 1.0,
-            fill_holes: false,
-        };
-        let surface = surface_from_stl(stl, "torus", settings)?;
-        let boundary = Boundary::new(&surface)?;
         let mut random = rand::rngs::ChaCha8Rng::seed_from_u64(7);
-        let extent = surface.extent();
-        let mut sphere = |_| {
-            let [x, y, z] = extent.map(|most| random.random_range(-0.1..most + 0.1));
-            [x, y, z, RADIUS]
-        };
-        let mut spheres: Vec<ReducedSphere> = (0..20_000).map(&mut sphere).collect();
-        let walls = WallLists::new(&boundary, &spheres, 1.0, SKIN);
-        for moved in [false, true] {
-            if moved {
-                for sphere in &mut spheres {
-                    sphere[0] += SKIN * random.random_range(-1.0..1.0);
-                }
-            }
-            let near = NeighbourLists::new(&spheres, SKIN);
-            let inside = find_inside(&boundary, &spheres, &near, &walls);
-            let is_wrong = |(sphere, inside): &(&ReducedSphere, &bool)| {
-                is_inside(&boundary, &centre_of(sphere)) != **inside
+        for stl in [
+            &include_bytes!("../../../../../data/shapes/torus.stl")[..],
+            &include_bytes!("../../../../../data/shapes/hollow-pair.stl")[..],
+        ] {
+            let settings = ReadSettings {
+                unit_m: 1e-3,
+                scale: 1.0,
+                fill_holes: false,
             };
-            assert_eq!(spheres.iter().zip(&inside).filter(is_wrong).count(), 0);
-            assert!(inside.iter().filter(|inside| **inside).count() > 400);
-            assert!(inside.iter().filter(|inside| !**inside).count() > 400);
-            // Most are not asked a ray.
-            let clearances = walls.clearances(&spheres);
-            assert!(clearances.iter().filter(|wall| !wall.is_near).count() > 1000);
+            let surface = surface_from_stl(stl, "shape", settings)?;
+            let boundary = Boundary::new(&surface)?;
+            let extent = surface.extent();
+            let mut sphere = |_| {
+                let [x, y, z] = extent.map(|most| random.random_range(-0.1..most + 0.1));
+                [x, y, z, 0.03]
+            };
+            let mut spheres: Vec<ReducedSphere> = (0..20_000).map(&mut sphere).collect();
+            let walls = WallLists::new(&boundary, &spheres, 1.0, SKIN);
+            for moved in [false, true] {
+                if moved {
+                    for sphere in &mut spheres {
+                        sphere[0] += SKIN * random.random_range(-1.0..1.0);
+                    }
+                }
+                let near = NeighbourLists::new(&spheres, SKIN);
+                let inside = find_inside(&boundary, &spheres, &near, &walls);
+                let is_wrong = |(sphere, inside): &(&ReducedSphere, &bool)| {
+                    is_inside(&boundary, &centre_of(sphere)) != **inside
+                };
+                assert_eq!(spheres.iter().zip(&inside).filter(is_wrong).count(), 0);
+                // Of both kinds, and most are not near the wall.
+                let number_inside = inside.iter().filter(|inside| **inside).count();
+                assert!((400..19_600).contains(&number_inside), "{number_inside}");
+                let clearances = walls.clearances(&spheres);
+                let far = clearances.iter().filter(|wall| !wall.is_near).count();
+                assert!(far > 10_000, "{far}");
+            }
         }
         Ok(())
     }

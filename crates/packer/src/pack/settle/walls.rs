@@ -219,9 +219,9 @@ impl NearWall {
             return;
         }
         self.lasts_squared = lasts * lasts;
-        let ball = (&centre, reach);
+        let reached = (&centre, reach);
         self.triangles
-            .walls(boundary, ball, moved, Some(self.nearest), search);
+            .walls(boundary, reached, moved, Some(self.nearest), search);
         let nearest = search.found.first();
         self.nearest = nearest.map_or(self.nearest, |wall| wall.triangle);
         // A centre that was pushed through the wall is pulled back.

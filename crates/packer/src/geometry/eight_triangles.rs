@@ -1,7 +1,7 @@
-//! Eight triangles at once: lower bounds of their distances from a point, and which of them a nearer
-//! wall hides. The compiler makes each loop over eight into a few instructions.
+//! Eight triangles at once: lower bounds of their distances from a point, and which of them a
+//! nearer wall hides. The compiler makes each loop over eight into a few instructions.
 
-use super::boundary::Nearest;
+use super::nearest::Nearest;
 use super::plane::Surroundings;
 use crate::spheres::Vector3;
 
@@ -18,6 +18,7 @@ pub(super) struct EightSurroundings {
 }
 
 impl EightSurroundings {
+    /// Sets those of triangle `k` of the eight.
     pub(super) fn set(&mut self, k: usize, around: &Surroundings) {
         for axis in 0..3 {
             self.middle[axis][k] = around.middle[axis];
@@ -27,6 +28,7 @@ impl EightSurroundings {
         self.half_height[k] = around.half_height;
     }
 
+    /// Those of triangle `k` of the eight.
     #[inline(always)]
     pub(super) fn of(&self, k: usize) -> Surroundings {
         Surroundings {

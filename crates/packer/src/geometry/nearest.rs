@@ -1,0 +1,31 @@
+//! The point of the wall nearest to another point, and what it hides.
+
+use crate::spheres::Vector3;
+
+/// The point of the surface nearest to some other point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Its position, in local units.
+    pub point: Vector3,
+    /// Its distance, in local units.
+    pub distance: f64,
+    /// The triangle of the wall on which it lies.
+    pub triangle: u32,
+}
+
+impl Nearest {
+    /// True if a point, given from the centre of a ball, is behind the plane of this wall by at
+    /// least `by`: the plane is taken to be nearer to the centre by 3 %. `towards` is the direction
+    /// of this wall, a unit vector.
+    #[inline(always)]
+    pub(super) fn hides(&self, towards: &Vector3, from_centre: &Vector3, by: f64) -> bool {
+        const NEARER: f64 = 0.97;
+        towards.dot(from_centre) - by > NEARER * self.distance
+    }
+
+    /// The direction of this wall from the centre of a ball, a unit vector.
+    #[inline(always)]
+    pub(super) fn towards(&self, centre: &Vector3) -> Vector3 {
+        (self.point - centre) / self.distance
+    }
+}
