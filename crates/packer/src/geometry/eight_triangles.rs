@@ -19,6 +19,7 @@ pub(super) struct EightSurroundings {
 
 impl EightSurroundings {
     /// Sets those of triangle `k` of the eight.
+    #[inline(always)]
     pub(super) fn set(&mut self, k: usize, around: &Surroundings) {
         for axis in 0..3 {
             self.middle[axis][k] = around.middle[axis];

@@ -11,18 +11,7 @@ use pulp::{Arch, NullaryFnOnce};
 const MOST: usize = 8;
 
 /// The triangles of the wall near a place, nearest first.
-pub struct NearTriangles {
-    count: usize,
-    eights: Vec<EightTriangles>,
-}
-
-/// Eight of them; the last ones may hold fewer.
-struct EightTriangles {
-    numbers: [u32; AT_ONCE],
-    /// Lower bounds of their distances from the place. Infinite where there is no triangle.
-    least: [f32; AT_ONCE],
-    around: EightSurroundings,
-}
+pub struct NearTriangles(Vec<NearestFirst>);
 
 /// A triangle by the lower bound of its distance, in single precision, and then by its number: the
 /// bits of numbers that are not negative are in their order.
@@ -34,7 +23,9 @@ struct NearestFirst(u64);
 pub struct WallSearch {
     /// The walls, nearest first.
     pub found: Vec<Nearest>,
-    /// Lower bounds of the distances of triangles from the ball's centre, for each eight.
+    /// The surroundings of the triangles in the order of their list, for each eight.
+    around: Vec<EightSurroundings>,
+    /// Lower bounds of their distances from the ball's centre.
     least: Vec<[f64; AT_ONCE]>,
     /// Those that could be walls and were not examined yet: one bit each, for each eight.
     open: Vec<u8>,
@@ -46,8 +37,10 @@ impl NearestFirst {
         Self(u64::from(least) << 32 | u64::from(number))
     }
 
-    fn least(self) -> f32 {
-        f32::from_bits((self.0 >> 32) as u32)
+    /// The lower bound, rounded down.
+    #[inline(always)]
+    fn least(self) -> f64 {
+        f32::from_bits((self.0 >> 32) as u32).next_down().into()
     }
 
     fn number(self) -> u32 {
@@ -61,40 +54,23 @@ impl NearTriangles {
         let bounds = boundary.bounds_near(place, reach).into_iter();
         let mut near: Vec<NearestFirst> = bounds.map(NearestFirst::new).collect();
         near.sort_unstable();
-        let eights = near.chunks(AT_ONCE).map(|some| {
-            let mut eight = EightTriangles {
-                numbers: [0; AT_ONCE],
-                least: [f32::INFINITY; AT_ONCE],
-                around: EightSurroundings::default(),
-            };
-            for (k, triangle) in some.iter().enumerate() {
-                let number = triangle.number();
-                eight.numbers[k] = number;
-                eight.least[k] = triangle.least().next_down();
-                eight.around.set(k, boundary.surroundings(number));
-            }
-            eight
-        });
-        Self {
-            count: near.len(),
-            eights: eights.collect(),
-        }
+        near.shrink_to_fit();
+        Self(near)
     }
 
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.count
+        self.0.len()
     }
 
     /// Their numbers, nearest first.
     pub fn numbers(&self) -> impl Iterator<Item = u32> {
-        let numbers = self.eights.iter().flat_map(|eight| eight.numbers);
-        numbers.take(self.count)
+        self.0.iter().map(|triangle| triangle.number())
     }
 
     /// A lower bound of the distance of the wall from the place; none if there are no triangles.
     pub(crate) fn least_distance(&self) -> Option<f64> {
-        Some(f64::from(self.eights.first()?.least[0]))
+        Some(self.0.first()?.least())
     }
 
     /// The walls that a ball (centre, radius in local units) would meet, nearest first, 8 at most:
@@ -130,10 +106,9 @@ impl NearTriangles {
         reach: f64,
         search: &'a WallSearch,
     ) -> impl Iterator<Item = u32> + 'a {
-        let eights = self.eights.iter().zip(&search.least);
-        let numbered = eights.flat_map(|(eight, least)| eight.numbers.into_iter().zip(*least));
-        let within = move |(number, least): (u32, f64)| (least <= reach).then_some(number);
-        numbered.take(self.count).filter_map(within)
+        let bounds = search.least.as_flattened();
+        let within = move |(number, least): (u32, &f64)| (*least <= reach).then_some(number);
+        self.numbers().zip(bounds).filter_map(within)
     }
 }
 
@@ -158,11 +133,11 @@ impl NullaryFnOnce for Walls<'_> {
         if let Some(first) = self.first {
             self.measure(first, 0);
         }
-        for (k, eight) in self.near.eights.iter().enumerate() {
-            while let Some(open) = self.search.open.get(k).filter(|open| **open != 0) {
-                let lane = open.trailing_zeros() as usize;
+        for k in 0..self.search.open.len() {
+            while self.search.open[k] != 0 {
+                let open = self.search.open[k];
                 self.search.open[k] &= open - 1;
-                let number = eight.numbers[lane];
+                let number = self.near.0[AT_ONCE * k + open.trailing_zeros() as usize].number();
                 if self.first != Some(number) {
                     self.measure(number, k);
                 }
@@ -174,32 +149,32 @@ impl NullaryFnOnce for Walls<'_> {
 
 impl Walls<'_> {
     /// Finds the triangles that could be within the radius.
-    #[expect(
-        clippy::needless_range_loop,
-        reason = "several arrays side by side, lane by lane"
-    )]
     #[inline(always)]
     fn find_open(&mut self) {
-        let WallSearch { least, open, .. } = &mut *self.search;
-        least.clear();
-        open.clear();
+        let search = &mut *self.search;
+        search.around.clear();
+        search.least.clear();
+        search.open.clear();
         let reach = self.radius + self.moved;
-        for eight in &self.near.eights {
-            if f64::from(eight.least[0]) >= reach {
+        for triangles in self.near.0.chunks(AT_ONCE) {
+            if triangles[0].least() >= reach {
                 break;
             }
-            let distances = eight.around.least_distances(self.centre);
-            let mut may_reach = [false; AT_ONCE];
-            for k in 0..AT_ONCE {
-                may_reach[k] = (f64::from(eight.least[k]) < reach) & (distances[k] < self.radius);
+            let mut around = EightSurroundings::default();
+            for (k, triangle) in triangles.iter().enumerate() {
+                around.set(k, self.boundary.surroundings(triangle.number()));
             }
-            least.push(distances);
-            open.push(bits(&may_reach));
-            for k in 0..AT_ONCE {
+            let least = around.least_distances(self.centre);
+            let mut may_reach = [false; AT_ONCE];
+            for (k, triangle) in triangles.iter().enumerate() {
+                may_reach[k] = (triangle.least() < reach) & (least[k] < self.radius);
                 if may_reach[k] {
-                    self.boundary.fetch(eight.numbers[k]);
+                    self.boundary.fetch(triangle.number());
                 }
             }
+            search.around.push(around);
+            search.least.push(least);
+            search.open.push(bits(&may_reach));
         }
     }
 
@@ -209,12 +184,16 @@ impl Walls<'_> {
     fn measure(&mut self, triangle: u32, from: usize) {
         let wall = self.boundary.nearest_on(triangle, self.centre);
         if wall.distance < self.radius && wall.distance > 0.0 {
-            let WallSearch { found, least, open } = &mut *self.search;
+            let WallSearch {
+                found,
+                around,
+                least,
+                open,
+            } = &mut *self.search;
             found.push(wall);
             for k in from..open.len() {
                 if open[k] != 0 {
-                    let around = &self.near.eights[k].around;
-                    open[k] &= !around.hidden_behind(&least[k], &wall, self.centre);
+                    open[k] &= !around[k].hidden_behind(&least[k], &wall, self.centre);
                 }
             }
         }
@@ -326,7 +305,7 @@ mod tests {
                     assert_eq!(search.found, wanted);
                     several += usize::from(wanted.len() > 1);
                     most += usize::from(wanted.len() == MOST);
-                    hidden += near.count - wanted.len();
+                    hidden += near.count() - wanted.len();
                     if let Some(nearest) = wanted.first() {
                         let reach = nearest.distance + AS_NEAR;
                         let within: Vec<u32> = near.within(reach, &search).collect();
