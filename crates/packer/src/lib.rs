@@ -55,8 +55,7 @@ pub mod internals {
     pub use crate::geometry::boundary::Boundary;
     pub use crate::geometry::depth_map::DepthMap;
     pub use crate::geometry::inside::{first_hit, is_inside};
-    pub use crate::geometry::near_triangles::{NearTriangles, WallSearch};
-    pub use crate::geometry::nearest::Nearest;
+    pub use crate::geometry::near_triangles::NearTriangles;
     pub use crate::geometry::union::outer_pieces;
     pub use crate::grid::Grid;
     pub use crate::pack::settle::{Settled, SizeClasses, WallLists, WhenJammed, minimise_overlaps};

@@ -20,9 +20,9 @@ struct NearestFirst(u64);
 
 /// What a search for walls finds, with its work arrays.
 #[derive(Default)]
-pub struct WallSearch {
+pub(crate) struct WallSearch {
     /// The walls, nearest first.
-    pub found: Vec<Nearest>,
+    pub(crate) found: Vec<Nearest>,
     /// The surroundings of the triangles in the order of their list, for each eight.
     around: Vec<EightSurroundings>,
     /// Lower bounds of their distances from the ball's centre.
@@ -50,7 +50,7 @@ impl NearestFirst {
 
 impl NearTriangles {
     /// The triangles that come within `reach` (local units) of a place, or could.
-    pub fn new(boundary: &Boundary, place: &Vector3, reach: f64) -> Self {
+    pub(crate) fn new(boundary: &Boundary, place: &Vector3, reach: f64) -> Self {
         let bounds = boundary.bounds_near(place, reach).into_iter();
         let mut near: Vec<NearestFirst> = bounds.map(NearestFirst::new).collect();
         near.sort_unstable();
@@ -80,7 +80,7 @@ impl NearTriangles {
     ///
     /// `moved` is the distance of the centre from the place. The triangle `first` is measured
     /// before all others: many are then known to be hidden without being measured.
-    pub fn walls(
+    pub(crate) fn walls(
         &self,
         boundary: &Boundary,
         (centre, radius): (&Vector3, f64),
@@ -303,6 +303,9 @@ mod tests {
                     assert_eq!(search.found, wanted);
                     near.walls(&boundary, (&centre, radius), moved, first, &mut search);
                     assert_eq!(search.found, wanted);
+                    let nearest = boundary.nearest(&centre, radius);
+                    let distance = |wall: &Nearest| wall.distance;
+                    assert_eq!(wanted.first().map(distance), nearest.as_ref().map(distance));
                     several += usize::from(wanted.len() > 1);
                     most += usize::from(wanted.len() == MOST);
                     hidden += near.count() - wanted.len();

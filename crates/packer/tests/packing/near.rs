@@ -3,10 +3,7 @@
 use crate::helpers::solids::{
     between, icosphere, point_between, random_numbers, surface_of, torus,
 };
-use dem_pack::internals::{
-    Boundary, Grid, NearTriangles, Nearest, ReducedSphere, SizeClasses, Vector3, WallLists,
-    WallSearch,
-};
+use dem_pack::internals::{Boundary, Grid, ReducedSphere, SizeClasses, Vector3, WallLists};
 use proptest::prelude::*;
 
 /// Spheres in a box whose edges are 1, 2 and 3, of radii that differ by up to the factor `ratio`.
@@ -120,48 +117,6 @@ fn assert_lists_are_complete(
         assert!(found.is_sorted_by(|a, b| a < b), "one twice");
     }
     assert!(most > 3, "{most}");
-}
-
-/// The walls that a ball meets are nearest points of triangles, nearest first, none behind the plane
-/// of another; the first is the nearest of all. So they are from lists made elsewhere, whichever
-/// triangle is measured first.
-#[test]
-fn walls_are_the_nearest_points_that_no_other_wall_hides() {
-    let mut random = random_numbers(6);
-    let mut several = 0;
-    for facets in [
-        torus(20.0, 5.0, 60, 24),
-        icosphere(3, &|d| 5.0 + (4.0 * d[0]).sin()),
-    ] {
-        let (surface, boundary) = surface_of(&facets);
-        let mut search = WallSearch::default();
-        for _ in 0..500 {
-            let centre = Vector3::from(point_between(&mut random, [0.0; 3], surface.extent()));
-            let radius = between(&mut random, 0.05, 0.5);
-            let moved = between(&mut random, 0.0, 0.2);
-            let nearest = boundary.nearest(&centre, radius).map(|wall| wall.distance);
-            for moved in [0.0, moved] {
-                let place = centre + moved * Vector3::new(0.6, 0.0, -0.8);
-                let near = NearTriangles::new(&boundary, &place, radius + moved);
-                for first in [None, near.numbers().last()] {
-                    near.walls(&boundary, (&centre, radius), moved, first, &mut search);
-                    let walls = &search.found;
-                    assert_eq!(walls.first().map(|wall| wall.distance), nearest);
-                    for (k, wall) in walls.iter().enumerate() {
-                        assert_eq!(*wall, boundary.nearest_on(wall.triangle, &centre));
-                        let hides = |nearer: &Nearest| {
-                            let height = (nearer.point - centre).dot(&(wall.point - centre));
-                            height > 0.97 * nearer.distance * nearer.distance * (1.0 + 1e-12)
-                        };
-                        assert!(!walls[..k].iter().any(hides));
-                        assert!(k == 0 || walls[k - 1].distance <= wall.distance);
-                    }
-                    several += usize::from(walls.len() > 1);
-                }
-            }
-        }
-    }
-    assert!(several > 100, "{several}");
 }
 
 fn near_one_by_one(boundary: &Boundary, point: &Vector3, reach: f64) -> Vec<u32> {
