@@ -127,7 +127,7 @@ impl Assembly<'_> {
         let order_at = |place: &Vector3| (place - centre_of(initial)).dot(&from_seed);
         let mut least = best.as_ref().map_or(f64::INFINITY, order_at);
         for wall in &walls.found {
-            let towards = (wall.point - halo.centre) / wall.distance;
+            let towards = wall.towards(&halo.centre);
             for j in 0..halo.neighbours() {
                 let Some(places) =
                     halo.wall_corners(j, &towards, wall.distance - self.wall_clearance(radius))

@@ -62,10 +62,11 @@ impl Boundary {
             union = None;
         }
         let wall = union.as_ref().unwrap_or(&facets);
+        let surroundings: Vec<Surroundings> = wall.all().map(Surroundings::new).collect();
         Ok(Self {
             planes: wall.all().map(Plane::new).collect(),
-            surroundings: wall.all().map(Surroundings::new).collect(),
-            eights: WallEights::new(wall.all()),
+            eights: WallEights::new(wall.all(), &surroundings),
+            surroundings,
             facets,
             union,
         })

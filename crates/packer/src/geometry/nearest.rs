@@ -23,9 +23,10 @@ impl Nearest {
         towards.dot(from_centre) - by > NEARER * self.distance
     }
 
-    /// The direction of this wall from the centre of a ball, a unit vector.
+    /// The direction of this wall from the centre of a ball: a unit vector if the distance is
+    /// measured from there.
     #[inline(always)]
-    pub(super) fn towards(&self, centre: &Vector3) -> Vector3 {
+    pub(crate) fn towards(&self, centre: &Vector3) -> Vector3 {
         (self.point - centre) / self.distance
     }
 }

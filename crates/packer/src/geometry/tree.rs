@@ -1,6 +1,7 @@
 //! Triangles in a tree of boxes. The only module of this crate that uses parry3d.
 
 use crate::spheres::Vector3;
+use dem_io::Bounds;
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
@@ -50,8 +51,7 @@ impl TriangleTree {
     }
 
     fn in_box(&self, query: Aabb) -> impl Iterator<Item = u32> + '_ {
-        let query = BvhNode::leaf(query, 0);
-        self.0.bvh().leaves(move |node| node.intersects(&query))
+        in_box(self.0.bvh(), query)
     }
 
     /// The triangles whose boxes a ray passes through.
@@ -106,21 +106,24 @@ impl TriangleTree {
 pub(super) struct BoxTree(Bvh);
 
 impl BoxTree {
-    /// The tree over boxes given by their smallest and largest corners.
-    pub(super) fn new(boxes: impl Iterator<Item = [[f64; 3]; 2]>) -> Self {
-        let boxes = boxes.map(|[least, most]| Aabb::new(least.into(), most.into()));
+    /// The tree over these boxes; faster to look into than that of `dem_io`.
+    pub(super) fn new(boxes: &[Bounds]) -> Self {
+        let boxes = boxes
+            .iter()
+            .map(|bounds| Aabb::new(bounds.low.into(), bounds.high.into()));
         Self(Bvh::from_iter(BvhBuildStrategy::Binned, boxes.enumerate()))
     }
 
-    /// The boxes that meet the box with these corners.
-    pub(super) fn meeting(
-        &self,
-        least: &Vector3,
-        most: &Vector3,
-    ) -> impl Iterator<Item = u32> + '_ {
-        let query = BvhNode::leaf(Aabb::new(to_parry(least), to_parry(most)), 0);
-        self.0.leaves(move |node| node.intersects(&query))
+    /// The boxes that meet `bounds`.
+    pub(super) fn meeting(&self, bounds: &Bounds) -> impl Iterator<Item = u32> + '_ {
+        in_box(&self.0, Aabb::new(bounds.low.into(), bounds.high.into()))
     }
+}
+
+/// The leaves whose boxes meet that of the query.
+fn in_box(tree: &Bvh, query: Aabb) -> impl Iterator<Item = u32> + '_ {
+    let query = BvhNode::leaf(query, 0);
+    tree.leaves(move |node| node.intersects(&query))
 }
 
 /// The point of a triangle that is nearest to `point`, and its distance.

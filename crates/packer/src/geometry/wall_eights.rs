@@ -4,6 +4,7 @@ use super::eight_triangles::{AT_ONCE, EightSurroundings, bits};
 use super::plane::Surroundings;
 use super::tree::{BoxTree, Corners};
 use crate::spheres::Vector3;
+use dem_io::Bounds;
 use pulp::{Arch, NullaryFnOnce};
 
 /// Distance of a triangle from the first of its eight, in sums of their radii, up to which it is
@@ -27,20 +28,25 @@ struct EightBoxes {
 }
 
 impl WallEights {
-    pub(super) fn new(triangles: impl Iterator<Item = Corners>) -> Self {
-        let triangles: Vec<Corners> = triangles.collect();
-        let (mut eights, mut boxes) = (Vec::new(), Vec::new());
-        let mut left = &triangles[..];
-        while !left.is_empty() {
-            let (eight, others) = left.split_at(close_together(left));
-            let first = (triangles.len() - left.len()) as u32;
-            eights.push(EightBoxes::new(first, eight));
-            boxes.push(corners_of_box(eight.as_flattened()));
-            left = others;
+    /// Of triangles given by their corners, with the surroundings of each.
+    pub(super) fn new(
+        triangles: impl Iterator<Item = Corners>,
+        surroundings: &[Surroundings],
+    ) -> Self {
+        let boxes: Vec<Bounds> = triangles.map(Bounds::of).collect();
+        let mut eights = Vec::new();
+        let mut around_eights = Vec::new();
+        let mut first = 0;
+        while first < boxes.len() {
+            let end = first + close_together(&surroundings[first..]);
+            let (boxes, surroundings) = (&boxes[first..end], &surroundings[first..end]);
+            eights.push(EightBoxes::new(first as u32, boxes, surroundings));
+            around_eights.push(boxes.iter().fold(Bounds::EMPTY, |all, one| all.with(one)));
+            first = end;
         }
         Self {
             eights,
-            tree: BoxTree::new(boxes.into_iter()),
+            tree: BoxTree::new(&around_eights),
         }
     }
 
@@ -56,19 +62,18 @@ impl WallEights {
 }
 
 impl EightBoxes {
-    fn new(first: u32, triangles: &[Corners]) -> Self {
+    fn new(first: u32, boxes: &[Bounds], surroundings: &[Surroundings]) -> Self {
         let mut eight = Self {
             first,
             around: EightSurroundings::default(),
             least: [[f64::NAN; AT_ONCE]; 3],
             most: [[f64::NAN; AT_ONCE]; 3],
         };
-        for (k, corners) in triangles.iter().enumerate() {
-            eight.around.set(k, &Surroundings::new(*corners));
-            let [least, most] = corners_of_box(corners);
+        for (k, (around_triangle, surroundings)) in boxes.iter().zip(surroundings).enumerate() {
+            eight.around.set(k, surroundings);
             for axis in 0..3 {
-                eight.least[axis][k] = least[axis];
-                eight.most[axis][k] = most[axis];
+                eight.least[axis][k] = around_triangle.low[axis];
+                eight.most[axis][k] = around_triangle.high[axis];
             }
         }
         eight
@@ -76,28 +81,14 @@ impl EightBoxes {
 }
 
 /// The number of triangles, eight at most, that are close to the first.
-fn close_together(triangles: &[Corners]) -> usize {
-    let around = |corners: &Corners| Surroundings::new(*corners);
-    let first = around(&triangles[0]);
-    let is_close = |corners: &&Corners| {
-        let other = around(corners);
+fn close_together(surroundings: &[Surroundings]) -> usize {
+    let first = &surroundings[0];
+    let is_close = |other: &&Surroundings| {
         let radii = f64::from(first.radius) + f64::from(other.radius);
         (other.middle() - first.middle()).norm() <= CLOSE * radii
     };
-    let others = triangles[1..].iter().take(AT_ONCE - 1);
+    let others = surroundings[1..].iter().take(AT_ONCE - 1);
     1 + others.take_while(is_close).count()
-}
-
-/// The smallest and the largest corner of the box around some points.
-fn corners_of_box(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
-    let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for point in points {
-        for axis in 0..3 {
-            corners[0][axis] = corners[0][axis].min(point[axis]);
-            corners[1][axis] = corners[1][axis].max(point[axis]);
-        }
-    }
-    corners
 }
 
 /// A search for the triangles near a place.
@@ -117,22 +108,22 @@ impl NullaryFnOnce for Near<'_> {
     #[inline(always)]
     fn call(self) -> Vec<(f64, u32)> {
         let Self { wall, place, reach } = self;
+        let query = Bounds::of([*place]).grown(reach);
         let mut found = Vec::new();
-        let low = place.add_scalar(-reach);
-        let high = place.add_scalar(reach);
-        for number in wall.tree.meeting(&low, &high) {
+        for number in wall.tree.meeting(&query) {
             let eight = &wall.eights[number as usize];
             let mut near = [true; AT_ONCE];
             for axis in 0..3 {
                 for k in 0..AT_ONCE {
-                    near[k] &=
-                        (eight.least[axis][k] <= high[axis]) & (eight.most[axis][k] >= low[axis]);
+                    near[k] &= (eight.least[axis][k] <= query.high[axis])
+                        & (eight.most[axis][k] >= query.low[axis]);
                 }
             }
             if bits(&near) == 0 {
                 continue;
             }
             let mut distances = [0.0; AT_ONCE];
+            // One loop: both bounds need the distance from the middle.
             for k in 0..AT_ONCE {
                 let around = eight.around.of(k);
                 distances[k] = around.least_distance(place);
@@ -175,18 +166,19 @@ mod tests {
             // Beside a box, nearer than single precision could tell.
             beside in prop::option::of((prop::sample::select(vec![-1e-9, 0.0, 1e-9]), 0..3_usize)),
         ) {
-            let wall = WallEights::new(triangles.iter().copied());
+            let surroundings: Vec<Surroundings> =
+                triangles.iter().copied().map(Surroundings::new).collect();
+            let wall = WallEights::new(triangles.iter().copied(), &surroundings);
             let mut place = Vector3::from(place);
             if let Some((by, axis)) = beside && f64::is_finite(reach) {
                 place = Vector3::from(triangles[0][0]);
-                place[axis] = corners_of_box(&triangles[0])[1][axis] + reach + by;
+                place[axis] = Bounds::of(triangles[0]).high[axis] + reach + by;
             }
             let bound = |(number, corners): (usize, &Corners)| {
-                let [least, most] = corners_of_box(corners);
-                let around = Surroundings::new(*corners);
+                let query = Bounds::of([place]).grown(reach);
+                let meets = Bounds::of(*corners).overlaps(&query);
+                let around = &surroundings[number];
                 let distance = around.least_distance(&place);
-                let meets = (0..3)
-                    .all(|k| least[k] <= place[k] + reach && most[k] >= place[k] - reach);
                 (meets && !around.is_beyond(&place, reach) && distance < reach)
                     .then_some((distance.to_bits(), number as u32))
             };

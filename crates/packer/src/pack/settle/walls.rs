@@ -94,11 +94,12 @@ impl<'a> WallLists<'a> {
                 squared_distance(listed_at, of_sphere(k)) > most_squared
             };
             let listed_at = &mut of_chunk.listed_at;
-            (of_chunk.near).retain(|near| !has_moved(near.sphere, &listed_at[near.sphere]));
+            let near = &mut of_chunk.near;
+            near.retain(|near| !has_moved(near.sphere, &listed_at[near.sphere]));
             for (k, listed_at) in listed_at.iter_mut().enumerate() {
                 if has_moved(k, listed_at) {
                     *listed_at = *of_sphere(k);
-                    of_chunk.near.extend(self.near(k, listed_at));
+                    near.extend(self.near(k, listed_at));
                 }
             }
         };
