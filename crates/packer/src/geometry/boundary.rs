@@ -2,7 +2,7 @@
 //! that a ball would meet.
 
 use super::nearest::Nearest;
-use super::plane::{Plane, Surroundings};
+use super::plane::{Plane, Surroundings, height_over};
 use super::tree::{Corners, TriangleTree, projection};
 use super::union::outer_pieces;
 use super::wall_eights::WallEights;
@@ -20,8 +20,6 @@ pub struct Boundary {
     /// The triangles that bound the solid, if they differ from the facets: parts of the surface may
     /// lie inside others.
     union: Option<TriangleTree>,
-    /// The triangles of the wall, prepared for `nearest_on`.
-    planes: Vec<Plane>,
     /// The surroundings of these triangles.
     surroundings: Vec<Surroundings>,
     /// The same triangles, to find those near a place.
@@ -52,19 +50,17 @@ impl Boundary {
                 .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
                 .collect::<Vec<_>>();
             let corners = pieces.into_iter().flatten().collect::<Vec<_>>();
-            sort_along_curve(&mut triangles, &corners, extent);
-            let corners = corners.into_iter();
-            union = Some(TriangleTree::new(corners, triangles).map_err(refused)?);
+            let corners = sort_along_curve(&mut triangles, &corners, extent);
+            union = Some(TriangleTree::new(corners.into_iter(), triangles).map_err(refused)?);
         } else {
             let mut triangles = surface.triangles.clone();
-            sort_along_curve(&mut triangles, &surface.vertices, extent);
-            facets = TriangleTree::new(vertices(), triangles).map_err(refused)?;
+            let vertices = sort_along_curve(&mut triangles, &surface.vertices, extent);
+            facets = TriangleTree::new(vertices.into_iter(), triangles).map_err(refused)?;
             union = None;
         }
         let wall = union.as_ref().unwrap_or(&facets);
         let surroundings: Vec<Surroundings> = wall.all().map(Surroundings::new).collect();
         Ok(Self {
-            planes: wall.all().map(Plane::new).collect(),
             eights: WallEights::new(wall.all(), &surroundings),
             surroundings,
             facets,
@@ -75,6 +71,12 @@ impl Boundary {
     /// All facets of the surface.
     pub fn facets(&self) -> &TriangleTree {
         &self.facets
+    }
+
+    /// The plane of a triangle of the wall.
+    #[inline]
+    fn plane(&self, triangle: u32) -> Plane {
+        Plane::new(self.wall().corners(triangle))
     }
 
     /// The triangles that bound the solid.
@@ -94,7 +96,7 @@ impl Boundary {
     /// point on the wall itself.
     pub(crate) fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
         const EDGE: f64 = 1e-6;
-        let plane = self.planes.get(nearest_triangle as usize)?;
+        let plane = self.plane(nearest_triangle);
         let from_corner = point - plane.corner();
         let [u, v] = plane.along_triangle(&from_corner);
         let height = from_corner.dot(&plane.normal);
@@ -154,7 +156,7 @@ impl Boundary {
         const SAME_PLANE: f64 = 1e-11;
         found.clear();
         for triangle in self.triangles_near(point, reach).take(MOST + 1) {
-            let plane = &self.planes[triangle as usize];
+            let plane = self.plane(triangle);
             let distance = (plane.corner() - point).dot(&plane.normal);
             let is_known = |(normal, other): &(Vector3, f64)| {
                 (normal - plane.normal).norm() < SAME_PLANE
@@ -212,24 +214,24 @@ impl Boundary {
         self.surroundings(triangle).least_distance(point)
     }
 
-    /// Reads from a triangle of the wall that will be measured soon, so that several triangles are
-    /// on their way from memory at the same time.
+    /// Reads from a triangle of the wall that will be measured soon, so that its cache lines are on
+    /// their way.
     #[inline(always)]
     pub(super) fn fetch(&self, triangle: u32) {
-        self.planes[triangle as usize].fetch();
+        self.wall().fetch(triangle);
     }
 
     /// The nearest point of one triangle of the wall.
     pub fn nearest_on(&self, triangle: u32, point: &Vector3) -> Nearest {
-        let plane = &self.planes[triangle as usize];
-        if let Some(height) = plane.height_over_triangle(point) {
+        let corners = self.wall().corners(triangle);
+        if let Some((height, normal)) = height_over(corners, point) {
             return Nearest {
-                point: point - plane.normal * height,
+                point: point - normal * height,
                 distance: height.abs(),
                 triangle,
             };
         }
-        let (point, distance) = projection(plane.corners, point);
+        let (point, distance) = projection(corners, point);
         Nearest {
             point,
             distance,
@@ -250,13 +252,12 @@ impl Boundary {
         point: &Vector3,
     ) -> Option<bool> {
         let mut near: Vec<(f64, Option<bool>)> = triangles
-            .map(|triangle| {
-                let height = self.planes[triangle as usize].height_over_triangle(point);
-                match height {
-                    Some(height) => (height.abs(), Some(height < 0.0)),
+            .map(
+                |triangle| match height_over(self.wall().corners(triangle), point) {
+                    Some((height, _)) => (height.abs(), Some(height < 0.0)),
                     None => (self.nearest_on(triangle, point).distance, None),
-                }
-            })
+                },
+            )
             .collect();
         let nearest = near.iter().map(|n| n.0).fold(f64::INFINITY, f64::min);
         near.retain(|n| n.0 <= nearest + AS_NEAR);
@@ -266,12 +267,27 @@ impl Boundary {
 }
 
 /// Sorts triangles (indices of vertices) along a curve, so that neighbours in space are neighbours
-/// in memory. `extent` is the largest corner of their box, whose smallest is the origin.
-fn sort_along_curve(triangles: &mut [[u32; 3]], vertices: &[[f64; 3]], extent: [f64; 3]) {
+/// in memory, and numbers their vertices in the order in which they first occur. Returns these
+/// vertices. `extent` is the largest corner of their box, whose smallest is the origin.
+fn sort_along_curve(
+    triangles: &mut [[u32; 3]],
+    vertices: &[[f64; 3]],
+    extent: [f64; 3],
+) -> Vec<[f64; 3]> {
     const CELLS_ALONG: f64 = 1024.0;
     let cell = extent.iter().copied().fold(0.0, f64::max) / CELLS_ALONG;
     triangles.sort_by_cached_key(|corners| {
         let [a, b, c] = corners.map(|corner| Vector3::from(vertices[corner as usize]));
         curve_position(((a + b + c) / 3.0).into(), cell)
     });
+    let mut numbers = vec![None; vertices.len()];
+    let mut used = Vec::with_capacity(vertices.len());
+    for corner in triangles.as_flattened_mut() {
+        let old = *corner as usize;
+        *corner = *numbers[old].get_or_insert_with(|| {
+            used.push(vertices[old]);
+            used.len() as u32 - 1
+        });
+    }
+    used
 }

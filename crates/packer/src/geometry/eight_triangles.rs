@@ -66,11 +66,8 @@ impl EightSurroundings {
         let towards = wall.towards(centre);
         let mut hidden = [false; AT_ONCE];
         for k in 0..AT_ONCE {
-            let around = self.of(k);
-            let before_middle = around.most_along(&towards);
-            let from_centre = around.middle() - centre;
-            hidden[k] =
-                (least[k] >= wall.distance) & wall.hides(&towards, &from_centre, before_middle);
+            hidden[k] = (least[k] >= wall.distance)
+                & self.of(k).is_behind(centre, &towards, wall.hides_beyond());
         }
         bits(&hidden)
     }

@@ -4,6 +4,7 @@
 use super::boundary::Boundary;
 use super::eight_triangles::{AT_ONCE, EightSurroundings, bits};
 use super::nearest::Nearest;
+use super::plane::Surroundings;
 use crate::spheres::Vector3;
 use pulp::{Arch, NullaryFnOnce};
 
@@ -23,7 +24,9 @@ struct NearestFirst(u64);
 pub(crate) struct WallSearch {
     /// The walls, nearest first.
     pub(crate) found: Vec<Nearest>,
-    /// The surroundings of the triangles in the order of their list, for each eight.
+    /// The surroundings of the triangles in the order of their list, one by one and for each
+    /// eight.
+    copied: Vec<Surroundings>,
     around: Vec<EightSurroundings>,
     /// Lower bounds of their distances from the ball's centre.
     least: Vec<[f64; AT_ONCE]>,
@@ -156,25 +159,39 @@ impl Walls<'_> {
         search.least.clear();
         search.open.clear();
         let reach = self.radius + self.moved;
-        for triangles in self.near.0.chunks(AT_ONCE) {
-            if triangles[0].least() >= reach {
-                break;
-            }
+        let near = self.near.0.chunks(AT_ONCE);
+        let listed = near.take_while(|eight| eight[0].least() < reach).count();
+        let listed = &self.near.0[..(AT_ONCE * listed).min(self.near.0.len())];
+        // All are read before the first is used: their cache lines are on their way together.
+        let around = |triangle: &NearestFirst| *self.boundary.surroundings(triangle.number());
+        search.copied.clear();
+        search.copied.extend(listed.iter().map(around));
+        for (triangles, copied) in listed.chunks(AT_ONCE).zip(search.copied.chunks(AT_ONCE)) {
             let mut around = EightSurroundings::default();
-            for (k, triangle) in triangles.iter().enumerate() {
-                around.set(k, self.boundary.surroundings(triangle.number()));
+            for (k, copied) in copied.iter().enumerate() {
+                around.set(k, copied);
             }
             let least = around.least_distances(self.centre);
             let mut may_reach = [false; AT_ONCE];
             for (k, triangle) in triangles.iter().enumerate() {
                 may_reach[k] = (triangle.least() < reach) & (least[k] < self.radius);
-                if may_reach[k] {
-                    self.boundary.fetch(triangle.number());
-                }
             }
             search.around.push(around);
             search.least.push(least);
             search.open.push(bits(&may_reach));
+        }
+        self.fetch_open();
+    }
+
+    /// Reads from the triangles that could be within the radius, for the same reason.
+    #[inline(always)]
+    fn fetch_open(&self) {
+        for (triangles, open) in self.near.0.chunks(AT_ONCE).zip(&self.search.open) {
+            for (k, triangle) in triangles.iter().enumerate() {
+                if open >> k & 1 == 1 {
+                    self.boundary.fetch(triangle.number());
+                }
+            }
         }
     }
 
@@ -189,6 +206,7 @@ impl Walls<'_> {
                 around,
                 least,
                 open,
+                ..
             } = &mut *self.search;
             found.push(wall);
             for k in from..open.len() {
@@ -208,8 +226,10 @@ impl Walls<'_> {
         for k in 0..found.len() {
             let near = found[k];
             let from_centre = near.point - self.centre;
-            let hides = |wall: &Nearest| wall.hides(&wall.towards(self.centre), &from_centre, 0.0);
-            if !found[..kept].iter().any(hides) {
+            let is_hidden = found[..kept]
+                .iter()
+                .any(|wall| wall.hides(self.centre, &from_centre));
+            if !is_hidden {
                 found[kept] = near;
                 kept += 1;
             }
@@ -238,10 +258,8 @@ mod tests {
             let around = boundary.surroundings(number);
             let least = around.least_distance(centre);
             let is_hidden = |wall: &Nearest| {
-                let towards = wall.towards(centre);
-                let from_centre = around.middle() - centre;
-                let before_middle = around.most_along(&towards);
-                least >= wall.distance && wall.hides(&towards, &from_centre, before_middle)
+                least >= wall.distance
+                    && around.is_behind(centre, &wall.towards(centre), wall.hides_beyond())
             };
             if least < radius && !found.iter().any(is_hidden) {
                 let wall = boundary.nearest_on(number, centre);
@@ -252,8 +270,7 @@ mod tests {
         let mut kept: Vec<Nearest> = Vec::new();
         for wall in found {
             let from_centre = wall.point - centre;
-            let hides = |near: &Nearest| near.hides(&near.towards(centre), &from_centre, 0.0);
-            if !kept.iter().any(hides) {
+            if !kept.iter().any(|near| near.hides(centre, &from_centre)) {
                 kept.push(wall);
             }
         }

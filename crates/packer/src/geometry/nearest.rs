@@ -14,13 +14,18 @@ pub struct Nearest {
 }
 
 impl Nearest {
-    /// True if a point, given from the centre of a ball, is behind the plane of this wall by at
-    /// least `by`: the plane is taken to be nearer to the centre by 3 %. `towards` is the direction
-    /// of this wall, a unit vector.
+    /// True if a point, given from the centre of a ball, is behind the plane of this wall.
     #[inline(always)]
-    pub(super) fn hides(&self, towards: &Vector3, from_centre: &Vector3, by: f64) -> bool {
+    pub(super) fn hides(&self, centre: &Vector3, from_centre: &Vector3) -> bool {
+        self.towards(centre).dot(from_centre) > self.hides_beyond()
+    }
+
+    /// The distance of its plane from the centre of a ball, to see what it hides: the plane is
+    /// taken to be nearer by 3 %.
+    #[inline(always)]
+    pub(super) fn hides_beyond(&self) -> f64 {
         const NEARER: f64 = 0.97;
-        towards.dot(from_centre) - by > NEARER * self.distance
+        NEARER * self.distance
     }
 
     /// The direction of this wall from the centre of a ball: a unit vector if the distance is

@@ -1,13 +1,12 @@
-//! Triangles as planes: prepared for the point nearest to another.
+//! The planes of triangles, and what surrounds them.
 
 use super::tree::Corners;
 use crate::spheres::Vector3;
-use std::hint::black_box;
 
 /// A triangle and the plane in which it lies: p is above it where u = (p - corner) . along_u >= 0,
 /// v >= 0 and u + v <= 1.
 pub(super) struct Plane {
-    pub(super) corners: Corners,
+    corner: Vector3,
     pub(super) normal: Vector3,
     along_u: Vector3,
     along_v: Vector3,
@@ -20,37 +19,32 @@ const THINNEST: f64 = 1e-6;
 const MARGIN: f64 = 1e-6;
 
 impl Plane {
+    #[inline]
     pub(super) fn new(corners: Corners) -> Self {
         let [a, b, c] = corners.map(Vector3::from);
         let (edge_u, edge_v) = (b - a, c - a);
         let normal = edge_u.cross(&edge_v);
-        let longest = edge_u.norm().max(edge_v.norm()).max((c - b).norm());
+        let edges = [edge_u, edge_v, c - b].map(|edge| edge.norm_squared());
+        let longest_squared = edges.into_iter().fold(0.0, f64::max);
         // The normal of a thin triangle is inaccurate, and hardly any points are above the
         // triangle. With NaN every comparison fails.
-        let squared = if normal.norm() < THINNEST * longest * longest {
+        let squared = normal.norm_squared();
+        let squared = if squared < (THINNEST * longest_squared).powi(2) {
             f64::NAN
         } else {
-            normal.norm_squared()
+            squared
         };
         Self {
-            corners,
+            corner: a,
             normal: normal / squared.sqrt(),
             along_u: edge_v.cross(&normal) / squared,
             along_v: normal.cross(&edge_u) / squared,
         }
     }
 
-    /// Reads from its parts, so that its cache lines are fetched.
-    #[inline(always)]
-    pub(super) fn fetch(&self) {
-        black_box(self.corners[0][0]);
-        black_box(self.normal.x);
-        black_box(self.along_v.z);
-    }
-
     /// The first corner.
     pub(super) fn corner(&self) -> Vector3 {
-        self.corners[0].into()
+        self.corner
     }
 
     /// u and v of a point given relative to the corner.
@@ -60,11 +54,31 @@ impl Plane {
 
     /// Distance of a point from the plane, positive on the side of the normal, if it is above or
     /// below the triangle.
-    pub(super) fn height_over_triangle(&self, point: &Vector3) -> Option<f64> {
+    fn height_over_triangle(&self, point: &Vector3) -> Option<f64> {
         let from_corner = point - self.corner();
         let [u, v] = self.along_triangle(&from_corner);
         (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| from_corner.dot(&self.normal))
     }
+}
+
+/// Distance of a point from the plane of a triangle, positive on the side of the normal, with that
+/// normal, if it is above or below the triangle.
+#[inline]
+pub(super) fn height_over(corners: Corners, point: &Vector3) -> Option<(f64, Vector3)> {
+    // Most points are beside a triangle, which needs no division.
+    const CERTAIN: f64 = 1e-6;
+    let [a, b, c] = corners.map(Vector3::from);
+    let (edge_u, edge_v, from_corner) = (b - a, c - a, point - a);
+    let normal = edge_u.cross(&edge_v);
+    let squared = normal.norm_squared();
+    let u = from_corner.dot(&edge_v.cross(&normal));
+    let v = from_corner.dot(&normal.cross(&edge_u));
+    let margin = CERTAIN * squared;
+    if u < -margin || v < -margin || u + v > squared + margin {
+        return None;
+    }
+    let plane = Plane::new(corners);
+    Some((plane.height_over_triangle(point)?, plane.normal))
 }
 
 /// The flat cylinder around a triangle, in single precision: by far the smallest part of what is
@@ -131,12 +145,62 @@ impl Surroundings {
         (distance - MARGIN * (distance + radius)).max(0.0)
     }
 
-    /// The largest distance of a point of the triangle from the middle in a direction (a unit
-    /// vector), or more.
+    /// True if the triangle is certainly farther from a point than `distance` in a direction (a
+    /// unit vector).
     #[inline(always)]
-    pub(super) fn most_along(&self, direction: &Vector3) -> f64 {
+    pub(super) fn is_behind(&self, point: &Vector3, direction: &Vector3, distance: f64) -> bool {
         let (radius, half_height) = (f64::from(self.radius), f64::from(self.half_height));
+        let middle = direction.dot(&(self.middle() - point));
+        let beyond = middle - half_height - distance;
+        // How far the disc around the middle reaches back, squared.
         let along_normal = self.normal().dot(direction);
-        radius * (1.0 + MARGIN - along_normal * along_normal).sqrt() + half_height
+        let reach_squared = radius * radius * (1.0 + MARGIN - along_normal * along_normal);
+        (beyond > 0.0) & (beyond * beyond > reach_squared)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = Vector3> {
+        prop::array::uniform3(-1.0..1.0).prop_map(Vector3::from)
+    }
+
+    /// A triangle, some of them thin.
+    fn triangle() -> impl Strategy<Value = Corners> {
+        (vector(), vector(), vector(), -30.0_f64..0.0).prop_map(|(a, along, aside, octaves)| {
+            [a, a + along, a + 0.5 * along + octaves.exp2() * aside].map(Into::into)
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_behind_is_behind_with_all_corners(
+            corners in triangle(), point in vector(), direction in vector(), distance in 0.0..1.0,
+        ) {
+            let direction = direction.normalize();
+            let around = Surroundings::new(corners);
+            let heights = corners.map(|corner| direction.dot(&(Vector3::from(corner) - point)));
+            let is_behind = around.is_behind(&point, &direction, distance);
+            prop_assert!(!is_behind || heights.iter().all(|height| *height >= distance));
+            // The flat cylinder reaches no farther back than the ball around the triangle.
+            let middle = heights.iter().sum::<f64>() / 3.0;
+            let reach = 1.000_01 * f64::from(around.radius) + f64::from(around.half_height);
+            prop_assert!(is_behind || middle <= distance + reach);
+        }
+
+        #[test]
+        fn the_height_is_that_over_the_plane_or_there_is_none(
+            corners in triangle(), u in -0.5..1.5, v in -0.5..1.5, height in vector(),
+        ) {
+            let [a, b, c] = corners.map(Vector3::from);
+            let point = a + u * (b - a) + v * (c - a) + height;
+            let plane = Plane::new(corners);
+            let found = height_over(corners, &point);
+            prop_assert_eq!(found.map(|(height, _)| height), plane.height_over_triangle(&point));
+            prop_assert!(found.is_none_or(|(_, normal)| normal == plane.normal));
+        }
     }
 }

@@ -7,6 +7,7 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 use parry3d_f64::query::{PointQueryWithLocation, Ray};
 use parry3d_f64::shape::{TriMesh, Triangle};
+use std::hint::black_box;
 
 /// Three corners, local units.
 pub(super) type Corners = [[f64; 3]; 3];
@@ -34,9 +35,19 @@ impl TriangleTree {
     }
 
     /// The corners of a triangle.
+    #[inline(always)]
     pub(super) fn corners(&self, triangle: u32) -> Corners {
-        let triangle = self.0.triangle(triangle);
-        [triangle.a, triangle.b, triangle.c].map(Into::into)
+        let corners = self.0.indices()[triangle as usize];
+        let corner = |k: usize| self.0.vertices()[corners[k] as usize].into();
+        [corner(0), corner(1), corner(2)]
+    }
+
+    /// Reads from a triangle, so that its cache lines are fetched.
+    #[inline(always)]
+    pub(super) fn fetch(&self, triangle: u32) {
+        for corner in self.0.indices()[triangle as usize] {
+            black_box(self.0.vertices()[corner as usize].x);
+        }
     }
 
     /// The triangles whose boxes come within `reach` of `point`.

@@ -41,8 +41,10 @@ pub(super) struct NearWall {
     triangles: NearTriangles,
     /// The triangle that was nearest last.
     nearest: u32,
-    /// The walls that it touches, or nearly.
-    planes: Vec<WallPlane>,
+    /// The nearest of the walls that it touches, or nearly, and the others: there are few of them,
+    /// and a plane that is found here need not be fetched from elsewhere.
+    plane: Option<WallPlane>,
+    others: Vec<WallPlane>,
     /// Where the sphere was when these planes were found, and how far it may move until they are
     /// found anew, squared.
     found_at: ReducedSphere,
@@ -120,7 +122,8 @@ impl<'a> WallLists<'a> {
             sphere: k,
             nearest,
             triangles,
-            planes: Vec::new(),
+            plane: None,
+            others: Vec::new(),
             found_at: *ball,
             lasts_squared: -1.0,
         })
@@ -186,7 +189,7 @@ impl NearWall {
         search: &mut WallSearch,
         mut push: impl FnMut([f64; 3], f64),
     ) {
-        let most_squared = if self.planes.is_empty() {
+        let most_squared = if self.plane.is_none() {
             self.lasts_squared
         } else {
             self.lasts_squared.min(lasts * lasts)
@@ -194,7 +197,7 @@ impl NearWall {
         if squared_distance(&self.found_at, ball) >= most_squared {
             self.find_planes(boundary, (ball, radius, listed_at), lasts, search);
         }
-        for plane in &self.planes {
+        for plane in self.plane.iter().chain(&self.others) {
             let height = plane.height(ball);
             if height < radius {
                 push(plane.inward.into(), height);
@@ -210,7 +213,8 @@ impl NearWall {
         lasts: f64,
         search: &mut WallSearch,
     ) {
-        self.planes.clear();
+        self.plane = None;
+        self.others.clear();
         self.found_at = *ball;
         let (centre, reach) = (centre_of(ball), radius + lasts);
         let moved = squared_distance(listed_at, ball).sqrt();
@@ -232,10 +236,11 @@ impl NearWall {
                 && boundary.is_behind_nearest(as_near, &centre) == Some(false)
         });
         let side = if is_beyond { -1.0 } else { 1.0 };
-        self.planes
-            .extend(search.found.iter().map(|wall| WallPlane {
-                point: wall.point,
-                inward: (centre - wall.point) * (side / wall.distance),
-            }));
+        let mut planes = search.found.iter().map(|wall| WallPlane {
+            point: wall.point,
+            inward: (centre - wall.point) * (side / wall.distance),
+        });
+        self.plane = planes.next();
+        self.others.extend(planes);
     }
 }
