@@ -28,6 +28,8 @@ const DENSIFY: [f64; 10] = [
 ];
 /// Seeds over which each line of the first table is averaged.
 const SEEDS: [u64; 3] = [1, 2, 3];
+/// Seeds of the packings that are timed.
+const TIMED_SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
 /// Approximate number of spheres in the bending sample for diameters of 1.2 mm to 1.5 mm.
 const SPHERES_OF_1_35_MM: f64 = 87_000.0;
 
@@ -214,43 +216,51 @@ fn growth_table(counts: &[usize]) -> std::result::Result<(), Error> {
     Ok(())
 }
 
-/// Time per sphere of a job: the medians of three, on one thread.
+/// Time per sphere of a job on one thread, and its packing: medians over packings with different
+/// seeds, since the number of steps that densifying needs varies from one to the next.
 struct Timed {
     spheres: f64,
     all_us: f64,
     densifying_us: f64,
+    densifying_steps: f64,
     /// Number of spheres that touch the wall.
-    at_wall: usize,
-    /// None if the shape has no interior for spheres of this size.
-    interior: Option<f64>,
+    at_wall: f64,
+    /// NaN if the shape has no interior for spheres of this size.
+    interior: f64,
 }
 
 impl Timed {
     fn of(surface: &Surface, diameter: &str, basis: Basis) -> Result<Self> {
-        let settings = BodySettings::new(PackSettings::new(Sizes::parse(diameter, basis)?));
-        let mut all = Vec::new();
-        let mut densifying = Vec::new();
-        let mut last = None;
-        for _ in 0..3 {
+        let mut rows = Vec::new();
+        for seed in TIMED_SEEDS {
+            let mut settings = BodySettings::new(PackSettings::new(Sizes::parse(diameter, basis)?));
+            settings.packing.seed = seed;
             let (body, made) = on_threads(1, || make_body(surface, &settings, &|_, _| Ok(())))?;
-            let seconds = &made.seconds;
-            all.push(seconds.packing + seconds.bonds + seconds.report);
-            densifying.push(made.history.densify_seconds);
-            last = Some((body, made.quality));
+            let (seconds, history) = (&made.seconds, &made.history);
+            let all = seconds.packing + seconds.bonds + seconds.report;
+            let spheres = made.quality.particles as f64;
+            let interior = made.quality.interior_generating_density;
+            rows.push([
+                spheres,
+                1e6 * all / spheres,
+                1e6 * history.densify_seconds / spheres,
+                history.densify_steps as f64,
+                touching_the_wall(surface, &body)? as f64,
+                interior.map_or(f64::NAN, |fraction| fraction.value),
+            ]);
         }
-        let (body, quality) =
-            last.ok_or_else(|| Diagnostic::failed("", "nothing was packed", ""))?;
-        let spheres = quality.particles as f64;
-        let median_us = |mut seconds: Vec<f64>| {
-            seconds.sort_by(f64::total_cmp);
-            1e6 * seconds[1] / spheres
+        let median = |column: usize| {
+            let mut values: Vec<f64> = rows.iter().map(|row| row[column]).collect();
+            values.sort_by(f64::total_cmp);
+            values[values.len() / 2]
         };
         Ok(Self {
-            spheres,
-            all_us: median_us(all),
-            densifying_us: median_us(densifying),
-            at_wall: touching_the_wall(surface, &body)?,
-            interior: (quality.interior_generating_density).map(|fraction| fraction.value),
+            spheres: median(0),
+            all_us: median(1),
+            densifying_us: median(2),
+            densifying_steps: median(3),
+            at_wall: median(4),
+            interior: median(5),
         })
     }
 }
@@ -288,22 +298,27 @@ fn ratios() -> std::result::Result<(), Error> {
     let mut out = std::io::stdout();
     writeln!(
         out,
-        "| case | diameters | spheres | all, us/sphere | densifying, us/sphere | spheres/s | touch the wall | interior |\n\
-         |---|---|---|---|---|---|---|---|"
+        "| case | diameters | spheres | all, us/sphere | densifying, us/sphere | steps | spheres/s | touch the wall | interior |\n\
+         |---|---|---|---|---|---|---|---|---|"
     )?;
     let mut timed = Vec::new();
     for (name, surface, diameter, basis) in cases {
         let row = Timed::of(&surface, diameter, basis).map_err(Error::other)?;
+        let interior = if row.interior.is_nan() {
+            "-".to_owned()
+        } else {
+            format!("{:.4}", row.interior)
+        };
         writeln!(
             out,
-            "| {name} | {diameter} | {} | {:.1} | {:.1} | {:.0} | {} | {} |",
+            "| {name} | {diameter} | {} | {:.1} | {:.1} | {} | {:.0} | {} | {} |",
             row.spheres,
             row.all_us,
             row.densifying_us,
+            row.densifying_steps,
             1e6 / row.all_us,
             row.at_wall,
-            row.interior
-                .map_or("-".to_owned(), |fraction| format!("{fraction:.4}")),
+            interior,
         )?;
         timed.push(row);
     }
