@@ -20,7 +20,7 @@ pub struct Boundary {
     /// The triangles that bound the solid, if they differ from the facets: parts of the surface may
     /// lie inside others.
     union: Option<TriangleTree>,
-    /// The surroundings of these triangles.
+    /// The surroundings of the triangles of the wall.
     surroundings: Vec<Surroundings>,
     /// The same triangles, to find those near a place.
     eights: WallEights,
@@ -97,7 +97,7 @@ impl Boundary {
     pub(crate) fn is_behind(&self, nearest_triangle: u32, point: &Vector3) -> Option<bool> {
         const EDGE: f64 = 1e-6;
         let plane = self.plane(nearest_triangle);
-        let from_corner = point - plane.corner();
+        let from_corner = point - plane.corner;
         let [u, v] = plane.along_triangle(&from_corner);
         let height = from_corner.dot(&plane.normal);
         let sure =
@@ -157,7 +157,7 @@ impl Boundary {
         found.clear();
         for triangle in self.triangles_near(point, reach).take(MOST + 1) {
             let plane = self.plane(triangle);
-            let distance = (plane.corner() - point).dot(&plane.normal);
+            let distance = (plane.corner - point).dot(&plane.normal);
             let is_known = |(normal, other): &(Vector3, f64)| {
                 (normal - plane.normal).norm() < SAME_PLANE
                     && (other - distance).abs() < SAME_PLANE * reach
@@ -252,12 +252,13 @@ impl Boundary {
         point: &Vector3,
     ) -> Option<bool> {
         let mut near: Vec<(f64, Option<bool>)> = triangles
-            .map(
-                |triangle| match height_over(self.wall().corners(triangle), point) {
+            .map(|triangle| {
+                let corners = self.wall().corners(triangle);
+                match height_over(corners, point) {
                     Some((height, _)) => (height.abs(), Some(height < 0.0)),
-                    None => (self.nearest_on(triangle, point).distance, None),
-                },
-            )
+                    None => (projection(corners, point).1, None),
+                }
+            })
             .collect();
         let nearest = near.iter().map(|n| n.0).fold(f64::INFINITY, f64::min);
         near.retain(|n| n.0 <= nearest + AS_NEAR);
@@ -268,7 +269,7 @@ impl Boundary {
 
 /// Sorts triangles (indices of vertices) along a curve, so that neighbours in space are neighbours
 /// in memory, and numbers their vertices in the order in which they first occur. Returns these
-/// vertices. `extent` is the largest corner of their box, whose smallest is the origin.
+/// vertices, without those that no triangle uses. `extent` is the largest corner of their box, whose smallest is the origin.
 fn sort_along_curve(
     triangles: &mut [[u32; 3]],
     vertices: &[[f64; 3]],

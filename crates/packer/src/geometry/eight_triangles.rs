@@ -67,7 +67,7 @@ impl EightSurroundings {
         let mut hidden = [false; AT_ONCE];
         for k in 0..AT_ONCE {
             hidden[k] = (least[k] >= wall.distance)
-                & self.of(k).is_behind(centre, &towards, wall.hides_beyond());
+                & self.of(k).is_past(centre, &towards, wall.hides_beyond());
         }
         bits(&hidden)
     }

@@ -24,9 +24,9 @@ struct NearestFirst(u64);
 pub(crate) struct WallSearch {
     /// The walls, nearest first.
     pub(crate) found: Vec<Nearest>,
-    /// The surroundings of the triangles in the order of their list, one by one and for each
-    /// eight.
-    copied: Vec<Surroundings>,
+    /// The surroundings of the triangles in the order of their list.
+    one_by_one: Vec<Surroundings>,
+    /// The same for each eight.
     around: Vec<EightSurroundings>,
     /// Lower bounds of their distances from the ball's centre.
     least: Vec<[f64; AT_ONCE]>,
@@ -163,13 +163,14 @@ impl Walls<'_> {
         let listed = near.take_while(|eight| eight[0].least() < reach).count();
         let listed = &self.near.0[..(AT_ONCE * listed).min(self.near.0.len())];
         // All are read before the first is used: their cache lines are on their way together.
-        let around = |triangle: &NearestFirst| *self.boundary.surroundings(triangle.number());
-        search.copied.clear();
-        search.copied.extend(listed.iter().map(around));
-        for (triangles, copied) in listed.chunks(AT_ONCE).zip(search.copied.chunks(AT_ONCE)) {
+        let surroundings = |near: &NearestFirst| *self.boundary.surroundings(near.number());
+        search.one_by_one.clear();
+        search.one_by_one.extend(listed.iter().map(surroundings));
+        let eights = search.one_by_one.chunks(AT_ONCE);
+        for (triangles, eight) in listed.chunks(AT_ONCE).zip(eights) {
             let mut around = EightSurroundings::default();
-            for (k, copied) in copied.iter().enumerate() {
-                around.set(k, copied);
+            for (k, surroundings) in eight.iter().enumerate() {
+                around.set(k, surroundings);
             }
             let least = around.least_distances(self.centre);
             let mut may_reach = [false; AT_ONCE];
@@ -183,7 +184,8 @@ impl Walls<'_> {
         self.fetch_open();
     }
 
-    /// Reads from the triangles that could be within the radius, for the same reason.
+    /// Reads from the triangles that could be within the radius before the first is measured: their
+    /// cache lines are on their way together.
     #[inline(always)]
     fn fetch_open(&self) {
         for (triangles, open) in self.near.0.chunks(AT_ONCE).zip(&self.search.open) {
@@ -259,7 +261,7 @@ mod tests {
             let least = around.least_distance(centre);
             let is_hidden = |wall: &Nearest| {
                 least >= wall.distance
-                    && around.is_behind(centre, &wall.towards(centre), wall.hides_beyond())
+                    && around.is_past(centre, &wall.towards(centre), wall.hides_beyond())
             };
             if least < radius && !found.iter().any(is_hidden) {
                 let wall = boundary.nearest_on(number, centre);
