@@ -231,9 +231,10 @@ struct Timed {
 
 impl Timed {
     fn of(surface: &Surface, diameter: &str, basis: Basis) -> Result<Self> {
+        let mut settings = BodySettings::new(PackSettings::new(Sizes::parse(diameter, basis)?));
+        let boundary = Boundary::new(surface)?;
         let mut rows = Vec::new();
         for seed in TIMED_SEEDS {
-            let mut settings = BodySettings::new(PackSettings::new(Sizes::parse(diameter, basis)?));
             settings.packing.seed = seed;
             let (body, made) = on_threads(1, || make_body(surface, &settings, &|_, _| Ok(())))?;
             let (seconds, history) = (&made.seconds, &made.history);
@@ -245,7 +246,7 @@ impl Timed {
                 1e6 * all / spheres,
                 1e6 * history.densify_seconds / spheres,
                 history.densify_steps as f64,
-                touching_the_wall(surface, &body)? as f64,
+                touching_the_wall(surface, &boundary, &body) as f64,
                 interior.map_or(f64::NAN, |fraction| fraction.value),
             ]);
         }
@@ -266,16 +267,16 @@ impl Timed {
 }
 
 /// The number of spheres that come within a thousandth of their radius of the surface.
-fn touching_the_wall(surface: &Surface, body: &Body) -> Result<usize> {
-    let boundary = Boundary::new(surface)?;
+fn touching_the_wall(surface: &Surface, boundary: &Boundary, body: &Body) -> usize {
     let touches = |(centre_m, radius_m): &(&[f64; 3], &f64)| {
         let local = [0, 1, 2].map(|k| (centre_m[k] - surface.origin_m[k]) / surface.unit_m);
-        let reach = 1.001 * *radius_m / surface.unit_m;
-        boundary.nearest(&Vector3::from(local), reach).is_some()
+        !boundary.clears(&Vector3::from(local), 1.001 * *radius_m / surface.unit_m)
     };
-    Ok((body.positions.iter().zip(&body.radii))
+    body.positions
+        .iter()
+        .zip(&body.radii)
         .filter(touches)
-        .count())
+        .count()
 }
 
 /// Spheres per second in the bar, the time of a scan over that of a box, and the time of wide sizes

@@ -39,12 +39,12 @@ impl Boundary {
                 "",
             )
         };
-        let vertices = || surface.vertices.iter().copied();
         let extent = surface.extent();
         let (facets, union);
         if surface.repairs.self_intersections > 0 || surface.overlap_volume_m3 != 0.0 {
+            let vertices = surface.vertices.iter().copied();
             let triangles = surface.triangles.clone();
-            facets = TriangleTree::new(vertices(), triangles).map_err(refused)?;
+            facets = TriangleTree::new(vertices, triangles).map_err(refused)?;
             let pieces = outer_pieces(surface, &facets);
             let mut triangles = (0..pieces.len() as u32)
                 .map(|k| [3 * k, 3 * k + 1, 3 * k + 2])
@@ -269,7 +269,8 @@ impl Boundary {
 
 /// Sorts triangles (indices of vertices) along a curve, so that neighbours in space are neighbours
 /// in memory, and numbers their vertices in the order in which they first occur. Returns these
-/// vertices, without those that no triangle uses. `extent` is the largest corner of their box, whose smallest is the origin.
+/// vertices, without those that no triangle uses. `extent` is the largest corner of their box, whose
+/// smallest is the origin.
 fn sort_along_curve(
     triangles: &mut [[u32; 3]],
     vertices: &[[f64; 3]],

@@ -280,6 +280,19 @@ mod tests {
         kept
     }
 
+    /// Walls are nearest points of triangles, nearest first, none behind the plane of another.
+    fn assert_none_is_hidden(boundary: &Boundary, walls: &[Nearest], centre: &Vector3) {
+        for (k, wall) in walls.iter().enumerate() {
+            assert_eq!(*wall, boundary.nearest_on(wall.triangle, centre));
+            let hides = |nearer: &Nearest| {
+                let height = (nearer.point - centre).dot(&(wall.point - centre));
+                height > 0.97 * nearer.distance * nearer.distance * (1.0 + 1e-12)
+            };
+            assert!(!walls[..k].iter().any(hides));
+            assert!(k == 0 || walls[k - 1].distance <= wall.distance);
+        }
+    }
+
     #[test]
     fn the_same_walls_as_one_by_one() -> dem_io::Result<()> {
         let shape = |stl: &[u8]| {
@@ -322,6 +335,7 @@ mod tests {
                     assert_eq!(search.found, wanted);
                     near.walls(&boundary, (&centre, radius), moved, first, &mut search);
                     assert_eq!(search.found, wanted);
+                    assert_none_is_hidden(&boundary, &search.found, &centre);
                     let nearest = boundary.nearest(&centre, radius);
                     let distance = |wall: &Nearest| wall.distance;
                     assert_eq!(wanted.first().map(distance), nearest.as_ref().map(distance));
