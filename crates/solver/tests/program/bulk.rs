@@ -27,27 +27,37 @@ fn slope_of_line(points: &[[f64; 2]]) -> f64 {
     products.sum::<f64>() / squares
 }
 
+/// Mass flow out of the silo of `silo.toml` through a hole of this width, kg/s, with 1,200 beads.
+fn silo_flow_kg_s(hole_m: f64, seed: usize) -> f64 {
+    let bench = Bench::new();
+    let scene = scene_of_data("silo.toml");
+    let settings = [
+        format!("walls.floor.scale={}", hole_m * 100.0),
+        format!("run.seed={seed}"),
+        "inlets.fill.count=1200".to_owned(),
+        "walls.slide.table=[[\"0.3 s\", 0], [\"0.35 s\", 1]]".to_owned(),
+        "run.end_time=\"0.75 s\"".to_owned(),
+    ];
+    let mut options = vec!["--quiet", "--output", "out"];
+    options.extend(settings.iter().flat_map(|setting| ["--set", setting]));
+    bench.good(&scene, &options);
+    -slope(&bench, "mass_inside_kg", [0.45, 0.75])
+}
+
 #[test]
 fn beads_leave_a_silo_as_beverloo_says() {
     // W = 0.58 rho sqrt(g) (D - k d)^(5/2) with k = 1.4 for spheres (Beverloo et al. 1961), for two
-    // holes; the constants of the law are known to a tenth.
+    // holes; the constants of the law are known to a tenth. It holds for the mean of several beds:
+    // through such small holes the flow of one of them is off by up to a fifth.
+    const SEEDS: usize = 5;
     for hole_m in [0.018, 0.022] {
-        let bench = Bench::new();
-        let scale = format!("walls.floor.scale={}", hole_m * 100.0);
-        let scene = scene_of_data("silo.toml");
-        let settings = [
-            scale.as_str(),
-            "inlets.fill.count=1200",
-            "walls.slide.table=[[\"0.3 s\", 0], [\"0.35 s\", 1]]",
-            "run.end_time=\"0.75 s\"",
-        ];
-        let mut options = vec!["--quiet", "--output", "out"];
-        options.extend(settings.iter().flat_map(|setting| ["--set", setting]));
-        bench.good(&scene, &options);
-        let found = -slope(&bench, "mass_inside_kg", [0.45, 0.75]);
+        let flows = (0..SEEDS)
+            .into_par_iter()
+            .map(|seed| silo_flow_kg_s(hole_m, seed));
+        let mean = flows.sum::<f64>() / SEEDS as f64;
         let density = 1550.0;
         let wanted = 0.58 * density * 9.81_f64.sqrt() * (hole_m - 1.4 * 0.004_f64).powf(2.5);
-        assert!((found / wanted - 1.0).abs() < 0.12, "{found} {wanted}");
+        assert!((mean / wanted - 1.0).abs() < 0.12, "{mean} {wanted}");
     }
 }
 

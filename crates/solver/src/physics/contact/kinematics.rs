@@ -61,6 +61,9 @@ pub struct ContactKinematics<T = f64> {
     pub effective_rolling_inertia_kg_m2: T,
 }
 
+/// Inverse mass of two ends that counts as none, 1/kg: their inverse is finite.
+const HELD_PER_KG: f64 = 1e-200;
+
 /// Kinematics of two spheres after a step of `dt`, s; `apart_m` is the vector from the centre of a
 /// to that of b. The centres must not coincide.
 #[inline(always)]
@@ -70,9 +73,16 @@ pub fn contact_kinematics<T: Number>(
     dt: f64,
 ) -> ContactKinematics<T> {
     let moving = b.velocity_m_s - a.velocity_m_s;
-    let (normal, length) = unit(apart_m);
-    let (normal_before, length_before) = unit(apart_m - moving.scale(dt));
-    let (middle, _) = unit(normal_before + normal);
+    let before_m = apart_m - moving.scale(dt);
+    let (length, length_before) = (apart_m.square().sqrt(), before_m.square().sqrt());
+    // The sum of the two normals, times both lengths; its length needs neither normal.
+    let along = apart_m * length_before + before_m * length;
+    let lengths = length * length_before;
+    let along_length = (lengths * (lengths + apart_m.dot(before_m)))
+        .scale(2.0)
+        .sqrt();
+    let [per_length, per_along] = inverses(length, along_length);
+    let (normal, middle) = (apart_m * per_length, along * per_along);
 
     let reach = a.radius_m + b.radius_m;
     let overlap = reach - length;
@@ -83,6 +93,8 @@ pub fn contact_kinematics<T: Number>(
         b.radius_m - overlap.scale(0.5),
     ];
     let per_inertia = per_rolling_inertia(&a) + per_rolling_inertia(&b);
+    let inverse_mass = a.inverse_mass_per_kg + b.inverse_mass_per_kg;
+    let [per_reach, mass] = inverses(reach, inverse_mass.maximum(reach.zero().plus(HELD_PER_KG)));
     ContactKinematics {
         normal,
         middle,
@@ -91,8 +103,8 @@ pub fn contact_kinematics<T: Number>(
         velocity_m_s: moving - (a.spin_rad_s * arm_a + b.spin_rad_s * arm_b).cross(middle),
         spin_rad_s: b.spin_rad_s - a.spin_rad_s,
         mean_spin_rad_s: (a.spin_rad_s + b.spin_rad_s).dot(middle).scale(0.5),
-        effective_radius_m: a.radius_m * b.radius_m / reach,
-        effective_mass_kg: reduced(a.inverse_mass_per_kg + b.inverse_mass_per_kg),
+        effective_radius_m: a.radius_m * b.radius_m * per_reach,
+        effective_mass_kg: inverse_mass.if_positive(mass),
         effective_rolling_inertia_kg_m2: reduced(per_inertia),
     }
 }
@@ -172,10 +184,11 @@ impl<T: Number> FrameRotation<T> {
         let cosine = middle.dot(normal);
         // The tangent of half the angle: of a quarter of the rotation in the step.
         let t = touch.mean_spin_rad_s.scale(0.25 * dt);
-        let per = (t * t).plus(1.0).inverse().scale(2.0);
+        let [per_square, per_rotation] = inverses((t * t).plus(1.0), cosine.plus(1.0));
+        let per = per_square.scale(2.0);
         Self {
             normals: [middle * cosine.scale(2.0) - normal, middle, normal],
-            per_rotation: cosine.plus(1.0).inverse(),
+            per_rotation,
             spin: [per.plus(-1.0), t * per],
         }
     }
@@ -208,6 +221,13 @@ impl<T: Number> FrameRotation<T> {
 fn unit<T: Number>(vector: Vec3<T>) -> (Vec3<T>, T) {
     let length = vector.square().sqrt();
     (vector * length.inverse(), length)
+}
+
+/// The inverses of two numbers, with one division, which takes longer than the products.
+#[inline(always)]
+fn inverses<T: Number>(a: T, b: T) -> [T; 2] {
+    let of_both = (a * b).inverse();
+    [b * of_both, a * of_both]
 }
 
 /// Inverse of a sum of inverses, 0 if that is 0.

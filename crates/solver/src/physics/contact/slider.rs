@@ -41,8 +41,9 @@ pub(crate) fn coulomb_return_map<T: Number>(
 ) -> TangentialStep<T> {
     let before = carry.to_middle(before);
     let stuck = before * kept + moved * kept.plus(1.0).scale(0.5);
-    let needed = stiffness * stuck.square().sqrt();
-    let held = limit.if_positive(limit / limit.maximum(needed));
+    let needed_square = stiffness * stiffness * stuck.square();
+    let largest = limit.maximum(needed_square.sqrt());
+    let held = limit.if_positive(limit / largest);
     let spring = stuck * held;
     let force = spring * stiffness;
 
@@ -50,13 +51,15 @@ pub(crate) fn coulomb_return_map<T: Number>(
     let given = stiffness_before * before.dot(before + moved);
     let taken = force.dot(spring - moved);
 
-    // Largest q with |force + q damping| <= limit, and at most 1.
-    let along = force.dot(damping);
+    // Largest q with |force + q damping| <= limit, and at most 1. It does not wait for `held`: the
+    // force that is needed stands for the force, which is the same, or the part `held` of it
+    // without any room.
+    let along = stiffness * stuck.dot(damping);
     let square = damping.square();
-    let slack = limit * limit - force.square();
+    let slack = limit * limit - needed_square;
     let room = slack.if_positive(slack);
-    let q = (along * along + square * room).sqrt() - along;
-    let fraction = q.if_positive(q / q.maximum(square));
+    let q = limit * ((along * along + square * room).sqrt() - along);
+    let fraction = q.if_positive(q / q.maximum(square * largest));
 
     let at_end = carry.to_end(spring);
     TangentialStep {

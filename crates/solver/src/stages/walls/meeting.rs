@@ -41,6 +41,7 @@ impl Place<'_> {
     }
 
     /// The contact that a meeting continues.
+    #[inline(always)]
     fn old(&self, meeting: &Meeting) -> Option<&WallContact> {
         meeting.old.map(|old| &self.olds[old as usize])
     }
@@ -94,6 +95,7 @@ impl<T: Lanes> ContactWork<T> for KindWork<'_, T> {
 
     #[inline(always)]
     fn with(self, law: &impl NormalLaw<T>, rolling: &impl RollingFriction<T>) {
+        self.found.reserve(self.meetings.len());
         for some in self.meetings.chunks(T::COUNT) {
             let answers = self.place.meet_some(self.proof, (law, rolling), some);
             for (lane, meeting) in some.iter().enumerate() {
@@ -118,6 +120,7 @@ struct Geometry {
 }
 
 impl Place<'_> {
+    #[inline(always)]
     fn geometry(&self, meeting: &Meeting) -> Geometry {
         let wall = self.wall;
         let normal = -Vector3::from(meeting.there.normal);
@@ -141,6 +144,7 @@ impl Place<'_> {
     }
 
     /// Interaction of the particle in a lane.
+    #[inline(always)]
     fn met(&self, meeting: &Meeting, kind: &ContactKind, answers: &Answers, lane: usize) -> Met {
         let vector = |[x, y, z, _]: [f64; 4]| Vector3::new(x, y, z);
         let Geometry {
