@@ -2,10 +2,14 @@
 
 use super::world::{Body, Vector, World, ZERO, material};
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::kinematics::{ContactSphere, contact_kinematics, torques};
+use dem_run::physics::contact::kinematics::{
+    ContactKinematics, ContactSphere, contact_kinematics, torques,
+};
 use dem_run::physics::contact::linear::Linear;
 use dem_run::physics::contact::pair_parameters::PairInput;
-use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic, RollingFriction};
+use dem_run::physics::contact::rolling::{
+    ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
+};
 use dem_run::physics::contact::{ContactSprings, NormalLaw, Response, response};
 use dem_run::physics::number::Vec3;
 use nalgebra::{Rotation3, Vector3};
@@ -229,6 +233,80 @@ proptest! {
         check(&linear(), &SPRING, &scene, &by)?;
         check(&linear(), &MOMENT, &scene, &by)?;
     }
+}
+
+/// A direction.
+fn direction(v: Vector) -> Vector {
+    v * (1.0 / v.square().sqrt())
+}
+
+proptest! {
+    /// Normals and effective values by their definitions, in steps in which the normal rotates far,
+    /// also with held ends.
+    #[test]
+    fn kinematics_are_those_of_unit_vectors(
+        scene in scenes(),
+        held in prop::array::uniform2(any::<bool>()),
+    ) {
+        const LONG: f64 = 2e-3;
+        let mut balls = scene.balls;
+        for (ball, held) in balls.iter_mut().zip(held) {
+            if held {
+                ball.inverse_mass_per_kg = 0.0;
+            }
+        }
+        let [a, b] = balls;
+        let met = contact_kinematics(scene.apart, balls, LONG);
+        let normal = direction(scene.apart);
+        let before = direction(scene.apart - (b.velocity_m_s - a.velocity_m_s) * LONG);
+        let off = |one: Vector, other: Vector| (one - other).square().sqrt();
+        prop_assert!(off(met.normal, normal) < 1e-15);
+        prop_assert!(off(met.middle, direction(normal + before)) < 1e-15);
+        let radius_m = 1.0 / (1.0 / a.radius_m + 1.0 / b.radius_m);
+        prop_assert!((met.effective_radius_m / radius_m - 1.0).abs() < 1e-15);
+        let inverse_mass = a.inverse_mass_per_kg + b.inverse_mass_per_kg;
+        if inverse_mass == 0.0 {
+            prop_assert_eq!(met.effective_mass_kg, 0.0);
+        } else {
+            prop_assert!((met.effective_mass_kg * inverse_mass - 1.0).abs() < 1e-15);
+        }
+    }
+
+    /// The dashpot across the normal is whole, or as large as the limit of friction allows it.
+    #[test]
+    fn friction_limits_the_dashpot_no_more_than_it_must(scene in scenes()) {
+        let touch = contact_kinematics(scene.apart, scene.balls, 0.0);
+        prop_assume!(touch.overlap_m > 1e-7);
+        let along = |v: Vector| touch.normal * touch.normal.dot(v);
+        let history = ContactSprings {
+            tangential_m: scene.history.tangential_m - along(scene.history.tangential_m),
+            ..scene.history
+        };
+        for (found, damping_n_s_m) in [
+            of_law(&hertz(), &touch, &history),
+            of_law(&linear(), &touch, &history),
+        ] {
+            let normal = found.force_on_b.dot(touch.normal);
+            let limit = 0.3 * normal;
+            let across = (found.force_on_b - along(found.force_on_b)).square().sqrt();
+            let whole = (touch.velocity_m_s - along(touch.velocity_m_s)) * damping_n_s_m;
+            let missing = (found.damping.tangential_n + whole).square().sqrt();
+            let is_whole = missing < 1e-9 * limit;
+            let at_limit = (across - limit).abs() <= 1e-7 * limit;
+            prop_assert!(is_whole || at_limit, "{missing:e} {across:e} {limit:e}");
+        }
+    }
+}
+
+/// Response of a contact at rest in its axes, and the coefficient of its tangential dashpot, N s/m.
+fn of_law(
+    law: &impl NormalLaw<f64>,
+    touch: &ContactKinematics,
+    history: &ContactSprings,
+) -> (Response, f64) {
+    let found = response(law, &NoRolling, touch, history, 0.0);
+    let normal = law.evaluate(touch, history.overlap_m, 0.0);
+    (found, normal.tangential_damping_n_s_m)
 }
 
 /// Steady sliding: friction is mu N against the motion, and dissipates its power.
