@@ -260,8 +260,8 @@ proptest! {
         let normal = direction(scene.apart);
         let before = direction(scene.apart - (b.velocity_m_s - a.velocity_m_s) * LONG);
         let off = |one: Vector, other: Vector| (one - other).square().sqrt();
-        prop_assert!(off(met.normal, normal) < 1e-15);
-        prop_assert!(off(met.middle, direction(normal + before)) < 1e-15);
+        prop_assert!(off(met.normal, normal) < 2e-15);
+        prop_assert!(off(met.middle, direction(normal + before)) < 2e-15);
         let radius_m = 1.0 / (1.0 / a.radius_m + 1.0 / b.radius_m);
         prop_assert!((met.effective_radius_m / radius_m - 1.0).abs() < 1e-15);
         let inverse_mass = a.inverse_mass_per_kg + b.inverse_mass_per_kg;
@@ -274,8 +274,17 @@ proptest! {
 
     /// The dashpot across the normal is whole, or as large as the limit of friction allows it.
     #[test]
-    fn friction_limits_the_dashpot_no_more_than_it_must(scene in scenes()) {
-        let touch = contact_kinematics(scene.apart, scene.balls, 0.0);
+    fn friction_limits_the_dashpot_no_more_than_it_must(
+        scene in scenes(),
+        slowness in 0.0..4.0_f64,
+    ) {
+        let slowed = |v: Vector| v * 10.0_f64.powf(-slowness);
+        let balls = scene.balls.map(|ball| ContactSphere {
+            velocity_m_s: slowed(ball.velocity_m_s),
+            spin_rad_s: slowed(ball.spin_rad_s),
+            ..ball
+        });
+        let touch = contact_kinematics(scene.apart, balls, 0.0);
         prop_assume!(touch.overlap_m > 1e-7);
         let along = |v: Vector| touch.normal * touch.normal.dot(v);
         let history = ContactSprings {
@@ -291,6 +300,7 @@ proptest! {
             let across = (found.force_on_b - along(found.force_on_b)).square().sqrt();
             let whole = (touch.velocity_m_s - along(touch.velocity_m_s)) * damping_n_s_m;
             let missing = (found.damping.tangential_n + whole).square().sqrt();
+            prop_assert!(across <= limit * (1.0 + 1e-9), "{across:e} {limit:e}");
             let is_whole = missing < 1e-9 * limit;
             let at_limit = (across - limit).abs() <= 1e-7 * limit;
             prop_assert!(is_whole || at_limit, "{missing:e} {across:e} {limit:e}");
@@ -298,7 +308,8 @@ proptest! {
     }
 }
 
-/// Response of a contact at rest in its axes, and the coefficient of its tangential dashpot, N s/m.
+/// Response in a step of 0 s, in which axes do not rotate, and the coefficient of the tangential
+/// dashpot, N s/m.
 fn of_law(
     law: &impl NormalLaw<f64>,
     touch: &ContactKinematics,

@@ -38,7 +38,7 @@ fn silo_flow_kg_s(hole_m: f64, seed: usize) -> f64 {
         "walls.slide.table=[[\"0.3 s\", 0], [\"0.35 s\", 1]]".to_owned(),
         "run.end_time=\"0.75 s\"".to_owned(),
     ];
-    let mut options = vec!["--quiet", "--output", "out"];
+    let mut options = vec!["--quiet", "--threads", "1", "--output", "out"];
     options.extend(settings.iter().flat_map(|setting| ["--set", setting]));
     bench.good(&scene, &options);
     -slope(&bench, "mass_inside_kg", [0.45, 0.75])
@@ -48,7 +48,7 @@ fn silo_flow_kg_s(hole_m: f64, seed: usize) -> f64 {
 fn beads_leave_a_silo_as_beverloo_says() {
     // W = 0.58 rho sqrt(g) (D - k d)^(5/2) with k = 1.4 for spheres (Beverloo et al. 1961), for two
     // holes; the constants of the law are known to a tenth. It holds for the mean of several beds:
-    // through such small holes the flow of one of them is off by up to a fifth.
+    // those of five seeds have 0.87 to 1.19 of it through 18 mm, and 0.85 to 0.96 through 22 mm.
     const SEEDS: usize = 5;
     for hole_m in [0.018, 0.022] {
         let flows = (0..SEEDS)

@@ -61,7 +61,7 @@ pub struct ContactKinematics<T = f64> {
     pub effective_rolling_inertia_kg_m2: T,
 }
 
-/// Inverse mass of two ends that counts as none, 1/kg: their inverse is finite.
+/// Stands for the inverse mass of two held ends, 1/kg, so that nothing is divided by 0.
 const HELD_PER_KG: f64 = 1e-200;
 
 /// Kinematics of two spheres after a step of `dt`, s; `apart_m` is the vector from the centre of a

@@ -51,9 +51,10 @@ pub(crate) fn coulomb_return_map<T: Number>(
     let given = stiffness_before * before.dot(before + moved);
     let taken = force.dot(spring - moved);
 
-    // Largest q with |force + q damping| <= limit, and at most 1. It does not wait for `held`: the
-    // force that is needed stands for the force, which is the same, or the part `held` of it
-    // without any room.
+    // Largest q with |force + q damping| <= limit, and at most 1. So as not to wait for `held`,
+    // `along` is that of the force before it is cut back. If it is not cut back, it is the force;
+    // otherwise there is no room, q is in proportion to the force, and `limit / largest` is the
+    // part of it that is left.
     let along = stiffness * stuck.dot(damping);
     let square = damping.square();
     let slack = limit * limit - needed_square;
