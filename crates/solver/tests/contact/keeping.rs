@@ -45,6 +45,11 @@ pub(crate) fn triple(v: Vector3<f64>) -> Vector {
     Vec3(v.x, v.y, v.z)
 }
 
+/// The unit vector along another.
+fn direction(v: Vector) -> Vector {
+    v * (1.0 / v.square().sqrt())
+}
+
 fn scenes() -> impl Strategy<Value = Scene> {
     let unit = prop::array::uniform3(-1.0..1.0_f64)
         .prop_filter("a direction", |v| Vector3::from(*v).norm() > 0.1)
@@ -70,8 +75,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
                 });
                 let moving = velocities[1] - velocities[0];
                 let apart = normal * (radii[0] + radii[1] - overlap);
-                let was = apart - moving * DT;
-                let was = was * (1.0 / was.square().sqrt());
+                let was = direction(apart - moving * DT);
                 let across = |v: Vector| v - was * was.dot(v);
                 Scene {
                     apart,
@@ -235,11 +239,6 @@ proptest! {
     }
 }
 
-/// A direction.
-fn direction(v: Vector) -> Vector {
-    v * (1.0 / v.square().sqrt())
-}
-
 proptest! {
     /// Normals and effective values by their definitions, in steps in which the normal rotates far,
     /// also with held ends.
@@ -286,9 +285,9 @@ proptest! {
         });
         let touch = contact_kinematics(scene.apart, balls, 0.0);
         prop_assume!(touch.overlap_m > 1e-7);
-        let along = |v: Vector| touch.normal * touch.normal.dot(v);
+        let across = |v: Vector| v - touch.normal * touch.normal.dot(v);
         let history = ContactSprings {
-            tangential_m: scene.history.tangential_m - along(scene.history.tangential_m),
+            tangential_m: across(scene.history.tangential_m),
             ..scene.history
         };
         for (found, damping_n_s_m) in [
@@ -297,13 +296,13 @@ proptest! {
         ] {
             let normal = found.force_on_b.dot(touch.normal);
             let limit = 0.3 * normal;
-            let across = (found.force_on_b - along(found.force_on_b)).square().sqrt();
-            let whole = (touch.velocity_m_s - along(touch.velocity_m_s)) * damping_n_s_m;
+            let friction = across(found.force_on_b).square().sqrt();
+            let whole = across(touch.velocity_m_s) * damping_n_s_m;
             let missing = (found.damping.tangential_n + whole).square().sqrt();
-            prop_assert!(across <= limit * (1.0 + 1e-9), "{across:e} {limit:e}");
+            prop_assert!(friction <= limit * (1.0 + 1e-9), "{friction:e} {limit:e}");
             let is_whole = missing < 1e-9 * limit;
-            let at_limit = (across - limit).abs() <= 1e-7 * limit;
-            prop_assert!(is_whole || at_limit, "{missing:e} {across:e} {limit:e}");
+            let at_limit = (friction - limit).abs() <= 1e-7 * limit;
+            prop_assert!(is_whole || at_limit, "{missing:e} {friction:e} {limit:e}");
         }
     }
 }
