@@ -47,7 +47,7 @@ impl Meeting {
 }
 
 /// Interaction of a particle and a wall at one point.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Met {
     /// The contact.
     pub touch: WallContact,
