@@ -14,7 +14,7 @@ pub(super) fn fill(assembly: &Assembly, block: &mut Block, workspace: &mut Works
     //   initialParticle <- frontSpheresQueue[1]
     while let Some(initial) = block.take() {
         let (sphere, seed) = initial;
-        workspace.gathered = 0.0;
+        workspace.begin();
         // rnew <- getNewParticle(PSD)
         // neighbouringParticles <- getNeighbours(initialParticle, rnew, grid)
         // for i, j over neighbouringParticles do

@@ -111,7 +111,7 @@ impl Neighbours {
     }
 
     /// Sorts the nearest neighbours first, as their caps are the largest, or by direction.
-    pub(crate) fn sort(&mut self) {
+    pub fn sort(&mut self) {
         self.order.sort_unstable();
     }
 }
@@ -215,38 +215,58 @@ impl Halo {
 
     /// Calls `found` with the position of each point where two rims meet and no cap covers, as long
     /// as it is better than the best one so far, which means that its order, p . `wanted`, is
-    /// smaller. `found` returns true if it accepts the point.
+    /// smaller. `found` returns true if it accepts the point. The caller knows that no free place
+    /// has an order below `from`.
+    ///
+    /// Returns an order below which no place is free: neither for the new sphere nor, later, for a
+    /// larger one, since a smaller sphere that touches the front sphere at the same point lies
+    /// inside the larger one.
+    ///
     /// Nearly all points are covered. They are eliminated in single precision, see rims.rs.
-    pub fn corners(&mut self, wanted: &Vector3, found: impl FnMut(&Vector3) -> bool) {
-        Arch::new().dispatch(
+    pub fn corners(
+        &mut self,
+        wanted: &Vector3,
+        from: f64,
+        found: impl FnMut(&Vector3) -> bool,
+    ) -> f64 {
+        let least = Arch::new().dispatch(
             #[inline(always)]
-            || self.visit_corners(wanted, found),
+            || self.visit_corners(wanted, from, found),
         );
+        least.min(self.least_beside_corners(wanted))
     }
 
+    /// The smallest order of a free corner; infinite if there is none.
     #[inline(always)]
-    fn visit_corners(&mut self, wanted: &Vector3, mut found: impl FnMut(&Vector3) -> bool) {
+    fn visit_corners(
+        &mut self,
+        wanted: &Vector3,
+        from: f64,
+        mut found: impl FnMut(&Vector3) -> bool,
+    ) -> f64 {
+        const ROUNDING: f64 = 1e-6;
         let squared = wanted.norm_squared();
+        let length = squared.sqrt();
         self.order.clear();
         for (j, cap) in self.caps.iter().enumerate() {
-            // Of many rims nearly all are covered, and few remain to be sorted.
-            if self.caps.len() > MANY && self.rims.is_covered(j) {
-                continue;
-            }
             let along = cap.axis.dot(wanted);
             let across = (cap.sine_squared * (squared - along * along))
                 .max(0.0)
                 .sqrt();
+            if cap.rim * along + across < from - ROUNDING * length {
+                continue;
+            }
             // From 0 to 4; the bits of positive numbers have the same order as the numbers.
-            let least = 2.0 + (cap.rim * along - across) / squared.sqrt();
+            let least = 2.0 + (cap.rim * along - across) / length;
             let order = u64::from((least as f32).max(0.0).to_bits());
             self.order.push(order << 32 | j as u64);
         }
         self.order.sort_unstable();
         let (mut least, mut of_rim) = (f64::INFINITY, 0);
+        let mut least_free = f64::INFINITY;
         for entry in &self.order {
             let least_on_rim = f64::from(f32::from_bits((entry >> 32) as u32)) - 2.0;
-            if (least_on_rim - 1e-6) * squared.sqrt() > least {
+            if (least_on_rim - ROUNDING) * length > least {
                 break;
             }
             let (caps, j) = (&self.caps, (entry & 0xffff_ffff) as usize);
@@ -258,12 +278,45 @@ impl Halo {
                     let order = p.dot(wanted);
                     // Among equals, as in a regular packing, the one of the nearest neighbours.
                     let is_better = order < least || (order == least && j < of_rim);
-                    if is_better && is_free(caps, &p) && found(&(self.centre + p * self.radius)) {
-                        (least, of_rim) = (order, j);
+                    if is_better && is_free(caps, &p) {
+                        least_free = least_free.min(order);
+                        if found(&(self.centre + p * self.radius)) {
+                            (least, of_rim) = (order, j);
+                        }
                     }
                 }
             });
         }
+        least_free
+    }
+
+    /// An order that the least free place has unless it is a corner: that of the least place of
+    /// all, if that is free, or of the least place on the rim of a cap that covers it. Infinite if
+    /// none of these is free.
+    fn least_beside_corners(&self, wanted: &Vector3) -> f64 {
+        let length = wanted.norm();
+        // Beside few others it takes longer to find out than it saves.
+        if self.caps.len() <= MANY || length == 0.0 {
+            return f64::NEG_INFINITY;
+        }
+        let first = -wanted / length;
+        if self.is_free(&first) {
+            return -length;
+        }
+        let mut least = f64::INFINITY;
+        for cap in self
+            .caps
+            .iter()
+            .filter(|cap| cap.axis.dot(&first) > cap.rim)
+        {
+            let across = first - cap.axis * cap.axis.dot(&first);
+            let off = cap.sine_squared.max(0.0).sqrt() / across.norm().max(f64::MIN_POSITIVE);
+            let on_rim = cap.axis * cap.rim + across * off;
+            if self.is_free(&on_rim) {
+                least = least.min(on_rim.dot(wanted));
+            }
+        }
+        least
     }
 
     /// The position of a point where two rims meet, that no cap covers and that `takes` accepts, if

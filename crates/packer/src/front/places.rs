@@ -110,6 +110,7 @@ impl Assembly<'_> {
             neighbours,
             halo,
             walls,
+            full_below,
             ..
         } = workspace;
         if !halo.set_unless_covered(initial, self.reduced(radius), neighbours) {
@@ -117,13 +118,16 @@ impl Assembly<'_> {
         }
         let from_seed = halo.centre - seed;
         let mut best: Option<Vector3> = None;
-        halo.corners(&from_seed, |centre| {
+        let smaller = full_below.iter().filter(|(known, _)| *known <= radius);
+        let from = smaller.fold(f64::NEG_INFINITY, |from, (_, order)| from.max(*order));
+        let least = halo.corners(&from_seed, from, |centre| {
             let takes = self.clears_wall(centre, radius);
             if takes {
                 best = Some(*centre);
             }
             takes
         });
+        full_below.push((radius, least));
         let order_at = |place: &Vector3| (place - centre_of(initial)).dot(&from_seed);
         let mut least = best.as_ref().map_or(f64::INFINITY, order_at);
         for wall in &walls.found {
@@ -192,11 +196,20 @@ pub(super) struct Workspace {
     pub(super) gathered: f64,
     pub(super) halo: Halo,
     pub(super) walls: WallSearch,
+    /// For sizes tried beside the present front sphere, their (not reduced) radius, and the order
+    /// below which no place on the halo is free for them: see [`Halo::corners`].
+    full_below: Vec<(f64, f64)>,
     /// Direction and distance of flat walls.
     pub(super) planes: Vec<(Vector3, f64)>,
 }
 
 impl Workspace {
+    /// Forgets what is known of the places beside a front sphere.
+    pub(super) fn begin(&mut self) {
+        self.gathered = 0.0;
+        self.full_below.clear();
+    }
+
     /// Adds a sphere just placed to the neighbours of `initial`, as [`Assembly::find_neighbours`]
     /// would with the reduced radius `largest`.
     pub(super) fn add_neighbour(

@@ -86,6 +86,7 @@ impl Assembly<'_> {
             .with_min_len(256)
             .map_init(Workspace::default, |workspace, i| {
                 let sphere = self.spheres[*i as usize];
+                workspace.begin();
                 self.find_neighbours(workspace, &sphere, &[], smallest);
                 self.find_walls(workspace, &sphere, smallest);
                 self.best_place(workspace, &sphere, smallest, &centre_of(&sphere))

@@ -57,7 +57,7 @@ fn touching_three(
 /// The best corner by the halo's own search.
 fn best_corner(halo: &mut Halo, wanted: &Vector3) -> Option<Vector3> {
     let mut best = None;
-    halo.corners(wanted, |place| {
+    halo.corners(wanted, f64::NEG_INFINITY, |place| {
         best = Some(*place);
         true
     });
@@ -133,7 +133,7 @@ fn every_corner_that_is_offered_is_free() {
         neighbours.gather(&balls[0], &balls, new);
         halo.set(&balls[0], new, &neighbours);
         // If each is refused, all corners are offered one after the other.
-        halo.corners(&Vector3::x(), |q| {
+        halo.corners(&Vector3::x(), f64::NEG_INFINITY, |q| {
             let mut positions: Vec<[f64; 3]> = balls.iter().map(|b| [b[0], b[1], b[2]]).collect();
             let mut radii: Vec<f64> = balls.iter().map(|b| b[3]).collect();
             positions.push([q.x, q.y, q.z]);
@@ -142,6 +142,55 @@ fn every_corner_that_is_offered_is_free() {
             false
         });
     }
+}
+
+/// Small spheres are placed one after the other beside a large one, as by a front. What the smaller
+/// ones have shown holds for the next: no place is free below it, and the best corner is found from
+/// there on.
+#[test]
+fn no_place_is_free_below_what_smaller_sizes_have_shown() {
+    let mut random = random_numbers(4);
+    let (mut halo, mut neighbours) = (Halo::default(), Neighbours::default());
+    let (mut known, mut restricted) = (Vec::new(), 0);
+    for _ in 0..4 {
+        let large = between(&mut random, 2.0, 4.0);
+        let h = (large + 0.3) * (0.3 / (large + 0.3)).asin().cos();
+        let mut balls = vec![
+            [0.0, 0.0, 0.0, large],
+            [0.3, h, 0.0, 0.3],
+            [-0.3, h, 0.0, 0.3],
+        ];
+        let wanted = Vector3::from(point_between(&mut random, [-1.0; 3], [1.0; 3]));
+        known.clear();
+        for _ in 0..400 {
+            let new = between(&mut random, 0.15, 0.6);
+            neighbours.clear();
+            neighbours.gather(&balls[0], &balls, new);
+            neighbours.sort();
+            halo.set(&balls[0], new, &neighbours);
+            let smaller = known.iter().filter(|(size, _)| *size <= new);
+            let from = smaller.fold(f64::NEG_INFINITY, |from: f64, (_, order)| from.max(*order));
+            for _ in 0..50 {
+                let p = Vector3::from(point_between(&mut random, [-1.0; 3], [1.0; 3])).normalize();
+                let place = halo.position(&p);
+                let ball = [place.x, place.y, place.z, new];
+                let is_free = balls[1..].iter().all(|other| gap(other, &ball) >= 0.0);
+                assert!(!is_free || p.dot(&wanted) >= from - 1e-12, "{p} {from}");
+            }
+            let best = best_corner(&mut halo, &wanted);
+            let mut found = None;
+            let least = halo.corners(&wanted, from, |place| {
+                found = Some(*place);
+                true
+            });
+            assert_eq!(found, best, "from {from}");
+            restricted += usize::from(from > -wanted.norm());
+            known.push((new, least));
+            let Some(place) = best else { break };
+            balls.push([place.x, place.y, place.z, new]);
+        }
+    }
+    assert!(restricted > 500, "{restricted}");
 }
 
 #[test]
