@@ -18,7 +18,11 @@ const RIM_TOLERANCE: f64 = 1e-12;
 const SMALLEST_SINE_SQUARED: f64 = 1e-8;
 /// Edge of the cells on the unit sphere by which directions are ordered.
 const DIRECTIONS: f64 = 1.0 / 64.0;
-/// Number of caps above which those near each other are looked at together.
+/// Relative to `wanted`: orders are sorted in single precision, and corners of rims that meet at a
+/// small angle are left out.
+const ROUNDING: f64 = 1e-6;
+/// Number of caps above which those near each other are looked at together, and sizes learn from
+/// smaller ones.
 const MANY: usize = 64;
 /// Numbers of the nearest neighbours that may cover a halo.
 const NEAREST: [usize; 2] = [8, 32];
@@ -218,9 +222,10 @@ impl Halo {
     /// smaller. `found` returns true if it accepts the point. The caller knows that no free place
     /// has an order below `from`.
     ///
-    /// Returns an order below which no place is free: neither for the new sphere nor, later, for a
-    /// larger one, since a smaller sphere that touches the front sphere at the same point lies
-    /// inside the larger one.
+    /// Returns an order below which no place is free, in the units of `wanted`; minus infinity if
+    /// it is not known. With the same front sphere and the same `wanted` it holds for larger
+    /// spheres that are tried later as well: a smaller one that touches the front sphere at the
+    /// same point lies inside the larger one.
     ///
     /// Nearly all points are covered. They are eliminated in single precision, see rims.rs.
     pub fn corners(
@@ -244,7 +249,6 @@ impl Halo {
         from: f64,
         mut found: impl FnMut(&Vector3) -> bool,
     ) -> f64 {
-        const ROUNDING: f64 = 1e-6;
         let squared = wanted.norm_squared();
         let length = squared.sqrt();
         self.order.clear();
@@ -290,9 +294,9 @@ impl Halo {
         least_free
     }
 
-    /// An order that the least free place has unless it is a corner: that of the least place of
-    /// all, if that is free, or of the least place on the rim of a cap that covers it. Infinite if
-    /// none of these is free.
+    /// The smallest order that a free place other than a corner can have: at the place of smallest
+    /// order of all, if it is free, or where the rim of a cap that covers that place has its
+    /// smallest order. Infinite if none of these is free, and minus infinity if there are few caps.
     fn least_beside_corners(&self, wanted: &Vector3) -> f64 {
         let length = wanted.norm();
         // Beside few others it takes longer to find out than it saves.
@@ -304,16 +308,19 @@ impl Halo {
             return -length;
         }
         let mut least = f64::INFINITY;
-        for cap in self
-            .caps
-            .iter()
-            .filter(|cap| cap.axis.dot(&first) > cap.rim)
-        {
-            let across = first - cap.axis * cap.axis.dot(&first);
-            let off = cap.sine_squared.max(0.0).sqrt() / across.norm().max(f64::MIN_POSITIVE);
-            let on_rim = cap.axis * cap.rim + across * off;
-            if self.is_free(&on_rim) {
-                least = least.min(on_rim.dot(wanted));
+        for (j, cap) in self.caps.iter().enumerate() {
+            let along = cap.axis.dot(&first);
+            if along <= cap.rim {
+                continue;
+            }
+            let across = first - cap.axis * along;
+            let (sine, distance) = (cap.sine_squared.max(0.0).sqrt(), across.norm());
+            let place = cap.axis * cap.rim + across * (sine / distance);
+            let covers =
+                |(k, other): (usize, &Cap)| k != j && other.axis.dot(&place) > other.rim + ROUNDING;
+            // If the axis points at the first place, all places of the rim have the same order.
+            if distance < ROUNDING || !self.caps.iter().enumerate().any(covers) {
+                least = least.min(-length * (cap.rim * along + sine * distance));
             }
         }
         least

@@ -127,7 +127,9 @@ impl Assembly<'_> {
             }
             takes
         });
-        full_below.push((radius, least));
+        if least > from {
+            full_below.push((radius, least));
+        }
         let order_at = |place: &Vector3| (place - centre_of(initial)).dot(&from_seed);
         let mut least = best.as_ref().map_or(f64::INFINITY, order_at);
         for wall in &walls.found {
@@ -196,8 +198,9 @@ pub(super) struct Workspace {
     pub(super) gathered: f64,
     pub(super) halo: Halo,
     pub(super) walls: WallSearch,
-    /// For sizes tried beside the present front sphere, their (not reduced) radius, and the order
-    /// below which no place on the halo is free for them: see [`Halo::corners`].
+    /// For sizes tried beside the present front sphere, their (not reduced) radius and the order
+    /// below which no place on the halo is free for them, as seen from its seed, local units: see
+    /// [`Halo::corners`].
     full_below: Vec<(f64, f64)>,
     /// Direction and distance of flat walls.
     pub(super) planes: Vec<(Vector3, f64)>,

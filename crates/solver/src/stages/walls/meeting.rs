@@ -173,6 +173,8 @@ impl Place<'_> {
         met.touch.normal = (*normal).into();
         met.touch.history.tangential = answers.tangential[lane];
         met.touch.history.damping = answers.damping[lane];
+        met.touch.history.rolling = answers.rolling[lane];
+        met.touch.history.rolling_damping = answers.rolling_damping[lane];
         met.point = geometry.point;
         met.belt = geometry.belt;
         met.forces[0] = vector(&answers.forces[lane]);
