@@ -308,7 +308,7 @@ impl Halo {
             return -length;
         }
         let mut least = f64::INFINITY;
-        for (j, cap) in self.caps.iter().enumerate() {
+        for cap in &self.caps {
             let along = cap.axis.dot(&first);
             if along <= cap.rim {
                 continue;
@@ -316,10 +316,9 @@ impl Halo {
             let across = first - cap.axis * along;
             let (sine, distance) = (cap.sine_squared.max(0.0).sqrt(), across.norm());
             let place = cap.axis * cap.rim + across * (sine / distance);
-            let covers =
-                |(k, other): (usize, &Cap)| k != j && other.axis.dot(&place) > other.rim + ROUNDING;
+            let covers = |other: &Cap| other.axis.dot(&place) > other.rim + ROUNDING;
             // If the axis points at the first place, all places of the rim have the same order.
-            if distance < ROUNDING || !self.caps.iter().enumerate().any(covers) {
+            if distance < ROUNDING || !self.caps.iter().any(covers) {
                 least = least.min(-length * (cap.rim * along + sine * distance));
             }
         }
