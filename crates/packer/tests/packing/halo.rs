@@ -199,24 +199,32 @@ fn no_place_is_free_below_what_smaller_sizes_have_shown() {
 fn the_first_free_place_may_be_on_the_rim_of_one_cap() {
     let mut random = random_numbers(5);
     let (large, small, new) = (3.0, 0.3, 0.4);
-    let mut balls = vec![[0.0, 0.0, 0.0, large], [large + small, 0.0, 0.0, small]];
-    for _ in 0..100 {
-        let [x, y, z] = point_between(&mut random, [-1.0, -1.0, -1.0], [-0.5, 1.0, 1.0]);
-        let place = Vector3::new(x, y, z).normalize() * (large + small);
-        balls.push([place.x, place.y, place.z, small]);
-    }
-    let (mut halo, mut neighbours) = (Halo::default(), Neighbours::default());
-    neighbours.gather(&balls[0], &balls, new);
-    neighbours.sort();
-    halo.set(&balls[0], new, &neighbours);
     let (reach, distance, touching) = (large + new, large + small, small + new);
     let cosine =
         (reach * reach + distance * distance - touching * touching) / (2.0 * reach * distance);
-    for tilt in [0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-4, 1e-3, 0.05_f64] {
-        for _ in 0..20 {
-            let about = between(&mut random, 0.0, 6.0);
-            let off = tilt.sin() * Vector3::new(0.0, about.cos(), about.sin());
-            let wanted = -2.0 * (tilt.cos() * Vector3::x() + off);
+    let mut direction =
+        move || Vector3::from(point_between(&mut random, [-1.0; 3], [1.0; 3])).normalize();
+    let (mut halo, mut neighbours) = (Halo::default(), Neighbours::default());
+    for _ in 0..50 {
+        let axis = direction();
+        let ball = |towards: Vector3| {
+            let place = towards * distance;
+            [place.x, place.y, place.z, small]
+        };
+        let mut balls = vec![[0.0, 0.0, 0.0, large], ball(axis)];
+        while balls.len() < 100 {
+            let other = direction();
+            if other.dot(&axis) < -0.5 {
+                balls.push(ball(other));
+            }
+        }
+        neighbours.clear();
+        neighbours.gather(&balls[0], &balls, new);
+        neighbours.sort();
+        halo.set(&balls[0], new, &neighbours);
+        for tilt in [0.0, 1e-12, 1e-9, 1e-7, 1e-5, 1e-4, 1e-3, 0.05_f64] {
+            let across = axis.cross(&direction()).normalize();
+            let wanted = -2.0 * (tilt.cos() * axis + tilt.sin() * across);
             let least = halo.corners(&wanted, f64::NEG_INFINITY, |_| true);
             let first = -2.0 * (cosine.acos() - tilt).cos();
             assert!((least - first).abs() < 4e-6, "{tilt}: {least} {first}");
