@@ -120,15 +120,15 @@ impl Assembly<'_> {
         let mut best: Option<Vector3> = None;
         let smaller = full_below.iter().filter(|(known, _)| *known <= radius);
         let from = smaller.fold(f64::NEG_INFINITY, |from, (_, order)| from.max(*order));
-        let least = halo.corners(&from_seed, from, |centre| {
+        let none_below = halo.corners(&from_seed, from, |centre| {
             let takes = self.clears_wall(centre, radius);
             if takes {
                 best = Some(*centre);
             }
             takes
         });
-        if least > from {
-            full_below.push((radius, least));
+        if none_below > from {
+            full_below.push((radius, none_below));
         }
         let order_at = |place: &Vector3| (place - centre_of(initial)).dot(&from_seed);
         let mut least = best.as_ref().map_or(f64::INFINITY, order_at);

@@ -47,7 +47,7 @@ impl Meeting {
 }
 
 /// Interaction of a particle and a wall at one point.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub struct Met {
     /// The contact.
     pub touch: WallContact,

@@ -136,7 +136,7 @@ impl Wall {
 }
 
 /// A contact between a particle and a wall, with its history.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WallContact {
     /// Number of the particle.
     pub particle: u32,

@@ -95,22 +95,12 @@ impl<T: Lanes> ContactWork<T> for KindWork<'_, T> {
 
     #[inline(always)]
     fn with(self, law: &impl NormalLaw<T>, rolling: &impl RollingFriction<T>) {
-        let first = self.found.len();
-        self.found
-            .resize(first + self.meetings.len(), Met::default());
-        let found = self.found[first..].chunks_mut(T::COUNT);
-        let mut geometries = [Geometry::default(); MOST];
-        for (some, found) in self.meetings.chunks(T::COUNT).zip(found) {
-            for (geometry, meeting) in geometries.iter_mut().zip(some) {
-                *geometry = self.place.geometry(meeting);
-            }
-            let answers = self
-                .place
-                .meet_some(self.proof, (law, rolling), some, &geometries);
-            for (lane, (met, meeting)) in found.iter_mut().zip(some).enumerate() {
-                let meeting = (meeting, self.kind);
-                self.place
-                    .set_met(met, meeting, &geometries[lane], &answers, lane);
+        self.found.reserve(self.meetings.len());
+        for some in self.meetings.chunks(T::COUNT) {
+            let answers = self.place.meet_some(self.proof, (law, rolling), some);
+            for (lane, meeting) in some.iter().enumerate() {
+                self.found
+                    .push(self.place.met(meeting, self.kind, &answers, lane));
             }
         }
     }
@@ -153,39 +143,37 @@ impl Place<'_> {
         }
     }
 
-    /// Sets the interaction of the particle in a lane, field by field: to build it elsewhere first
-    /// takes longer.
+    /// Interaction of the particle in a lane.
     #[inline(always)]
-    fn set_met(
-        &self,
-        met: &mut Met,
-        (meeting, kind): (&Meeting, &ContactKind),
-        geometry: &Geometry,
-        answers: &Answers,
-        lane: usize,
-    ) {
+    fn met(&self, meeting: &Meeting, kind: &ContactKind, answers: &Answers, lane: usize) -> Met {
+        // Rows are borrowed: to copy those of all lanes for one number takes longer.
         let vector = |[x, y, z, _]: &[f64; 4]| Vector3::new(*x, *y, *z);
+        let geometry = &answers.geometries[lane];
         let [normal, normal_before] = &geometry.normals;
         let radius_m = self.particles.poses[meeting.particle as usize].radius_m();
         let overlap_m = answers.overlaps[lane][3];
-        met.touch.particle = meeting.particle;
-        met.touch.feature = meeting.there.feature;
-        met.touch.normal = (*normal).into();
-        met.touch.history.tangential = answers.tangential[lane];
-        met.touch.history.damping = answers.damping[lane];
-        met.touch.history.rolling = answers.rolling[lane];
-        met.touch.history.rolling_damping = answers.rolling_damping[lane];
-        met.point = geometry.point;
-        met.belt = geometry.belt;
-        met.forces[0] = vector(&answers.forces[lane]);
-        met.forces[1] = vector(&answers.damping[lane]);
-        met.torque = vector(&answers.torques[lane]);
-        met.moments[0] = vector(&answers.moments[lane]);
-        met.moments[1] = vector(&answers.overlaps[lane]);
-        met.elastic_j = answers.torques[lane][3];
-        met.lost_j = [answers.moments[lane][3], answers.damping_j[lane]];
-        met.crossed = meeting.is_behind || overlap_m > radius_m || normal_before.dot(normal) < 0.0;
-        met.stiffness_n_m = kind.normal_n_m(overlap_m, radius_m);
+        Met {
+            touch: WallContact {
+                particle: meeting.particle,
+                feature: meeting.there.feature,
+                normal: (*normal).into(),
+                history: ContactHistory {
+                    tangential: answers.tangential[lane],
+                    damping: answers.damping[lane],
+                    rolling: answers.rolling[lane],
+                    rolling_damping: answers.rolling_damping[lane],
+                },
+            },
+            point: geometry.point,
+            belt: geometry.belt,
+            forces: [&answers.forces, &answers.damping].map(|rows| vector(&rows[lane])),
+            torque: vector(&answers.torques[lane]),
+            moments: [&answers.moments, &answers.overlaps].map(|rows| vector(&rows[lane])),
+            elastic_j: answers.torques[lane][3],
+            lost_j: [answers.moments[lane][3], answers.damping_j[lane]],
+            crossed: meeting.is_behind || overlap_m > radius_m || normal_before.dot(normal) < 0.0,
+            stiffness_n_m: kind.normal_n_m(overlap_m, radius_m),
+        }
     }
 
     /// One to as many meetings as there are lanes.
@@ -195,9 +183,12 @@ impl Place<'_> {
         proof: T::Proof,
         laws: (&impl NormalLaw<T>, &R),
         some: &[Meeting],
-        geometries: &[Geometry; MOST],
     ) -> Answers {
         let meeting = |lane: usize| &some[lane.min(some.len() - 1)];
+        let mut geometries = [Geometry::default(); MOST];
+        for (geometry, meeting) in geometries.iter_mut().zip(some) {
+            *geometry = self.geometry(meeting);
+        }
         let row = |vector: &Vector3<f64>, last: f64| [vector.x, vector.y, vector.z, last];
         let [x, y, z, distance_m] = T::columns(proof, |lane| {
             row(&geometries[lane].normals[0], meeting(lane).there.distance_m)
@@ -227,6 +218,7 @@ impl Place<'_> {
         let (energy, [_, torque]) = (met.response.energy, met.torques);
         let with = |Vec3(x, y, z): Vec3<T>, last: T| T::rows([x, y, z, last]);
         Answers {
+            geometries,
             tangential: with(springs.tangential_m, springs.overlap_m),
             damping: with(damped.force_n, met.remembered.origin_m),
             rolling: with(springs.rolling_rad, met.overlap_m.zero()),
@@ -242,6 +234,7 @@ impl Place<'_> {
 
 /// Results for several meetings, row by row.
 struct Answers {
+    geometries: [Geometry; MOST],
     tangential: [[f64; 4]; MOST],
     damping: [[f64; 4]; MOST],
     rolling: [[f64; 4]; MOST],
