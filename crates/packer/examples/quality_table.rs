@@ -287,12 +287,17 @@ fn ratios() -> std::result::Result<(), Error> {
     let cases = [
         ("bar", bar(1.0)?, "1.2mm..1.5mm", Basis::Number),
         (
-            "box of 24,000 spheres",
+            "box of 28,000 spheres",
             bar(0.665)?,
-            "1mm..1.25mm",
+            "0.956mm..1.195mm",
             Basis::Number,
         ),
-        ("scan of 81,920 facets", scan, "1mm..1.25mm", Basis::Number),
+        (
+            "scan of 81,920 facets",
+            scan,
+            "0.956mm..1.195mm",
+            Basis::Number,
+        ),
         ("narrow sizes", bar(2.13)?, "2mm..3mm", Basis::Number),
         ("wide sizes, by mass", bar(0.56)?, "0.2mm..4mm", Basis::Mass),
     ];

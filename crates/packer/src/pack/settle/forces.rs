@@ -6,7 +6,6 @@ use super::eight::{self, Eight};
 use super::neighbours::ChunkOfLists;
 use super::walls::ChunkOfWalls;
 use crate::geometry::boundary::Boundary;
-use crate::geometry::near_triangles::WallSearch;
 use crate::spheres::ReducedSphere;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::V4;
@@ -41,7 +40,7 @@ pub(super) struct ForcesOn<'a> {
     pub(super) walls: &'a mut ChunkOfWalls,
     pub(super) enlarge: f64,
     /// Fraction of its radius that a sphere may move while planes stand for the wall.
-    pub(super) plane_lasts: f64,
+    pub(super) planes_last: f64,
 }
 
 impl ForcesOn<'_> {
@@ -73,26 +72,30 @@ impl ForcesOn<'_> {
             spheres,
             walls,
             enlarge,
-            plane_lasts,
+            planes_last,
         } = self;
         let mut worst = 0.0_f64;
-        let mut search = WallSearch::default();
         for (k, f) in force.iter_mut().enumerate() {
             let ball = balls[first + k];
             let number = (first + k) as u32;
             let [x, y, z] = of_neighbours((number, &ball), spheres.of(k), balls);
             *f = [x, y, z, 0.0];
         }
-        for near in &mut walls.near {
+        let ChunkOfWalls {
+            near,
+            listed_at,
+            search,
+        } = walls;
+        for near in near {
             let k = near.sphere;
             let ball = &balls[first + k];
             let radius = ball[3] * enlarge;
-            let lasts = plane_lasts * radius;
+            let lasts = planes_last * radius;
             near.touching(
                 boundary,
-                (ball, radius, &walls.listed_at[k]),
+                (ball, radius, &listed_at[k]),
                 lasts,
-                &mut search,
+                search,
                 |inward, height| {
                     for axis in 0..3 {
                         force[k][axis] += (radius - height) * inward[axis];

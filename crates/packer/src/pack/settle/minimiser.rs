@@ -24,9 +24,12 @@ const LAST_DAMPING: [f64; 2] = [0.1, 0.03];
 const SLOW: usize = 100;
 const NEARLY_DONE: f64 = 0.03;
 /// Limits of the fraction of its radius that a sphere moves at the wall until it is measured again:
-/// a plane stands for the wall for so long. At an edge its distance is off by half the square of
-/// this at most, which is kept below a quarter of the largest overlap, in radii.
-const PLANE_LASTS: [f64; 2] = [0.02, 0.25];
+/// planes stand for the wall for so long.
+const PLANES_LAST: [f64; 2] = [5e-4, 0.5];
+/// That fraction over the largest overlap, in radii, once this is small. Facets that lean by up to
+/// 14 degrees from a nearer plane have no plane of their own; after a sphere has moved, such a facet
+/// may stick out of that plane by a quarter of the move.
+const PLANES_LAST_OVERLAPS: f64 = 8.0;
 /// Velocity that a unit of force gives per step to a sphere of few neighbours; 1.5 times this value
 /// makes the dynamics unstable.
 const LARGEST_RESPONSE: f64 = 0.75;
@@ -181,6 +184,16 @@ fn damping(step: usize, largest_overlap: f64, nearly_done: usize) -> f64 {
     }
 }
 
+/// The fraction of its radius that a sphere may move while planes stand for the wall, if the largest
+/// overlap is `worst` radii: at an edge the distance is then off by half of that overlap at most.
+fn planes_last(worst: f64) -> f64 {
+    let [least, most] = PLANES_LAST;
+    worst
+        .sqrt()
+        .min(PLANES_LAST_OVERLAPS * worst)
+        .clamp(least, most)
+}
+
 impl<'a> State<'a> {
     fn new(boundary: &'a Boundary, balls: Vec<ReducedSphere>, enlarge: f64) -> Self {
         let n = balls.len();
@@ -289,8 +302,7 @@ impl<'a> State<'a> {
     /// Forces at the present positions. Returns the largest overlap, in radii.
     fn forces(&mut self) -> f64 {
         let (boundary, balls, enlarge) = (self.boundary, &self.balls, self.enlarge);
-        let [least, most] = PLANE_LASTS;
-        let plane_lasts = (0.5 * self.worst).sqrt().clamp(least, most);
+        let planes_last = planes_last(self.worst);
         let force = self.force.par_chunks_mut(CHUNK);
         let spheres = self.near.chunks.par_iter();
         let walls = self.walls.chunks.par_iter_mut();
@@ -306,7 +318,7 @@ impl<'a> State<'a> {
                     spheres,
                     walls,
                     enlarge,
-                    plane_lasts,
+                    planes_last,
                 };
                 on.find()
             })

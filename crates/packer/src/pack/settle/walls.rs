@@ -31,6 +31,8 @@ pub(super) struct ChunkOfWalls {
     pub(super) near: Vec<NearWall>,
     /// Each sphere when its triangles were listed.
     pub(super) listed_at: Vec<ReducedSphere>,
+    /// Work arrays of searches for planes.
+    pub(super) search: WallSearch,
 }
 
 /// The wall near one sphere.
@@ -41,9 +43,9 @@ pub(super) struct NearWall {
     triangles: NearTriangles,
     /// The triangle that was nearest last.
     nearest: u32,
-    /// The nearest of the walls that it touches, or nearly, and the others: there are few of them,
-    /// and a plane that is found here need not be fetched from elsewhere.
-    plane: Option<WallPlane>,
+    /// The nearest two walls that it touches, or nearly, and the others: there are few of them, and
+    /// a plane that is found here need not be fetched from elsewhere.
+    planes: [Option<WallPlane>; 2],
     others: Vec<WallPlane>,
     /// Where the sphere was when these planes were found, and how far it may move until they are
     /// found anew, squared.
@@ -74,6 +76,7 @@ impl<'a> WallLists<'a> {
         let of_chunk = |balls: &[ReducedSphere]| ChunkOfWalls {
             near: Vec::new(),
             listed_at: vec![FAR; balls.len()],
+            search: WallSearch::default(),
         };
         let mut lists = Self {
             boundary,
@@ -122,7 +125,7 @@ impl<'a> WallLists<'a> {
             sphere: k,
             nearest,
             triangles,
-            plane: None,
+            planes: [None, None],
             others: Vec::new(),
             found_at: *ball,
             lasts_squared: -1.0,
@@ -189,7 +192,7 @@ impl NearWall {
         search: &mut WallSearch,
         mut push: impl FnMut([f64; 3], f64),
     ) {
-        let most_squared = if self.plane.is_none() {
+        let most_squared = if self.planes[0].is_none() {
             self.lasts_squared
         } else {
             self.lasts_squared.min(lasts * lasts)
@@ -197,7 +200,7 @@ impl NearWall {
         if squared_distance(&self.found_at, ball) >= most_squared {
             self.find_planes(boundary, (ball, radius, listed_at), lasts, search);
         }
-        for plane in self.plane.iter().chain(&self.others) {
+        for plane in self.planes.iter().flatten().chain(&self.others) {
             let height = plane.height(ball);
             if height < radius {
                 push(plane.inward.into(), height);
@@ -213,7 +216,7 @@ impl NearWall {
         lasts: f64,
         search: &mut WallSearch,
     ) {
-        self.plane = None;
+        self.planes = [None, None];
         self.others.clear();
         self.found_at = *ball;
         let (centre, reach) = (centre_of(ball), radius + lasts);
@@ -240,7 +243,7 @@ impl NearWall {
             point: wall.point,
             inward: (centre - wall.point) * (side / wall.distance),
         });
-        self.plane = planes.next();
+        self.planes = [planes.next(), planes.next()];
         self.others.extend(planes);
     }
 }
