@@ -255,7 +255,7 @@ struct Counted {
 
 /// Steps of a scene, after the first hundred.
 fn counted(text: &str) -> Vec<Counted> {
-    const STEPS: usize = 6000;
+    const STEPS: usize = 9000;
     let stage = |name: &str| step::stages().iter().position(|stage| stage.name == name);
     let search = stage("neighbour search").unwrap();
     let looks = ["steps by body", "sleep"].map(|name| stage(name).unwrap());

@@ -27,7 +27,7 @@ use crate::state::contacts::{ContactHistory, ContactModel, Contacts};
 const SKIN: [f64; 2] = [0.1, 0.5];
 /// Smallest and largest distance that a particle may move between two searches for its neighbours,
 /// as fractions of its radius, unless the scene sets the skin.
-const ALLOWANCES: [f64; 2] = [0.05, 0.25];
+const ALLOWANCES: [f64; 2] = [0.05, 0.5];
 /// Number of steps for which a list of near pairs should last at the speed of the first impacts.
 const STEPS_PER_LIST: f64 = 30.0;
 /// Ends that overlap at the start by less than this fraction of the smaller radius are only

@@ -5,6 +5,7 @@
 use super::neighbours::{CHUNK, squared_distance};
 use crate::geometry::boundary::{AS_NEAR, Boundary};
 use crate::geometry::near_triangles::{NearTriangles, WallSearch};
+use crate::geometry::nearest::Nearest;
 use crate::spheres::{ReducedSphere, Vector3, centre_of};
 use rayon::prelude::*;
 
@@ -239,7 +240,10 @@ impl NearWall {
                 && boundary.is_behind_nearest(as_near, &centre) == Some(false)
         });
         let side = if is_beyond { -1.0 } else { 1.0 };
-        let mut planes = search.found.iter().map(|wall| WallPlane {
+        // It is not pulled towards walls that it only touches, as those across a gap.
+        let pulls = |wall: &&Nearest| !is_beyond || wall.distance < BEYOND * radius;
+        let found = search.found.iter().filter(pulls);
+        let mut planes = found.map(|wall| WallPlane {
             point: wall.point,
             inward: (centre - wall.point) * (side / wall.distance),
         });

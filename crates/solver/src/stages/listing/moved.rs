@@ -18,17 +18,18 @@ use crate::state::rigid_balls::ClumpReference;
 use crate::state::search_buffers::SearchBuffers;
 
 /// Number of steps that a particle may go on at its present speed until its next search.
-const STEPS: f64 = 30.0;
+const STEPS: f64 = 80.0;
 /// The same for a clump: its spheres are many, but few of them are near something.
 const STEPS_OF_CLUMP: f64 = 40.0;
 /// Largest distance that a clump may move between two searches, as a multiple of the radius of its
 /// largest sphere.
 const FARTHEST_OF_CLUMP: f64 = 1.0;
-/// A search is due when something has less than this fraction of its distance left.
-const NOW: f64 = 0.1;
-/// Then every free particle is searched for that has less than this fraction left.
-const SOON: f64 = 0.5;
-/// And every clump that has less than this fraction left, if it would use up what it has in this
+/// When a search is due, every free particle is searched for that has less than this fraction of its
+/// distance left: a search takes almost as long for few particles as for many.
+const SOON: f64 = 0.8;
+/// A search is due when a clump has less than this fraction of its distance left.
+const NOW_OF_CLUMP: f64 = 0.1;
+/// Then every clump that has less than this fraction left, if it would use up what it has in this
 /// number of steps at its present speed.
 const SOON_OF_CLUMP: (f64, f64) = (0.9, 30.0);
 /// After two more steps like the last, unlisted particles could overlap.
@@ -95,7 +96,7 @@ pub(super) fn find_due(
     {
         reference.left_m = clump_left_m(&state.clumps, clump, reference);
         let (fraction, steps) = SOON_OF_CLUMP;
-        let [now_m, soon_m] = [NOW, fraction].map(|part| part * reference.allowance_m);
+        let [now_m, soon_m] = [NOW_OF_CLUMP, fraction].map(|part| part * reference.allowance_m);
         let soon_m = soon_m.min(steps * clump.moved_m).max(now_m);
         if reference.left_m < least_m(soon_m, clump.moved_m) {
             due.clumps.push(n);
@@ -118,10 +119,10 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
         if references.chunks_left_m[chunk] < STEPS_LEFT * moved_m.unwrap_or(0.0) {
             let mut least_left_m = f64::INFINITY;
             for i in chunk_of(chunk, p.free) {
-                let [left_m, allowance_m] = free_left_m(p, references, i);
+                let [left_m, _] = free_left_m(p, references, i);
                 least_left_m = least_left_m.min(left_m);
                 let moved_m = p.motions[i].speed_m_s() * state.cycle_s();
-                urgent |= left_m < least_m(NOW * allowance_m, moved_m);
+                urgent |= left_m < STEPS_LEFT * moved_m;
             }
             references.chunks_left_m[chunk] = least_left_m;
         }
@@ -129,7 +130,8 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
     for (clump, reference) in state.clumps.all.iter().zip(&mut references.clumps) {
         if reference.left_m < STEPS_LEFT * clump.moved_m {
             reference.left_m = clump_left_m(&state.clumps, clump, reference);
-            urgent |= reference.left_m < least_m(NOW * reference.allowance_m, clump.moved_m);
+            urgent |=
+                reference.left_m < least_m(NOW_OF_CLUMP * reference.allowance_m, clump.moved_m);
         }
     }
     urgent
