@@ -24,8 +24,8 @@ const STEPS_OF_CLUMP: f64 = 40.0;
 /// Largest distance that a clump may move between two searches, as a multiple of the radius of its
 /// largest sphere.
 const FARTHEST_OF_CLUMP: f64 = 1.0;
-/// When a search is due, every free particle is searched for that has less than this fraction of its
-/// distance left: a search takes almost as long for few particles as for many.
+/// When a search is due, every free particle is searched for that has less than this fraction of
+/// its distance left: a search takes almost as long for few particles as for many.
 const SOON: f64 = 0.8;
 /// A search is due when a clump has less than this fraction of its distance left.
 const NOW_OF_CLUMP: f64 = 0.1;
