@@ -14,3 +14,14 @@ mod tree;
 pub(crate) mod union;
 mod wall_eights;
 mod winding;
+
+/// A surface in millimetres, for tests.
+#[cfg(test)]
+pub(crate) fn surface_in_mm(stl: &[u8]) -> dem_io::Result<dem_io::Surface> {
+    let settings = dem_io::surface::ReadSettings {
+        unit_m: 1e-3,
+        scale: 1.0,
+        fill_holes: false,
+    };
+    dem_io::surface::surface_from_stl(stl, "shape", settings)
+}

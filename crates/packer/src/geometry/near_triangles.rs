@@ -244,7 +244,7 @@ impl Walls<'_> {
 mod tests {
     use super::*;
     use crate::geometry::boundary::AS_NEAR;
-    use dem_io::surface::{ReadSettings, surface_from_stl};
+    use crate::geometry::surface_in_mm;
     use rand::{RngExt, SeedableRng};
 
     /// The same, one triangle after the other.
@@ -295,20 +295,12 @@ mod tests {
 
     #[test]
     fn the_same_walls_as_one_by_one() -> dem_io::Result<()> {
-        let shape = |stl: &[u8]| {
-            let settings = ReadSettings {
-                unit_m: 1e-3,
-                scale: 1.0,
-                fill_holes: false,
-            };
-            surface_from_stl(stl, "shape", settings)
-        };
         let mut random = rand::rngs::ChaCha8Rng::seed_from_u64(8);
         let (mut several, mut hidden, mut most) = (0, 0, 0);
         for surface in [
-            shape(include_bytes!("../../../../data/shapes/torus.stl"))?,
-            shape(include_bytes!("../../../../data/shapes/rock.stl"))?,
-            shape(include_bytes!("../../../../data/shapes/hollow-pair.stl"))?,
+            surface_in_mm(include_bytes!("../../../../data/shapes/torus.stl"))?,
+            surface_in_mm(include_bytes!("../../../../data/shapes/rock.stl"))?,
+            surface_in_mm(include_bytes!("../../../../data/shapes/hollow-pair.stl"))?,
         ] {
             let boundary = Boundary::new(&surface)?;
             let mut search = WallSearch::default();

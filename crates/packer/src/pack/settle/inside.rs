@@ -45,11 +45,11 @@ pub(super) fn find_inside(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dem_io::surface::{ReadSettings, surface_from_stl};
+    use crate::geometry::surface_in_mm;
     use rand::{RngExt, SeedableRng};
 
-    /// Spheres inside and outside a ring, and a ball with a cavity beside another ball, some of them
-    /// on the wall, before and after they have moved by up to the skin.
+    /// Spheres inside and outside a ring, and a ball with a cavity beside another ball, some of
+    /// them on the wall, before and after they have moved by up to the skin.
     #[test]
     fn spheres_are_on_the_side_that_a_ray_finds() -> dem_io::Result<()> {
         const SKIN: f64 = 0.03;
@@ -58,12 +58,7 @@ mod tests {
             &include_bytes!("../../../../../data/shapes/torus.stl")[..],
             &include_bytes!("../../../../../data/shapes/hollow-pair.stl")[..],
         ] {
-            let settings = ReadSettings {
-                unit_m: 1e-3,
-                scale: 1.0,
-                fill_holes: false,
-            };
-            let surface = surface_from_stl(stl, "shape", settings)?;
+            let surface = surface_in_mm(stl)?;
             let boundary = Boundary::new(&surface)?;
             let extent = surface.extent();
             let mut sphere = |_| {

@@ -375,8 +375,8 @@ mod tests {
     use super::super::walls::ChunkOfWalls;
     use super::*;
     use crate::geometry::inside::is_inside;
+    use crate::geometry::surface_in_mm;
     use crate::spheres::Vector3;
-    use dem_io::surface::{ReadSettings, surface_from_stl};
     use rand::{RngExt, SeedableRng};
 
     #[test]
@@ -387,12 +387,7 @@ mod tests {
             &include_bytes!("../../../../../data/shapes/torus.stl")[..],
             &include_bytes!("../../../../../data/shapes/rock.stl")[..],
         ] {
-            let settings = ReadSettings {
-                unit_m: 1e-3,
-                scale: 1.0,
-                fill_holes: false,
-            };
-            let surface = surface_from_stl(stl, "shape", settings)?;
+            let surface = surface_in_mm(stl)?;
             let boundary = Boundary::new(&surface)?;
             let extent = surface.extent();
             for _ in 0..4000 {
