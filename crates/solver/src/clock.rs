@@ -1,5 +1,5 @@
-//! Time and work of each stage of a step. One step in `EVERY` is timed stage by stage; output and
-//! checks are always timed. The work of stages is counted, to show that a stage that a scene does
+//! Time and work of each stage of a step. One step in `EVERY` is timed stage by stage; output,
+//! checks and stages that have work in few steps only are always timed. The work of stages is counted, to show that a stage that a scene does
 //! not need does nothing.
 //!
 //! Stages are identified by their numbers in the table of the step.
@@ -57,6 +57,14 @@ impl StageClock {
         }
     }
 
+    /// Adds the time since `began` to a stage, in whichever step: for a stage that has work in few
+    /// steps only, of which the timed ones are not a representative sample.
+    pub(crate) fn book_since(&mut self, stage: usize, began: Instant) {
+        let now = Instant::now();
+        self.times[stage] += (now - began) / EVERY as u32;
+        self.since = self.since.map(|_| now);
+    }
+
     /// Adds a time of the entire run, not of one step in `EVERY`: for work done in few steps, of
     /// which the timed ones are not a representative sample.
     pub(crate) fn book_all(&mut self, stage: usize, time: Duration) {
@@ -82,5 +90,23 @@ impl StageClock {
         } else {
             self.times[stage].as_secs_f64() / all.as_secs_f64()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stage_with_work_in_few_steps_is_timed_in_each() {
+        let mut clock = StageClock::default();
+        let began = Instant::now();
+        std::thread::sleep(Duration::from_millis(1));
+        clock.start(EVERY + 1);
+        clock.book(0);
+        clock.book_since(1, began);
+        clock.book(2);
+        let times = [0, 1, 2].map(|stage| clock.fraction(stage));
+        assert_eq!(times, [0.0, 1.0, 0.0]);
     }
 }

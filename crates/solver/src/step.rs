@@ -1,6 +1,7 @@
 //! The time step: its stages, in order.
 
 use std::sync::LazyLock;
+use std::time::Instant;
 
 use crate::stages::bonds::{BONDS, clear_wrenches, compute_bonds};
 use crate::stages::breakage::{
@@ -124,6 +125,9 @@ const OF_ALL: [&[&Stage]; 2] = [&[&SEARCH, &LEVELS], &[&CLUSTERS, &OUTPUT, &CHEC
 /// Stages of the second half that are done for each group.
 const OF_BODIES: [&Stage; 2] = [&MOTION, &CLUMPS];
 
+/// Stages that have work in few steps only: they are timed in each.
+const IN_FEW_STEPS: [&Stage; 4] = [&SEARCH, &CLUSTERS, &FLOW, &REPLACEMENT];
+
 /// A complete step. Returns what happened in it.
 pub fn step(state: &mut State) -> &Events {
     interact(state);
@@ -208,9 +212,14 @@ fn run(parts: &[Part], stages: &[usize], state: &mut State, is_meant: fn(&Stage)
     state.scratch.clock.start(state.steps / state.cycle());
     for ((own, part), &stage) in parts.iter().zip(stages) {
         if is_meant(own) && !state.scratch.clock.is_left_out(stage) {
+            let began = IN_FEW_STEPS.contains(own).then(Instant::now);
             let items = part(state);
-            state.scratch.clock.did(stage, items);
-            state.scratch.clock.book(stage);
+            let clock = &mut state.scratch.clock;
+            clock.did(stage, items);
+            match began {
+                Some(began) => clock.book_since(stage, began),
+                None => clock.book(stage),
+            }
         }
     }
 }

@@ -163,10 +163,7 @@ fn everything(state: &State, due: &mut Due) {
 fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBuffers) -> usize {
     let due = &buffers.due;
     for &i in &due.particles {
-        let i = i as usize;
-        let speed_m_s = state.particles.motions[i].speed_m_s();
-        let moved_m = speed_m_s * state.cycle_s();
-        refer_particle(contacts, i, &state.particles.poses[i], moved_m);
+        refer_particle(contacts, state, i as usize);
     }
     let clusters = state.clusters.as_ref();
     refer_clumps(contacts, state, &due.clumps, clusters.is_none());

@@ -9,17 +9,18 @@
 //! Two large clusters are searched only where their boxes overlap, body by body. Small clusters,
 //! and large ones where they may meet small ones, are put into grids.
 
+mod among_small;
 mod meetings;
 
 use rayon::prelude::*;
 
+use self::among_small::SmallMeetings;
 use self::meetings::list_with_small;
 use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
 use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
 use crate::state::balls::{BLOCK, BOXES, Ball, BoxColumns, NOWHERE};
-use crate::state::grids::Seeker;
 use crate::state::groups::{KnownClusters, LargeCluster, Searched};
 use crate::state::particles::Pose;
 use crate::state::rigid_balls::Placement;
@@ -76,9 +77,13 @@ pub(crate) fn find_pairs(
     search.among_large(buffers);
     let pairs = &mut buffers.found;
     if !pairs.is_sorted() {
-        // One number is compared faster than two.
-        pairs.par_sort_unstable_by_key(|&[i, j]| u64::from(i) << 32 | u64::from(j));
+        pairs.par_sort_unstable_by_key(in_order);
     }
+}
+
+/// A number by which pairs are sorted. It is compared faster than two.
+fn in_order(&[i, j]: &[u32; 2]) -> u64 {
+    u64::from(i) << 32 | u64::from(j)
 }
 
 /// What is searched, and what is known of it.
@@ -145,12 +150,7 @@ impl<'a> Search<'a> {
 
     /// Pairs of which at least one is of a small cluster.
     fn among_small(&self, buffers: &mut PairBuffers) {
-        let Searched {
-            balls,
-            clusters,
-            seeks,
-            ..
-        } = *self.searched;
+        let Searched { balls, seeks, .. } = *self.searched;
         list_with_small(balls, self.known, seeks, buffers);
         let PairBuffers {
             active,
@@ -162,29 +162,15 @@ impl<'a> Search<'a> {
         if active.len() < 2 {
             return;
         }
-        grids.fill(clusters, active);
-        let groups = &self.known.groups;
-        let is_large = |i: u32| groups.is_large(clusters[i as usize]);
-        let any_large = !self.known.large.is_empty();
+        grids.fill(active);
         let chunks = chunks_of(active.len());
-        let tasks = in_tasks(chunks.len(), of_tasks, |chunk, PairTask { found, .. }| {
-            found.clear();
-            let some = &active[chunk_of(chunk, active.len())];
-            for &(i, ball) in some.iter().filter(|(i, _)| self.seeks(*i)) {
-                let seeker = Seeker {
-                    particle: i,
-                    cluster: clusters[i as usize],
-                    ball,
-                };
-                match seeks {
-                    None => grids.add_pairs_of_all(&seeker, found),
-                    Some(seeks) => grids.add_pairs(&seeker, |j| seeks[j as usize], found),
-                }
-            }
-            if any_large {
-                found.retain(|&[a, b]| !(is_large(a) && is_large(b)));
-            }
-            found.sort_unstable();
+        let tasks = in_tasks(chunks.len(), of_tasks, |chunk, task| {
+            with_most_lanes(SmallMeetings {
+                search: self,
+                grids,
+                some: &active[chunk_of(chunk, active.len())],
+                found: &mut task.found,
+            });
         });
         for task in tasks {
             all.extend_from_slice(&task.found);

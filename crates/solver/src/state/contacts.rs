@@ -46,6 +46,11 @@ impl ContactHistory {
         }
     }
 
+    /// Whether there is anything in it.
+    fn remembers(&self) -> bool {
+        *self != Self::default()
+    }
+
     /// The history with the two particles exchanged.
     pub fn reversed(&self) -> Self {
         let back = |[x, y, z, last]: [f64; 4]| [-x, -y, -z, last];
@@ -134,6 +139,9 @@ pub struct ContactScratch {
     pub(crate) former_pairs: Vec<[u32; 2]>,
     /// Histories before the last search, kept for their memory only.
     pub former_histories: Vec<ContactHistory>,
+    /// For each pair whether there is anything in its history: from a search until the contacts
+    /// have been divided.
+    remembers: Vec<bool>,
     /// Vectors of a search, kept for their memory only.
     pub(crate) buffers: SearchBuffers,
     /// Division of the work.
@@ -209,25 +217,30 @@ impl Contacts {
     /// were bonded or not.
     pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64 + Sync) {
         let (known, of_known) = (&self.pairs, &self.histories);
-        let relist_chunk = |(histories, pairs): (&mut [ContactHistory], &[[u32; 2]])| {
-            let first = known.partition_point(|old| *old < pairs[0]);
-            let mut before = known[first..].iter().zip(&of_known[first..]).peekable();
-            for (history, pair) in histories.iter_mut().zip(pairs) {
-                while before.next_if(|(old, _)| *old < pair).is_some() {}
-                *history = match before.peek() {
-                    Some((old, history)) if *old == pair => **history,
-                    _ => ContactHistory::separated_at(overlap_m(*pair)),
-                };
-            }
-        };
+        let relist_chunk =
+            |new: &mut [ContactHistory], remember: &mut [bool], pairs: &[[u32; 2]]| {
+                let first = known.partition_point(|old| *old < pairs[0]);
+                let mut before = known[first..].iter().zip(&of_known[first..]).peekable();
+                for ((history, remembers), pair) in new.iter_mut().zip(remember).zip(pairs) {
+                    while before.next_if(|(old, _)| *old < pair).is_some() {}
+                    *history = match before.peek() {
+                        Some((old, history)) if *old == pair => **history,
+                        _ => ContactHistory::separated_at(overlap_m(*pair)),
+                    };
+                    *remembers = history.remembers();
+                }
+            };
         let mut histories = std::mem::take(&mut self.scratch.former_histories);
         if histories.capacity() < pairs.len() {
             histories = Vec::with_capacity(pairs.len() + pairs.len() / 8);
         }
         histories.resize(pairs.len(), ContactHistory::default());
+        let remembers = &mut self.scratch.remembers;
+        remembers.resize(pairs.len(), false);
         let chunks = histories.par_chunks_mut(RELISTED_AT_ONCE);
+        let chunks = chunks.zip(remembers.par_chunks_mut(RELISTED_AT_ONCE));
         let chunks = chunks.zip(pairs.par_chunks(RELISTED_AT_ONCE));
-        chunks.for_each(relist_chunk);
+        chunks.for_each(|((new, remember), pairs)| relist_chunk(new, remember, pairs));
         self.scratch.former_histories = std::mem::replace(&mut self.histories, histories);
         self.scratch.former_pairs = std::mem::replace(&mut self.pairs, pairs);
     }
@@ -253,6 +266,11 @@ impl Contacts {
             let next = self.pairs.get(k * wanted);
             next.map_or(particles, |&[a, _]| a as usize)
         };
+        let mut remembers = std::mem::take(&mut self.scratch.remembers);
+        if remembers.len() != self.pairs.len() {
+            remembers.clear();
+            remembers.extend(self.histories.iter().map(ContactHistory::remembers));
+        }
         let mut partitions = std::mem::take(&mut self.scratch.partitions);
         let (mut divided, mut start) = (0, 0);
         for end in (1..=count).map(end_of) {
@@ -262,7 +280,7 @@ impl Contacts {
             if divided == partitions.len() {
                 partitions.push(ContactPartition::default());
             }
-            partitions[divided].set(start..end, self);
+            partitions[divided].set(start..end, self, &remembers);
             (divided, start) = (divided + 1, end);
         }
         partitions.truncate(divided);
@@ -276,12 +294,15 @@ impl Contacts {
             }
         }
         self.scratch.partitions = partitions;
+        remembers.clear();
+        self.scratch.remembers = remembers;
     }
 }
 
 impl ContactPartition {
-    /// Gives it these particles and their contacts, without a border.
-    fn set(&mut self, particles: Range<usize>, contacts: &Contacts) {
+    /// Gives it these particles and their contacts, without a border. `remembers`: for each pair
+    /// whether there is anything in its history.
+    fn set(&mut self, particles: Range<usize>, contacts: &Contacts, remembers: &[bool]) {
         let pairs = &contacts.pairs;
         let first_of = |p: usize| pairs.partition_point(|&[a, _]| (a as usize) < p);
         self.own = first_of(particles.start)..first_of(particles.end);
@@ -291,15 +312,15 @@ impl ContactPartition {
         self.close
             .resize_with(contacts.model.kinds.len(), Default::default);
         self.close.iter_mut().flatten().for_each(Vec::clear);
-        let remembers = |history: &ContactHistory| *history != ContactHistory::default();
-        let of_eight = |eight: &[ContactHistory]| {
-            (0..).zip(eight).fold(0, |bits, (lane, history)| {
-                bits | u8::from(remembers(history)) << lane
+        let of_eight = |eight: &[bool]| {
+            let bits = (0..).zip(eight);
+            bits.fold(0, |bits, (lane, remembers)| {
+                bits | u8::from(*remembers) << lane
             })
         };
-        let own = &contacts.histories[self.own.clone()];
         self.was_close.clear();
-        self.was_close.extend(own.chunks(8).map(of_eight));
+        self.was_close
+            .extend(remembers[self.own.clone()].chunks(8).map(of_eight));
         self.computed = 0;
         self.rolled = 0;
         self.excessive_overlap = None;

@@ -1,7 +1,9 @@
 //! Grids of cells that hold balls: one for each level of size, so that a ball much larger than the
 //! others does not make the cells of the others larger.
 
-use super::balls::Ball;
+use std::ops::Range;
+
+use super::balls::{BOXES, Ball, NOWHERE};
 use crate::geometry::Bounds;
 
 /// Balls of a level are at least half as large as the largest of it, except those of the last.
@@ -19,116 +21,78 @@ pub(crate) struct Grids {
 
 /// Grid of cells as wide as the largest ball of its level, and the balls in each.
 #[derive(Debug, Clone, Default)]
-struct Grid {
+pub(crate) struct Grid {
     /// Places of its balls among those given.
     members: Vec<u32>,
     /// The cell of each.
     cells: Vec<u32>,
+    /// The same places, sorted by cell.
+    sorted: Vec<u32>,
     origin: [f64; 3],
     per_width: f64,
     counts: [usize; 3],
     /// Radius of the largest ball, m.
     largest_m: f64,
-    /// For each cell, the first of its balls in `standing`, followed by the total number.
+    /// For each cell, the first of its balls in `particles`, followed by the total number.
     starts: Vec<u32>,
-    /// The balls, sorted by cell.
-    standing: Vec<Standing>,
-}
-
-/// Data of a ball in a cell: a copy, so that the balls of a cell are contiguous in memory.
-#[derive(Debug, Clone, Copy, Default)]
-struct Standing {
-    ball: Ball,
-    particle: u32,
-    cluster: u32,
-}
-
-/// A ball whose partners are sought.
-#[derive(Clone, Copy)]
-pub(crate) struct Seeker {
-    pub(crate) particle: u32,
-    pub(crate) cluster: u32,
-    pub(crate) ball: Ball,
+    /// Numbers of the balls, sorted by cell.
+    pub(crate) particles: Vec<u32>,
+    /// The same balls by columns, x, y, z and radius, m, followed by [`BOXES`] times [`NOWHERE`], so
+    /// that as many balls can be read from any place.
+    pub(crate) columns: [Vec<f64>; 4],
 }
 
 impl Grids {
     /// Holds these balls, given with their numbers, in place of those before. Their radii are
     /// above 0.
-    pub(crate) fn fill(&mut self, clusters: &[u32], active: &[(u32, Ball)]) {
+    pub(crate) fn fill(&mut self, active: &[(u32, Ball)]) {
         self.largest_m = active.iter().map(|(_, ball)| ball[3]).fold(0.0, f64::max);
         for level in &mut self.levels {
             level.members.clear();
         }
         for (place, (_, ball)) in (0..).zip(active) {
-            let level = level_of(ball[3], self.largest_m);
+            let level = self.level_of(ball[3]);
             self.levels[level].members.push(place);
         }
         for level in &mut self.levels {
-            level.fill(clusters, active);
+            level.fill(active);
         }
     }
 
     /// Size of the vectors, bytes.
     pub(crate) fn bytes(&self) -> usize {
         let of_level = |level: &Grid| {
-            let of_balls = size_of_val(&level.members[..]) + size_of_val(&level.standing[..]);
-            of_balls + size_of_val(&level.cells[..]) + size_of_val(&level.starts[..])
+            let numbers = [
+                &level.members,
+                &level.cells,
+                &level.sorted,
+                &level.starts,
+                &level.particles,
+            ];
+            let numbers = numbers.iter().map(|some| size_of_val(&some[..]));
+            let columns = level.columns.iter().map(|some| size_of_val(&some[..]));
+            numbers.sum::<usize>() + columns.sum::<usize>()
         };
         self.levels.iter().map(of_level).sum()
     }
 
-    /// Adds the pairs of a ball with the overlapping balls of other clusters, the smaller number
-    /// first, in no order. Of two balls that both seek (`seeks` of the number of the other), the
-    /// one of the level of smaller balls adds the pair, within a level the one with the smaller
-    /// number.
-    #[inline]
-    pub(crate) fn add_pairs(
-        &self,
-        seeker: &Seeker,
-        seeks: impl Fn(u32) -> bool,
-        pairs: &mut Vec<[u32; 2]>,
-    ) {
-        let own = level_of(seeker.ball[3], self.largest_m);
-        let i = seeker.particle;
-        for (level, grid) in self.levels.iter().enumerate() {
-            grid.each_near(seeker, |j| {
-                let other_adds = match level.cmp(&own) {
-                    std::cmp::Ordering::Less => false,
-                    std::cmp::Ordering::Equal => j < i,
-                    std::cmp::Ordering::Greater => true,
-                };
-                if !(other_adds && seeks(j)) {
-                    pairs.push([i.min(j), i.max(j)]);
-                }
-            });
-        }
+    /// The grids, of the largest balls first.
+    pub(crate) fn levels(&self) -> &[Grid] {
+        &self.levels
     }
 
-    /// The pairs of a ball as by [`Self::add_pairs`] if all balls seek.
-    #[inline]
-    pub(crate) fn add_pairs_of_all(&self, seeker: &Seeker, pairs: &mut Vec<[u32; 2]>) {
-        let own = level_of(seeker.ball[3], self.largest_m);
-        let i = seeker.particle;
-        for grid in &self.levels[..own] {
-            grid.each_near(seeker, |j| pairs.push([i.min(j), i.max(j)]));
-        }
-        self.levels[own].each_near(seeker, |j| {
-            if j > i {
-                pairs.push([i, j]);
-            }
-        });
+    /// The number of the grid that holds balls of this radius, m.
+    pub(crate) fn level_of(&self, radius_m: f64) -> usize {
+        // The exponent of a floating-point number is the integer part of its binary logarithm.
+        let octaves = ((self.largest_m / radius_m).to_bits() >> 52).saturating_sub(1023);
+        (octaves as usize).min(MOST_LEVELS - 1)
     }
-}
-
-fn level_of(radius_m: f64, largest_m: f64) -> usize {
-    let octaves = (largest_m / radius_m).log2();
-    (octaves as usize).min(MOST_LEVELS - 1)
 }
 
 impl Grid {
     /// Sorts its balls into cells.
-    fn fill(&mut self, clusters: &[u32], active: &[(u32, Ball)]) {
-        self.standing.clear();
+    fn fill(&mut self, active: &[(u32, Ball)]) {
+        self.particles.clear();
         if self.members.is_empty() {
             return;
         }
@@ -147,19 +111,24 @@ impl Grid {
         for cell in 1..self.starts.len() {
             self.starts[cell] += self.starts[cell - 1];
         }
-        self.standing
-            .resize(self.members.len(), Standing::default());
+        self.sorted.resize(self.members.len(), 0);
         for (&cell, &given) in cells.iter().zip(&self.members).rev() {
             let place = &mut self.starts[cell as usize];
             *place -= 1;
-            let (particle, ball) = active[given as usize];
-            self.standing[*place as usize] = Standing {
-                ball,
-                particle,
-                cluster: clusters[particle as usize],
-            };
+            self.sorted[*place as usize] = given;
         }
         self.cells = cells;
+        self.columns.iter_mut().for_each(Vec::clear);
+        for &given in &self.sorted {
+            let (particle, ball) = active[given as usize];
+            self.particles.push(particle);
+            for (column, of_ball) in self.columns.iter_mut().zip(ball) {
+                column.push(of_ball);
+            }
+        }
+        for (column, nowhere) in self.columns.iter_mut().zip(NOWHERE) {
+            column.resize(self.sorted.len() + BOXES, nowhere);
+        }
     }
 
     /// Sets the width of its cells, and where they are.
@@ -192,34 +161,19 @@ impl Grid {
         (z * self.counts[1] + y) * self.counts[0] + x
     }
 
-    /// Calls `found` with the number of each ball of another cluster that overlaps the seeker's.
+    /// The balls in the cells where a ball may overlap some: places in `particles`, one range for
+    /// each row of cells.
     #[inline(always)]
-    fn each_near(&self, seeker: &Seeker, mut found: impl FnMut(u32)) {
-        if self.standing.is_empty() {
-            return;
-        }
-        let [px, py, pz, radius_m] = seeker.ball;
+    pub(crate) fn rows_near(&self, ball: Ball) -> impl Iterator<Item = Range<usize>> {
+        let [x, y, z, radius_m] = ball;
         let reach = radius_m + self.largest_m;
-        let corner = |side: f64| {
-            let [x, y, z, _] = seeker.ball;
-            self.cell([x + side * reach, y + side * reach, z + side * reach, 0.0])
-        };
+        let corner = |side: f64| self.cell([x, y, z, 0.0].map(|c| c + side * reach));
         let (low, high) = (corner(-1.0), corner(1.0));
-        for z in low[2]..=high[2] {
-            for y in low[1]..=high[1] {
-                // Neighbouring cells along x are contiguous.
-                let first = self.starts[self.number([low[0], y, z])] as usize;
-                let end = self.starts[self.number([high[0], y, z]) + 1] as usize;
-                for other in &self.standing[first..end] {
-                    let [ox, oy, oz, other_m] = other.ball;
-                    let apart = [ox - px, oy - py, oz - pz];
-                    let near = radius_m + other_m;
-                    let square = apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2];
-                    if square < near * near && other.cluster != seeker.cluster {
-                        found(other.particle);
-                    }
-                }
-            }
-        }
+        let rows = (low[2]..=high[2]).flat_map(move |z| (low[1]..=high[1]).map(move |y| [y, z]));
+        rows.map(move |[y, z]| {
+            // Neighbouring cells along x are contiguous.
+            let [first, last] = [low[0], high[0]].map(|x| self.number([x, y, z]));
+            self.starts[first] as usize..self.starts[last + 1] as usize
+        })
     }
 }

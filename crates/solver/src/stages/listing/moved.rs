@@ -12,11 +12,14 @@ use crate::state::balls::Ball;
 use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::Contacts;
 use crate::state::groups::is_large;
-use crate::state::particles::{Particles, Pose};
+use crate::state::particles::Particles;
 use crate::state::references::References;
 use crate::state::rigid_balls::ClumpReference;
 use crate::state::search_buffers::SearchBuffers;
 
+/// A free particle is taken to move at least this fraction of what the fastest of its chunk moves:
+/// the two are near each other, and the fastest may hit it.
+const OF_FASTEST: f64 = 0.5;
 /// Number of steps that a particle may go on at its present speed until its next search.
 const STEPS: f64 = 80.0;
 /// The same for a clump: its spheres are many, but few of them are near something.
@@ -42,22 +45,20 @@ const CLUMPS_AT_ONCE: usize = 64;
 /// nothing is requested.
 pub(super) fn may_be_due(state: &State, contacts: &Contacts) -> bool {
     let references = &contacts.scratch.references;
-    let chunks = references.chunks_left_m.iter();
-    let mut chunks = chunks.zip(&state.scratch.chunks_moved_m);
-    let mut clumps = references.clumps.iter().zip(&state.clumps.all);
     contacts.skin_left_m < 0.0
+        || !references.all_have_enough
         || references.balls.len() != state.particles.len()
-        || chunks.any(|(left_m, moved_m)| *left_m < STEPS_LEFT * moved_m)
-        || clumps.any(|(reference, clump)| reference.left_m < STEPS_LEFT * clump.moved_m)
 }
 
 /// Subtracts the displacements in a drift from the distances left.
 pub(super) fn use_up(chunks_moved_m: &[f64], clumps: &Clumps, references: &mut References) {
-    for (left_m, moved_m) in references.chunks_left_m.iter_mut().zip(chunks_moved_m) {
+    let of_chunks = references.chunks_left_m.iter_mut().zip(chunks_moved_m);
+    let of_clumps = references.clumps.iter_mut().map(|clump| &mut clump.left_m);
+    let of_clumps = of_clumps.zip(clumps.all.iter().map(|clump| &clump.moved_m));
+    references.all_have_enough = true;
+    for (left_m, moved_m) in of_chunks.chain(of_clumps) {
         *left_m -= moved_m;
-    }
-    for (reference, clump) in references.clumps.iter_mut().zip(&clumps.all) {
-        reference.left_m -= clump.moved_m;
+        references.all_have_enough &= *left_m >= STEPS_LEFT * moved_m;
     }
 }
 
@@ -182,8 +183,12 @@ fn clump_left_m(clumps: &Clumps, clump: &Clump, reference: &ClumpReference) -> f
     reference.allowance_m - moved_m - turned * clumps.template(clump).reach_m
 }
 
-/// Gives a free particle, which moves this far in a step, m, a new ball.
-pub(super) fn refer_particle(contacts: &mut Contacts, i: usize, pose: &Pose, moved_m: f64) {
+/// Gives a free particle a new ball.
+pub(super) fn refer_particle(contacts: &mut Contacts, state: &State, i: usize) {
+    let pose = &state.particles.poses[i];
+    let chunk_moved_m = state.scratch.chunks_moved_m.get(i / CHUNK).copied();
+    let moved_m = (state.particles.motions[i].speed_m_s() * state.cycle_s())
+        .max(OF_FASTEST * chunk_moved_m.unwrap_or(0.0));
     let allowance_m = match contacts.model.allowances {
         None => 0.5 * contacts.skin_m,
         Some(fractions) => {
