@@ -1,6 +1,6 @@
-//! Time and work of each stage of a step. One step in `EVERY` is timed stage by stage; output,
-//! checks and stages that have work in few steps only are always timed. The work of stages is counted, to show that a stage that a scene does
-//! not need does nothing.
+//! Time and work of each stage of a step. One step in `EVERY` is timed stage by stage, and counts
+//! as many times; output, checks and stages that have work in few steps only are always timed. The
+//! work of stages is counted, to show that a stage that a scene does not need does nothing.
 //!
 //! Stages are identified by their numbers in the table of the step.
 
@@ -12,7 +12,7 @@ pub(crate) const EVERY: u64 = 16;
 /// Largest number of stages.
 const MOST: usize = 40;
 
-/// Times of the stages in the timed steps, and their work in all steps.
+/// Times of the stages in all steps, as far as is known from the timed ones, and their work.
 #[derive(Debug, Clone)]
 pub struct StageClock {
     times: [Duration; MOST],
@@ -52,7 +52,7 @@ impl StageClock {
     pub(crate) fn book(&mut self, stage: usize) {
         if let Some(since) = self.since {
             let now = Instant::now();
-            self.times[stage] += now - since;
+            self.times[stage] += (now - since) * EVERY as u32;
             self.since = Some(now);
         }
     }
@@ -61,14 +61,14 @@ impl StageClock {
     /// steps only, of which the timed ones are not a representative sample.
     pub(crate) fn book_since(&mut self, stage: usize, began: Instant) {
         let now = Instant::now();
-        self.times[stage] += (now - began) / EVERY as u32;
+        self.times[stage] += now - began;
         self.since = self.since.map(|_| now);
     }
 
     /// Adds a time of the entire run, not of one step in `EVERY`: for work done in few steps, of
     /// which the timed ones are not a representative sample.
     pub(crate) fn book_all(&mut self, stage: usize, time: Duration) {
-        self.times[stage] += time / EVERY as u32;
+        self.times[stage] += time;
         self.did(stage, 1);
     }
 
@@ -106,7 +106,15 @@ mod tests {
         clock.book(0);
         clock.book_since(1, began);
         clock.book(2);
-        let times = [0, 1, 2].map(|stage| clock.fraction(stage));
-        assert_eq!(times, [0.0, 1.0, 0.0]);
+        assert_eq!(
+            [0, 1, 2].map(|stage| clock.fraction(stage)),
+            [0.0, 1.0, 0.0]
+        );
+        // In a step that is timed, the next stage begins where this one ended.
+        clock.start(EVERY);
+        std::thread::sleep(Duration::from_millis(1));
+        let before = Instant::now();
+        clock.book_since(1, began);
+        assert!(clock.since >= Some(before));
     }
 }

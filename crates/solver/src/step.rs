@@ -212,7 +212,7 @@ fn run(parts: &[Part], stages: &[usize], state: &mut State, is_meant: fn(&Stage)
     state.scratch.clock.start(state.steps / state.cycle());
     for ((own, part), &stage) in parts.iter().zip(stages) {
         if is_meant(own) && !state.scratch.clock.is_left_out(stage) {
-            let began = IN_FEW_STEPS.contains(own).then(Instant::now);
+            let began = TABLE.in_few_steps[stage].then(Instant::now);
             let items = part(state);
             let clock = &mut state.scratch.clock;
             clock.did(stage, items);
@@ -233,6 +233,8 @@ fn nothing(_: &mut State) -> usize {
 /// its stage.
 struct Table {
     stages: Vec<&'static Stage>,
+    /// For each stage whether it has work in few steps only.
+    in_few_steps: Vec<bool>,
     interact: Vec<usize>,
     exchange: Vec<usize>,
     drift: Vec<usize>,
@@ -251,6 +253,7 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
     let exchange = EXCHANGE.iter().map(&mut number).collect();
     let drift = DRIFT.iter().map(&mut number).collect();
     Table {
+        in_few_steps: (stages.iter().map(|stage| IN_FEW_STEPS.contains(stage))).collect(),
         stages,
         interact,
         exchange,

@@ -17,6 +17,14 @@ pub(super) trait LaneWork {
     fn with<T: Lanes>(self, proof: T::Proof);
 }
 
+/// The number of the lowest of some lanes, one for each bit, which is cleared.
+#[inline(always)]
+pub(super) fn next_of(bits: &mut u32) -> usize {
+    let lowest = bits.trailing_zeros() as usize;
+    *bits &= *bits - 1;
+    lowest
+}
+
 /// Does the work with up to four lanes. The results are the same, bit for bit, for any number.
 pub(super) fn with_lanes(work: impl LaneWork) {
     #[cfg(target_arch = "x86_64")]

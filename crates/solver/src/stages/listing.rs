@@ -10,7 +10,7 @@ use dem_scene::WallMotion;
 pub(super) use self::renumbered::{lengthen_lists, renumber_lists};
 
 use self::among_sleepers::list_among_sleepers;
-use self::moved::{find_due, find_left, may_be_due, refer_clumps, refer_particle, use_up};
+use self::moved::{find_due, find_left, may_be_due, refer_clumps, refer_particles, use_up};
 use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
@@ -162,9 +162,7 @@ fn everything(state: &State, due: &mut Due) {
 /// they overlap.
 fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBuffers) -> usize {
     let due = &buffers.due;
-    for &i in &due.particles {
-        refer_particle(contacts, state, i as usize);
-    }
+    refer_particles(contacts, state, &due.particles);
     let clusters = state.clusters.as_ref();
     refer_clumps(contacts, state, &due.clumps, clusters.is_none());
     find_left(&state.particles, &mut contacts.scratch.references);
@@ -249,7 +247,6 @@ fn add_reached(
 ) {
     let reaches = reaches(wall);
     let is_reached = |[x, y, z, radius_m]: Ball| reaches([x, y, z], radius_m + wall.skin_left_m);
-    let seeks = |i: u32| searched.seeks.is_none_or(|seeks| seeks[i as usize]);
     let plane = plane_in_space(wall);
     let of_large = |large: &LargeCluster, found: &mut Vec<u32>| {
         let any_seeks = searched.seeks.is_none() || large.seeks;
@@ -264,7 +261,7 @@ fn add_reached(
         for (block, ball) in large.blocks.around.iter().enumerate() {
             if is_reached(large.in_space(ball)) {
                 let balls = large.balls_of(block, searched.balls, &known.groups);
-                let balls = balls.filter(|&(i, ball)| seeks(i) && is_reached(ball));
+                let balls = balls.filter(|&(i, ball)| searched.is_seeking(i) && is_reached(ball));
                 found.extend(balls.map(|(i, _)| i));
             }
         }

@@ -11,13 +11,15 @@
 
 mod among_small;
 mod meetings;
+#[cfg(test)]
+mod tests;
 
 use rayon::prelude::*;
 
-use self::among_small::SmallMeetings;
+use self::among_small::{SmallMeetings, in_order};
 use self::meetings::list_with_small;
 use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
-use super::lanes::{LaneWork, Lanes, with_most_lanes};
+use super::lanes::{LaneWork, Lanes, next_of, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
 use crate::state::balls::{BLOCK, BOXES, Ball, BoxColumns, NOWHERE};
@@ -81,11 +83,6 @@ pub(crate) fn find_pairs(
     }
 }
 
-/// A number by which pairs are sorted. It is compared faster than two.
-fn in_order(&[i, j]: &[u32; 2]) -> u64 {
-    u64::from(i) << 32 | u64::from(j)
-}
-
 /// What is searched, and what is known of it.
 struct Search<'a> {
     searched: &'a Searched<'a>,
@@ -93,10 +90,6 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn seeks(&self, i: u32) -> bool {
-        self.searched.seeks.is_none_or(|seeks| seeks[i as usize])
-    }
-
     /// The balls of a block of a cluster, in its axes.
     #[inline(always)]
     fn members<T: Lanes>(
@@ -166,7 +159,8 @@ impl<'a> Search<'a> {
         let chunks = chunks_of(active.len());
         let tasks = in_tasks(chunks.len(), of_tasks, |chunk, task| {
             with_most_lanes(SmallMeetings {
-                search: self,
+                searched: self.searched,
+                known: self.known,
                 grids,
                 some: &active[chunk_of(chunk, active.len())],
                 found: &mut task.found,
@@ -330,7 +324,7 @@ impl LargeMeetings<'_> {
             }
             while bits != 0 {
                 let [i, j] = [of_a.numbers[n], numbers[next_of(&mut bits)]];
-                if self.search.seeks(i) || self.search.seeks(j) {
+                if [i, j].iter().any(|&i| self.search.searched.is_seeking(i)) {
                     self.task.found.push([i.min(j), i.max(j)]);
                 }
             }
@@ -488,14 +482,6 @@ fn box_at(boxes: &BoxColumns, lane: usize) -> Bounds {
         low: [boxes[0][lane], boxes[1][lane], boxes[2][lane]],
         high: [boxes[3][lane], boxes[4][lane], boxes[5][lane]],
     }
-}
-
-/// The place of the lowest of some bits, which is cleared.
-#[inline(always)]
-fn next_of(bits: &mut u32) -> usize {
-    let lowest = bits.trailing_zeros() as usize;
-    *bits &= *bits - 1;
-    lowest
 }
 
 /// Enlarges a box so that it contains another. None of the numbers may be NaN.

@@ -214,7 +214,7 @@ impl Contacts {
 
     /// Replaces the list of pairs; pairs that were listed before keep their history. The overlap of
     /// a newly listed pair is the origin of its law: the two had no contact before, whether they
-    /// were bonded or not.
+    /// were bonded or not. The contacts are to be divided before any history changes.
     pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64 + Sync) {
         let (known, of_known) = (&self.pairs, &self.histories);
         let relist_chunk =

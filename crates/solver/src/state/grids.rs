@@ -37,8 +37,8 @@ pub(crate) struct Grid {
     starts: Vec<u32>,
     /// Numbers of the balls, sorted by cell.
     pub(crate) particles: Vec<u32>,
-    /// The same balls by columns, x, y, z and radius, m, followed by [`BOXES`] times [`NOWHERE`], so
-    /// that as many balls can be read from any place.
+    /// The same balls by columns, x, y, z and radius, m, followed by [`BOXES`] times [`NOWHERE`]:
+    /// as many balls can be read from any place.
     pub(crate) columns: [Vec<f64>; 4],
 }
 

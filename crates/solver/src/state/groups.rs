@@ -28,6 +28,14 @@ pub(crate) struct Searched<'a> {
     pub(crate) clumps: Option<(&'a Clumps, &'a [ClumpReference])>,
 }
 
+impl Searched<'_> {
+    /// Whether a particle seeks.
+    #[inline(always)]
+    pub(crate) fn is_seeking(&self, i: u32) -> bool {
+        self.seeks.is_none_or(|seeks| seeks[i as usize])
+    }
+}
+
 /// What the last neighbour search knew of the clusters.
 #[derive(Debug, Clone, Default)]
 pub struct KnownClusters {
@@ -78,8 +86,7 @@ impl KnownClusters {
         let groups = &self.groups;
         self.large.par_iter_mut().for_each(|large| {
             let members = groups.members(large.group);
-            let seeks = |&i: &u32| searched.seeks.is_none_or(|seeks| seeks[i as usize]);
-            large.seeks = members.iter().any(seeks);
+            large.seeks = members.iter().any(|&i| searched.is_seeking(i));
             if large.seeks || large.is_new {
                 large.find_boxes(members, searched);
                 large.is_new = false;

@@ -12,13 +12,13 @@ use crate::state::balls::Ball;
 use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::Contacts;
 use crate::state::groups::is_large;
-use crate::state::particles::Particles;
+use crate::state::particles::{Particles, Pose};
 use crate::state::references::References;
 use crate::state::rigid_balls::ClumpReference;
 use crate::state::search_buffers::SearchBuffers;
 
-/// A free particle is taken to move at least this fraction of what the fastest of its chunk moves:
-/// the two are near each other, and the fastest may hit it.
+/// The distance of a free particle is also at least that for this fraction of the speed of the
+/// fastest in its chunk: particles of a chunk are mostly near each other, so that it may be hit.
 const OF_FASTEST: f64 = 0.5;
 /// Number of steps that a particle may go on at its present speed until its next search.
 const STEPS: f64 = 80.0;
@@ -183,17 +183,30 @@ fn clump_left_m(clumps: &Clumps, clump: &Clump, reference: &ClumpReference) -> f
     reference.allowance_m - moved_m - turned * clumps.template(clump).reach_m
 }
 
-/// Gives a free particle a new ball.
-pub(super) fn refer_particle(contacts: &mut Contacts, state: &State, i: usize) {
-    let pose = &state.particles.poses[i];
-    let chunk_moved_m = state.scratch.chunks_moved_m.get(i / CHUNK).copied();
-    let moved_m = (state.particles.motions[i].speed_m_s() * state.cycle_s())
-        .max(OF_FASTEST * chunk_moved_m.unwrap_or(0.0));
+/// Gives these free particles, ascending, new balls.
+pub(super) fn refer_particles(contacts: &mut Contacts, state: &State, some: &[u32]) {
+    let p = &state.particles;
+    let moved_m = |i: usize| p.motions[i].speed_m_s() * state.cycle_s();
+    for some in some.chunk_by(|&a, &b| a as usize / CHUNK == b as usize / CHUNK) {
+        let chunk = some[0] as usize / CHUNK;
+        let fastest_m = chunk_of(chunk, p.free).map(moved_m).fold(0.0, f64::max);
+        for &i in some {
+            let i = i as usize;
+            refer_particle(contacts, i, &p.poses[i], [moved_m(i), fastest_m]);
+        }
+    }
+}
+
+/// Gives a free particle a new ball. `moved_m`: how far it moves in a step, and how far the fastest
+/// in its chunk, m.
+fn refer_particle(contacts: &mut Contacts, i: usize, pose: &Pose, moved_m: [f64; 2]) {
+    let [moved_m, fastest_m] = moved_m;
     let allowance_m = match contacts.model.allowances {
         None => 0.5 * contacts.skin_m,
         Some(fractions) => {
             let [least_m, most_m] = fractions.map(|fraction| fraction * pose.radius_m());
-            (STEPS * moved_m).clamp(least_m, most_m)
+            let steps_m = STEPS * moved_m.max(OF_FASTEST * fastest_m);
+            steps_m.clamp(least_m, most_m)
         }
     };
     // At least two steps: a pair that is first listed when it already overlaps would be treated

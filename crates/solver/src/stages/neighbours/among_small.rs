@@ -1,14 +1,15 @@
 //! Pairs of small clusters, and of these with large ones, by grids.
 
-use super::{Search, in_order, next_of};
 use crate::physics::number::Vec3;
-use crate::stages::lanes::{LaneWork, Lanes};
+use crate::stages::lanes::{LaneWork, Lanes, next_of};
 use crate::state::balls::Ball;
 use crate::state::grids::{Grid, Grids};
+use crate::state::groups::{KnownClusters, Searched};
 
 /// Meetings of some balls with all that are in the grids.
 pub(super) struct SmallMeetings<'a> {
-    pub(super) search: &'a Search<'a>,
+    pub(super) searched: &'a Searched<'a>,
+    pub(super) known: &'a KnownClusters,
     pub(super) grids: &'a Grids,
     /// Balls in the grids, and their numbers.
     pub(super) some: &'a [(u32, Ball)],
@@ -21,7 +22,7 @@ impl LaneWork for SmallMeetings<'_> {
     fn with<T: Lanes>(mut self, proof: T::Proof) {
         self.found.clear();
         for &(i, ball) in self.some {
-            if self.search.seeks(i) {
+            if self.searched.is_seeking(i) {
                 self.meet::<T>(proof, i, ball);
             }
         }
@@ -35,9 +36,8 @@ impl SmallMeetings<'_> {
     #[inline(always)]
     fn meet<T: Lanes>(&mut self, proof: T::Proof, i: u32, ball: Ball) {
         let own = self.grids.level_of(ball[3]);
-        let searched = self.search.searched;
         for (level, grid) in self.grids.levels().iter().enumerate() {
-            let others_add = level > own && searched.seeks.is_none();
+            let others_add = level > own && self.searched.seeks.is_none();
             if grid.particles.is_empty() || others_add {
                 continue;
             }
@@ -51,7 +51,7 @@ impl SmallMeetings<'_> {
                         }
                         let j = grid.particles[at];
                         let other_adds = level > own || level == own && j < i;
-                        if self.may_meet([i, j]) && !(other_adds && self.search.seeks(j)) {
+                        if self.may_meet([i, j]) && !(other_adds && self.searched.is_seeking(j)) {
                             self.found.push([i.min(j), i.max(j)]);
                         }
                     }
@@ -63,14 +63,19 @@ impl SmallMeetings<'_> {
     /// Whether two particles are of different clusters, at least one of which is small.
     #[inline(always)]
     fn may_meet(&self, pair: [u32; 2]) -> bool {
-        let [of_i, of_j] = pair.map(|i| self.search.searched.clusters[i as usize]);
-        let known = self.search.known;
-        let is_small = |cluster: u32| !known.groups.is_large(cluster);
-        of_i != of_j && (known.large.is_empty() || is_small(of_i) || is_small(of_j))
+        let [of_i, of_j] = pair.map(|i| self.searched.clusters[i as usize]);
+        let is_small = |cluster: u32| !self.known.groups.is_large(cluster);
+        of_i != of_j && (self.known.large.is_empty() || is_small(of_i) || is_small(of_j))
     }
 }
 
-/// A bit for each of the balls of a grid from place `first` on that a ball overlaps.
+/// A number by which pairs are sorted. It is compared faster than two.
+pub(super) fn in_order(&[i, j]: &[u32; 2]) -> u64 {
+    u64::from(i) << 32 | u64::from(j)
+}
+
+/// A bit for each of the balls of a grid from place `first` on that a ball overlaps, whether or not
+/// they are in the same row.
 #[inline(always)]
 fn overlapping<T: Lanes>(proof: T::Proof, grid: &Grid, first: usize, ball: Ball) -> u32 {
     let [x, y, z, radius_m] = &grid.columns;
