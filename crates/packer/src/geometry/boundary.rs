@@ -269,8 +269,8 @@ impl Boundary {
 
 /// Sorts triangles (indices of vertices) along a curve, so that neighbours in space are neighbours
 /// in memory, and numbers their vertices in the order in which they first occur. Returns these
-/// vertices, without those that no triangle uses. `extent` is the largest corner of their box, whose
-/// smallest is the origin.
+/// vertices, without those that no triangle uses. `extent` is the largest corner of their box,
+/// whose smallest is the origin.
 fn sort_along_curve(
     triangles: &mut [[u32; 3]],
     vertices: &[[f64; 3]],

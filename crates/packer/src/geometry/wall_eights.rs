@@ -22,7 +22,8 @@ struct EightBoxes {
     /// The number of the first; the others follow it.
     first: u32,
     around: EightSurroundings,
-    /// The least and the most of x, of y and of z. NaN, near to nothing, where there is no triangle.
+    /// The least and the most of x, of y and of z. NaN, near to nothing, where there is no
+    /// triangle.
     least: [[f64; AT_ONCE]; 3],
     most: [[f64; AT_ONCE]; 3],
 }

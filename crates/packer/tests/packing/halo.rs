@@ -193,8 +193,8 @@ fn no_place_is_free_below_what_smaller_sizes_have_shown() {
     assert!(restricted > 500, "{restricted}");
 }
 
-/// Where a lone neighbour lies in the direction of the seed, no corner but the rim of its cap is the
-/// first that is free, also if its axis points at the seed almost exactly.
+/// Where a lone neighbour lies in the direction of the seed, no corner but the rim of its cap is
+/// the first that is free, also if its axis points at the seed almost exactly.
 #[test]
 fn the_first_free_place_may_be_on_the_rim_of_one_cap() {
     let mut random = random_numbers(5);

@@ -147,8 +147,8 @@ fn free_left_m(particles: &Particles, references: &References, i: usize) -> [f64
     [left_m, allowance_m]
 }
 
-/// Distance that must be left, m, or a new search is due: `enough_m`, or a few steps of `moved_m` if
-/// that is more.
+/// Distance that must be left, m, or a new search is due: `enough_m`, or a few steps of `moved_m`
+/// if that is more.
 #[inline(always)]
 fn least_m(enough_m: f64, moved_m: f64) -> f64 {
     enough_m.max(STEPS_LEFT * moved_m)
