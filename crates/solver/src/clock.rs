@@ -57,19 +57,12 @@ impl StageClock {
         }
     }
 
-    /// Adds the time since `began` to a stage, in whichever step: for a stage that has work in few
-    /// steps only, of which the timed ones are not a representative sample.
+    /// Adds the time since `began` to a stage, whether or not this step is timed: for work done in
+    /// few steps, of which the timed ones are not a representative sample.
     pub(crate) fn book_since(&mut self, stage: usize, began: Instant) {
         let now = Instant::now();
         self.times[stage] += now - began;
         self.since = self.since.map(|_| now);
-    }
-
-    /// Adds a time of the entire run, not of one step in `EVERY`: for work done in few steps, of
-    /// which the timed ones are not a representative sample.
-    pub(crate) fn book_all(&mut self, stage: usize, time: Duration) {
-        self.times[stage] += time;
-        self.did(stage, 1);
     }
 
     /// Counts the work that a stage has just done: bonds, pairs, particles, bodies or checks.

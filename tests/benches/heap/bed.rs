@@ -81,7 +81,8 @@ fn contacts(state: &State, threads: usize) -> Contacts {
     };
     let clusters: Vec<u32> = (0..poses.len() as u32).collect();
     // As if they had come together: their overlaps give forces.
-    contacts.relist(near_pairs(poses, &clusters, SKIN_M), |_| 0.0);
+    let pairs = near_pairs(poses, &clusters, SKIN_M);
+    contacts.relist(pairs, poses.len(), |_| 0.0);
     contacts.divide(poses.len(), threads);
     contacts
 }

@@ -346,9 +346,8 @@ fn exceeded(probes: &[Probe], values: &[f64]) -> Option<(String, f64)> {
 /// Adds the time since then, if any, to the stage of work that few steps need.
 fn book(state: &mut State, stage: &Stage, since: Option<Instant>) {
     if let Some(since) = since {
-        state
-            .scratch
-            .clock
-            .book_all(number_of(stage), since.elapsed());
+        let clock = &mut state.scratch.clock;
+        clock.book_since(number_of(stage), since);
+        clock.did(number_of(stage), 1);
     }
 }

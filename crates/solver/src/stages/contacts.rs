@@ -240,13 +240,9 @@ pub(super) fn find_mean_radius(contacts: &mut Contacts, particles: &Particles, k
 pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, particles: &Particles) {
     let poses = &particles.poses;
     let relaxes = contacts.model.relaxes;
-    contacts.relist(
-        pairs,
-        |pair| {
-            if relaxes { overlap_m(poses, pair) } else { 0.0 }
-        },
-    );
-    contacts.divide(particles.len(), contacts.scratch.wanted_partitions.max(1));
+    contacts.relist(pairs, particles.len(), |pair| {
+        if relaxes { overlap_m(poses, pair) } else { 0.0 }
+    });
 }
 
 /// Output of a partition: the histories of its own contacts, and data of its own particles.

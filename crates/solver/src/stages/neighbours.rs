@@ -143,8 +143,7 @@ impl<'a> Search<'a> {
 
     /// Pairs of which at least one is of a small cluster.
     fn among_small(&self, buffers: &mut PairBuffers) {
-        let Searched { balls, seeks, .. } = *self.searched;
-        list_with_small(balls, self.known, seeks, buffers);
+        list_with_small(self.searched, self.known, buffers);
         let PairBuffers {
             active,
             grids,

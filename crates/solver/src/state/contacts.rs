@@ -139,8 +139,7 @@ pub struct ContactScratch {
     pub(crate) former_pairs: Vec<[u32; 2]>,
     /// Histories before the last search, kept for their memory only.
     pub former_histories: Vec<ContactHistory>,
-    /// For each pair whether there is anything in its history: from a search until the contacts
-    /// have been divided.
+    /// For each pair whether there is anything in its history: kept for its memory only.
     remembers: Vec<bool>,
     /// Vectors of a search, kept for their memory only.
     pub(crate) buffers: SearchBuffers,
@@ -212,10 +211,16 @@ impl Contacts {
         usize::from(self.model.kind_of[a * count + b])
     }
 
-    /// Replaces the list of pairs; pairs that were listed before keep their history. The overlap of
-    /// a newly listed pair is the origin of its law: the two had no contact before, whether they
-    /// were bonded or not. The contacts are to be divided before any history changes.
-    pub fn relist(&mut self, pairs: Vec<[u32; 2]>, overlap_m: impl Fn([u32; 2]) -> f64 + Sync) {
+    /// Replaces the list of pairs of this number of particles, and divides them into as many
+    /// partitions as were requested last; pairs that were listed before keep their history. The
+    /// overlap of a newly listed pair is the origin of its law: the two had no contact before,
+    /// whether they were bonded or not.
+    pub fn relist(
+        &mut self,
+        pairs: Vec<[u32; 2]>,
+        particles: usize,
+        overlap_m: impl Fn([u32; 2]) -> f64 + Sync,
+    ) {
         let (known, of_known) = (&self.pairs, &self.histories);
         let relist_chunk =
             |new: &mut [ContactHistory], remember: &mut [bool], pairs: &[[u32; 2]]| {
@@ -235,7 +240,7 @@ impl Contacts {
             histories = Vec::with_capacity(pairs.len() + pairs.len() / 8);
         }
         histories.resize(pairs.len(), ContactHistory::default());
-        let remembers = &mut self.scratch.remembers;
+        let mut remembers = std::mem::take(&mut self.scratch.remembers);
         remembers.resize(pairs.len(), false);
         let chunks = histories.par_chunks_mut(RELISTED_AT_ONCE);
         let chunks = chunks.zip(remembers.par_chunks_mut(RELISTED_AT_ONCE));
@@ -243,6 +248,8 @@ impl Contacts {
         chunks.for_each(|((new, remember), pairs)| relist_chunk(new, remember, pairs));
         self.scratch.former_histories = std::mem::replace(&mut self.histories, histories);
         self.scratch.former_pairs = std::mem::replace(&mut self.pairs, pairs);
+        self.set_partitions(particles, self.scratch.wanted_partitions.max(1), &remembers);
+        self.scratch.remembers = remembers;
     }
 
     /// Requests a search for the neighbours of all particles before the next step.
@@ -259,6 +266,15 @@ impl Contacts {
 
     /// Divides the contacts into `count` partitions of about equal size.
     pub fn divide(&mut self, particles: usize, count: usize) {
+        let mut remembers = std::mem::take(&mut self.scratch.remembers);
+        remembers.clear();
+        remembers.extend(self.histories.iter().map(ContactHistory::remembers));
+        self.set_partitions(particles, count, &remembers);
+        self.scratch.remembers = remembers;
+    }
+
+    /// The same, where it is known for each pair whether there is anything in its history.
+    fn set_partitions(&mut self, particles: usize, count: usize, remembers: &[bool]) {
         self.scratch.wanted_partitions = count;
         self.scratch.close_skin_left_m = 0.0;
         let wanted = self.pairs.len().div_ceil(count).max(1);
@@ -266,11 +282,6 @@ impl Contacts {
             let next = self.pairs.get(k * wanted);
             next.map_or(particles, |&[a, _]| a as usize)
         };
-        let mut remembers = std::mem::take(&mut self.scratch.remembers);
-        if remembers.len() != self.pairs.len() {
-            remembers.clear();
-            remembers.extend(self.histories.iter().map(ContactHistory::remembers));
-        }
         let mut partitions = std::mem::take(&mut self.scratch.partitions);
         let (mut divided, mut start) = (0, 0);
         for end in (1..=count).map(end_of) {
@@ -280,7 +291,7 @@ impl Contacts {
             if divided == partitions.len() {
                 partitions.push(ContactPartition::default());
             }
-            partitions[divided].set(start..end, self, &remembers);
+            partitions[divided].set(start..end, self, remembers);
             (divided, start) = (divided + 1, end);
         }
         partitions.truncate(divided);
@@ -294,8 +305,6 @@ impl Contacts {
             }
         }
         self.scratch.partitions = partitions;
-        remembers.clear();
-        self.scratch.remembers = remembers;
     }
 }
 

@@ -26,8 +26,6 @@ pub(crate) struct Grid {
     members: Vec<u32>,
     /// The cell of each.
     cells: Vec<u32>,
-    /// The same places, sorted by cell.
-    sorted: Vec<u32>,
     origin: [f64; 3],
     per_width: f64,
     counts: [usize; 3],
@@ -65,7 +63,6 @@ impl Grids {
             let numbers = [
                 &level.members,
                 &level.cells,
-                &level.sorted,
                 &level.starts,
                 &level.particles,
             ];
@@ -111,23 +108,24 @@ impl Grid {
         for cell in 1..self.starts.len() {
             self.starts[cell] += self.starts[cell - 1];
         }
-        self.sorted.resize(self.members.len(), 0);
+        // Their places first, then their numbers.
+        self.particles.resize(self.members.len(), 0);
         for (&cell, &given) in cells.iter().zip(&self.members).rev() {
             let place = &mut self.starts[cell as usize];
             *place -= 1;
-            self.sorted[*place as usize] = given;
+            self.particles[*place as usize] = given;
         }
         self.cells = cells;
         self.columns.iter_mut().for_each(Vec::clear);
-        for &given in &self.sorted {
-            let (particle, ball) = active[given as usize];
-            self.particles.push(particle);
+        for number in &mut self.particles {
+            let (particle, ball) = active[*number as usize];
+            *number = particle;
             for (column, of_ball) in self.columns.iter_mut().zip(ball) {
                 column.push(of_ball);
             }
         }
         for (column, nowhere) in self.columns.iter_mut().zip(NOWHERE) {
-            column.resize(self.sorted.len() + BOXES, nowhere);
+            column.resize(self.particles.len() + BOXES, nowhere);
         }
     }
 

@@ -12,8 +12,6 @@ use crate::geometry::Bounds;
 
 /// Clusters with fewer particles are small.
 const SMALL: usize = 16;
-/// Number of particles whose clusters one task compares with those known.
-const COMPARED_AT_ONCE: usize = 1 << 14;
 
 /// What is searched.
 #[derive(Clone, Copy)]
@@ -138,9 +136,7 @@ impl KnownClusters {
 
     /// Whether these are the clusters of the particles, as known.
     pub(crate) fn are_those_of(&self, clusters: &[u32]) -> bool {
-        let known = self.of_particle.par_chunks(COMPARED_AT_ONCE);
-        self.of_particle.len() == clusters.len()
-            && (known.zip(clusters.par_chunks(COMPARED_AT_ONCE))).all(|(a, b)| a == b)
+        self.of_particle == clusters
     }
 
     /// What stays known when the particles get new numbers.

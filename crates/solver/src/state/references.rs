@@ -16,9 +16,6 @@ pub struct References {
     pub chunks_left_m: Vec<f64>,
     /// The clumps.
     pub clumps: Vec<ClumpReference>,
-    /// Whether it is known of all that they will not use up their distances in the next two steps,
-    /// if these are like the last drift.
-    pub all_have_enough: bool,
     /// Particles to be searched for again, wherever they are: those of new bodies and fragments.
     pub due: Vec<u32>,
     /// The clusters.

@@ -45,20 +45,22 @@ const CLUMPS_AT_ONCE: usize = 64;
 /// nothing is requested.
 pub(super) fn may_be_due(state: &State, contacts: &Contacts) -> bool {
     let references = &contacts.scratch.references;
+    let chunks = references.chunks_left_m.iter();
+    let mut chunks = chunks.zip(&state.scratch.chunks_moved_m);
+    let mut clumps = references.clumps.iter().zip(&state.clumps.all);
     contacts.skin_left_m < 0.0
-        || !references.all_have_enough
         || references.balls.len() != state.particles.len()
+        || chunks.any(|(left_m, moved_m)| *left_m < STEPS_LEFT * moved_m)
+        || clumps.any(|(reference, clump)| reference.left_m < STEPS_LEFT * clump.moved_m)
 }
 
 /// Subtracts the displacements in a drift from the distances left.
 pub(super) fn use_up(chunks_moved_m: &[f64], clumps: &Clumps, references: &mut References) {
-    let of_chunks = references.chunks_left_m.iter_mut().zip(chunks_moved_m);
-    let of_clumps = references.clumps.iter_mut().map(|clump| &mut clump.left_m);
-    let of_clumps = of_clumps.zip(clumps.all.iter().map(|clump| &clump.moved_m));
-    references.all_have_enough = true;
-    for (left_m, moved_m) in of_chunks.chain(of_clumps) {
+    for (left_m, moved_m) in references.chunks_left_m.iter_mut().zip(chunks_moved_m) {
         *left_m -= moved_m;
-        references.all_have_enough &= *left_m >= STEPS_LEFT * moved_m;
+    }
+    for (reference, clump) in references.clumps.iter_mut().zip(&clumps.all) {
+        reference.left_m -= clump.moved_m;
     }
 }
 

@@ -87,7 +87,6 @@ pub(crate) fn renumber_lists(
         clumps,
         due,
         chunks_left_m: Vec::new(),
-        all_have_enough: false,
         clusters: std::mem::take(&mut references.clusters).renumbered(),
     };
     find_left(&state.particles, references);

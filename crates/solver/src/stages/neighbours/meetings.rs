@@ -2,14 +2,13 @@
 
 use crate::geometry::Bounds;
 use crate::state::balls::{Ball, around, box_of};
-use crate::state::groups::KnownClusters;
+use crate::state::groups::{KnownClusters, Searched};
 use crate::state::search_buffers::PairBuffers;
 
 /// Lists the balls that may be in a pair with one of a small cluster, ascending by number.
 pub(super) fn list_with_small(
-    balls: &[Ball],
+    searched: &Searched<'_>,
     known: &KnownClusters,
-    seeks: Option<&[bool]>,
     buffers: &mut PairBuffers,
 ) {
     let PairBuffers {
@@ -25,7 +24,8 @@ pub(super) fn list_with_small(
     if small.is_empty() {
         return;
     }
-    let [all, seeking] = bounds_of(small, balls, known, seeks);
+    let balls = searched.balls;
+    let [all, seeking] = bounds_of(small, known, searched);
     let mut where_sought = seeking;
     for large in &known.large {
         let of_small = if large.seeks { &all } else { &seeking };
@@ -40,26 +40,19 @@ pub(super) fn list_with_small(
     let of_small = of_small.map(|&i| (i, balls[i as usize]));
     // All are given if all seek.
     let may_meet =
-        |(_, ball): &(u32, Ball)| seeks.is_none() || around(ball).overlaps(&where_sought);
+        |(_, ball): &(u32, Ball)| searched.seeks.is_none() || around(ball).overlaps(&where_sought);
     active.extend(of_small.filter(may_meet));
     active.sort_unstable_by_key(|(i, _)| *i);
 }
 
 /// The box around all of these clusters, and around those that seek.
-fn bounds_of(
-    some: &[u32],
-    balls: &[Ball],
-    known: &KnownClusters,
-    seeks: Option<&[bool]>,
-) -> [Bounds; 2] {
-    let seeks_any =
-        |members: &[u32]| seeks.is_none_or(|seeks| members.iter().any(|&i| seeks[i as usize]));
+fn bounds_of(some: &[u32], known: &KnownClusters, searched: &Searched<'_>) -> [Bounds; 2] {
     let mut of_small = [Bounds::EMPTY; 2];
     for &group in some {
         let members = known.groups.members(group);
-        let bounds = box_of(members, balls);
+        let bounds = box_of(members, searched.balls);
         of_small[0] = of_small[0].with(&bounds);
-        if seeks_any(members) {
+        if members.iter().any(|&i| searched.is_seeking(i)) {
             of_small[1] = of_small[1].with(&bounds);
         }
     }
