@@ -97,9 +97,8 @@ pub(crate) fn list_near(
 ) {
     let free = particles.free;
     let mut is_near = Bits::all_clear(bits, particles.len() - free);
-    for i in near.map(|i| i as usize).filter(|&i| i >= free) {
-        is_near.set(i - free);
-    }
+    let of_clumps = near.filter_map(|i| (i as usize).checked_sub(free));
+    of_clumps.for_each(|i| is_near.set(i));
     let mut now = std::mem::take(former);
     now.clear();
     now.extend(is_near.all().map(|i| (free + i) as u32));

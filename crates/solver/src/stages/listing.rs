@@ -177,6 +177,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
     let searched = Searched {
         balls,
         clusters: clusters.map_or(&[], |clusters| &clusters.of_particle),
+        clusters_ever: clusters.map(|clusters| clusters.history.len()),
         seeks: some,
         clumps: Some((&state.clumps, references)),
     };
@@ -341,11 +342,12 @@ fn list_near_moving_walls(state: &mut State) {
         let searched = Searched {
             balls,
             clusters: clusters.map_or(&[], |clusters| &clusters.of_particle),
+            clusters_ever: clusters.map(|clusters| clusters.history.len()),
             seeks: None,
             clumps: Some((&state.clumps, clumps)),
         };
         // Bodies may have been removed since the last search.
-        if !known.are_those_of(searched.clusters) {
+        if !known.are_those_of(&searched) {
             known.update(&searched);
         }
         let SearchBuffers {

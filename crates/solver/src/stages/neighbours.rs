@@ -59,6 +59,7 @@ pub(super) fn find_pairs_of_all(
     let searched = Searched {
         balls,
         clusters,
+        clusters_ever: None,
         seeks: None,
         clumps: None,
     };
@@ -189,7 +190,7 @@ impl LaneWork for LargeMeetings<'_> {
     #[inline(always)]
     fn with<T: Lanes>(mut self, proof: T::Proof) {
         let known = self.search.known;
-        let a = &known.large[self.of];
+        let a = known.in_order(self.of);
         for (some, boxes) in known.columns.iter().enumerate().skip(self.of / BOXES) {
             if boxes[0][0] > a.bounds.high[0] {
                 break;
@@ -197,8 +198,12 @@ impl LaneWork for LargeMeetings<'_> {
             let mut bits = within::<T>(proof, boxes, &a.bounds);
             while bits != 0 {
                 let n = some * BOXES + next_of(&mut bits);
-                if n > self.of && (a.seeks || known.large[n].seeks) {
-                    self.meet::<T>(proof, a, &known.large[n]);
+                if n <= self.of {
+                    continue;
+                }
+                let b = known.in_order(n);
+                if a.seeks || b.seeks {
+                    self.meet::<T>(proof, a, b);
                 }
             }
         }
@@ -224,9 +229,13 @@ impl LargeMeetings<'_> {
     /// Adds the pairs of two clusters: those of their blocks that overlap along the axes of both.
     #[inline(always)]
     fn meet<T: Lanes>(&mut self, proof: T::Proof, a: &LargeCluster, b: &LargeCluster) {
-        let [to_b, to_a] = [Relative::of(a, b), Relative::of(b, a)];
+        let to_b = Relative::of(a, b);
         let mut room = bounds_at(a, to_b.as_ref()).common(&b.blocks.bounds);
-        if room == Bounds::EMPTY || !bounds_at(b, to_a.as_ref()).overlaps(&a.blocks.bounds) {
+        if room == Bounds::EMPTY {
+            return;
+        }
+        let to_a = Relative::of(b, a);
+        if !bounds_at(b, to_a.as_ref()).overlaps(&a.blocks.bounds) {
             return;
         }
         let mut placed = std::mem::take(&mut self.task.placed);

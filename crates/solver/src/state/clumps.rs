@@ -283,11 +283,16 @@ impl Clumps {
     /// Sets the spheres, in ascending order, that are near something, and the range of each clump.
     /// Returns those that were near before.
     pub(crate) fn set_near(&mut self, near: Vec<u32>) -> Vec<u32> {
+        let mut listed = 0;
         for clump in &mut self.all {
-            let Range { start, end } =
-                self.templates[clump.template as usize].spheres_from(clump.first);
-            clump.near =
-                [start, end].map(|i| near.partition_point(|&sphere| (sphere as usize) < i) as u32);
+            let spheres = self.templates[clump.template as usize].spheres_from(clump.first);
+            clump.near = [spheres.start, spheres.end].map(|i| {
+                let before = near[listed..]
+                    .iter()
+                    .take_while(|&&sphere| (sphere as usize) < i);
+                listed += before.count();
+                listed as u32
+            });
         }
         std::mem::replace(&mut self.near, near)
     }

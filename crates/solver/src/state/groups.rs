@@ -20,6 +20,9 @@ pub(crate) struct Searched<'a> {
     pub(crate) balls: &'a [Ball],
     /// Cluster of each particle.
     pub(crate) clusters: &'a [u32],
+    /// Number of clusters that there have ever been. None: these clusters are not those of a scene,
+    /// whose numbers are never used again.
+    pub(crate) clusters_ever: Option<usize>,
     /// For each particle whether it seeks. None: all seek.
     pub(crate) seeks: Option<&'a [bool]>,
     /// The clumps, and where they were at their last search.
@@ -39,13 +42,17 @@ impl Searched<'_> {
 pub struct KnownClusters {
     /// Cluster of each particle.
     of_particle: Vec<u32>,
+    /// See [`Searched::clusters_ever`].
+    clusters_ever: Option<usize>,
     /// The particles of each cluster.
     pub(crate) groups: Groups,
     /// Those before the clusters changed last.
     former_groups: Groups,
-    /// Boxes around the large ones, by the lower end of the box along x.
+    /// The large ones, by number.
     pub(crate) large: Vec<LargeCluster>,
-    /// These boxes by columns.
+    /// The lower ends of their boxes along x, m, ascending, and their places in `large`.
+    by_low_end_m: Vec<(f64, u32)>,
+    /// Their boxes by columns, in this order.
     pub(crate) columns: Vec<BoxColumns>,
     /// The balls of each template, once a large clump of it has been searched for.
     templates: Vec<Option<Arc<RigidBalls>>>,
@@ -78,7 +85,7 @@ impl KnownClusters {
     /// Updates the boxes of the clusters that are new, or of which a ball seeks. Others keep those
     /// of the last time.
     pub(crate) fn update(&mut self, searched: &Searched<'_>) {
-        if !self.are_those_of(searched.clusters) {
+        if !self.are_those_of(searched) {
             self.group_again(searched);
         }
         let groups = &self.groups;
@@ -90,13 +97,36 @@ impl KnownClusters {
                 large.is_new = false;
             }
         });
-        self.large.sort_unstable_by(|a, b| {
-            let low = |large: &LargeCluster| large.bounds.low[0];
-            low(a).total_cmp(&low(b)).then(a.group.cmp(&b.group))
-        });
-        let boxes = |some: &[LargeCluster]| box_columns(some.iter().map(|large| large.bounds));
-        self.columns.clear();
-        self.columns.extend(self.large.chunks(BOXES).map(boxes));
+        self.sort_boxes();
+    }
+
+    /// Sorts the large clusters by the lower ends of their boxes.
+    fn sort_boxes(&mut self) {
+        let Self {
+            large,
+            by_low_end_m: order,
+            columns,
+            ..
+        } = self;
+        // Their former order is almost the present one.
+        if order.len() != large.len() {
+            order.clear();
+            order.extend((0..large.len() as u32).map(|place| (0.0, place)));
+        }
+        for (low_m, place) in order.iter_mut() {
+            *low_m = large[*place as usize].bounds.low[0];
+        }
+        order.sort_unstable_by(|(a_m, a), (b_m, b)| a_m.total_cmp(b_m).then(a.cmp(b)));
+        let box_of = |&(_, place): &(f64, u32)| large[place as usize].bounds;
+        let boxes = |some: &[(f64, u32)]| box_columns(some.iter().map(box_of));
+        columns.clear();
+        columns.extend(order.chunks(BOXES).map(boxes));
+    }
+
+    /// A large cluster, counted by the lower ends of their boxes along x.
+    #[inline(always)]
+    pub(crate) fn in_order(&self, n: usize) -> &LargeCluster {
+        &self.large[self.by_low_end_m[n].1 as usize]
     }
 
     /// Sorts the particles by their present clusters. Large clusters whose particles are the same
@@ -104,6 +134,7 @@ impl KnownClusters {
     fn group_again(&mut self, searched: &Searched<'_>) {
         self.of_particle.clear();
         self.of_particle.extend_from_slice(searched.clusters);
+        self.clusters_ever = searched.clusters_ever;
         std::mem::swap(&mut self.groups, &mut self.former_groups);
         self.groups.set(searched.clusters);
         let Self {
@@ -122,7 +153,6 @@ impl KnownClusters {
                 && groups.members(group) == former_groups.members(group)
                 && carrier_of(group) == clump
         });
-        large.sort_unstable_by_key(|large| large.group);
         let known = large.len();
         for group in groups.all().filter(|&group| groups.is_large(group)) {
             let place = large[..known].binary_search_by_key(&group, |large| large.group);
@@ -132,11 +162,22 @@ impl KnownClusters {
                 large.push(LargeCluster::new(group, rigid));
             }
         }
+        large.sort_unstable_by_key(|large| large.group);
     }
 
-    /// Whether these are the clusters of the particles, as known.
-    pub(crate) fn are_those_of(&self, clusters: &[u32]) -> bool {
-        self.of_particle == clusters
+    /// Whether the clusters of the particles are those that are known. Those of a scene only change
+    /// where there are new ones, or where the particles get new numbers: then nothing is known.
+    pub(crate) fn are_those_of(&self, searched: &Searched<'_>) -> bool {
+        let are_same = || self.of_particle == searched.clusters;
+        match searched.clusters_ever {
+            Some(_) if self.of_particle.len() == searched.clusters.len() => {
+                let are_known = self.clusters_ever == searched.clusters_ever;
+                debug_assert!(!are_known || are_same());
+                are_known
+            }
+            Some(_) => false,
+            None => are_same(),
+        }
     }
 
     /// What stays known when the particles get new numbers.
@@ -329,6 +370,7 @@ mod tests {
         let searched = Searched {
             balls: &before,
             clusters: &clusters,
+            clusters_ever: None,
             seeks: None,
             clumps: None,
         };
@@ -342,6 +384,7 @@ mod tests {
         let [all, some] = [None, Some(&seeks[..])].map(|seeks| Searched {
             balls: &after,
             clusters: &broken,
+            clusters_ever: None,
             seeks,
             clumps: None,
         });

@@ -38,6 +38,7 @@ proptest! {
         let searched = Searched {
             balls: &balls,
             clusters: &clusters,
+            clusters_ever: None,
             seeks: Some(seeks),
             clumps: None,
         };
