@@ -11,7 +11,7 @@ use super::search_buffers::SearchBuffers;
 use crate::physics::contact::law::ContactKind;
 
 /// Number of pairs that one task relists.
-const RELISTED_AT_ONCE: usize = 4096;
+const RELISTED_AT_ONCE: usize = 1024;
 
 /// History of a contact. Two cache lines; contacts without rolling friction use only the first.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

@@ -169,15 +169,12 @@ impl KnownClusters {
     /// where there are new ones, or where the particles get new numbers: then nothing is known.
     pub(crate) fn are_those_of(&self, searched: &Searched<'_>) -> bool {
         let are_same = || self.of_particle == searched.clusters;
-        match searched.clusters_ever {
-            Some(_) if self.of_particle.len() == searched.clusters.len() => {
-                let are_known = self.clusters_ever == searched.clusters_ever;
-                debug_assert!(!are_known || are_same());
-                are_known
-            }
-            Some(_) => false,
-            None => are_same(),
+        if searched.clusters_ever.is_none() {
+            return are_same();
         }
+        let are_known = self.clusters_ever == searched.clusters_ever;
+        debug_assert!(!are_known || are_same());
+        are_known
     }
 
     /// What stays known when the particles get new numbers.
