@@ -24,6 +24,7 @@ use crate::state::State;
 use crate::state::balls::{Ball, ball_around};
 use crate::state::bridges::Bridges;
 use crate::state::clumps::Clumps;
+use crate::state::clusters::Clusters;
 use crate::state::contacts::Contacts;
 use crate::state::groups::{KnownClusters, LargeCluster, Searched};
 use crate::state::references::References;
@@ -174,10 +175,11 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
         clumps: references,
         ..
     } = &mut contacts.scratch.references;
+    let (of_particle, clusters_ever) = numbers_of(clusters);
     let searched = Searched {
         balls,
-        clusters: clusters.map_or(&[], |clusters| &clusters.of_particle),
-        clusters_ever: clusters.map(|clusters| clusters.history.len()),
+        clusters: of_particle,
+        clusters_ever,
         seeks: some,
         clumps: Some((&state.clumps, references)),
     };
@@ -215,6 +217,14 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
         state.scratch.events.work.relaxing += contacts.relaxing();
     }
     seeks.iter().filter(|&&seeks| seeks).count()
+}
+
+/// The cluster of each particle, and how many clusters there have been: see [`Searched`].
+fn numbers_of(clusters: Option<&Clusters>) -> (&[u32], Option<usize>) {
+    match clusters {
+        Some(clusters) => (&clusters.of_particle, Some(clusters.history.len())),
+        None => (&[], None),
+    }
 }
 
 /// With steps by body, the groups have lists of their own, which are to be made again.
@@ -338,11 +348,11 @@ fn list_near_moving_walls(state: &mut State) {
             clumps,
             ..
         } = &mut contacts.scratch.references;
-        let clusters = state.clusters.as_ref();
+        let (clusters, clusters_ever) = numbers_of(state.clusters.as_ref());
         let searched = Searched {
             balls,
-            clusters: clusters.map_or(&[], |clusters| &clusters.of_particle),
-            clusters_ever: clusters.map(|clusters| clusters.history.len()),
+            clusters,
+            clusters_ever,
             seeks: None,
             clumps: Some((&state.clumps, clumps)),
         };

@@ -190,7 +190,7 @@ impl LaneWork for LargeMeetings<'_> {
     #[inline(always)]
     fn with<T: Lanes>(mut self, proof: T::Proof) {
         let known = self.search.known;
-        let a = known.in_order(self.of);
+        let a = known.nth_along_x(self.of);
         for (some, boxes) in known.columns.iter().enumerate().skip(self.of / BOXES) {
             if boxes[0][0] > a.bounds.high[0] {
                 break;
@@ -201,7 +201,7 @@ impl LaneWork for LargeMeetings<'_> {
                 if n <= self.of {
                     continue;
                 }
-                let b = known.in_order(n);
+                let b = known.nth_along_x(n);
                 if a.seeks || b.seeks {
                     self.meet::<T>(proof, a, b);
                 }

@@ -280,8 +280,8 @@ impl Clumps {
         after.checked_sub(1)
     }
 
-    /// Sets the spheres, in ascending order, that are near something, and the range of each clump.
-    /// Returns those that were near before.
+    /// Sets the spheres, in ascending order, that are near something, and the range of each clump:
+    /// clumps are in the order of their spheres. Returns those that were near before.
     pub(crate) fn set_near(&mut self, near: Vec<u32>) -> Vec<u32> {
         let mut listed = 0;
         for clump in &mut self.all {

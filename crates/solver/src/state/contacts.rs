@@ -254,7 +254,9 @@ impl Contacts {
 
     /// Requests a search for the neighbours of all particles before the next step.
     pub(crate) fn search_all(&mut self) {
-        self.scratch.references.balls.clear();
+        let references = &mut self.scratch.references;
+        references.balls.clear();
+        references.clusters = std::mem::take(&mut references.clusters).renumbered();
         self.skin_left_m = -1.0;
     }
 

@@ -20,8 +20,8 @@ pub(crate) struct Searched<'a> {
     pub(crate) balls: &'a [Ball],
     /// Cluster of each particle.
     pub(crate) clusters: &'a [u32],
-    /// Number of clusters that there have ever been. None: these clusters are not those of a scene,
-    /// whose numbers are never used again.
+    /// Number of clusters that the scene has had so far, if these are its clusters: it uses no
+    /// number twice.
     pub(crate) clusters_ever: Option<usize>,
     /// For each particle whether it seeks. None: all seek.
     pub(crate) seeks: Option<&'a [bool]>,
@@ -52,7 +52,7 @@ pub struct KnownClusters {
     pub(crate) large: Vec<LargeCluster>,
     /// The lower ends of their boxes along x, m, ascending, and their places in `large`.
     by_low_end_m: Vec<(f64, u32)>,
-    /// Their boxes by columns, in this order.
+    /// Their boxes by columns, in the order of `by_low_end_m`.
     pub(crate) columns: Vec<BoxColumns>,
     /// The balls of each template, once a large clump of it has been searched for.
     templates: Vec<Option<Arc<RigidBalls>>>,
@@ -108,14 +108,9 @@ impl KnownClusters {
             columns,
             ..
         } = self;
-        // Their former order is almost the present one.
-        if order.len() != large.len() {
-            order.clear();
-            order.extend((0..large.len() as u32).map(|place| (0.0, place)));
-        }
-        for (low_m, place) in order.iter_mut() {
-            *low_m = large[*place as usize].bounds.low[0];
-        }
+        order.clear();
+        let low_end_m = |large: &LargeCluster| large.bounds.low[0];
+        order.extend(large.iter().map(low_end_m).zip(0..));
         order.sort_unstable_by(|(a_m, a), (b_m, b)| a_m.total_cmp(b_m).then(a.cmp(b)));
         let box_of = |&(_, place): &(f64, u32)| large[place as usize].bounds;
         let boxes = |some: &[(f64, u32)]| box_columns(some.iter().map(box_of));
@@ -123,9 +118,9 @@ impl KnownClusters {
         columns.extend(order.chunks(BOXES).map(boxes));
     }
 
-    /// A large cluster, counted by the lower ends of their boxes along x.
+    /// The `n`th large cluster in the order of the lower ends of the boxes along x.
     #[inline(always)]
-    pub(crate) fn in_order(&self, n: usize) -> &LargeCluster {
+    pub(crate) fn nth_along_x(&self, n: usize) -> &LargeCluster {
         &self.large[self.by_low_end_m[n].1 as usize]
     }
 
@@ -165,8 +160,8 @@ impl KnownClusters {
         large.sort_unstable_by_key(|large| large.group);
     }
 
-    /// Whether the clusters of the particles are those that are known. Those of a scene only change
-    /// where there are new ones, or where the particles get new numbers: then nothing is known.
+    /// Whether the clusters of the particles are those that are known. Those of a scene change only
+    /// when there are new ones, or when the particles get new numbers, after which none is known.
     pub(crate) fn are_those_of(&self, searched: &Searched<'_>) -> bool {
         let are_same = || self.of_particle == searched.clusters;
         if searched.clusters_ever.is_none() {
@@ -394,5 +389,27 @@ mod tests {
         assert!([&whole, &kept].map(Vec::len) == [1, 1] && Arc::ptr_eq(&whole[0], &kept[0]));
         let seeking = known.large.iter().filter(|large| large.seeks);
         assert!(seeking.map(|large| large.group).all(|group| group != 1));
+    }
+
+    #[test]
+    fn clusters_of_a_scene_are_known_until_there_are_more_or_particles_get_new_numbers() {
+        let balls = [[0.0, 0.0, 0.0, 1.0]; 40];
+        let searched = |clusters, clusters_ever| Searched {
+            balls: &balls,
+            clusters,
+            clusters_ever,
+            seeks: None,
+            clumps: None,
+        };
+        let (whole, broken) = ([0; 40], [[1; 20], [2; 20]].concat());
+        let mut known = KnownClusters::default();
+        assert!(!known.are_those_of(&searched(&whole, Some(1))));
+        known.update(&searched(&whole, Some(1)));
+        assert!(known.are_those_of(&searched(&whole, Some(1))));
+        assert!(!known.are_those_of(&searched(&broken, Some(3))));
+        known.update(&searched(&broken, Some(3)));
+        let groups = known.large.iter().map(|large| large.group);
+        assert_eq!(groups.collect::<Vec<_>>(), [1, 2]);
+        assert!(!known.renumbered().are_those_of(&searched(&broken, Some(3))));
     }
 }

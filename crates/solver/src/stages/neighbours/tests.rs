@@ -43,6 +43,12 @@ proptest! {
             clumps: None,
         };
         let (mut known, mut buffers) = (KnownClusters::default(), PairBuffers::default());
+        // Those that seek were elsewhere at the search before, the order of the boxes another one.
+        let elsewhere = |(&[x, y, z, radius_m], &seeks): (&Ball, &bool)| {
+            if seeks { [-y, x, z, radius_m] } else { [x, y, z, radius_m] }
+        };
+        let before: Vec<Ball> = balls.iter().zip(seeks).map(elsewhere).collect();
+        known.update(&Searched { balls: &before, seeks: None, ..searched });
         known.update(&searched);
         find_pairs(&searched, &known, &mut buffers);
         prop_assert_eq!(&buffers.found, &pairs_sought(&balls, &clusters, seeks));
