@@ -30,21 +30,7 @@ impl<'a> Lines<'a> {
     /// It cannot be read, is not text, or is cut off: the last line of a complete file also ends
     /// with a line break.
     pub fn next_line(&mut self) -> Result<Option<(u64, &str)>> {
-        self.bytes.clear();
-        let mut some = Read::take(&mut *self.input, LONGEST_LINE);
-        let read = some.read_until(b'\n', &mut self.bytes);
-        if read.map_err(|error| Diagnostic::failed("", format!("cannot be read: {error}"), ""))?
-            == 0
-        {
-            return Ok(None);
-        }
-        self.number += 1;
-        if self.bytes.len() as u64 == LONGEST_LINE {
-            let problem = format!("this line is longer than {LONGEST_LINE} bytes");
-            let error = Diagnostic::input("", problem, "write one particle or bond per line");
-            return Err(on_line(self.number, error));
-        }
-        if !self.bytes.ends_with(b"\n") {
+        if self.read_line()? && !self.bytes.ends_with(b"\n") {
             return Err(on_line(
                 self.number,
                 Diagnostic::input(
@@ -53,6 +39,44 @@ impl<'a> Lines<'a> {
                     "it may be cut off: make it again, or end its last line with a line break if nothing is missing",
                 ),
             ));
+        }
+        self.line()
+    }
+
+    /// The same for a file that may still be written: a line within which it ends is no line.
+    ///
+    /// # Errors
+    /// It cannot be read, or is not text.
+    pub fn next_whole_line(&mut self) -> Result<Option<(u64, &str)>> {
+        if self.read_line()? && !self.bytes.ends_with(b"\n") {
+            return Ok(None);
+        }
+        self.line()
+    }
+
+    /// Reads a line. False: there is none.
+    fn read_line(&mut self) -> Result<bool> {
+        self.bytes.clear();
+        let mut some = Read::take(&mut *self.input, LONGEST_LINE);
+        let read = some.read_until(b'\n', &mut self.bytes);
+        if read.map_err(|error| Diagnostic::failed("", format!("cannot be read: {error}"), ""))?
+            == 0
+        {
+            return Ok(false);
+        }
+        self.number += 1;
+        if self.bytes.len() as u64 == LONGEST_LINE {
+            let problem = format!("this line is longer than {LONGEST_LINE} bytes");
+            let error = Diagnostic::input("", problem, "write one particle or bond per line");
+            return Err(on_line(self.number, error));
+        }
+        Ok(true)
+    }
+
+    /// The line that was read last. None: there was none.
+    fn line(&self) -> Result<Option<(u64, &str)>> {
+        if self.bytes.is_empty() {
+            return Ok(None);
         }
         // Spreadsheets put this mark (BOM) at the beginning of a text.
         let start = if self.number == 1 && self.bytes.starts_with(b"\xEF\xBB\xBF") {

@@ -72,6 +72,8 @@ pub(crate) fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Writte
     let manifest = Manifest {
         program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
         scene: scene.source.clone(),
+        steps,
+        end_s: scene.run.end_time_s,
         body_names: plan
             .state
             .model

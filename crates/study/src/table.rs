@@ -50,6 +50,12 @@ impl SweepTable {
                     "run {number} gave other values when it was done again"
                 ));
             }
+            if (1..outcomes.len()).contains(&done.len()) {
+                let (number, with, all) = (run.number, done.len(), outcomes.len());
+                notes.push(format!(
+                    "run {number}: of its {all} repeats {with} left results; its time is theirs"
+                ));
+            }
             machines.extend(done.iter().map(|done| done.machine.clone()));
             rows.push(row(study, run, outcomes, &done));
             of_runs.push(done.first().copied());

@@ -12,7 +12,11 @@ use crate::folder::Folder;
 pub(crate) fn add_inputs(page: &mut Page, summary: &Value, folder: &Folder) {
     let inputs = &summary["inputs"];
     page.heading("Input");
-    let mut said = format!("{}, seed {}", text(&summary["scene"]), inputs["seed"]);
+    let mut said = text(&summary["scene"]).to_owned();
+    // What another program computed has none.
+    if !inputs["seed"].is_null() {
+        said += &format!(", seed {}", inputs["seed"]);
+    }
     said += &match text(&summary["machine"]) {
         "" => ".".to_owned(),
         machine => format!(", on {machine}."),

@@ -1,9 +1,11 @@
 //! `dem-run import`: what LAMMPS computed from an exported scene, as results of a run.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 use dem_io::Result;
+use dem_io::colour::{Colour, on_standard_error};
 use dem_io::standard_output::write_standard_output;
 use dem_io::text::{counted, visible};
 use dem_results::Existing;
@@ -35,12 +37,22 @@ pub(super) fn import(arguments: &ImportArguments) -> Result<()> {
     } else {
         Existing::Refuse
     };
-    let frames = import_run(&arguments.folder, &arguments.output, existing)?;
+    let came = import_run(&arguments.folder, &arguments.output, existing)?;
     if arguments.quiet {
         return Ok(());
     }
+    if let Some(warning) = came.warning() {
+        let word = on_standard_error("warning:", Colour::Yellow);
+        // A closed output is not a reason to fail: the results are written.
+        let _ = writeln!(std::io::stderr(), "{word} {warning}");
+    }
     write_standard_output(|out| {
+        let (frames, last_s) = (counted(came.frames, "frame"), came.last_s);
         let results = arguments.output.display().to_string();
-        writeln!(out, "{} -> {}", counted(frames, "frame"), visible(&results))
+        writeln!(
+            out,
+            "{frames}, the last at {last_s} s -> {}",
+            visible(&results)
+        )
     })
 }

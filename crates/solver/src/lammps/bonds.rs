@@ -224,14 +224,14 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
     }
     if rule.fracture_energy_j_m2.is_some() {
         return refuse(
-            "fracture_energy",
+            "failure.fracture_energy",
             "bonds of bpm/rotational break at their strength and do not soften",
             "leave it out, or run the scene with dem-run",
         );
     }
     if rule.strengthening_from_1_s.is_some() {
         return refuse(
-            "rate_strengthening",
+            "failure.rate_strengthening",
             "strengths of bpm/rotational do not depend on the strain rate",
             "leave it out, or run the scene with dem-run",
         );
@@ -242,21 +242,21 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
     let is_set = |strength: f64| strength.is_finite();
     if is_set(criteria.von_mises_strength_pa) {
         return refuse(
-            "von_mises_strength",
+            "failure.von_mises_strength",
             "bpm/rotational adds loads relative to their limits, which is no equivalent stress",
             "use tensile_strength or shear_strength",
         );
     }
     if is_set(criteria.compressive_strength_pa) {
         return refuse(
-            "compressive_strength",
+            "failure.compressive_strength",
             "bpm/rotational breaks no bond by compression",
             "leave it out, or run the scene with dem-run",
         );
     }
     if criteria.is_frictional() {
         return refuse(
-            "cohesion",
+            "failure.cohesion",
             "strengths of bpm/rotational do not rise with pressure",
             "use shear_strength, or run the scene with dem-run",
         );
@@ -264,14 +264,14 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
     let (tension, shear) = (criteria.tensile_strength_pa, criteria.shear_strength_pa);
     if is_set(tension) && is_set(shear) {
         return refuse(
-            "shear_strength",
+            "failure.shear_strength",
             "bpm/rotational adds tension and shear to one limit, and here each has its own",
             "keep tensile_strength or shear_strength, not both",
         );
     }
     if tension == 0.0 || shear == 0.0 {
         return refuse(
-            "tensile_strength",
+            "failure.tensile_strength",
             "a limit of bpm/rotational is above 0",
             "use a small strength, such as \"1 Pa\"",
         );

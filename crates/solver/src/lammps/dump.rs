@@ -7,6 +7,9 @@ use std::io::BufRead;
 use dem_io::lines::{Lines, on_line};
 use dem_io::{Diagnostic, Result};
 
+/// What to do about a damaged dump.
+const AGAIN: &str = "run LAMMPS again, or copy the dump again";
+
 /// A section of a dump: the rows at one time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Section {
@@ -55,7 +58,7 @@ impl<'a> Dump<'a> {
     /// Those of the file.
     pub(crate) fn new(input: &'a mut dyn BufRead) -> Result<Self> {
         let mut lines = Lines::new(input);
-        let next = lines.next_line()?.map(|(_, line)| line.trim().to_owned());
+        let next = lines.next_whole_line()?.map(|(_, line)| line.to_owned());
         Ok(Self { lines, next })
     }
 
@@ -89,12 +92,12 @@ impl<'a> Dump<'a> {
             }
             match name.split(' ').next() {
                 Some("TIME") => section.time_s = self.number()?,
-                Some("TIMESTEP") => match self.number()? {
-                    Some(step) => section.step = step as u64,
+                Some("TIMESTEP") => match self.count()? {
+                    Some(step) => section.step = step,
                     None => return Ok(None),
                 },
-                Some("NUMBER") => match self.number()? {
-                    Some(number) => count = Some(number as usize),
+                Some("NUMBER") => match self.count()? {
+                    Some(number) => count = Some(number),
                     None => return Ok(None),
                 },
                 Some("BOX") => {
@@ -112,34 +115,44 @@ impl<'a> Dump<'a> {
     }
 
     fn word(&mut self) -> Result<Option<String>> {
-        Ok(self
-            .lines
-            .next_line()?
-            .map(|(_, line)| line.trim().to_owned()))
+        let line = self.lines.next_whole_line()?;
+        Ok(line.map(|(_, line)| line.to_owned()))
     }
 
     fn number(&mut self) -> Result<Option<f64>> {
-        let Some((number, line)) = self.lines.next_line()? else {
-            return Ok(None);
+        let line = self.lines.next_whole_line()?;
+        line.map(|(number, line)| parsed(line).map_err(|error| on_line(number, error)))
+            .transpose()
+    }
+
+    fn count(&mut self) -> Result<Option<u64>> {
+        let line = self.lines.next_whole_line()?;
+        let parsed = |(number, line): (u64, &str)| {
+            line.parse().map_err(|_| {
+                let problem = format!("'{}' is not a whole number from 0", line.escape_debug());
+                on_line(number, Diagnostic::input("", problem, AGAIN))
+            })
         };
-        parsed(line.trim())
-            .map(Some)
-            .map_err(|error| on_line(number, error))
+        line.map(parsed).transpose()
     }
 
     /// Reads this many rows. False: the file ends before.
-    fn take_rows(&mut self, section: &mut Section, count: usize) -> Result<bool> {
+    fn take_rows(&mut self, section: &mut Section, count: u64) -> Result<bool> {
         let width = section.columns.len();
         for _ in 0..count {
-            let Some((number, line)) = self.lines.next_line()? else {
+            let Some((number, line)) = self.lines.next_whole_line()? else {
                 return Ok(false);
             };
+            let wrong = |problem| on_line(number, Diagnostic::input("", problem, AGAIN));
+            if line.starts_with("ITEM:") {
+                let rows = section.rows.len();
+                let problem = format!("a section begins after {rows} rows of {count}");
+                return Err(wrong(problem));
+            }
             let row: Result<Vec<f64>> = line.split_ascii_whitespace().map(parsed).collect();
             let row = row.map_err(|error| on_line(number, error))?;
             if row.len() != width {
-                let problem = format!("{} numbers for {width} columns", row.len());
-                let problem = Diagnostic::input("", problem, "write or copy the dump again");
-                return Err(on_line(number, problem));
+                return Err(wrong(format!("{} numbers for {width} columns", row.len())));
             }
             section.rows.push(row);
         }
@@ -147,12 +160,11 @@ impl<'a> Dump<'a> {
     }
 }
 
+/// A finite number.
 fn parsed(word: &str) -> Result<f64> {
-    word.parse().map_err(|_| {
-        Diagnostic::input(
-            "",
-            format!("'{}' is not a number", word.escape_debug()),
-            "write or copy the file again",
-        )
+    let number: Option<f64> = word.parse().ok();
+    number.filter(|number| number.is_finite()).ok_or_else(|| {
+        let problem = format!("'{}' is not a finite number", word.escape_debug());
+        Diagnostic::input("", problem, AGAIN)
     })
 }

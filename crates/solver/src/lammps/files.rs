@@ -21,6 +21,9 @@ pub(crate) struct Manifest {
     pub program: String,
     /// The scene.
     pub scene: String,
+    /// Number of steps until the end, and the time of the end, s.
+    pub steps: u64,
+    pub end_s: f64,
     /// Names of the bodies.
     pub body_names: Vec<String>,
     /// For each molecule, its body: number in `body_names`.

@@ -22,6 +22,15 @@ use serde_json::json;
 use super::dump::{Dump, Section};
 use super::files::{BONDS, DATA, FRAMES, MANIFEST, Manifest};
 
+/// Columns of place, velocity and spin.
+const MOTION: [&str; 9] = [
+    "x", "y", "z", "vx", "vy", "vz", "omegax", "omegay", "omegaz",
+];
+/// Relative difference of two radii that are the same.
+const SAME: f64 = 1e-9;
+/// What to do if a dump lacks something.
+const KEEP_DUMPS: &str = "keep the dump commands of the exported script";
+
 /// The particles and bonds of an export, from its data file, and those fed by now. Particles in the
 /// order of their ids.
 #[derive(Debug, Default)]
@@ -38,86 +47,160 @@ struct Exported {
     bond_types: Vec<usize>,
 }
 
-/// Reads what LAMMPS left in the folder of an export, and writes it as the results of a run.
-/// Returns the number of frames.
+/// What a run of LAMMPS came to.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Came {
+    pub(crate) frames: usize,
+    /// Time of the last frame, and of the end of the run, s.
+    pub(crate) last_s: f64,
+    pub(crate) end_s: f64,
+    /// Whether the last frame is that of the end.
+    pub(crate) is_whole: bool,
+}
+
+/// A frame of a dump, whose numbers have been checked.
+struct Moment<'a> {
+    manifest: &'a Manifest,
+    exported: &'a Exported,
+    section: &'a Section,
+    time_s: f64,
+    /// Columns of place, velocity and spin.
+    columns: [usize; 9],
+    /// For each row the number of its particle.
+    numbers: &'a [u32],
+    /// The unbroken bonds, by the ids of their ends in LAMMPS, the smaller first.
+    unbroken: &'a HashSet<[u64; 2]>,
+}
+
+/// Reads what LAMMPS left in the folder of an export, and writes it as the results of a run. The
+/// dumps are read twice: what is damaged leaves nothing behind.
 ///
 /// # Errors
 /// The folder is not that of an export or has no dump; a file is damaged (exit code 2); results
 /// cannot be written (exit code 1).
-pub(crate) fn import(folder: &Path, results: &Path, existing: Existing) -> Result<usize> {
+pub(crate) fn import(folder: &Path, results: &Path, existing: Existing) -> Result<Came> {
+    each_moment(folder, &mut |_| Ok(()))?;
+    let target = ResultsFolder::create(results, existing)?;
+    let mut files = FrameFiles::create(&target, WallFiles::None);
+    let came = each_moment(folder, &mut |moment| append(moment, &mut files))?;
+    write_summary(&target, &read_manifest(folder)?, &came)?;
+    Ok(came)
+}
+
+/// Reads the dumps, and calls `visit` with each frame that both of them have.
+fn each_moment(folder: &Path, visit: &mut dyn FnMut(&Moment<'_>) -> Result<()>) -> Result<Came> {
     let mut manifest = read_manifest(folder)?;
     let mut exported = read_data(&folder.join(DATA))?;
     refuse_strangers(folder, &manifest, &exported)?;
-    let frames_path = folder.join(FRAMES);
-    let mut input = open(&frames_path, "run the exported script with LAMMPS first")?;
-    let mut frames = Dump::new(&mut input)?;
-    let bonds_path = folder.join(BONDS);
-    let mut bonds_input = match exported.bonds.is_empty() {
-        true => None,
-        false => Some(open(
-            &bonds_path,
-            "keep the dump commands of the exported script",
-        )?),
-    };
-    let mut bonds = bonds_input
-        .as_mut()
-        .map(|input| Dump::new(input))
-        .transpose()?;
+    let bonded = exported.pairs();
     let within = |path: &Path| {
         let place = path.display().to_string();
         move |error: Diagnostic| error.within(&place)
     };
-    let Some(mut section) = frames.section().map_err(within(&frames_path))? else {
+    let (frames_path, bonds_path) = (folder.join(FRAMES), folder.join(BONDS));
+    let mut frames_input = open(&frames_path, "run the exported script with LAMMPS first")?;
+    let mut frames = Dump::new(&mut frames_input).map_err(within(&frames_path))?;
+    let mut bonds_input = match bonded.is_empty() {
+        true => None,
+        false => Some(open(&bonds_path, KEEP_DUMPS)?),
+    };
+    let bonds = bonds_input.as_mut().map(|input| Dump::new(input));
+    let mut bonds = bonds.transpose().map_err(within(&bonds_path))?;
+    let mut came = Came {
+        end_s: manifest.end_s,
+        ..Came::default()
+    };
+    let (mut before, mut ends_early) = (None, &frames_path);
+    while let Some(section) = frames.section().map_err(within(&frames_path))? {
+        let mut check = || {
+            follows(before, section.step)?;
+            exported.take_fed(&mut manifest, &section)?;
+            let numbers = exported.numbers_of(&section)?;
+            Ok((numbers, section.find(MOTION)?, time_s(&section)?))
+        };
+        let (numbers, columns, time_s) = check().map_err(within(&frames_path))?;
+        let mut unbroken = HashSet::new();
+        if let Some(bonds) = &mut bonds {
+            match unbroken_at(bonds, section.step, &bonded).map_err(within(&bonds_path))? {
+                Some(found) => unbroken = found,
+                None => {
+                    ends_early = &bonds_path;
+                    break;
+                }
+            }
+        }
+        visit(&Moment {
+            manifest: &manifest,
+            exported: &exported,
+            section: &section,
+            time_s,
+            columns,
+            numbers: &numbers,
+            unbroken: &unbroken,
+        })?;
+        before = Some(section.step);
+        (came.frames, came.last_s) = (came.frames + 1, time_s);
+        came.is_whole = section.step >= manifest.steps;
+    }
+    if came.frames == 0 {
         return Err(Diagnostic::input(
-            frames_path.display().to_string(),
+            ends_early.display().to_string(),
             "there is no complete frame in it",
             "run the exported script with LAMMPS first",
         ));
-    };
-    let target = ResultsFolder::create(results, existing)?;
-    let mut files = FrameFiles::create(&target, WallFiles::None);
-    let mut unbroken = None;
-    let mut last_s = 0.0;
-    loop {
-        if let Some(bonds) = &mut bonds {
-            unbroken = unbroken_at(bonds, section.step).map_err(within(&bonds_path))?;
-        }
-        exported
-            .take_fed(&mut manifest, &section)
-            .map_err(within(&frames_path))?;
-        last_s = append(
-            &manifest,
-            &exported,
-            &section,
-            unbroken.as_ref(),
-            &mut files,
-        )
-        .map_err(within(&frames_path))?
-        .max(last_s);
-        match frames.section().map_err(within(&frames_path))? {
-            Some(next) => section = next,
-            None => break,
-        }
     }
-    write_summary(&target, &manifest, last_s)?;
-    Ok(files.times_s().len())
+    Ok(came)
+}
+
+/// Refuses a step that does not come after the one before.
+fn follows(before: Option<u64>, step: u64) -> Result<()> {
+    match before {
+        Some(before) if step <= before => Err(Diagnostic::input(
+            format!("step {step}"),
+            format!("it comes after step {before}"),
+            "remove the dumps, and run LAMMPS again: it adds to dumps that are there",
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn time_s(section: &Section) -> Result<f64> {
+    section.time_s.ok_or_else(|| {
+        Diagnostic::input(
+            format!("step {}", section.step),
+            "no time",
+            "keep dump_modify ... time yes of the exported script",
+        )
+    })
 }
 
 /// Summary and page.
-fn write_summary(target: &ResultsFolder, manifest: &Manifest, last_s: f64) -> Result<()> {
+fn write_summary(target: &ResultsFolder, manifest: &Manifest, came: &Came) -> Result<()> {
+    let unchecked = "computed by LAMMPS: energies, momentum and overlaps were not checked";
+    let warnings: Vec<String> = std::iter::once(unchecked.to_owned())
+        .chain(came.warning())
+        .collect();
     let summary = json!({
         "program": manifest.program,
         "engine": "LAMMPS",
         "scene": manifest.scene,
-        "simulated_s": last_s,
-        "verdict": {
-            "sound": false,
-            "warnings": ["computed by LAMMPS: energies, momentum and overlaps were not checked"],
-        },
+        "simulated_s": came.last_s,
+        "verdict": { "sound": false, "warnings": warnings },
     });
     write_json(&target.summary(), &summary)?;
     let page = report(target.path(), &summary.to_string())?;
     write_file(&target.report(), |out| out.write_all(page.as_bytes()))
+}
+
+impl Came {
+    /// What is to be said of a run that has not come to its end.
+    pub(crate) fn warning(&self) -> Option<String> {
+        let Self { last_s, end_s, .. } = self;
+        let warning = format!(
+            "the frames end at {last_s} s, the run of the scene at {end_s} s: LAMMPS has stopped before, or goes on"
+        );
+        (!self.is_whole).then_some(warning)
+    }
 }
 
 fn read_manifest(folder: &Path) -> Result<Manifest> {
@@ -141,10 +224,11 @@ fn read_manifest(folder: &Path) -> Result<Manifest> {
 }
 
 fn open(path: &Path, remedy: &str) -> Result<BufReader<File>> {
-    let file = File::open(path).map_err(|error| {
-        let problem = format!("cannot be read: {error}");
-        Diagnostic::input(path.display().to_string(), problem, remedy)
-    })?;
+    let refuse = |problem| Diagnostic::input(path.display().to_string(), problem, remedy);
+    if path.is_dir() {
+        return Err(refuse("this is a folder, not a dump".to_owned()));
+    }
+    let file = File::open(path).map_err(|error| refuse(format!("cannot be read: {error}")))?;
     Ok(BufReader::new(file))
 }
 
@@ -201,6 +285,55 @@ fn read_data(path: &Path) -> Result<Exported> {
 }
 
 impl Exported {
+    /// The bonds, by the ids of their ends in LAMMPS, the smaller first.
+    fn pairs(&self) -> HashSet<[u64; 2]> {
+        let ids = |ends: &[u32; 2]| ends.map(|end| self.ids[end as usize]);
+        let pairs = self.bonds.iter().map(ids);
+        pairs.map(|[a, b]| [a.min(b), a.max(b)]).collect()
+    }
+
+    /// For each row of a section the number of its particle: each is there once, with the molecule
+    /// and the radius that it had at the start.
+    fn numbers_of(&self, section: &Section) -> Result<Vec<u32>> {
+        let refuse = |problem: String| {
+            let remedy = "import the dump into the folder of its own export, or run LAMMPS again";
+            Err(Diagnostic::input(
+                format!("step {}", section.step),
+                problem,
+                remedy,
+            ))
+        };
+        let [id, molecule, radius] = section.find(["id", "mol", "radius"])?;
+        let mut is_there = vec![false; self.ids.len()];
+        let mut numbers = Vec::with_capacity(section.rows.len());
+        for row in &section.rows {
+            let known = self
+                .number_of(row[id] as u64)
+                .filter(|_| row[id].fract() == 0.0);
+            let Some(number) = known else {
+                return refuse(format!("atom {} is not in {DATA}", row[id]));
+            };
+            let i = number as usize;
+            if std::mem::replace(&mut is_there[i], true) {
+                return refuse(format!("atom {} is there twice", row[id]));
+            }
+            let (of, radius_m) = (self.molecules[i], self.radii_m[i]);
+            if row[molecule] != f64::from(of) {
+                let problem = format!("is of molecule {}, not {of}", row[molecule]);
+                return refuse(format!("atom {} {problem}", row[id]));
+            }
+            if (row[radius] - radius_m).abs() > SAME * radius_m {
+                let problem = format!("has a radius of {} m, not {radius_m} m", row[radius]);
+                return refuse(format!("atom {} {problem}", row[id]));
+            }
+            numbers.push(number);
+        }
+        match is_there.iter().position(|is_there| !is_there) {
+            Some(missing) => refuse(format!("atom {} is missing", self.ids[missing])),
+            None => Ok(numbers),
+        }
+    }
+
     /// The number of the particle with this id in LAMMPS.
     fn number_of(&self, id: u64) -> Option<u32> {
         self.ids.binary_search(&id).ok().map(|at| at as u32)
@@ -222,11 +355,22 @@ impl Exported {
                 continue;
             };
             let number = row[molecule] as usize;
-            if !(1..=most).contains(&number) {
-                return Err(Diagnostic::input(
+            let refuse = |problem: String| {
+                let remedy = "keep the fix deposit of the exported script";
+                Err(Diagnostic::input(
                     format!("step {}", section.step),
-                    format!("atom {} is of molecule {}", row[id], row[molecule]),
-                    "keep the fix deposit of the exported script",
+                    problem,
+                    remedy,
+                ))
+            };
+            if !(1..=most).contains(&number) {
+                let problem = format!("atom {} is of molecule {}", row[id], row[molecule]);
+                return refuse(problem);
+            }
+            if row[radius] <= 0.0 {
+                return refuse(format!(
+                    "atom {} has a radius of {} m",
+                    row[id], row[radius]
                 ));
             }
             if manifest.body_of_molecule.len() < number {
@@ -279,90 +423,85 @@ fn refuse_strangers(folder: &Path, manifest: &Manifest, exported: &Exported) -> 
 }
 
 /// The unbroken bonds at a step, by the ids of their ends in LAMMPS, the smaller first. None: the
-/// dump ends before.
-fn unbroken_at(bonds: &mut Dump<'_>, step: u64) -> Result<Option<HashSet<[u64; 2]>>> {
-    while let Some(section) = bonds.section()? {
-        if section.step < step {
-            continue;
-        }
-        // The columns have the names of the compute: by place, after the index.
-        let ends = |row: &Vec<f64>| {
-            let [a, b] = [row.get(1), row.get(2)].map(|x| x.copied().unwrap_or(0.0) as u64);
-            [a.min(b), a.max(b)]
-        };
-        return Ok(Some(section.rows.iter().map(ends).collect()));
+/// dump ends before. `bonded`: those of the start.
+fn unbroken_at(
+    bonds: &mut Dump<'_>,
+    step: u64,
+    bonded: &HashSet<[u64; 2]>,
+) -> Result<Option<HashSet<[u64; 2]>>> {
+    let Some(section) = bonds.section()? else {
+        return Ok(None);
+    };
+    let refuse = |problem: String| {
+        let place = format!("step {}", section.step);
+        Err(Diagnostic::input(
+            place,
+            problem,
+            "run LAMMPS again, or copy both dumps again",
+        ))
+    };
+    if section.step != step {
+        return refuse(format!("{FRAMES} has step {step} there"));
     }
-    Ok(None)
+    // The columns have the names of the compute: by place, after the index.
+    let mut unbroken = HashSet::with_capacity(section.rows.len());
+    for row in &section.rows {
+        let &[_, a, b, ..] = row.as_slice() else {
+            return refuse("its rows have no ends of bonds".to_owned());
+        };
+        let [a, b] = [a.min(b), a.max(b)];
+        let pair = [a as u64, b as u64];
+        if !bonded.contains(&pair) {
+            return refuse(format!("{DATA} has no bond of the atoms {a} and {b}"));
+        }
+        unbroken.insert(pair);
+    }
+    Ok(Some(unbroken))
 }
 
-/// Appends a frame. Returns its time, s.
-fn append(
-    manifest: &Manifest,
-    exported: &Exported,
-    section: &Section,
-    unbroken: Option<&HashSet<[u64; 2]>>,
-    files: &mut FrameFiles,
-) -> Result<f64> {
-    let step = || format!("step {}", section.step);
-    let time_s = section.time_s.ok_or_else(|| {
-        Diagnostic::input(
-            step(),
-            "no time",
-            "keep dump_modify ... time yes of the exported script",
-        )
-    })?;
-    let [id, x, y, z] = section.find(["id", "x", "y", "z"])?;
-    let [vx, vy, vz, wx, wy, wz] =
-        section.find(["vx", "vy", "vz", "omegax", "omegay", "omegaz"])?;
-    let mut numbers = Vec::with_capacity(section.rows.len());
-    let mut place_of: BTreeMap<u32, u32> = BTreeMap::new();
-    for (at, row) in (0..).zip(&section.rows) {
-        let number = exported.number_of(row[id] as u64).ok_or_else(|| {
-            Diagnostic::input(
-                step(),
-                format!("atom {} is not in {DATA}", row[id]),
-                "import the dump into the folder of its own export",
-            )
-        })?;
-        numbers.push(number as usize);
-        place_of.insert(number, at);
+/// Appends a frame.
+fn append(moment: &Moment<'_>, files: &mut FrameFiles) -> Result<()> {
+    let Moment {
+        manifest,
+        exported,
+        section,
+        numbers,
+        ..
+    } = moment;
+    let [x, y, z, vx, vy, vz, wx, wy, wz] = moment.columns;
+    let mut place_of = vec![0; numbers.len()];
+    for (at, &number) in (0..).zip(*numbers) {
+        place_of[number as usize] = at;
     }
     let row = |i: usize| &section.rows[i];
-    let bonds: Vec<usize> = (0..exported.bonds.len())
-        .filter(|bond| {
-            exported.bonds[*bond]
-                .iter()
-                .all(|end| place_of.contains_key(end))
-        })
-        .collect();
-    let is_broken = |bond: usize| {
-        let [a, b] = exported.bonds[bond].map(|end| exported.ids[end as usize]);
-        unbroken.is_some_and(|unbroken| !unbroken.contains(&[a.min(b), a.max(b)]))
+    let is_broken = |ends: &[u32; 2]| {
+        let [a, b] = ends.map(|end| exported.ids[end as usize]);
+        !moment.unbroken.contains(&[a.min(b), a.max(b)])
     };
-    let ends = |i: usize| exported.bonds[bonds[i]].map(|end| place_of[&end]);
-    let broken: Vec<bool> = bonds.iter().map(|bond| is_broken(*bond)).collect();
-    let fragments = fragments(manifest, exported, &numbers, &ends, &broken);
-    let mass =
-        |i: usize| exported.densities_kg_m3[numbers[i]] * volume_m3(exported.radii_m[numbers[i]]);
+    let ends = |i: usize| exported.bonds[i].map(|end| place_of[end as usize]);
+    let broken: Vec<bool> = exported.bonds.iter().map(is_broken).collect();
+    let number = |i: usize| numbers[i] as usize;
+    let fragments = fragments(manifest, exported, numbers, &ends, &broken);
+    let radius = |i: usize| exported.radii_m[number(i)];
+    let density = |i: usize| exported.densities_kg_m3[number(i)];
+    let mass = |i: usize| density(i) * volume_m3(radius(i));
     let mut masses_kg: BTreeMap<u32, f64> = BTreeMap::new();
     for (i, fragment) in fragments.iter().enumerate() {
         *masses_kg.entry(*fragment).or_default() += mass(i);
     }
     let body_names: Vec<&str> = manifest.body_names.iter().map(String::as_str).collect();
-    let radius = |i: usize| exported.radii_m[numbers[i]];
-    let density = |i: usize| exported.densities_kg_m3[numbers[i]];
-    let body = |i: usize| manifest.body_of_molecule[exported.molecules[numbers[i]] as usize - 1];
-    let particle_id = |i: usize| (exported.ids[numbers[i]] - 1) as u32;
+    let body = |i: usize| manifest.body_of_molecule[exported.molecules[number(i)] as usize - 1];
+    let particle_id = |i: usize| (exported.ids[number(i)] - 1) as u32;
     let velocity = |i: usize| [vx, vy, vz].map(|k| row(i)[k]);
     let spin = |i: usize| [wx, wy, wz].map(|k| row(i)[k]);
     let fragment = |i: usize| fragments[i];
     let fragment_mass = |i: usize| masses_kg[&fragments[i]];
-    let bond_radius = |i: usize| manifest.bond_radii_m[exported.bond_types[bonds[i]] - 1];
-    let length = |i: usize| exported.length_m(bonds[i]);
+    let bond_radius = |i: usize| manifest.bond_radii_m[exported.bond_types[i] - 1];
+    let length = |i: usize| exported.length_m(i);
     let is_broken = |i: usize| u32::from(broken[i]);
     let array = |name, values| NamedArray { name, values };
     let frame = Frame {
-        time_s,
+        time_s: moment.time_s,
         body_names: &body_names,
         particles: numbers.len(),
         position_m: &|i| [x, y, z].map(|k| row(i)[k]),
@@ -376,7 +515,7 @@ fn append(
             array(DENSITY, Values::Scalars(&density)),
             array("fragment_mass_kg", Values::Scalars(&fragment_mass)),
         ],
-        bonds: bonds.len(),
+        bonds: broken.len(),
         ends: &ends,
         bond_arrays: &[
             array(BOND_RADIUS, Values::Scalars(&bond_radius)),
@@ -384,8 +523,7 @@ fn append(
             array(BOND_LENGTH, Values::Scalars(&length)),
         ],
     };
-    files.append(&frame, &WallFrame::default(), &WallTriangles::default())?;
-    Ok(time_s)
+    files.append(&frame, &WallFrame::default(), &WallTriangles::default())
 }
 
 /// The fragment of each particle of a frame: the smallest id, from 0, of the particles joined to it
@@ -394,7 +532,7 @@ fn append(
 fn fragments(
     manifest: &Manifest,
     exported: &Exported,
-    numbers: &[usize],
+    numbers: &[u32],
     ends: &dyn Fn(usize) -> [u32; 2],
     broken: &[bool],
 ) -> Vec<u32> {
@@ -405,7 +543,7 @@ fn fragments(
     }
     let mut first_of: BTreeMap<u32, u32> = BTreeMap::new();
     for (i, number) in (0..).zip(numbers) {
-        let molecule = exported.molecules[*number];
+        let molecule = exported.molecules[*number as usize];
         if manifest.is_clump[molecule as usize - 1] {
             let first = *first_of.entry(molecule).or_insert(i);
             sets.join(first, i);
@@ -414,7 +552,7 @@ fn fragments(
     let mut least: BTreeMap<u32, u32> = BTreeMap::new();
     let roots: Vec<u32> = (0..numbers.len() as u32).map(|i| sets.root(i)).collect();
     for (root, number) in roots.iter().zip(numbers) {
-        let id = (exported.ids[*number] - 1) as u32;
+        let id = (exported.ids[*number as usize] - 1) as u32;
         let slot = least.entry(*root).or_insert(id);
         *slot = id.min(*slot);
     }

@@ -8,7 +8,7 @@ use super::bonds::BondTypes;
 use super::clumps::has_bodies;
 use super::contacts::Contacts;
 use super::data::{atom, lone_spheres};
-use super::duration::{step_s, steps};
+use super::duration::{frame_every, step_s, steps};
 use super::feeds::Feed;
 use super::files::{BONDS, BROKEN, CLUMPS, DATA, FRAMES, TYPES};
 use super::forces::Forces;
@@ -27,29 +27,12 @@ pub(super) struct Input<'a> {
     pub feeds: &'a [Feed],
 }
 
-/// Frames of a scene that asks for none.
-const FRAMES_UNASKED: u64 = 100;
 /// The law of particles that never meet.
 const NO_LAW: &str = "hooke 0.0 1.0 tangential linear_nohistory 0.0 0.0 damping velocity";
 /// Ids on a line of a group.
 const IDS_PER_LINE: usize = 16;
 
 impl Input<'_> {
-    /// Steps between two frames.
-    pub(super) fn frame_every(&self) -> u64 {
-        let steps = steps(self.scene, self.plan);
-        let asked = self
-            .scene
-            .output
-            .as_ref()
-            .and_then(|output| output.frames_s);
-        let every = match asked {
-            Some(frames_s) => (frames_s / step_s(self.scene, self.plan)).round() as u64,
-            None => steps / FRAMES_UNASKED,
-        };
-        every.max(1)
-    }
-
     /// The script.
     pub(super) fn text(&self) -> String {
         let mut text = String::new();
@@ -95,7 +78,7 @@ impl Input<'_> {
             let stored = if self.types.break_at_all() {
                 format!(
                     " store/local broken {} time id1 id2 x y z",
-                    self.frame_every()
+                    frame_every(self.scene, self.plan)
                 )
             } else {
                 String::new()
@@ -430,7 +413,7 @@ impl Input<'_> {
     }
 
     fn add_output(&self, text: &mut String) {
-        let every = self.frame_every();
+        let every = frame_every(self.scene, self.plan);
         let exact = "%.17g";
         for line in [
             format!(
@@ -448,7 +431,9 @@ impl Input<'_> {
                     "dump bonds all local {every} {BONDS} index c_bonds[1] c_bonds[2] c_bonds[3]"
                 ),
             );
-            Self::line(text, "dump_modify bonds time yes");
+            // By default LAMMPS writes six digits, and ids may have more.
+            let modified = format!("dump_modify bonds time yes format float {exact}");
+            Self::line(text, modified);
         }
         if self.types.break_at_all() {
             Self::line(

@@ -6,7 +6,7 @@ use dem_io::text::counted;
 
 use super::bonds::CLASS_WIDTH;
 use super::clumps::has_bodies;
-use super::duration::{step_s, steps};
+use super::duration::{frame_every, step_s, steps};
 use super::files::{BONDS, BROKEN, FRAMES};
 use super::input::Input;
 
@@ -81,7 +81,7 @@ pub(super) fn page(input: &Input<'_>) -> String {
         "{} of {:e} s, frames every {}: `{FRAMES}`, unbroken bonds `{BONDS}`, broken ones `{BROKEN}`",
         counted(steps(input.scene, input.plan) as usize, "step"),
         step_s(input.scene, input.plan),
-        counted(input.frame_every() as usize, "step"),
+        counted(frame_every(input.scene, input.plan) as usize, "step"),
     ));
     text += "\n## Different\n\n";
     for line in different(input) {
@@ -102,6 +102,12 @@ fn different(input: &Input<'_>) -> Vec<String> {
     }
     if input.plan.is_adaptive {
         lines.push("The time step stays that of the start.".to_owned());
+    }
+    if scene.run.steps_by_body {
+        lines.push("`run.steps_by_body`: all bodies take the same step.".to_owned());
+    }
+    if input.plan.state.damping_rate_1_s > 0.0 {
+        lines.push("Damping of bonds is of first order in the time step, in Crumble of second: it shortens the largest stable step.".to_owned());
     }
     if !scene.measures.is_empty() {
         lines.push(

@@ -33,8 +33,10 @@ pub(super) fn refuse(scene: &Scene, plan: &Plan) -> Result<()> {
         ));
     }
     if plan.state.particles.is_empty() {
-        let why = "a data file without particles";
-        return Err(refused(scene, "[bodies]", why, "add a body"));
+        let why =
+            "a run that begins without particles, as all bodies of this scene come from inlets";
+        let remedy = "place a body at the start, or run the scene with dem-run";
+        return Err(refused(scene, "[inlets]", why, remedy));
     }
     if plan.state.contacts.is_some() {
         refuse_overlaps(scene, plan)?;

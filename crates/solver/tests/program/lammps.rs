@@ -570,27 +570,27 @@ fn everything_else_is_refused_by_name() {
         (
             "tensile_strength = \"1 MPa\"",
             "von_mises_strength = \"1 MPa\"",
-            "bonds.grain.von_mises_strength: LAMMPS has no word for it",
+            "bonds.grain.failure.von_mises_strength: LAMMPS has no word for it",
         ),
         (
             "tensile_strength = \"1 MPa\"",
             "compressive_strength = \"1 MPa\"",
-            "bonds.grain.compressive_strength: LAMMPS has no word for it",
+            "bonds.grain.failure.compressive_strength: LAMMPS has no word for it",
         ),
         (
             "tensile_strength = \"1 MPa\"",
             "tensile_strength = \"1 MPa\", shear_strength = \"1 MPa\"",
-            "bonds.grain.shear_strength: LAMMPS has no word for it: bpm/rotational adds tension and shear",
+            "bonds.grain.failure.shear_strength: LAMMPS has no word for it: bpm/rotational adds tension and shear",
         ),
         (
             "tensile_strength = \"1 MPa\"",
             "tensile_strength = \"1 MPa\", rate_strengthening = \"1 1/s\"",
-            "bonds.grain.rate_strengthening: LAMMPS has no word for it",
+            "bonds.grain.failure.rate_strengthening: LAMMPS has no word for it",
         ),
         (
             "tensile_strength = \"1 MPa\"",
             "tensile_strength = 0",
-            "bonds.grain.tensile_strength: LAMMPS has no word for it: a limit",
+            "bonds.grain.failure.tensile_strength: LAMMPS has no word for it: a limit",
         ),
         (
             "model = \"timoshenko\"",
@@ -620,7 +620,7 @@ fn everything_else_is_refused_by_name() {
         (
             "tensile_strength = \"1 MPa\"",
             "tensile_strength = \"1 MPa\", fracture_energy = \"1 kJ/m2\"",
-            "bonds.grain.fracture_energy: LAMMPS has no word for it: bonds of bpm/rotational break",
+            "bonds.grain.failure.fracture_energy: LAMMPS has no word for it: bonds of bpm/rotational break",
         ),
         (
             "[0.0091, 0, 0.02",
@@ -845,7 +845,8 @@ fn write_dumps(bench: &Bench) {
         frames += "ITEM: ATOMS id mol radius x y z vx vy vz omegax omegay omegaz \n";
         for id in [1, 2] {
             let x = 0.0091 * f64::from(id - 1);
-            frames += &format!("{id} 1 0.004 {x} {} 0.02 1 2 3 4 5 6 \n", 0.1 * n as f64);
+            let radius = 0.003 + 0.001 * f64::from(id);
+            frames += &format!("{id} 1 {radius} {x} {} 0.02 1 2 3 4 5 6 \n", 0.1 * n as f64);
         }
         let whole = 1 - n;
         bonds += &format!("{head}ITEM: NUMBER OF ENTRIES\n{whole}\n{bounds}");
@@ -865,7 +866,8 @@ fn dumps_become_frames_with_a_page_fragments_and_pictures() {
     exported(&bench, "scene.toml");
     write_dumps(&bench);
     let done = go(&bench, &["import", "out", "-o", "back"]);
-    assert_eq!(String::from_utf8_lossy(&done.stdout), "2 frames -> back\n");
+    let said = "2 frames, the last at 0.0010000000000000002 s -> back\n";
+    assert_eq!(String::from_utf8_lossy(&done.stdout), said);
     let frame =
         |n: usize| read_particles(&bench.path(&format!("back/frames/frame_{n:06}.vtp"))).unwrap();
     let (first, last) = (frame(0), frame(1));
@@ -903,32 +905,116 @@ fn damaged_dumps_and_folders_without_are_refused() {
     let bad = |expected: &str| {
         let (said, code) = refused(&go(&bench, &["import", "out", "-o", "back"]));
         assert_eq!(code, 2, "{said}");
-        assert!(said.contains(expected), "{said}");
-        fs::remove_dir_all(bench.path("back")).unwrap_or_default();
+        assert!(said.contains(expected), "{expected}: {said}");
+        assert!(!bench.path("back").exists(), "{expected}");
     };
     bad("frames.dump: cannot be read");
+    fs::create_dir(bench.path("out/frames.dump")).unwrap();
+    bad("frames.dump: this is a folder, not a dump");
+    fs::remove_dir(bench.path("out/frames.dump")).unwrap();
     write_dumps(&bench);
-    let whole = fs::read_to_string(bench.path("out/frames.dump")).unwrap();
+    let read = |name: &str| fs::read_to_string(bench.path(name)).unwrap();
+    let (whole, bonds) = (read("out/frames.dump"), read("out/bonds.dump"));
+    let first = "\n1 1 0.004 0 0 0.02";
     for (old, new, expected) in [
         ("ITEM: UNITS", "UNITS", "is not the head of a section"),
-        ("0.0091", "here", "'here' is not a number"),
+        ("0.0091", "here", "line 15: 'here' is not a finite number"),
+        ("0.0091", "nan", "line 15: 'nan' is not a finite number"),
+        (
+            "0.0091",
+            "-1e400",
+            "line 15: '-1e400' is not a finite number",
+        ),
         (" 4 5 6 \n", " 4 5 \n", "11 numbers for 12 columns"),
         (" x y z", " xs y z", "there is no column 'x'"),
         (
-            "\n2 1 0.004",
-            "\n7 1 0.004",
+            "\n2 1 0.005",
+            "\n7 1 0.005",
             "atom 7 is not in particles.data",
         ),
+        (
+            "\n2 1 0.005",
+            "\n2.5 1 0.005",
+            "atom 2.5 is not in particles.data",
+        ),
+        ("\n2 1 0.005", "\n1 1 0.004", "atom 1 is there twice"),
+        (
+            "\n2 1 0.005",
+            "\n2 3 0.005",
+            "atom 2 is of molecule 3, not 1",
+        ),
+        (
+            "\n2 1 0.005",
+            "\n2 1 -0.005",
+            "atom 2 has a radius of -0.005 m, not 0.005 m",
+        ),
+        (
+            "ATOMS\n2\n",
+            "ATOMS\n-2\n",
+            "'-2' is not a whole number from 0",
+        ),
+        (
+            "ATOMS\n2\n",
+            "ATOMS\n3\n",
+            "a section begins after 2 rows of 3",
+        ),
+        ("ATOMS\n2\n", "ATOMS\n1\n", "atom 2 is missing"),
+        (first, "\n", "0 numbers for 12 columns"),
         ("ITEM: TIME\n0\n", "", "no time"),
+        ("STEP\n1000\n", "STEP\n0\n", "step 0: it comes after step 0"),
     ] {
+        assert!(whole.contains(old), "{old}");
         bench.write("out/frames.dump", whole.replacen(old, new, 1));
         bad(expected);
     }
-    // The dump of a run that goes on ends within a frame: the frames before are there.
-    let at = whole.rfind("2 1 0.004").unwrap();
-    bench.write("out/frames.dump", &whole[..at]);
-    let done = go(&bench, &["import", "out", "-o", "back"]);
-    assert_eq!(String::from_utf8_lossy(&done.stdout), "1 frame -> back\n");
+    let second = whole.find("ITEM: TIME\n0.001").unwrap();
+    bench.write(
+        "out/frames.dump",
+        format!("{}{}", &whole[second..], &whole[second..]),
+    );
+    bad("bonds.dump: step 0: frames.dump has step 1000 there");
+    bench.write("out/frames.dump", &whole);
+    for (text, expected) in [
+        ("", "bonds.dump: there is no complete frame in it"),
+        (
+            bonds.replace("1 2 1 1 ", "1 2 9 1 ").as_str(),
+            "particles.data has no bond of the atoms 2 and 9",
+        ),
+        (
+            bonds.replace("STEP\n1000\n", "STEP\n500\n").as_str(),
+            "step 500: frames.dump has step 1000",
+        ),
+        (
+            &bonds[bonds.find("ITEM: TIME\n0.001").unwrap()..],
+            "frames.dump has step 0 there",
+        ),
+    ] {
+        bench.write("out/bonds.dump", text);
+        bad(expected);
+    }
+    // A run that goes on, or was stopped: the frames before are there, and it is said.
+    let (row, bond) = (
+        whole.rfind("2 1 0.005").unwrap(),
+        bonds.rfind("ITEM: NUMBER").unwrap(),
+    );
+    for (frames, bonds) in [
+        (&whole[..row], &bonds[..]),
+        (&whole[..row + 4], &bonds[..]),
+        (&whole[..], &bonds[..bond + 8]),
+    ] {
+        bench.write("out/frames.dump", frames);
+        bench.write("out/bonds.dump", bonds);
+        let done = go(&bench, &["import", "out", "-o", "back", "--force"]);
+        let said = String::from_utf8_lossy(&done.stdout).into_owned();
+        assert_eq!(said, "1 frame, the last at 0 s -> back\n");
+        let warned = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(
+            warned.contains("the frames end at 0 s, the run of the scene at"),
+            "{warned}"
+        );
+        let page = read("back/report.html");
+        assert!(page.contains("LAMMPS has stopped before, or goes on") && !page.contains("null"));
+    }
     fs::remove_dir_all(bench.path("back")).unwrap();
     fs::remove_file(bench.path("out/export.json")).unwrap();
     bad("export.json: this file is missing");

@@ -260,6 +260,11 @@ fn tables_and_pages_of_a_sweep() {
     let again: Value = serde_json::from_str(&good(&bench, &["--collect", "--json"])).unwrap();
     assert_eq!(again["runs"], table["runs"]);
     assert_eq!(good(&bench, &["--collect", "--quiet"]), "");
+    // A repeat that left nothing readable is no reason to fail, but it is said.
+    bench.write("study-sweep/runs/0003-2/summary.json", "{");
+    good(&bench, &["--collect"]);
+    let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
+    assert!(html.contains("run 3: of its 2 repeats 1 left results; its time is theirs"));
 }
 
 #[test]
