@@ -58,7 +58,8 @@ fn slurm(here: &Path, folder: &Path, count: usize, threads: u32) -> String {
          #SBATCH --cpus-per-task={threads}\n\
          #SBATCH --output=/dev/null\n\
          cd {here} || exit 1\n\
-         sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" {commands} | sh\n"
+         task=\"${{SLURM_ARRAY_TASK_ID:?start this file with sbatch}}\"\n\
+         sed -n \"${{task}}p\" {commands} | sh\n"
     )
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use dem_io::standard_output::{write_standard_json, write_standard_output};
-use dem_io::text::visible;
+use dem_io::text::{counted, visible};
 use dem_io::{Diagnostic, Result};
 
 use super::export_frames::{FramesArguments, export_frames};
@@ -86,12 +86,12 @@ fn export_scene(arguments: &LammpsArguments, threads: usize) -> Result<()> {
     write_standard_output(|out| {
         writeln!(
             out,
-            "{} particles, {} bonds of {} types, {} clumps, {} steps -> {}",
-            written.particles,
-            written.bonds,
-            written.bond_types,
-            written.clumps,
-            written.steps,
+            "{}, {} of {}, {}, {} -> {}",
+            counted(written.particles, "particle"),
+            counted(written.bonds, "bond"),
+            counted(written.bond_types, "type"),
+            counted(written.clumps, "clump"),
+            counted(written.steps as usize, "step"),
             visible(&arguments.output.display().to_string())
         )
     })

@@ -361,6 +361,12 @@ fn the_list_is_written_for_clusters() {
     assert_eq!(text("commands.txt"), commands);
     let array = text("array.slurm");
     assert!(array.contains("#SBATCH --array=1-16\n"), "{array}");
+    let without_slurm = Command::new("sh")
+        .arg(bench.path("apart/array.slurm"))
+        .env_remove("SLURM_ARRAY_TASK_ID")
+        .output();
+    assert!(!without_slurm.unwrap().status.success());
+    assert!(!bench.path("apart/runs/0001-1").exists());
     // As Slurm does: each task by itself, from wherever.
     for task in 1..=16 {
         let status = Command::new("sh")
