@@ -158,7 +158,7 @@ fn follows(before: Option<u64>, step: u64) -> Result<()> {
         Some(before) if step <= before => Err(Diagnostic::input(
             format!("step {step}"),
             format!("it comes after step {before}"),
-            "remove the dumps, and run LAMMPS again: it adds to dumps that are there",
+            "run LAMMPS again, or copy the dump again: that of one run only",
         )),
         _ => Ok(()),
     }
