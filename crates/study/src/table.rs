@@ -50,12 +50,7 @@ impl SweepTable {
                     "run {number} gave other values when it was done again"
                 ));
             }
-            if (1..outcomes.len()).contains(&done.len()) {
-                let (number, with, all) = (run.number, done.len(), outcomes.len());
-                notes.push(format!(
-                    "run {number}: of its {all} repeats {with} left results; its time is theirs"
-                ));
-            }
+            notes.extend(lacking(run, done.len(), outcomes.len()));
             machines.extend(done.iter().map(|done| done.machine.clone()));
             rows.push(row(study, run, outcomes, &done));
             of_runs.push(done.first().copied());
@@ -173,6 +168,14 @@ fn column(axis: &Axis) -> AxisColumn {
         unit: unit.unwrap_or_default(),
         named: axis.named,
     }
+}
+
+/// What is to be said of a run of which some repeats left no results.
+fn lacking(run: &Run, with: usize, all: usize) -> Option<String> {
+    let number = run.number;
+    let lacking =
+        format!("run {number}: of its {all} repeats {with} left results; its time is theirs");
+    (1..all).contains(&with).then_some(lacking)
 }
 
 fn row(study: &Study, run: &Run, outcomes: &[Outcome], done: &[&Done]) -> Row {
