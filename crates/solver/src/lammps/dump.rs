@@ -33,14 +33,16 @@ impl Section {
         for (slot, name) in found.iter_mut().zip(names) {
             let at = self.columns.iter().position(|column| column == name);
             *slot = at.ok_or_else(|| {
-                Diagnostic::input(
-                    format!("step {}", self.step),
-                    format!("there is no column '{name}'"),
-                    "keep the dump commands of the exported script",
-                )
+                let problem = format!("there is no column '{name}'");
+                self.refused(problem, "keep the dump commands of the exported script")
             })?;
         }
         Ok(found)
+    }
+
+    /// What is wrong with it, and the remedy (exit code 2).
+    pub(crate) fn refused(&self, problem: impl Into<String>, remedy: &str) -> Diagnostic {
+        Diagnostic::input(format!("step {}", self.step), problem.into(), remedy)
     }
 }
 

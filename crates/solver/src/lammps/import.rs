@@ -113,7 +113,7 @@ fn each_moment(folder: &Path, visit: &mut dyn FnMut(&Moment<'_>) -> Result<()>) 
     let (mut before, mut ends_early) = (None, &frames_path);
     while let Some(section) = frames.section().map_err(within(&frames_path))? {
         let mut check = || {
-            follows(before, section.step)?;
+            follows(before, &section)?;
             exported.take_fed(&mut manifest, &section)?;
             let numbers = exported.numbers_of(&section)?;
             Ok((numbers, section.find(MOTION)?, time_s(&section)?))
@@ -153,10 +153,9 @@ fn each_moment(folder: &Path, visit: &mut dyn FnMut(&Moment<'_>) -> Result<()>) 
 }
 
 /// Refuses a step that does not come after the one before.
-fn follows(before: Option<u64>, step: u64) -> Result<()> {
+fn follows(before: Option<u64>, section: &Section) -> Result<()> {
     match before {
-        Some(before) if step <= before => Err(Diagnostic::input(
-            format!("step {step}"),
+        Some(before) if section.step <= before => Err(section.refused(
             format!("it comes after step {before}"),
             "run LAMMPS again, or copy the dump again: that of one run only",
         )),
@@ -165,13 +164,10 @@ fn follows(before: Option<u64>, step: u64) -> Result<()> {
 }
 
 fn time_s(section: &Section) -> Result<f64> {
-    section.time_s.ok_or_else(|| {
-        Diagnostic::input(
-            format!("step {}", section.step),
-            "no time",
-            "keep dump_modify ... time yes of the exported script",
-        )
-    })
+    let remedy = "keep dump_modify ... time yes of the exported script";
+    section
+        .time_s
+        .ok_or_else(|| section.refused("no time", remedy))
 }
 
 /// Summary and page.
@@ -295,14 +291,8 @@ impl Exported {
     /// For each row of a section the number of its particle: each is there once, with the molecule
     /// and the radius that it had at the start.
     fn numbers_of(&self, section: &Section) -> Result<Vec<u32>> {
-        let refuse = |problem: String| {
-            let remedy = "import the dump into the folder of its own export, or run LAMMPS again";
-            Err(Diagnostic::input(
-                format!("step {}", section.step),
-                problem,
-                remedy,
-            ))
-        };
+        let remedy = "import the dump into the folder of its own export, or run LAMMPS again";
+        let refuse = |problem: String| Err(section.refused(problem, remedy));
         let [id, molecule, radius] = section.find(["id", "mol", "radius"])?;
         let mut is_there = vec![false; self.ids.len()];
         let mut numbers = Vec::with_capacity(section.rows.len());
@@ -355,14 +345,8 @@ impl Exported {
                 continue;
             };
             let number = row[molecule] as usize;
-            let refuse = |problem: String| {
-                let remedy = "keep the fix deposit of the exported script";
-                Err(Diagnostic::input(
-                    format!("step {}", section.step),
-                    problem,
-                    remedy,
-                ))
-            };
+            let remedy = "keep the fix deposit of the exported script";
+            let refuse = |problem: String| Err(section.refused(problem, remedy));
             if !(1..=most).contains(&number) {
                 let problem = format!("atom {} is of molecule {}", row[id], row[molecule]);
                 return refuse(problem);
@@ -432,14 +416,8 @@ fn unbroken_at(
     let Some(section) = bonds.section()? else {
         return Ok(None);
     };
-    let refuse = |problem: String| {
-        let place = format!("step {}", section.step);
-        Err(Diagnostic::input(
-            place,
-            problem,
-            "run LAMMPS again, or copy both dumps again",
-        ))
-    };
+    let remedy = "run LAMMPS again, or copy both dumps again";
+    let refuse = |problem: String| Err(section.refused(problem, remedy));
     if section.step != step {
         return refuse(format!("{FRAMES} has step {step} there"));
     }
