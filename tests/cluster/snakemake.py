@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
-STUDY = os.path.join(ROOT, "data/studies/cluster-interval.toml")
+STUDY = os.path.join(ROOT, "data/studies/spinning-bar.toml")
 
 
 def call(*words, folder=ROOT):

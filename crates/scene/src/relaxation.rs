@@ -32,8 +32,8 @@ pub(super) static RELAXATION: Schema = Schema {
             "Smallest overlap that is relaxed, as a fraction of the effective radius; smaller ones act at once.",
         )
         .within(Included(0.0), Excluded(1.0))
-        .remedy("it is a fraction of the reduced radius: a usual value is 1e-5")
-        .or(1e-5),
+        .remedy("it is a fraction of the reduced radius: 0 keeps all")
+        .or(0.0),
     ],
 };
 

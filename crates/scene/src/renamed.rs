@@ -5,7 +5,7 @@
 mod tests;
 
 /// Title of the table in the schema, old key, new key.
-const RENAMED: [(&str, &str, &str); 36] = [
+const RENAMED: [(&str, &str, &str); 35] = [
     ("", "sets", "groups"),
     ("[run]", "particle_damping", "local_damping"),
     ("[run]", "rest", "rest_energy_ratio"),
@@ -46,7 +46,6 @@ const RENAMED: [(&str, &str, &str); 36] = [
         "tolerance_absolute",
         "absolute_tolerance",
     ),
-    ("[clusters]", "min_broken", "min_broken_bonds"),
     ("[test]", "kind", "type"),
     ("[test]", "moves", "crosshead"),
     ("[test]", "span", "support_span"),
@@ -55,6 +54,22 @@ const RENAMED: [(&str, &str, &str); 36] = [
     ("[measures.NAME]", "masses", "fragment_masses"),
     ("[measures.NAME]", "ledger", "balance"),
 ];
+
+/// Title of the table in the schema, key that is gone, why it can be left out.
+const REMOVED: [(&str, &str, &str); 3] = [
+    ("[clusters]", "interval", AT_ONCE),
+    ("[clusters]", "min_broken_bonds", AT_ONCE),
+    ("[clusters]", "force_every", AT_ONCE),
+];
+
+const AT_ONCE: &str =
+    "leave it out: a body is searched for fragments in each step in which a bond of it breaks";
+
+/// Why the key `old` of the table `title` can be left out, if there was such a key.
+pub(super) fn why_removed(title: &str, old: &str) -> Option<&'static str> {
+    let row = REMOVED.iter().find(|row| row.0 == title && row.1 == old)?;
+    Some(row.2)
+}
 
 /// The new name of the key `old` of the table `title` and its form, if it was renamed.
 pub(super) fn new_name(title: &str, old: &str) -> Option<(&'static str, String)> {

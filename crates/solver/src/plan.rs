@@ -39,8 +39,8 @@ use crate::stages::population::apply_topology_change;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::Template;
+use crate::state::clusters::Clusters;
 use crate::state::clusters::sizes::{Sphere, box_lengths_m};
-use crate::state::clusters::{Clusters, Triggers};
 use crate::state::events::TopologyChange;
 use crate::state::loads::GroupLoad;
 use crate::state::model::NamedBody;
@@ -348,11 +348,6 @@ fn place_meetings(
         };
         apply_topology_change(state, changes);
     }
-    state.model.search = Triggers {
-        interval: scene.clusters.interval,
-        min_broken: scene.clusters.min_broken_bonds,
-        force_every: scene.clusters.force_every,
-    };
     if are_needed(scene) {
         let kinds = Kinds::new(scene)?;
         if !scene.contacts.is_empty() {

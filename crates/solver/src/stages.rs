@@ -33,6 +33,7 @@ pub mod population;
 pub(crate) mod replacement;
 pub mod restoring;
 pub(crate) mod rigid_parts;
+pub(crate) mod self_contact;
 mod single_bonds;
 pub(crate) mod sleep;
 pub(crate) mod squeeze;

@@ -29,6 +29,7 @@ pub mod rigid_parts;
 pub(crate) mod rules;
 pub(crate) mod scratch;
 pub(crate) mod search_buffers;
+pub mod self_contacts;
 pub mod sleep;
 pub(crate) mod squeeze;
 pub(crate) mod stored_bonds;

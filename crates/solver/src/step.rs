@@ -42,6 +42,7 @@ use crate::stages::restoring::restore_clumps;
 use crate::stages::rigid_parts::{
     RIGID_PARTS, drift_rigid_parts, gather_rigid_parts, kick_rigid_parts,
 };
+use crate::stages::self_contact::{SELF_CONTACT, find_self_contacts};
 use crate::stages::sleep::{SLEEP, update_sleep};
 use crate::stages::stage::Stage;
 use crate::stages::structural::{STRUCTURAL_DAMPING, compute_structural_damping};
@@ -59,6 +60,7 @@ type Part = (&'static Stage, fn(&mut State) -> usize);
 /// First half of a step: the forces on the particles at their present positions, and the velocities
 /// that follow from them.
 const INTERACT: &[Part] = &[
+    (&SELF_CONTACT, find_self_contacts),
     (&SEARCH, renew_lists),
     (&LEVELS, set_levels),
     (&MOTION, clear_wrenches),
@@ -121,7 +123,10 @@ const DRIFT: &[Part] = &[
 
 /// Stages of the first half that are done once for all groups of bodies with steps of their own,
 /// before the groups and after them.
-const OF_ALL: [&[&Stage]; 2] = [&[&SEARCH, &LEVELS], &[&CLUSTERS, &OUTPUT, &CHECKS]];
+const OF_ALL: [&[&Stage]; 2] = [
+    &[&SELF_CONTACT, &SEARCH, &LEVELS],
+    &[&CLUSTERS, &OUTPUT, &CHECKS],
+];
 /// Stages of the second half that are done for each group.
 const OF_BODIES: [&Stage; 2] = [&MOTION, &CLUMPS];
 
@@ -166,7 +171,9 @@ pub fn exchange(state: &mut State) {
     run(EXCHANGE, &TABLE.exchange, state, |_| true);
     if is_renumbered(state) {
         // Bodies with steps of their own move on for a whole cycle without another search.
-        run(INTERACT, &TABLE.interact, state, |stage| *stage == SEARCH);
+        run(INTERACT, &TABLE.interact, state, |stage| {
+            [&SELF_CONTACT, &SEARCH].contains(&stage)
+        });
     }
 }
 

@@ -2,7 +2,6 @@
 
 mod breaking;
 mod fragments;
-mod triggers;
 
 use std::sync::Arc;
 

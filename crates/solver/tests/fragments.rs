@@ -18,7 +18,7 @@ use dem_run::output::summary::Summary;
 use dem_run::plan::{Plan, plan};
 use dem_run::run::snapshot::Snapshot;
 use dem_run::run::{RunSettings, run};
-use dem_run::state::clusters::{Clusters, Triggers};
+use dem_run::state::clusters::Clusters;
 use dem_scene::Scene;
 use dem_scene::scene_from_text;
 use tempfile::TempDir;
@@ -72,12 +72,11 @@ pub(crate) fn bursting() -> Scene {
     scene_from_text(&text, "bursting.toml", &[]).unwrap()
 }
 
-/// A plan whose bodies are searched for fragments in every step in which a bond breaks.
+/// A plan whose clusters are known.
 pub(crate) fn planned(scene: &Scene) -> Plan {
     let mut plan = plan(scene, read_bodies(scene).unwrap(), 1, false).unwrap();
     let state = &mut plan.state;
     state.clusters = Some(Clusters::new(state.particles.len(), &state.bonds));
-    state.model.search = Triggers::every_step();
     plan
 }
 

@@ -6,3 +6,4 @@ mod flight;
 mod rest;
 mod surfaces;
 mod walls;
+mod within;

@@ -258,7 +258,6 @@ fn bonded(speed_m_s: f64, step_s: f64) -> State {
         run = {{ end_time = "1 h", time_step = {step_s:e} }}
         materials.ball = {{ density = {DENSITY_KG_M3:e}, young_modulus = {YOUNG_PA:e}, poisson_ratio = {POISSON:e} }}
         contacts.ball-ball = {{ restitution = 1 }}
-        clusters = {{ interval = 1 }}
         relaxation = {{ min_overlap = 0 }}
         bonds.glue = {{ young_modulus = {BOND_YOUNG_PA:e}, poisson_ratio = 0.3, radius_factor = 0.5, failure = {{ compressive_strength = {BOND_STRENGTH_PA:e} }} }}
         bodies.pair = {{ particles = [[0, 0, {BOND_LENGTH_M:e}, {RADIUS_M:e}], [0, 0, 0, {RADIUS_M:e}]], bond_list = [[0, 1]], material = "ball", bonds = "glue" }}

@@ -47,3 +47,17 @@ fn every_old_key_is_refused_with_the_new_one() {
         assert!(error[expected.len()..].contains(new), "{error}");
     }
 }
+
+#[test]
+fn keys_that_are_gone_are_refused_with_the_reason() {
+    for (title, old, why) in REMOVED {
+        let is_of = |schema: &&Schema| schema.title == title;
+        let schema = SCHEMAS.into_iter().find(is_of).unwrap();
+        assert!(schema.key(old).is_none(), "{old} is a key again");
+        let document = Document::parse("scene.toml", &format!("{old} = 1\n")).unwrap();
+        let table = Table::root(&document, schema).unwrap();
+        let error = table.refuse_unknown().unwrap_err().to_string();
+        let expected = format!("scene.toml:1: {old} is no longer a key; {why}");
+        assert_eq!(error, expected);
+    }
+}

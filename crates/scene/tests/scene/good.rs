@@ -270,9 +270,7 @@ fn motions_of_walls() {
 fn how_contacts_are_found() {
     let scene = good("every-key.toml");
     let clusters = Clusters {
-        interval: 20,
-        min_broken_bonds: 3,
-        force_every: 100,
+        self_contact: false,
     };
     let relaxation = Relaxation {
         enabled: false,
@@ -283,14 +281,10 @@ fn how_contacts_are_found() {
     assert_eq!(scene.search, Search { skin: Some(0.5) });
     for name in ["touching.toml", "shortest.toml"] {
         let scene = good(name);
-        let clusters = Clusters {
-            interval: 50,
-            min_broken_bonds: 1,
-            force_every: 0,
-        };
+        let clusters = Clusters { self_contact: true };
         let relaxation = Relaxation {
             enabled: true,
-            min_overlap: 1e-5,
+            min_overlap: 0.0,
         };
         assert_eq!(scene.clusters, clusters);
         assert_eq!(scene.relaxation, relaxation);
@@ -643,9 +637,7 @@ fn values_in_words() {
         "walls.punch.servo.direction [0, 0, -1]",
         "walls.punch.servo.max_velocity 0.01 m/s",
         "measures.pieces.reference 0.02 kg",
-        "clusters.interval 20 steps",
-        "clusters.min_broken_bonds 3",
-        "clusters.force_every 100 intervals",
+        "clusters.self_contact false",
         "relaxation.enabled false",
         "relaxation.min_overlap 0",
         "search.skin 0.5",
@@ -703,11 +695,9 @@ fn words_on_contacts() {
     assert_eq!(
         said(&good("touching.toml")),
         [
-            "clusters.interval 50 steps",
-            "clusters.min_broken_bonds 1",
-            "clusters.force_every never",
+            "clusters.self_contact true",
             "relaxation.enabled true",
-            "relaxation.min_overlap 1e-5",
+            "relaxation.min_overlap 0",
             "search.skin chosen by the program",
         ]
     );

@@ -61,9 +61,20 @@ pub(crate) fn run_scene(
     options: &[String],
     folder: &Path,
 ) -> Result<Value, Failed> {
+    let scene = PathBuf::from(format!("data/scenes/{scene}.toml"));
+    let few_pictures = ["--set", "output.pictures=\"10 s\""].map(str::to_owned);
+    run_file(dem_run, &scene, &[&few_pictures, options].concat(), folder)
+}
+
+/// Runs a scene with these options. Returns its summary.
+pub(crate) fn run_file(
+    dem_run: &Path,
+    scene: &Path,
+    options: &[String],
+    folder: &Path,
+) -> Result<Value, Failed> {
     let mut command = Command::new(dem_run);
-    command.arg(format!("data/scenes/{scene}.toml"));
-    command.args(["--quiet", "--force", "--set", "output.pictures=\"10 s\""]);
+    command.arg(scene).args(["--quiet", "--force"]);
     command.args(options).arg("--output").arg(folder);
     output(&mut command)?;
     summary_in(folder)

@@ -15,7 +15,7 @@ use super::surfaces::{Face, depth_m, faces};
 use super::words::{self, ALONG, block, numbers, refused};
 use crate::geometry::{Bounds, Shape, SolidBox};
 use crate::plan::Plan;
-use crate::plan::contacts::NO_KIND;
+use crate::state::contacts::NO_KIND;
 use crate::state::walls::Wall;
 
 /// A wall in the words of LAMMPS.

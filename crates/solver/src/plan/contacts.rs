@@ -20,7 +20,7 @@ use crate::state::State;
 use crate::state::bodies::{PlacedBody, called};
 use crate::state::bridges::Bridges;
 use crate::state::clusters::Clusters;
-use crate::state::contacts::{ContactHistory, ContactModel, Contacts};
+use crate::state::contacts::{ContactHistory, ContactModel, Contacts, NO_KIND};
 
 /// Verlet skin as a fraction of the largest radius, unless the scene sets it or objects are fast;
 /// and the largest such fraction.
@@ -35,8 +35,6 @@ const STEPS_PER_LIST: f64 = 30.0;
 pub(super) const ROUNDING: f64 = 1e-6;
 /// Number of materials that fit into a byte, besides one value for none.
 const MOST_MATERIALS: usize = 255;
-/// Marks a pair of materials, or a material at a wall, without a contact law.
-pub(crate) const NO_KIND: u8 = u8::MAX;
 
 /// Types of contacts, and the type of each pair of materials.
 pub(super) struct Kinds<'a> {
@@ -190,10 +188,12 @@ pub(super) fn place_contacts(
     for clump in &state.clumps.all {
         materials[state.clumps.spheres_of(clump)].fill(state.clumps.template(clump).material);
     }
+    let folds = scene.clusters.self_contact && can_fold(kinds, &materials, state, clusters);
     let model = ContactModel {
         kinds: kinds.kinds.clone(),
         kind_of: kinds.of_pair.clone(),
-        alone: is_alone(state, clusters),
+        alone: is_alone(state, clusters) && !folds,
+        self_contact: folds,
         relaxes: scene.relaxation.enabled,
         least_overlap: scene.relaxation.min_overlap,
         allowances: scene.search.skin.is_none().then_some(ALLOWANCES),
@@ -242,6 +242,18 @@ fn keep_overlaps(contacts: &mut Contacts, state: &State) {
         *history = ContactHistory::pressed_by(overlap_m(poses, pair));
     }
     contacts.divide(state.particles.len(), contacts.scratch.wanted_partitions);
+}
+
+/// Whether a body is bonded, or may be later, whose material has a contact with itself.
+fn can_fold(kinds: &Kinds<'_>, materials: &[u8], state: &State, clusters: &Clusters) -> bool {
+    let touches = |material: u8| kinds.row(usize::from(material))[usize::from(material)] != NO_KIND;
+    let is_bonded = |id: u32| {
+        let first = clusters.members(id)[0] as usize;
+        clusters.members(id).len() > 2 && first < state.particles.free && touches(materials[first])
+    };
+    let mut templates = state.clumps.templates.iter();
+    templates.any(|template| !template.bonds.is_empty() && touches(template.material))
+        || clusters.living().any(is_bonded)
 }
 
 /// Whether there is one piece that cannot break, and no other can be added.

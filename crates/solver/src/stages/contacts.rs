@@ -5,7 +5,7 @@ mod close;
 mod input;
 mod stored;
 
-pub(super) use self::beside::list_beside;
+pub(super) use self::beside::list_within;
 pub(crate) use self::stored::pairs_adhesion_j;
 pub use self::stored::{
     contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n, touch_point_m,
@@ -220,7 +220,11 @@ pub fn list_contacts(
 ) {
     find_mean_radius(contacts, particles, 0);
     let pairs = near_pairs(&particles.poses, clusters, skin_m);
-    relist(contacts, pairs, particles);
+    let poses = &particles.poses;
+    let relaxes = contacts.model.relaxes;
+    contacts.relist(pairs, particles.len(), |pair| {
+        if relaxes { overlap_m(poses, pair) } else { 0.0 }
+    });
     contacts.skin_left_m = 0.5 * skin_m;
 }
 
@@ -237,11 +241,18 @@ pub(super) fn find_mean_radius(contacts: &mut Contacts, particles: &Particles, k
 }
 
 /// Replaces the list of pairs, and divides the work anew.
-pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, particles: &Particles) {
-    let poses = &particles.poses;
+pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, state: &State) {
+    let poses = &state.particles.poses;
     let relaxes = contacts.model.relaxes;
-    contacts.relist(pairs, particles.len(), |pair| {
-        if relaxes { overlap_m(poses, pair) } else { 0.0 }
+    let clusters = state.clusters.as_ref();
+    let has_origin = |pair| relaxes || clusters.is_some_and(|clusters| clusters.is_within(pair));
+    contacts.relist(pairs, poses.len(), |pair| {
+        let overlap_m = overlap_m(poses, pair);
+        if overlap_m > 0.0 && has_origin(pair) {
+            overlap_m
+        } else {
+            0.0
+        }
     });
 }
 

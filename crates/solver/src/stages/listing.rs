@@ -14,7 +14,7 @@ use self::moved::{find_due, find_left, may_be_due, refer_clumps, refer_particles
 use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
-use super::contacts::{find_mean_radius, list_beside, relist};
+use super::contacts::{find_mean_radius, list_within, relist};
 use super::levels::foresee_walls;
 use super::neighbours::{MOST_TASKS, find_pairs};
 use super::sleep::begins_to_move;
@@ -60,6 +60,8 @@ pub(crate) fn use_up_skin(state: &mut State) -> usize {
     if let Some(contacts) = &mut state.contacts {
         let moved_m = state.fastest_m_s * state.time_step_s;
         contacts.moved_m = moved_m;
+        let own = &mut contacts.scratch.self_contacts;
+        own.use_up(&state.scratch.chunks_moved_m);
         contacts.scratch.close_skin_left_m -= moved_m;
         if state.sleep.is_some() {
             contacts.skin_left_m -= moved_m;
@@ -90,7 +92,7 @@ pub(crate) fn renew_lists(state: &mut State) -> usize {
         contacts.search_all();
     }
     if state.sleep.is_some() {
-        if contacts.skin_left_m < 0.0 {
+        if contacts.skin_left_m < 0.0 || contacts.scratch.self_contacts.is_changed {
             let searched = list_among_sleepers(state);
             if let Some(mut contacts) = state.contacts.take() {
                 let near = &mut contacts.scratch.buffers.near;
@@ -128,6 +130,11 @@ fn search_for_moved(state: &mut State) -> usize {
         }
         contacts.scratch.buffers = buffers;
         contacts.scratch.references.due.clear();
+    }
+    if contacts.scratch.self_contacts.is_changed {
+        let mut pairs = std::mem::take(&mut contacts.scratch.former_pairs);
+        pairs.clone_from(&contacts.pairs);
+        put_in_list(state, &mut contacts, pairs);
     }
     state.contacts = Some(contacts);
     searched
@@ -209,14 +216,19 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
             None => std::mem::swap(&mut pairs, found),
         }
     }
-    list_beside(state, contacts, &mut pairs);
     list_near_spheres(state, &pairs, &mut buffers.near);
-    relist(contacts, pairs, &state.particles);
+    put_in_list(state, contacts, pairs);
+    seeks.iter().filter(|&&seeks| seeks).count()
+}
+
+/// Lists these pairs of different pieces, and those within pieces.
+fn put_in_list(state: &mut State, contacts: &mut Contacts, mut pairs: Vec<[u32; 2]>) {
+    list_within(state, contacts, &mut pairs);
+    relist(contacts, pairs, state);
     note_relisting(state);
     if contacts.model.relaxes {
         state.scratch.events.work.relaxing += contacts.relaxing();
     }
-    seeks.iter().filter(|&&seeks| seeks).count()
 }
 
 /// The cluster of each particle, and how many clusters there have been: see [`Searched`].

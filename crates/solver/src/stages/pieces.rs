@@ -5,7 +5,6 @@ use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::state::State;
 use crate::state::clusters::Clusters;
-use crate::state::clusters::triggers::Triggers;
 use crate::state::contacts::Contacts;
 
 /// The search for fragments.
@@ -16,10 +15,7 @@ pub(crate) const CLUSTERS: Stage = Stage {
         let breaks = state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
         Need::of(
             state.clusters.is_some() && breaks && any_bond(state, |_| true),
-            || {
-                let interval = interval(state);
-                format!("every {interval} steps, if bonds have broken")
-            },
+            || "in each step in which a bond has broken".to_owned(),
             "no bond can break",
         )
     },
@@ -27,39 +23,32 @@ pub(crate) const CLUSTERS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Number of time steps from one search to the next.
-fn interval(state: &State) -> u64 {
-    state.model.search.interval.next_multiple_of(state.cycle())
-}
-
-/// Searches for fragments if it is due. Particles that are no longer in the same cluster may touch
-/// from the next step on. Returns the number of clusters searched.
+/// Searches for fragments if bonds have broken. Particles that no bond joins any more may touch from
+/// the next step on. Returns the number of clusters searched.
 pub(crate) fn find_pieces(state: &mut State) -> usize {
     if state.clusters.is_none() {
         return 0;
     }
     let broken = state.scratch.events.broken.iter().map(|broken| broken.bond);
     state.unsearched.extend(broken);
-    let unsearched = state.unsearched.len() as u64;
-    let search = Triggers {
-        interval: interval(state),
-        ..state.model.search
-    };
-    if !search.due(state.steps, unsearched) {
+    if state.unsearched.is_empty() {
         return 0;
     }
     find_pieces_now(state)
 }
 
-/// The same, whether due or not.
+/// Searches for the fragments of the pieces in which bonds have broken since the last search.
 pub(crate) fn find_pieces_now(state: &mut State) -> usize {
     let Some(clusters) = &mut state.clusters else {
         return 0;
     };
     let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
     state.scratch.events.splits = clusters.update(state.time_s, &damaged, &state.bonds);
-    state.unsearched.clear();
+    let ends = |bond: &u32| state.bonds.ends[*bond as usize];
+    let parted = state.unsearched.drain(..).map(|bond| ends(&bond));
     if let Some(contacts) = &mut state.contacts {
+        let own = &mut contacts.scratch.self_contacts;
+        own.parted.extend(parted);
         for split in &state.scratch.events.splits {
             search_for_fragments(contacts, clusters, &split.children);
         }

@@ -8,7 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::references::References;
 use super::search_buffers::SearchBuffers;
+use super::self_contacts::SelfContacts;
 use crate::physics::contact::law::ContactKind;
+
+/// In [`ContactModel::kind_of`]: the scene does not define the pair of materials.
+pub(crate) const NO_KIND: u8 = u8::MAX;
 
 /// Number of pairs that one task relists.
 const RELISTED_AT_ONCE: usize = 1024;
@@ -80,13 +84,17 @@ impl ContactHistory {
 pub struct ContactModel {
     /// Types of contacts.
     pub kinds: Vec<ContactKind>,
-    /// For each pair of materials the number of the contact type: row by row, length materials
-    /// squared.
+    /// For each pair of materials the number of the contact type, or [`NO_KIND`]: row by row, length
+    /// materials squared.
     pub kind_of: Vec<u8>,
     /// Particles can never touch each other, only walls: there is one piece, and it cannot break.
     /// No search for pairs.
     pub alone: bool,
-    /// Whether the overlap of a pair at its first listing is the origin of its law.
+    /// Whether spheres of one piece that no bond joins can touch, if their material has a contact
+    /// with itself.
+    pub self_contact: bool,
+    /// Whether the overlap of a pair at its first listing is the origin of its law. That of a pair
+    /// of one piece always is.
     pub relaxes: bool,
     /// A pair that separated while overlapping becomes ordinary below this fraction of its
     /// effective radius.
@@ -161,6 +169,8 @@ pub struct ContactScratch {
     pub excessive_overlap: Option<[u32; 2]>,
     /// Pairs with a contact beside their bond.
     pub(crate) beside: Vec<Beside>,
+    /// Unbonded pairs of one piece.
+    pub(crate) self_contacts: SelfContacts,
 }
 
 /// A pair with a contact beside its bond.
@@ -209,6 +219,13 @@ impl Contacts {
         let count = self.model.kind_of.len().isqrt();
         let [a, b] = [a, b].map(|i| usize::from(self.materials[i as usize]));
         usize::from(self.model.kind_of[a * count + b])
+    }
+
+    /// Whether the material of this particle has a contact with itself.
+    pub(crate) fn touches_itself(&self, i: u32) -> bool {
+        let count = self.model.kind_of.len().isqrt();
+        let material = usize::from(self.materials[i as usize]);
+        self.model.kind_of[material * count + material] != NO_KIND
     }
 
     /// Replaces the list of pairs of this number of particles, and divides them into as many

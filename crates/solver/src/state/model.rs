@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::bonds::BondRule;
 use super::clumps::Template;
-use super::clusters::Triggers;
 use super::contacts::ContactModel;
 use super::levels::LevelRule;
 use super::rules::Rules;
@@ -49,8 +48,6 @@ pub struct Model {
     pub ball_m: f64,
     /// Rules for adding, removing and replacing bodies.
     pub rules: Rules,
-    /// Triggers of the search for fragments.
-    pub search: Triggers,
     /// Rule by which bodies fall asleep. None: they never do.
     pub sleep: Option<SleepRule>,
     /// What the steps of bodies follow from. None: all bodies take the same steps. It changes with

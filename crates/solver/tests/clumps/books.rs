@@ -204,7 +204,6 @@ fn broken_bonds_of_bodies_that_have_gone_stay_counted() {
         mut bodies,
         ..
     } = planned(&text);
-    state.model.search = dem_run::state::clusters::Triggers::every_step();
     let mut broken = 0;
     while state.time_s < 0.25 {
         super::go(&mut state, &mut bodies);

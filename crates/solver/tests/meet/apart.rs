@@ -97,10 +97,7 @@ fn a_body_at_rest_whose_bonds_vanish_stays_at_rest() {
 /// Largest spurious energy, over the largest energy, while a vibrating cube falls apart: at once,
 /// or bond by bond.
 fn worst_gain(overlap: f64, at_once: bool, safety: f64) -> f64 {
-    let text = cube(
-        overlap,
-        &format!("clusters.interval = 1\nrun.safety_factor = {safety}"),
-    );
+    let text = cube(overlap, &format!("run.safety_factor = {safety}"));
     let Plan { mut state, .. } = planned(&text);
     let mut any = scattered();
     for motion in &mut state.particles.motions {
@@ -161,7 +158,7 @@ fn flight(failure: Option<&str>, velocity_m_s: [f64; 3], time_step_s: f64) -> Ve
     let list = if bonded { ", bond_list = [[0, 1]]" } else { "" };
     let failure = failure.unwrap_or("tensile_strength = 1");
     let text = format!(
-        "version = 1\nrun.end_time = 1\nrun.time_step = {time_step_s}\nrun.initial_overlap = \"relax\"\nclusters.interval = 1\n\
+        "version = 1\nrun.end_time = 1\nrun.time_step = {time_step_s}\nrun.initial_overlap = \"relax\"\n\
          materials.cake = {{ density = 2000, young_modulus = \"10 MPa\" }}\n\
          contacts.cake-cake = {{ restitution = 0.5, friction = 0.5 }}\n\
          bonds.cake = {{ young_modulus = \"10 MPa\", poisson_ratio = 0.3, failure = {{ {failure} }} }}\n\
@@ -259,7 +256,7 @@ fn breadth_first(state: &State) -> Vec<u32> {
 
 #[test]
 fn clusters_of_a_body_that_breaks_on_a_floor_are_those_of_a_breadth_first_search() {
-    let extra = "clusters.interval = 1\nrun.gravity = [0, 0, -9.81]\n\
+    let extra = "run.gravity = [0, 0, -9.81]\n\
          walls.floor = { plane = { point = [0, 0, -4e-3], normal = [0.2, 0.1, 1] }, material = \"cake\" }";
     let text = cube(0.25, extra)
         .replace(

@@ -68,8 +68,6 @@ used = { of = "row", quantity = "largest_dynamic_utilisation" }
 used_static = { of = "static", quantity = "largest_dynamic_utilisation" }
 calm = { of = "row", quantity = "fraction_below_dynamic_utilisation", limit = 0.01 }
 all_calm = { of = "row", quantity = "fraction_below_dynamic_utilisation", limit = 0.5 }
-[clusters]
-interval = 1
 [output]
 series = "1 us"
 "#;

@@ -121,13 +121,13 @@ fn bodies_are_told_apart_by_their_hashes() {
     assert_ne!(hash(&["--body", "longer.vtp"]), first);
 }
 
-/// A bar that breaks at once: without a search at the end it would remain one fragment.
+/// A bar that breaks at once, in its first step.
 #[test]
-fn the_end_of_a_run_looks_for_pieces() {
+fn the_end_of_a_run_knows_all_pieces() {
     let bench = Bench::new();
     let scene = bench.write(
         "burst.toml",
-        "version = 1\nrun.end_time = \"1 ms\"\nclusters.interval = 1000000000\nmaterials.m.density = 2000\nbonds.b = { young_modulus = \"50 MPa\", poisson_ratio = 0.3, failure = { tensile_strength = 0 } }\n[bodies.wheel]\nparticles = [[-0.01, 0, 0, 0.01], [0.01, 0, 0, 0.01]]\nbond_list = [[0, 1]]\nmaterial = \"m\"\nbonds = \"b\"\nangular_velocity = [0, 0, 100]\n",
+        "version = 1\nrun.end_time = \"1 ms\"\nmaterials.m.density = 2000\nbonds.b = { young_modulus = \"50 MPa\", poisson_ratio = 0.3, failure = { tensile_strength = 0 } }\n[bodies.wheel]\nparticles = [[-0.01, 0, 0, 0.01], [0.01, 0, 0, 0.01]]\nbond_list = [[0, 1]]\nmaterial = \"m\"\nbonds = \"b\"\nangular_velocity = [0, 0, 100]\n",
     );
     let summary = json(&bench, &scene, &["--json", "--quiet", "--output", "out"]);
     assert_eq!(summary["broken_bonds"], 1);

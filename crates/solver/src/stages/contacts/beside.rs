@@ -7,28 +7,57 @@
 
 use crate::state::State;
 use crate::state::bonds::Bonds;
+use crate::state::clusters::Clusters;
 use crate::state::contacts::{Beside, Contacts};
 
-/// Lists the pairs with a contact beside their bond, among all pairs: `pairs` are those of
-/// different pieces, or still known from an earlier search; sorted.
-pub(in crate::stages) fn list_beside(
+/// Lists the pairs within pieces among all pairs: those with a contact beside their bond, and those
+/// that no bond joins. `pairs` are those of different pieces, or still known from an earlier
+/// search; sorted.
+pub(in crate::stages) fn list_within(
     state: &State,
     contacts: &mut Contacts,
     pairs: &mut Vec<[u32; 2]>,
 ) {
-    contacts.scratch.beside.clear();
-    let (bonds, poses) = (&state.bonds, &state.particles.poses);
+    let scratch = &mut contacts.scratch;
+    scratch.self_contacts.is_changed = false;
+    scratch.beside.clear();
     let Some(clusters) = &state.clusters else {
         return;
     };
-    if !bonds.rules.iter().any(|rule| rule.contact_beside) {
+    let bonds = &state.bonds;
+    let has_beside = bonds.rules.iter().any(|rule| rule.contact_beside);
+    if bonds.is_empty() || !(has_beside || contacts.model.self_contact) {
         return;
     }
-    let is_within =
-        |[a, b]: [u32; 2]| clusters.of_particle[a as usize] == clusters.of_particle[b as usize];
+    pairs.retain(|&pair| !clusters.is_within(pair));
+    let own = scratch.self_contacts.pairs.iter().copied();
+    let known = pairs.len();
+    pairs.extend(own.filter(|&pair| is_listed(state, clusters, pair)));
+    if has_beside {
+        list_beside(state, clusters, &mut scratch.beside);
+        let ends = |beside: &Beside| bonds.ends[beside.bond as usize];
+        pairs.extend(scratch.beside.iter().map(ends));
+    }
+    if pairs.len() > known {
+        pairs.sort_unstable();
+        pairs.dedup();
+    }
+    for one in &mut scratch.beside {
+        let ends = bonds.ends[one.bond as usize];
+        one.pair = pairs.partition_point(|pair| *pair < ends) as u32;
+    }
+}
+
+/// Whether a pair is of one piece that is awake.
+fn is_listed(state: &State, clusters: &Clusters, pair: [u32; 2]) -> bool {
+    clusters.is_within(pair) && !state.particles.sleeps(pair[0] as usize)
+}
+
+/// Lists the contacts beside bonds.
+fn list_beside(state: &State, clusters: &Clusters, beside: &mut Vec<Beside>) {
+    let (bonds, poses) = (&state.bonds, &state.particles.poses);
     let all = (0..bonds.len()).filter(|&at| bonds.rules[bonds.rule_of(at)].contact_beside);
-    let some = all.filter(|&at| is_within(bonds.ends[at]));
-    let beside = &mut contacts.scratch.beside;
+    let some = all.filter(|&at| clusters.is_within(bonds.ends[at]));
     beside.extend(some.map(|at| {
         let radii_m = bonds.ends[at].map(|end| poses[end as usize].radius_m());
         let overlap_m = radii_m[0] + radii_m[1] - bonds.initial_length_m(at);
@@ -38,13 +67,6 @@ pub(in crate::stages) fn list_beside(
             origin_m: overlap_m.max(0.0),
         }
     }));
-    let ends_of = |beside: &Beside| bonds.ends[beside.bond as usize];
-    pairs.retain(|&pair| !is_within(pair));
-    pairs.extend(beside.iter().map(ends_of));
-    pairs.sort_unstable();
-    for one in beside {
-        one.pair = pairs.partition_point(|pair| *pair < ends_of(one)) as u32;
-    }
 }
 
 /// Keeps the origin of the law of pairs whose bond holds.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::geometry::Bounds;
 use crate::stages::chunks::{chunk_of, chunks_of, in_tasks};
 use crate::stages::clumps::place_all;
-use crate::stages::contacts::{find_mean_radius, relist};
+use crate::stages::contacts::{find_mean_radius, list_within, relist};
 use crate::stages::neighbours::{ball_of, find_pairs_of_all};
 use crate::stages::sleep::{disturbed, freeze_contacts, wake};
 use crate::stages::walls::list_near;
@@ -68,8 +68,9 @@ fn list_awake(state: &mut State) -> usize {
         let awake = &mut contacts.scratch.buffers.awake;
         list_what_may_meet(p, &sleep.boxes, skin_m, awake);
         searched = awake.particles.len();
-        let pairs = pairs_of_awake(state, &mut contacts, skin_m);
-        relist(&mut contacts, pairs, &state.particles);
+        let mut pairs = pairs_of_awake(state, &mut contacts, skin_m);
+        list_within(state, &mut contacts, &mut pairs);
+        relist(&mut contacts, pairs, state);
         if contacts.model.relaxes {
             state.scratch.events.work.relaxing += contacts.relaxing();
         }

@@ -167,6 +167,21 @@ impl Clusters {
         (0..self.history.len() as u32).filter(|id| self.history[*id as usize].ended_s.is_none())
     }
 
+    /// Whether two particles belong to the same cluster.
+    #[inline(always)]
+    pub(crate) fn is_within(&self, [a, b]: [u32; 2]) -> bool {
+        self.of_particle[a as usize] == self.of_particle[b as usize]
+    }
+
+    /// Whether a bond that is not broken joins two particles.
+    pub(crate) fn are_bonded(&self, [a, b]: [u32; 2], bonds: &Bonds) -> bool {
+        let joins = |first: u32, second: u32| {
+            let [from, to] = [0, 1].map(|k| self.first_bonds[first as usize + k]);
+            (from..to).any(|at| bonds.ends[at][1] == second && !bonds.is_broken(at))
+        };
+        joins(a, b) || joins(b, a)
+    }
+
     /// The clusters that these broken bonds belonged to, in order, each once.
     pub fn damaged_by(&self, broken: &[u32], bonds: &Bonds) -> Vec<u32> {
         let ends = broken.iter().flat_map(|b| bonds.ends[*b as usize]);
