@@ -191,7 +191,7 @@ fn a_body_in_which_nothing_can_touch_lists_nothing() {
         assert!(listed_within(&state).is_empty());
     }
     let looked = state.scratch.clock.done(stage.unwrap());
-    assert!(looked < 2000 * 216 / 25, "{looked} particles");
+    assert!(looked < 2000 * 216 / 10, "{looked} particles");
 }
 
 /// Spheres that overlap, of one piece, without a bond.
