@@ -92,7 +92,7 @@ pub(crate) fn renew_lists(state: &mut State) -> usize {
         contacts.search_all();
     }
     if state.sleep.is_some() {
-        if contacts.skin_left_m < 0.0 || contacts.scratch.self_contacts.is_changed {
+        if contacts.skin_left_m < 0.0 {
             let searched = list_among_sleepers(state);
             if let Some(mut contacts) = state.contacts.take() {
                 let near = &mut contacts.scratch.buffers.near;
@@ -101,9 +101,11 @@ pub(crate) fn renew_lists(state: &mut State) -> usize {
             }
             return searched;
         }
+        list_self_contacts(state);
         return 0;
     }
     let searched = search_for_moved(state);
+    list_self_contacts(state);
     list_near_moving_walls(state);
     searched
 }
@@ -131,13 +133,20 @@ fn search_for_moved(state: &mut State) -> usize {
         contacts.scratch.buffers = buffers;
         contacts.scratch.references.due.clear();
     }
-    if contacts.scratch.self_contacts.is_changed {
-        let mut pairs = std::mem::take(&mut contacts.scratch.former_pairs);
-        pairs.clone_from(&contacts.pairs);
-        put_in_list(state, &mut contacts, pairs);
-    }
     state.contacts = Some(contacts);
     searched
+}
+
+/// Lists the pairs within pieces anew if they have changed since all pairs were listed.
+fn list_self_contacts(state: &mut State) {
+    let is_changed = |contacts: &mut Contacts| contacts.scratch.self_contacts.is_changed;
+    let Some(mut contacts) = state.contacts.take_if(is_changed) else {
+        return;
+    };
+    let mut pairs = std::mem::take(&mut contacts.scratch.former_pairs);
+    pairs.clone_from(&contacts.pairs);
+    put_in_list(state, &mut contacts, pairs);
+    state.contacts = Some(contacts);
 }
 
 /// Whether it is known where everything was at its last search. Not so at the start.

@@ -33,9 +33,9 @@ const REACH: f64 = 0.5;
 const NEAR: f64 = 1e-3;
 /// Pairs are listed whose gap two particles can close in this number of steps at their speed.
 const STEPS: f64 = 8.0;
-/// Pairs are listed whose gap is below this multiple of the deformation since the last search:
-/// then searches become rarer as a piece deforms.
-const DEFORMATION: f64 = 8.0;
+/// Pairs are listed whose gap is below this multiple of the deformation since the last search, so
+/// that searches become rarer as a piece deforms, up to a gap of this fraction of the largest radius.
+const DEFORMATION: [f64; 2] = [8.0, 0.25];
 /// A search is due when less than this fraction of half the least gap is left.
 const LEFT: f64 = 0.25;
 /// A look is due when particles may use up what is left in this number of steps.
@@ -82,7 +82,7 @@ fn has_self_contact(state: &State) -> bool {
 
 /// Lists the unbonded pairs of one piece that may touch soon, if particles have moved far enough
 /// since the last look, bonds have broken or there are new pieces. Returns the number of particles
-/// looked at.
+/// of known pieces looked at.
 pub(crate) fn find_self_contacts(state: &mut State) -> usize {
     let Some(mut contacts) = state
         .contacts
@@ -138,9 +138,7 @@ impl Pieces<'_> {
             .chain(due.par_iter().map(|&piece| self.look_at(own, piece)))
             .collect();
         self.relist(own, &looks);
-        let sizes = looks
-            .iter()
-            .map(|look| self.clusters.members(look.piece).len());
+        let sizes = due.iter().map(|&piece| self.clusters.members(piece).len());
         sizes.sum()
     }
 
@@ -268,8 +266,9 @@ impl Pieces<'_> {
             (members.iter().map(|&i| self.particles.poses[i as usize])).collect();
         let largest_m = poses.iter().map(Pose::radius_m).fold(0.0, f64::max);
         let fastest_m = self.fastest_m(members);
-        let near_m = (2.0 * STEPS * fastest_m).max(DEFORMATION * deformation_m);
-        let near_m = near_m.max(NEAR * largest_m);
+        let [times, most] = DEFORMATION;
+        let near_m = (times * deformation_m).clamp(NEAR * largest_m, most * largest_m);
+        let near_m = near_m.max(2.0 * STEPS * fastest_m);
         let reach_m = (REACH * largest_m).max(2.0 * near_m);
         let each: Vec<u32> = (0..members.len() as u32).collect();
         let (mut pairs, mut least_gap_m) = (Vec::new(), reach_m);

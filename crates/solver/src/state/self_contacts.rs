@@ -39,6 +39,12 @@ impl SelfContacts {
     /// Gives the particles new numbers. `now`: for each old particle its new number or
     /// [`REMOVED`]; `free`: number of free particles from now on.
     pub(crate) fn renumber(&mut self, now: &[u32], free: usize) {
+        if self.places_m.is_empty() {
+            return;
+        }
+        if self.places_m.is_empty() {
+            return;
+        }
         let stays = |i: u32| {
             let to = now.get(i as usize).copied().unwrap_or(REMOVED);
             Some(to).filter(|&to| (to as usize) < free)
