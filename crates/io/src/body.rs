@@ -14,13 +14,14 @@ mod parts;
 pub mod stored_frame;
 pub mod stored_particles;
 pub mod stored_walls;
+mod strain;
 pub(crate) mod summary;
 mod table;
 pub mod txt;
 pub mod vtp;
 
 pub use files::{read_body, read_frame, read_particles, read_walls, write_body};
-pub use histories::{JointBond, PlasticBond};
+pub use histories::{BondHistories, JointBond, PlasticBond, SummedBond};
 pub use parts::{About, Body};
 pub use stored_frame::{NO_FRAME, StoredFragment, StoredFrame};
 pub use stored_particles::StoredParticles;

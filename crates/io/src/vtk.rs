@@ -39,12 +39,14 @@ pub enum Values<'a> {
     Integers(&'a dyn Fn(usize) -> i32),
     /// This many small numbers each: by the index, and by the number of the component.
     Flags(usize, &'a dyn Fn(usize, usize) -> u8),
+    /// This many numbers each, in the same way.
+    Tuples(usize, &'a dyn Fn(usize, usize) -> f64),
 }
 
 impl Values<'_> {
     fn kind(&self) -> &'static str {
         match self {
-            Self::Scalars(_) | Self::Vectors(_) => "Float64",
+            Self::Scalars(_) | Self::Vectors(_) | Self::Tuples(..) => "Float64",
             Self::SingleVectors(_) => "Float32",
             Self::Counts(_) => "UInt32",
             Self::Integers(_) => "Int32",
@@ -60,6 +62,7 @@ impl Values<'_> {
             Self::SingleVectors(_) => 12,
             Self::Counts(_) | Self::Integers(_) => 4,
             Self::Flags(count, _) => *count as u64,
+            Self::Tuples(count, _) => 8 * *count as u64,
         }
     }
 
@@ -78,6 +81,15 @@ impl Values<'_> {
                 (0..count).try_for_each(|i| {
                     let flags: Vec<u8> = (0..*components).map(|k| value(i, k)).collect();
                     out.write_all(&flags)
+                })
+            }
+            Self::Tuples(components, value) => {
+                out.write_all(&((8 * components * count) as u64).to_le_bytes())?;
+                (0..count).try_for_each(|i| {
+                    let numbers: Vec<[u8; 8]> = (0..*components)
+                        .map(|k| value(i, k).to_le_bytes())
+                        .collect();
+                    out.write_all(numbers.as_flattened())
                 })
             }
         }
@@ -262,7 +274,7 @@ impl<'a> Declaration<'a> {
             name: array.name,
             shape: match array.values {
                 Values::Vectors(_) | Values::SingleVectors(_) => components(3),
-                Values::Flags(count, _) => components(count),
+                Values::Flags(count, _) | Values::Tuples(count, _) => components(count),
                 _ => String::new(),
             },
             bytes: array.values.bytes() * count as u64,

@@ -271,6 +271,9 @@ impl Made<'_> {
             bond_radii: in_metres(bond_radii(spheres, bonds, settings.bonds.radius_factor)),
             bond_lengths: in_metres(bond_lengths(spheres, bonds)),
             bond_damages: Vec::new(),
+            turns_rad: Vec::new(),
+            bond_directions: Vec::new(),
+            bond_sums: Vec::new(),
             bond_plastics: Vec::new(),
             bond_joints: Vec::new(),
             positions: spheres

@@ -20,7 +20,7 @@ impl Body {
         check_particles(self)?;
         check_bonds(self)?;
         check_about(self)?;
-        histories::check(&self.bond_plastics, &self.bond_joints, &self.bond_lengths)?;
+        histories::check(&self.histories(), &self.bond_lengths)?;
         check_double_bonds(self)
     }
 }
@@ -49,6 +49,27 @@ fn check_lengths(body: &Body) -> Result<()> {
         ("bond radii", body.bond_radii.len(), "bonds", bonds),
         ("bond lengths", body.bond_lengths.len(), "bonds", bonds),
         (
+            "rotations",
+            if body.turns_rad.is_empty() {
+                particles
+            } else {
+                body.turns_rad.len()
+            },
+            "particles",
+            particles,
+        ),
+        (
+            "directions of bonds",
+            if body.turns_rad.is_empty() {
+                given(body.bond_directions.len())
+            } else {
+                body.bond_directions.len()
+            },
+            "bonds",
+            bonds,
+        ),
+        ("summed loads", given(body.bond_sums.len()), "bonds", bonds),
+        (
             "bond damages",
             given(body.bond_damages.len()),
             "bonds",
@@ -76,9 +97,21 @@ fn check_lengths(body: &Body) -> Result<()> {
 fn check_particles(body: &Body) -> Result<()> {
     for (particle, (position, &radius)) in body.positions.iter().zip(&body.radii).enumerate() {
         check_particle(position, radius)
+            .and_then(|()| check_turn(body.turns_rad.get(particle)))
             .map_err(|error| error.within(&format!("particle {particle}")))?;
     }
     Ok(())
+}
+
+fn check_turn(turn_rad: Option<&[f64; 3]>) -> Result<()> {
+    if turn_rad.is_none_or(|turn| turn.iter().all(|angle| angle.is_finite())) {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        "",
+        "its rotation is not finite",
+        "correct or remove this particle",
+    ))
 }
 
 pub(super) fn check_particle(position: &[f64; 3], radius: f64) -> Result<()> {

@@ -215,10 +215,19 @@ pub fn write_body(body: &Body, path: &Path) -> Result<()> {
     body.check()?;
     let is_damaged = body.bond_damages.iter().any(|damage| *damage > 0.0);
     let has_history = !body.bond_plastics.is_empty() || !body.bond_joints.is_empty();
-    if (is_damaged || has_history) && !matches!(storage, Storage::Pipe | Storage::Vtp(_)) {
+    let is_lost = match storage {
+        Storage::Pipe | Storage::Vtp(_) => None,
+        _ if is_damaged || has_history => Some("bonds with damage or a history"),
+        _ if body.is_sheared() => Some("bonds that are bent, twisted or sheared"),
+        Storage::Lammps(_) | Storage::Txt(_) if body.is_stretched() => {
+            Some("bonds that are stretched or pressed")
+        }
+        _ => None,
+    };
+    if let Some(lost) = is_lost {
         return Err(Diagnostic::input(
             path.display().to_string(),
-            "the body has bonds with damage or a history, which such a file does not hold",
+            format!("the body has {lost}, which such a file does not hold"),
             "write a .vtp",
         ));
     }

@@ -1,5 +1,5 @@
-//! What the bonds of a body have been through, beyond their damage: plastic deformation, and failed
-//! elements of flat joints.
+//! What the bonds of a body have been through, beyond their damage: how they lie without load,
+//! loads that are summed step by step, plastic deformation, and failed elements of flat joints.
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::vtk::{NamedArray, Values};
@@ -17,6 +17,19 @@ pub struct PlasticBond {
     pub bend_rad: [f64; 3],
     /// Plastic work, J.
     pub work_j: f64,
+    /// Rotation vectors of the bond's two ends relative to their particles, in the axes of the
+    /// particles before they turned, rad.
+    pub turns_rad: [[f64; 3]; 2],
+}
+
+/// Load of a bond of the incremental formulation, which is summed step by step. Vectors are in the
+/// axes of its body.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SummedBond {
+    /// Shear force on its second end, N.
+    pub shear_n: [f64; 3],
+    /// Moment on its second end, N m.
+    pub moment_n_m: [f64; 3],
 }
 
 /// Failed elements of a flat joint.
@@ -28,8 +41,32 @@ pub struct JointBond {
     /// For each element, ring by ring from the axis, whether it has failed. Empty: the bond is no
     /// flat joint.
     pub failed: Vec<bool>,
+    /// For each element, how far its faces have slid past each other, m, in the axes of its body.
+    /// Empty: they have not.
+    pub slips_m: Vec<[f64; 3]>,
 }
 
+/// What the bonds of a body or a frame have been through, one entry for each bond; of each kind all
+/// or none.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BondHistories<'a> {
+    /// Unit vectors from the first to the second end without load, in the axes that the particles
+    /// had before they turned.
+    pub directions: &'a [[f64; 3]],
+    /// Loads of bonds of the incremental formulation.
+    pub sums: &'a [SummedBond],
+    /// Plastic deformation.
+    pub plastics: &'a [PlasticBond],
+    /// Elements of flat joints.
+    pub joints: &'a [JointBond],
+}
+
+/// Bond array: unit vector along the bond without load, in the axes of the unturned particles.
+pub const DIRECTION: &str = "initial_direction";
+/// Bond array: summed shear force on the second end, N, a vector.
+pub const SUMMED_SHEAR: &str = "summed_shear_n";
+/// Bond array: summed moment on the second end, N m, a vector.
+pub const SUMMED_MOMENT: &str = "summed_moment_n_m";
 /// Bond array: plastic part of the length, m.
 pub const PLASTIC_ELONGATION: &str = "plastic_elongation_m";
 /// Bond array: plastic sliding, m, a vector.
@@ -40,13 +77,26 @@ pub const PLASTIC_TWIST: &str = "plastic_twist_rad";
 pub const PLASTIC_BEND: &str = "plastic_bend_rad";
 /// Bond array: plastic work, J.
 pub const PLASTIC_WORK: &str = "plastic_work_j";
+/// Bond arrays: rotation vectors of the two ends relative to their particles, rad.
+pub const PLASTIC_TURNS: [&str; 2] = ["plastic_turn_a_rad", "plastic_turn_b_rad"];
 /// Bond array: unit vector to the edge at which the first element of a flat joint begins.
 pub const FIRST_EDGE: &str = "first_element_edge";
 /// Bond array: 1 for a failed element of a flat joint, else 0, for each of its elements.
 pub const FAILED_ELEMENTS: &str = "failed_elements";
+/// Bond array: sliding of the elements of a flat joint, m, a vector for each of its elements.
+pub const ELEMENT_SLIP: &str = "element_slip_m";
+
+/// Largest difference between the length of a direction and 1.
+const LENGTH_OF_UNIT: f64 = 1e-6;
 
 /// Names of all these arrays.
-pub(crate) const ALL: [&str; 7] = [
+pub(crate) const ALL: [&str; 13] = [
+    DIRECTION,
+    SUMMED_SHEAR,
+    SUMMED_MOMENT,
+    PLASTIC_TURNS[0],
+    PLASTIC_TURNS[1],
+    ELEMENT_SLIP,
     PLASTIC_ELONGATION,
     PLASTIC_SLIP,
     PLASTIC_TWIST,
@@ -68,6 +118,28 @@ impl HistoryArrays {
         at.map_or(&[], |at| &self.arrays[at])
     }
 
+    /// Direction of each bond without load. Empty: the file has none.
+    pub(crate) fn directions(&self, bonds: usize) -> Vec<[f64; 3]> {
+        self.vectors(DIRECTION, bonds)
+    }
+
+    /// Summed load of each bond. Empty: the file has none.
+    pub(crate) fn sums(&self, bonds: usize) -> Vec<SummedBond> {
+        let shear = self.vectors(SUMMED_SHEAR, bonds);
+        let one = |(shear_n, moment_n_m)| SummedBond {
+            shear_n,
+            moment_n_m,
+        };
+        let moments = self.vectors(SUMMED_MOMENT, bonds);
+        shear.into_iter().zip(moments).map(one).collect()
+    }
+
+    /// A vector for each bond. Empty: the file has no such array.
+    fn vectors(&self, name: &str, bonds: usize) -> Vec<[f64; 3]> {
+        let found = self.of(name).as_chunks().0;
+        found[..bonds.min(found.len())].to_vec()
+    }
+
     /// Plastic deformation of each bond. Empty: the file has none.
     pub(crate) fn plastics(&self, bonds: usize) -> Vec<PlasticBond> {
         if self.of(PLASTIC_ELONGATION).is_empty() {
@@ -81,6 +153,7 @@ impl HistoryArrays {
             twist_rad: number(PLASTIC_TWIST, bond),
             bend_rad: vector(PLASTIC_BEND, bond),
             work_j: number(PLASTIC_WORK, bond),
+            turns_rad: PLASTIC_TURNS.map(|name| vector(name, bond)),
         };
         (0..bonds).map(one).collect()
     }
@@ -92,12 +165,16 @@ impl HistoryArrays {
             return Vec::new();
         }
         let count = flags.len() / bonds;
+        let slips = self.of(ELEMENT_SLIP).as_chunks().0;
         let one = |bond: usize| JointBond {
             first_edge: self.vector(FIRST_EDGE, bond).unwrap_or_default(),
             failed: flags[bond * count..(bond + 1) * count]
                 .iter()
                 .map(|flag| *flag != 0.0)
                 .collect(),
+            slips_m: slips
+                .get(bond * count..(bond + 1) * count)
+                .map_or_else(Vec::new, <[[f64; 3]]>::to_vec),
         };
         (0..bonds).map(one).collect()
     }
@@ -107,14 +184,24 @@ impl HistoryArrays {
     }
 }
 
-/// Calls `then` with the arrays of these, one entry for each bond; of each kind all or none.
+/// Calls `then` with the arrays of these.
 pub fn with_arrays<R>(
-    plastics: &[PlasticBond],
-    joints: &[JointBond],
+    histories: &BondHistories<'_>,
     then: impl FnOnce(&[NamedArray<'_>]) -> R,
 ) -> R {
+    let BondHistories {
+        directions,
+        sums,
+        plastics,
+        joints,
+    } = *histories;
+    let direction = |bond: usize| directions[bond];
+    let shear = |bond: usize| sums[bond].shear_n;
+    let moment = |bond: usize| sums[bond].moment_n_m;
+    let turn_a = |bond: usize| plastics[bond].turns_rad[0];
+    let turn_b = |bond: usize| plastics[bond].turns_rad[1];
     let elongation = |bond: usize| plastics[bond].elongation_m;
-    let slip = |bond: usize| plastics[bond].slip_m;
+    let plastic_slip = |bond: usize| plastics[bond].slip_m;
     let twist = |bond: usize| plastics[bond].twist_rad;
     let bend = |bond: usize| plastics[bond].bend_rad;
     let work = |bond: usize| plastics[bond].work_j;
@@ -125,10 +212,23 @@ pub fn with_arrays<R>(
         let flag = joints[bond].failed.get(element);
         u8::from(flag == Some(&true))
     };
+    let slip = |bond: usize, number: usize| {
+        let slips = joints[bond].slips_m.as_flattened();
+        slips.get(number).copied().unwrap_or(0.0)
+    };
+    let has_slid = joints.iter().any(|joint| !joint.slips_m.is_empty());
     let named = |(name, values)| NamedArray { name, values };
+    let of_rest = [(DIRECTION, Values::Vectors(&direction))];
+    let of_sums = [
+        (SUMMED_SHEAR, Values::Vectors(&shear)),
+        (SUMMED_MOMENT, Values::Vectors(&moment)),
+    ];
+    let of_slips = [(ELEMENT_SLIP, Values::Tuples(3 * count, &slip))];
     let of_plastics = [
+        (PLASTIC_TURNS[0], Values::Vectors(&turn_a)),
+        (PLASTIC_TURNS[1], Values::Vectors(&turn_b)),
         (PLASTIC_ELONGATION, Values::Scalars(&elongation)),
-        (PLASTIC_SLIP, Values::Vectors(&slip)),
+        (PLASTIC_SLIP, Values::Vectors(&plastic_slip)),
         (PLASTIC_TWIST, Values::Scalars(&twist)),
         (PLASTIC_BEND, Values::Vectors(&bend)),
         (PLASTIC_WORK, Values::Scalars(&work)),
@@ -138,21 +238,39 @@ pub fn with_arrays<R>(
         (FAILED_ELEMENTS, Values::Flags(count, &failed)),
     ];
     let some = |is_there: bool| move |array: &_| is_there.then_some(*array);
-    let arrays = of_plastics.iter().filter_map(some(!plastics.is_empty()));
+    let arrays = of_rest.iter().filter_map(some(!directions.is_empty()));
+    let arrays = arrays.chain(of_sums.iter().filter_map(some(!sums.is_empty())));
+    let arrays = arrays.chain(of_plastics.iter().filter_map(some(!plastics.is_empty())));
     let arrays = arrays.chain(of_joints.iter().filter_map(some(count > 0)));
+    let arrays = arrays.chain(of_slips.iter().filter_map(some(has_slid)));
     let arrays: Vec<NamedArray<'_>> = arrays.map(named).collect();
     then(&arrays)
 }
 
 /// Checks the history of bonds of these lengths, m.
-pub(super) fn check(
-    plastics: &[PlasticBond],
-    joints: &[JointBond],
-    lengths_m: &[f64],
-) -> Result<()> {
+pub(super) fn check(histories: &BondHistories<'_>, lengths_m: &[f64]) -> Result<()> {
+    let BondHistories {
+        directions,
+        sums,
+        plastics,
+        joints,
+    } = *histories;
+    for (bond, [x, y, z]) in directions.iter().enumerate() {
+        let size = (x * x + y * y + z * z).sqrt();
+        if !((size - 1.0).abs() < LENGTH_OF_UNIT) {
+            return Err(wrong(bond, "its direction without load is no unit vector"));
+        }
+    }
+    for (bond, sum) in sums.iter().enumerate() {
+        let mut numbers = sum.shear_n.iter().chain(&sum.moment_n_m);
+        if numbers.any(|number| !number.is_finite()) {
+            return Err(wrong(bond, "its summed load is not finite"));
+        }
+    }
     for (bond, plastic) in plastics.iter().enumerate() {
         let angles = [plastic.elongation_m, plastic.twist_rad, plastic.work_j];
-        let vectors = [plastic.slip_m, plastic.bend_rad];
+        let [turn_a, turn_b] = plastic.turns_rad;
+        let vectors = [plastic.slip_m, plastic.bend_rad, turn_a, turn_b];
         let numbers = angles.iter().chain(vectors.as_flattened());
         if numbers.clone().any(|number| !number.is_finite()) {
             return Err(wrong(bond, "its plastic deformation is not finite"));
@@ -175,6 +293,10 @@ pub(super) fn check(
         }
         if !joint.failed.is_empty() && joint.failed.iter().all(|failed| *failed) {
             return Err(wrong(bond, "all of its elements have failed"));
+        }
+        let mut slips = joint.slips_m.as_flattened().iter();
+        if slips.any(|number| !number.is_finite()) {
+            return Err(wrong(bond, "the sliding of its elements is not finite"));
         }
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::histories::{JointBond, PlasticBond};
+use super::histories::{BondHistories, JointBond, PlasticBond, SummedBond};
 use crate::diagnostic::Result;
 
 /// Information on the origin of a body. Every field is optional: a body may come from anywhere.
@@ -35,15 +35,23 @@ pub struct Body {
     pub positions: Vec<[f64; 3]>,
     /// Radii, m. One per particle.
     pub radii: Vec<f64>,
+    /// Rotation vector of each particle since its bonds were without load, rad. One per particle,
+    /// or empty: none has turned. There are `bond_directions` as well, or neither.
+    pub turns_rad: Vec<[f64; 3]>,
     /// The two particles of each bond, the smaller index first. One per bond.
     pub bonds: Vec<[u32; 2]>,
     /// Bond radii, m. One per bond.
     pub bond_radii: Vec<f64>,
     /// Initial bond lengths, m. One per bond.
     pub bond_lengths: Vec<f64>,
+    /// Unit vector of each bond without load from its first to its second particle, in the axes
+    /// that these had before they turned. One per bond, or empty: all lie between the centres.
+    pub bond_directions: Vec<[f64; 3]>,
     /// Damage of each bond, from 0 (intact) to below 1 (broken). One per bond, or empty: all are
     /// intact.
     pub bond_damages: Vec<f64>,
+    /// Loads that are summed step by step. One per bond, or empty: none has any.
+    pub bond_sums: Vec<SummedBond>,
     /// Plastic deformation of each bond. One per bond, or empty: none has yielded.
     pub bond_plastics: Vec<PlasticBond>,
     /// Failed elements of each flat joint. One per bond, or empty: no element has failed.
@@ -57,10 +65,13 @@ pub struct Body {
 pub(crate) struct Parts {
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) radii: Vec<f64>,
+    pub(crate) turns_rad: Vec<[f64; 3]>,
     pub(crate) bonds: Vec<[u32; 2]>,
     pub(crate) bond_radii: Option<Vec<f64>>,
     pub(crate) bond_lengths: Option<Vec<f64>>,
+    pub(crate) bond_directions: Vec<[f64; 3]>,
     pub(crate) bond_damages: Vec<f64>,
+    pub(crate) bond_sums: Vec<SummedBond>,
     pub(crate) bond_plastics: Vec<PlasticBond>,
     pub(crate) bond_joints: Vec<JointBond>,
     pub(crate) about: About,
@@ -81,6 +92,16 @@ impl Body {
         })
     }
 
+    /// What its bonds have been through.
+    pub(crate) fn histories(&self) -> BondHistories<'_> {
+        BondHistories {
+            directions: &self.bond_directions,
+            sums: &self.bond_sums,
+            plastics: &self.bond_plastics,
+            joints: &self.bond_joints,
+        }
+    }
+
     /// Hash of its numbers (FNV-1a, 64 bit): the same for the same particles and bonds, whatever
     /// file they come from.
     pub fn hash(&self) -> u64 {
@@ -89,6 +110,12 @@ impl Body {
         let of_bonds = of_bonds.chain(&self.bond_damages);
         let mut bytes = Vec::new();
         for number in places.chain(of_bonds) {
+            bytes.extend(number.to_bits().to_le_bytes());
+        }
+        let of_rest = self.turns_rad.iter().chain(&self.bond_directions).flatten();
+        let sums = self.bond_sums.iter();
+        let sums = sums.flat_map(|sum| sum.shear_n.iter().chain(&sum.moment_n_m));
+        for number in of_rest.chain(sums) {
             bytes.extend(number.to_bits().to_le_bytes());
         }
         for end in self.bonds.iter().flatten() {
@@ -101,14 +128,16 @@ impl Body {
                 elongation_m,
                 twist_rad,
                 work_j,
+                turns_rad,
                 ..
             } = *plastic;
-            for number in [elongation_m, x, y, z, twist_rad, bx, by, bz, work_j] {
+            let numbers = [elongation_m, x, y, z, twist_rad, bx, by, bz, work_j];
+            for number in numbers.iter().chain(turns_rad.as_flattened()) {
                 bytes.extend(number.to_bits().to_le_bytes());
             }
         }
         for joint in &self.bond_joints {
-            for number in joint.first_edge {
+            for number in joint.first_edge.iter().chain(joint.slips_m.as_flattened()) {
                 bytes.extend(number.to_bits().to_le_bytes());
             }
             bytes.extend(joint.failed.iter().map(|failed| u8::from(*failed)));
@@ -125,10 +154,13 @@ impl Body {
         let Parts {
             positions,
             radii,
+            turns_rad,
             mut bonds,
             bond_radii,
             bond_lengths,
+            bond_directions,
             bond_damages,
+            bond_sums,
             bond_plastics,
             bond_joints,
             about,
@@ -159,10 +191,13 @@ impl Body {
         let body = Self {
             positions,
             radii,
+            turns_rad,
             bonds,
             bond_radii,
             bond_lengths,
+            bond_directions,
             bond_damages,
+            bond_sums,
             bond_plastics,
             bond_joints,
             about,

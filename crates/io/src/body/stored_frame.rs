@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::histories::{JointBond, PlasticBond};
+use super::histories::{DIRECTION, JointBond, PlasticBond, SummedBond};
 use super::parts::{About, Body, Parts};
 use crate::diagnostic::{Diagnostic, Result};
 use crate::units::significant;
@@ -19,6 +19,10 @@ pub const BODY: &str = "body";
 pub const PARTICLE_ID: &str = "particle_id";
 /// Particle array: velocity, m/s.
 pub const VELOCITY: &str = "velocity_m_s";
+/// Particle array: rotation vector since the bonds were without load, rad.
+pub const TURN: &str = "rotation_rad";
+/// Particle array: 1 for a sphere of a rigid clump, else 0.
+pub const RIGID: &str = "rigid";
 /// Bond array: radius, m.
 pub const BOND_RADIUS: &str = "bond_radius_m";
 /// Bond array: stress-free (rest) length, m.
@@ -39,6 +43,9 @@ pub const NO_FRAME: &str = "this is no frame of a run";
 /// Largest relative difference between densities of one material, due to rounding.
 const SAME_DENSITY: f64 = 1e-12;
 
+/// Largest difference between the components of two equal directions, due to rounding.
+const STRAIGHT: f64 = 1e-12;
+
 /// Largest number of fragments that a message names.
 const NAMED: usize = 5;
 
@@ -53,16 +60,27 @@ pub struct StoredFrame {
     pub radii: Vec<f64>,
     /// Density of each particle, kg/m3.
     pub densities_kg_m3: Vec<f64>,
+    /// Rotation vector of each particle since its bonds were without load, rad. None: the frame
+    /// does not say.
+    pub turns_rad: Option<Vec<[f64; 3]>>,
     /// Fragment of each particle.
     pub clusters: Vec<u32>,
+    /// For each particle, true if it belongs to a rigid clump, of which the frame has the outer
+    /// spheres and no bonds. Empty: none does.
+    pub rigid: Vec<bool>,
     /// The two particles of each bond.
     pub bonds: Vec<[u32; 2]>,
     /// Radius of each bond, m.
     pub bond_radii: Vec<f64>,
     /// Stress-free (rest) length of each bond, m.
     pub bond_lengths: Vec<f64>,
+    /// Unit vector of each bond without load from the particle with the smaller number to the other
+    /// one, in the axes that both had before they turned. Empty: the frame does not say.
+    pub bond_directions: Vec<[f64; 3]>,
     /// For each bond, true if it is broken.
     pub broken: Vec<bool>,
+    /// Summed load of each bond, or none: no bond is of the incremental formulation.
+    pub sums: Vec<SummedBond>,
     /// Damage of each bond, or none: no bond can be damaged.
     pub damages: Vec<f64>,
     /// Plastic deformation of each bond, or none: no bond can yield.
@@ -114,13 +132,13 @@ impl StoredFrame {
     /// A fragment as a body: its particles at their positions, in the order of the frame, and the
     /// unbroken bonds between them.
     ///
-    /// Bonds keep their damage, their plastic deformation, the elements of flat joints that have
-    /// failed, and their stress-free lengths, so stretched or compressed bonds stay so. Their
-    /// elastic bending, twist and shear are lost, and so are velocities. The density is that of the
-    /// particles, unless they differ.
+    /// Bonds keep their form without load, so that stretched, sheared, bent and twisted bonds stay
+    /// so, their damage, their plastic deformation, and the elements of flat joints that have
+    /// failed. Velocities are lost. The density is that of the particles, unless they differ.
     ///
     /// # Errors
-    /// There is no such fragment; the frame contains no valid body of it.
+    /// There is no such fragment; the frame does not hold the form of its bonds without load, or of
+    /// a clump the bonds; the frame contains no valid body of it.
     pub fn body(&self, id: u32) -> Result<Body> {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)
@@ -128,6 +146,7 @@ impl StoredFrame {
         if members.is_empty() {
             return Err(self.unknown(id));
         }
+        self.refuse_rigid(id, &members)?;
         let mut number_of = vec![u32::MAX; self.clusters.len()];
         for (number, &i) in (0..).zip(&members) {
             number_of[i] = number;
@@ -137,6 +156,7 @@ impl StoredFrame {
             !self.broken[*bond] && ends == [id; 2]
         };
         let bonds: Vec<usize> = (0..self.bonds.len()).filter(is_whole).collect();
+        let (turns_rad, bond_directions) = self.form_without_load(id, &members, &bonds)?;
         let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);
         let has_yielded = |bond: &usize| {
             let plastic = self.plastics.get(*bond);
@@ -149,6 +169,13 @@ impl StoredFrame {
         Body::from_parts(Parts {
             positions: members.iter().map(|&i| self.positions[i]).collect(),
             radii: members.iter().map(|&i| self.radii[i]).collect(),
+            turns_rad,
+            bond_directions,
+            bond_sums: if self.sums.is_empty() {
+                Vec::new()
+            } else {
+                bonds.iter().map(|&bond| self.sums[bond]).collect()
+            },
             bonds: bonds
                 .iter()
                 .map(|&bond| self.bonds[bond].map(|end| number_of[end as usize]))
@@ -180,6 +207,64 @@ impl StoredFrame {
                 ..About::default()
             },
         })
+    }
+
+    /// Refuses a clump: its bonds and its inner spheres are not in the frame.
+    fn refuse_rigid(&self, id: u32, members: &[usize]) -> Result<()> {
+        let is_rigid = |i: &usize| self.rigid.get(*i) == Some(&true);
+        if members.len() < 2 || !members.iter().any(is_rigid) {
+            return Ok(());
+        }
+        Err(Diagnostic::input(
+            "",
+            format!(
+                "fragment {id} is a rigid clump at {} s: the frame has neither its bonds nor its inner spheres",
+                significant(self.time_s, 7)
+            ),
+            "take the file of its body, or a frame in which it is bonded; --all --stl writes hulls of clumps too",
+        ))
+    }
+
+    /// Rotations of these particles of fragment `id`, and directions of these bonds, by which the
+    /// bonds have their present loads; both empty if no particle has turned and all bonds lie
+    /// between the centres.
+    fn form_without_load(
+        &self,
+        id: u32,
+        members: &[usize],
+        bonds: &[usize],
+    ) -> Result<(Vec<[f64; 3]>, Vec<[f64; 3]>)> {
+        if bonds.is_empty() {
+            return Ok(Default::default());
+        }
+        let Some(turns_rad) = self
+            .turns_rad
+            .as_ref()
+            .filter(|_| !self.bond_directions.is_empty())
+        else {
+            return Err(Diagnostic::input(
+                "",
+                format!(
+                    "the frame does not say how the bonds of fragment {id} are bent, twisted and sheared: it has no arrays '{TURN}' and '{DIRECTION}'"
+                ),
+                "run the scene again with this version of dem-run, which writes them; --loose, and --all --stl, do without",
+            ));
+        };
+        let lies_between_centres = |bond: &usize| {
+            let [a, b] = self.bonds[*bond].map(|end| end as usize);
+            let [a, b] = [a.min(b), a.max(b)].map(|end| self.positions[end]);
+            let apart = [0, 1, 2].map(|k| b[k] - a[k]);
+            let length = apart.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let along = self.bond_directions[*bond];
+            (0..3).all(|k| (apart[k] / length - along[k]).abs() < STRAIGHT)
+        };
+        let is_turned = |i: &usize| turns_rad[*i] != [0.0; 3];
+        if !members.iter().any(is_turned) && bonds.iter().all(lies_between_centres) {
+            return Ok(Default::default());
+        }
+        let turns = members.iter().map(|&i| turns_rad[i]);
+        let directions = bonds.iter().map(|&bond| self.bond_directions[bond]);
+        Ok((turns.collect(), directions.collect()))
     }
 
     fn unknown(&self, id: u32) -> Diagnostic {

@@ -1,9 +1,9 @@
 //! Bodies as VTK XML PolyData (.vtp), which ParaView and PyVista open directly.
 //!
-//! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius_m`,
-//! cell data `bond_radius_m`, `initial_length_m` and, if bonds are damaged, `damage`, or what
-//! [`super::histories`] names if they have yielded or are flat joints with failed elements; field
-//! data:
+//! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius_m`
+//! and, of a strained body, `rotation_rad`, cell data `bond_radius_m`, `initial_length_m` and, if
+//! bonds are damaged, `damage`, or what [`super::histories`] names if they are sheared or bent, have
+//! yielded or are flat joints with failed elements; field data:
 //! `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
 //! encoding see [`crate::vtk`].
 
@@ -29,7 +29,7 @@ use names::{
 
 use super::histories::with_arrays;
 use super::parts::{About, Body};
-use super::stored_frame::DAMAGE;
+use super::stored_frame::{DAMAGE, TURN};
 use crate::vtk::{
     Cells, NamedArray, PolyData, Values, exact, write_number, write_text, write_texts,
 };
@@ -55,13 +55,21 @@ pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     if !body.bond_damages.is_empty() {
         of_bonds.push(array(DAMAGE, &damage));
     }
-    with_arrays(&body.bond_plastics, &body.bond_joints, |histories| {
+    let turn = |i: usize| body.turns_rad[i];
+    let mut of_particles = vec![array(RADIUS, &radius)];
+    if !body.turns_rad.is_empty() {
+        of_particles.push(NamedArray {
+            name: TURN,
+            values: Values::Vectors(&turn),
+        });
+    }
+    with_arrays(&body.histories(), |histories| {
         let of_bonds: Vec<NamedArray<'_>> = of_bonds.iter().chain(histories).copied().collect();
         PolyData {
             points: body.positions.len(),
             place: Values::Vectors(&|i| body.positions[i]),
             cells: Cells::Lines(body.bonds.len(), &|bond| body.bonds[bond]),
-            point_data: &[array(RADIUS, &radius)],
+            point_data: &of_particles,
             cell_data: &of_bonds,
         }
         .write(out, |out| write_fields(&body.about, out))

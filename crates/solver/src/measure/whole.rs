@@ -15,7 +15,7 @@ use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
-use crate::state::clumps::{Clump, Template};
+use crate::state::clumps::Clump;
 use crate::state::events::REMOVED;
 use crate::state::particles::Motion;
 
@@ -29,8 +29,8 @@ pub(super) struct Start {
     places: Vec<Vector3<f64>>,
     /// Its centre, if it was a clump, m.
     centre: Option<Vector3<f64>>,
-    /// Rotation of a clump relative to the file. Particles of other bodies count as not rotated.
-    turned: UnitQuaternion<f64>,
+    /// Rotations of its particles, by their numbers in its file.
+    turned: Vec<UnitQuaternion<f64>>,
 }
 
 /// Velocities at the time of the positions: one for each particle, and the motion of each clump.
@@ -43,33 +43,32 @@ pub(super) struct Motions {
 /// Positions of the bodies of a state that has not been stepped.
 pub(super) fn starts(bodies: &[PlacedBody], state: &State) -> Starts {
     let place = |i: &u32| state.particles.poses[*i as usize].place();
+    let turned = |i: &u32| state.particles.poses[*i as usize].rotation();
     let placed = bodies.iter().map(|body| {
         let start = Start {
             places: body.particles.iter().map(place).collect(),
             centre: None,
-            turned: UnitQuaternion::identity(),
+            turned: body.particles.iter().map(turned).collect(),
         };
         (body.name.clone(), start)
     });
     let clumps = state.clumps.all.iter().map(|clump| {
         let template = state.clumps.template(clump);
         let mut places = vec![Vector3::zeros(); template.spheres.len()];
+        let mut turned = vec![UnitQuaternion::identity(); template.spheres.len()];
         for (sphere, &number) in template.file_number.iter().enumerate() {
-            places[number as usize] = template.pose(sphere, clump).place();
+            let pose = template.pose(sphere, clump);
+            places[number as usize] = pose.place();
+            turned[number as usize] = pose.rotation();
         }
         let start = Start {
             places,
             centre: Some(clump.place_m.into()),
-            turned: turned(clump, template),
+            turned,
         };
         (template.body.clone(), start)
     });
     placed.chain(clumps).collect()
-}
-
-/// Rotation of a clump relative to the file of its body.
-fn turned(clump: &Clump, template: &Template) -> UnitQuaternion<f64> {
-    rotation(clump.turned) * rotation(template.axes).inverse()
 }
 
 /// Centre of mass of the initial positions of the members, m. Members that did not exist then do
@@ -245,8 +244,10 @@ pub(super) fn turn(
         add(1.0 / p.motions[i].inverse_mass, since);
     }
     for (clump, template) in members.clumps(state, &state.clumps.all) {
-        let before = (starts.get(&template.body)).map_or(UnitQuaternion::identity(), |s| s.turned);
-        for sphere in template.spheres.iter() {
+        let start = starts.get(&template.body);
+        for (sphere, number) in template.spheres.iter().zip(template.file_number.iter()) {
+            let before = start.and_then(|start| start.turned.get(*number as usize));
+            let before = before.copied().unwrap_or_default();
             let now = rotation(clump.turned) * rotation(sphere.turned);
             add(sphere.mass_kg, numbers(&(now * before.inverse())));
         }
@@ -276,14 +277,14 @@ pub(super) fn turned_before(
     starts: &Starts,
     bodies: &[PlacedBody],
 ) -> BTreeMap<u32, UnitQuaternion<f64>> {
-    let turned = bodies.iter().filter_map(|body| {
-        let turned = starts.get(&body.name)?.turned;
-        (turned != UnitQuaternion::identity()).then_some((body, turned))
-    });
-    let particles = turned.flat_map(|(body, turned)| {
-        let own = body.particles.iter();
-        let own = own.filter(|i| members.particles.binary_search(i).is_ok());
-        own.map(move |&i| (i, turned))
-    });
-    particles.collect()
+    let known = bodies
+        .iter()
+        .filter_map(|body| Some((body, starts.get(&body.name)?)));
+    let particles = known.flat_map(|(body, start)| body.particles.iter().zip(&start.turned));
+    particles
+        .filter(|(i, turned)| {
+            **turned != UnitQuaternion::identity() && members.particles.binary_search(i).is_ok()
+        })
+        .map(|(i, turned)| (*i, *turned))
+        .collect()
 }

@@ -4,21 +4,22 @@ use dem_io::Result;
 use dem_io::body::histories::with_arrays;
 use dem_io::body::stored_frame::{
     BODY, BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, DENSITY, FAILED, FRAGMENT_ID, PARTICLE_ID,
-    RADIUS, VELOCITY,
+    RADIUS, RIGID, TURN, VELOCITY,
 };
-use dem_io::body::{JointBond, PlasticBond};
+use dem_io::body::{BondHistories, JointBond, PlasticBond, SummedBond};
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
 use super::walls::WallOutput;
 use crate::measure::{DynamicUtilisation, dynamic_utilisations, load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
+use crate::physics::rigid::rotation_vector;
 use crate::stages::totals::synchronous_motions;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clusters::fragments::fragment_masses_kg;
 use crate::state::events::REMOVED;
-use crate::state::stored_bonds::{joint_of, plastic_of};
+use crate::state::stored_bonds::{direction_of, joint_of, plastic_of, sum_of};
 
 /// Numbering in a frame: particles and bonds of all bodies, in the order of their files, followed
 /// by the spheres of clumps.
@@ -100,6 +101,7 @@ impl FrameOrder {
         let masses_kg = clusters.map(|clusters| fragment_masses_kg(clusters, p, &state.clumps));
         let mass = |i: usize| masses_kg.as_ref().map_or(0.0, |kg| kg[particle(i)]);
         let density = |i: usize| state.density_kg_m3(particle(i));
+        let turn = |i: usize| rotation_vector(p.poses[particle(i)].turned);
         let rigid = |i: usize| u32::from(particle(i) >= p.free);
         let mut arrays = vec![
             scalars(RADIUS, &radius),
@@ -109,18 +111,20 @@ impl FrameOrder {
             vectors("angular_velocity_rad_s", &spin),
         ];
         if self.changes {
-            arrays.push(counts("rigid", &rigid));
+            arrays.push(counts(RIGID, &rigid));
         } else {
             arrays.insert(3, vectors("displacement_m", &displacement));
         }
+        // With the densities, and rotations where there are bonds, a piece can be taken as a body.
         if clusters.is_some() {
-            // With these arrays a fragment can be extracted as a body.
             arrays.push(counts(FRAGMENT_ID, &cluster));
             arrays.push(scalars(DENSITY, &density));
             arrays.push(scalars("fragment_mass_kg", &mass));
-        } else if state.bonds.is_empty() {
-            // With this array the loose spheres can be taken as a body of known density.
+        } else {
             arrays.push(scalars(DENSITY, &density));
+        }
+        if !state.bonds.is_empty() {
+            arrays.push(vectors(TURN, &turn));
         }
         self.append(state, &arrays, walls, files)
     }
@@ -193,13 +197,17 @@ impl FrameOrder {
             bond_arrays.push(scalars("dynamic_increase_factor", &increase_factor));
             bond_arrays.push(scalars("dynamic_utilisation", &dynamic_utilisation));
         }
-        if state.clusters.is_some() {
-            bond_arrays.push(scalars(BOND_LENGTH, &length));
-        }
+        bond_arrays.push(scalars(BOND_LENGTH, &length));
         let poses = &state.particles.poses;
-        let (plastics, joints) = self.histories(state);
+        let found = self.histories(state);
         let body_names: Vec<&str> = state.model.bodies.iter().map(|b| b.name.as_str()).collect();
-        with_arrays(&plastics, &joints, |histories| {
+        let histories = BondHistories {
+            directions: &found.directions,
+            sums: &found.sums,
+            plastics: &found.plastics,
+            joints: &found.joints,
+        };
+        with_arrays(&histories, |histories| {
             let all: Vec<NamedArray<'_>> = bond_arrays.iter().chain(histories).copied().collect();
             let frame = Frame {
                 time_s: state.time_s,
@@ -215,29 +223,39 @@ impl FrameOrder {
         })
     }
 
-    /// Plastic deformation and elements of the bonds of the frame; none if no bond has any.
-    fn histories(&self, state: &State) -> (Vec<PlasticBond>, Vec<JointBond>) {
+    /// What the bonds of the frame have been through; of each kind none if no bond has any.
+    fn histories(&self, state: &State) -> Histories {
         let (bonds, poses) = (&state.bonds, &state.particles.poses);
-        let each = || {
-            self.bonds.iter().map(|&at| {
+        let each: Vec<(usize, bool)> = (self.bonds.iter())
+            .map(|&at| {
                 let [a, b] = bonds.ends[at as usize].map(|end| self.place_of[end as usize]);
                 (at as usize, a > b)
             })
-        };
-        let plastic = |(at, is_reversed)| plastic_of(bonds, at, poses, is_reversed);
-        let joint = |(at, is_reversed)| joint_of(bonds, at, poses, is_reversed);
-        let plastics = if bonds.plastics.is_empty() {
-            Vec::new()
-        } else {
-            each().map(plastic).collect()
-        };
-        let joints = if bonds.joints.is_empty() {
-            Vec::new()
-        } else {
-            each().map(joint).collect()
-        };
-        (plastics, joints)
+            .collect();
+        let known = |there: bool| if there { &each[..] } else { &[] };
+        Histories {
+            directions: (each.iter())
+                .map(|&(at, is_reversed)| direction_of(bonds, at, is_reversed))
+                .collect(),
+            sums: (known(!bonds.histories.is_empty()).iter())
+                .map(|&(at, is_reversed)| sum_of(bonds, at, is_reversed))
+                .collect(),
+            plastics: (known(!bonds.plastics.is_empty()).iter())
+                .map(|&(at, is_reversed)| plastic_of(bonds, at, poses, is_reversed))
+                .collect(),
+            joints: (known(!bonds.joints.is_empty()).iter())
+                .map(|&(at, is_reversed)| joint_of(bonds, at, poses, is_reversed))
+                .collect(),
+        }
     }
+}
+
+/// What the bonds of a frame have been through.
+struct Histories {
+    directions: Vec<[f64; 3]>,
+    sums: Vec<SummedBond>,
+    plastics: Vec<PlasticBond>,
+    joints: Vec<JointBond>,
 }
 
 fn scalars<'a>(name: &'a str, value: &'a dyn Fn(usize) -> f64) -> NamedArray<'a> {

@@ -31,7 +31,7 @@ use crate::state::bodies::PlacedBody;
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::order::spatial_order;
 use crate::state::particles::{Particles, Pose};
-use crate::state::stored_bonds::restore;
+use crate::state::stored_bonds::{restore, turn_particles};
 
 /// Largest rounding error of a coordinate as a fraction of a radius: with it, a strain of a
 /// thousandth is accurate to a thousandth.
@@ -82,15 +82,16 @@ pub(super) fn place_body(
         bonds.rules = scene.bonds.values().map(rule).collect();
     }
     let mut one = place_particles(scene, name, entry, body, particles)?;
+    let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
+    turn_particles(&mut particles.poses, body, &one, &rotation);
     let of_kind = entry.bond_kind.as_ref();
     let rule = of_kind.and_then(|kind| scene.bonds.keys().position(|known| known == kind));
     match (rule, of_kind.and_then(|kind| scene.bonds.get(kind))) {
         (Some(rule), Some(kind)) => {
             one.first_bond = bonds.len();
             let seed = (scene.run.seed, body_key(name, 0));
-            let rotation = UnitQuaternion::from_scaled_axis(Vector3::from(entry.rotation_rad));
             place_bonds(body, kind, rule, seed, particles, &mut one, bonds)
-                .and_then(|()| restore(bonds, body, &one, &rotation))
+                .and_then(|()| restore(bonds, body, &one, &particles.poses, &rotation))
                 .map_err(|error| within(error, scene, name, entry, |files| files.last()))?;
         }
         _ if !body.bonds.is_empty() && !stays_rigid(scene, name) => {

@@ -8,6 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::physics::bond::scatter::{body_key, strength_factor};
+use crate::physics::rotation::rotation;
 use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
@@ -339,6 +340,8 @@ fn change_bonds(state: &mut State, particles: &[u32], created: &mut [NewCluster]
             let ends = ends.map(|end| first + end);
             state.bonds.push_copy(&template.bonds, at, ends, factor);
         }
+        let turned = rotation(created.clump.turned) * rotation(template.axes).inverse();
+        state.bonds.turn_histories(created.first_bond, &turned);
     }
     bonds
 }

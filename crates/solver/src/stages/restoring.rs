@@ -11,6 +11,7 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::population::apply_topology_change;
+use crate::physics::rotation::rotation;
 use crate::shape::fit::best_rotation;
 use crate::shape::inertia::MassProperties;
 use crate::shape::outer_layer::{HIDDEN, outer_layer};
@@ -242,6 +243,8 @@ fn fragment_template(
         let ends = state.bonds.ends[at].map(|end| members.partition_point(|&m| m < end) as u32);
         own.push_copy(&state.bonds, at, ends, 1.0);
     }
+    // Summed loads, which are in the axes of space, turn with the clump from now on.
+    own.turn_histories(0, &rotation(properties.axes).inverse());
     let centres: Vec<[f64; 3]> = spheres.iter().map(|s| s.place_m).collect();
     let radii: Vec<f64> = spheres.iter().map(|s| s.radius_m).collect();
     Template {

@@ -290,6 +290,14 @@ impl Bonds {
         }
     }
 
+    /// Turns the histories of the bonds from `first` on, which are in the axes of space.
+    pub(crate) fn turn_histories(&mut self, first: usize, by: &UnitQuaternion<f64>) {
+        for history in self.histories.iter_mut().skip(first) {
+            history.shear_force = by * history.shear_force;
+            history.moment = by * history.moment;
+        }
+    }
+
     /// Softens bond `at`, whose rule has a fracture energy, to this damage, below 1.
     pub(crate) fn set_damage(&mut self, at: usize, damage: f64) {
         let known = &mut self.damages[at];
@@ -433,6 +441,14 @@ impl Bonds {
             block.levers_m[end][i] = bond.levers_m[end];
         }
         self.plastics[at] = bond.plastic;
+    }
+
+    /// Gives bond `at`, which has not yielded, this direction without load, a unit vector.
+    pub(crate) fn set_direction(&mut self, at: usize, direction: &Vector3<f64>) {
+        let (block, i) = (&mut self.blocks[at / BLOCK], at % BLOCK);
+        for (column, x) in block.direction.iter_mut().zip(direction.iter()) {
+            column[i] = *x;
+        }
     }
 
     /// The ends of bond `at`: those of its particles, which plastic deformation has turned.

@@ -1,16 +1,47 @@
-//! What bonds have been through, as files of bodies and frames hold it: plastic deformation and
-//! failed elements in the axes of the scene, each from the particle with the smaller number in the
+//! What bonds have been through, as files of bodies and frames hold it: summed loads, plastic
+//! deformation and elements of flat joints in the axes of the scene, directions without load in the
+//! axes of the particles before they turned; each from the particle with the smaller number in the
 //! file to the one with the larger.
 
-use dem_io::body::{Body, JointBond, PlasticBond};
+use dem_io::body::{Body, JointBond, PlasticBond, SummedBond};
 use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::PlacedBody;
 use super::bonds::Bonds;
 use super::particles::Pose;
-use crate::physics::bond::flat_joint::{FlatJointLaw, elements_from, first_edge};
+use crate::physics::bond::flat_joint::{Element, FlatJointLaw, elements_from, first_edge};
+use crate::physics::bond::incremental::History;
 use crate::physics::bond::plasticity::{PlasticDeformation, StressFree};
+use crate::physics::rigid::rotation_vector;
+use crate::physics::rotation::numbers;
+
+/// Direction of bond `at` without load. `is_reversed`: its particles have the opposite order in the
+/// file.
+pub(crate) fn direction_of(bonds: &Bonds, at: usize, is_reversed: bool) -> [f64; 3] {
+    (sign(is_reversed) * bonds.direction(at)).into()
+}
+
+/// Summed load of bond `at`, of a scene with incremental bonds.
+pub(crate) fn sum_of(bonds: &Bonds, at: usize, is_reversed: bool) -> SummedBond {
+    let History {
+        shear_force,
+        moment,
+    } = bonds.histories[at];
+    SummedBond {
+        shear_n: (sign(is_reversed) * shear_force).into(),
+        moment_n_m: (sign(is_reversed) * moment).into(),
+    }
+}
+
+fn sign(is_reversed: bool) -> f64 {
+    if is_reversed { -1.0 } else { 1.0 }
+}
+
+/// Two values in the order of the other end of the bond.
+fn ends_in_order<T>([a, b]: [T; 2], is_reversed: bool) -> [T; 2] {
+    if is_reversed { [b, a] } else { [a, b] }
+}
 
 /// Plastic deformation of bond `at`, of a scene in which bonds can yield. `is_reversed`: its
 /// particles have the opposite order in the file.
@@ -22,9 +53,10 @@ pub(crate) fn plastic_of(
 ) -> PlasticBond {
     let plastic = &bonds.plastics[at];
     let frame = bonds.frame_of(at, poses);
-    let sign = if is_reversed { -1.0 } else { 1.0 };
+    let sign = sign(is_reversed);
     let stored = |own: [f64; 3]| (sign * (frame * Vector3::from(own))).into();
     PlasticBond {
+        turns_rad: ends_in_order(plastic.turned.map(rotation_vector), is_reversed),
         elongation_m: plastic.elongation_m,
         slip_m: stored(plastic.slip_m),
         twist_rad: plastic.twist_rad,
@@ -43,31 +75,54 @@ pub(crate) fn joint_of(bonds: &Bonds, at: usize, poses: &[Pose], is_reversed: bo
     let edge = first_edge(&law, own, &bonds.direction(at));
     let is_broken = bonds.is_broken(at);
     let failed = own.iter().map(|element| is_broken || !element.is_bonded);
+    let frame = bonds.frame_of(at, poses);
+    let has_slid = |element: &&Element| element.slip_m != [0.0; 3];
+    let slips = own.iter().filter(|_| own.iter().any(|e| has_slid(&e)));
+    let slips = slips.map(|element| {
+        let slip = frame * Vector3::from(element.slip_m);
+        (sign(is_reversed) * slip).into()
+    });
     JointBond {
-        first_edge: (bonds.frame_of(at, poses) * edge).into(),
+        first_edge: (frame * edge).into(),
         failed: in_order(failed.collect(), &law, is_reversed),
+        slips_m: in_order(slips.collect(), &law, is_reversed),
     }
 }
 
-/// Flags of elements from the other end of the bond: their sectors follow each other the other way
+/// Values of elements from the other end of the bond: their sectors follow each other the other way
 /// round.
-fn in_order(mut flags: Vec<bool>, law: &FlatJointLaw, is_reversed: bool) -> Vec<bool> {
+fn in_order<T>(mut values: Vec<T>, law: &FlatJointLaw, is_reversed: bool) -> Vec<T> {
     if is_reversed {
-        let rings = flags.chunks_mut(law.circumferential_elements as usize);
-        rings.for_each(<[bool]>::reverse);
+        let rings = values.chunks_mut(law.circumferential_elements as usize);
+        rings.for_each(<[T]>::reverse);
     }
-    flags
+    values
+}
+
+/// Turns the particles of a body that has just been placed, with this rotation, as far as they have
+/// turned since its bonds were without load.
+pub(crate) fn turn_particles(
+    poses: &mut [Pose],
+    body: &Body,
+    placed: &PlacedBody,
+    rotation: &UnitQuaternion<f64>,
+) {
+    for (turn, &i) in body.turns_rad.iter().zip(&placed.particles) {
+        let since = UnitQuaternion::from_scaled_axis(Vector3::from(*turn));
+        poses[i as usize].turned = numbers(&(rotation * since));
+    }
 }
 
 /// Gives the bonds of a body that has just been placed, with this rotation, what they have been
 /// through.
 ///
 /// # Errors
-/// Their kind has no plasticity, or other elements.
+/// Their kind has no plasticity, other elements, or another formulation.
 pub(crate) fn restore(
     bonds: &mut Bonds,
     body: &Body,
     placed: &PlacedBody,
+    poses: &[Pose],
     rotation: &UnitQuaternion<f64>,
 ) -> Result<()> {
     for (n, &original) in placed.bonds.iter().enumerate() {
@@ -75,13 +130,48 @@ pub(crate) fn restore(
         let [a, _] = body.bonds[original];
         let is_reversed = placed.particles[a as usize] != bonds.ends[at][0];
         let within = |error: Diagnostic| error.within(&format!("bond {original}"));
+        if let Some(direction) = body.bond_directions.get(original) {
+            bonds.set_direction(
+                at,
+                &(sign(is_reversed) * Vector3::from(*direction).normalize()),
+            );
+        }
+        if let Some(sum) = body.bond_sums.get(original) {
+            load(bonds, at, sum, rotation, is_reversed).map_err(within)?;
+        }
         if let Some(plastic) = body.bond_plastics.get(original) {
-            deform(bonds, at, plastic, rotation, is_reversed).map_err(within)?;
+            deform(bonds, at, plastic, poses, rotation, is_reversed).map_err(within)?;
         }
         if let Some(joint) = body.bond_joints.get(original) {
-            fail(bonds, at, joint, rotation, is_reversed).map_err(within)?;
+            fail(bonds, at, joint, poses, rotation, is_reversed).map_err(within)?;
         }
     }
+    Ok(())
+}
+
+/// Gives a bond the load that it had summed.
+fn load(
+    bonds: &mut Bonds,
+    at: usize,
+    stored: &SummedBond,
+    rotation: &UnitQuaternion<f64>,
+    is_reversed: bool,
+) -> Result<()> {
+    if *stored == SummedBond::default() {
+        return Ok(());
+    }
+    if !bonds.rules[bonds.rule_of(at)].incremental {
+        return Err(Diagnostic::input(
+            "",
+            "its load was summed step by step, and its kind of bonds computes loads from positions",
+            "give it formulation = \"incremental\", or remove the arrays 'summed_...' from the file",
+        ));
+    }
+    let own = |stored: [f64; 3]| sign(is_reversed) * (rotation * Vector3::from(stored));
+    bonds.histories[at] = History {
+        shear_force: own(stored.shear_n),
+        moment: own(stored.moment_n_m),
+    };
     Ok(())
 }
 
@@ -89,6 +179,7 @@ fn deform(
     bonds: &mut Bonds,
     at: usize,
     stored: &PlasticBond,
+    poses: &[Pose],
     rotation: &UnitQuaternion<f64>,
     is_reversed: bool,
 ) -> Result<()> {
@@ -102,8 +193,11 @@ fn deform(
             "add a table plasticity to it, or remove the arrays 'plastic_...' from the file",
         ));
     }
-    let sign = if is_reversed { -1.0 } else { 1.0 };
-    let own = |stored: [f64; 3]| (sign * (rotation * Vector3::from(stored))).into();
+    let turns = ends_in_order(stored.turns_rad, is_reversed);
+    let turns = turns.map(|turn| UnitQuaternion::from_scaled_axis(Vector3::from(turn)));
+    bonds.plastics[at].turned = turns.map(|turn| numbers(&turn));
+    let to_frame = bonds.frame_of(at, poses).inverse() * rotation;
+    let own = |stored: [f64; 3]| (sign(is_reversed) * (to_frame * Vector3::from(stored))).into();
     let longer = 1.0 + stored.elongation_m / bonds.stress_free_length_m(at);
     let bond = StressFree {
         levers_m: bonds.levers_m(at).map(|lever| longer * lever),
@@ -114,7 +208,7 @@ fn deform(
             twist_rad: stored.twist_rad,
             bend_rad: own(stored.bend_rad),
             work_j: stored.work_j,
-            ..PlasticDeformation::NONE
+            turned: bonds.plastics[at].turned,
         },
     };
     bonds.set_stress_free(at, &bond);
@@ -125,6 +219,7 @@ fn fail(
     bonds: &mut Bonds,
     at: usize,
     stored: &JointBond,
+    poses: &[Pose],
     rotation: &UnitQuaternion<f64>,
     is_reversed: bool,
 ) -> Result<()> {
@@ -147,7 +242,8 @@ fn fail(
         ));
     };
     let direction = bonds.direction(at);
-    let edge = rotation * Vector3::from(stored.first_edge);
+    let to_frame = bonds.frame_of(at, poses).inverse() * rotation;
+    let edge = to_frame * Vector3::from(stored.first_edge);
     let across = edge - direction * direction.dot(&edge);
     let Some(edge) = across.try_normalize(1e-3) else {
         return Err(Diagnostic::input(
@@ -160,6 +256,10 @@ fn fail(
     let failed = in_order(own.to_vec(), &law, is_reversed);
     for (element, failed) in elements.iter_mut().zip(failed) {
         element.is_bonded = !failed;
+    }
+    let slips = stored.slips_m[..count.min(stored.slips_m.len())].to_vec();
+    for (element, slip) in elements.iter_mut().zip(in_order(slips, &law, is_reversed)) {
+        element.slip_m = (sign(is_reversed) * (to_frame * Vector3::from(slip))).into();
     }
     bonds.joints[at].elements = elements;
     Ok(())

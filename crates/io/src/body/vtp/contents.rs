@@ -40,6 +40,7 @@ struct OfFrame {
     clusters: Option<Vec<u32>>,
     densities: Option<Vec<f64>>,
     broken: Option<Vec<f64>>,
+    rigid: Option<Vec<u32>>,
     ids: Option<Vec<u32>>,
     bodies: Option<Vec<u32>>,
     velocities: Option<Vec<f64>>,
@@ -67,16 +68,19 @@ impl Contents {
         const OF_WALLS: u64 = 1 << 20;
         const OF_OTHER: u64 = 1 << 16;
         const OF_OTHER_PER_CELL: u64 = 1 << 10;
-        /// Elements of a flat joint.
-        const OF_HISTORY_PER_CELL: u64 = 10_000;
+        /// Elements of a flat joint, and vectors of them.
+        const OF_HISTORY_PER_CELL: u64 = 30_000;
         let counts = self.counts.unwrap_or_default();
         let others = counts.cells_before.saturating_add(counts.cells_after);
         let cells = counts.lines.saturating_add(others);
         match role {
-            Role::Positions | Role::Velocities => counts.points.saturating_mul(3),
-            Role::Radii | Role::Clusters | Role::Densities | Role::Ids | Role::Bodies => {
-                counts.points
-            }
+            Role::Positions | Role::Velocities | Role::Turns => counts.points.saturating_mul(3),
+            Role::Radii
+            | Role::Clusters
+            | Role::Densities
+            | Role::Ids
+            | Role::Bodies
+            | Role::Rigid => counts.points,
             Role::Connectivity => counts.lines.saturating_mul(2),
             Role::Offsets => counts.lines,
             Role::BondRadii | Role::BondLengths | Role::Damages | Role::Broken => cells,
@@ -142,6 +146,11 @@ impl Contents {
             }
             Role::Velocities => floats(array, values, [0, counts.points.saturating_mul(3), 0])
                 .map(|all| self.of_frame.velocities = Some(all)),
+            Role::Turns => floats(array, values, [0, counts.points.saturating_mul(3), 0])
+                .map(|all| self.parts.turns_rad = all.as_chunks().0.to_vec()),
+            Role::Rigid => {
+                particle_numbers(array, values, counts).map(|all| self.of_frame.rigid = Some(all))
+            }
             Role::Densities => floats(array, values, [0, counts.points, 0])
                 .map(|all| self.of_frame.densities = Some(all)),
             Role::Broken => {
@@ -260,6 +269,8 @@ impl Contents {
         let bonds = self.parts.bonds.len();
         Body::from_parts(Parts {
             radii,
+            bond_directions: self.histories.directions(bonds),
+            bond_sums: self.histories.sums(bonds),
             bond_plastics: self.histories.plastics(bonds),
             bond_joints: self.histories.joints(bonds),
             ..self.parts

@@ -25,6 +25,10 @@ pub(super) enum Layout {
 pub(super) enum Role {
     Positions,
     Radii,
+    /// Rotations of particles.
+    Turns,
+    /// Whether a particle of a frame is a sphere of a rigid clump.
+    Rigid,
     Connectivity,
     Offsets,
     BondRadii,
@@ -134,6 +138,7 @@ fn role_of(section: &str, name: &str) -> Role {
         ("Lines", "connectivity") => Role::Connectivity,
         ("Lines", "offsets") => Role::Offsets,
         ("PointData", RADIUS) => Role::Radii,
+        ("PointData", frame::TURN) => Role::Turns,
         ("CellData", BOND_RADIUS) => Role::BondRadii,
         ("CellData", BOND_LENGTH) => Role::BondLengths,
         ("CellData", frame::DAMAGE) => Role::Damages,
@@ -158,6 +163,8 @@ fn role_in_frame(section: &str, name: &str) -> Role {
         ("Lines", "connectivity") => Role::Connectivity,
         ("Lines", "offsets") => Role::Offsets,
         ("PointData", frame::RADIUS) => Role::Radii,
+        ("PointData", frame::TURN) => Role::Turns,
+        ("PointData", frame::RIGID) => Role::Rigid,
         ("PointData", frame::FRAGMENT_ID) => Role::Clusters,
         ("PointData", frame::DENSITY) => Role::Densities,
         ("PointData", frame::PARTICLE_ID) => Role::Ids,

@@ -1,5 +1,7 @@
 //! The data of a .vtp file as a frame of a run, its particles or its walls.
 
+use std::collections::BTreeMap;
+
 use super::{Contents, OfFrame};
 use crate::body::stored_frame::{self as frame, NO_FRAME, StoredFrame};
 use crate::body::stored_particles::StoredParticles;
@@ -7,6 +9,23 @@ use crate::body::stored_walls::StoredWalls;
 use crate::body::vtp::decode::DAMAGED;
 use crate::body::vtp::numbers::check_count;
 use crate::diagnostic::{Diagnostic, Result};
+use crate::disjoint::DisjointSets;
+
+/// For each particle the number of its piece, from 0 in the order of their first particles: what
+/// bonds join that are not broken.
+fn pieces(particles: usize, bonds: &[[u32; 2]], broken: &[bool]) -> Vec<u32> {
+    let mut sets = DisjointSets::new(particles);
+    for (&[a, b], _) in bonds.iter().zip(broken).filter(|(_, broken)| !**broken) {
+        sets.join(a, b);
+    }
+    let mut number_of: BTreeMap<u32, u32> = BTreeMap::new();
+    (0..particles as u32)
+        .map(|i| {
+            let next = number_of.len() as u32;
+            *number_of.entry(sets.root(i)).or_insert(next)
+        })
+        .collect()
+}
 
 impl Contents {
     /// The frame, if all data of its fragments were present.
@@ -16,8 +35,8 @@ impl Contents {
         let missing = |name: &str| {
             Diagnostic::input(
                 "",
-                format!("this frame has no fragments: there is no array '{name}'"),
-                "only frames of runs in which bodies break into fragments have it",
+                format!("no body can be made from this frame: there is no array '{name}'"),
+                "run the scene again with this version of dem-run, which writes it",
             )
         };
         let OfFrame {
@@ -25,13 +44,26 @@ impl Contents {
             clusters,
             densities,
             broken,
+            rigid,
             ..
         } = self.of_frame;
         let parts = self.parts;
         let bonds = parts.bonds.len();
+        let particles = parts.positions.len();
+        let broken = broken.ok_or_else(|| missing(frame::BROKEN))?;
+        let broken: Vec<bool> = broken.into_iter().map(|broken| broken != 0.0).collect();
+        // Where nothing can break, frames name no fragments.
+        let clusters = clusters.unwrap_or_else(|| pieces(particles, &parts.bonds, &broken));
+        let turns_rad = (!parts.turns_rad.is_empty()).then_some(parts.turns_rad);
         Ok(StoredFrame {
             time_s: time_s.ok_or_else(|| missing(frame::TIME))?,
-            clusters: clusters.ok_or_else(|| missing(frame::FRAGMENT_ID))?,
+            turns_rad,
+            clusters,
+            rigid: rigid
+                .unwrap_or_default()
+                .into_iter()
+                .map(|rigid| rigid != 0)
+                .collect(),
             positions: parts.positions,
             radii: self.radii.ok_or_else(|| missing(frame::RADIUS))?,
             densities_kg_m3: densities.ok_or_else(|| missing(frame::DENSITY))?,
@@ -42,11 +74,9 @@ impl Contents {
             bond_lengths: parts
                 .bond_lengths
                 .ok_or_else(|| missing(frame::BOND_LENGTH))?,
-            broken: broken
-                .ok_or_else(|| missing(frame::BROKEN))?
-                .into_iter()
-                .map(|broken| broken != 0.0)
-                .collect(),
+            bond_directions: self.histories.directions(bonds),
+            broken,
+            sums: self.histories.sums(bonds),
             damages: parts.bond_damages,
             plastics: self.histories.plastics(bonds),
             joints: self.histories.joints(bonds),
