@@ -81,6 +81,7 @@ pub use inlet::{FeedRate, Inlet};
 pub use load::Load;
 pub use material::Material;
 pub use measure::{Measure, Quantity, Statistic};
+pub use names::ALL;
 pub use outlet::Outlet;
 pub use output::{ColourBy, Output};
 pub use paths::text_of;

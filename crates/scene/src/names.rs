@@ -156,7 +156,7 @@ const OTHER_NAMES: [(&str, &[&str]); 28] = [
 ];
 
 /// All particles of the scene.
-pub(super) const ALL: &str = "all";
+pub const ALL: &str = "all";
 
 /// The fragments of bodies.
 pub(super) const FRAGMENTS: &str = "fragments";

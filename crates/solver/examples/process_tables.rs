@@ -236,10 +236,7 @@ fn write_ways(runs: &Runs) -> Result<(), Failed> {
                 if has_dif { "yes" } else { "no" }.to_owned(),
                 format!("{:.0} s", found.number("/processor_s")),
                 runs.broken(&found, OF_WAYS)?,
-                format!(
-                    "{:.0}",
-                    found.number("/fragments/count") + found.number("/population/discharged")
-                ),
+                format!("{:.0}", found.number("/fragments/count")),
                 found.sizes("cake"),
                 found.sizes("lump"),
                 found.left_with_the_product(),
@@ -531,7 +528,7 @@ fn write_minute(found: [&Run; 2]) -> Result<(), Failed> {
     row("bodies fed", &count("/population/fed"));
     row(
         "bodies and pieces inside at the end",
-        &count("/fragments/count"),
+        &count("/fragments/inside"),
     );
     row("their mass, over that of a mean body", &|run| {
         let inside_kg = run.flow_kg(|flow| flow["inside_kg"].as_f64().unwrap_or(f64::NAN));

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dem_io::units::significant;
-use dem_scene::{Measure, Quantity, Statistic};
+use dem_scene::{ALL, Measure, Quantity, Statistic};
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
 
@@ -67,7 +67,7 @@ pub struct Probe {
 #[derive(Debug, Default)]
 struct Common {
     motions: Motions,
-    /// Mass of every intact cluster, kg.
+    /// Mass of every cluster, kg.
     masses_kg: Vec<f64>,
     /// All bonds; broken ones are none.
     bonds: Vec<Option<DynamicUtilisation>>,
@@ -330,9 +330,7 @@ impl Probe {
                         .energy
                         .total()
             }),
-            Quantity::BrokenBonds => self.over_bonds(state, 0.0, |sum, at, _| {
-                sum + f64::from(u8::from(state.bonds.is_broken(at)))
-            }),
+            Quantity::BrokenBonds => self.broken_bonds(state),
             Quantity::LargestUtilisation => {
                 bonds::largest_utilisation(state, &members.marked(state))
             }
@@ -351,7 +349,8 @@ impl Probe {
             Quantity::Torque(k) => wall.map_or(f64::NAN, |w| 0.0 - w.total_load()[1][at(k)]),
             Quantity::Count => {
                 let clusters = state.clusters.as_ref();
-                clusters.map_or(f64::NAN, |c| c.living().count() as f64)
+                let gone = state.population.discharged.len();
+                clusters.map_or(f64::NAN, |c| (c.living().count() + gone) as f64)
             }
             Quantity::MassOfLargest => masses_kg.iter().copied().fold(0.0, f64::max),
             Quantity::MassFractionOfLargest => {
@@ -365,6 +364,20 @@ impl Probe {
             | Quantity::ContactOverlap
             | Quantity::ContactDuration => f64::NAN,
         }
+    }
+
+    /// Broken bonds since the start, those of what has left included.
+    fn broken_bonds(&self, state: &State) -> f64 {
+        if self.members.name == ALL {
+            return state.broken_count as f64;
+        }
+        let mut bodies = state.model.bodies.iter();
+        let body = bodies.position(|body| body.name == self.members.name);
+        let gone = body.and_then(|body| state.population.broken_gone.get(body));
+        let gone = gone.copied().unwrap_or(0) as f64;
+        self.over_bonds(state, gone, |sum, at, _| {
+            sum + f64::from(u8::from(state.bonds.is_broken(at)))
+        })
     }
 
     /// Value of a quantity of the spheres in a region, or of all of them.
@@ -548,11 +561,13 @@ impl Probe {
     }
 }
 
-/// Mass of every intact cluster, kg.
+/// Mass of every cluster, of what is inside and of what has left through outlets, kg.
 fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
     let Some(clusters) = &state.clusters else {
         return Vec::new();
     };
     let all = fragments(clusters, &state.particles, &state.clumps, None);
-    all.iter().map(|fragment| fragment.mass_kg).collect()
+    let gone = state.population.discharged.iter();
+    let gone = gone.map(|gone| gone.size.mass_kg);
+    all.iter().map(|one| one.mass_kg).chain(gone).collect()
 }

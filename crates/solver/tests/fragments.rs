@@ -6,6 +6,7 @@ mod files;
 mod pictures;
 mod resume;
 mod sizes;
+mod strained;
 
 use std::fmt::Write;
 use std::fs;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use dem_io::body::histories::with_arrays;
-use dem_io::body::{JointBond, PlasticBond, StoredFrame, read_frame};
+use dem_io::body::{BondHistories, JointBond, PlasticBond, StoredFrame, SummedBond, read_frame};
 use dem_io::body::{read_body, write_body};
 use dem_results::{Frame, NamedArray, Values, write_frame};
 use proptest::prelude::*;
@@ -26,10 +26,19 @@ fn stored() -> StoredFrame {
             1000.0,
             3000.0,
         ],
+        turns_rad: Some((0..6).map(|i| [0.01 * f64::from(i), 0.0, -0.02]).collect()),
         clusters: vec![7, 7, 3, 3, 5, 5],
+        rigid: Vec::new(),
         bonds: vec![[0, 1], [1, 2], [4, 5], [3, 2]],
         bond_radii: vec![1e-4, 2e-4, 3e-4, 4e-4],
         bond_lengths: vec![1.9e-3, 2e-3, 2e-3, 2.1e-3],
+        bond_directions: vec![
+            [1.0, 0.0, 0.0],
+            [0.6, 0.8, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.8, 0.0, -0.6],
+        ],
+        sums: Vec::new(),
         broken: vec![false, true, false, false],
         damages: Vec::new(),
         plastics: Vec::new(),
@@ -47,6 +56,7 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     let radius = |i: usize| frame.radii[i];
     let cluster = |i: usize| frame.clusters[i];
     let density = |i: usize| frame.densities_kg_m3[i];
+    let turn = |i: usize| frame.turns_rad.as_ref().unwrap()[i];
     let bond_radius = |bond: usize| frame.bond_radii[bond];
     let bond_length = |bond: usize| frame.bond_lengths[bond];
     let damage = |bond: usize| frame.damages[bond];
@@ -64,10 +74,19 @@ fn written(frame: &StoredFrame, without: &str) -> (TempDir, PathBuf) {
     if !frame.damages.is_empty() {
         of_bonds.push(array("damage", Values::Scalars(&damage)));
     }
+    if frame.turns_rad.is_some() {
+        of_particles.push(array("rotation_rad", Values::Vectors(&turn)));
+    }
     of_particles.retain(|array| array.name != without);
     of_bonds.retain(|array| array.name != without);
     let mut bytes = Vec::new();
-    with_arrays(&frame.plastics, &frame.joints, |histories| {
+    let histories = BondHistories {
+        directions: &frame.bond_directions,
+        sums: &frame.sums,
+        plastics: &frame.plastics,
+        joints: &frame.joints,
+    };
+    with_arrays(&histories, |histories| {
         let of_bonds: Vec<NamedArray<'_>> = of_bonds.iter().chain(histories).copied().collect();
         let frame = Frame {
             time_s: frame.time_s,
@@ -113,6 +132,8 @@ fn fragments_come_the_heaviest_first() {
 #[test]
 fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
     let body = stored().body(3).unwrap();
+    assert_eq!(body.turns_rad, [[0.02, 0.0, -0.02], [0.03, 0.0, -0.02]]);
+    assert_eq!(body.bond_directions, [[0.8, 0.0, -0.6]]);
     assert_eq!(body.positions, stored().positions[2..4]);
     assert_eq!(body.radii, [1e-3, 1.2e-3]);
     assert_eq!(body.bonds, [[0, 1]]);
@@ -123,6 +144,18 @@ fn a_fragment_is_a_body_with_its_bonds_and_their_lengths() {
     // Two materials have no common density.
     assert_eq!(stored().body(5).unwrap().about.particle_density_kg_m3, None);
     let folder = tempdir().unwrap();
+    let sheared = write_body(&body, &folder.path().join("body.csv")).unwrap_err();
+    assert!(sheared.problem.contains("bent, twisted or sheared"));
+    let path = folder.path().join("body.vtp");
+    write_body(&body, &path).unwrap();
+    assert_eq!(read_body(&path).unwrap(), body);
+    // At rest.
+    let body = dem_io::Body {
+        turns_rad: Vec::new(),
+        bond_directions: Vec::new(),
+        bond_lengths: vec![2e-3],
+        ..body
+    };
     for name in ["body.vtp", "body.csv", "body.data", "body.txt"] {
         let path = folder.path().join(name);
         write_body(&body, &path).unwrap();
@@ -145,6 +178,7 @@ fn plastic(much: f64) -> PlasticBond {
         twist_rad: -0.1 * much,
         bend_rad: [0.0, 0.2 * much, 0.3 * much],
         work_j: much,
+        turns_rad: [[0.0, 0.01 * much, 0.0], [0.02 * much, 0.0, 0.0]],
     }
 }
 
@@ -175,10 +209,34 @@ fn plastic_deformation_goes_with_the_bonds() {
 }
 
 #[test]
+fn summed_loads_go_with_the_bonds() {
+    let sum = |much: f64| SummedBond {
+        shear_n: [much, 0.0, -much],
+        moment_n_m: [0.0, 0.1 * much, 0.0],
+    };
+    let summed = StoredFrame {
+        sums: [0.0, 1.0, 2.0, 3.0].map(sum).to_vec(),
+        ..stored()
+    };
+    let (folder, path) = written(&summed, "");
+    let frame = read_frame(&path).unwrap();
+    assert_eq!(frame, summed);
+    let body = frame.body(3).unwrap();
+    assert_eq!(body.bond_sums, [sum(3.0)]);
+    assert_ne!(body.hash(), stored().body(3).unwrap().hash());
+    let file = folder.path().join("body.vtp");
+    write_body(&body, &file).unwrap();
+    assert_eq!(read_body(&file).unwrap(), body);
+}
+
+#[test]
 fn failed_elements_go_with_the_bonds() {
     let joint = |failed: [bool; 3]| JointBond {
         first_edge: [0.0, 0.6, 0.8],
         failed: failed.to_vec(),
+        slips_m: failed
+            .map(|failed| [0.0, 0.0, if failed { 1e-6 } else { 0.0 }])
+            .to_vec(),
     };
     let cracked = StoredFrame {
         joints: vec![
@@ -275,7 +333,6 @@ fn an_unknown_fragment_is_told_with_the_heaviest() {
 fn frames_without_fragments_and_other_files_are_refused() {
     for name in [
         "radius_m",
-        "fragment_id",
         "density_kg_m3",
         "bond_radius_m",
         "initial_length_m",
@@ -284,9 +341,27 @@ fn frames_without_fragments_and_other_files_are_refused() {
         let (_folder, path) = written(&stored(), name);
         let error = read_frame(&path).unwrap_err();
         assert_eq!(error.exit_code(), 2);
-        let said = format!("this frame has no fragments: there is no array '{name}'");
+        let said = format!("no body can be made from this frame: there is no array '{name}'");
         assert_eq!(error.problem, said);
         assert_eq!(error.place, path.display().to_string());
+    }
+    // Without fragments, what bonds join is one: bond 1, between 1 and 2, is broken.
+    let (_folder, path) = written(&stored(), "fragment_id");
+    assert_eq!(read_frame(&path).unwrap().clusters, [0, 0, 1, 1, 2, 2]);
+    // Without the form of the bonds, no body with bonds.
+    for name in ["rotation_rad", "initial_direction"] {
+        let mut frame = stored();
+        match name {
+            "rotation_rad" => frame.turns_rad = None,
+            _ => frame.bond_directions.clear(),
+        }
+        let (_folder, path) = written(&frame, "");
+        let said = read_frame(&path).unwrap().body(3).unwrap_err();
+        assert!(
+            said.problem
+                .contains("how the bonds of fragment 3 are bent"),
+            "{said}"
+        );
     }
     let mut frame = stored();
     frame.bonds[1] = [1, 6];
@@ -318,6 +393,10 @@ proptest! {
         let frame = StoredFrame {
             time_s: 0.0,
             positions: (0..count).map(|i| [f64::from(i), 0.5, -1.0]).collect(),
+            turns_rad: Some(vec![[0.0; 3]; clusters.len()]),
+            bond_directions: vec![[1.0, 0.0, 0.0]; bonds.len()],
+            rigid: Vec::new(),
+            sums: Vec::new(),
             radii: (0..count).map(|i| 0.1 + 0.01 * f64::from(i)).collect(),
             densities_kg_m3: vec![1000.0; clusters.len()],
             bond_radii: (0..bonds.len()).map(|bond| 0.1 + 0.001 * bond as f64).collect(),

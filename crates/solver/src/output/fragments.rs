@@ -30,22 +30,32 @@ const NAMED: usize = 8;
 /// Fragmentation of the bodies in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FragmentSummary {
-    /// Number of fragments at the end; an intact body is one.
+    /// Number of fragments, of those inside at the end and of those discharged; an intact body is
+    /// one.
     pub count: usize,
-    /// Mass fraction of the heaviest fragment.
+    /// Number of those inside at the end.
+    pub inside: usize,
+    /// Mass fraction of the heaviest of all.
     pub mass_fraction_of_largest: f64,
     /// Fragments that were found in pieces.
     pub splits: usize,
 }
 
 impl FragmentSummary {
-    /// From the `fragments` of the clusters.
-    pub fn new(clusters: &Clusters, fragments: &[Fragment]) -> Self {
+    /// From the `fragments` of the clusters, and what outlets have removed.
+    pub fn new(clusters: &Clusters, fragments: &[Fragment], discharged: &[Discharged]) -> Self {
         let ended = clusters.history.iter().filter(|c| c.ended_s.is_some());
+        let gone = discharged.iter().map(|gone| gone.size.mass_kg);
+        let masses_kg = fragments
+            .iter()
+            .map(|fragment| fragment.mass_kg)
+            .chain(gone);
         Self {
-            count: fragments.len(),
-            mass_fraction_of_largest: mass_fraction_of_largest(fragments),
-            splits: ended.count(),
+            count: fragments.len() + discharged.len(),
+            inside: fragments.len(),
+            mass_fraction_of_largest: mass_fraction_of_largest(masses_kg),
+            // What has left has ended, but not in pieces.
+            splits: ended.count().saturating_sub(discharged.len()),
         }
     }
 }

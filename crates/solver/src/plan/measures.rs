@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use dem_io::body::mass::BodyMass;
 use dem_io::{Diagnostic, Result};
-use dem_scene::{Measure, Quantity, Scene};
+use dem_scene::{ALL, Measure, Quantity, Scene};
 
 use crate::state::State;
 
@@ -12,7 +12,8 @@ use crate::state::State;
 pub(crate) const FEWEST_IN_HEAP: usize = 50;
 
 /// Refuses a force or a contact if nothing can touch, a contact between two groups with common
-/// particles, a slope of a heap of few particles, and bulking of what has no shape.
+/// particles, a slope of a heap of few particles, bulking of what has no shape, and broken bonds
+/// of a group whose particles can leave.
 ///
 /// # Errors
 /// Names the measure.
@@ -49,6 +50,14 @@ pub(super) fn refuse_valueless(
                 "name one body in \"of\", whose file says its shape_volume_m3 (a .vtp of dem-pack)",
             );
         }
+        if quantity == Quantity::BrokenBonds && loses_bonds(scene) && is_group(of, scene) {
+            return refuse(
+                format!(
+                    "\"{of}\" is a group, which forgets particles that leave or become rigid, and their broken bonds"
+                ),
+                "name a body in \"of\", or all",
+            );
+        }
         if let Some(with) = &measure.with
             && let Some(shared) = shared(of, with, scene, groups)
         {
@@ -67,6 +76,16 @@ pub(super) fn refuse_valueless(
         }
     }
     Ok(())
+}
+
+/// Whether bonds of this scene are removed while it runs.
+fn loses_bonds(scene: &Scene) -> bool {
+    let mut rules = scene.replacement.values();
+    !scene.outlets.is_empty() || rules.any(|rule| rule.restore.is_some())
+}
+
+fn is_group(of: &str, scene: &Scene) -> bool {
+    of != ALL && !scene.bodies.contains_key(of)
 }
 
 /// Human-readable description of what two objects of the scene have in common.

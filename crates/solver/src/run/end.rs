@@ -169,7 +169,9 @@ impl Run<'_> {
             damaged_bonds: state.bonds.count_damaged(),
             yielded_bonds: state.bonds.count_yielded(),
             sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
-            fragments: of_state.map(|(clusters, all)| FragmentSummary::new(clusters, all)),
+            fragments: of_state.map(|(clusters, all)| {
+                FragmentSummary::new(clusters, all, &state.population.discharged)
+            }),
             population: PopulationSummary::of(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
             sleep: state.sleep.as_ref().map(SleepSummary::of),

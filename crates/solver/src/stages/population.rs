@@ -78,7 +78,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     near.sort_unstable();
     state.clumps.set_near(near);
     state.particles = new;
-    let bonds = change_bonds(state, &particles, &mut created);
+    let bonds = change_bonds(state, &particles, &history, &mut created);
     let radii_m: Vec<f64> = old.poses.iter().map(Pose::radius_m).collect();
     count_anew(state, &particles, &radii_m, &bonds, &materials_of_new);
     if let Some(clusters) = &mut state.clusters {
@@ -299,8 +299,31 @@ fn push_cluster(template: &Template, clump: &Clump, new: &mut Particles) {
     new.free += template.spheres.len();
 }
 
+/// Counts the broken bonds that are removed, by their bodies.
+fn count_broken_gone(state: &mut State, bonds: &[u32], history: &[Cluster]) {
+    let of_body = &mut state.population.broken_gone;
+    of_body.resize(state.model.bodies.len(), 0);
+    let clusters = state.clusters.as_ref();
+    for at in (0..bonds.len()).filter(|&at| bonds[at] == REMOVED) {
+        if !state.bonds.is_broken(at) {
+            continue;
+        }
+        state.broken_removed += 1;
+        let end = state.bonds.ends[at][0] as usize;
+        let cluster = clusters.and_then(|clusters| history.get(clusters.of_particle[end] as usize));
+        if let Some(count) = cluster.and_then(|c| of_body.get_mut(c.body as usize)) {
+            *count += 1;
+        }
+    }
+}
+
 /// Bonds of remaining particles, and those of new clusters. Returns the new numbers.
-fn change_bonds(state: &mut State, particles: &[u32], created: &mut [NewCluster]) -> Vec<u32> {
+fn change_bonds(
+    state: &mut State,
+    particles: &[u32],
+    history: &[Cluster],
+    created: &mut [NewCluster],
+) -> Vec<u32> {
     let free = state.particles.free as u32;
     // Those of clumps and of removed particles are out of range.
     let now = |ends: [u32; 2]| ends.map(|end| particles[end as usize]);
@@ -315,8 +338,7 @@ fn change_bonds(state: &mut State, particles: &[u32], created: &mut [NewCluster]
         })
         .collect();
     if (count as usize) < bonds.len() {
-        let gone = (0..bonds.len()).filter(|&at| bonds[at] == REMOVED);
-        state.broken_removed += gone.filter(|&at| state.bonds.is_broken(at)).count() as u64;
+        count_broken_gone(state, &bonds, history);
         let old = std::mem::take(&mut state.bonds);
         state.bonds.rules.clone_from(&old.rules);
         for at in (0..old.len()).filter(|&at| bonds[at] != REMOVED) {

@@ -29,6 +29,9 @@ pub struct Population {
     pub next_particle_id: u32,
     /// What has left through outlets, in order.
     pub discharged: Vec<Discharged>,
+    /// For each body of the model its broken bonds that have left with it, or that are within
+    /// pieces that are rigid again. Empty: none.
+    pub broken_gone: Vec<u64>,
     /// Bodies that came through inlets.
     pub instances: u32,
     /// Clumps that became clusters.

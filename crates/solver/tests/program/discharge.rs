@@ -314,3 +314,117 @@ fn what_is_fed_is_what_left_and_what_is_inside() {
     let said = bench.good(&scene, &["--output", "out", "--resume"]);
     assert!(said.contains("flow.csv"), "{said}");
 }
+
+/// Three spinning pairs break at once; one of them has left when the run ends, and the halves of
+/// another are rigid again: measures count what the summary counts.
+#[test]
+fn measures_do_not_forget_what_has_left() {
+    let bench = Bench::new();
+    let pair = |name: &str, x_m: f64, speed: f64| {
+        format!(
+            "bodies.{name} = {{ particles = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 1e-3], [4e-3, 0, 0, 1e-3]], bond_list = [[0, 1], [1, 2]], material = \"rock\", bonds = \"{name}\", position = [{x_m}, 0, 0], velocity = [0, {speed}, 0], angular_velocity = [0, 0, 3000] }}
+             bonds.{name} = {{ young_modulus = 1e8, poisson_ratio = 0.25, failure = {{ tensile_strength = {} }} }}
+             measures.broken-{name} = {{ of = \"{name}\", quantity = \"broken_bonds\" }}\n",
+            if name == "stays" { 1e12 } else { 1e2 }
+        )
+    };
+    let scene = |end: &str| {
+        format!(
+            "version = 1
+             run = {{ end_time = \"{end}\" }}
+             materials.rock = {{ density = 2500, young_modulus = 1e8 }}
+             contacts.rock-rock = {{ restitution = 0.5 }}
+             {}{}{}
+             regions.box = {{ box = {{ min = [-1, -1, -1], max = [1, 0.03, 1] }} }}
+             outlets.gone = {{ outside = \"box\" }}
+             measures.broken = {{ quantity = \"broken_bonds\" }}
+             measures.pieces = {{ of = \"fragments\", quantity = \"count\" }}
+             measures.largest = {{ of = \"fragments\", quantity = \"mass_fraction_of_largest\" }}
+             measures.heaviest = {{ of = \"fragments\", quantity = \"mass_of_largest\" }}",
+            pair("goes", 0.0, 20.0),
+            pair("near", 0.1, 0.0),
+            pair("stays", 0.2, 0.0),
+        )
+    };
+    let run = |end: &str| -> Value {
+        let file = bench.write("scene.toml", scene(end));
+        serde_json::from_str(&bench.good(&file, &["--json", "--quiet"])).unwrap()
+    };
+    let results = run("5 ms");
+    let value = |name: &str| results["measures"][name]["value"].as_f64().unwrap();
+    assert!(results["population"]["discharged"].as_u64().unwrap() >= 2);
+    assert_eq!(results["broken_bonds"], 4);
+    assert_eq!(value("broken"), 4.0);
+    assert_eq!(
+        ["goes", "near", "stays"].map(|n| value(&format!("broken-{n}"))),
+        [2.0, 2.0, 0.0]
+    );
+    assert_eq!(value("pieces"), 7.0);
+    assert_eq!(results["fragments"]["count"], 7);
+    let gone = results["population"]["discharged"].as_u64().unwrap();
+    assert_eq!(results["fragments"]["inside"], 7 - gone);
+    assert!((value("largest") - 3.0 / 9.0).abs() < 1e-12);
+    let fraction = results["fragments"]["mass_fraction_of_largest"]
+        .as_f64()
+        .unwrap();
+    assert!((fraction - 3.0 / 9.0).abs() < 1e-12);
+    // A group of particles would forget them.
+    let group = format!(
+        "{}\ngroups.some = {{ body = \"goes\", particles = [0] }}\nmeasures.bad = {{ of = \"some\", quantity = \"broken_bonds\" }}",
+        scene("1 us")
+    );
+    let said = bench.bad(&bench.write("group.toml", group), &[], 2);
+    assert!(
+        said.contains("[measures.bad]: \"some\" is a group, which forgets"),
+        "{said}"
+    );
+}
+
+/// In every scene of the repository that has a measure of what breaks, it is what the summary says.
+#[test]
+fn measures_agree_with_the_summary_in_every_scene() {
+    use rayon::prelude::*;
+    let folder = super::root().join("data/scenes");
+    let mut scenes: Vec<_> = fs::read_dir(&folder)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    scenes.retain(|path| {
+        let text = fs::read_to_string(path).unwrap_or_default();
+        let asks = [
+            "\"broken_bonds\"",
+            "\"count\"",
+            "\"mass_fraction_of_largest\"",
+        ];
+        asks.iter().any(|quantity| text.contains(quantity)) && text.contains("[outlets")
+    });
+    assert!(scenes.len() >= 3, "{scenes:?}");
+    scenes.par_iter().for_each(|path| {
+        let bench = Bench::new();
+        let options = [
+            "--set",
+            "run.end_time=20 ms",
+            "--set",
+            "measures.broken-in-all.quantity=broken_bonds",
+            "--json",
+            "--quiet",
+            "--output",
+            "out",
+        ];
+        let results: Value = serde_json::from_str(&bench.good(path, &options)).unwrap();
+        let value = |name: &str| results["measures"][name]["value"].as_f64().unwrap();
+        assert_eq!(
+            value("broken-in-all"),
+            results["broken_bonds"].as_f64().unwrap(),
+            "{path:?}"
+        );
+        let text = fs::read_to_string(path).unwrap();
+        if text.contains("[measures.pieces]") {
+            assert_eq!(
+                value("pieces"),
+                results["fragments"]["count"].as_f64().unwrap(),
+                "{path:?}"
+            );
+        }
+    });
+}

@@ -88,13 +88,13 @@ impl fmt::Display for Summary {
         }
         if let Some(fragments) = &self.fragments {
             let discharged = self.population.as_ref().map_or(0, |p| p.discharged);
-            let (inside, mass) = match discharged {
-                0 => ("", "the mass"),
-                _ => (" left inside", "their mass"),
+            let inside = match discharged {
+                0 => String::new(),
+                _ => format!(", {} of them inside", fragments.inside),
             };
             writeln!(
                 f,
-                "fragments    {}{inside}, the largest {} of {mass}",
+                "fragments    {}{inside}, the largest {} of the mass",
                 fragments.count,
                 significant(fragments.mass_fraction_of_largest, 3)
             )?;

@@ -167,8 +167,8 @@ pub fn fragment(
 }
 
 /// Mass fraction of the heaviest fragment; 0 if there is none.
-pub fn mass_fraction_of_largest(fragments: &[Fragment]) -> f64 {
-    let total: f64 = fragments.iter().map(|f| f.mass_kg).sum();
-    let largest = fragments.iter().map(|f| f.mass_kg).fold(0.0, f64::max);
+pub fn mass_fraction_of_largest(masses_kg: impl Iterator<Item = f64> + Clone) -> f64 {
+    let total: f64 = masses_kg.clone().sum();
+    let largest = masses_kg.fold(0.0, f64::max);
     if total > 0.0 { largest / total } else { 0.0 }
 }
