@@ -2,6 +2,10 @@
 
 use dem_io::{Diagnostic, Result};
 
+/// Stack of each thread. Without optimisation, the loops over contacts in AVX-512 need more than the
+/// usual 2 MiB.
+const STACK_BYTES: usize = 32 << 20;
+
 /// Does the work on as many threads as wanted, 1 to 1024, or on all cores; it is told their number.
 ///
 /// # Errors
@@ -19,6 +23,7 @@ pub(super) fn in_pool(
     }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(wanted.unwrap_or(0))
+        .stack_size(STACK_BYTES)
         .build()
         .map_err(|error| {
             Diagnostic::failed(

@@ -28,7 +28,7 @@ use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness
 use crate::physics::bond::total::direction;
 use crate::shape::inertia::of_union;
 use crate::state::bodies::PlacedBody;
-use crate::state::bonds::{BondRule, Bonds};
+use crate::state::bonds::{BondRule, Bonds, moment_ratios, share_moment_ratios};
 use crate::state::order::spatial_order;
 use crate::state::particles::{Particles, Pose};
 use crate::state::stored_bonds::{restore, turn_particles};
@@ -314,6 +314,7 @@ fn place_bonds(
     let incremental = bonds.rules.iter().any(|rule| rule.incremental);
     let softens = |rule: &BondRule| rule.fracture_energy_j_m2.is_some();
     let any_softens = bonds.rules.iter().any(softens);
+    let mut ratios = bonds.moment_ratios_of(rule);
     for (ends, original) in sorted {
         placed.bonds.push(original);
         let original = original as usize;
@@ -340,6 +341,8 @@ fn place_bonds(
             kind.poisson_ratio,
         );
         check_bond(original, distance, &answer, particles, [a, b])?;
+        let own_ratios = moment_ratios(&answer, shape.radius_m);
+        check_ratios(original, ratios.get_or_insert(own_ratios), &own_ratios)?;
         bonds.push(
             ends,
             direction(&apart).into(),
@@ -467,6 +470,23 @@ fn check_bond(
     ))
 }
 
+/// Whether a bond of a body's file has the ratios of its stiffnesses in common with those of its
+/// kind.
+fn check_ratios(number: usize, of_kind: &[f64; 2], own: &[f64; 2]) -> Result<()> {
+    if share_moment_ratios(of_kind, own) {
+        return Ok(());
+    }
+    let [torsion, bending] = own.map(|ratio| significant(ratio, 4));
+    let [torsion_before, bending_before] = of_kind.map(|ratio| significant(ratio, 4));
+    Err(Diagnostic::input(
+        format!("bond {number}"),
+        format!(
+            "its torsional over its bending stiffness is {torsion}, and bending over normal stiffness and radius squared {bending}, where bonds of its kind have {torsion_before} and {bending_before}"
+        ),
+        "choose a model whose ratios do not vary from bond to bond, or give these bonds a kind of their own",
+    ))
+}
+
 fn model(model: SceneModel) -> BondModel {
     match model {
         SceneModel::Parallel {
@@ -585,4 +605,33 @@ fn damping(
         .into_iter()
         .fold(DampingCoefficients::default(), Add::add);
     all.into()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    /// A kind of bonds stores two ratios of stiffnesses for all of its bonds: a model whose ratios
+    /// vary is refused instead of computed with those of another bond.
+    #[test]
+    fn bonds_of_other_ratios_are_refused() {
+        let of = |torsion: f64, bending: f64| {
+            let stiffness = Stiffness {
+                normal: 1e6,
+                shear: 4e5,
+                torsion,
+                bending,
+                levers_m: [1e-3; 2],
+            };
+            moment_ratios(&stiffness, 1e-3)
+        };
+        let round = of(0.19, 0.25);
+        check_ratios(1, &round, &of(0.19 * (1.0 + 1e-12), 0.25)).unwrap();
+        check_ratios(1, &of(0.0, 0.0), &of(0.0, 0.0)).unwrap();
+        for other in [of(0.2, 0.25), of(0.19, 0.26), of(0.0, 0.0)] {
+            let said = check_ratios(7, &round, &other).unwrap_err().to_string();
+            assert!(said.starts_with("bond 7: its torsional over its bending"), "{said}");
+        }
+    }
 }

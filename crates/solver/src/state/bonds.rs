@@ -125,12 +125,37 @@ impl BondBlock {
 /// Ratio of the bending stiffness to the normal stiffness times the square of the radius: E I/L0 to
 /// E A/L0 of a round bond.
 const BENDING_OF_ROUND_BOND: f64 = 0.25;
+/// Largest relative difference between ratios of stiffnesses that counts as rounding.
+const SAME_RATIO: f64 = 1e-9;
 
 /// Bending stiffness of a bond, N m/rad, from its normal stiffness, N/m, and its rule's number in
 /// [`Bonds::bending_per_normal`].
 #[inline(always)]
 pub(crate) fn bending_stiffness<T: Number>(normal: T, radius_m: T, per_normal: f64) -> T {
     normal.scale(per_normal) * radius_m * radius_m
+}
+
+/// Ratio of torsional to bending stiffness of a bond, and of bending stiffness to normal stiffness
+/// times the square of the radius: those of its rule, which all of its bonds must share. 0 without
+/// moments.
+pub(crate) fn moment_ratios(stiffness: &Stiffness, radius_m: f64) -> [f64; 2] {
+    if stiffness.bending == 0.0 {
+        return [0.0; 2];
+    }
+    let of_round = stiffness.normal * radius_m * radius_m * BENDING_OF_ROUND_BOND;
+    let ratio = stiffness.bending / of_round;
+    // That of a solid section is not to depend on rounding.
+    let is_solid = (ratio - 1.0).abs() < SAME_RATIO;
+    [
+        stiffness.torsion / stiffness.bending,
+        BENDING_OF_ROUND_BOND * if is_solid { 1.0 } else { ratio },
+    ]
+}
+
+/// Whether bonds with these [`moment_ratios`] can share a rule.
+pub(crate) fn share_moment_ratios(one: &[f64; 2], other: &[f64; 2]) -> bool {
+    let mut pairs = one.iter().zip(other);
+    pairs.all(|(a, b)| (a - b).abs() <= SAME_RATIO * a.abs().max(b.abs()))
 }
 
 /// All bonds of a scene, sorted by their first particle and then by their second.
@@ -188,8 +213,15 @@ impl Bonds {
         self.blocks.reserve_exact(blocks - self.blocks.len());
     }
 
-    /// Adds a bond that follows the rule with this number. Bonds must be added in the order given
-    /// at [`Bonds`].
+    /// [`moment_ratios`] of the bonds that follow this rule. None: there are no such bonds.
+    pub(crate) fn moment_ratios_of(&self, rule: usize) -> Option<[f64; 2]> {
+        let mut runs = self.rule_runs.iter();
+        runs.any(|(_, of)| *of == rule)
+            .then(|| [self.torsion_per_bending[rule], self.bending_per_normal[rule]])
+    }
+
+    /// Adds a bond that follows the rule with this number, and has its [`moment_ratios`]. Bonds
+    /// must be added in the order given at [`Bonds`].
     pub fn push(
         &mut self,
         ends: [u32; 2],
@@ -219,18 +251,8 @@ impl Bonds {
             self.bending_per_normal
                 .resize(rule + 1, BENDING_OF_ROUND_BOND);
         }
-        if stiffness.bending == 0.0 {
-            self.torsion_per_bending[rule] = 0.0;
-            self.bending_per_normal[rule] = 0.0;
-        } else {
-            self.torsion_per_bending[rule] = stiffness.torsion / stiffness.bending;
-            let of_round = stiffness.normal * radius_m * radius_m * BENDING_OF_ROUND_BOND;
-            let ratio = stiffness.bending / of_round;
-            // That of a solid section is not to depend on rounding.
-            let is_solid = (ratio - 1.0).abs() < 1e-9;
-            self.bending_per_normal[rule] =
-                BENDING_OF_ROUND_BOND * if is_solid { 1.0 } else { ratio };
-        }
+        let ratios = moment_ratios(stiffness, radius_m);
+        [self.torsion_per_bending[rule], self.bending_per_normal[rule]] = ratios;
         let end = self.len();
         match self.rule_runs.last_mut() {
             Some((last, of)) if *of == rule => *last = end,

@@ -146,15 +146,32 @@ impl ContactKind {
     /// Energy of the attraction of ends that touch at rest, J: below 0, and part of the energy of
     /// the contact.
     pub(crate) fn adhesion_j(&self, touch: &ContactKinematics) -> f64 {
-        match &self.law {
-            Law::DerjaguinMullerToporov(law) => -law.attraction_n(touch) * touch.overlap_m,
-            Law::HertzMindlin(_) | Law::Linear(_) => 0.0,
+        struct Adhesion<'a>(&'a ContactKinematics);
+        impl ContactWork<f64> for Adhesion<'_> {
+            type Output = f64;
+
+            fn with(self, law: &impl NormalLaw<f64>, _: &impl RollingFriction<f64>) -> f64 {
+                if attracts(law) {
+                    law.adhesion_j(self.0)
+                } else {
+                    0.0
+                }
+            }
         }
+        self.with(|number| number, Adhesion(touch))
     }
 
     /// Whether ends that touch attract each other.
     pub(crate) fn attracts(&self) -> bool {
-        matches!(self.law, Law::DerjaguinMullerToporov(_))
+        struct Attracts;
+        impl ContactWork<f64> for Attracts {
+            type Output = bool;
+
+            fn with(self, law: &impl NormalLaw<f64>, _: &impl RollingFriction<f64>) -> bool {
+                attracts(law)
+            }
+        }
+        self.with(|number| number, Attracts)
     }
 
     /// The contact linearised: see [`linearised`].
@@ -173,4 +190,9 @@ impl ContactKind {
         }
         self.with(|number| number, Linearise(touch))
     }
+}
+
+/// Whether this law attracts.
+fn attracts<L: NormalLaw<f64>>(_: &L) -> bool {
+    L::ATTRACTS
 }

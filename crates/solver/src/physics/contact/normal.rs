@@ -25,7 +25,7 @@ pub struct NormalResponse<T = f64> {
 
 /// A law for the normal force, and the quantities that friction needs from it.
 pub trait NormalLaw<T: Number> {
-    /// Whether it attracts: other laws pay nothing for it.
+    /// Whether it attracts, by [`Self::attraction_n`]: other laws pay nothing for it.
     const ATTRACTS: bool = false;
 
     /// The contact now and, at the overlap of its history, a step of `dt`, s, before.
@@ -41,6 +41,13 @@ pub trait NormalLaw<T: Number> {
     #[inline(always)]
     fn attraction_n(&self, touch: &ContactKinematics<T>) -> T {
         touch.overlap_m.zero()
+    }
+
+    /// Energy of the attraction of ends that touch, J, part of the energy of the contact: below 0.
+    /// That of an attraction that does not depend on the overlap, unless a law has its own.
+    #[inline(always)]
+    fn adhesion_j(&self, touch: &ContactKinematics<T>) -> T {
+        -(self.attraction_n(touch) * touch.overlap_m)
     }
 
     /// Damping and friction of the pair.
