@@ -14,7 +14,8 @@ const LEAST_TEXT_PX: f64 = 10.0;
 /// Largest length of the scale bar, as a fraction of the width of the picture.
 const BAR: f64 = 0.20;
 
-/// Width of the bar of colours as a fraction of the width of the picture.
+/// Width of the bar of colours as a fraction of the width of the picture, unless the values at its
+/// ends need more.
 const COLOURS: f64 = 0.22;
 
 /// Units of length with their size, m.
@@ -94,7 +95,7 @@ pub fn colour_bar(image: &mut Image, name: &str, ends: [&str; 2], colour: &dyn F
     let size = text_px(image);
     let bottom = f64::from(image.height()) - 1.3 * size;
     let left = 1.1 * size;
-    let (width, height) = (COLOURS * f64::from(image.width()), 0.8 * size);
+    let (width, height) = (colours_px(image, ends), 0.8 * size);
     let columns = width as i64;
     for column in 0..columns {
         let colour = colour((column as f64 + 0.5) / columns as f64);
@@ -107,6 +108,13 @@ pub fn colour_bar(image: &mut Image, name: &str, ends: [&str; 2], colour: &dyn F
     let last = left + width - font::width(ends[1], size);
     font::write(image, ends[1], [last, above], size, INK);
     font::write(image, name, [left, above - 1.6 * size], size, INK);
+}
+
+/// Width of the bar of colours, px: wide enough for the values at its ends beside each other.
+fn colours_px(image: &Image, ends: [&str; 2]) -> f64 {
+    let size = text_px(image);
+    let [low, high] = ends.map(|end| font::width(end, size));
+    (COLOURS * f64::from(image.width())).max(low + high + size)
 }
 
 fn text_px(image: &Image) -> f64 {
@@ -162,6 +170,19 @@ mod tests {
         assert_eq!(text(7e3).as_deref(), Some("5 km"));
         for none in [f64::NAN, f64::INFINITY, 0.0, -1.0, 1e300] {
             assert_eq!(text(none), None);
+        }
+    }
+
+    #[test]
+    fn values_at_the_ends_of_the_colours_stand_beside_each_other() {
+        for (width, height) in [(1600, 1200), (800, 600), (300, 1200)] {
+            let image = Image::new(width, height, [255; 3]);
+            for ends in [["0", "1"], ["0", "0.0000123 kg"], ["-123.4", "123.4 /s"]] {
+                let size = text_px(&image);
+                let both = font::width(ends[0], size) + font::width(ends[1], size);
+                let width = colours_px(&image, ends);
+                assert!(width >= both + 0.9 * size, "{ends:?}: {width} {both}");
+            }
         }
     }
 }

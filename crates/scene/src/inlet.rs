@@ -8,7 +8,7 @@ use super::listing::Listing;
 use super::numbers::number;
 use super::region::Region;
 use super::replacement::{Replacement, parent_of};
-use super::schema::{Key, Kind, Schema, words_of};
+use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
 use super::tree::Value;
 use dem_io::diagnostic::Result;
@@ -27,9 +27,14 @@ pub(super) static INLET: Schema = Schema {
                 Kind::List(&Kind::Text("a name in [bodies]")),
                 Kind::Named("NAME", &Kind::Quantity(&NUMBER)),
             ]),
-            "`[\"NAME\", ...]`, equal numbers of each, or `{ NAME = 0.7, OTHER = 0.3 }`, proportions by number with any sum.",
+            "`[\"NAME\", ...]`, equal numbers of each, or `{ NAME = 0.7, OTHER = 0.3 }`, proportions with any sum, by number unless `shares_by` says otherwise.",
         )
         .required("[\"NAME\"], names in [bodies]"),
+        Key::word::<SharesBy>(
+            "shares_by",
+            "number",
+            "What the proportions of `bodies` are of: the numbers of bodies fed, or their masses, as in a feed by sieve classes.",
+        ),
         Key::text(
             "region",
             "a name in [regions]",
@@ -70,9 +75,11 @@ pub(super) static INLET: Schema = Schema {
 /// Feeds bodies during the run. The bodies that it names are not in the scene at the start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inlet {
-    /// `bodies`: names of `[bodies]`, each once, with their proportions by number: more than 0,
-    /// with any sum. All 1 unless given. At least one.
+    /// `bodies`: names of `[bodies]`, each once, with their proportions: more than 0, with any sum.
+    /// All 1 unless given. At least one.
     pub bodies: Vec<(String, f64)>,
+    /// `shares_by`: what these are proportions of.
+    pub shares_by: SharesBy,
     /// `region`: a name of `[regions]`, in which the centres of new bodies are placed at random.
     pub region: String,
     /// `rate` or `mass_rate`
@@ -89,6 +96,20 @@ pub struct Inlet {
     pub end_s: f64,
     /// `count`: largest number of bodies. None: no limit. At least 1.
     pub count: Option<u32>,
+}
+
+/// What the proportions of an inlet's bodies are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SharesBy {
+    /// "number"
+    Number,
+    /// "mass"
+    Mass,
+}
+
+impl Word for SharesBy {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("number", Self::Number), ("mass", Self::Mass)];
 }
 
 /// Feed rate of an inlet.
@@ -140,6 +161,7 @@ fn read(
     }
     Ok(Inlet {
         bodies: fractions(&named, bodies)?,
+        shares_by: table.read("shares_by")?,
         region: table.need("region")?.reference(regions.keys(), "regions")?,
         rate: rate(&table)?,
         velocity_m_s: table.read("velocity")?,
@@ -246,6 +268,7 @@ pub(super) fn list(inlet: &Inlet, listing: &mut Listing) {
     let fraction = |(body, fraction): &(String, f64)| format!("{body}: {}", number(*fraction));
     let fractions: Vec<String> = inlet.bodies.iter().map(fraction).collect();
     listing.text("bodies", fractions.join(", "));
+    listing.value("shares_by", &inlet.shares_by);
     listing.text("region", &inlet.region);
     match inlet.rate {
         FeedRate::Number(rate) => listing.value("rate", &rate),

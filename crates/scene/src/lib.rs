@@ -77,7 +77,7 @@ pub use fall::Fall;
 pub use group::{ParticleGroup, Pick};
 pub use include::{include_text, material_text, set_text, written_value};
 pub use initial::Initial;
-pub use inlet::{FeedRate, Inlet};
+pub use inlet::{FeedRate, Inlet, SharesBy};
 pub use load::Load;
 pub use material::Material;
 pub use measure::{Measure, Quantity, Statistic};

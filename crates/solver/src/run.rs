@@ -28,6 +28,7 @@ use crate::step::{advance, interact};
 
 use self::begin::Run;
 pub use self::finish::{Finished, finish};
+pub(crate) use self::observe::INTERRUPTION;
 pub use self::outcome::Outcome;
 pub use self::progress::Progress;
 pub use self::settings::{RunSettings, SoFar};

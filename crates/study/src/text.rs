@@ -18,7 +18,7 @@ const MOST_LINES: usize = 20;
 
 /// The table with one line for each run: comma-separated, texts in quotes where needed. A parameter
 /// whose values are numbers in one unit, and have no names, is a number, with the unit in the name
-/// of its column.
+/// of its column; so are values and references of measures.
 pub fn csv(table: &SweepTable) -> String {
     let mut columns = vec!["run".to_owned()];
     columns.extend(table.axes.iter().map(heading));
@@ -26,10 +26,12 @@ pub fn csv(table: &SweepTable) -> String {
         columns.push(name.to_owned());
     }
     for measure in &table.measures {
-        columns.push(format!("{}_value", measure.name));
+        let named = |part: &str| format!("{}_{part}", measure.name);
+        columns.push(with_unit(&named("value"), &measure.unit));
         if measure.reference.is_some() {
-            let parts = OF_ERROR.map(|part| format!("{}_{part}", measure.name));
-            columns.extend(parts);
+            let [reference, others @ ..] = OF_ERROR.map(named);
+            columns.push(with_unit(&reference, &measure.unit));
+            columns.extend(others);
         }
     }
     columns.extend(["verdict", "failed"].map(str::to_owned));

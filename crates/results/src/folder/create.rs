@@ -22,12 +22,11 @@ pub enum Existing {
 }
 
 impl ResultsFolder {
-    /// Makes the folder `path` or uses the existing one, and checks that it can be written to.
+    /// Makes the folder `path`, with those that it is in, or uses the existing one, and checks that it can be written to.
     ///
     /// # Errors
     /// It is not empty, by `existing`; there is none to continue; another run is writing into it
-    /// (all exit code 2). Its parent is missing, a file has its name, no permission to write in it
-    /// (all exit code 1).
+    /// (all exit code 2). A file has its name, no permission to write in it (both exit code 1).
     pub fn create(path: &Path, existing: Existing) -> Result<Self> {
         if existing != Existing::Continue {
             make_folder(path)?;

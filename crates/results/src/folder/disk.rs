@@ -8,8 +8,11 @@ use super::lock::LOCK;
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::safe_write::explain;
 
-/// Makes a folder unless it exists. Its parent must exist.
+/// Makes a folder, with those that it is in, unless it exists.
 pub(super) fn make_folder(path: &Path) -> Result<()> {
+    if let Some(parent) = path.parent().filter(|parent| !parent.exists()) {
+        fs::create_dir_all(parent).map_err(|error| explain(parent, &error))?;
+    }
     match fs::create_dir(path) {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {

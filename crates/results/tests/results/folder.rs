@@ -110,9 +110,8 @@ fn force_removes_what_a_run_wrote_and_nothing_else() {
 fn folders_that_cannot_be() {
     let parent = tempdir().unwrap();
     for existing in [Existing::Refuse, Existing::Replace] {
-        let error = ResultsFolder::create(&parent.path().join("a/out"), existing).unwrap_err();
-        assert_eq!(error.exit_code(), 1);
-        assert!(error.problem.starts_with("there is no folder '"), "{error}");
+        // The folders that it is in are made.
+        drop(ResultsFolder::create(&parent.path().join("a/b/out"), existing).unwrap());
         let file = parent.path().join("file");
         fs::write(&file, "").unwrap();
         let error = ResultsFolder::create(&file, existing).unwrap_err();

@@ -2,7 +2,7 @@
 
 use dem_scene::{
     ClumpMass, ClumpSettings, CountedEnergy, Daughters, FeedRate, Inlet, Outlet, Region,
-    Replacement, Restore, SizeClass, StartAs,
+    Replacement, Restore, SharesBy, SizeClass, StartAs,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -163,6 +163,7 @@ fn inlets_and_outlets() {
         scene.inlets["feed"],
         Inlet {
             bodies: vec![("rock".to_owned(), 3.0), ("cake".to_owned(), 0.5)],
+            shares_by: SharesBy::Mass,
             region: "gate".to_owned(),
             rate: FeedRate::Number(4.0),
             velocity_m_s: [3.0, 0.0, 0.0],
@@ -180,6 +181,7 @@ fn inlets_and_outlets() {
     assert_near(rate, 1.0);
     let usual = Inlet {
         bodies: vec![("cake".to_owned(), 1.0)],
+        shares_by: SharesBy::Number,
         region: "gate".to_owned(),
         rate: second.rate,
         velocity_m_s: [0.0; 3],

@@ -14,7 +14,7 @@ pub(super) struct NewFolder {
 }
 
 impl NewFolder {
-    /// Makes a folder, or takes an empty one. `option`: the option that names it.
+    /// Makes a folder, with those that it is in, or takes an empty one. `option`: the option that names it.
     ///
     /// # Errors
     /// It is not empty, is no folder, or cannot be made.
@@ -26,7 +26,7 @@ impl NewFolder {
         };
         let is_made = !path.exists();
         if is_made {
-            fs::create_dir(path).map_err(|error| dem_io::safe_write::explain(path, &error))?;
+            fs::create_dir_all(path).map_err(|error| dem_io::safe_write::explain(path, &error))?;
         } else {
             match fs::read_dir(path).map(|mut entries| entries.next().is_none()) {
                 Ok(true) => {}

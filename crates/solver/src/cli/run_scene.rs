@@ -27,7 +27,8 @@ use crate::output::summary::Unfinished;
 use crate::plan::{Plan, plan};
 use crate::run::snapshot::Snapshot;
 use crate::run::{
-    Finished, Outcome, RunSettings, SoFar, finish, run as run_plan, run_as_far_as_it_goes,
+    Finished, INTERRUPTION, Outcome, RunSettings, SoFar, finish, run as run_plan,
+    run_as_far_as_it_goes,
 };
 use crate::threads::keep_awake;
 
@@ -274,7 +275,7 @@ fn say_outcome(arguments: &RunArguments, outcome: Outcome) -> Result<()> {
     let summary = &outcome.summary;
     if arguments.scene.json {
         write_standard_json(summary)?;
-    } else if !arguments.quiet && outcome.problem.is_none() {
+    } else if !arguments.quiet && (outcome.problem.is_none() || summary.ended_by == INTERRUPTION) {
         let mut text = summary.to_string();
         if summary.results.is_none() {
             text += "no files written: add --output FOLDER to keep the results\n";

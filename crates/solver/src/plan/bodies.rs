@@ -631,7 +631,10 @@ mod tests {
         check_ratios(1, &of(0.0, 0.0), &of(0.0, 0.0)).unwrap();
         for other in [of(0.2, 0.25), of(0.19, 0.26), of(0.0, 0.0)] {
             let said = check_ratios(7, &round, &other).unwrap_err().to_string();
-            assert!(said.starts_with("bond 7: its torsional over its bending"), "{said}");
+            assert!(
+                said.starts_with("bond 7: its torsional over its bending"),
+                "{said}"
+            );
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use dem_io::body::About;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
-use dem_scene::{FeedRate, Region as SceneRegion, Scene, StartAs};
+use dem_scene::{FeedRate, Region as SceneRegion, Scene, SharesBy, StartAs};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::daughters::{compliances, daughter_rules};
@@ -36,7 +36,6 @@ pub(super) fn rules(
         regions.push(region(entry).map_err(|error| error.within(&place))?);
     }
     let number = |name: &String| scene.regions.keys().position(|known| known == name);
-    let template_of = |name: &str| templates.iter().position(|t| t.body == name);
     let triggers = templates.iter().map(|template| {
         let rule = scene.replacement.get(&template.body)?;
         let becomes_cluster = rule.daughters.is_none();
@@ -79,25 +78,19 @@ pub(super) fn rules(
             turned: numbers(&turned),
         }
     });
-    let inlets = scene.inlets.iter().map(|(name, inlet)| {
-        let sum: f64 = inlet.bodies.iter().map(|(_, fraction)| fraction).sum();
-        let templates = inlet.bodies.iter();
-        let templates = templates
-            .filter_map(|(name, fraction)| Some((template_of(name)? as u32, fraction / sum)));
-        Inlet {
-            name: name.clone(),
-            templates: templates.collect(),
-            region: number(&inlet.region).unwrap_or(0),
-            feed: match inlet.rate {
-                FeedRate::Number(per_s) => Feed::Number(per_s),
-                FeedRate::Mass(kg_s) => Feed::Mass(kg_s),
-            },
-            velocity_m_s: inlet.velocity_m_s,
-            spin_rad_s: inlet.angular_velocity_rad_s,
-            random_orientation: inlet.random_orientation,
-            between_s: [inlet.start_s, inlet.end_s],
-            count: inlet.count.unwrap_or(u32::MAX),
-        }
+    let inlets = scene.inlets.iter().map(|(name, inlet)| Inlet {
+        name: name.clone(),
+        templates: shares_by_number(inlet, templates),
+        region: number(&inlet.region).unwrap_or(0),
+        feed: match inlet.rate {
+            FeedRate::Number(per_s) => Feed::Number(per_s),
+            FeedRate::Mass(kg_s) => Feed::Mass(kg_s),
+        },
+        velocity_m_s: inlet.velocity_m_s,
+        spin_rad_s: inlet.angular_velocity_rad_s,
+        random_orientation: inlet.random_orientation,
+        between_s: [inlet.start_s, inlet.end_s],
+        count: inlet.count.unwrap_or(u32::MAX),
     });
     let outlets = scene.outlets.iter().map(|(name, outlet)| Outlet {
         name: name.clone(),
@@ -273,6 +266,24 @@ fn sleep_doubt(scene: &Scene) -> Option<String> {
             significant(turning_s, 4)
         )
     })
+}
+
+/// The templates of an inlet's bodies and their shares by number, whose sum is 1.
+fn shares_by_number(inlet: &dem_scene::Inlet, templates: &[Arc<Template>]) -> Vec<(u32, f64)> {
+    let share = |(name, share): &(String, f64)| {
+        let template = templates.iter().position(|t| t.body == *name)?;
+        let by_number = match inlet.shares_by {
+            SharesBy::Number => *share,
+            SharesBy::Mass => share / templates[template].mass_kg,
+        };
+        Some((template as u32, by_number))
+    };
+    let mut shares: Vec<(u32, f64)> = inlet.bodies.iter().filter_map(share).collect();
+    let sum: f64 = shares.iter().map(|(_, share)| share).sum();
+    for (_, share) in &mut shares {
+        *share /= sum;
+    }
+    shares
 }
 
 /// An inlet that starts too late, whose bodies are removed immediately, or have to wait.

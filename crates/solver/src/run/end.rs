@@ -6,7 +6,7 @@ use dem_results::write_json;
 use super::begin::Run;
 use super::events::{write_breaks_between, write_sleep, write_zones};
 use super::finish::End;
-use super::observe::{AT_END_TIME, Ended};
+use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
 use super::past_outlets::past_outlets;
 use crate::laboratory::evaluate::TestResult;
@@ -65,7 +65,13 @@ impl Run<'_> {
                 problem: ended.problem,
             });
         };
-        if ended.problem.is_some() {
+        if ended.by == INTERRUPTION {
+            // Of what has been simulated; its film goes on with the run.
+            let mut end = End::of(&summary)?;
+            let at_end = (&self.state, summary.simulated_s);
+            end.write_tables(folder, self.scene, at_end, &self.probes)?;
+            end.write(folder, &self.probes, None)?;
+        } else if ended.problem.is_some() {
             let end = End::of(&summary)?;
             end.write_page(folder)?;
             end.write_summary(folder)?;

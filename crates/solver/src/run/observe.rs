@@ -34,6 +34,8 @@ const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
 /// Why a run ended that went on to its end time.
 pub(super) const AT_END_TIME: &str = "end time";
+/// By which a run has ended that was asked to end.
+pub(crate) const INTERRUPTION: &str = "interruption";
 
 /// Interval between checks of bending and twisting of bonds, in steps: each check costs about five
 /// times as much as the bonds of a step.
@@ -174,7 +176,7 @@ impl Run<'_> {
         }
         if interrupted {
             let problem = interruption(&self.state, self.files.as_ref());
-            let by = "interruption";
+            let by = INTERRUPTION;
             let balance = balance(&mut self.state);
             let problem = Some(problem);
             return Ok(Some(Ended {

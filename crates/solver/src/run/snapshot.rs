@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
 use crate::measure;
+use crate::stages::lanes::instructions;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 
@@ -22,6 +23,8 @@ pub struct Snapshot<'a> {
     scene: String,
     /// See [`fingerprint`].
     fingerprint: u64,
+    /// Vector instructions of the processor that it ran on.
+    instructions: String,
     /// The state, without its model and without what can be rebuilt.
     state: Cow<'a, State>,
     /// Particles and bonds of each body.
@@ -45,6 +48,7 @@ impl<'a> Snapshot<'a> {
         Self {
             scene,
             fingerprint,
+            instructions: instructions().to_owned(),
             state: Cow::Borrowed(state),
             bodies: Cow::Borrowed(bodies),
             measures,
@@ -157,7 +161,9 @@ impl<'a> Snapshot<'a> {
         let planned = std::mem::take(&mut state.model);
         let restored = self.state.clone().into_owned();
         let restored = restored.rebuilt(planned, state.scratch.threads);
-        *state = restored.filter(|_| is_same).ok_or_else(other_bodies)?;
+        let of_run = &self.instructions;
+        *state =
+            (restored.filter(|_| is_same)).ok_or_else(|| other_bodies(of_run, instructions()))?;
         if state.levels.is_some() != state.model.levels.is_some() {
             return Err(other_levels());
         }
@@ -174,7 +180,17 @@ fn other_levels() -> Diagnostic {
     )
 }
 
-fn other_bodies() -> Diagnostic {
+/// `of_run`, `here`: the vector instructions of both processors.
+fn other_bodies(of_run: &str, here: &str) -> Diagnostic {
+    if of_run != here {
+        return Diagnostic::input(
+            "",
+            format!(
+                "this checkpoint was written on a processor with {of_run}, and this one has {here}: static equilibria and rate = \"auto\" differ in their last digits, or the run had other bodies, bonds or walls"
+            ),
+            "go on on such a processor, or start again without --resume",
+        );
+    }
     Diagnostic::input(
         "",
         "this checkpoint belongs to a run with other bodies, bonds or walls than the scene has now",
@@ -198,4 +214,23 @@ fn fault(error: &postcard::Error) -> Diagnostic {
         error.to_string(),
         "this is a fault of the program",
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::other_bodies;
+
+    #[test]
+    fn another_processor_is_named() {
+        let said = other_bodies("AVX-512", "AVX2").to_string();
+        assert!(
+            said.contains("written on a processor with AVX-512, and this one has AVX2"),
+            "{said}"
+        );
+        let said = other_bodies("AVX2", "AVX2").to_string();
+        assert!(
+            said.starts_with("this checkpoint belongs to a run with other bodies"),
+            "{said}"
+        );
+    }
 }

@@ -25,6 +25,20 @@ pub(super) fn next_of(bits: &mut u32) -> usize {
     lowest
 }
 
+/// The vector instructions of this processor that the program uses.
+pub(crate) fn instructions() -> &'static str {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if pulp::x86::V4::try_new().is_some() {
+            return "AVX-512";
+        }
+        if pulp::x86::V3::try_new().is_some() {
+            return "AVX2";
+        }
+    }
+    "neither AVX-512 nor AVX2"
+}
+
 /// Does the work with up to four lanes. The results are the same, bit for bit, for any number.
 pub(super) fn with_lanes(work: impl LaneWork) {
     #[cfg(target_arch = "x86_64")]

@@ -216,8 +216,12 @@ impl Bonds {
     /// [`moment_ratios`] of the bonds that follow this rule. None: there are no such bonds.
     pub(crate) fn moment_ratios_of(&self, rule: usize) -> Option<[f64; 2]> {
         let mut runs = self.rule_runs.iter();
-        runs.any(|(_, of)| *of == rule)
-            .then(|| [self.torsion_per_bending[rule], self.bending_per_normal[rule]])
+        runs.any(|(_, of)| *of == rule).then(|| {
+            [
+                self.torsion_per_bending[rule],
+                self.bending_per_normal[rule],
+            ]
+        })
     }
 
     /// Adds a bond that follows the rule with this number, and has its [`moment_ratios`]. Bonds
@@ -252,7 +256,10 @@ impl Bonds {
                 .resize(rule + 1, BENDING_OF_ROUND_BOND);
         }
         let ratios = moment_ratios(stiffness, radius_m);
-        [self.torsion_per_bending[rule], self.bending_per_normal[rule]] = ratios;
+        [
+            self.torsion_per_bending[rule],
+            self.bending_per_normal[rule],
+        ] = ratios;
         let end = self.len();
         match self.rule_runs.last_mut() {
             Some((last, of)) if *of == rule => *last = end,

@@ -68,6 +68,39 @@ fn a_rate_by_number_is_kept_between_start_and_end() {
     assert_eq!(state.population.inlets[0].bodies, 7);
 }
 
+/// Shares by mass become shares by number: each over the mass of a body.
+#[test]
+fn shares_by_mass_are_those_of_the_mass_that_is_fed() {
+    let bodies = format!("{BALL}{}{WIDE}", lump("lump", "start_as = \"clump\""));
+    let fed_kg = |shares: &str| {
+        let inlet = format!("bodies = {{ ball = 1, lump = 3 }}\n{shares}rate = 20000\n");
+        let mut state = fed(&bodies, &inlet);
+        run_to(&mut state, 0.1);
+        let of_lump = state
+            .clumps
+            .templates
+            .iter()
+            .find(|t| t.body == "lump")
+            .unwrap();
+        let lumps = state.clumps.all.len() as f64;
+        let balls = state.particles.free as f64;
+        let ball = state
+            .clumps
+            .templates
+            .iter()
+            .find(|t| t.body == "ball")
+            .unwrap();
+        (balls * ball.mass_kg, lumps * of_lump.mass_kg, lumps / balls)
+    };
+    let (balls_kg, lumps_kg, _) = fed_kg("shares_by = \"mass\"\n");
+    assert!(
+        (lumps_kg / balls_kg / 3.0 - 1.0).abs() < 0.15,
+        "{lumps_kg} {balls_kg}"
+    );
+    let (_, _, by_number) = fed_kg("");
+    assert!((by_number / 3.0 - 1.0).abs() < 0.15, "{by_number}");
+}
+
 #[test]
 fn a_rate_by_mass_is_kept_to_a_body() {
     let bodies = format!("{BALL}{}{WIDE}", lump("lump", "start_as = \"clump\""));

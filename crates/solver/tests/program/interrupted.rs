@@ -56,11 +56,17 @@ pub(super) fn interrupt(
     if !ended {
         send(signal, &child);
     }
-    let output = child.wait_with_output().unwrap();
+    let mut output = child.wait_with_output().unwrap();
     if output.status.success() {
         return None;
     }
     assert!(checkpoint.exists());
+    // The summary of what has been simulated, unless it is quiet.
+    let printed = String::from_utf8(std::mem::take(&mut output.stdout)).unwrap();
+    assert!(
+        printed.is_empty() || printed.contains("ended by interruption"),
+        "{printed}"
+    );
     let (said, code) = super::refused(&output);
     assert_eq!(code, 130, "{said}");
     Some(said)
@@ -241,4 +247,40 @@ fn a_calibration_ends_while_it_packs() {
     let kept: serde_json::Value = serde_json::from_slice(&fs::read(&record).unwrap()).unwrap();
     assert_eq!(kept["packings"].as_array().unwrap().len(), 1000);
     assert_eq!(bench.files(), ["cake.json"]);
+}
+
+/// All tables and plots of what has been simulated are there, and the summary is printed.
+#[test]
+fn an_interrupted_run_leaves_its_tables() {
+    let bench = Bench::new();
+    let options = [
+        "--set",
+        "run.end_time=1000 s",
+        "--set",
+        "output.series=1e-3 s",
+        "--output",
+        "out",
+    ];
+    let mut child = start(bench.command(&good("following.toml"), &options));
+    let series = bench.path("out/series.csv");
+    wait_until(&mut child, || lines(&series) > 30);
+    send("-INT", &child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let printed = String::from_utf8(output.stdout).unwrap();
+    for part in ["fragments ", "ended by interruption", "verdict "] {
+        assert!(printed.contains(part), "{part}: {printed}");
+    }
+    for name in [
+        "flow.csv",
+        "distribution.csv",
+        "fragment-tree.csv",
+        "report.html",
+        "summary.json",
+        "plots/energy.svg",
+        "checkpoint.dem",
+    ] {
+        assert!(bench.path("out").join(name).is_file(), "{name}");
+    }
+    assert!(lines(&bench.path("out/flow.csv")) > 2);
 }

@@ -205,10 +205,10 @@ fn tables_and_pages_of_a_sweep() {
         assert_eq!(row["failed"], "");
         let tip = &run["results"][0];
         for (column, key) in [
-            ("tip_value", "value"),
+            ("tip_value (m)", "value"),
             ("tip_error", "error"),
             ("tip_uncertainty", "uncertainty"),
-            ("tip_reference", "reference"),
+            ("tip_reference (m)", "reference"),
         ] {
             assert_same_number(number(column), &tip[key]);
         }
@@ -216,7 +216,7 @@ fn tables_and_pages_of_a_sweep() {
             row["tip_front"] == "1",
             tip["is_on_front"].as_bool().unwrap()
         );
-        let off = number("tip_value") / number("tip_reference") - 1.0;
+        let off = number("tip_value (m)") / number("tip_reference (m)") - 1.0;
         assert!((off.abs() - number("tip_error")).abs() < 1e-14);
         // The same from the folder of the run.
         let summary = bench.path(&format!(

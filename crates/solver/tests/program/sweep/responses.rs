@@ -83,7 +83,7 @@ fn a_response_is_the_mean_with_its_scatter() {
     }
     let runs = csv(&bench.path("study-sweep/sweep.csv"));
     assert_eq!(runs[0]["loads.tip.force (kN)"], "0.9");
-    assert!(runs[0].contains_key("tip_value") && !runs[0].contains_key("tip_error"));
+    assert!(runs[0].contains_key("tip_value (m)") && !runs[0].contains_key("tip_error"));
     let html = fs::read_to_string(bench.path("study-sweep/sweep.html")).unwrap();
     assert_well_formed(&html);
     assert!(html.contains("<h1>Response: spring.toml</h1>"), "{html}");
