@@ -312,8 +312,8 @@ fn place_bonds(
     let first = bonds.len();
     let damped = bonds.rules.iter().any(|rule| rule.damped);
     let incremental = bonds.rules.iter().any(|rule| rule.incremental);
-    let softens = |rule: &BondRule| rule.fracture_energy_j_m2.is_some();
-    let any_softens = bonds.rules.iter().any(softens);
+    let mut rules = bonds.rules.iter();
+    let any_softens = rules.any(|rule| rule.fracture_energy_j_m2.is_some());
     let mut ratios = bonds.moment_ratios_of(rule);
     for (ends, original) in sorted {
         placed.bonds.push(original);
@@ -370,18 +370,7 @@ fn place_bonds(
             bonds.damages.push(Damage::none(&answer, factor));
         }
         let damage = body.bond_damages.get(original).copied().unwrap_or(0.0);
-        if softens(&bonds.rules[rule]) {
-            check_fracture_energy(original, bonds, &bonds.rules[rule])?;
-        } else if damage > 0.0 {
-            return Err(Diagnostic::input(
-                format!("bond {original}"),
-                format!("it is damaged ({damage}), and its kind of bonds has no fracture_energy"),
-                "add fracture_energy to its failure table, or remove the array 'damage' from the file",
-            ));
-        }
-        if damage > 0.0 {
-            bonds.set_damage(bonds.len() - 1, damage);
-        }
+        damage_last(original, bonds, rule, damage)?;
     }
     if incremental {
         bonds.histories.resize(bonds.len(), History::default());
@@ -389,6 +378,23 @@ fn place_bonds(
     add_joints(bonds, first, rule);
     if bonds.rules.iter().any(|rule| rule.plasticity.is_some()) {
         bonds.plastics.resize(bonds.len(), PlasticDeformation::NONE);
+    }
+    Ok(())
+}
+
+/// Gives the last bond, with this number in its file, the damage that it has there.
+fn damage_last(number: usize, bonds: &mut Bonds, rule: usize, damage: f64) -> Result<()> {
+    if bonds.rules[rule].fracture_energy_j_m2.is_some() {
+        check_fracture_energy(number, bonds, &bonds.rules[rule])?;
+    } else if damage > 0.0 {
+        return Err(Diagnostic::input(
+            format!("bond {number}"),
+            format!("it is damaged ({damage}), and its kind of bonds has no fracture_energy"),
+            "add fracture_energy to its failure table, or remove the array 'damage' from the file",
+        ));
+    }
+    if damage > 0.0 {
+        bonds.set_damage(bonds.len() - 1, damage);
     }
     Ok(())
 }
