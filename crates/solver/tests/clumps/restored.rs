@@ -1,6 +1,7 @@
 //! Clusters and fragments that become rigid clumps again: conserved quantities, recorded losses,
 //! and retained data.
 
+use dem_run::physics::rotation::{numbers, rotation};
 use dem_run::stages::elastic::elastic_energy;
 use dem_run::stages::population::apply_topology_change;
 use dem_run::stages::restoring::restore_clumps;
@@ -8,19 +9,24 @@ use dem_run::state::State;
 use dem_run::state::events::PopulationEvent;
 use dem_run::state::events::TopologyChange;
 use dem_run::step::{exchange, interact, step};
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::books::{booked, feed};
 use super::{HEAD, Whole, lump, planned};
 
 /// A lump that flies and spins, is replaced at once, and may become rigid again anywhere.
 fn flying() -> State {
+    flying_with(HEAD)
+}
+
+/// The same with another head of the scene.
+fn flying_with(head: &str) -> State {
     let body = lump(
         "lump",
         "start_as = \"clump\"\nposition = [0.1, 0.2, 0.3]\nvelocity = [1, -2, 3]\nangular_velocity = [20, -30, 10]",
     );
     let mut state = planned(&format!(
-        "{HEAD}{body}[replacement.lump]\nwhen = {{ time = 0 }}\n\
+        "{head}{body}[replacement.lump]\nwhen = {{ time = 0 }}\n\
          restore = {{ leaves = \"far\", min_particles = 2, strain_energy = 1e3, fluctuation_velocity = 10 }}\n\
          [regions.far]\nbox = {{ min = [10, 10, 10], max = [11, 11, 11] }}\n"
     ))
@@ -175,4 +181,47 @@ fn books_hold_over_what_becomes_rigid_again() {
         errors[1] < 1e-4 && errors[0] > 3.0 * errors[1],
         "{errors:?}"
     );
+}
+
+/// Loads that are summed step by step turn with the clump while it is one.
+#[test]
+fn a_fragment_of_incremental_bonds_turns_their_loads() {
+    let head = HEAD.replace(
+        "bonds.stiff = { ",
+        "bonds.stiff = { formulation = \"incremental\", ",
+    );
+    let mut state = flying_with(&head);
+    state.bonds.set_broken(0);
+    for (n, history) in (1..).zip(state.bonds.histories.iter_mut().skip(1)) {
+        let n = f64::from(n);
+        history.shear_force = 1e-4 * Vector3::new(n, -2.0, 0.5 * n);
+        history.moment = 1e-7 * Vector3::new(0.3, n, -n);
+    }
+    let before = state.bonds.histories.clone();
+    restore_clumps(&mut state);
+    assert_eq!((state.bonds.len(), state.clumps.all.len()), (0, 1));
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -1.1, 0.7));
+    let clump = &mut state.clumps.all[0];
+    clump.turned = numbers(&(turn * rotation(clump.turned)));
+    let to_clusters = vec![0];
+    apply_topology_change(
+        &mut state,
+        TopologyChange {
+            to_clusters,
+            ..TopologyChange::default()
+        },
+    );
+    assert_eq!(state.bonds.histories.len(), before.len() - 1);
+    for (after, before) in state.bonds.histories.iter().zip(&before[1..]) {
+        let pairs = [
+            (after.shear_force, before.shear_force),
+            (after.moment, before.moment),
+        ];
+        for (after, before) in pairs {
+            assert!(
+                (after - turn * before).norm() < 1e-12 * before.norm(),
+                "{after} {before}"
+            );
+        }
+    }
 }
