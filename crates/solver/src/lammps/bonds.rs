@@ -317,5 +317,20 @@ fn refuse_bond(scene: &Scene, state: &State, at: usize) -> Result<()> {
             "start from a body whose bonds are at rest",
         ));
     }
+    // A deformation in place of the load of each mode: m and rad.
+    let strain = bonds.deformation(at, &state.particles.poses);
+    let sheared = strain.shear_n / length_m;
+    let largest = sheared.max(strain.torsion_n_m).max(strain.bending_n_m);
+    if largest > UNSTRESSED {
+        let why = format!(
+            "a bond is sheared, twisted or bent by {largest:.3e}, and bpm/rotational takes bonds at rest from the positions at the start"
+        );
+        return Err(refused(
+            scene,
+            format!("bonds.{name}"),
+            why,
+            "start from a body whose bonds are at rest",
+        ));
+    }
     Ok(())
 }
