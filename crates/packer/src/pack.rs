@@ -6,6 +6,7 @@ mod grow;
 mod job;
 mod order;
 mod retry;
+mod scatter;
 mod settings;
 pub(crate) mod settle;
 pub(crate) mod shrink;
@@ -17,10 +18,12 @@ use self::grow::grow;
 use self::job::Job;
 use self::order::sort_along_curve;
 use self::retry::Retry;
+use self::scatter::scatter;
 pub use self::settings::{PackHistory, PackSettings, Packing, Progress};
-use self::settle::settle;
+use self::settle::{Settled, WhenJammed, settle, settle_all};
 use self::shrink::{choose_shrink, thin_out};
 pub(crate) use self::solid::Solid;
+use self::solid::sphere_volumes;
 use crate::spheres::{ReducedSphere, Spheres};
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result, Surface};
@@ -76,16 +79,32 @@ pub(crate) fn pack_if(
         }
     };
     let too_many = retry.too_many(&front);
-    if !is_wanted((1.0 - too_many) * front.filled_fraction(&job)) {
+    let scattered = match retry.volume_to_scatter(&settings.sizes, &front) {
+        Some(volume) => scatter(&job, volume, progress)?,
+        None => Vec::new(),
+    };
+    let reduced_radii = || scattered.iter().map(|sphere| sphere[3] * job.enlarge());
+    let filled = ((1.0 - too_many) * front.filled_fraction(&job))
+        .max(solid.filled_fraction(reduced_radii()));
+    if !is_wanted(filled) {
         return Ok(None);
     }
+    let least = front.volume();
     let (mut spheres, grown) = front.finish();
     sort_along_curve(&mut spheres, job.radius_range()[1]);
     let thinned = thin_out(&mut spheres, too_many);
     let front_seconds = started.elapsed().as_secs_f64();
     let settling = Instant::now();
     let when_jammed = retry.when_jammed();
-    let settled = settle(&job, attempt.shrink, when_jammed, &mut spheres, progress)?;
+    let mut denser = settle_scattered(&job, scattered, least, when_jammed, progress)?;
+    let scattered = denser.as_ref().map_or(0, |(spheres, _)| spheres.len());
+    let settled = match denser.take() {
+        Some((settled_spheres, settled)) => {
+            spheres = settled_spheres;
+            settled
+        }
+        None => settle(&job, attempt.shrink, when_jammed, &mut spheres, progress)?,
+    };
     let densify_seconds = settling.elapsed().as_secs_f64();
     let filling = Instant::now();
     let filled = fill(&job, attempt.fills_voids, &mut spheres, progress)?;
@@ -95,6 +114,7 @@ pub(crate) fn pack_if(
         largest_inscribed_diameter_m: solid.largest_inscribed_diameter_m(),
         densify: attempt.shrink,
         fronts: grown.fronts,
+        scattered,
         densify_steps: settled.steps,
         thinned: thinned + settled.thinned,
         removed: settled.taken_out,
@@ -102,6 +122,7 @@ pub(crate) fn pack_if(
         void_fillers: grown.fillers + filled.fillers,
         loose_fillers: grown.loose_fillers + filled.fillers,
         voids_left: grown.voids_left + filled.voids_left,
+        room_left: filled.room_left,
         unplaced: grown.unplaced,
         front_seconds,
         densify_seconds,
@@ -109,6 +130,26 @@ pub(crate) fn pack_if(
     };
     let spheres = full_size(&job, &spheres)?;
     Ok(Some(Packing { spheres, history }))
+}
+
+/// Scattered spheres, settled, if they then fill more than `least` (reduced radii, local units).
+///
+/// # Errors
+/// As [`settle`].
+fn settle_scattered(
+    job: &Job,
+    mut spheres: Vec<ReducedSphere>,
+    least: f64,
+    when_jammed: WhenJammed,
+    progress: Progress,
+) -> Result<Option<(Vec<ReducedSphere>, Settled)>> {
+    if spheres.is_empty() {
+        return Ok(None);
+    }
+    sort_along_curve(&mut spheres, job.radius_range()[1]);
+    let settled = settle_all(job, when_jammed, &mut spheres, progress)?;
+    let volume = sphere_volumes(spheres.iter().map(|sphere| sphere[3]));
+    Ok((volume > least).then_some((spheres, settled)))
 }
 
 /// The spheres at their true radii.

@@ -1,6 +1,7 @@
 //! The printed reports: human-readable, and JSON.
 
 use crate::body::BodyReport;
+use crate::pack::PackHistory;
 use dem_io::Surface;
 use dem_io::text::visible;
 use dem_io::units::{show_length, significant};
@@ -59,6 +60,18 @@ fn mass_text(made: &BodyReport) -> String {
     format!("mass             {mass}\ncentre           {centre}\n")
 }
 
+fn packed_by(history: &PackHistory) -> String {
+    let front = format!(
+        "an advancing front at radii reduced by {} from {} seeds",
+        significant(history.densify, 3),
+        history.fronts
+    );
+    if history.scattered == 0 {
+        return front;
+    }
+    format!("spheres scattered at random, largest first, since {front} left too much room")
+}
+
 /// The summary of a new body: its quality, warnings, and times.
 pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) -> String {
     let seconds = made.seconds.packing + made.seconds.bonds + made.seconds.report;
@@ -87,9 +100,8 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
     text += &mass_text(made);
     let history = &made.history;
     text += &format!(
-        "packed by        an advancing front at radii reduced by {} from {} seeds; {} left out (too many), {} relaxation steps, {} removed (jammed), {} added in voids, {} voids still fit the smallest size\n",
-        significant(history.densify, 3),
-        history.fronts,
+        "packed by        {}; {} left out (too many), {} relaxation steps, {} removed (jammed), {} added in voids, {} voids still fit the smallest size\n",
+        packed_by(history),
         history.thinned,
         history.densify_steps,
         history.removed,

@@ -5,6 +5,7 @@ use super::settings::PackSettings;
 use super::solid::Solid;
 use crate::front::{Assembly, SizeSettings};
 use crate::geometry::inside::is_inside;
+use crate::grid::WIDEST_CLASS;
 use crate::sizes::Sizes;
 use crate::spheres::Vector3;
 use dem_io::units::show_length;
@@ -57,9 +58,18 @@ impl<'a> Job<'a> {
         [sizes.min_m(), sizes.max_m()].map(|d| 0.5 * d / self.solid.surface.unit_m)
     }
 
-    /// The same, rounded like all radii.
+    /// The same, rounded like all radii. Where sizes differ much, a step is no small part of the
+    /// smallest radius, and rounding leads inwards: no sphere grows by it into another.
     pub(super) fn radius_range(&self) -> [f64; 2] {
-        self.exact_radius_range().map(|r| self.rounded(r))
+        let [smallest, largest] = self.exact_radius_range();
+        if largest > WIDEST_CLASS * smallest {
+            let steps = [
+                (smallest / self.radius_step).ceil(),
+                (largest / self.radius_step).floor(),
+            ];
+            return steps.map(|n| n * self.radius_step);
+        }
+        [smallest, largest].map(|r| self.rounded(r))
     }
 
     fn rounded(&self, radius: f64) -> f64 {
@@ -69,7 +79,9 @@ impl<'a> Job<'a> {
     /// Radius of a quantile of the sizes, local units.
     fn radius(&self, quantile: f64) -> f64 {
         let sizes = &self.settings.sizes;
+        let [smallest, largest] = self.radius_range();
         self.rounded(0.5 * sizes.quantile_by_number(quantile) / self.solid.surface.unit_m)
+            .clamp(smallest, largest)
     }
 
     /// An empty assembly for about `expected` spheres, with radii `scale` times those requested,

@@ -7,6 +7,9 @@
 //!   chance. The next one runs at other radii. If it leaves a little too little, spheres are taken
 //!   out evenly. So they are while settling if they jam.
 //!
+//! - Sizes that differ much may end a front early: a large one that fits nowhere any more stops it.
+//!   If the last front leaves far too little, spheres are scattered at random instead.
+//!
 //! If the reduction of the radii was given by the user, only the sizes of a bare front are retried.
 
 use super::attempt::{Attempt, can_fill_voids};
@@ -38,6 +41,11 @@ const SLOWEST_FALL: f64 = 0.6;
 /// wide.
 const MOST_FRONTS: usize = 4;
 const MOST_WIDE_FRONTS: usize = 1;
+
+/// Ratio of the largest to the smallest size from which on large ones stop a front, and the part of
+/// the target volume below which it has stopped early.
+const LARGE_STOP: f64 = 3.0 * (1.0 - 1e-9);
+const STOPPED_EARLY: f64 = 0.95;
 
 /// The attempts made, and those still allowed.
 pub(super) struct Retry {
@@ -100,6 +108,14 @@ impl Retry {
     /// The part of the spheres of a front that is too many for settling, 0 to 1.
     pub(super) fn too_many(&self, grown: &Grown) -> f64 {
         (self.target.as_ref()).map_or(0.0, |target| target.too_many(grown.volume()))
+    }
+
+    /// The volume to scatter at random (reduced radii, local units) if this front, the last one,
+    /// has stopped early.
+    pub(super) fn volume_to_scatter(&self, sizes: &Sizes, grown: &Grown) -> Option<f64> {
+        let target = self.target?.volume;
+        let stopped_early = grown.volume() < STOPPED_EARLY * target;
+        (stopped_early && sizes.max_m() >= LARGE_STOP * sizes.min_m()).then_some(target)
     }
 
     /// Treatment of spheres that jam.

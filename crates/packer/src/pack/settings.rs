@@ -46,6 +46,9 @@ pub struct PackHistory {
     /// Number of fronts started: one for each seed, and one for each part that the earlier ones
     /// could not reach.
     pub fronts: usize,
+    /// Number of spheres scattered at random, largest first, instead of those of the fronts, which
+    /// had stopped early. 0 if the spheres are those of the fronts.
+    pub scattered: usize,
     /// Number of steps of the settling minimiser.
     pub densify_steps: usize,
     /// Number of spheres of the front that were too many, and left out evenly: before settling, and
@@ -66,6 +69,9 @@ pub struct PackHistory {
     /// Approximate number of voids that would still take the smallest sphere: extrapolated when
     /// more fillers would distort the sizes.
     pub voids_left: usize,
+    /// Part of the solid in which the centre of the smallest sphere could still lie, 0 to 1, from
+    /// random points; 0 for a bare front that fills its voids.
+    pub room_left: f64,
     /// Number of drawn radii that found no place.
     pub unplaced: usize,
     /// Time for the front, s.

@@ -47,6 +47,19 @@ pub(super) fn settle(
     if shrink == 0.0 {
         return Ok(Settled::default());
     }
+    settle_all(job, when_jammed, spheres, progress)
+}
+
+/// Moves spheres at full size until none overlaps another or the wall.
+///
+/// # Errors
+/// As [`minimise_overlaps`].
+pub(super) fn settle_all(
+    job: &Job,
+    when_jammed: WhenJammed,
+    spheres: &mut Vec<ReducedSphere>,
+    progress: Progress,
+) -> Result<Settled> {
     let progress = |done: f64| progress("densifying", done);
     let overlap = job.settings.overlap;
     minimise_overlaps(

@@ -4,7 +4,9 @@
 use crate::helpers::exact::{EXACT, assert_exact, distance_to_triangle, winding_number};
 use crate::helpers::facets::{Facets, Point, cuboid, prism};
 use crate::helpers::packing::settings;
-use crate::helpers::solids::{icosphere, local_facets, surface_of, torus};
+use crate::helpers::solids::{
+    icosphere, local_facets, point_between, random_numbers, surface_of, torus,
+};
 use dem_io::Surface;
 use dem_pack::{PackHistory, PackSettings, Packing, pack};
 use dem_pack::{Sizes, ks_distance_by_mass, ks_distance_by_number};
@@ -269,4 +271,63 @@ fn where_small_ones_are_too_few_voids_are_counted() {
         0.0,
         0.0,
     );
+}
+
+/// A large sphere that fits nowhere any more stops a front; in a shape a few of them across it
+/// would leave most of the room.
+#[test]
+fn sizes_that_differ_much_fill_a_small_shape() {
+    let (surface, _) = surface_of(&cuboid([4.0, 4.0, 4.0]));
+    for overlap in [0.25, 0.0] {
+        let settings = settings("lognormal:0.285mm,0.226mm", overlap, None);
+        let packing = pack(&surface, &settings, &|_, _| Ok(())).unwrap();
+        let spheres = &packing.spheres;
+        let facets = local_facets(&surface);
+        assert_exact(
+            "wide, small",
+            &facets,
+            &spheres.positions,
+            &spheres.radii,
+            overlap,
+            0.0,
+        );
+        let reduced = spheres.radii.iter().map(|r| (r / (1.0 + overlap)).powi(3));
+        let filled = 4.0 / 3.0 * std::f64::consts::PI * reduced.sum::<f64>();
+        let filled = filled * surface.unit_m.powi(3) / surface.volume_m3();
+        assert!(filled > 0.54, "overlap {overlap}: {filled}");
+        let diameters: Vec<f64> = (spheres.radii.iter())
+            .map(|r| 2.0 * r * surface.unit_m)
+            .collect();
+        let fit = ks_distance_by_number(&diameters, &settings.sizes);
+        assert!(fit.passes(), "overlap {overlap}: {fit:?}");
+    }
+}
+
+/// Spheres too far apart for a smallest one to touch three of them leave voids as well.
+#[test]
+fn room_between_spheres_far_apart_is_counted() {
+    let (surface, _) = surface_of(&cuboid([4.0, 4.0, 4.0]));
+    let settings = settings("lognormal:0.285mm,0.226mm", 0.25, Some(0.0435));
+    let packing = pack(&surface, &settings, &|_, _| Ok(())).unwrap();
+    let (room, unit) = (packing.history.room_left, surface.unit_m);
+    let mut random = random_numbers(5);
+    let radius = 0.5 * settings.sizes.min_m() / unit;
+    let spheres = &packing.spheres;
+    let fits = |p: &Point| {
+        let mut balls = spheres.positions.iter().zip(&spheres.radii);
+        p.iter().all(|x| *x >= radius && 4e-3 / unit - x >= radius)
+            && balls.all(|(c, r)| distance(p, c) >= (r + radius) / 1.25)
+    };
+    let points = 4000;
+    let hits = (0..points)
+        .map(|_| point_between(&mut random, [0.0; 3], [4e-3 / unit; 3]))
+        .filter(fits)
+        .count();
+    let found = hits as f64 / f64::from(points);
+    assert!(found > 0.4, "{found}");
+    assert!((room - found).abs() < 0.04, "{room}, {found}");
+    // At least a third of what the room would take if it were one.
+    let smallest = 4.0 / 3.0 * std::f64::consts::PI * (radius / 1.25).powi(3);
+    let voids = packing.history.voids_left as f64;
+    assert!(voids > 0.3 * found * (4e-3 / unit).powi(3) / smallest);
 }
