@@ -70,6 +70,16 @@ impl Bounds {
         (0..3).all(|k| point[k] >= self.low[k] - reach && point[k] <= self.high[k] + reach)
     }
 
+    /// Distance of a point from the box, m; 0 inside.
+    pub fn distance(&self, point: &[f64; 3]) -> f64 {
+        let apart = [0, 1, 2].map(|k| {
+            (self.low[k] - point[k])
+                .max(point[k] - self.high[k])
+                .max(0.0)
+        });
+        Vector3::from(apart).norm()
+    }
+
     /// Whether a segment comes within `reach` of the box, along each axis.
     pub(crate) fn on_segment(&self, [start, end]: [Vector3<f64>; 2], reach: f64) -> bool {
         let (mut near, mut far) = (0.0_f64, 1.0_f64);

@@ -120,6 +120,32 @@ impl Tree {
         self.any_below(at + 1, meets, wanted) || self.any_below(node.at, meets, wanted)
     }
 
+    /// The smallest distance from a point to what is in the boxes, m; infinite without boxes.
+    /// `distance_m` is called with places in [`Self::order`], those of near boxes first.
+    pub fn nearest(&self, point: &[f64; 3], distance_m: impl Fn(u32) -> f64) -> f64 {
+        let mut least_m = f64::INFINITY;
+        let mut stack = vec![(0_u32, 0.0_f64)];
+        while let Some((at, apart_m)) = stack.pop() {
+            let Some(node) = self.nodes.get(at as usize).filter(|_| apart_m < least_m) else {
+                continue;
+            };
+            if node.count > 0 {
+                let all = (node.at..node.at + node.count).map(&distance_m);
+                least_m = all.fold(least_m, f64::min);
+                continue;
+            }
+            let children = [at + 1, node.at];
+            let [first, second] =
+                children.map(|child| (child, self.nodes[child as usize].bounds.distance(point)));
+            if first.1 <= second.1 {
+                stack.extend([second, first]);
+            } else {
+                stack.extend([first, second]);
+            }
+        }
+        least_m
+    }
+
     /// Calls `found` with each pair of boxes that are no farther apart than `gap` along any axis,
     /// as long as it returns true.
     pub fn near_pairs(&self, gap: f64, mut found: impl FnMut(u32, u32) -> bool) {

@@ -1,7 +1,8 @@
 //! Contact points of a sphere and a wall: plain geometry in the wall's own frame, m.
 //!
 //! A touch is a point of the wall that is nearer to the centre than the wall around it. A flat or
-//! convex wall has one; in a concave corner each side has one.
+//! convex wall has one; in a concave corner each side has one. Walls that meet, and the facets of a
+//! rough surface, act as one surface: see [`one_surface`].
 //!
 //! Planes, boxes and cylinders are solid: a centre inside is pushed out the shortest way. A
 //! [`Mesh`] is a surface with two sides, open or closed: it pushes towards the side of the centre,
@@ -10,6 +11,7 @@
 pub(crate) mod cylinder;
 pub(crate) mod frame;
 pub(crate) mod mesh;
+pub(crate) mod one_surface;
 pub(crate) mod plane;
 pub(crate) mod solid_box;
 mod touch;
@@ -20,6 +22,7 @@ use serde::Serialize;
 pub use cylinder::Cylinder;
 pub use frame::Frame;
 pub use mesh::Mesh;
+pub(crate) use one_surface::Place;
 pub use plane::Plane;
 pub use solid_box::SolidBox;
 pub use touch::Touch;
@@ -71,6 +74,40 @@ impl Shape {
             Self::Box(solid) => Some(solid.touch(centre)),
             Self::Cylinder(cylinder) => Some(cylinder.touch(centre)),
             Self::Mesh(_) => None,
+        }
+    }
+
+    /// What a touch of a sphere of `radius_m` is on. The touch may be in any frame.
+    pub(crate) fn place(&self, touch: Touch, radius_m: f64) -> Place {
+        let feature = touch.feature;
+        let (is_flat, is_fine) = match self {
+            Self::Plane(_) => (true, false),
+            Self::Box(_) => (solid_box::is_face(feature), false),
+            Self::Cylinder(_) => (cylinder::is_end(feature), false),
+            Self::Mesh(mesh) => (mesh.is_flat(feature), mesh.is_fine(feature, radius_m)),
+        };
+        Place {
+            touch,
+            is_flat,
+            is_fine,
+        }
+    }
+
+    /// Whether a point is inside the solid: of a mesh see [`Mesh::holds`].
+    pub(crate) fn holds(&self, point: [f64; 3]) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.holds(point),
+            _ => self.only_touch(point).is_some_and(|t| t.distance_m < 0.0),
+        }
+    }
+
+    /// Distance of a point from the surface, m; below 0 in a plane, box or cylinder.
+    pub(crate) fn distance_m(&self, point: [f64; 3]) -> f64 {
+        match self {
+            Self::Mesh(mesh) => mesh.distance_m(point),
+            _ => self
+                .only_touch(point)
+                .map_or(f64::INFINITY, |t| t.distance_m),
         }
     }
 

@@ -237,31 +237,17 @@ impl FreeBody {
     pub(crate) fn gap_after(&self, wall: &Wall, time_s: f64) -> f64 {
         let to_wall = wall.frame.all_to_wall();
         let centre = self.centre_after(time_s);
-        let mut found = Vec::new();
-        wall.model
-            .shape
-            .touches(to_wall(centre.into()), f64::INFINITY, &mut found);
-        let nearest = found.iter().map(|touch| touch.distance_m);
-        let from_centre_m = nearest.fold(f64::INFINITY, f64::min);
+        let from_centre_m = wall.model.shape.distance_m(to_wall(centre.into()));
         let sure_m = from_centre_m - self.reach_m;
         if sure_m > self.reach_m || !from_centre_m.is_finite() {
             return sure_m;
         }
         let turned = UnitQuaternion::from_scaled_axis(time_s * self.spin_rad_s);
-        let mut gap_m = f64::INFINITY;
-        for (arm, radius_m) in &self.spheres {
+        let gaps = self.spheres.iter().map(|(arm, radius_m)| {
             let place = centre + turned * arm;
-            found.clear();
-            // Every sphere is within twice the reach of the point nearest to the centre.
-            let within_m = (gap_m + radius_m).min(from_centre_m.abs() + 2.0 * self.reach_m);
-            wall.model
-                .shape
-                .touches(to_wall(place.into()), within_m, &mut found);
-            for touch in &found {
-                gap_m = gap_m.min(touch.distance_m - radius_m);
-            }
-        }
-        gap_m
+            wall.model.shape.distance_m(to_wall(place.into())) - radius_m
+        });
+        gaps.fold(f64::INFINITY, f64::min)
     }
 
     /// Time in which no point of it moves farther than this, s, starting at `from_s`. Infinite: it

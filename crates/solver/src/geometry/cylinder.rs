@@ -128,3 +128,8 @@ impl Cylinder {
         Bounds::of(points)
     }
 }
+
+/// Whether a feature is one of the flat ends.
+pub(super) fn is_end(feature: u32) -> bool {
+    ENDS.contains(&feature)
+}

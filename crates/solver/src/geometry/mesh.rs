@@ -6,7 +6,8 @@
 //! common vertices.
 //!
 //! Of faces with nearly the same direction, only the nearest is touched: a round hollow pushes like
-//! one face, not like several, and a thin plate with one side.
+//! one face, not like several, and a thin plate with one side. So it is with all points on facets
+//! smaller than the sphere: a rough scan of a plane pushes like a plane.
 //!
 //! Distances are exact to rounding, and so are points in flat parts. On an edge, nearer to a vertex
 //! than 1e-7 of the reach, the error of a point may be as large; nearer than 1e-9 of the reach, the
@@ -22,6 +23,7 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::Vector3;
 use serde::Serialize;
 
+use super::one_surface::{ALIKE, ROUGH};
 use super::touch::{Touch, are_finite};
 use dem_io::Bounds;
 use features::features;
@@ -37,9 +39,6 @@ const SAME: [f64; 2] = [1e-12, 1e-9];
 const FAR: f64 = 4.0;
 const NEAR: f64 = 32.0;
 
-/// Cosine of the angle between the normals of faces that count as one: 8 degrees.
-pub(crate) const ALIKE: f64 = 0.99;
-
 /// A triangle with a height below this fraction of the diagonal has no area.
 const NO_HEIGHT: f64 = 1e-12;
 
@@ -53,6 +52,8 @@ pub struct Mesh {
     triangles: Vec<Triangle>,
     /// The features of the regions of each.
     of_regions: Vec<[u32; REGIONS as usize]>,
+    /// The largest extent of the flat parts at each feature, m.
+    extents_m: Vec<f32>,
     tree: Tree,
     diagonal_m: f64,
     /// Its content.
@@ -133,6 +134,7 @@ impl Mesh {
             },
             triangles: sorted,
             of_regions: features.of_regions,
+            extents_m: features.extents_m,
             tree,
             diagonal_m,
         })
@@ -183,7 +185,12 @@ impl Mesh {
             if touch.distance_m == f64::INFINITY {
                 continue;
             }
-            match (from..end).find(|k| self.are_one(&touch, &found[*k], NEAR * same_m)) {
+            let is_same = |k: &usize| {
+                let nearer = &found[*k];
+                self.are_one(&touch, nearer, NEAR * same_m)
+                    || self.are_rough(&touch, nearer, reach_m)
+            };
+            match (from..end).find(is_same) {
                 None => {
                     found[end] = touch;
                     end += 1;
@@ -263,6 +270,31 @@ impl Mesh {
         self.feature(touch) == self.feature(nearer)
             || are_near(touch, nearer, same_m)
             || are_alike()
+    }
+
+    /// Whether two touches are on facets smaller than the sphere and in directions so near to each
+    /// other that they stand for one rough surface.
+    fn are_rough(&self, touch: &Touch, nearer: &Touch, radius_m: f64) -> bool {
+        Vector3::from(touch.normal).dot(&Vector3::from(nearer.normal)) > ROUGH
+            && self.is_fine(self.feature(touch), radius_m)
+            && self.is_fine(self.feature(nearer), radius_m)
+    }
+
+    /// Whether a feature is a flat part, not an edge or a corner.
+    pub(super) fn is_flat(&self, feature: u32) -> bool {
+        feature < self.content.flat_parts
+    }
+
+    /// Whether all flat parts at a feature are smaller than the radius of a sphere.
+    pub(super) fn is_fine(&self, feature: u32, radius_m: f64) -> bool {
+        f64::from(self.extents_m[feature as usize]) < radius_m
+    }
+
+    /// Distance of a point from the surface, m.
+    pub(super) fn distance_m(&self, point: [f64; 3]) -> f64 {
+        let p = Vector3::from(point);
+        self.tree
+            .nearest(&point, |t| self.nearest(t, &p).distance_m)
     }
 
     fn feature(&self, touch: &Touch) -> u32 {

@@ -92,3 +92,9 @@ impl SolidBox {
         }
     }
 }
+
+/// Whether a feature is a face, not an edge or a corner.
+pub(super) fn is_face(feature: u32) -> bool {
+    let off_middle = STRIDES.map(|stride| u32::from(feature / stride % 3 != 1));
+    off_middle.iter().sum::<u32>() == 1
+}

@@ -6,7 +6,8 @@
 use nalgebra::Vector3;
 
 use crate::geometry::frame::Frame;
-use crate::geometry::mesh::{ALIKE, Mesh};
+use crate::geometry::mesh::Mesh;
+use crate::geometry::one_surface::ALIKE;
 
 /// Lengths below this fraction of the largest coordinate are rounding of the file: some ten times
 /// that of 32-bit numbers.

@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use super::contacts::{Kinds, ROUNDING};
 use crate::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
 use crate::physics::rigid::turn;
+use crate::stages::walls::joints::drop_doubles;
 use crate::stages::walls::touch_energy_j;
 use crate::state::State;
 use crate::state::bodies::{PlacedBody, called};
@@ -37,7 +38,9 @@ pub(super) fn place_walls(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Wall>> {
     let sizes = Sizes::of(state);
+    let keeps = scene.run.initial_overlap == InitialOverlap::Keep;
     let mut walls = Vec::new();
+    let mut touches_of = Vec::new();
     for (name, entry) in &scene.walls {
         let place = format!("{}: [walls.{name}]", scene.source);
         for body in bodies {
@@ -75,7 +78,6 @@ pub(super) fn place_walls(
         {
             wall.velocities_m_s = [direction.map(|d| velocity_m_s * d); 2];
         }
-        let keeps = scene.run.initial_overlap == InitialOverlap::Keep;
         // Bodies that only touch press so little that the contact is dropped, unless overlaps are
         // to be kept.
         let least_share = if keeps { 0.0 } else { ROUNDING };
@@ -84,6 +86,11 @@ pub(super) fn place_walls(
         if is_through || scene.run.initial_overlap == InitialOverlap::Refuse {
             refuse_touches(&place, name, &wall, &touches, bodies, state)?;
         }
+        touches_of.push(touches);
+        walls.push(wall);
+    }
+    join_touches(&walls, state, &mut touches_of);
+    for (wall, touches) in walls.iter_mut().zip(&touches_of) {
         wall.touching = touches
             .iter()
             .map(|(particle, touch)| at_start(*particle, touch, state, keeps))
@@ -91,12 +98,33 @@ pub(super) fn place_walls(
         if let (true, Some(contacts)) = (keeps, &state.contacts) {
             let pressed = wall.touching.iter();
             let pressed =
-                pressed.map(|touch| touch_energy_j(&wall, contacts, &state.particles, touch));
+                pressed.map(|touch| touch_energy_j(wall, contacts, &state.particles, touch));
             wall.scratch.elastic_j = pressed.sum();
         }
-        walls.push(wall);
     }
     Ok(walls)
+}
+
+/// Keeps, where walls meet, one touch of each surface: see [`drop_doubles`]. The touches of each
+/// wall are given by particle.
+fn join_touches(walls: &[Wall], state: &State, touches_of: &mut [Vec<(u32, Touch)>]) {
+    let mut all: Vec<(u32, usize, Touch)> = Vec::new();
+    for (wall, touches) in touches_of.iter_mut().enumerate() {
+        all.extend(
+            touches
+                .drain(..)
+                .map(|(particle, touch)| (particle, wall, touch)),
+        );
+    }
+    all.sort_by_key(|(particle, ..)| *particle);
+    for own in all.chunk_by(|a, b| a.0 == b.0) {
+        let mut touches: Vec<(usize, Touch)> = own.iter().map(|one| (one.1, one.2)).collect();
+        let radius_m = state.particles.poses[own[0].0 as usize].radius_m();
+        drop_doubles(walls, &mut touches, radius_m);
+        for (wall, touch) in touches {
+            touches_of[wall].push((own[0].0, touch));
+        }
+    }
 }
 
 /// The shape and frame of a wall at the start.

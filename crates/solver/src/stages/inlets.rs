@@ -183,7 +183,7 @@ fn ahead_m(inlet: &Inlet, state: &State) -> f64 {
     }
 }
 
-/// Whether a sphere of a clump touches a wall.
+/// Whether a sphere of a clump touches a wall, or is inside a closed surface.
 fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
     let reach_m = template.largest_reach_m();
     if !wall.bounds_in_space().is_near(&clump.place_m, reach_m) {
@@ -194,8 +194,10 @@ fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
         let pose = template.pose(sphere as usize, clump);
         let centre = wall.frame.to_wall(pose.place().into());
         let radius_m = template.scale * pose.radius_m();
+        touches.clear();
         wall.model.shape.touches(centre, radius_m, &mut touches);
-        touches.iter().any(|touch| touch.distance_m < radius_m)
+        let touches_it = touches.iter().any(|touch| touch.distance_m < radius_m);
+        touches_it || wall.model.shape.holds(centre)
     })
 }
 

@@ -1,6 +1,7 @@
 //! Walls: their motion, and their contacts with particles.
 
 mod driven;
+pub(crate) mod joints;
 mod meeting;
 
 use dem_scene::WallMotion;
@@ -8,6 +9,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use self::driven::{bar_velocity_m_s, weight_velocity_m_s};
+use self::joints::join_walls;
 use self::meeting::Place;
 use super::chunks::{chunk_of, chunks_of, in_tasks};
 use super::stage::{NO_SAVING, Need, Stage};
@@ -20,7 +22,7 @@ use crate::stages::contacts::{StoredEnergy, StoredForce};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::loads::factor_at;
-use crate::state::meetings::{Meeting, Meetings, Met};
+use crate::state::meetings::{Joint, Meeting, Meetings, Met};
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Wall, WallContact, WallLoad};
 
@@ -48,7 +50,7 @@ pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
             &mut state.walls,
             contacts,
             &mut state.particles,
-            &mut state.scratch.meetings,
+            (&mut state.scratch.meetings, &mut state.scratch.joints),
             state.previous_time_step_s,
         );
     }
@@ -155,29 +157,32 @@ pub(crate) fn wall_wrenches(
     walls: &mut [Wall],
     contacts: &mut Contacts,
     particles: &mut Particles,
-    meetings: &mut Vec<Meetings>,
+    (meetings, joints): (&mut Vec<Meetings>, &mut Vec<Joint>),
     dt: f64,
 ) {
     let meetings = set_chunks(walls, meetings);
+    let find = |meetings: &mut Meetings| {
+        find_meetings(&walls[meetings.of.0], particles, meetings);
+    };
     let meet = |meetings: &mut Meetings| {
         let wall = &walls[meetings.of.0];
         let place = Place {
             wall,
+            walls,
             olds: &wall.touching,
             particles,
             materials: &contacts.materials,
             least_overlap: contacts.model.least_overlap,
             dt,
         };
-        find_meetings(wall, particles, meetings);
         place.meet(&meetings.all, &mut meetings.met);
     };
     let near: usize = walls.iter().map(|wall| wall.near.len()).sum();
-    if near < FEW {
-        meetings.iter_mut().for_each(meet);
-    } else {
-        meetings.par_iter_mut().for_each(meet);
+    for_each(meetings, near, find);
+    if meetings.iter().any(|some| some.of.0 != meetings[0].of.0) {
+        join_walls(walls, meetings, particles, joints);
     }
+    for_each(meetings, near, meet);
     for wall in walls.iter_mut() {
         wall.push = WallLoad::default();
         wall.scratch.damping = WallLoad::default();
@@ -189,6 +194,15 @@ pub(crate) fn wall_wrenches(
         for met in &some.met {
             book(&mut walls[some.of.0], met, particles);
         }
+    }
+}
+
+/// Calls `work` for each chunk of `near` particles, with several threads if they are many.
+fn for_each(meetings: &mut [Meetings], near: usize, work: impl Fn(&mut Meetings) + Sync + Send) {
+    if near < FEW {
+        meetings.iter_mut().for_each(work);
+    } else {
+        meetings.par_iter_mut().for_each(work);
     }
 }
 
@@ -296,13 +310,7 @@ fn add_meetings(
             known.is_some_and(|known| known.feature == old.feature)
         };
         if !found[first_found..].iter().any(goes_on) {
-            let there = Touch {
-                point: pose.place().into(),
-                feature: old.feature,
-                normal: old.normal.map(|n| -n),
-                distance_m: pose.radius_m(),
-            };
-            found.push(Meeting::new(particle, there, numbered(at)));
+            found.push(Meeting::ended(old, pose, (first + at) as u32));
         }
     }
 }
@@ -349,6 +357,7 @@ pub(crate) fn push_at_rest(
     };
     let place = Place {
         wall,
+        walls: &[],
         olds: std::slice::from_ref(old),
         particles,
         materials: &contacts.materials,

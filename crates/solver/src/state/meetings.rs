@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
+use super::particles::Pose;
 use super::walls::WallContact;
 use crate::geometry::Touch;
 
@@ -28,8 +29,12 @@ pub struct Meeting {
     pub particle: u32,
     /// In space.
     pub there: Touch,
-    /// Number of the contact of the wall that it continues.
+    /// Number of the contact that it continues, of the same wall or of `old_wall`.
     pub old: Option<u32>,
+    /// The wall from which the particle has moved over. None: it has not.
+    pub old_wall: Option<u32>,
+    /// Whether another meeting stands for the same surface, so that this one does not count.
+    pub is_double: bool,
     /// Whether the particle has gone through a wall thinner than itself.
     pub is_behind: bool,
 }
@@ -41,9 +46,36 @@ impl Meeting {
             particle,
             there,
             old,
+            old_wall: None,
+            is_double: false,
             is_behind: false,
         }
     }
+
+    /// A contact that has ended, with its number among those of its wall: its losses are still to
+    /// be recorded.
+    pub fn ended(old: &WallContact, pose: &Pose, number: u32) -> Self {
+        let there = Touch {
+            point: pose.place().into(),
+            feature: old.feature,
+            normal: old.normal.map(|n| -n),
+            distance_m: pose.radius_m(),
+        };
+        Self::new(old.particle, there, Some(number))
+    }
+}
+
+/// A meeting of a particle that touches several walls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Joint {
+    /// Number of the particle.
+    pub particle: u32,
+    /// Number of the wall.
+    pub wall: usize,
+    /// Number of the chunk of meetings.
+    pub chunk: usize,
+    /// Number of the meeting in the chunk.
+    pub at: usize,
 }
 
 /// Interaction of a particle and a wall at one point.

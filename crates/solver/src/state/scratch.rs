@@ -2,7 +2,7 @@
 
 use super::bridges::BridgeScratch;
 use super::events::Events;
-use super::meetings::Meetings;
+use super::meetings::{Joint, Meetings};
 use super::particles::{Motion, Wrench};
 use super::partitions::Partition;
 use super::population::Surroundings;
@@ -38,6 +38,8 @@ pub struct Scratch {
     pub chunks_moved_m: Vec<f64>,
     /// Where particles meet a wall: for each chunk of those near it.
     pub meetings: Vec<Meetings>,
+    /// Meetings of particles that touch several walls.
+    pub joints: Vec<Joint>,
     /// Power that each clump takes in, W: see `stages/intake.rs`.
     pub powers_w: Vec<Option<f64>>,
     /// Damaged bonds that have reached their compressive strength.

@@ -3,6 +3,7 @@
 
 use nalgebra::Vector3;
 
+use dem_io::Bounds;
 use dem_io::disjoint::{find, join};
 
 use super::triangle::Triangle;
@@ -21,6 +22,8 @@ pub(super) struct Features {
     /// The feature of each region of each triangle. Flat parts come first, then edges, then
     /// corners.
     pub(super) of_regions: Vec<[u32; 7]>,
+    /// The largest extent of the flat parts at each feature, m.
+    pub(super) extents_m: Vec<f32>,
     pub(super) flat_parts: u32,
     pub(super) straight_edges: u32,
     pub(super) corners: u32,
@@ -164,6 +167,11 @@ pub(super) fn features(triangles: &[Triangle], indices: &[[u32; 3]], diagonal: f
         }
     }
     Features {
+        extents_m: extents_m(
+            triangles,
+            &of_regions,
+            flat_parts + straight_edges + single_corners,
+        ),
         of_regions,
         flat_parts,
         straight_edges,
@@ -172,6 +180,25 @@ pub(super) fn features(triangles: &[Triangle], indices: &[[u32; 3]], diagonal: f
         crowded_edges: edges.count(|triangles| triangles > 2),
         unpaired_edges: edges.unpaired,
     }
+}
+
+/// The largest extent of the flat parts at each feature, m: the diagonal of the box around a part.
+fn extents_m(triangles: &[Triangle], of_regions: &[[u32; 7]], features: u32) -> Vec<f32> {
+    let mut boxes = vec![Bounds::EMPTY; features as usize];
+    for (triangle, [part, ..]) in triangles.iter().zip(of_regions) {
+        let own = Bounds::of(triangle.corners.map(<[f64; 3]>::from));
+        let whole = &mut boxes[*part as usize];
+        *whole = whole.with(&own);
+    }
+    let mut extents_m = vec![0.0_f32; features as usize];
+    for regions in of_regions {
+        let of_part_m = boxes[regions[0] as usize].diagonal_m() as f32;
+        for feature in regions {
+            let largest_m = &mut extents_m[*feature as usize];
+            *largest_m = largest_m.max(of_part_m);
+        }
+    }
+    extents_m
 }
 
 /// Type of a vertex.

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use super::degrees_of_freedom::DegreesOfFreedom;
 use super::matrix::Matrix;
 use crate::geometry::{Frame, Touch};
+use crate::stages::walls::joints::drop_doubles;
 use crate::stages::walls::{list_near, wall_contact};
 use crate::state::State;
 use crate::state::contacts::Contacts;
@@ -61,11 +62,11 @@ impl MovingWalls {
     }
 }
 
-/// All contacts with walls of the particles at their present places.
+/// All contacts with walls of the particles at their present places, by wall and particle.
 pub(super) fn wall_forces(state: &State) -> Vec<WallForce> {
-    let mut found = Vec::new();
+    let mut found: Vec<(u32, usize, Touch)> = Vec::new();
     let Some(contacts) = &state.contacts else {
-        return found;
+        return Vec::new();
     };
     for (number, wall) in state.walls.iter().enumerate() {
         let to_wall = wall.frame.all_to_wall();
@@ -82,18 +83,29 @@ pub(super) fn wall_forces(state: &State) -> Vec<WallForce> {
                 .iter()
                 .min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
             if let Some(touch) = deepest {
-                let touch = wall.frame.touch_to_space(touch);
-                found.push(at(
-                    (number, wall),
-                    particle as usize,
-                    &touch,
-                    contacts,
-                    &state.particles,
-                ));
+                found.push((particle, number, wall.frame.touch_to_space(touch)));
             }
         }
     }
-    found
+    // Walls that meet are one surface.
+    found.sort_by_key(|(particle, ..)| *particle);
+    let mut kept = Vec::new();
+    for own in found.chunk_by(|a, b| a.0 == b.0) {
+        let mut touches: Vec<(usize, Touch)> = own.iter().map(|one| (one.1, one.2)).collect();
+        let radius_m = state.particles.poses[own[0].0 as usize].radius_m();
+        drop_doubles(&state.walls, &mut touches, radius_m);
+        kept.extend(
+            touches
+                .into_iter()
+                .map(|(wall, touch)| (own[0].0, wall, touch)),
+        );
+    }
+    kept.sort_by_key(|(_, wall, _)| *wall);
+    let force = |(particle, number, touch): &(u32, usize, Touch)| {
+        let wall = (*number, &state.walls[*number]);
+        at(wall, *particle as usize, touch, contacts, &state.particles)
+    };
+    kept.iter().map(force).collect()
 }
 
 fn at(

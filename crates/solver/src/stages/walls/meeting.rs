@@ -19,7 +19,9 @@ use crate::state::walls::{Wall, WallContact};
 /// A wall and the particles at it.
 pub(super) struct Place<'a> {
     pub(super) wall: &'a Wall,
-    /// The contacts that meetings continue.
+    /// All walls, for contacts that have moved over from another one.
+    pub(super) walls: &'a [Wall],
+    /// The contacts of this wall that meetings continue.
     pub(super) olds: &'a [WallContact],
     pub(super) particles: &'a Particles,
     /// Material of each particle.
@@ -43,7 +45,11 @@ impl Place<'_> {
     /// The contact that a meeting continues.
     #[inline(always)]
     fn old(&self, meeting: &Meeting) -> Option<&WallContact> {
-        meeting.old.map(|old| &self.olds[old as usize])
+        let olds = match meeting.old_wall {
+            Some(wall) => &self.walls[wall as usize].touching,
+            None => self.olds,
+        };
+        meeting.old.map(|old| &olds[old as usize])
     }
 
     fn kind(&self, meeting: &Meeting) -> &ContactKind {
