@@ -81,7 +81,7 @@ impl Bounds {
     }
 
     /// Whether a segment comes within `reach` of the box, along each axis.
-    pub(crate) fn on_segment(&self, [start, end]: [Vector3<f64>; 2], reach: f64) -> bool {
+    pub fn on_segment(&self, [start, end]: [Vector3<f64>; 2], reach: f64) -> bool {
         let (mut near, mut far) = (0.0_f64, 1.0_f64);
         for k in 0..3 {
             let low = self.low[k] - reach - start[k];

@@ -23,12 +23,14 @@ use crate::state::clusters::{Cluster, Clusters};
 use crate::state::contacts::ContactHistory;
 use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use crate::state::population::OutletWatch;
 use crate::state::walls::Wall;
 
 /// Makes the changes. New clumps get their numbers among the clusters.
 pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renumbering {
     prepare_change(state, &changes);
     state.scratch.surroundings.clear();
+    state.scratch.outlets = OutletWatch::default();
     place_all(&state.clumps, &mut state.particles);
     let pressed_before_j = pressed_j(state);
     let TopologyChange {

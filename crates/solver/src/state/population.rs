@@ -78,6 +78,17 @@ pub struct Surroundings {
     pub left_m: f64,
 }
 
+/// The clusters that may reach an outlet before the others.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct OutletWatch {
+    /// Their numbers, ascending.
+    pub near: Vec<u32>,
+    /// Number of clusters, present or former, that have been looked at.
+    pub known: u32,
+    /// Distance that everything may still move, m, before another one may be there.
+    pub left_m: f64,
+}
+
 /// What an outlet has removed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct OutletTotals {

@@ -100,6 +100,66 @@ impl Region {
         }
     }
 
+    /// A distance, m, within which there is no border around a point.
+    pub(crate) fn to_border_m(&self, point_m: Vector3<f64>) -> f64 {
+        let bounds = self.bounds();
+        let place: [f64; 3] = point_m.into();
+        let outside_m = bounds.distance(&place);
+        if outside_m > 0.0 {
+            return outside_m;
+        }
+        match self {
+            Self::Box(Bounds { low, high }) => {
+                let depths = (0..3).map(|k| (place[k] - low[k]).min(high[k] - place[k]));
+                depths.fold(f64::INFINITY, f64::min)
+            }
+            Self::Sphere { centre_m, radius_m } => {
+                ((point_m - Vector3::from(*centre_m)).norm() - radius_m).abs()
+            }
+            Self::Cylinder {
+                from_m,
+                to_m,
+                radius_m,
+            } => {
+                let [along, apart_m] = beside_axis([*from_m, *to_m], place);
+                let length_m = (Vector3::from(*to_m) - Vector3::from(*from_m)).norm();
+                let beyond_m = [(along - 1.0).max(-along) * length_m, apart_m - radius_m];
+                if beyond_m.iter().all(|beyond_m| *beyond_m <= 0.0) {
+                    return -beyond_m[0].max(beyond_m[1]);
+                }
+                let [ends_m, side_m] = beyond_m.map(|beyond_m| beyond_m.max(0.0));
+                ends_m.hypot(side_m)
+            }
+            Self::Inside(triangles, _) => {
+                let distances = triangles.iter().map(|t| Bounds::of(*t).distance(&place));
+                distances.fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+
+    /// Whether a straight way between two points, m, both of them outside, leads through it.
+    pub(crate) fn is_passed(&self, [from, to]: [Vector3<f64>; 2]) -> bool {
+        if !self.bounds().on_segment([from, to], 0.0) {
+            return false;
+        }
+        let way = to - from;
+        let passed = match self {
+            Self::Box(_) => true,
+            Self::Sphere { centre_m, radius_m } => {
+                let apart = Vector3::from(*centre_m) - from;
+                let fraction = (apart.dot(&way) / way.norm_squared()).clamp(0.0, 1.0);
+                (apart - fraction * way).norm() <= *radius_m
+            }
+            Self::Cylinder {
+                from_m,
+                to_m,
+                radius_m,
+            } => crosses_cylinder([*from_m, *to_m], *radius_m, [from, to]),
+            Self::Inside(triangles, _) => triangles.iter().any(|t| crosses(t, &from, &way)),
+        };
+        passed && !self.contains(to.into())
+    }
+
     /// Its volume, m3.
     pub fn volume_m3(&self) -> f64 {
         match self {
@@ -140,6 +200,47 @@ fn beside_axis([from_m, to_m]: [[f64; 3]; 2], point_m: [f64; 3]) -> [f64; 2] {
     let way = Vector3::from(point_m) - Vector3::from(from_m);
     let along = way.dot(&axis) / axis.norm_squared();
     [along, (way - along * axis).norm()]
+}
+
+/// Whether a straight way between two points, m, comes into a cylinder with flat ends.
+fn crosses_cylinder(ends_m: [[f64; 3]; 2], radius_m: f64, [from, to]: [Vector3<f64>; 2]) -> bool {
+    let [start, end] = ends_m.map(Vector3::from);
+    let axis = (end - start).normalize();
+    let [height, rise] = [(from - start).dot(&axis), (to - from).dot(&axis)];
+    // The part of the way that is between the planes of the ends.
+    let (mut first, mut last) = (0.0_f64, 1.0_f64);
+    for plane in [0.0, (end - start).norm()] {
+        let above = plane == 0.0;
+        let [now, then] =
+            [height - plane, height + rise - plane].map(|h| if above { h } else { -h });
+        if now < 0.0 && then < 0.0 {
+            return false;
+        }
+        let crossing = now / (now - then);
+        if now < 0.0 {
+            first = first.max(crossing);
+        } else if then < 0.0 {
+            last = last.min(crossing);
+        }
+    }
+    let across = |v: Vector3<f64>| v - v.dot(&axis) * axis;
+    let (beside, way) = (across(from - start), across(to - from));
+    let nearest = -beside.dot(&way) / way.norm_squared();
+    let nearest = if nearest.is_finite() { nearest } else { 0.0 };
+    let nearest = nearest.max(first).min(last);
+    first <= last && (beside + nearest * way).norm() <= radius_m
+}
+
+/// Whether a straight way leads through a triangle (Moeller and Trumbore 1997).
+fn crosses(corners: &[[f64; 3]; 3], from: &Vector3<f64>, way: &Vector3<f64>) -> bool {
+    let [a, b, c] = corners.map(Vector3::from);
+    let (ab, ac, apart) = (b - a, c - a, from - a);
+    let normal = way.cross(&ac);
+    let determinant = ab.dot(&normal);
+    let across = apart.cross(&ab);
+    let [u, v, along] =
+        [apart.dot(&normal), way.dot(&across), ac.dot(&across)].map(|part| part / determinant);
+    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..=1.0).contains(&along)
 }
 
 fn is_in(bounds: &Bounds, point: [f64; 3]) -> bool {

@@ -5,7 +5,7 @@ use super::events::Events;
 use super::meetings::{Joint, Meetings};
 use super::particles::{Motion, Wrench};
 use super::partitions::Partition;
-use super::population::Surroundings;
+use super::population::{OutletWatch, Surroundings};
 use super::squeeze::Squeeze;
 use crate::clock::StageClock;
 use crate::physics::chebyshev::Chebyshev;
@@ -53,6 +53,8 @@ pub struct Scratch {
     /// Surroundings of each inlet. Empty once particles or clumps have come, gone or got other
     /// numbers; to be cleared as well by whoever moves them between steps.
     pub surroundings: Vec<Surroundings>,
+    /// The clusters near outlets. Empty once clusters have come, gone or changed to clumps or back.
+    pub outlets: OutletWatch,
     /// Events of the last step.
     pub events: Events,
     /// Time spent in each stage.
