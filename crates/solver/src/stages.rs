@@ -24,6 +24,7 @@ pub mod ledger;
 pub(crate) mod levels;
 pub(crate) mod listing;
 pub mod loads;
+pub mod local_damping;
 pub mod motion;
 pub mod neighbours;
 mod outlets;

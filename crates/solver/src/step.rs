@@ -29,10 +29,8 @@ use crate::stages::levels::{
 };
 use crate::stages::listing::{SEARCH, renew_lists, use_up_skin};
 use crate::stages::loads::{LOADS, apply_loads};
-use crate::stages::motion::{
-    GRAVITY, MOTION, PARTICLE_DAMPING, compute_particle_damping, count_falling, drift_particles,
-    kick_particles,
-};
+use crate::stages::local_damping::{PARTICLE_DAMPING, compute_particle_damping};
+use crate::stages::motion::{GRAVITY, MOTION, count_falling, drift_particles, kick_particles};
 use crate::stages::pieces::{CLUSTERS, find_pieces};
 use crate::stages::plasticity::{PLASTICITY, compute_plastic_bonds};
 use crate::stages::replacement::{

@@ -6,34 +6,13 @@
 use rayon::prelude::*;
 
 use super::clumps::awake;
-use super::stage::{NO_SAVING, Need, Saving, Stage};
+use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::rigid::{room_to_small, turn, turn_a_little};
 use crate::stages::chunks::{CHUNK, ordered_sum};
 use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
 use crate::state::State;
 use crate::state::asleep::Asleep;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
-
-/// ns per particle of a body of 25,547 particles: see doc/leave-out.md.
-const PARTICLE_DAMPING_NS: f64 = 37.6;
-
-/// Damping of particles.
-pub const PARTICLE_DAMPING: Stage = Stage {
-    name: "local damping",
-    within: None,
-    need: |state, _| {
-        let gamma = state.model.particle_damping;
-        Need::of(gamma > 0.0, || format!("gamma {gamma}"), "not asked for")
-    },
-    bytes: |state| size_of_val(&state.scratch.particle_resistance[..]),
-    saving: |state| {
-        Saving::of(
-            state.particles.free,
-            size_of::<Wrench>(),
-            PARTICLE_DAMPING_NS,
-        )
-    },
-};
 
 /// Kick and drift of particles.
 pub const MOTION: Stage = Stage {
@@ -62,21 +41,6 @@ pub const GRAVITY: Stage = Stage {
     bytes: |_| 0,
     saving: NO_SAVING,
 };
-
-/// Sets the damping forces on particles. Returns the number of particles on which they act.
-pub(crate) fn compute_particle_damping(state: &mut State) -> usize {
-    if state.scratch.particle_resistance.is_empty() {
-        return 0;
-    }
-    state.scratch.particle_resistance.fill(Wrench::default());
-    add_particle_damping(
-        &state.particles,
-        state.model.gravity_m_s2,
-        state.model.particle_damping,
-        &mut state.scratch.particle_resistance,
-    );
-    state.particles.free
-}
 
 /// Updates the velocities of particles. Returns the number of particles.
 pub(crate) fn kick_particles(state: &mut State) -> usize {
@@ -302,41 +266,6 @@ fn move_on<T: Lanes>(
         pose.turned = turned[lane];
     }
     Some(vx * vx + vy * vy + vz * vz)
-}
-
-/// Adds the resistance of Chen et al. 2022, eqs. 11 and 12, to `resisting`: a fraction `gamma` of
-/// each component of force and torque, against the motion. `total` is the driving wrench of each
-/// particle, including gravity.
-pub fn add_particle_damping(
-    particles: &Particles,
-    gravity_m_s2: [f64; 3],
-    gamma: f64,
-    resisting: &mut [Wrench],
-) {
-    resisting[..particles.free]
-        .par_chunks_mut(CHUNK)
-        .enumerate()
-        .for_each(|(chunk, resisting)| {
-            for (i, resisting) in (chunk * CHUNK..).zip(resisting) {
-                let (wrench, motion) = (&particles.wrenches[i], &particles.motions[i]);
-                let weight = gravity_m_s2.map(|g| g / motion.inverse_mass);
-                for (k, weight) in weight.iter().enumerate() {
-                    let force = wrench.force_n[k] + weight;
-                    resisting.force_n[k] -= gamma * against(force, motion.velocity_m_s[k]);
-                    resisting.torque_n_m[k] -=
-                        gamma * against(wrench.torque_n_m[k], motion.spin_rad_s[k]);
-                }
-            }
-        });
-}
-
-/// The magnitude of a force with the sign of a velocity; 0 at rest.
-fn against(force: f64, velocity: f64) -> f64 {
-    if velocity == 0.0 {
-        0.0
-    } else {
-        force.abs().copysign(velocity)
-    }
 }
 
 /// Power of wrenches on moving particles, W. The order of summation is the same for any number of

@@ -1,6 +1,7 @@
 //! Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 
 use super::bridges::BridgeScratch;
+use super::clusters::Clusters;
 use super::events::Events;
 use super::meetings::{Joint, Meetings};
 use super::particles::{Motion, Wrench};
@@ -25,6 +26,8 @@ pub struct Scratch {
     pub structural_share: f64,
     /// Damping forces on particles. Empty: none.
     pub particle_resistance: Vec<Wrench>,
+    /// What is joined by bonds, where local damping needs it and the scene has no clusters.
+    pub pieces: Option<Clusters>,
     /// Motions of the free particles at the time of their poses, without viscous damping of bonds
     /// or with that of the last step, and in a stage of it. Length 0 or free particles.
     pub predicted: [Vec<Motion>; 2],
