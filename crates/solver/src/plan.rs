@@ -1,6 +1,7 @@
 //! Turns a scene and its bodies into a simulation ready to step: its state, the stages it needs,
 //! and why the others are skipped.
 
+mod alike;
 pub(crate) mod bodies;
 mod clumps;
 pub(crate) mod contacts;
@@ -50,6 +51,7 @@ use crate::state::sleep::{Sleep, SleepRule};
 use crate::state::supports::GroupSupport;
 use crate::state::supports::HeldParticle;
 
+use self::alike::told_once;
 use self::bodies::place_bodies;
 use self::clumps::{
     ball_m, need_pairs, refuse_unbreakable, standing, templates, templates_of, unused_bonds,
@@ -171,13 +173,14 @@ pub fn plan(
         refuse_endless_damping(scene, &state)?;
     }
     let arriving = arriving_as_clusters(&state);
-    let forecast = forecast(
+    let mut forecast = forecast(
         scene,
         &state,
         &bodies,
         step.impact_speed_m_s,
         arriving.as_ref(),
     );
+    forecast.warnings = told_once(forecast.warnings, scene.bodies.keys());
     let stages = planned_stages(&state, scene);
     leave_out(&stages, &mut state);
     let test = scene.test.as_ref().map(|test| {
@@ -204,8 +207,8 @@ pub fn plan(
         test,
         unused_bonds,
         masses,
-        notes,
-        warnings,
+        notes: told_once(notes, scene.bodies.keys()),
+        warnings: told_once(warnings, scene.bodies.keys()),
         forecast,
         inputs,
     })

@@ -3,6 +3,7 @@
 mod apart;
 mod clouds;
 mod flight;
+mod joints;
 mod rest;
 mod surfaces;
 mod walls;

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeSet;
 
-use dem_scene::{Scene, WallMotion};
+use dem_scene::{Hold, Scene, WallMotion};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::geometry::Shape;
@@ -63,13 +63,51 @@ pub(crate) fn can_meet(state: &State, scene: &Scene) -> bool {
     state.contacts.is_some() && (!state.walls.is_empty() || others)
 }
 
-/// The bodies of the scene in free flight: neither held nor loaded, nor asleep. Their velocities
-/// are those of `ahead_s` after their positions.
-pub(crate) fn free_bodies(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<FreeBody> {
+/// The bodies of the scene that are held, loaded or asleep. Those that may move count as infinitely
+/// large: whatever flies may meet them.
+pub(crate) fn standing_bodies(state: &State, bodies: &[PlacedBody]) -> Vec<FreeBody> {
+    let moving = state.supports.iter().filter(|support| {
+        let mut holds = support.holds.iter().flatten();
+        holds.any(|hold| *hold != Hold::Fixed)
+    });
+    let moved = moving.flat_map(|support| support.held.iter().map(|held| held.particle));
+    let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
+    let moved: BTreeSet<u32> = moved.chain(loaded).collect();
+    let bound = bound_particles(state);
+    let is_bound = |i: &u32| bound.contains(i) || state.particles.sleeps(*i as usize);
+    let of_bodies = bodies.iter().filter_map(|body| {
+        let living = body.particles.iter().copied();
+        let living: Vec<u32> = living.filter(|i| *i != REMOVED).collect();
+        living.iter().any(is_bound).then(|| {
+            let mut standing = FreeBody::of_particles(state, &body.name, &living);
+            if living.iter().any(|i| moved.contains(i)) {
+                standing.reach_m = f64::INFINITY;
+            }
+            standing
+        })
+    });
+    let asleep = state.clumps.all.iter().filter(|clump| clump.asleep);
+    let of_clumps = asleep.map(|clump| FreeBody::of_clump(state, clump));
+    let mut standing: Vec<FreeBody> = of_bodies.chain(of_clumps).collect();
+    for body in &mut standing {
+        body.velocity_m_s = Vector3::zeros();
+        body.gravity_m_s2 = Vector3::zeros();
+    }
+    standing
+}
+
+/// The particles that are held or loaded.
+fn bound_particles(state: &State) -> BTreeSet<u32> {
     let held = state.supports.iter().flat_map(|support| &support.held);
     let held = held.map(|held| held.particle);
     let loaded = state.loads.iter().flat_map(|load| &load.particles).copied();
-    let bound: BTreeSet<u32> = held.chain(loaded).collect();
+    held.chain(loaded).collect()
+}
+
+/// The bodies of the scene in free flight: neither held nor loaded, nor asleep. Their velocities
+/// are those of `ahead_s` after their positions.
+pub(crate) fn free_bodies(state: &State, bodies: &[PlacedBody], ahead_s: f64) -> Vec<FreeBody> {
+    let bound = bound_particles(state);
     let is_free = |i: &u32| !bound.contains(i) && !state.particles.sleeps(*i as usize);
     let of_bodies = bodies.iter().filter_map(|body| {
         let living = body.particles.iter().copied();
@@ -289,18 +327,42 @@ impl FreeBody {
         })
     }
 
-    /// Time at which the bounding spheres of this body and another first touch, s; both fall alike.
-    /// None: never.
+    /// Time at which the bounding spheres of this body and another first touch, s. None: never.
     fn comes_near_after(&self, other: &Self) -> Option<f64> {
         let apart = other.centre_m - self.centre_m;
         let velocity = other.velocity_m_s - self.velocity_m_s;
+        let gravity = other.gravity_m_s2 - self.gravity_m_s2;
         let reach_m = self.reach_m + other.reach_m;
         let c = apart.norm_squared() - reach_m * reach_m;
         if c <= 0.0 {
             return Some(0.0);
         }
+        if gravity != Vector3::zeros() {
+            return approach_after([apart, velocity, gravity], reach_m);
+        }
         let (a, b) = (velocity.norm_squared(), apart.dot(&velocity));
         let root = b * b - a * c;
         (b < 0.0 && root >= 0.0).then(|| (-b - root.sqrt()) / a)
     }
+}
+
+/// Time at which two points on a parabola relative to each other, from this distance, m, at this
+/// velocity, m/s, and acceleration, m/s2, first come as near as `reach_m`, s. None: never.
+fn approach_after([apart, velocity, gravity]: [Vector3<f64>; 3], reach_m: f64) -> Option<f64> {
+    let mut after_s = 0.0;
+    for _ in 0..MOVES {
+        let now = apart + after_s * (velocity + 0.5 * after_s * gravity);
+        let speed = velocity + after_s * gravity;
+        let gap_m = now.norm() - reach_m;
+        if gap_m <= CLOSED * reach_m {
+            return Some(after_s);
+        }
+        let recedes = [now.dot(&speed), now.dot(&gravity), speed.dot(&gravity)];
+        if recedes.iter().all(|part| *part >= 0.0) {
+            return None;
+        }
+        let (v, g) = (speed.norm(), gravity.norm());
+        after_s += 2.0 * gap_m / (v + (v * v + 2.0 * g * gap_m).sqrt());
+    }
+    Some(after_s)
 }

@@ -5,7 +5,7 @@ use dem_io::units::significant;
 use dem_scene::{FeedRate, Scene};
 use serde::Serialize;
 
-use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies};
+use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
 use crate::check::laws::foreseen;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
@@ -68,6 +68,8 @@ pub(super) fn forecast(
 
 fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut Forecast) {
     let flying = free_bodies(state, bodies, 0.0);
+    let mut all = flying.clone();
+    all.extend(standing_bodies(state, bodies));
     let end_s = scene.run.end_time_s;
     let end = significant(end_s, 4);
     let mut seen: Vec<&str> = Vec::new();
@@ -77,7 +79,7 @@ fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut 
             continue;
         }
         seen.push(name);
-        let meets_after_s = match flyer.first_meeting(&state.walls, &flying) {
+        let meets_after_s = match flyer.first_meeting(&state.walls, &all) {
             Meeting::Unknown => continue,
             Meeting::Never => {
                 let line = format!("'{name}' never meets anything in free flight");

@@ -23,6 +23,7 @@ use crate::stages::clumps::place_all;
 use crate::stages::ledger::{Balance, CHECKS, balance};
 use crate::stages::pieces::find_pieces_now;
 use crate::stages::stage::Stage;
+use crate::stages::touching::contacts_now;
 use crate::stages::watching::OUTPUT;
 use crate::state::State;
 use crate::state::bodies::renumber;
@@ -40,6 +41,11 @@ pub(crate) const INTERRUPTION: &str = "interruption";
 /// Interval between checks of bending and twisting of bonds, in steps: each check costs about five
 /// times as much as the bonds of a step.
 const EDGES_EVERY: u64 = 1024;
+
+/// Contacts are looked at in each step if they are no more than this, otherwise in every eighth:
+/// once something has touched every body, and before.
+const FEW_CONTACTS: usize = 64;
+const FEW_BEFORE_ALL_TOUCHED: usize = 1024;
 
 /// The reason why the loop over steps ends.
 pub(super) struct Ended {
@@ -195,7 +201,14 @@ impl Run<'_> {
         if state.steps.is_multiple_of(EDGES_EVERY) {
             seen.look_at_edges(state, bodies);
         }
-        if state.steps.is_multiple_of(CHECK_EVERY_STEPS) {
+        // A bounce may last for a few steps only. Few contacts cost nothing; many last longer.
+        let few = 1..=if seen.misses_one(self.scene) {
+            FEW_BEFORE_ALL_TOUCHED
+        } else {
+            FEW_CONTACTS
+        };
+        let is_turn = state.steps.is_multiple_of(CHECK_EVERY_STEPS);
+        if is_turn || few.contains(&contacts_now(state)) {
             seen.look_at_contacts(state, self.scene, bodies);
         }
         if let Some(files) = &mut self.files {

@@ -8,7 +8,7 @@ use dem_scene::{Scene, StartAs};
 use serde::{Deserialize, Serialize};
 
 use super::flying::{Flying, still_flying};
-use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies};
+use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
 use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
 use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
 use crate::state::State;
@@ -118,6 +118,11 @@ impl Seen {
         self.largest_kinetic_j = self.largest_kinetic_j.max(kinetic_j);
     }
 
+    /// Whether nothing has touched some body yet.
+    pub(super) fn misses_one(&self, scene: &Scene) -> bool {
+        self.touched.len() < scene.bodies.len()
+    }
+
     /// Checks contacts and their overlaps. Cheap enough for every eighth step.
     pub(super) fn look_at_contacts(&mut self, state: &State, scene: &Scene, bodies: &[PlacedBody]) {
         let Some(contacts) = &state.contacts else {
@@ -125,7 +130,7 @@ impl Seen {
         };
         let p = &state.particles;
         let radius = |i: u32| p.poses[i as usize].radius_m();
-        let misses_one = self.touched.len() < scene.bodies.len();
+        let misses_one = self.misses_one(scene);
         let mut touching = Vec::new();
         // Particle and wall, or two particles.
         let mut deepest: Option<(f64, u32, Result<usize, u32>)> = None;
@@ -335,7 +340,9 @@ impl Seen {
             return Vec::new();
         }
         // Between a kick and the drift after it.
-        let flying = free_bodies(state, bodies, 0.5 * state.time_step_s);
+        let mut flying = free_bodies(state, bodies, 0.5 * state.time_step_s);
+        let free = flying.len();
+        flying.extend(standing_bodies(state, bodies));
         let mut warnings = Vec::new();
         let mut unnamed = 0;
         for name in scene
@@ -343,7 +350,7 @@ impl Seen {
             .keys()
             .filter(|name| !self.touched.contains(*name))
         {
-            let own = flying.iter().find(|flyer| flyer.name == *name);
+            let own = flying[..free].iter().find(|flyer| flyer.name == *name);
             let is_there = own.is_some() || !is_present(state, bodies, name);
             // A held or loaded body is not meant to touch anything; one that no inlet has fed did
             // not exist.
