@@ -10,6 +10,7 @@ mod inlets;
 mod lists;
 mod masses;
 mod outer;
+mod outlets;
 mod refused;
 mod regions;
 mod rest;

@@ -19,6 +19,7 @@ mod disk;
 mod dynamic;
 mod dynamic_tests;
 mod ends;
+mod few_steps;
 mod histories;
 mod inputs;
 mod interrupted;

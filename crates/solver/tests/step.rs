@@ -5,6 +5,7 @@ mod energy;
 mod frequencies;
 mod ledger;
 mod limit;
+mod local_damping;
 mod lowest_frequency;
 mod neighbours;
 mod rigid;

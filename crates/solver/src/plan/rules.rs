@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dem_io::body::About;
+use dem_io::random::uniform;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{FeedRate, Region as SceneRegion, Scene, SharesBy, StartAs};
@@ -11,7 +12,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::daughters::{compliances, daughter_rules};
 use super::walls::surface_of;
-use crate::geometry::{Bounds, Mesh};
+use crate::geometry::{Bounds, Mesh, Shape};
 use crate::physics::rotation::numbers;
 use crate::shape::inertia::of_union;
 use crate::state::State;
@@ -19,6 +20,7 @@ use crate::state::clumps::Template;
 use crate::state::particles::Pose;
 use crate::state::regions::Region;
 use crate::state::rules::{Feed, Inlet, Outlet, PrincipalStress, Restore, Rules, Start, Trigger};
+use crate::state::walls::Wall;
 
 /// The rules of the scene for adding, removing and replacing bodies. `about`: information on the
 /// bodies.
@@ -253,6 +255,21 @@ fn is_in_outlet(region: usize, outlet: &Outlet, state: &State) -> bool {
     !outlet.removes_outside && (outlet.region == region || is_convex && contains_all())
 }
 
+/// Number of points of an inlet's region that are looked for in a closed surface.
+const SAMPLES: u64 = 100;
+
+/// Whether the region of an inlet lies inside a closed surface, as far as samples show.
+fn is_inside(inlet: &Inlet, wall: &Wall, state: &State) -> bool {
+    if !matches!(wall.model.shape, Shape::Mesh(_)) {
+        return false;
+    }
+    let region = &state.model.rules.regions[inlet.region];
+    let samples = (0..SAMPLES).filter_map(|n| region.point([0, 1, 2].map(|k| uniform(n, &[k]))));
+    let mut count = 0;
+    let mut inside = samples.inspect(|_| count += 1);
+    inside.all(|point| wall.model.shape.holds(wall.frame.to_wall(point))) && count > 0
+}
+
 /// Bodies that fall asleep in flight.
 fn sleep_doubt(scene: &Scene) -> Option<String> {
     let sleep = scene.sleep.as_ref()?;
@@ -319,6 +336,16 @@ fn inlet_doubts(scene: &Scene, state: &State, inlet: &Inlet) -> Vec<String> {
                 outlet.name, inlet.name
             ));
         }
+    }
+    let buried = state
+        .walls
+        .iter()
+        .find(|wall| is_inside(inlet, wall, state));
+    if let Some(wall) = buried {
+        doubts.push(format!(
+            "inlet '{}': its region lies inside the closed surface of the wall '{}', whose normals look outwards: a solid, in which no body finds room; if it is a container, export it with its normals inwards",
+            inlet.name, wall.model.name
+        ));
     }
     if let Some(most_per_s) = most_per_s(inlet, state) {
         let wanted = match inlet.feed {

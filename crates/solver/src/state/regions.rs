@@ -259,3 +259,80 @@ fn turns(triangles: &[[[f64; 3]; 3]], point: &Vector3<f64>) -> f64 {
     }
     angle.abs() / (4.0 * std::f64::consts::PI)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dem_io::random::uniform;
+
+    /// A tetrahedron, its corners in m.
+    fn tetrahedron() -> Region {
+        let [a, b, c, d] = [
+            [-0.5, -0.4, -0.3],
+            [0.6, -0.2, -0.4],
+            [0.0, 0.7, -0.2],
+            [0.1, 0.0, 0.6],
+        ];
+        let triangles = vec![[a, c, b], [a, b, d], [b, c, d], [c, a, d]];
+        Region::Inside(triangles, Bounds::of([a, b, c, d]))
+    }
+
+    fn all() -> [Region; 4] {
+        let [low, high] = [[-0.3, -0.2, -0.6], [0.4, 0.1, 0.5]];
+        let [from_m, to_m] = [[-0.4, -0.2, -0.3], [0.5, 0.3, 0.2]];
+        [
+            Region::Box(Bounds { low, high }),
+            Region::Sphere {
+                centre_m: [0.1, -0.1, 0.2],
+                radius_m: 0.4,
+            },
+            Region::Cylinder {
+                from_m,
+                to_m,
+                radius_m: 0.3,
+            },
+            tetrahedron(),
+        ]
+    }
+
+    fn place(n: u64, of: u64) -> Vector3<f64> {
+        Vector3::from([0, 1, 2].map(|k| 2.0 * uniform(n, &[of, k]) - 1.0))
+    }
+
+    #[test]
+    fn ways_through_a_region_are_found() {
+        for region in all() {
+            let (mut passed, mut missed) = (0, 0);
+            for n in 0..2000 {
+                let [from, to] = [place(n, 0), place(n, 1)];
+                if region.contains(from.into()) || region.contains(to.into()) {
+                    continue;
+                }
+                let mut points = (1..1000).map(|at| from.lerp(&to, f64::from(at) / 1000.0));
+                let comes_in = points.any(|point| region.contains(point.into()));
+                let is_passed = region.is_passed([from, to]);
+                // Between two points there may be a shorter way through a corner.
+                assert!(is_passed || !comes_in, "{region:?} {from} {to}");
+                passed += u32::from(is_passed);
+                missed += u32::from(is_passed && !comes_in);
+            }
+            assert!(passed > 100 && missed <= passed / 50, "{passed} {missed}");
+        }
+    }
+
+    #[test]
+    fn no_border_is_nearer_than_told() {
+        for region in all() {
+            let mut sum_m = 0.0;
+            for n in 0..5000 {
+                let from = place(n, 2);
+                let free_m = region.to_border_m(from);
+                sum_m += free_m;
+                let to = from + 0.999 * free_m * place(n, 3).normalize();
+                let same = region.contains(from.into()) == region.contains(to.into());
+                assert!(same, "{region:?} {from} {to}");
+            }
+            assert!(sum_m > 500.0, "{sum_m}");
+        }
+    }
+}

@@ -1,6 +1,8 @@
 //! When free bodies meet walls.
 
-use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
+use std::time::{Duration, Instant};
+
+use dem_run::geometry::{Frame, Mesh, Plane, Shape, SolidBox};
 use dem_run::internals::{FreeBody, Meeting};
 use dem_run::state::walls::Wall;
 use nalgebra::Vector3;
@@ -69,4 +71,64 @@ fn another_body_in_the_way_leaves_it_open() {
     );
     other.velocity_m_s.x = 1.0;
     assert_ne!(one.first_meeting(&walls, &[other]), Meeting::Unknown);
+}
+
+/// Of a surface of many facets the nearest is found without looking at all of them.
+#[test]
+fn a_meeting_with_a_fine_surface_takes_no_longer_than_with_a_plane() {
+    let mut surface = (Vec::new(), Vec::new());
+    crate::walls::add_tiles(&mut surface, 300, |i, j| {
+        [f64::from(i) / 30.0 - 5.0, f64::from(j) / 30.0 - 5.0, 0.0]
+    });
+    let mesh = Mesh::new(&surface.0, &surface.1).unwrap();
+    let tiles = Wall::standing(Shape::Mesh(mesh), Frame::default());
+    let falling = ball([0.003, 0.004, 1.1], [0.3, 0.0, 0.0], [0.0, 0.0, -9.81]);
+    let began = Instant::now();
+    let met = falling.first_meeting(&[tiles], &[]);
+    // All pairs of facets took a minute.
+    assert!(
+        began.elapsed() < Duration::from_secs(5),
+        "{:?}",
+        began.elapsed()
+    );
+    let (
+        Meeting::At { after_s: now, .. },
+        Meeting::At {
+            after_s: wanted, ..
+        },
+    ) = (met, falling.first_meeting(&[floor()], &[]))
+    else {
+        panic!("it meets both");
+    };
+    assert!((now - wanted).abs() < 1e-9, "{now} {wanted}");
+}
+
+/// What a forecast says of a ball that falls onto a held sphere, and past it.
+#[test]
+fn a_held_body_can_be_met() {
+    let warnings = |x: f64, support: &str| {
+        let text = format!(
+            "version = 1
+run = {{ end_time = 0.1, gravity = [0, 0, -9.81] }}
+materials.g = {{ density = 2500, young_modulus = \"50 MPa\", poisson_ratio = 0.25 }}
+contacts.g-g = {{ restitution = 0.5 }}
+bodies.floor = {{ material = \"g\", particles = [[0, 0, 0, 0.01]] }}
+bodies.ball = {{ material = \"g\", particles = [[{x}, 0, 0.025, 0.005]] }}
+supports.floor = {{ group = \"floor\", {support} }}
+"
+        );
+        let scene = crate::helpers::scene(&text);
+        let bodies = dem_scene::read_bodies(&scene).unwrap();
+        let plan = dem_run::plan::plan(&scene, &bodies, 1, false).unwrap();
+        plan.forecast.warnings
+    };
+    let never = "'ball' never meets anything in free flight";
+    let says = |warnings: &[String]| warnings.iter().any(|one| one.starts_with(never));
+    for x in [0.0, 0.0149] {
+        let told = warnings(x, "fixed = true");
+        assert!(!says(&told), "{x}: {told:?}");
+    }
+    assert!(says(&warnings(0.0151, "fixed = true")));
+    // It may be in the way later.
+    assert!(!says(&warnings(0.0151, "velocity = [0.1, 0, 0]")));
 }

@@ -18,16 +18,26 @@ fn everything(
     (vertices, triangles): &Surface,
     c: Vector,
     reach: f64,
-) -> Option<Vec<(Vector, bool)>> {
+) -> Option<Vec<(Vector, bool, bool)>> {
     let at = |v: u32| Vector::from(vertices[v as usize]);
-    let mut found: Vec<(Vector, bool)> = Vec::new();
+    // Whether all triangles with these vertices are smaller than the reach.
+    let is_fine = |some: &[u32]| {
+        let own = triangles
+            .iter()
+            .filter(|t| some.iter().all(|v| t.contains(v)));
+        own.clone().all(|t| {
+            let [p, q, r] = t.map(at);
+            (p.sup(&q).sup(&r) - p.inf(&q).inf(&r)).norm() < reach
+        })
+    };
+    let mut found: Vec<(Vector, bool, bool)> = Vec::new();
     for [a, b, d] in triangles {
         let [p, q, r] = [a, b, d].map(|v| at(*v));
         let normal = (q - p).cross(&(r - p)).normalize();
         let foot = c - (c - p).dot(&normal) * normal;
         let is_left = |x: Vector, y: Vector| (y - x).cross(&(foot - x)).dot(&normal) > 0.0;
         if is_left(p, q) && is_left(q, r) && is_left(r, p) {
-            found.push((foot, true));
+            found.push((foot, true, is_fine(&[*a, *b, *d])));
         }
     }
     let mut edges: Vec<[u32; 2]> = triangles
@@ -57,7 +67,7 @@ fn everything(
                 (c - foot).dot(&across) < 0.0
             });
         if leads_away {
-            found.push((foot, false));
+            found.push((foot, false, is_fine(&[*a, *b])));
         }
     }
     for v in 0..vertices.len() as u32 {
@@ -67,19 +77,21 @@ fn everything(
             .map(|e| at(e[0] + e[1] - v))
             .peekable();
         if others.peek().is_some() && others.all(|other| (c - at(v)).dot(&(other - at(v))) < 0.0) {
-            found.push((at(v), false));
+            found.push((at(v), false, is_fine(&[v])));
         }
     }
-    found.retain(|(p, _)| (c - p).norm() < reach);
+    found.retain(|(p, ..)| (c - p).norm() < reach);
     found.sort_by(|a, b| (c - a.0).norm().total_cmp(&(c - b.0).norm()));
-    // Of faces with the same direction within 8 degrees, the nearest.
-    let mut kept: Vec<(Vector, bool)> = Vec::new();
-    for (p, is_face) in found {
-        let hidden = |(q, other): &(Vector, bool)| {
-            is_face && *other && (p - c).normalize().dot(&(q - c).normalize()) > 0.99
+    // Of faces with the same direction within 8 degrees, the nearest; of points on facets smaller
+    // than the reach, within 26 degrees.
+    let mut kept: Vec<(Vector, bool, bool)> = Vec::new();
+    for (p, is_face, is_fine) in found {
+        let hidden = |(q, other, fine): &(Vector, bool, bool)| {
+            let cosine = (p - c).normalize().dot(&(q - c).normalize());
+            is_face && *other && cosine > 0.99 || is_fine && *fine && cosine > 0.9
         };
         if !kept.iter().any(hidden) {
-            kept.push((p, is_face));
+            kept.push((p, is_face, is_fine));
         }
     }
     Some(kept)
@@ -98,7 +110,7 @@ fn assert_finds_everything(surface: &Surface, centres: &[[f64; 3]], reach: f64) 
             wanted.len(),
             "{centre:?}: {found:?} {wanted:?}"
         );
-        for (found, (wanted, _)) in found.iter().zip(&wanted) {
+        for (found, (wanted, ..)) in found.iter().zip(&wanted) {
             assert!(apart(found.point, (*wanted).into()) < 1e-12);
         }
     }
