@@ -4,7 +4,8 @@
 //! The nearest point of a surface stands for it. Another point belongs to the same surface if it is
 //! seen from the centre in nearly the same direction, or if it is on an edge, in a corner or on a
 //! round side and stands out from the surface by no more than a small fraction of the radius. Faces
-//! in other directions are surfaces of their own, so that both sides of a groove push.
+//! in other directions are surfaces of their own, so that both sides of a groove push, unless their
+//! points are buried.
 
 use nalgebra::Vector3;
 
@@ -39,12 +40,11 @@ pub(crate) fn is_one(nearer: &Place, other: &Place, radius_m: f64) -> bool {
     if cosine > ALIKE || (nearer.is_fine && other.is_fine && cosine > ROUGH) {
         return true;
     }
-    // The normals point into the wall.
+    // The normals point into the wall. What is below the plane of a nearer face is buried there.
     let between = Vector3::from(nearer.touch.point) - Vector3::from(other.touch.point);
-    let height_m = match (nearer.is_flat, other.is_flat) {
-        (true, true) => return false,
-        (false, true) => -between.dot(&m),
-        (_, false) => between.dot(&n),
-    };
-    height_m <= STANDS_OUT * radius_m
+    match (nearer.is_flat, other.is_flat) {
+        (true, true) => between.dot(&n) <= 0.0,
+        (false, true) => -between.dot(&m) <= STANDS_OUT * radius_m,
+        (_, false) => between.dot(&n) <= STANDS_OUT * radius_m,
+    }
 }

@@ -6,15 +6,15 @@ use dem_run::state::events::PopulationEvent;
 
 use super::{HEAD, MEETS, block, happens, lump, planned};
 
-/// Single spheres, clumps and bonded bodies that fly along x at 20 m/s through a region of 1 mm,
-/// 2 mm in each step, all of them at other places at the time of a step.
+/// Single spheres, clumps and bonded bodies that fly along x at 20 m/s through a region of 5 um,
+/// 20 um in each step.
 fn flown(region: &str) -> (u32, f64, usize) {
     let mut text = format!("{HEAD}{MEETS}");
     for n in 0..5 {
         let y = 0.02 * f64::from(n);
         let start = format!(
             "position = [{}, {y}, 0]\nvelocity = [20, 0, 0]\n",
-            -0.1 - 0.0013 * f64::from(n)
+            -0.012 - 0.0013 * f64::from(n)
         );
         writeln!(
             text,
@@ -38,10 +38,10 @@ fn flown(region: &str) -> (u32, f64, usize) {
     }
     text += &format!("[regions.out]\n{region}\n[outlets.out]\ninside = \"out\"\n");
     let mut state = planned(&text).state;
-    state.time_step_s = 1e-4;
-    state.previous_time_step_s = 1e-4;
+    state.time_step_s = 1e-6;
+    state.previous_time_step_s = 1e-6;
     let mut left = 0;
-    while state.time_s < 0.012 {
+    while state.time_s < 1.6e-3 {
         let happened = happens(&mut state);
         let gone = happened
             .iter()
@@ -55,9 +55,9 @@ fn flown(region: &str) -> (u32, f64, usize) {
 #[test]
 fn what_passes_a_thin_outlet_within_a_step_is_removed() {
     for region in [
-        "box = { min = [0, -1, -1], max = [0.001, 1, 1] }",
+        "box = { min = [0, -1, -1], max = [5e-6, 1, 1] }",
         "sphere = { centre = [0.5005, 0.04, 0.02], radius = 0.5005 }",
-        "cylinder = { from = [0, 0.04, 0.02], to = [0.001, 0.04, 0.02], radius = 0.5 }",
+        "cylinder = { from = [0, 0.04, 0.02], to = [5e-6, 0.04, 0.02], radius = 0.5 }",
         "cylinder = { from = [0.0005, -1, 0.02], to = [0.0005, 1, 0.02], radius = 0.04 }",
     ] {
         let (bodies, mass_kg, left) = flown(region);
@@ -66,7 +66,7 @@ fn what_passes_a_thin_outlet_within_a_step_is_removed() {
     }
     // Beside it nothing is removed.
     for region in [
-        "box = { min = [0, -1, -1], max = [0.001, -0.001, 1] }",
+        "box = { min = [0, -1, -1], max = [5e-6, -0.001, 1] }",
         "cylinder = { from = [0.0005, -1, -0.5], to = [0.0005, 1, -0.5], radius = 0.49 }",
     ] {
         assert_eq!(flown(region).0, 0, "{region}");

@@ -76,11 +76,18 @@ fn another_body_in_the_way_leaves_it_open() {
 /// Of a surface of many facets the nearest is found without looking at all of them.
 #[test]
 fn a_meeting_with_a_fine_surface_takes_no_longer_than_with_a_plane() {
-    let mut surface = (Vec::new(), Vec::new());
-    crate::walls::add_tiles(&mut surface, 300, |i, j| {
-        [f64::from(i) / 30.0 - 5.0, f64::from(j) / 30.0 - 5.0, 0.0]
-    });
-    let mesh = Mesh::new(&surface.0, &surface.1).unwrap();
+    const SIDE: u32 = 300;
+    let places = (0..=SIDE).flat_map(|i| (0..=SIDE).map(move |j| [i, j]));
+    let at = |n: u32| f64::from(n) / 30.0 - 5.0;
+    let vertices: Vec<[f64; 3]> = places.map(|[i, j]| [at(i), at(j), 0.0]).collect();
+    let corners = (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| i * (SIDE + 1) + j));
+    let triangles: Vec<[u32; 3]> = corners
+        .flat_map(|a| {
+            let b = a + SIDE + 1;
+            [[a, b, b + 1], [a, b + 1, a + 1]]
+        })
+        .collect();
+    let mesh = Mesh::new(&vertices, &triangles).unwrap();
     let tiles = Wall::standing(Shape::Mesh(mesh), Frame::default());
     let falling = ball([0.003, 0.004, 1.1], [0.3, 0.0, 0.0], [0.0, 0.0, -9.81]);
     let began = Instant::now();

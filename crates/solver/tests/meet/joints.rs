@@ -248,7 +248,7 @@ fn sides_of_a_corner_and_steps_push_each() {
     let beside = [
         ("corner", high, 4.95),
         ("step", step, 2.9),
-        ("slope", slope, 1.2),
+        ("slope", slope, 0.6),
     ];
     for (name, wall, x) in beside {
         let ball = ball([x, 0.0, 4.95], [0.0; 3]);
