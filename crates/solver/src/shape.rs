@@ -5,6 +5,7 @@ mod cells;
 pub mod fit;
 pub mod hull;
 pub mod inertia;
+pub mod landing;
 pub mod outer_layer;
 pub mod packing_fit;
 pub(crate) mod union;

@@ -5,6 +5,7 @@ pub mod bonds;
 pub mod breakage;
 pub(crate) mod bridges;
 pub(crate) mod chunks;
+pub(crate) mod clump_contacts;
 pub mod clumps;
 mod cluster_bytes;
 pub mod contacts;

@@ -6,6 +6,7 @@ pub mod balls;
 pub mod bodies;
 pub mod bonds;
 pub mod bridges;
+pub mod clump_touches;
 pub mod clumps;
 pub mod clusters;
 pub mod contacts;

@@ -9,6 +9,7 @@ use crate::stages::breakage::{
     count_scattered,
 };
 use crate::stages::bridges::{BRIDGES, compute_bridges};
+use crate::stages::clump_contacts::share_masses;
 use crate::stages::clumps::{CLUMPS, drift_clumps, gather_clumps, kick_clumps};
 use crate::stages::contacts::{
     CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
@@ -45,7 +46,9 @@ use crate::stages::sleep::{SLEEP, update_sleep};
 use crate::stages::stage::Stage;
 use crate::stages::structural::{STRUCTURAL_DAMPING, compute_structural_damping};
 use crate::stages::supports::{SUPPORTS, hold_supports, remember_held};
-use crate::stages::walls::{WALLS, compute_wall_contacts, drift_walls, plan_wall_motions};
+use crate::stages::walls::{
+    WALLS, compute_wall_contacts, drift_walls, find_wall_contacts, plan_wall_motions,
+};
 use crate::stages::watching::{OUTPUT, watch};
 use crate::stages::zones::{ZONES, follow_zones};
 use crate::state::State;
@@ -57,7 +60,9 @@ type Part = (&'static Stage, fn(&mut State) -> usize);
 
 /// First half of a step: the forces on the particles at their present positions, and the velocities
 /// that follow from them.
-const INTERACT: &[Part] = &[
+const INTERACT: [&[Part]; 3] = [BEFORE_CONTACTS, AHEAD_OF_CONTACTS, FROM_CONTACTS];
+
+const BEFORE_CONTACTS: &[Part] = &[
     (&SELF_CONTACT, find_self_contacts),
     (&SEARCH, renew_lists),
     (&LEVELS, set_levels),
@@ -67,6 +72,12 @@ const INTERACT: &[Part] = &[
     (&PLASTICITY, compute_plastic_bonds),
     (&FLAT_JOINTS, compute_flat_joints),
     (&DAMAGE, press_damaged_bonds),
+];
+
+/// What contacts need from stages whose forces follow theirs.
+const AHEAD_OF_CONTACTS: &[Part] = &[(&WALLS, find_wall_contacts), (&CLUMPS, share_masses)];
+
+const FROM_CONTACTS: &[Part] = &[
     (&CONTACTS, compute_contacts),
     (&RELAXATION, count_relaxing),
     (&ROLLING, count_rolling),
@@ -98,7 +109,7 @@ const INTERACT: &[Part] = &[
 ];
 
 /// Second half, with velocities half a step later: bodies are added, removed and replaced.
-const EXCHANGE: &[Part] = &[
+const EXCHANGE: [&[Part]; 1] = [&[
     (&LEDGER, count_bond_steps),
     (&FLOW, apply_inlets_and_outlets),
     (&DAUGHTERS, replace_by_daughters),
@@ -106,10 +117,10 @@ const EXCHANGE: &[Part] = &[
     (&REPLACEMENT, replace_clumps),
     (&SQUEEZE, count_squeezing),
     (&ZONES, follow_zones),
-];
+]];
 
 /// Everything moves on.
-const DRIFT: &[Part] = &[
+const DRIFT: [&[Part]; 1] = [&[
     (&SLEEP, update_sleep),
     (&MOTION, drift_particles),
     (&RIGID_PARTS, drift_rigid_parts),
@@ -117,7 +128,7 @@ const DRIFT: &[Part] = &[
     (&WALLS, drift_walls),
     (&SEARCH, use_up_skin),
     (&LEDGER, advance_time),
-];
+]];
 
 /// Stages of the first half that are done once for all groups of bodies with steps of their own,
 /// before the groups and after them.
@@ -146,13 +157,13 @@ pub fn interact(state: &mut State) {
         state.ledger = opened(state);
     }
     if state.levels.is_none() {
-        return run(INTERACT, &TABLE.interact, state, |_| true);
+        return run(&INTERACT, &TABLE.interact, state, |_| true);
     }
-    run(INTERACT, &TABLE.interact, state, |stage| {
+    run(&INTERACT, &TABLE.interact, state, |stage| {
         OF_ALL[0].contains(&stage)
     });
     in_all_groups(state, interact_group);
-    run(INTERACT, &TABLE.interact, state, |stage| {
+    run(&INTERACT, &TABLE.interact, state, |stage| {
         OF_ALL[1].contains(&stage)
     });
 }
@@ -166,10 +177,10 @@ pub fn advance(state: &mut State) {
 /// Adds, removes and replaces bodies, while poses are those of `time_s` and velocities those half a
 /// step later.
 pub fn exchange(state: &mut State) {
-    run(EXCHANGE, &TABLE.exchange, state, |_| true);
+    run(&EXCHANGE, &TABLE.exchange, state, |_| true);
     if is_renumbered(state) {
         // Bodies with steps of their own move on for a whole cycle without another search.
-        run(INTERACT, &TABLE.interact, state, |stage| {
+        run(&INTERACT, &TABLE.interact, state, |stage| {
             [&SELF_CONTACT, &SEARCH].contains(&stage)
         });
     }
@@ -179,7 +190,7 @@ pub fn exchange(state: &mut State) {
 /// they have in common.
 pub fn drift(state: &mut State) {
     if state.levels.is_none() {
-        return run(DRIFT, &TABLE.drift, state, |_| true);
+        return run(&DRIFT, &TABLE.drift, state, |_| true);
     }
     join_groups(state);
     loop {
@@ -197,25 +208,25 @@ pub fn drift(state: &mut State) {
         watch_between(state);
     }
     end_cycle(state);
-    run(DRIFT, &TABLE.drift, state, |stage| *stage == SEARCH);
+    run(&DRIFT, &TABLE.drift, state, |stage| *stage == SEARCH);
 }
 
 fn interact_group(state: &mut State) {
     let is_own = |stage: &Stage| !OF_ALL.iter().any(|some| some.contains(&stage));
-    run(INTERACT, &TABLE.interact, state, is_own);
+    run(&INTERACT, &TABLE.interact, state, is_own);
 }
 
 fn drift_group(state: &mut State) {
-    run(DRIFT, &TABLE.drift, state, |stage| {
+    run(&DRIFT, &TABLE.drift, state, |stage| {
         OF_BODIES.contains(&stage)
     });
     note_drift(state);
 }
 
 /// Does those parts whose stages are meant.
-fn run(parts: &[Part], stages: &[usize], state: &mut State, is_meant: fn(&Stage) -> bool) {
+fn run(parts: &[&[Part]], stages: &[usize], state: &mut State, is_meant: fn(&Stage) -> bool) {
     state.scratch.clock.start(state.steps / state.cycle());
-    for ((own, part), &stage) in parts.iter().zip(stages) {
+    for ((own, part), &stage) in parts.iter().copied().flatten().zip(stages) {
         if is_meant(own) && !state.scratch.clock.is_left_out(stage) {
             let began = TABLE.in_few_steps[stage].then(Instant::now);
             let items = part(state);
@@ -254,9 +265,12 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
             stages.len() - 1
         })
     };
-    let interact = INTERACT.iter().map(&mut number).collect();
-    let exchange = EXCHANGE.iter().map(&mut number).collect();
-    let drift = DRIFT.iter().map(&mut number).collect();
+    let mut numbers = |parts: &[Part]| parts.iter().map(&mut number).collect::<Vec<usize>>();
+    // What is done ahead has the place of the stage that it belongs to.
+    let (before, from) = (numbers(BEFORE_CONTACTS), numbers(FROM_CONTACTS));
+    let interact = [before, numbers(AHEAD_OF_CONTACTS), from].concat();
+    let exchange = numbers(EXCHANGE[0]);
+    let drift = numbers(DRIFT[0]);
     Table {
         in_few_steps: (stages.iter().map(|stage| IN_FEW_STEPS.contains(stage))).collect(),
         stages,

@@ -3,6 +3,7 @@
 
 mod again;
 mod books;
+mod bounce;
 mod carried;
 mod daughters;
 mod ids;

@@ -14,7 +14,7 @@ use crate::physics::rotation::rotation;
 use crate::stages::walls::wall_contact;
 use crate::state::State;
 use crate::state::bridges::Bridges;
-use crate::state::clumps::{Clump, Clumps, Template};
+use crate::state::clumps::{Clump, Template};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallContact};
@@ -228,19 +228,14 @@ fn joined(first: Vector3<f64>, second: Vector3<f64>) -> Vector6<f64> {
     Vector6::new(first.x, first.y, first.z, second.x, second.y, second.z)
 }
 
-/// One over the mass with which a clump resists where a force rotates it most easily, 1/kg.
-fn largest_inverse_mass(clumps: &Clumps, clump: &Clump) -> f64 {
-    let template = clumps.template(clump);
-    let moments = template.moments_kg_m2.into_iter();
-    let least = moments.fold(f64::INFINITY, f64::min);
-    1.0 / template.mass_kg + template.reach_m.powi(2) / least
-}
-
 /// The largest stiffness over effective mass, 1/s2, and damping over effective mass, 1/s, of any
 /// one touching contact: as [`at_impact`], at the overlaps that are there. 0 if nothing touches.
 pub fn stiffest_contact(state: &State) -> [f64; 2] {
     let inverse_kg = |end: u32| match state.clumps.carrier_of(end as usize) {
-        Some(at) => largest_inverse_mass(&state.clumps, &state.clumps.all[at]),
+        Some(at) => {
+            let template = state.clumps.template(&state.clumps.all[at]);
+            template.landing().alone_per_kg
+        }
         None => state.particles.motions[end as usize].inverse_mass,
     };
     let mut largest = [0.0_f64; 2];
@@ -426,8 +421,9 @@ impl StiffestContacts {
 }
 
 /// Contribution of the first impact at a speed, m/s, to the largest eigenvalues of stiffness and
-/// damping over mass, 1/s2 and 1/s, if a single particle meets a wall or another of its size; and
-/// its [rate](largest_contact_rate_1_s2), 1/s2. A particle pushed by a body behind it may overlap
+/// damping over mass, 1/s2 and 1/s, if a single particle meets a wall or another of its size, or a
+/// clump does with one sphere or with [all that a plane touches](crate::shape::landing); and its
+/// [rate](largest_contact_rate_1_s2), 1/s2. A particle pushed by a body behind it may overlap
 /// more. With contacts beside bonds something presses at any speed, as loads and supports do: the
 /// stiffness of a linear law counts in full, and that of Hertz's law from no overlap on.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
@@ -441,7 +437,14 @@ pub(crate) fn at_impact_of(
     is_meant: impl Fn(usize) -> bool,
 ) -> [f64; 3] {
     let first = first_to_hit(state).into_iter();
-    at_impacts(state, speed_m_s, first.filter(|(i, _)| is_meant(*i)))
+    at_impacts(state, speed_m_s, first.filter(|hit| is_meant(hit.particle)))
+}
+
+/// The same for flat landings of clumps alone, on all spheres that a plane touches at once. 0 if
+/// there are none.
+pub(crate) fn at_landing(state: &State, speed_m_s: f64) -> [f64; 3] {
+    let first = first_to_hit(state).into_iter();
+    at_impacts(state, speed_m_s, first.filter(|hit| hit.is_flat))
 }
 
 /// The same for a clump.
@@ -449,12 +452,8 @@ pub(crate) fn at_impact_of_clump(state: &State, speed_m_s: f64, clump: &Clump) -
     at_impacts(state, speed_m_s, hits_first(state, clump).into_iter())
 }
 
-/// The same for particles with these inverse masses, 1/kg.
-fn at_impacts(
-    state: &State,
-    speed_m_s: f64,
-    first: impl Iterator<Item = (usize, f64)>,
-) -> [f64; 3] {
+/// The same for these.
+fn at_impacts(state: &State, speed_m_s: f64, first: impl Iterator<Item = Hit>) -> [f64; 3] {
     let Some(contacts) = &state.contacts else {
         return [0.0; 3];
     };
@@ -463,19 +462,23 @@ fn at_impacts(
     let is_beside = state.bonds.rules.iter().any(|rule| rule.contact_beside);
     let least = if is_beside { LEAST_OVERLAP } else { 0.0 };
     let mut largest = [0.0_f64; 3];
-    let mut take = |kind: &ContactKind, i: usize, inverse_kg: f64, at_wall: bool| {
+    let mut take = |kind: &ContactKind, hit: &Hit, at_wall: bool| {
         let n = Vector3::x();
+        let i = hit.particle;
         let radius_m = p.poses[i].radius_m();
-        let overlap_m = overlap_at_impact_m(kind, radius_m, inverse_kg, speed_m_s, at_wall);
+        let overlap_m = overlap_at_impact_m(kind, radius_m, hit.per_share_kg, speed_m_s, at_wall);
         let overlap_m = overlap_m.max(least * radius_m);
-        let touch = if at_wall {
+        let mut touch = if at_wall {
             wall_contact(p, i, &n, overlap_m)
         } else {
             let apart = Vec3(2.0 * p.poses[i].radius_m() - overlap_m, 0.0, 0.0);
             contact_kinematics(apart, [p.contact_sphere_at_rest(i); 2], 0.0)
         };
         let ends = if at_wall { 1.0 } else { 2.0 };
-        let per_mass = ends * inverse_kg;
+        let per_mass = ends * hit.inverse_kg;
+        if hit.is_shared {
+            touch.effective_mass_kg = 1.0 / per_mass;
+        }
         let mut answer = kind.linearised(&touch);
         if let Some(bridge) = &kind.bridge {
             answer.normal_n_m += bridge.steepest_n_m(touch.effective_radius_m);
@@ -485,12 +488,12 @@ fn at_impacts(
         largest[1] = largest[1].max(per_mass * damping);
         largest[2] = largest[2].max(per_mass * answer.normal_n_m);
     };
-    for (i, inverse_kg) in first {
-        let material = usize::from(contacts.materials[i]);
+    for hit in first {
+        let material = usize::from(contacts.materials[hit.particle]);
         let row = &contacts.model.kind_of[material * materials..(material + 1) * materials];
         for &kind in row {
             if let Some(kind) = contacts.model.kinds.get(usize::from(kind)) {
-                take(kind, i, inverse_kg, false);
+                take(kind, &hit, false);
             }
         }
         for wall in &state.walls {
@@ -499,7 +502,7 @@ fn at_impacts(
                 .kinds
                 .get(usize::from(wall.model.kind_of[material]))
             {
-                take(kind, i, inverse_kg, true);
+                take(kind, &hit, true);
             }
         }
     }
@@ -539,10 +542,23 @@ pub(crate) fn overlap_at_impact(state: &State, speed_m_s: f64) -> f64 {
     largest
 }
 
-/// The particles with the fastest impacts, and the inverse of the mass that each moves, 1/kg: of
-/// free particles the smallest of each material; of the clumps of each template a largest sphere,
-/// as if it were at the end of the longest lever.
-fn first_to_hit(state: &State) -> Vec<(usize, f64)> {
+/// A first impact.
+#[derive(Debug, Clone, Copy)]
+struct Hit {
+    particle: usize,
+    /// Largest eigenvalue over the stiffness of a contact, 1/kg.
+    inverse_kg: f64,
+    /// One over the mass whose energy a contact takes, 1/kg.
+    per_share_kg: f64,
+    /// Whether the particle is one of several of a clump.
+    is_shared: bool,
+    /// Whether others of them hit with it.
+    is_flat: bool,
+}
+
+/// The fastest impacts: of free particles those of the smallest of each material, of the clumps of
+/// each template those of a largest sphere.
+fn first_to_hit(state: &State) -> Vec<Hit> {
     let Some(contacts) = &state.contacts else {
         return Vec::new();
     };
@@ -558,9 +574,14 @@ fn first_to_hit(state: &State) -> Vec<(usize, f64)> {
             found[material] = Some(i);
         }
     }
-    let mut found: Vec<(usize, f64)> = (found.into_iter().flatten())
-        .map(|i| (i, p.motions[i].inverse_mass))
-        .collect();
+    let of_particle = |i: usize| Hit {
+        particle: i,
+        inverse_kg: p.motions[i].inverse_mass,
+        per_share_kg: p.motions[i].inverse_mass,
+        is_shared: false,
+        is_flat: false,
+    };
+    let mut found: Vec<Hit> = found.into_iter().flatten().map(of_particle).collect();
     let mut seen = vec![false; state.clumps.templates.len()];
     for clump in &state.clumps.all {
         if !std::mem::replace(&mut seen[clump.template as usize], true) {
@@ -570,17 +591,34 @@ fn first_to_hit(state: &State) -> Vec<(usize, f64)> {
     found
 }
 
-/// The largest sphere of a clump, and the largest inverse mass with which one can hit, 1/kg.
-fn hits_first(state: &State, clump: &Clump) -> Option<(usize, f64)> {
+/// The hits of a clump with one sphere, and with as many as a plane can touch, which share its
+/// energy.
+fn hits_first(state: &State, clump: &Clump) -> Vec<Hit> {
     let radius = |i: &usize| state.particles.poses[*i].radius_m();
     let template = state.clumps.template(clump);
-    let [x, y, z] = template.moments_kg_m2;
-    let levers = template.spheres.iter();
-    let levers = levers.map(|sphere| Vector3::from(sphere.place_m).norm_squared());
-    let inverse_kg = 1.0 / template.mass_kg + levers.fold(0.0, f64::max) / x.min(y).min(z);
     let spheres = state.clumps.spheres_of(clump);
-    let largest = spheres.max_by(|a, b| radius(a).total_cmp(&radius(b)));
-    largest.map(|i| (i, inverse_kg))
+    let Some(particle) = spheres.max_by(|a, b| radius(a).total_cmp(&radius(b))) else {
+        return Vec::new();
+    };
+    let landing = template.landing();
+    let alone = Hit {
+        particle,
+        inverse_kg: landing.alone_per_kg,
+        per_share_kg: landing.alone_per_kg,
+        is_shared: template.spheres.len() > 1,
+        is_flat: false,
+    };
+    let together = Hit {
+        inverse_kg: landing.together_per_kg,
+        per_share_kg: f64::from(landing.together) / template.mass_kg,
+        is_flat: true,
+        ..alone
+    };
+    if landing.together > 1 {
+        vec![alone, together]
+    } else {
+        vec![alone]
+    }
 }
 
 fn overlap_at_impact_m(

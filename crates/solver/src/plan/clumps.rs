@@ -191,6 +191,7 @@ pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Templat
             modulus,
         }),
         bonds_of_file: Arc::new(placed.bonds),
+        landing: Default::default(),
     })
 }
 

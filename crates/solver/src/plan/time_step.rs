@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::check::limit::{Limit, limit, safe_step};
 use crate::check::linear::{
-    StiffestContacts, at_impact, largest_contact_rate_1_s2, stiffest_contact,
+    StiffestContacts, at_impact, at_landing, largest_contact_rate_1_s2, stiffest_contact,
 };
 use crate::geometry::{Bounds, Shape};
 use crate::stages::population::apply_topology_change;
@@ -25,6 +25,9 @@ use crate::state::walls::Wall;
 
 /// Largest fraction of the smallest radius that a particle may move in a step.
 pub(crate) const FARTHEST: f64 = 0.5;
+/// Fraction of the step of any impact that flat landings of clumps take: all of the energy of a
+/// body is in them, and is to be kept to 1e-3.
+const FLAT: f64 = 0.5;
 
 /// The chosen step and its basis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +77,7 @@ impl StepBasis {
         let impact_speed_m_s = impact_speed(scene, state);
         let mut found = limit(state);
         let mut rates = at_impact(state, impact_speed_m_s);
+        let mut flat = at_landing(state, impact_speed_m_s);
         if let Some(to_come) = to_come {
             let later = limit(to_come);
             let all_iterations = found.all_iterations + later.all_iterations;
@@ -83,6 +87,8 @@ impl StepBasis {
             found.all_iterations = all_iterations;
             let later = at_impact(to_come, impact_speed_m_s);
             rates = [0, 1, 2].map(|n| rates[n].max(later[n]));
+            let later = at_landing(to_come, impact_speed_m_s);
+            flat = [0, 1, 2].map(|n| flat[n].max(later[n]));
         }
         let [k, c, rate] = rates;
         let foreseen_s = found.bound().with_more([k, c]);
@@ -104,6 +110,10 @@ impl StepBasis {
         let limits = [
             (run.safety_factor * foreseen_s, "stability"),
             (share * safe_step(k, c), "impacts foreseen"),
+            (
+                FLAT * share * safe_step(flat[0], flat[1]),
+                "flat landings of clumps",
+            ),
             (
                 share * safe_step(pressed_k, pressed_c),
                 "contacts under load",
@@ -479,7 +489,9 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
 /// infinite if nothing can touch.
 pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
     let [k, c, _] = at_impact(state, speed_m_s);
-    share_of_impact(state, safety) * safe_step(k, c)
+    let [flat_k, flat_c, _] = at_landing(state, speed_m_s);
+    let share = share_of_impact(state, safety);
+    (share * safe_step(k, c)).min(FLAT * share * safe_step(flat_k, flat_c))
 }
 
 pub(super) fn share_of_impact(state: &State, safety: f64) -> f64 {

@@ -263,5 +263,6 @@ fn fragment_template(
         bonds_of_file: Arc::new((0..own.len() as u32).collect()),
         bonds: Arc::new(own),
         spheres: Arc::new(spheres),
+        landing: Default::default(),
     }
 }

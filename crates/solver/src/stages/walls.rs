@@ -22,7 +22,7 @@ use crate::stages::contacts::{StoredEnergy, StoredForce};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::loads::factor_at;
-use crate::state::meetings::{Joint, Meeting, Meetings, Met};
+use crate::state::meetings::{Meeting, Meetings, Met};
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Wall, WallContact, WallLoad};
 
@@ -43,6 +43,21 @@ pub const WALLS: Stage = Stage {
     saving: NO_SAVING,
 };
 
+/// Finds where particles touch walls, or did in the previous step. Walls that meet act as one
+/// surface.
+pub(crate) fn find_wall_contacts(state: &mut State) -> usize {
+    if state.contacts.is_some() {
+        let (walls, particles) = (&state.walls, &state.particles);
+        let meetings = set_chunks(walls, &mut state.scratch.meetings);
+        let find = |some: &mut Meetings| find_meetings(&walls[some.of.0], particles, some);
+        for_each(meetings, near_walls(walls), find);
+        if meetings.iter().any(|some| some.of.0 != meetings[0].of.0) {
+            join_walls(walls, meetings, particles, &mut state.scratch.joints);
+        }
+    }
+    0
+}
+
 /// Adds the wall forces to the wrenches. Returns the number of particles near walls.
 pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
     if let Some(contacts) = &mut state.contacts {
@@ -50,11 +65,28 @@ pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
             &mut state.walls,
             contacts,
             &mut state.particles,
-            (&mut state.scratch.meetings, &mut state.scratch.joints),
+            &mut state.scratch.meetings,
             state.previous_time_step_s,
         );
     }
-    state.walls.iter().map(|wall| wall.near.len()).sum()
+    near_walls(&state.walls)
+}
+
+/// Number of particles near walls.
+fn near_walls(walls: &[Wall]) -> usize {
+    walls.iter().map(|wall| wall.near.len()).sum()
+}
+
+/// Number of chunks of the particles near walls.
+pub(super) fn chunks(walls: &[Wall]) -> usize {
+    let of_wall = |wall: &Wall| wall.near.len().div_ceil(CHUNK);
+    walls.iter().map(of_wall).sum()
+}
+
+/// Velocity of a wall at a point, m/s, without that of its surface along itself.
+pub(super) fn velocity_at(wall: &Wall, point: &Vector3<f64>) -> Vector3<f64> {
+    let [velocity, spin] = [wall.velocities_m_s[0], wall.spins_rad_s[0]].map(Vector3::from);
+    velocity + spin.cross(&(point - Vector3::from(wall.frame.position_m)))
 }
 
 /// Determines the motion of the walls in the coming drift.
@@ -152,18 +184,15 @@ pub(crate) fn reaches(wall: &Wall) -> impl Fn([f64; 3], f64) -> bool + Sync {
 }
 
 /// Adds the wall forces to the wrenches after a step of `dt`, s, and records their reactions on the
-/// walls.
+/// walls: at the `meetings` that have been found in this step.
 pub(crate) fn wall_wrenches(
     walls: &mut [Wall],
     contacts: &mut Contacts,
     particles: &mut Particles,
-    (meetings, joints): (&mut Vec<Meetings>, &mut Vec<Joint>),
+    meetings: &mut [Meetings],
     dt: f64,
 ) {
-    let meetings = set_chunks(walls, meetings);
-    let find = |meetings: &mut Meetings| {
-        find_meetings(&walls[meetings.of.0], particles, meetings);
-    };
+    let meetings = &mut meetings[..chunks(walls)];
     let meet = |meetings: &mut Meetings| {
         let wall = &walls[meetings.of.0];
         let place = Place {
@@ -177,12 +206,7 @@ pub(crate) fn wall_wrenches(
         };
         place.meet(&meetings.all, &mut meetings.met);
     };
-    let near: usize = walls.iter().map(|wall| wall.near.len()).sum();
-    for_each(meetings, near, find);
-    if meetings.iter().any(|some| some.of.0 != meetings[0].of.0) {
-        join_walls(walls, meetings, particles, joints);
-    }
-    for_each(meetings, near, meet);
+    for_each(meetings, near_walls(walls), meet);
     for wall in walls.iter_mut() {
         wall.push = WallLoad::default();
         wall.scratch.damping = WallLoad::default();

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -12,6 +12,7 @@ use super::particles::{Motion, Particles, Pose, Wrench};
 use crate::physics::rotation::{kinetic_j, spin_rad_s};
 use crate::physics::rotation::{numbers, rotation};
 use crate::shape::inertia::MassProperties;
+use crate::shape::landing::{Landing, RigidSpheres};
 
 /// A sphere of a template.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -102,6 +103,19 @@ pub struct Template {
     pub scatter: Option<Scatter>,
     /// For each of `bonds`, its number in the body's file.
     pub bonds_of_file: Arc<Vec<u32>>,
+    /// See [`Template::landing`].
+    #[serde(skip)]
+    pub landing: KnownLanding,
+}
+
+/// A [`Landing`] that follows from the other data of a template, once it has been asked for.
+#[derive(Debug, Clone, Default)]
+pub struct KnownLanding(OnceLock<Landing>);
+
+impl PartialEq for KnownLanding {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl Template {
@@ -212,6 +226,23 @@ impl Template {
     pub(crate) fn id(&self, sphere: usize, clump: &Clump) -> u32 {
         let of_fragment = self.ids.get(sphere).copied();
         of_fragment.unwrap_or_else(|| clump.first_id + self.file_number[sphere])
+    }
+
+    /// How easily contacts move its clumps: where one of their spheres is touched, and where a
+    /// plane touches many.
+    pub(crate) fn landing(&self) -> &Landing {
+        self.landing.0.get_or_init(|| {
+            let of = |&n: &u32| {
+                let sphere = &self.spheres[n as usize];
+                (Vector3::from(sphere.place_m), self.scale * sphere.radius_m)
+            };
+            let body = RigidSpheres {
+                mass_kg: self.mass_kg,
+                moments_kg_m2: self.moments_kg_m2.into(),
+                spheres: self.outer.iter().map(of).collect(),
+            };
+            body.landing()
+        })
     }
 
     /// The particles that a clump of this template carries, given the first.
@@ -358,6 +389,7 @@ impl Template {
             ids: Vec::new(),
             scatter: None,
             bonds_of_file: Arc::default(),
+            landing: KnownLanding::default(),
         }
     }
 

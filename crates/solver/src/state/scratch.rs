@@ -1,6 +1,7 @@
 //! Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 
 use super::bridges::BridgeScratch;
+use super::clump_touches::ClumpTouch;
 use super::clusters::Clusters;
 use super::events::Events;
 use super::meetings::{Joint, Meetings};
@@ -43,6 +44,8 @@ pub struct Scratch {
     pub meetings: Vec<Meetings>,
     /// Meetings of particles that touch several walls.
     pub joints: Vec<Joint>,
+    /// What touches each sphere that a clump carries. All are cleared between steps.
+    pub clump_touches: Vec<ClumpTouch>,
     /// Power that each clump takes in, W: see `stages/intake.rs`.
     pub powers_w: Vec<Option<f64>>,
     /// Damaged bonds that have reached their compressive strength.
