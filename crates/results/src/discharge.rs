@@ -15,7 +15,7 @@ use dem_io::text::exact;
 pub const COLUMNS: &str = "time_s,fragment_id,body,material,outlet,mass_kg,equivalent_diameter_m,length_m,width_m,thickness_m";
 
 /// The first line of the size distribution.
-pub const DISTRIBUTION_COLUMNS: &str = "body,location,sieve_m,passing_kg,passing_fraction";
+pub const DISTRIBUTION_COLUMNS: &str = "body,location,sieve_m,passing_kg,passing_fraction,resolved";
 
 /// A fragment or a body that has left.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -136,6 +136,9 @@ pub struct DistributionRow<'a> {
     pub passing_kg: f64,
     /// The same as a fraction of the mass of all fragments of this body in this place.
     pub passing_fraction: f64,
+    /// Whether the sieve is so large that the spheres of the bodies do not decide on what passes:
+    /// `1`, else `0`.
+    pub resolved: bool,
 }
 
 /// Writes the size distribution to the file `path`, completely or not at all.
@@ -148,12 +151,13 @@ pub fn write_distribution(path: &Path, rows: &[DistributionRow<'_>]) -> Result<(
         for row in rows {
             writeln!(
                 out,
-                "{},{},{},{},{}",
+                "{},{},{},{},{},{}",
                 field(row.body),
                 field(row.location),
                 exact(row.sieve_m),
                 exact(row.passing_kg),
-                exact(row.passing_fraction)
+                exact(row.passing_fraction),
+                u8::from(row.resolved)
             )?;
         }
         Ok(())

@@ -4,6 +4,7 @@ mod bonds;
 mod bulk;
 mod heap;
 mod members;
+mod objects;
 mod spheres;
 mod whole;
 

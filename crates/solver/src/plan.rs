@@ -17,10 +17,13 @@ pub(crate) mod masses;
 pub(crate) mod measures;
 mod outputs;
 mod placement;
+mod quality;
+mod questions;
 mod rules;
 mod stages;
 pub mod test_setup;
 pub mod time_step;
+mod unfinished;
 mod walls;
 mod zones;
 
@@ -33,6 +36,7 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Integrator, Quantity, Scene};
 
 use crate::check::limit::damping_bound_1_s;
+use crate::check::passing::passes_through;
 use crate::physics::chebyshev::{MOST, limit};
 use crate::stages::damping::WEAK;
 use crate::stages::ledger::opened;
@@ -130,6 +134,8 @@ pub fn plan(
     let about: BTreeMap<String, About> = (read.iter())
         .map(|(name, body)| (name.clone(), body.about.clone()))
         .collect();
+    refuse_endless_fall(scene)?;
+    let looked_at = quality::warnings(scene, &read);
     let ball_m = ball_m(scene, &read);
     let named = named_bodies(scene, &read);
     let unused_bonds = unused_bonds(scene, &read);
@@ -163,9 +169,12 @@ pub fn plan(
     place_meetings(scene, &bodies, &mut state, &mut notes)?;
     place_zones(scene, &bodies, &mut state)?;
     refuse_valueless(scene, &groups, &state, &masses)?;
-    let mut warnings = masses::warnings(scene, &about);
-    warnings.extend(masses::light(scene));
+    let mut warnings = masses::warnings(scene, &about, &looked_at);
+    warnings.extend(masses::odd_densities(scene, &state, &bodies));
     warnings.extend(doubts(scene, &state));
+    warnings.extend(questions::doubts(scene, &state, &bodies));
+    warnings.extend(without_contacts(scene, &state, &bodies));
+    notes.extend(questions::notes(scene, &state, &bodies, &unused_bonds));
     state.ledger = opened(&state);
     let step = first_step(scene, &bodies, &mut state, allow_any_step)?;
     if scene.run.integrator == Integrator::Leapfrog {
@@ -212,6 +221,43 @@ pub fn plan(
         forecast,
         inputs,
     })
+}
+
+/// Largest acceleration that a run can be made with, m/s2: a thousand times that of an
+/// ultracentrifuge.
+const MOST_GRAVITY_M_S2: f64 = 1e10;
+
+/// Refuses a gravity under which everything is so fast that a run would never end.
+fn refuse_endless_fall(scene: &Scene) -> Result<()> {
+    let most = scene
+        .run
+        .gravity_m_s2
+        .iter()
+        .fold(0.0_f64, |most, g| most.max(g.abs()));
+    if most <= MOST_GRAVITY_M_S2 {
+        return Ok(());
+    }
+    Err(Diagnostic::input(
+        format!("{}: run.gravity", scene.source),
+        format!(
+            "{most:.3e} m/s2 is more than {MOST_GRAVITY_M_S2:.0e} m/s2: the time step would be so small that the run never ends"
+        ),
+        "write it in m/s2, such as [0, 0, -9.81]",
+    ))
+}
+
+/// Bodies that meet, or are fed, in a scene in which nothing can touch.
+fn without_contacts(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> Option<String> {
+    if state.contacts.is_some() || scene.run.integrator == Integrator::Static {
+        return None;
+    }
+    if !scene.inlets.is_empty() {
+        return Some(
+            "nothing that the inlets feed can touch anything: [contacts] is empty; say there how the materials meet"
+                .to_owned(),
+        );
+    }
+    passes_through(state, bodies, scene.run.end_time_s)
 }
 
 fn refuse_damped_clumps(scene: &Scene, state: &State) -> Result<()> {
@@ -303,9 +349,18 @@ fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> 
         });
         box_lengths_m(&spheres)[1]
     };
+    let radii_m = |name: &String| read.get(name).map_or(&[][..], |body| &body.radii);
     let smallest_diameter_m = |name: &String| {
-        let radii = read.get(name).map_or(&[][..], |body| &body.radii);
-        2.0 * radii.iter().copied().fold(f64::INFINITY, f64::min)
+        let radii_m = radii_m(name).iter().copied();
+        2.0 * radii_m.fold(f64::INFINITY, f64::min)
+    };
+    // Those of bodies of one sphere are no fragments of a packing.
+    let mean_diameter_m = |name: &String| match radii_m(name) {
+        [] | [_] => 0.0,
+        radii_m => {
+            let cubes: f64 = radii_m.iter().map(|radius| radius.powi(3)).sum();
+            2.0 * radii_m.iter().map(|radius| radius.powi(4)).sum::<f64>() / cubes
+        }
     };
     (scene.bodies.iter())
         .map(|(name, body)| NamedBody {
@@ -313,6 +368,7 @@ fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> 
             material: body.material.clone(),
             sieve_m: sieve_m(name),
             smallest_diameter_m: smallest_diameter_m(name),
+            mean_diameter_m: mean_diameter_m(name),
         })
         .collect()
 }

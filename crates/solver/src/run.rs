@@ -1,23 +1,28 @@
 //! A run: steps a plan to its end, monitors it, measures and writes results.
 
 mod begin;
+mod changes;
 mod end;
 mod events;
 mod files;
 mod finish;
 mod flying;
 mod fragments;
+mod last_tenth;
 mod limits;
+mod nothing_happened;
 mod observe;
 mod outcome;
 mod past_outlets;
 mod pictures;
 mod progress;
+mod rigid_hits;
 mod schedule;
 mod seen;
 mod settings;
 pub mod snapshot;
 pub mod statics;
+mod taken_in;
 
 use dem_io::Result;
 use dem_scene::{Integrator, Scene};

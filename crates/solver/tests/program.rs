@@ -36,6 +36,7 @@ mod results;
 mod resume;
 mod round_robin;
 mod scenes;
+mod sound;
 mod statics;
 mod stress;
 mod sweep;

@@ -101,9 +101,16 @@ fn add_sizes(page: &mut Page, sizes: &Value) {
             let t10 = found["t10"]
                 .as_f64()
                 .map_or("not resolved".to_owned(), percent);
+            // Below some diameters of the spheres they decide, and not the material.
+            let marked = |name: &str, cell: String| match found["unresolved"][name].as_bool() {
+                Some(true) => format!("{cell} (unresolved)"),
+                _ => cell,
+            };
             let mut cells = vec![name, show_quantity(number(&found["mass_kg"]), "kg")];
-            cells.extend(["d10_m", "d50_m", "d80_m"].map(length));
-            cells.push(t10);
+            for name in ["d10", "d50", "d80"] {
+                cells.push(marked(name, length(&format!("{name}_m"))));
+            }
+            cells.push(marked("t10", t10));
             rows.push(cells.into());
         }
     }
@@ -127,6 +134,7 @@ fn passing(csv: &str) -> Option<Table> {
         at("sieve_m")?,
         at("passing_fraction")?,
     ];
+    let resolved = at("resolved");
     let mut bodies: Vec<&str> = Vec::new();
     let mut sieves: Vec<(f64, Vec<String>)> = Vec::new();
     for line in lines {
@@ -140,9 +148,16 @@ fn passing(csv: &str) -> Option<Table> {
         }
         let sieve_m: f64 = cells.get(sieve)?.parse().ok()?;
         let fraction: f64 = cells.get(passing)?.parse().ok()?;
+        let is_unresolved = resolved
+            .and_then(|at| cells.get(at))
+            .is_some_and(|is| *is == "0");
+        let fraction = match is_unresolved {
+            true => format!("{} (unresolved)", percent(fraction)),
+            false => percent(fraction),
+        };
         match sieves.iter_mut().find(|(known_m, _)| *known_m == sieve_m) {
-            Some((_, row)) => row.push(percent(fraction)),
-            None => sieves.push((sieve_m, vec![percent(fraction)])),
+            Some((_, row)) => row.push(fraction),
+            None => sieves.push((sieve_m, vec![fraction])),
         }
     }
     let mut columns = vec![Column::text("sieve")];

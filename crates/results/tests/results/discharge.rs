@@ -54,11 +54,12 @@ fn a_distribution_looks_as_documented() {
         sieve_m: 1.4e-3,
         passing_kg: 0.5,
         passing_fraction: 0.25,
+        resolved: false,
     };
     write_distribution(&path, &[row]).unwrap();
     assert_eq!(
         fs::read_to_string(&path).unwrap(),
-        format!("{DISTRIBUTION_COLUMNS}\ncake,both,0.0014,0.5,0.25\n")
+        format!("{DISTRIBUTION_COLUMNS}\ncake,both,0.0014,0.5,0.25,0\n")
     );
 }
 

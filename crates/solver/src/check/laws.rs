@@ -30,6 +30,17 @@ pub(crate) fn strain_warning(largest: f64, where_: &str) -> Option<String> {
     })
 }
 
+/// Warning that a bond has flowed beyond the validity of its law, `where_`. None: none has.
+pub(crate) fn plastic_strain_warning(largest: f64, where_: &str) -> Option<String> {
+    (largest > LARGEST_STRAIN).then(|| {
+        format!(
+            "a bond yielded by {} % at its edge{where_}: the plastic law of bonds is for strains up to about {} %, beyond which spheres pass into each other without touching; check its yield strengths and their units, the loads and the speeds",
+            significant(100.0 * largest, 3),
+            100.0 * LARGEST_STRAIN,
+        )
+    })
+}
+
 /// Warning that a contact overlaps beyond the validity of its law, `where_`. None: it does not.
 pub(crate) fn overlap_warning(largest: f64, where_: &str) -> Option<String> {
     (largest > LARGEST_OVERLAP).then(|| {

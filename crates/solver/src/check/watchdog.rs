@@ -15,6 +15,9 @@ use crate::state::bodies::bond_of_file;
 /// Largest spurious energy for a step above the limit, relative to the energy supplied: there it
 /// comes from a local mode that grows until it saturates, small compared with a large body.
 const BEYOND_LIMIT: f64 = 1e-4;
+/// Fraction of the effective radius down to which overlaps are relaxed, above which pairs that
+/// become ordinary add energy that matters.
+const USUAL_LEAST_OVERLAP: f64 = 1e-3;
 /// Interval between checks of the kinetic energy, in steps.
 const EVERY: u64 = 64;
 
@@ -98,6 +101,10 @@ fn unstable(
     let parted =
         state.broken_count > 0 && state.contacts.as_ref().is_some_and(|c| !c.model.relaxes);
     let is_unrelaxed = contact.is_some() && parted;
+    let relaxes_late = contact.is_some()
+        && state.broken_count > 0
+        && (state.contacts.as_ref())
+            .is_some_and(|c| c.model.relaxes && c.model.least_overlap > USUAL_LEAST_OVERLAP);
     if let Some(contact) = contact {
         problem += &contact;
     } else if let Some((at, own_step_s)) = culprit(state) {
@@ -121,6 +128,8 @@ fn unstable(
     }
     let remedy = if is_unrelaxed {
         "set relaxation.enabled = true: without it, fragments that separate while they overlap are pushed apart with spurious energy"
+    } else if relaxes_late {
+        "set a smaller relaxation.min_overlap, such as 1e-5: the contact force that pairs get at once where their overlap falls below it adds energy, which no smaller time step removes"
     } else if fraction_of_limit > 1.0 {
         "take a smaller run.time_step, or \"auto\" for one below the limit"
     } else {

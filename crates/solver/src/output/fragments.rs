@@ -201,7 +201,7 @@ fn size_plot(fragments: &Fragments, model: &Model) -> Plot {
         // The first is all together.
         curves.remove(0);
     }
-    curves.truncate(MOST_LINES);
+    curves.truncate(MOST_LINES - 1);
     let millimetres = |[size_m, fraction]: [f64; 2]| [1e3 * size_m, fraction];
     // As many kinds of marks as lines, so that each has the colour of its line.
     let d50 = |(name, _, d50_m): &(&str, Vec<[f64; 2]>, f64)| Marks {
@@ -218,13 +218,22 @@ fn size_plot(fragments: &Fragments, model: &Model) -> Plot {
         points: points.iter().copied().map(millimetres).collect(),
         dashed: false,
     });
+    let mut lines: Vec<Line> = lines.collect();
+    let resolved_mm = 1e3 * fragments.all_resolved_from_m(model);
+    if resolved_mm > 0.0 {
+        lines.push(Line {
+            name: "unresolved below".to_owned(),
+            points: vec![[resolved_mm, 0.0], [resolved_mm, 1.0]],
+            dashed: true,
+        });
+    }
     let mut x = Axis::of("sieve size, the width of a fragment (mm)");
     x.log = true;
     Plot {
         title: "Fragment sizes, with marks at d50".to_owned(),
         x,
         y: Axis::of("cumulative mass fraction"),
-        lines: lines.collect(),
+        lines,
         marks: curves.iter().map(d50).collect(),
         ..Plot::default()
     }

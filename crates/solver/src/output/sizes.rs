@@ -28,6 +28,39 @@ const LOCATIONS: [(&str, bool, bool); 3] = [
 /// Name of all bodies together in the table.
 const ALL: &str = "all";
 
+/// Smallest fragments of which the material decides and not the size of the spheres, in mean
+/// diameters of the spheres.
+pub(crate) const RESOLVED_DIAMETERS: f64 = 3.0;
+/// Size of a fragment over that of its body above which it is the body itself.
+const WHOLE: f64 = 0.999;
+
+/// Which figures lie below the size that the spheres resolve.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Unresolved {
+    /// `d10_m`
+    pub d10: bool,
+    /// `d50_m`
+    pub d50: bool,
+    /// `d80_m`
+    pub d80: bool,
+    /// `t10`
+    pub t10: bool,
+}
+
+impl Unresolved {
+    /// Their names.
+    pub fn names(self) -> Vec<&'static str> {
+        let all = [
+            ("d10", self.d10),
+            ("d50", self.d50),
+            ("d80", self.d80),
+            ("t10", self.t10),
+        ];
+        let own = all.into_iter().filter(|(_, is_unresolved)| *is_unresolved);
+        own.map(|(name, _)| name).collect()
+    }
+}
+
 /// Mass, sizes and fines of some fragments.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct SizeSummary {
@@ -43,6 +76,10 @@ pub struct SizeSummary {
     /// Mass fraction smaller than a tenth of the mean size of the bodies before they broke. None:
     /// no sphere is as small, so that it could only be 0.
     pub t10: Option<f64>,
+    /// Three mean diameters of the spheres, m: below, the spheres decide and not the material.
+    pub resolved_from_m: f64,
+    /// Those of these figures that lie below that size.
+    pub unresolved: Unresolved,
 }
 
 /// Size distributions at the end of a run.
@@ -126,6 +163,15 @@ impl Fragments {
         })
     }
 
+    /// Size from which fragments of a body, or of all, are resolved, m; 0 for single spheres.
+    fn resolved_from_m(&self, body: Option<u32>, model: &Model) -> f64 {
+        let all = self.chosen(body, true, true);
+        let bodies = all
+            .iter()
+            .filter_map(|one| model.bodies.get(one.body as usize));
+        RESOLVED_DIAMETERS * bodies.fold(0.0, |most: f64, body| most.max(body.mean_diameter_m))
+    }
+
     /// The numbers of the summary.
     pub fn sizes(&self, model: &Model) -> Sizes {
         let mut sizes = Sizes::default();
@@ -135,7 +181,13 @@ impl Fragments {
             let of_group = LOCATIONS
                 .iter()
                 .filter_map(|(location, discharged, inside)| {
-                    let summary = summary(&self.chosen(body, *discharged, *inside), tenth_m)?;
+                    let chosen = self.chosen(body, *discharged, *inside);
+                    let summary = summary(&chosen, tenth_m)?.marked(
+                        &chosen,
+                        self.resolved_from_m(body, model),
+                        tenth_m,
+                        model,
+                    );
                     Some(((*location).to_owned(), summary))
                 });
             let of_group = of_group.collect();
@@ -160,6 +212,7 @@ impl Fragments {
         };
         let mut rows = Vec::new();
         for (body, name) in self.groups(model) {
+            let resolved_from_m = self.resolved_from_m(body, model);
             for (location, discharged, inside) in LOCATIONS {
                 let chosen = self.chosen(body, discharged, inside);
                 let total_kg = mass_kg(&chosen);
@@ -175,6 +228,7 @@ impl Fragments {
                         sieve_m,
                         passing_kg,
                         passing_fraction: passing_kg / total_kg,
+                        resolved: sieve_m >= resolved_from_m,
                     });
                 }
             }
@@ -191,6 +245,11 @@ impl Fragments {
             (name, steps(&chosen), d50_m)
         };
         self.groups(model).into_iter().map(curve).collect()
+    }
+
+    /// Size from which all of them are resolved, m: see [`SizeSummary::resolved_from_m`].
+    pub(super) fn all_resolved_from_m(&self, model: &Model) -> f64 {
+        self.resolved_from_m(None, model)
     }
 
     /// Number of all fragments, inside and discharged.
@@ -240,7 +299,40 @@ fn summary(sorted: &[FragmentSize], tenth_m: Option<f64>) -> Option<SizeSummary>
         d50_m: at(0.5),
         d80_m: at(0.8),
         t10: tenth_m.map(|tenth_m| fines_kg(tenth_m) / mass_kg),
+        resolved_from_m: 0.0,
+        unresolved: Unresolved::default(),
     })
+}
+
+impl SizeSummary {
+    /// With marks at the figures of these fragments that are below the size that the spheres
+    /// resolve, m. A body that has not broken is no matter of its spheres.
+    fn marked(
+        self,
+        sorted: &[FragmentSize],
+        resolved_from_m: f64,
+        tenth_m: Option<f64>,
+        model: &Model,
+    ) -> Self {
+        let is_fragment = |size_m: f64| {
+            let mut own = sorted.iter().filter(|one| one.sieve_m() == size_m);
+            own.any(|one| {
+                let body = model.bodies.get(one.body as usize);
+                body.is_some_and(|body| size_m < WHOLE * body.sieve_m)
+            })
+        };
+        let is_small = |size_m: f64| size_m < resolved_from_m && is_fragment(size_m);
+        Self {
+            resolved_from_m,
+            unresolved: Unresolved {
+                d10: is_small(self.d10_m),
+                d50: is_small(self.d50_m),
+                d80: is_small(self.d80_m),
+                t10: tenth_m.is_some_and(|tenth_m| tenth_m < resolved_from_m),
+            },
+            ..self
+        }
+    }
 }
 
 /// Openings of test sieves, m: the principal sizes R 20/3 of ISO 565 (1 mm, 1.4 mm, 2 mm, 2.8 mm,

@@ -15,7 +15,7 @@ use crate::shape::inertia::{of_spheres, of_union};
 use crate::shape::outer_layer::{FRACTION_OF_SMALLEST, HIDDEN, outer_layer};
 use crate::stages::inlets::angular_momentum;
 use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clump, Scatter, Template, reach_m, sub_spheres};
+use crate::state::clumps::{Clump, Scatter, Template, breaks_from_n_m, reach_m, sub_spheres};
 use crate::state::particles::Particles;
 
 /// Names of the bodies that are templates: those that start as clumps, come through inlets, or are
@@ -176,13 +176,13 @@ pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Templat
         centre_m: properties.centre_m,
         reach_m: reach_m(&spheres),
         outer: Arc::default(),
-        spheres: Arc::new(spheres),
         scale: settings.scale,
         material: scene
             .materials
             .keys()
             .position(|material| *material == entry.material)
             .unwrap_or(0) as u8,
+        breaks_from_n_m: breaks_from_n_m(&bonds, &spheres),
         bonds: Arc::new(bonds),
         file_number: Arc::new(file_number),
         ids: Vec::new(),
@@ -192,6 +192,7 @@ pub(super) fn template(scene: &Scene, name: &str, body: &Body) -> Result<Templat
         }),
         bonds_of_file: Arc::new(placed.bonds),
         landing: Default::default(),
+        spheres: Arc::new(spheres),
     })
 }
 

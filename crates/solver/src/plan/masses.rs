@@ -14,6 +14,7 @@ use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation;
 use crate::plan::bodies::material_density_kg_m3;
 use crate::shape::inertia::of_spheres;
+use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clumps::Template;
 use crate::state::particles::Particles;
@@ -22,6 +23,8 @@ use crate::state::particles::Particles;
 const WORTH_A_NOTE: f64 = 5.0;
 /// Foams aside, no solid is lighter, kg/m3.
 const LIGHTEST_KG_M3: f64 = 20.0;
+/// No solid is heavier, kg/m3.
+const HEAVIEST_KG_M3: f64 = 23_000.0;
 /// Largest number of bodies that are listed.
 const LISTED: usize = 8;
 
@@ -105,8 +108,13 @@ pub(crate) fn notes(scene: &Scene, masses: &BTreeMap<String, BodyMass>) -> Vec<S
     unsaid.filter_map(note).collect()
 }
 
-/// Warnings of the programs that made the bodies, a sentence each.
-pub(crate) fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<String> {
+/// Warnings of the programs that made the bodies, and those about bodies of no program, a sentence
+/// each.
+pub(crate) fn warnings(
+    scene: &Scene,
+    about: &BTreeMap<String, About>,
+    looked_at: &BTreeMap<String, Vec<String>>,
+) -> Vec<String> {
     let mut warnings = Vec::new();
     for (name, about) in about {
         let file = scene
@@ -122,12 +130,15 @@ pub(crate) fn warnings(scene: &Scene, about: &BTreeMap<String, About>) -> Vec<St
         let by = by.unwrap_or("the program that made it");
         let said = about.warnings.iter();
         warnings.extend(said.map(|text| format!("body '{name}'{file}: {by} warned: {text}")));
+        let seen = looked_at.get(name).into_iter().flatten();
+        warnings.extend(seen.map(|text| format!("body '{name}'{file}: {text}")));
     }
     warnings
 }
 
-/// Densities that are hardly those of a solid in kg/m3: a sentence each.
-pub(crate) fn light(scene: &Scene) -> Vec<String> {
+/// Densities that are hardly those of a solid in kg/m3, written or by the mass of a body: a sentence
+/// each. `bodies`: those of the state.
+pub(crate) fn odd_densities(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> Vec<String> {
     let of_materials = scene.materials.iter().filter_map(|(name, material)| {
         Some((format!("materials.{name}.density"), material.density_kg_m3?))
     });
@@ -140,15 +151,55 @@ pub(crate) fn light(scene: &Scene) -> Vec<String> {
             }
             _ => None,
         });
-    let all = of_materials.chain(of_bodies);
-    let light = all.filter(|(_, density)| *density < LIGHTEST_KG_M3);
-    let sentence = |(key, density): (String, f64)| {
-        let density = significant(density, 4);
-        format!(
-            "{key} is {density} kg/m3, less than that of any solid but foam: 1.3 g/cm3 are 1300 kg/m3"
-        )
+    let written = of_materials.chain(of_bodies);
+    let written = written.map(|(key, density)| {
+        let is = format!("{key} is {} kg/m3", significant(density, 4));
+        (is, density, "1.3 g/cm3 are 1300 kg/m3")
+    });
+    let by_mass = scene.bodies.iter().filter_map(|(name, body)| {
+        let Some(WholeMass::Mass(mass_kg)) = body.whole_mass else {
+            return None;
+        };
+        let density = sphere_density_kg_m3(name, state, bodies)?;
+        let is = format!(
+            "bodies.{name}.mass is {} kg, which gives its spheres {} kg/m3",
+            significant(mass_kg, 4),
+            significant(density, 4)
+        );
+        Some((is, density, "check its unit, a number alone is in kg"))
+    });
+    let sentence = |(is, density, remedy): (String, f64, &str)| {
+        if density < LIGHTEST_KG_M3 {
+            Some(format!(
+                "{is}, less than that of any solid but foam: {remedy}"
+            ))
+        } else if density > HEAVIEST_KG_M3 {
+            Some(format!(
+                "{is}, more than the 22600 kg/m3 of the heaviest solid: {remedy}"
+            ))
+        } else {
+            None
+        }
     };
-    light.map(sentence).collect()
+    written.chain(by_mass).filter_map(sentence).collect()
+}
+
+/// Density of the spheres of a body, kg/m3. None: it is not in the state.
+pub(crate) fn sphere_density_kg_m3(
+    name: &str,
+    state: &State,
+    bodies: &[PlacedBody],
+) -> Option<f64> {
+    let templates = &state.clumps.templates;
+    if let Some(template) = templates.iter().find(|template| template.body == name) {
+        return Some(template.sphere_density_kg_m3());
+    }
+    let body = bodies.iter().find(|body| body.name == name)?;
+    Some(
+        state
+            .particles
+            .density_kg_m3(*body.particles.first()? as usize),
+    )
 }
 
 /// Human-readable lines, the first preceded by a label: two for each body.

@@ -1,14 +1,17 @@
 //! The end of a run: its summary and its last files.
 
 use dem_io::Result;
+use dem_io::units::significant;
 use dem_results::write_json;
 
 use super::begin::Run;
 use super::events::{write_breaks_between, write_sleep, write_zones};
 use super::finish::End;
+use super::nothing_happened::{empty_measures, parted_without_contacts, zero_measures};
 use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
-use super::past_outlets::past_outlets;
+use super::past_outlets::{past_outlets, past_walls};
+use super::rigid_hits::RigidHits;
 use crate::laboratory::evaluate::TestResult;
 use crate::machine::{machine, processor_time_s};
 use crate::measure::Probe;
@@ -45,13 +48,34 @@ impl Run<'_> {
         warnings.extend(seen.warnings(&self.state, self.scene, bodies, flies, is_stopped));
         if !is_stopped {
             warnings.extend(past_outlets(&self.state, pieces));
+            warnings.extend(self.rigid_hits().warnings(self.scene));
+            warnings.extend(empty_measures(&self.state, self.scene, &self.probes, seen));
+        }
+        if !is_stopped && self.scene.test.is_none() {
+            let (last_tenth, touched) = (&self.progress.last_tenth, |n| seen.has_touched_wall(n));
+            warnings.extend(last_tenth.short_servos(&self.state, touched));
+            if ended.by == AT_END_TIME {
+                warnings.extend(last_tenth.moving(&self.state, bodies, &self.probes));
+            }
         }
         if ended.by == AT_END_TIME && self.progress.exceeded.is_none() {
             warnings.extend(self.probes.iter().filter_map(Probe::end_not_reached));
         }
+        if let (0, Some((name, limit))) = (self.state.steps, &self.progress.exceeded) {
+            warnings.push(format!(
+                "measures.{name} ended the run before its first step: it is above its end_run_above of {} from the start; set a larger one",
+                significant(*limit, 4)
+            ));
+        }
         let mut summary = self.summary(&ended, fragments.as_deref(), test.transpose()?);
         let note = flying.filter(|flying| !flying.touches);
         summary.notes.extend(note.map(|flying| flying.text));
+        summary.notes.extend(parted_without_contacts(&self.state));
+        if !is_stopped {
+            summary.notes.extend(zero_measures(&self.probes));
+            let pieces = fragments.as_deref().unwrap_or_default();
+            summary.notes.extend(past_walls(&self.state, pieces));
+        }
         let pictures = self
             .files
             .as_ref()
@@ -82,6 +106,17 @@ impl Run<'_> {
             summary,
             problem: ended.problem,
         })
+    }
+
+    /// The hits of rigid clumps, those that go on included. A continued run goes on with them.
+    fn rigid_hits(&self) -> RigidHits {
+        let mut hits = self.progress.seen.rigid_hits.clone();
+        let state = &self.state;
+        hits.take(&mut state.clumps.clone(), state.time_s, true);
+        let mut parts = state.rigid_parts.clone();
+        let last = (state.time_s, true);
+        hits.take_of_parts(&mut parts, &state.bonds, &self.bodies, last);
+        hits
     }
 
     /// The last checkpoint, from which the run can be continued to a later end time; plots, film
@@ -180,6 +215,7 @@ impl Run<'_> {
             }),
             population: PopulationSummary::of(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
+            taken_in: progress.seen.taken.summary(scene),
             sleep: state.sleep.as_ref().map(SleepSummary::of),
             updates_skipped_by_longer_steps: state.levels.as_ref().map(Levels::updates_skipped),
             steps: state.steps,

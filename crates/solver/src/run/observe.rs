@@ -210,7 +210,16 @@ impl Run<'_> {
         let is_turn = state.steps.is_multiple_of(CHECK_EVERY_STEPS);
         if is_turn || few.contains(&contacts_now(state)) {
             seen.look_at_contacts(state, self.scene, bodies);
+            seen.taken.look(state);
+            let time_s = state.time_s;
+            let hits = &mut seen.rigid_hits;
+            hits.take(&mut self.state.clumps, time_s, false);
+            let State {
+                rigid_parts, bonds, ..
+            } = &mut self.state;
+            hits.take_of_parts(rigid_parts, bonds, bodies, (time_s, false));
         }
+        let state = &self.state;
         if let Some(files) = &mut self.files {
             write_breaks(state, bodies, files)?;
             write_splits(state, files)?;
@@ -245,6 +254,8 @@ impl Run<'_> {
         self.progress.next_row = next(state, self.schedule.row_s);
         let values = read_probes(&mut self.probes, state, balance);
         self.progress.exceeded = exceeded(&self.probes, &values);
+        let end_s = self.scene.run.end_time_s;
+        self.progress.last_tenth.note(state, end_s, &values);
         if let Some(files) = &mut self.files {
             let row = series::row(state, balance, &values);
             files.series.append(state.time_s, &row)?;

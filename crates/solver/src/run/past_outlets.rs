@@ -51,6 +51,31 @@ pub(super) fn past_outlets(state: &State, fragments: &[Fragment]) -> Option<Stri
     ))
 }
 
+/// A note on pieces that have fallen past all walls of a scene without outlets and floor. None:
+/// there are none.
+pub(super) fn past_walls(state: &State, fragments: &[Fragment]) -> Option<String> {
+    let down = Vector3::from(state.model.gravity_m_s2).try_normalize(0.0)?;
+    if state.walls.is_empty() || !state.model.rules.outlets.is_empty() || has_floor(state, down) {
+        return None;
+    }
+    let corners = around_walls(state).corners().map(Vector3::from);
+    let beneath_walls = corners
+        .iter()
+        .fold(f64::NEG_INFINITY, |most, c| most.max(down.dot(c)));
+    let is_lost = |piece: &Piece| {
+        down.dot(&piece.centre_m) > beneath_walls && piece.velocity_m_s.dot(&down) > 0.0
+    };
+    let lost: Vec<Piece> = pieces(state, fragments).filter(is_lost).collect();
+    let first = lost.first()?;
+    let [x, y, z] = <[f64; 3]>::from(first.centre_m).map(|x| significant(x, 3));
+    let mass_kg: f64 = lost.iter().map(|piece| piece.mass_kg).sum();
+    Some(format!(
+        "{} clumps and fragments, {} kg in all, have fallen past all walls and fall on, one at ({x}, {y}, {z}) m; check the walls, or add an outlet that takes them out",
+        lost.len(),
+        significant(mass_kg, 3),
+    ))
+}
+
 fn has_floor(state: &State, down: Vector3<f64>) -> bool {
     state.walls.iter().any(|wall| match &wall.model.shape {
         Shape::Plane(plane) => {

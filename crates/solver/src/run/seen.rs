@@ -8,9 +8,13 @@ use dem_scene::{Scene, StartAs};
 use serde::{Deserialize, Serialize};
 
 use super::flying::{Flying, still_flying};
+use super::rigid_hits::RigidHits;
+use super::taken_in::Taken;
 use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
-use crate::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, strain_warning};
-use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge};
+use crate::check::laws::{
+    LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, plastic_strain_warning, strain_warning,
+};
+use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge, most_yielded};
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::called;
@@ -44,10 +48,18 @@ pub(super) struct Extreme {
 pub(super) struct Seen {
     /// Names of bodies that something has touched.
     touched: BTreeSet<String>,
+    /// Numbers of walls that something has touched.
+    touched_walls: BTreeSet<usize>,
     /// Ratio of overlap to the smaller radius.
     pub(super) overlap: Extreme,
     /// Strain at the edge of a bond.
     pub(super) bond_strain: Extreme,
+    /// Plastic strain at the edge of a bond.
+    pub(super) plastic_strain: Extreme,
+    /// Hits that rigid clumps could not break by.
+    pub(super) rigid_hits: RigidHits,
+    /// Energies that particles took in.
+    pub(super) taken: Taken,
     /// Names of bodies with a clump that was replaced.
     replaced: BTreeSet<String>,
     /// Names of bodies that an inlet has fed.
@@ -102,7 +114,13 @@ impl Seen {
             {
                 self.replaced.insert(body.clone());
             }
-            if let PopulationEvent::Broken { body, .. } = one {
+            if let PopulationEvent::Broken {
+                body,
+                specific_j_kg,
+                ..
+            } = one
+            {
+                self.taken.note_broken(body, *specific_j_kg);
                 // Something pressed it, maybe for a few steps only.
                 self.touched.insert(body.clone());
                 self.replaced.insert(body.clone());
@@ -143,8 +161,11 @@ impl Seen {
             for touch in &wall.touching {
                 let overlap_m = touch.history.overlap_m();
                 take(overlap_m / radius(touch.particle), touch.particle, Ok(n));
-                if misses_one && overlap_m > 0.0 {
-                    touching.push(touch.particle);
+                if overlap_m > 0.0 {
+                    self.touched_walls.insert(n);
+                    if misses_one {
+                        touching.push(touch.particle);
+                    }
                 }
             }
         }
@@ -221,26 +242,17 @@ impl Seen {
         if let Some((strain, at)) = most_strained_edge(&state.bonds, &state.particles.poses) {
             self.note_strain(strain, at, state, bodies);
         }
+        if let Some((strain, at)) = most_yielded(&state.bonds)
+            && strain > self.plastic_strain.largest
+        {
+            self.plastic_strain = extreme_of_bond(strain, at, state, bodies);
+        }
     }
 
     fn note_strain(&mut self, strain: f64, at: usize, state: &State, bodies: &[PlacedBody]) {
-        if strain <= self.bond_strain.largest {
-            return;
+        if strain > self.bond_strain.largest {
+            self.bond_strain = extreme_of_bond(strain, at, state, bodies);
         }
-        let p = &state.particles;
-        let [a, b] = state.bonds.ends[at];
-        let [place_a, place_b] = [a, b].map(|end| p.poses[end as usize].place());
-        self.bond_strain = Extreme {
-            largest: strain,
-            time_s: state.time_s,
-            place_m: (0.5 * (place_a + place_b)).into(),
-            between: if strain > LARGEST_STRAIN {
-                let [a, b] = [a, b].map(|end| called(bodies, &state.clumps, end));
-                format!("{a} and {b}")
-            } else {
-                String::new()
-            },
-        };
     }
 
     /// Reasons to doubt the result at the end of a run, a sentence each.
@@ -281,9 +293,10 @@ impl Seen {
             }
             if let Some(class) = rule.daughters.as_ref().and_then(|of| of.classes.first()) {
                 warnings.push(format!(
-                    "no particle of '{name}' was replaced by daughters: none took in {} J/kg{}",
+                    "no particle of '{name}' was replaced by daughters: none took in {} J/kg{}{}",
                     significant(class.from_j_kg, 4),
-                    discharged_before(state, name)
+                    discharged_before(state, name),
+                    self.taken.instead_of_daughters(name)
                 ));
                 continue;
             }
@@ -306,7 +319,8 @@ impl Seen {
             let trigger: Vec<String> = trigger.into_iter().flatten().collect();
             let joined = trigger.join(if rule.requires_all { " and " } else { " or " });
             warnings.push(format!(
-                "no clump of '{name}' was replaced: its trigger ({joined}) was not met, so it could not break{}",
+                "no clump of '{name}' was replaced: its trigger ({joined}) was not met, so it could not break{}{}",
+                self.taken.instead_of_trigger(name),
                 discharged_before(state, name)
             ));
         }
@@ -329,9 +343,11 @@ impl Seen {
             )
         };
         let (strain, overlap) = (&self.bond_strain, &self.overlap);
+        let yielded = &self.plastic_strain;
         let strained = strain_warning(strain.largest, &where_(strain));
+        let yielded = plastic_strain_warning(yielded.largest, &where_(yielded));
         let pressed = overlap_warning(overlap.largest, &where_(overlap));
-        strained.into_iter().chain(pressed).collect()
+        strained.into_iter().chain(yielded).chain(pressed).collect()
     }
 
     /// Bodies that could have touched something but did not.
@@ -343,6 +359,7 @@ impl Seen {
         let mut flying = free_bodies(state, bodies, 0.5 * state.time_step_s);
         let free = flying.len();
         flying.extend(standing_bodies(state, bodies));
+        let loaded = loaded(state, bodies);
         let mut warnings = Vec::new();
         let mut unnamed = 0;
         for name in scene
@@ -351,9 +368,9 @@ impl Seen {
             .filter(|name| !self.touched.contains(*name))
         {
             let own = flying[..free].iter().find(|flyer| flyer.name == *name);
-            let is_there = own.is_some() || !is_present(state, bodies, name);
-            // A held or loaded body is not meant to touch anything; one that no inlet has fed did
-            // not exist.
+            let is_loaded = loaded.contains(name.as_str());
+            let is_there = own.is_some() || is_loaded || !is_present(state, bodies, name);
+            // A held body is not meant to touch anything; one that no inlet has fed did not exist.
             if !is_there || self.never_came(state, name) || scene.parent_of(name).is_some() {
                 continue;
             }
@@ -366,6 +383,9 @@ impl Seen {
                     "nothing touched the body '{name}': {}",
                     outlook(flyer, state, &flying)
                 ),
+                None if is_loaded => format!(
+                    "nothing touched the body '{name}', on which loads act and which no support holds; check its position, the direction of the loads, gravity and the walls"
+                ),
                 None => format!("nothing touched the body '{name}', which is gone by the end"),
             });
         }
@@ -373,6 +393,17 @@ impl Seen {
             warnings.push(format!("nothing touched {unnamed} other bodies"));
         }
         warnings
+    }
+
+    /// Whether anything has touched the wall of this number.
+    pub(super) fn has_touched_wall(&self, number: usize) -> bool {
+        self.touched_walls.contains(&number)
+    }
+
+    /// Whether this is the name of a body of the scene that nothing has touched, of those that
+    /// are looked at.
+    pub(super) fn is_untouched(&self, scene: &Scene, name: &str) -> bool {
+        scene.bodies.contains_key(name) && !self.touched.contains(name)
     }
 
     /// Whether inlets could have fed a body but did not.
@@ -408,6 +439,38 @@ impl Seen {
         }
         still_flying(state, fragments, self.largest_kinetic_j)
     }
+}
+
+/// The strain of a bond at this moment, and what it joins if that is beyond its law.
+fn extreme_of_bond(strain: f64, at: usize, state: &State, bodies: &[PlacedBody]) -> Extreme {
+    let p = &state.particles;
+    let [a, b] = state.bonds.ends[at];
+    let [place_a, place_b] = [a, b].map(|end| p.poses[end as usize].place());
+    Extreme {
+        largest: strain,
+        time_s: state.time_s,
+        place_m: (0.5 * (place_a + place_b)).into(),
+        between: if strain > LARGEST_STRAIN {
+            let [a, b] = [a, b].map(|end| called(bodies, &state.clumps, end));
+            format!("{a} and {b}")
+        } else {
+            String::new()
+        },
+    }
+}
+
+/// Names of bodies on which loads act and which no support holds.
+fn loaded<'a>(state: &State, bodies: &'a [PlacedBody]) -> BTreeSet<&'a str> {
+    let held = state.supports.iter().flat_map(|support| &support.held);
+    let held: BTreeSet<u32> = held.map(|held| held.particle).collect();
+    let loads = state.loads.iter().flat_map(|load| &load.particles);
+    let pushed: BTreeSet<u32> = loads.copied().collect();
+    let is_own = |body: &&PlacedBody| {
+        let any = |of: &BTreeSet<u32>| body.particles.iter().any(|i| of.contains(i));
+        any(&pushed) && !any(&held)
+    };
+    let own = bodies.iter().filter(is_own);
+    own.map(|body| body.name.as_str()).collect()
 }
 
 /// Whether an inlet still feeds.

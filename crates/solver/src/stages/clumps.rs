@@ -1,7 +1,7 @@
 //! Rigid clumps in the time step: forces on their spheres act on the clumps, and the spheres move
 //! with them.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use rayon::prelude::*;
 
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
@@ -255,6 +255,9 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
         for clump in part.clumps.iter_mut().filter(|clump| !clump.asleep) {
             let centre = Vector3::from(clump.place_m);
             let (mut force, mut torque) = (Vector3::zeros(), Vector3::zeros());
+            let template = &templates[clump.template as usize];
+            let mut squeeze = Matrix3::zeros();
+            let can_break = template.breaks_from_n_m.is_finite();
             let [from, to] = clump.near.map(|n| n as usize);
             for i in near[from..to].iter().map(|&i| i as usize - part.first) {
                 let wrench = &mut part.wrenches[i];
@@ -265,8 +268,16 @@ pub fn gather(clumps: &mut Clumps, particles: &mut Particles, dt: f64) {
                 force += on_sphere;
                 torque += Vector3::new(tx, ty, tz) + arm.cross(&on_sphere);
                 *wrench = Wrench::default();
+                if can_break && on_sphere != Vector3::zeros() {
+                    let to_contact = part.poses[i].radius_m() * on_sphere.normalize();
+                    squeeze += on_sphere * (arm - to_contact).transpose();
+                }
             }
-            let spin = clump.spin_rad_s(&templates[clump.template as usize]);
+            if can_break {
+                let touched = (squeeze != Matrix3::zeros()).then_some(&squeeze);
+                clump.hits.note(touched, template.breaks_from_n_m);
+            }
+            let spin = clump.spin_rad_s(template);
             let power = force.dot(&Vector3::from(clump.velocity_m_s)) + torque.dot(&spin);
             clump.impact_energy_j += (-power * dt).max(0.0);
             clump.force_n = force.into();

@@ -182,7 +182,8 @@ pub struct Balance {
     pub flow_energy_j: f64,
     /// Actual minus expected energy, J.
     pub energy_error_j: f64,
-    /// The same, divided by the largest energy or work so far.
+    /// The same, divided by the largest energy or work so far: kinetic and elastic energy, adhesion,
+    /// liquid bridges, gravity, losses, and the work of loads, supports and walls, each by itself.
     pub energy_error: f64,
     /// That largest energy or work, J.
     pub energy_scale_j: f64,
@@ -382,14 +383,21 @@ pub fn balance(state: &mut State) -> Balance {
     let stored = elastic.total() + contact_elastic + bridges_j;
     let given = work.loads + work.supports + wall_work + ledger.brought_j;
     let error = kinetic + stored + gravity + gone - given - ledger.opening_j;
+    // Each by itself: adhesion and the elastic energy that it presses in nearly cancel.
+    let held = kinetic + (elastic.total() + (contact_elastic - adhesion) + bridges_j.max(0.0));
     let largest = [
-        kinetic + stored,
+        held,
+        adhesion.abs(),
+        bridges_j.abs(),
+        gone.abs(),
         gravity.abs(),
         work.loads.abs(),
         work.supports.abs(),
         wall_work.abs(),
     ];
     ledger.scale_j = largest.into_iter().fold(ledger.scale_j, f64::max);
+    let attraction_j = adhesion.abs() + bridges_j.abs();
+    ledger.attraction_j = ledger.attraction_j.max(attraction_j);
     ledger.momentum_scale = ledger.momentum_scale.max(scales[0]);
     ledger.angular_momentum_scale = ledger.angular_momentum_scale.max(scales[1]);
     let off = |is: [f64; 3], should: [f64; 3], scale: f64| {

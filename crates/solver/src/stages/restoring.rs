@@ -19,7 +19,7 @@ use crate::stages::totals::synchronous_motions;
 use crate::stages::touching::touching;
 use crate::state::State;
 use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clump, Template, reach_m, sub_spheres};
+use crate::state::clumps::{Clump, Template, breaks_from_n_m, reach_m, sub_spheres};
 use crate::state::clusters::fragments::{Fragment, fragment, mass_and_centre};
 use crate::state::events::PopulationEvent;
 use crate::state::events::Renumbering;
@@ -261,6 +261,7 @@ fn fragment_template(
         ids: members.iter().map(|&i| p.id(i as usize)).collect(),
         scatter: None,
         bonds_of_file: Arc::new((0..own.len() as u32).collect()),
+        breaks_from_n_m: breaks_from_n_m(&own, &spheres),
         bonds: Arc::new(own),
         spheres: Arc::new(spheres),
         landing: Default::default(),

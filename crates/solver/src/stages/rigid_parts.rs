@@ -1,7 +1,7 @@
 //! Rigid parts of bonded bodies in the time step: forces on their spheres act on the parts, and the
 //! spheres move with them.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::chunks::CHUNK;
 use super::stage::{NO_SAVING, Need, Stage};
@@ -10,6 +10,7 @@ use crate::physics::rotation;
 use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation as rotation_of;
 use crate::state::State;
+use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::rigid_parts::{RigidPart, RigidParts};
 
@@ -42,9 +43,27 @@ pub(crate) fn gather_rigid_parts(state: &mut State) -> usize {
     take_broken_impulses(state);
     let particles = &mut state.particles;
     for part in &mut state.rigid_parts.all {
+        note_hits(part, particles, &state.bonds);
         gather(part, particles, &state.bond_resistance);
     }
     spheres(&state.rigid_parts)
+}
+
+/// Records whether what acts on a part, contacts and bonds, would break its own bonds.
+fn note_hits(part: &mut RigidPart, particles: &Particles, bonds: &Bonds) {
+    let breaks_from_n_m = part.breaks_from_n_m(bonds);
+    if breaks_from_n_m.is_infinite() {
+        return;
+    }
+    let centre = Vector3::from(part.place_m);
+    let mut moment = Matrix3::zeros();
+    for &i in &part.members {
+        let force = vector(particles.wrenches[i as usize].force_n);
+        let arm = particles.poses[i as usize].place() - centre;
+        moment += force * arm.transpose();
+    }
+    let touched = (moment != Matrix3::zeros()).then_some(&moment);
+    part.hits.note(touched, breaks_from_n_m);
 }
 
 /// Gives the part the impulse that a bond which broke in this kick had on one of its spheres: see

@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::bonds::Bonds;
 use super::particles::{Motion, Particles, Pose, Wrench};
+use super::squeeze::Hits;
+use crate::physics::bond::failure::smallest_strength_pa;
 use crate::physics::rotation::{kinetic_j, spin_rad_s};
 use crate::physics::rotation::{numbers, rotation};
 use crate::shape::inertia::MassProperties;
@@ -58,6 +60,14 @@ pub(crate) fn sphere_volume_m3(spheres: &[SubSphere]) -> f64 {
     4.0 / 3.0 * std::f64::consts::PI * cubes.sum::<f64>()
 }
 
+/// Mean stress times volume of some spheres from which these bonds between them break, N m: the
+/// smallest strength of their rules. Infinite: they cannot break.
+pub(crate) fn breaks_from_n_m(bonds: &Bonds, spheres: &[SubSphere]) -> f64 {
+    let rules = bonds.rule_runs.iter().map(|(_, rule)| &bonds.rules[*rule]);
+    let strengths = rules.filter_map(|rule| rule.criteria.as_ref().map(smallest_strength_pa));
+    strengths.fold(f64::INFINITY, f64::min) * sphere_volume_m3(spheres)
+}
+
 /// Strengths that vary from bond to bond.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scatter {
@@ -103,6 +113,8 @@ pub struct Template {
     pub scatter: Option<Scatter>,
     /// For each of `bonds`, its number in the body's file.
     pub bonds_of_file: Arc<Vec<u32>>,
+    /// Mean stress times volume from which its bonds would break, N m; infinite if they cannot.
+    pub breaks_from_n_m: f64,
     /// See [`Template::landing`].
     #[serde(skip)]
     pub landing: KnownLanding,
@@ -176,6 +188,8 @@ pub struct Clump {
     pub impact_energy_j: f64,
     /// Energy that it has taken in, if daughters can replace it.
     pub intake: Intake,
+    /// Hits that would have broken its bonds.
+    pub hits: Hits,
     /// Distance that the fastest of its points moved in the last drift, m, at most.
     #[serde(skip)]
     pub moved_m: f64,
@@ -390,6 +404,7 @@ impl Template {
             scatter: None,
             bonds_of_file: Arc::default(),
             landing: KnownLanding::default(),
+            breaks_from_n_m: f64::INFINITY,
         }
     }
 

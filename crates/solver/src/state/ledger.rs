@@ -31,8 +31,11 @@ pub struct EnergyLedger {
     pub(crate) opening_j: f64,
     /// Largest energy that gravity had supplied, or taken, at any time, J.
     pub(crate) fallen_j: f64,
-    /// Largest energy and work seen, J.
+    /// Largest energy or work seen, each by itself, J.
     pub(crate) scale_j: f64,
+    /// Largest energy that the attraction of ends that touch, adhesion or liquid, has released at
+    /// any time, J.
+    pub(crate) attraction_j: f64,
     /// Energy at which all bonds are stretched, and all particles that can touch something are
     /// pressed, by a millionth: anything less is rounding, J.
     pub(crate) rounding_floor_j: f64,
@@ -69,12 +72,12 @@ impl EnergyLedger {
     }
 
     /// Upper bound of the energy of a run: that at the start plus that supplied by loads, supports,
-    /// walls, gravity and added bodies, J.
+    /// walls, gravity, attraction and added bodies, J.
     pub(crate) fn energy_supplied_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {
         let fallen = self.fallen_j.max(self.fallen_now_j(gravity_m_s2));
         let pushed = walls_work_j(walls).abs();
         let given = self.work.loads.abs() + self.work.supports.abs() + pushed + fallen;
-        let given = given + self.brought_j.abs();
+        let given = given + self.brought_j.abs() + self.attraction_j;
         self.opening_j.abs() + given + self.rounding_floor_j
     }
 

@@ -24,6 +24,8 @@ pub struct NamedBody {
     pub sieve_m: f64,
     /// Diameter of its smallest sphere, m: no fragment of it is smaller.
     pub smallest_diameter_m: f64,
+    /// Mean diameter of its spheres, by mass, m; 0 for a body of one sphere.
+    pub mean_diameter_m: f64,
 }
 
 /// Data fixed by the plan: no step changes them.

@@ -7,8 +7,10 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::bonds::Bonds;
-use super::clumps::{SubSphere, sub_spheres};
+use super::clumps::{SubSphere, sphere_volume_m3, sub_spheres};
 use super::particles::{Motion, Pose};
+use super::squeeze::Hits;
+use crate::physics::bond::failure::smallest_strength_pa;
 use crate::physics::rotation::{kinetic_j, rotation, spin_rad_s};
 use crate::shape::inertia::{MassProperties, of_spheres};
 
@@ -40,6 +42,8 @@ pub struct RigidPart {
     /// Torque about its centre of mass, N m. Length 3.
     #[serde(skip)]
     pub torque_n_m: [f64; 3],
+    /// Hits that would have broken its bonds.
+    pub hits: Hits,
 }
 
 /// All rigid parts.
@@ -87,6 +91,21 @@ pub(crate) fn as_rigid(
 }
 
 impl RigidPart {
+    /// Mean stress times volume from which its bonds break, N m: infinite if they cannot. Those of
+    /// its first sphere stand for all.
+    pub(crate) fn breaks_from_n_m(&self, bonds: &Bonds) -> f64 {
+        let Some(&first) = self.members.first() else {
+            return f64::INFINITY;
+        };
+        let at = bonds.ends.partition_point(|[a, _]| *a < first);
+        if at == bonds.len() {
+            return f64::INFINITY;
+        }
+        let criteria = bonds.rules[bonds.rule_of(at)].criteria;
+        let strength_pa = criteria.as_ref().map(smallest_strength_pa);
+        strength_pa.unwrap_or(f64::INFINITY) * sphere_volume_m3(&self.spheres)
+    }
+
     /// The part that these particles, ascending, form with their momenta.
     pub(crate) fn of(members: Vec<u32>, poses: &[Pose], motions: &[Motion]) -> Self {
         let (properties, [velocity, angular]) = as_rigid(&members, poses, motions);

@@ -92,6 +92,7 @@ fn pieces() -> (Fragments, Model) {
         material: "m".to_owned(),
         sieve_m,
         smallest_diameter_m: 3e-3,
+        mean_diameter_m: 3e-3,
     };
     let model = Model {
         bodies: vec![
@@ -133,6 +134,25 @@ fn numbers_of_a_distribution_are_those_counted_by_hand() {
     let all = &sizes.all["both"];
     assert_eq!((all.mass_kg, all.t10), (10.0, Some(0.05)));
     assert_eq!([all.d10_m, all.d50_m, all.d80_m], [4e-3, 20e-3, 30e-3]);
+}
+
+/// Below three mean diameters of 3 mm the spheres decide; a body that is whole is no fragment.
+#[test]
+fn figures_below_some_diameters_are_marked() {
+    let (fragments, mut model) = pieces();
+    let stone = fragments.sizes(&model).bodies["stone"]["both"];
+    assert_eq!(stone.resolved_from_m, 9e-3);
+    assert_eq!(stone.unresolved.names(), ["d10", "t10"]);
+    let rows = fragments.rows(&model, &[]);
+    assert!(rows.iter().all(|row| row.resolved == (row.sieve_m >= 9e-3)));
+    model.bodies[0].mean_diameter_m = 10e-3;
+    let lump = fragments.sizes(&model).bodies["lump"]["both"];
+    assert_eq!(lump.unresolved.names(), [""; 0]);
+    for body in &mut model.bodies {
+        body.mean_diameter_m = 0.0;
+    }
+    let all = fragments.sizes(&model).all["both"];
+    assert_eq!(all.unresolved.names(), [""; 0]);
 }
 
 #[test]

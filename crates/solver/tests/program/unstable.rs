@@ -52,6 +52,30 @@ fn an_unstable_run_names_body_bond_step_and_remedy() {
     assert!((1e-6..2e-5).contains(&own), "{said}");
 }
 
+/// Bars of spheres that overlap by half a radius burst at once. Those overlaps are relaxed, but
+/// act as soon as they fall below a fraction as large as theirs.
+#[test]
+fn a_large_min_overlap_is_blamed_and_not_the_step() {
+    let bench = Bench::new();
+    let text = "version = 1
+run.end_time = \"20 ms\"
+relaxation.min_overlap = 0.9
+materials.m = { density = 2000, young_modulus = \"1 GPa\" }
+contacts.m-m = { restitution = 1 }
+bonds.b = { young_modulus = \"1 MPa\", poisson_ratio = 0.3, failure = { tensile_strength = 0 } }
+[bodies.wheel]
+particles = [[-0.0075, 0, 0, 0.01], [0.0075, 0, 0, 0.01]]
+bond_list = [[0, 1]]
+material = \"m\"
+bonds = \"b\"
+angular_velocity = [0, 0, 100]
+";
+    let scene = bench.write("burst.toml", text);
+    let said = bench.bad(&scene, &[], 3);
+    assert!(said.contains("a smaller relaxation.min_overlap"), "{said}");
+    bench.good(&scene, &["--set", "relaxation.min_overlap=1e-5"]);
+}
+
 /// Two bars of equal bonds; in the second, listed from its end, one pair is much lighter than all
 /// others.
 pub(super) fn uneven() -> String {

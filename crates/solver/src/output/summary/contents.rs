@@ -7,7 +7,7 @@ use dem_io::body::mass::BodyMass;
 use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
-use super::parts::{AdaptiveSummary, PopulationSummary, SleepSummary};
+use super::parts::{AdaptiveSummary, PopulationSummary, SleepSummary, TakenIn};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 use crate::output::equilibrium::EquilibriumSummary;
@@ -88,6 +88,9 @@ pub struct Summary {
     /// Masses of each body fed, discharged and inside, by name, if any are fed or discharged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flows: Option<BTreeMap<String, BodyFlow>>,
+    /// Energies that the particles of bodies with daughters took in, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub taken_in: BTreeMap<String, TakenIn>,
     /// Sleeping bodies, if any can sleep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sleep: Option<SleepSummary>,
@@ -178,6 +181,7 @@ impl Unfinished {
             verdict: Verdict {
                 sound: false,
                 warnings: vec![problem.to_string()],
+                unresolved: Vec::new(),
             },
         }
     }
@@ -190,6 +194,9 @@ pub struct Verdict {
     pub sound: bool,
     /// Reasons to doubt it, a sentence each.
     pub warnings: Vec<String>,
+    /// Names of figures of the fragments that the size of the spheres decides, not the material.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unresolved: Vec<String>,
 }
 
 impl Summary {
@@ -202,7 +209,17 @@ impl Summary {
         self.verdict = Verdict {
             sound: warnings.is_empty(),
             warnings,
+            unresolved: self.unresolved(),
         };
+    }
+
+    /// Names of figures of all fragments that are below the size that the spheres resolve.
+    fn unresolved(&self) -> Vec<String> {
+        let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
+        let all = self.sizes.as_ref().filter(|_| has_split);
+        let all = all.and_then(|sizes| sizes.all.get("both"));
+        let names = all.map_or(Vec::new(), |all| all.unresolved.names());
+        names.into_iter().map(str::to_owned).collect()
     }
 
     /// Reasons in the summary to doubt the result.
@@ -210,8 +227,9 @@ impl Summary {
         let mut doubts = Vec::new();
         if self.energy_error > LARGE_ENERGY_ERROR {
             doubts.push(format!(
-                "the energy is off by {} of the largest energy: take a smaller step (run.safety_factor)",
-                significant(self.energy_error, 2)
+                "the energy is off by {} of the largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: take a smaller step (run.safety_factor)",
+                significant(self.energy_error, 2),
+                significant(self.balance.energy_scale_j, 3)
             ));
         }
         if self.fraction_of_limit > 1.0 {

@@ -139,6 +139,16 @@ fn single_spheres(state: &State, bodies: &[PlacedBody]) -> usize {
     bodies.iter().filter(is_one).count()
 }
 
+/// Energies that decide whether daughters replace the particles of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TakenIn {
+    /// Largest energy over mass that one of them took in, J/kg.
+    pub largest_j_kg: f64,
+    /// That from which the first class of daughters replaces it, before the scatter of strengths,
+    /// J/kg.
+    pub needed_j_kg: f64,
+}
+
 /// Sleeping bodies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SleepSummary {

@@ -8,7 +8,7 @@ use dem_io::units::significant;
 use super::contents::Summary;
 use crate::measure::Measured;
 use crate::output::equilibrium::EquilibriumSummary;
-use crate::output::sizes::SizeSummary;
+use crate::output::sizes::{RESOLVED_DIAMETERS, SizeSummary};
 use crate::plan::masses;
 
 impl fmt::Display for Summary {
@@ -61,6 +61,14 @@ impl fmt::Display for Summary {
             )?;
         }
         self.write_population(f)?;
+        for (name, taken) in &self.taken_in {
+            writeln!(
+                f,
+                "taken in     {name} {} J/kg at most; daughters replace it from {} J/kg",
+                significant(taken.largest_j_kg, 4),
+                significant(taken.needed_j_kg, 4),
+            )?;
+        }
         if let Some(sleep) = &self.sleep {
             writeln!(
                 f,
@@ -265,15 +273,24 @@ impl Summary {
         };
         let mm = |size_m: f64| significant(size_m * 1e3, 3);
         let mut line = |name: &str, of: &str, sizes: &SizeSummary| {
+            let marks = [
+                sizes.unresolved.d10,
+                sizes.unresolved.d50,
+                sizes.unresolved.d80,
+            ];
+            let marks = marks.map(|is_unresolved| if is_unresolved { "*" } else { "" });
+            let t10 = sizes.t10.map_or("not resolved".to_owned(), |t10| {
+                significant(t10, 3) + if sizes.unresolved.t10 { "*" } else { "" }
+            });
             writeln!(
                 f,
-                "{name:12} d10 {} mm   d50 {} mm   d80 {} mm   t10 {}{of}",
+                "{name:12} d10 {} mm{}   d50 {} mm{}   d80 {} mm{}   t10 {t10}{of}",
                 mm(sizes.d10_m),
+                marks[0],
                 mm(sizes.d50_m),
+                marks[1],
                 mm(sizes.d80_m),
-                sizes
-                    .t10
-                    .map_or("not resolved".to_owned(), |t10| significant(t10, 3))
+                marks[2],
             )
         };
         if let Some(all) = sizes.all.get("both") {
@@ -310,6 +327,15 @@ impl Summary {
         }
         for warning in &self.verdict.warnings {
             writeln!(f, "warning      {}", visible(warning))?;
+        }
+        let all = self.sizes.as_ref().and_then(|sizes| sizes.all.get("both"));
+        if let (false, Some(all)) = (self.verdict.unresolved.is_empty(), all) {
+            writeln!(
+                f,
+                "* unresolved {} of the fragments: below {RESOLVED_DIAMETERS} sphere diameters ({} mm) the spheres decide, not the material",
+                self.verdict.unresolved.join(", "),
+                significant(1e3 * all.resolved_from_m, 3)
+            )?;
         }
         let verdict = match (self.verdict.warnings.len(), self.notes.len()) {
             (0, 0) => "sound: no warnings".to_owned(),

@@ -46,6 +46,15 @@ pub(crate) fn has_strength(criteria: &Criteria) -> bool {
     strengths.any(|(strength_pa, _)| strength_pa.is_finite())
 }
 
+/// The smallest strength against anything but compression, Pa; infinite if there is none.
+pub(crate) fn smallest_strength_pa(criteria: &Criteria) -> f64 {
+    let strengths = Cause::ALL.into_iter().zip(strengths(criteria));
+    let others = strengths.filter(|(cause, _)| *cause != Cause::Compression);
+    others.fold(f64::INFINITY, |least, (_, (strength_pa, _))| {
+        least.min(strength_pa)
+    })
+}
+
 /// Utilisation: the largest ratio of stress to strength; the bond breaks at 1.
 ///
 /// As neither the stresses nor the strengths depend on the factors, a loop over bonds may skip a

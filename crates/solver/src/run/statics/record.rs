@@ -93,6 +93,7 @@ impl AtRest<'_> {
             sizes: None,
             flows: None,
             population: None,
+            taken_in: BTreeMap::new(),
             sleep: None,
             updates_skipped_by_longer_steps: None,
             steps: state.steps,
