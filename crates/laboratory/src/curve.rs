@@ -4,7 +4,9 @@
 use dem_io::units::{Dimension, FORCE, LENGTH};
 use dem_io::{Diagnostic, Result};
 
-use crate::table::{Column, Table, size_of};
+use crate::head::Column;
+use crate::table::Table;
+use crate::units::{is_weight, names_of, size_of};
 
 /// Fewest rows of a curve.
 const FEWEST_ROWS: usize = 20;
@@ -13,8 +15,18 @@ const BACK: f64 = 0.01;
 /// A gap is a step of this fraction of the entire travel and this many usual steps.
 const GAP: [f64; 2] = [0.05, 20.0];
 
+/// A specimen has failed where the force falls below this fraction of its largest.
+pub const FAILED: f64 = 0.75;
+/// Largest force, as a fraction of the largest of all, while the crosshead drives back behind the
+/// failure.
+const DRIVEN_BACK: f64 = 0.5;
+/// Largest difference of two columns that hold the same, as a fraction of their range.
+const SAME: f64 = 1e-3;
+/// Largest travel, m, and force, N, that a test rig has.
+const LARGEST: [f64; 2] = [100.0, 1e9];
+
 /// Words by which a column of travel is known, and of force.
-const TRAVEL_WORDS: [&str; 13] = [
+const TRAVEL_WORDS: [&str; 20] = [
     "travel",
     "displacement",
     "extension",
@@ -28,8 +40,19 @@ const TRAVEL_WORDS: [&str; 13] = [
     "verformung",
     "course",
     "deplacement",
+    "déplacement",
+    "allongement",
+    "uzama",
+    "deplasman",
+    "desplazamiento",
+    "spostamento",
+    "corsa",
 ];
-const FORCE_WORDS: [&str; 5] = ["force", "load", "kraft", "last", "effort"];
+const FORCE_WORDS: [&str; 10] = [
+    "force", "load", "kraft", "last", "effort", "kuvvet", "yük", "fuerza", "carga", "forza",
+];
+/// Words that hold one of these by chance.
+const OTHER_WORDS: [&str; 2] = ["elastic", "plastic"];
 
 /// A column as the user names it: by its name or its number, and its unit.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -66,6 +89,8 @@ struct Wanted<'a> {
     choice: &'a ColumnChoice,
     /// Where a table of two columns without names has it.
     place: usize,
+    /// Largest value of a test rig, in the SI unit.
+    largest: f64,
 }
 
 impl Curve {
@@ -83,6 +108,7 @@ impl Curve {
             option: "--travel",
             choice: travel,
             place: 0,
+            largest: LARGEST[0],
         };
         let force = Wanted {
             name: "force",
@@ -92,11 +118,22 @@ impl Curve {
             option: "--force",
             choice: force,
             place: 1,
+            largest: LARGEST[1],
         };
-        let travel_m = travel.values(table)?;
-        let force_n = force.values(table)?;
+        let mut notes = Vec::new();
+        let travel_m = travel.values(table, &mut notes)?;
+        let force_n = force.values(table, &mut notes)?;
+        refuse_other_specimens(table, &travel_m)?;
         let lines = (0..table.len()).map(|row| table.line(row)).collect();
-        Self::new(travel_m, force_n, lines)
+        let mut curve = Self::new(travel_m, force_n, lines)?;
+        let repeated = table.repeated_heads.len();
+        if repeated > 0 {
+            notes.push(format!(
+                "the head of the table stands again on {repeated} places: its parts are taken as one test"
+            ));
+        }
+        notes.append(&mut curve.notes);
+        Ok(Self { notes, ..curve })
     }
 
     /// A curve of travel, m, and force, N, whose rows stand on these lines.
@@ -117,30 +154,71 @@ impl Curve {
             return Err(Diagnostic::input("", problem, remedy));
         }
         curve.turn();
+        curve.cut_return();
         curve.refuse_jumps()?;
         Ok(curve)
     }
 
     /// Makes travel and force positive where a test rig counts the other way.
     fn turn(&mut self) {
-        let falls = |values: &[f64]| {
-            let start = values[0];
-            let far = |sign: f64| {
-                values
-                    .iter()
-                    .map(|x| sign * (x - start))
-                    .fold(0.0, f64::max)
-            };
-            far(-1.0) > far(1.0)
+        let mut reverse = |name: &str, values: &mut Vec<f64>| {
+            values.iter_mut().for_each(|value| *value = -*value);
+            self.notes.push(format!(
+                "the {name} goes down where the specimen is loaded: its sign is reversed"
+            ));
         };
-        for (name, values) in [("travel", &mut self.travel_m), ("force", &mut self.force_n)] {
-            if falls(values) {
-                values.iter_mut().for_each(|value| *value = -*value);
-                let note = format!(
-                    "the {name} goes down where the specimen is loaded: its sign is reversed"
-                );
-                self.notes.push(note);
+        let start_n = self.force_n[0];
+        let far = |force: &f64| (force - start_n).abs();
+        let peak = (1..self.force_n.len()).fold(0, |best, row| {
+            if far(&self.force_n[row]) > far(&self.force_n[best]) {
+                row
+            } else {
+                best
             }
+        });
+        // Behind the failure the crosshead may drive back, beyond its start.
+        if self.travel_m[peak] < self.travel_m[0] {
+            reverse("travel", &mut self.travel_m);
+        }
+        if self.force_n[peak] < start_n {
+            reverse("force", &mut self.force_n);
+        }
+    }
+
+    /// Cuts off the rows in which the crosshead drives back behind the failure.
+    fn cut_return(&mut self) {
+        let (travel, force) = (&self.travel_m, &self.force_n);
+        let rise = |row: usize| force[row] - force[0];
+        let rows = travel.len();
+        let later = |best: usize, row: usize, values: &[f64]| {
+            if values[row] > values[best] {
+                row
+            } else {
+                best
+            }
+        };
+        let peak = (1..rows).fold(0, |best, row| later(best, row, force));
+        let Some(failed) = (peak..rows).find(|row| rise(*row) < FAILED * rise(peak)) else {
+            return;
+        };
+        let far = (1..rows).fold(0, |best, row| later(best, row, travel));
+        let back_m = BACK * (travel[far] - travel[0]);
+        let mut lowest_m = travel[far];
+        let is_return = far >= failed
+            && travel[rows - 1] < travel[far] - back_m
+            && (far..rows).all(|row| {
+                lowest_m = lowest_m.min(travel[row]);
+                rise(row) <= DRIVEN_BACK * rise(peak) && travel[row] <= lowest_m + back_m
+            });
+        if is_return && far + 1 >= FEWEST_ROWS {
+            self.notes.push(format!(
+                "behind the failure the crosshead drives back from line {} on: {} rows are cut off",
+                self.lines[far + 1],
+                rows - far - 1
+            ));
+            self.travel_m.truncate(far + 1);
+            self.force_n.truncate(far + 1);
+            self.lines.truncate(far + 1);
         }
     }
 
@@ -183,12 +261,53 @@ impl Curve {
 
 impl Wanted<'_> {
     /// The values of the quantity, in SI units.
-    fn values(&self, table: &Table) -> Result<Vec<f64>> {
-        let column = self.column(table)?;
-        let unit = match &self.choice.unit {
+    fn values(&self, table: &Table, notes: &mut Vec<String>) -> Result<Vec<f64>> {
+        let found = self.columns(table)?;
+        let [first, others @ ..] = &found[..] else {
+            return Err(self.none_known(table));
+        };
+        let values = self.of_column(table, *first)?;
+        for other in others {
+            let same = self
+                .of_column(table, *other)
+                .is_ok_and(|other| is_same(&values, &other));
+            if !same {
+                let problem = format!(
+                    "several columns may be the {}: {}",
+                    self.name,
+                    list(table, &found)
+                );
+                return Err(Diagnostic::input("", problem, self.remedy()));
+            }
+        }
+        if !others.is_empty() {
+            notes.push(format!(
+                "several columns hold the {}, all the same but for a sign or a start: {}; the first is taken",
+                self.name,
+                list(table, &found)
+            ));
+        }
+        let unit = self.unit_of(table, *first);
+        if is_weight(unit) {
+            notes.push(format!(
+                "the {} in {unit} is taken as pounds-force",
+                self.name
+            ));
+        }
+        Ok(values)
+    }
+
+    /// The unit of a column as written.
+    fn unit_of<'a>(&'a self, table: &'a Table, column: usize) -> &'a str {
+        match &self.choice.unit {
             Some(unit) => unit.as_str(),
             None => table.columns[column].unit.as_str(),
-        };
+        }
+    }
+
+    /// The values of a column, in SI units.
+    fn of_column(&self, table: &Table, column: usize) -> Result<Vec<f64>> {
+        let unit = self.unit_of(table, column);
         let option = self.option;
         if unit.is_empty() {
             let problem = format!(
@@ -202,59 +321,92 @@ impl Wanted<'_> {
             ));
         }
         let size = size_of(unit, self.dimension).ok_or_else(|| {
-            let units: Vec<&str> = self.dimension.units.iter().map(|(unit, _)| *unit).collect();
-            Diagnostic::input(
-                "",
-                format!(
-                    "the unit of the {} is '{}', which is unknown",
-                    self.name,
-                    unit.escape_debug()
-                ),
-                format!("add {option}-unit with one of {}", units.join(", ")),
-            )
+            let problem = format!(
+                "the unit of the {} is '{}', which is unknown",
+                self.name,
+                unit.escape_debug()
+            );
+            let mut remedy = format!("add {option}-unit with one of {}", names_of(self.dimension));
+            if unit == "kg" {
+                remedy = format!("add {option}-unit kgf if the weight of kilograms is meant");
+            }
+            Diagnostic::input("", problem, remedy)
         })?;
         let values = table.numbers(column, self.name)?;
-        Ok(values.into_iter().map(|value| size * value).collect())
+        let values: Vec<f64> = values.into_iter().map(|value| size * value).collect();
+        match values
+            .iter()
+            .position(|value| !(value.abs() <= self.largest))
+        {
+            Some(row) => {
+                let problem = format!(
+                    "the {} is {:e} {}, more than any test rig has ({:e})",
+                    self.name, values[row], self.dimension.si, self.largest
+                );
+                let place = format!("line {}", table.line(row));
+                Err(Diagnostic::input(
+                    place,
+                    problem,
+                    "check the number and its unit",
+                ))
+            }
+            None => Ok(values),
+        }
     }
 
-    /// Number of the column, counted from 0.
-    fn column(&self, table: &Table) -> Result<usize> {
+    /// Numbers of the columns that may be meant, counted from 0.
+    fn columns(&self, table: &Table) -> Result<Vec<usize>> {
         let columns = &table.columns;
         if let Some(wanted) = &self.choice.column {
-            return self.named(table, wanted);
+            return Ok(vec![self.named(table, wanted)?]);
         }
         let nameless = columns.iter().all(|column| column.name.is_empty());
-        if nameless && columns.len() == 2 {
-            return Ok(self.place);
+        let unitless = columns.iter().all(|column| column.unit.is_empty());
+        if nameless && columns.len() == 2 && unitless {
+            return Ok(vec![self.place]);
         }
         let by_unit = |at: &usize| size_of(&columns[*at].unit, self.dimension).is_some();
         let by_name = |at: &usize| {
             let name = columns[*at].name.to_lowercase();
-            self.words.iter().any(|word| name.contains(word))
+            let is_other = OTHER_WORDS.iter().any(|word| name.contains(word));
+            !is_other && self.words.iter().any(|word| name.contains(word))
         };
         let all: Vec<usize> = (0..columns.len()).collect();
         let named: Vec<usize> = all.iter().copied().filter(by_name).collect();
         let fitting = |of: &[usize]| of.iter().copied().filter(by_unit).collect::<Vec<usize>>();
-        for found in [fitting(&named), named.clone(), fitting(&all)] {
-            match found[..] {
-                [] => {}
-                [only] => return Ok(only),
-                _ => {
-                    let problem = format!(
-                        "several columns may be the {}: {}",
-                        self.name,
-                        list(table, &found)
-                    );
-                    return Err(Diagnostic::input("", problem, self.remedy()));
-                }
-            }
-        }
+        let found = [fitting(&named), named.clone(), fitting(&all)];
+        Ok(found
+            .into_iter()
+            .find(|found| !found.is_empty())
+            .unwrap_or_default())
+    }
+
+    /// No column can be meant.
+    fn none_known(&self, table: &Table) -> Diagnostic {
+        let all: Vec<usize> = (0..table.columns.len()).collect();
         let problem = format!(
             "no column is known as the {}: {}",
             self.name,
             list(table, &all)
         );
-        Err(Diagnostic::input("", problem, self.remedy()))
+        let is_strain = |column: &Column| {
+            let name = column.name.to_lowercase();
+            ["strain", "stress", "dehnung", "spannung"]
+                .iter()
+                .any(|word| name.contains(word))
+        };
+        let remedy = if table
+            .columns
+            .iter()
+            .filter(|column| is_strain(column))
+            .count()
+            > 1
+        {
+            "export travel and force instead of strain and stress".to_owned()
+        } else {
+            self.remedy()
+        };
+        Diagnostic::input("", problem, remedy)
     }
 
     /// The column with this name or number.
@@ -280,6 +432,46 @@ impl Wanted<'_> {
     fn remedy(&self) -> String {
         format!("name one by {}-column NAME or its number", self.option)
     }
+}
+
+/// Whether two columns hold the same but for their starts and signs.
+fn is_same(one: &[f64], other: &[f64]) -> bool {
+    let range = one
+        .iter()
+        .fold(0.0_f64, |most, x| most.max((x - one[0]).abs()));
+    let is_near = |sign: f64| {
+        let pairs = one.iter().zip(other);
+        let differences = pairs.map(|(a, b)| (a - one[0] - sign * (b - other[0])).abs());
+        differences.fold(0.0, f64::max) <= SAME * range
+    };
+    one.len() == other.len() && !one.is_empty() && (is_near(1.0) || is_near(-1.0))
+}
+
+/// Refuses a file in which the travel starts again behind a repeated head.
+fn refuse_other_specimens(table: &Table, travel_m: &[f64]) -> Result<()> {
+    let rows = table.repeated_heads.iter().copied();
+    for row in rows.filter(|row| (1..travel_m.len()).contains(row)) {
+        let far = |rows: &[f64]| {
+            rows.iter()
+                .fold(0.0_f64, |far, x| far.max((x - rows[0]).abs()))
+        };
+        let [before_m, start_m] =
+            [travel_m[row - 1], travel_m[row]].map(|x| (x - travel_m[0]).abs());
+        if start_m < before_m - BACK * far(travel_m) {
+            let problem = format!(
+                "another test begins: its travel starts again at {:.4} mm, {:.4} mm before the row above",
+                1e3 * travel_m[row],
+                1e3 * (before_m - start_m)
+            );
+            let place = format!("line {}", table.line(row));
+            return Err(Diagnostic::input(
+                place,
+                problem,
+                "write a file for each specimen",
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Columns for a message: `1 'Time [s]', 2 'Force [N]'`.

@@ -1,23 +1,29 @@
 //! What the measured curve of each specimen says.
 
-use crate::curve::Curve;
+use crate::curve::{Curve, FAILED};
+use crate::outlier::outlier;
 use crate::regions::Regions;
-use crate::specimen::Specimen;
+use crate::specimen::{Specimen, TestType};
 
 /// Largest seating of a valid specimen, as a fraction of the travel at failure.
 pub const LONGEST_SEATING: f64 = 0.25;
-/// A specimen has failed where the force falls below this fraction of its largest.
-pub const FAILED: f64 = 0.75;
 /// Fewest rows between contact and the largest force.
 const FEWEST_LOADED: usize = 15;
 /// A largest force that differs from the median of the others by this factor is in another unit.
 const OTHER_UNIT: f64 = 100.0;
+
+/// Young's moduli of materials, Pa.
+const MODULI_PA: [f64; 2] = [1e3, 1e12];
+/// Smallest strain at failure.
+const LEAST_STRAIN: f64 = 1e-5;
 
 /// A specimen as measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredSpecimen {
     /// Name of its file.
     pub name: String,
+    /// Type of test.
+    pub test: TestType,
     /// Its own dimensions.
     pub specimen: Specimen,
     /// Distance of its crack from the middle, m. None: not known.
@@ -33,7 +39,8 @@ pub struct EvaluatedSpecimen {
     pub measured: MeasuredSpecimen,
     /// Regions of the curve.
     pub regions: Regions,
-    /// Young's modulus by the crosshead travel, Pa. None for a disc.
+    /// Young's modulus by the crosshead travel, Pa. None for a disc, and for a dog bone, whose wide
+    /// ends yield as well.
     pub young_modulus_pa: Option<f64>,
     /// Stress at the largest force, Pa.
     pub strength_pa: f64,
@@ -41,6 +48,15 @@ pub struct EvaluatedSpecimen {
     pub travel_at_failure_m: f64,
     /// Why it is left out, a sentence each. Empty: it is valid.
     pub doubts: Vec<String>,
+    /// What was assumed, and what sets it apart from others, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl EvaluatedSpecimen {
+    /// What was changed or assumed in reading and in evaluating it, a sentence each.
+    pub fn all_notes(&self) -> Vec<String> {
+        [self.measured.curve.notes.clone(), self.notes.clone()].concat()
+    }
 }
 
 /// Evaluates each specimen; those in doubt are named by their doubts.
@@ -58,7 +74,90 @@ pub fn evaluate(specimens: Vec<MeasuredSpecimen>) -> Vec<EvaluatedSpecimen> {
             ));
         }
     }
+    leave_out_copies(&mut evaluated);
+    name_outliers(&mut evaluated);
     evaluated
+}
+
+/// Leaves out specimens whose curve is that of another one before.
+fn leave_out_copies(evaluated: &mut [EvaluatedSpecimen]) {
+    for at in 1..evaluated.len() {
+        let (before, rest) = evaluated.split_at_mut(at);
+        let own = &rest[0].measured.curve;
+        let is_same = |other: &&EvaluatedSpecimen| {
+            let other = &other.measured.curve;
+            other.travel_m == own.travel_m && other.force_n == own.force_n
+        };
+        if let Some(other) = before.iter().find(is_same) {
+            let doubt = format!("it has the same rows as {}", other.measured.name);
+            rest[0].doubts.push(doubt);
+        }
+    }
+}
+
+/// Adds notes to valid specimens that differ from the others.
+fn name_outliers(evaluated: &mut [EvaluatedSpecimen]) {
+    let valid: Vec<usize> = (0..evaluated.len())
+        .filter(|at| evaluated[*at].doubts.is_empty())
+        .collect();
+    let strengths = valid.iter().map(|at| Some(evaluated[*at].strength_pa));
+    let moduli = valid.iter().map(|at| evaluated[*at].young_modulus_pa);
+    let quantities: [(&str, Option<Vec<f64>>); 2] = [
+        ("strength", strengths.collect()),
+        ("Young's modulus", moduli.collect()),
+    ];
+    for (what, values) in quantities {
+        let Some(values) = values else { continue };
+        for (at, specimen) in valid.iter().enumerate() {
+            evaluated[*specimen]
+                .notes
+                .extend(outlier(&values, at, what));
+        }
+    }
+}
+
+/// Numbers that no material has: a unit or a dimension is wrong.
+fn impossible(
+    measured: &MeasuredSpecimen,
+    modulus_pa: Option<f64>,
+    strength_pa: f64,
+    travel_at_failure_m: f64,
+) -> Vec<String> {
+    let check = "check the units of travel and force and the dimensions";
+    let mut found = Vec::new();
+    let (strain, most) = match measured.specimen {
+        Specimen::Bar { length_m, .. } => match measured.test {
+            TestType::Tension | TestType::DogBone => (travel_at_failure_m / length_m, 10.0),
+            _ => (travel_at_failure_m / length_m, 0.95),
+        },
+        Specimen::Beam(beam) => {
+            if beam.height_m > beam.span_m {
+                found.push(format!(
+                    "its height of {} m is more than its support span of {} m: {check}",
+                    beam.height_m, beam.span_m
+                ));
+            }
+            (
+                modulus_pa.map_or(f64::NAN, |modulus| strength_pa / modulus),
+                1.0,
+            )
+        }
+        Specimen::Disc { diameter_m, .. } => (travel_at_failure_m / diameter_m, 0.5),
+    };
+    if !(LEAST_STRAIN..=most).contains(&strain) {
+        found.push(format!(
+            "its strain at failure is {strain:.3e} (usual: {LEAST_STRAIN:e} to {most}), at a travel of {:.4} mm: {check}",
+            1e3 * travel_at_failure_m
+        ));
+    }
+    if let Some(modulus_pa) = modulus_pa
+        && !(MODULI_PA[0]..=MODULI_PA[1]).contains(&modulus_pa)
+    {
+        found.push(format!(
+            "its Young's modulus is {modulus_pa:.3e} Pa, not between 1 kPa and 1 TPa: {check}"
+        ));
+    }
+    found
 }
 
 fn evaluate_one(measured: MeasuredSpecimen) -> EvaluatedSpecimen {
@@ -99,10 +198,21 @@ fn evaluate_one(measured: MeasuredSpecimen) -> EvaluatedSpecimen {
             1e3 * within_m
         ));
     }
-    EvaluatedSpecimen {
-        young_modulus_pa: measured.specimen.modulus_pa(regions.stiffness_n_m),
-        strength_pa: measured.specimen.stress_pa(regions.largest_n),
+    let young_modulus_pa = (measured.specimen)
+        .modulus_pa(regions.stiffness_n_m)
+        .filter(|_| measured.test != TestType::DogBone);
+    let strength_pa = measured.specimen.stress_pa(regions.largest_n);
+    doubts.extend(impossible(
+        &measured,
+        young_modulus_pa,
+        strength_pa,
         travel_at_failure_m,
+    ));
+    EvaluatedSpecimen {
+        young_modulus_pa,
+        strength_pa,
+        travel_at_failure_m,
+        notes: regions.notes.clone(),
         regions,
         doubts,
         measured,

@@ -7,7 +7,8 @@ use dem_io::units::{AREA, LENGTH};
 use dem_io::{Diagnostic, Result};
 
 use crate::specimen::Dimensions;
-use crate::table::{TextTable, read_text, size_of};
+use crate::table::{TextTable, read_text};
+use crate::units::size_of;
 
 /// Column of the distance of a crack from the middle of its specimen.
 const CRACK: &str = "crack_offset";

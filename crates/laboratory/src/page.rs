@@ -69,7 +69,7 @@ pub fn page(
             .map(|doubt| format!("left out: {doubt}"))
             .collect();
         page.figure(&regions_plot(one).svg());
-        page.list(&[sentences, one.measured.curve.notes.clone()].concat());
+        page.list(&[sentences, one.all_notes()].concat());
     }
     page.html()
 }

@@ -4,6 +4,7 @@
 use std::ops::Range;
 
 use crate::curve::Curve;
+use crate::elastic::{ELASTIC, elastic_line, elastic_rows};
 use crate::fit::{Line, mean, median};
 
 /// Rows by which the part before contact is known, at least.
@@ -11,6 +12,13 @@ const FEWEST_BEFORE: usize = 8;
 /// Largest drift of the load cell up to the largest force, as a fraction of that: what rises faster
 /// is a specimen that is loaded already.
 const LARGEST_DRIFT: f64 = 0.05;
+/// Drift of the load cell up to the largest force, as a fraction of that, which is reported, and
+/// subtracted only if the unloaded cell behind the failure confirms it.
+const NAMED_DRIFT: f64 = 0.02;
+/// Largest difference of a confirmed drift from that before contact, as a fraction of it.
+const CONFIRMED: f64 = 0.25;
+/// Change of slope between 20 % and 60 % of the largest force which is reported.
+const CURVED: f64 = 0.05;
 /// Largest difference of the force behind the failure from the offset at which the load cell counts
 /// as unloaded, as a fraction of the entire rise.
 const UNLOADED: f64 = 0.02;
@@ -43,15 +51,19 @@ pub struct Regions {
     pub drift_n_m: f64,
     /// Standard deviation of the noise of the force, N.
     pub noise_n: f64,
-    /// Slope of the linear part, N/m.
+    /// Slope between 20 % and 60 % of the largest force, N/m.
     pub stiffness_n_m: f64,
-    /// Travel at which the fitted line has no force, m.
+    /// Travel at which the line fitted there has no force, m.
     pub start_m: f64,
+    /// Travel at which the line fitted to the linear part has no force, m.
+    pub linear_start_m: f64,
     /// Largest force, N: of a line fitted to the last rows before it, so that noise does not raise
     /// it.
     pub largest_n: f64,
     /// What speaks against the curve, a sentence each.
     pub doubts: Vec<String>,
+    /// What was assumed, a sentence each.
+    pub notes: Vec<String>,
 }
 
 impl Regions {
@@ -62,6 +74,8 @@ impl Regions {
         let rough_peak = largest(&curve.force_n);
         let baseline = Baseline::found(travel, &curve.force_n[..=rough_peak], noise_n)
             .through_tail(travel, &curve.force_n, rough_peak, noise_n);
+        let (baseline, drift) =
+            baseline.with_sure_drift(travel, &curve.force_n, rough_peak, noise_n);
         let corrected_n: Vec<f64> = travel
             .iter()
             .zip(&curve.force_n)
@@ -84,8 +98,13 @@ impl Regions {
             ));
         }
         doubts.extend(two_peaks(curve, &corrected_n, largest_n));
+        let rising = contact..peak + 1;
+        let (ways_m, loads_n) = (&travel[rising.clone()], &corrected_n[rising]);
+        let mut notes: Vec<String> = drift.into_iter().collect();
+        notes.extend(curved(ways_m, loads_n, largest_n));
         let fit = trimmed(&corrected_n, &linear);
-        let line = Line::fitted(&travel[fit.clone()], &corrected_n[fit]);
+        let of_linear = Line::fitted(&travel[fit.clone()], &corrected_n[fit]);
+        let line = elastic_line(ways_m, loads_n, largest_n).unwrap_or(of_linear);
         Self {
             contact,
             linear,
@@ -95,16 +114,18 @@ impl Regions {
             noise_n,
             stiffness_n_m: line.slope,
             start_m: line.zero(),
+            linear_start_m: of_linear.zero(),
             largest_n,
             corrected_n,
             doubts,
+            notes,
         }
     }
 
-    /// Travel from the first contact to where the fitted line has no force: what the seating of the
-    /// specimen adds to the travel, m.
+    /// Travel from the first contact to where the line of the linear part has no force: what the
+    /// seating of the specimen adds to the travel, m.
     pub fn seating_m(&self, curve: &Curve) -> f64 {
-        self.start_m - curve.travel_m[self.contact]
+        self.linear_start_m - curve.travel_m[self.contact]
     }
 
     /// Travel at the largest force, from where the fitted line has no force, m.
@@ -192,6 +213,64 @@ impl Baseline {
             ..self
         }
     }
+}
+
+impl Baseline {
+    /// The same with a drift that is small, or that the unloaded cell behind the failure confirms,
+    /// and a sentence on a larger one.
+    fn with_sure_drift(
+        self,
+        travel_m: &[f64],
+        force_n: &[f64],
+        peak: usize,
+        noise_n: f64,
+    ) -> (Self, Option<String>) {
+        let line = self.line;
+        let rise = force_n[peak] - line.at_x0;
+        let drift = line.slope * (travel_m[peak] - travel_m[0]) / rise;
+        if self.contact == 0 || drift.abs() <= NAMED_DRIFT {
+            return (self, None);
+        }
+        let percent = 100.0 * drift;
+        let from = peak + (force_n.len() - peak) / 2;
+        let rows = force_n.len() - from;
+        let tail = Line::fitted(&travel_m[from..], &force_n[from..]);
+        let (found, foreseen) = (tail.at_x0 - line.at_x0, line.at(tail.x0) - line.at_x0);
+        let error = line.slope_error * (tail.x0 - line.x0);
+        let is_confirmed = rows >= FEWEST_BEFORE
+            && (found - foreseen).abs() <= CONFIRMED * foreseen.abs() + 4.0 * error.abs()
+            && tail.residual <= 1.5 * noise_n.max(line.residual);
+        if is_confirmed {
+            let slope = found / (tail.x0 - line.x0);
+            let note = format!(
+                "the load cell drifts by {percent:.1} % of the largest force up to it, before contact as behind the failure: this is subtracted"
+            );
+            let line = Line { slope, ..line };
+            return (Self { line, ..self }, Some(note));
+        }
+        let note = format!(
+            "before contact the force rises as if the load cell drifted by {percent:.1} % of the largest force up to it, which no unloaded part behind the failure confirms: not subtracted"
+        );
+        let line = Line { slope: 0.0, ..line };
+        (Self { line, ..self }, Some(note))
+    }
+}
+
+/// Says where the slope changes within the part that gives the stiffness.
+fn curved(way_m: &[f64], force_n: &[f64], largest_n: f64) -> Option<String> {
+    let rows = elastic_rows(force_n, largest_n)?;
+    let change = if rows.len() < 12 {
+        0.0
+    } else {
+        slope_change(&way_m[rows.clone()], &force_n[rows])
+    };
+    (change > CURVED).then(|| {
+        let [low, high] = ELASTIC.map(|fraction| 100.0 * fraction);
+        format!(
+            "the slope changes by {:.0} % between {low:.0} % and {high:.0} % of the largest force, where the stiffness is taken",
+            100.0 * change
+        )
+    })
 }
 
 /// The line of an unloaded load cell: level, unless its drift stands out of the noise.

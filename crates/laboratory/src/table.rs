@@ -1,26 +1,18 @@
 //! The table of numbers in a file of a test rig: its rows, and what the lines above say of its
 //! columns.
 
+use std::ops::Range;
 use std::path::Path;
 
-use dem_io::units::{Dimension, FORCE, LENGTH, quantity};
 use dem_io::{Diagnostic, Result, read_input};
 
-use crate::numbers::{Notation, Separator};
+use crate::head::{Column, columns, has_units, head_cells, named};
+use crate::numbers::{Content, Notation, Separator};
 
 /// Lines above the numbers in which names and units of columns are looked for.
 const HEAD_LINES: usize = 4;
 /// Rows of numbers, one below the other, by which the table is known.
 const ROWS_OF_TABLE: usize = 3;
-
-/// A column of a table.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Column {
-    /// Its name, without the unit; empty: it has none.
-    pub name: String,
-    /// Its unit as written; empty: it has none.
-    pub unit: String,
-}
 
 /// Lines of cells.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,10 +22,12 @@ pub struct Table {
     /// Rows from the first to the last with numbers: number of the line, counted from 1, and its
     /// cells.
     rows: Vec<(usize, Vec<String>)>,
+    /// Rows before which the head of the table stands again.
+    pub(crate) repeated_heads: Vec<usize>,
     notation: Notation,
 }
 
-/// The text of a file: UTF-8, UTF-16 with its mark, or Latin-1.
+/// The text of a file: UTF-8, UTF-16, or Latin-1.
 ///
 /// # Errors
 /// No such file; it cannot be read; it is not text (all exit code 2).
@@ -50,18 +44,16 @@ pub fn read_text(path: &Path) -> Result<String> {
 
 /// The text that bytes stand for. None: they are not text.
 fn text_of(bytes: &[u8]) -> Option<String> {
-    let wide = |from: fn([u8; 2]) -> u16| {
-        let units: Vec<u16> = bytes[2..]
-            .as_chunks()
-            .0
-            .iter()
-            .map(|pair| from(*pair))
-            .collect();
+    let wide = |bytes: &[u8], from: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes.as_chunks().0.iter().map(|pair| from(*pair)).collect();
         String::from_utf16(&units).ok()
     };
     let text = match bytes {
-        [0xFF, 0xFE, ..] => wide(u16::from_le_bytes)?,
-        [0xFE, 0xFF, ..] => wide(u16::from_be_bytes)?,
+        [0xFF, 0xFE, rest @ ..] => wide(rest, u16::from_le_bytes)?,
+        [0xFE, 0xFF, rest @ ..] => wide(rest, u16::from_be_bytes)?,
+        // Without a mark: every other byte of plain letters and digits is 0.
+        _ if has_zeros(bytes, 1) => wide(bytes, u16::from_le_bytes)?,
+        _ if has_zeros(bytes, 0) => wide(bytes, u16::from_be_bytes)?,
         [0xEF, 0xBB, 0xBF, rest @ ..] => String::from_utf8(rest.to_vec()).ok()?,
         // The first 256 characters of Unicode are those of Latin-1.
         _ => String::from_utf8(bytes.to_vec())
@@ -69,6 +61,18 @@ fn text_of(bytes: &[u8]) -> Option<String> {
     };
     (!text.contains('\0')).then_some(text)
 }
+
+/// Whether most pairs of bytes are 0 at this place in them.
+fn has_zeros(bytes: &[u8], place: usize) -> bool {
+    let pairs = bytes.as_chunks::<2>().0;
+    let zeros = pairs
+        .iter()
+        .filter(|pair| pair[place] == 0 && pair[1 - place] != 0);
+    !pairs.is_empty() && 10 * zeros.count() > 9 * pairs.len()
+}
+
+/// A line of a file: its number, counted from 1, and its cells.
+type Cells<'a> = (usize, Vec<&'a str>);
 
 impl Table {
     /// The table in a text.
@@ -85,38 +89,41 @@ impl Table {
                 "export travel and force as columns, a row for each moment",
             )
         };
-        let notation = Notation::found_in(&contents).ok_or_else(none)?;
-        let rows: Vec<(usize, Vec<&str>)> = lines
+        let mut notation = Notation::found_in(&contents).ok_or_else(none)?;
+        let rows: Vec<Cells<'_>> = lines
             .iter()
             .map(|(number, line)| (*number, notation.cells(line)))
             .collect();
-        let is_row = |cells: &[&str]| notation.count_numbers(cells) >= 2;
-        let starts_table = |rows: &[(usize, Vec<&str>)]| {
-            let width = rows[0].1.len();
-            rows.iter()
-                .all(|(_, cells)| cells.len() == width && is_row(cells))
-        };
-        let first = rows
-            .windows(ROWS_OF_TABLE)
-            .position(starts_table)
-            .ok_or_else(none)?;
-        let first = with_damaged_rows(&rows, first, &notation);
-        let last = rows
-            .iter()
-            .rposition(|(_, cells)| is_row(cells))
-            .unwrap_or(first);
+        let found = table_rows(&rows, &notation).ok_or_else(none)?;
+        let first = found.start;
+        notation.is_shown = (rows[found.clone()].iter())
+            .any(|(_, cells)| cells.iter().any(|cell| notation.shows(cell)));
         let width = rows[first].1.len();
-        let head: Vec<Vec<String>> = lines[first.saturating_sub(HEAD_LINES)..first]
+        let filled = rows[first].1.iter().rposition(|cell| !cell.is_empty());
+        let empty = width - filled.map_or(0, |at| at + 1);
+        let head_lines = &lines[first.saturating_sub(HEAD_LINES)..first];
+        let head: Vec<Vec<String>> = head_lines
             .iter()
-            .filter_map(|(_, line)| head_cells(line, &notation, width))
+            .filter_map(|(_, line)| head_cells(line, &notation, width, empty))
             .collect();
+        refuse_decimal_commas_between_commas(head_lines, &rows[first], &notation)?;
+        let heads: Vec<String> = head_lines.iter().map(|(_, line)| skeleton(line)).collect();
         let owned = |cells: &Vec<&str>| cells.iter().map(|cell| (*cell).to_owned()).collect();
+        let mut kept: Vec<(usize, Vec<String>)> = Vec::new();
+        let mut repeated_heads = Vec::new();
+        for at in found {
+            let skeleton = skeleton(lines[at].1);
+            if skeleton.contains(char::is_alphabetic) && heads.contains(&skeleton) {
+                repeated_heads.push(kept.len());
+            } else {
+                kept.push((rows[at].0, owned(&rows[at].1)));
+            }
+        }
+        repeated_heads.dedup();
         Ok(Self {
             columns: columns(&head, width),
-            rows: rows[first..=last]
-                .iter()
-                .map(|(number, cells)| (*number, owned(cells)))
-                .collect(),
+            rows: kept,
+            repeated_heads,
             notation,
         })
     }
@@ -134,6 +141,9 @@ impl Table {
                 return Err(Diagnostic::input(format!("line {line}"), problem, remedy));
             }
             let cell = cells.get(column).map_or("", String::as_str);
+            if self.notation.content(cell) == Content::Unclear {
+                return Err(self.unclear(*line, cell, what));
+            }
             self.notation.number(cell).ok_or_else(|| {
                 let problem = match cell {
                     "" => format!("the {what} is missing"),
@@ -143,7 +153,46 @@ impl Table {
                 Diagnostic::input(format!("line {line}"), problem, remedy)
             })
         };
+        self.refuse_mixed(column, what)?;
         self.rows.iter().map(number).collect()
+    }
+
+    /// Refuses a column of whole numbers, the larger of which may have a sign between thousands:
+    /// `998`, `999`, `1.000`.
+    fn refuse_mixed(&self, column: usize, what: &str) -> Result<()> {
+        let notation = &self.notation;
+        let cells = || {
+            let rows = self.rows.iter();
+            rows.filter_map(|(line, cells)| Some((*line, cells.get(column)?.as_str())))
+        };
+        let has_sign = |cell: &str| cell.contains(notation.decimal);
+        let first = cells().find(|(_, cell)| notation.may_be_thousands(cell));
+        let is_other = |cell: &str| has_sign(cell) && !notation.may_be_thousands(cell);
+        let is_whole = |cell: &str| {
+            let value = notation.number(cell);
+            !has_sign(cell) && value.is_some_and(|value| value != 0.0 && value.abs() < 1e3)
+        };
+        match first {
+            Some((line, cell))
+                if !cells().any(|(_, cell)| is_other(cell))
+                    && cells().any(|(_, cell)| is_whole(cell)) =>
+            {
+                Err(self.unclear(line, cell, what))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn unclear(&self, line: usize, cell: &str, what: &str) -> Diagnostic {
+        let whole: String = cell.chars().filter(|c| !matches!(c, '.' | ',')).collect();
+        Diagnostic::input(
+            format!("line {line}"),
+            format!(
+                "the {what} is '{cell}', which may be {} or {whole}: the file does not show which sign is the decimal one",
+                cell.replace(',', ".")
+            ),
+            "export it without a sign between thousands",
+        )
     }
 
     /// Number of the line of a row, counted from 1.
@@ -188,7 +237,7 @@ impl TextTable {
             .into_iter()
             .find(|c| head.contains(*c));
         let separator = separator.map_or(Separator::Space, Separator::Character);
-        let of = |decimal: char| Notation { separator, decimal };
+        let of = |decimal: char| Notation::of(separator, decimal);
         // Both signs occur in names of files: numbers decide.
         let numbers = |notation: &Notation| -> usize {
             let lines = rest.iter();
@@ -256,127 +305,96 @@ fn numbered(text: &str) -> Vec<(usize, &str)> {
         .collect()
 }
 
+/// The rows of the table: the longest run of rows of numbers, with those before and behind it that
+/// belong to it. None: there is none of [`ROWS_OF_TABLE`].
+fn table_rows(rows: &[Cells<'_>], notation: &Notation) -> Option<Range<usize>> {
+    let is_row = |cells: &[&str]| notation.count_numbers(cells) >= 2;
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (at, (_, cells)) in rows.iter().enumerate() {
+        match runs.last_mut() {
+            Some(run)
+                if run.end == at && is_row(cells) && rows[run.start].1.len() == cells.len() =>
+            {
+                run.end = at + 1;
+            }
+            _ if is_row(cells) => runs.push(at..at + 1),
+            _ => {}
+        }
+    }
+    runs.retain(|run| run.len() >= ROWS_OF_TABLE);
+    let longest = (0..runs.len()).rev().max_by_key(|at| runs[*at].len())?;
+    // Another table has another head; damaged rows and the same head again belong to this one.
+    let head_of = |first: usize| {
+        let above = first.checked_sub(1).map(|at| &rows[at].1);
+        above.filter(|cells| notation.count_numbers(cells) == 0 && has_units(cells))
+    };
+    let belong = |one: &Range<usize>, next: &Range<usize>| {
+        let head = head_of(next.start);
+        let width = |run: &Range<usize>| rows[run.start].1.len();
+        width(one) == width(next) && (head.is_none() || head == head_of(one.start))
+    };
+    let mut first = longest;
+    while first > 0 && belong(&runs[first - 1], &runs[first]) {
+        first -= 1;
+    }
+    let mut last = longest;
+    while last + 1 < runs.len() && belong(&runs[last], &runs[last + 1]) {
+        last += 1;
+    }
+    let end = runs[last].end;
+    // Behind it, single rows follow a damaged one, up to the head of another table.
+    let other = (end..rows.len()).find(|at| head_of(at + 1).is_some());
+    let behind = &rows[end..other.unwrap_or(rows.len())];
+    let more = behind.iter().rposition(|(_, cells)| is_row(cells));
+    let start = with_damaged_rows(rows, runs[first].start, notation);
+    Some(start..end + more.map_or(0, |at| at + 1))
+}
+
+/// A line without its digits and the signs in numbers, by which a head is known again.
+fn skeleton(line: &str) -> String {
+    let is_part = |c: &char| !c.is_ascii_digit() && !matches!(c, '.' | ',' | ' ');
+    line.chars().filter(is_part).collect()
+}
+
+/// Refuses rows in which commas are decimal signs and stand between cells, too.
+fn refuse_decimal_commas_between_commas(
+    head: &[(usize, &str)],
+    (line, cells): &Cells<'_>,
+    notation: &Notation,
+) -> Result<()> {
+    let whole = cells.iter().all(|cell| !cell.contains('.'));
+    if notation.separator != Separator::Character(',') || !whole {
+        return Ok(());
+    }
+    let names = head.iter().rev().find_map(|(_, text)| {
+        let names = notation.cells(text);
+        (names.len() >= 2 && has_units(&names)).then_some(names.len())
+    });
+    let Some(names) = names.filter(|names| cells.len() > *names && cells.len() <= 2 * names) else {
+        return Ok(());
+    };
+    Err(Diagnostic::input(
+        format!("line {line}"),
+        format!(
+            "has {} cells below a head of {names}: commas stand in numbers and between them",
+            cells.len()
+        ),
+        "export it with semicolons or tabs, or with a decimal point",
+    ))
+}
+
 /// The first row of a table whose first good row is `first`: damaged ones between the line with the
 /// units and that row belong to the table, so that they are refused and not taken for a head.
-fn with_damaged_rows(rows: &[(usize, Vec<&str>)], first: usize, notation: &Notation) -> usize {
+fn with_damaged_rows(rows: &[Cells<'_>], first: usize, notation: &Notation) -> usize {
     let width = rows[first].1.len();
     let above = rows[..first].iter().rev();
     let damaged = above
         .take_while(|(_, cells)| cells.len() == width && notation.count_numbers(cells) > 0)
         .count();
     let head = (first - damaged).checked_sub(1).map(|at| &rows[at].1);
-    let has_units = |cells: &Vec<&str>| {
-        cells
-            .iter()
-            .any(|cell| is_unit(bare(cell)) || !named(cell).unit.is_empty())
-    };
-    if head.is_some_and(has_units) {
+    if head.is_some_and(|cells| has_units(cells)) {
         first - damaged
     } else {
         first
     }
-}
-
-/// The cells of a line above the numbers. None: it has other columns than the numbers.
-fn head_cells(line: &str, notation: &Notation, width: usize) -> Option<Vec<String>> {
-    let line = line.trim_start_matches(['#', '%']);
-    let owned = |cells: Vec<&str>| {
-        cells
-            .into_iter()
-            .map(str::to_owned)
-            .collect::<Vec<String>>()
-    };
-    if notation.separator != Separator::Space {
-        let cells = owned(notation.cells(line));
-        return (cells.len() == width).then_some(cells);
-    }
-    // Names may have spaces in them: "Travel [mm]   Force [N]", "Travel [mm] Force [N]".
-    let words = notation.cells(line);
-    let wide: Vec<&str> = line
-        .split(['\t'])
-        .flat_map(|part| part.split("  "))
-        .collect();
-    let wide: Vec<&str> = wide
-        .into_iter()
-        .map(str::trim)
-        .filter(|cell| !cell.is_empty())
-        .collect();
-    let pairs: Vec<String> = words.chunks(2).map(|pair| pair.join(" ")).collect();
-    [owned(wide), owned(words), pairs]
-        .into_iter()
-        .find(|cells| cells.len() == width)
-}
-
-/// Names and units of the columns from the lines above the numbers, the nearest last.
-fn columns(head: &[Vec<String>], width: usize) -> Vec<Column> {
-    let mut lines = head.iter().rev();
-    let mut nearest = lines.next();
-    let mut units = None;
-    let is_empty_or_unit = |cell: &String| cell.is_empty() || is_unit(bare(cell));
-    if nearest.is_some_and(|cells| cells.iter().all(is_empty_or_unit)) {
-        units = nearest;
-        nearest = lines.next();
-    }
-    let column = |at: usize| {
-        let cell = nearest.and_then(|cells| cells.get(at));
-        let mut column = named(cell.map_or("", String::as_str));
-        if let Some(unit) = units.and_then(|cells| cells.get(at)) {
-            bare(unit).clone_into(&mut column.unit);
-        }
-        column
-    };
-    (0..width).map(column).collect()
-}
-
-/// A unit without the brackets around it.
-fn bare(cell: &str) -> &str {
-    cell.trim_matches(['[', ']', '(', ')', '<', '>']).trim()
-}
-
-/// Whether a text is a unit of anything that a test rig measures.
-fn is_unit(text: &str) -> bool {
-    size_of(text, &LENGTH).is_some()
-        || size_of(text, &FORCE).is_some()
-        || matches!(
-            text,
-            "s" | "ms" | "min" | "%" | "-" | "MPa" | "kPa" | "Pa" | "N/mm2" | "N/mm²" | "mm/min"
-        )
-}
-
-/// Size of a unit of a dimension in its SI unit. None: it is not a unit of it.
-pub(crate) fn size_of(unit: &str, dimension: &Dimension) -> Option<f64> {
-    let is_word = unit.starts_with(|c: char| c.is_alphabetic());
-    is_word
-        .then(|| quantity(&format!("1 {unit}"), dimension).ok())
-        .flatten()
-}
-
-/// Name and unit from the head of a column: "Force [N]", "Force (N)", "Force / N", "Force in N",
-/// "force_n".
-fn named(cell: &str) -> Column {
-    let of = |name: &str, unit: &str| Column {
-        name: name.trim().to_owned(),
-        unit: unit.trim().to_owned(),
-    };
-    for (open, close) in [('[', ']'), ('(', ')'), ('<', '>')] {
-        if let Some((name, rest)) = cell.split_once(open)
-            && let Some((unit, _)) = rest.split_once(close)
-        {
-            return of(name, unit);
-        }
-    }
-    for between in ["/", " in ", ",", " "] {
-        if let Some((name, unit)) = cell.rsplit_once(between)
-            && is_unit(unit.trim())
-        {
-            return of(name, unit);
-        }
-    }
-    if let Some((name, unit)) = cell.rsplit_once('_') {
-        let known = ["m", "mm", "um", "N", "kN", "MN"];
-        if let Some(unit) = known.iter().find(|known| known.eq_ignore_ascii_case(unit)) {
-            return of(name, unit);
-        }
-    }
-    of(cell, "")
 }

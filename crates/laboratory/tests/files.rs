@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use dem_laboratory::{ColumnChoice, Curve, Table, TestType, evaluate};
+use dem_laboratory::{ColumnChoice, Curve, Dimensions, Table, TestType, evaluate};
 
 use dem_testing::made_test::{Made, USUAL};
 
@@ -63,7 +63,10 @@ fn files_of_many_kinds_give_the_same_curve() {
         file("Weg (mm);Kraft (N)\r\n", |x, f| {
             format!("{:.5};{:.5}\r", -x, -f)
         }),
-    ] {
+    ]
+    .into_iter()
+    .chain(of_other_countries())
+    {
         let found = read(&text).unwrap_or_else(|error| panic!("{error}\n{}", &text[..200]));
         assert_eq!(found.travel_m.len(), wanted.travel_m.len());
         for (a, b) in found.travel_m.iter().zip(&wanted.travel_m) {
@@ -72,6 +75,147 @@ fn files_of_many_kinds_give_the_same_curve() {
         for (a, b) in found.force_n.iter().zip(&wanted.force_n) {
             assert!((a - b).abs() < 6e-6, "{a} {b}");
         }
+    }
+}
+
+/// A number with signs between thousands and this decimal sign.
+fn grouped(value: f64, decimals: usize, between: char, decimal: char) -> String {
+    let text = format!("{:.decimals$}", value.abs());
+    let (whole, fraction) = text.split_once('.').unwrap_or((&text, ""));
+    let digits: Vec<char> = whole.chars().collect();
+    let groups: Vec<String> = digits
+        .rchunks(3)
+        .rev()
+        .map(|group| group.iter().collect())
+        .collect();
+    let sign = if value < 0.0 { "-" } else { "" };
+    let whole = groups.join(&between.to_string());
+    if fraction.is_empty() {
+        format!("{sign}{whole}")
+    } else {
+        format!("{sign}{whole}{decimal}{fraction}")
+    }
+}
+
+/// The same curve with the units, thousands, quotes and heads of other machines.
+fn of_other_countries() -> Vec<String> {
+    const POUND: f64 = 4.448_221_615_260_5;
+    let mut made = vec![
+        // An unknown unit in the row of units.
+        file(
+            "Time,Displacement,Force,Temperature\nSec,mm,N,quux\n",
+            |x, f| format!("1.5,{x:.5},{f:.5},23.1"),
+        ),
+        file(
+            "\"1_1\"\n\"Time\",\"Force\",\"Stroke\",\"Chamber\"\n\"sec\",\"N\",\"mm\",\"°C\"\n",
+            |x, f| format!("1.5,{f:.5},{x:.5},23.1"),
+        ),
+        file("TIME (SEC),STROKE (MM),LOAD (KN)\n", |x, f| {
+            format!("1.5,{x:.5},{:.8}", 1e-3 * f)
+        }),
+        file("Time (Sec),Crosshead (inch),Load (kip)\n", |x, f| {
+            format!("1.5,{:.9},{:.12}", x / 25.4, 1e-3 * f / POUND)
+        }),
+        file("\"Crosshead (\"\")\"\t\"Load (lbf)\"\n", |x, f| {
+            format!("\"{:.9}\"\t\"{:.9}\"", x / 25.4, f / POUND)
+        }),
+        file("Extension [mil];Load [kgf]\n", |x, f| {
+            format!("{:.6};{:.9}", x / 0.0254, f / 9.806_65)
+        }),
+        // Commas between cells and in quoted numbers.
+        file("Zeit,Verschiebung,Kraft\n(s),(mm),(N)\n", |x, f| {
+            format!("\"1,5\",\"{}\",\"{}\"", comma(x), comma(f))
+        }),
+        // Both pages of a report: a table of results with a head of its own stands above.
+        file(
+            "Results\n,Maximum\n,(N)\n1,50\n2,51\n3,52\n4,53\n\nExtension,Load\n(mm),(N)\n",
+            |x, f| format!("{x:.5},{f:.5}"),
+        ),
+        // The same travel twice, the second counted from elsewhere.
+        file("Standardweg (mm);Kraft (N);Traverse (mm)\n", |x, f| {
+            format!("{x:.5};{f:.5};{:.5}", 151.2 - x)
+        }),
+    ];
+    for (between, decimal, separator) in [
+        (',', '.', ','),
+        ('.', ',', ';'),
+        ('\'', '.', ';'),
+        ('\u{202f}', ',', ';'),
+        ('\u{a0}', ',', '\t'),
+    ] {
+        let head = format!("Extension (um){separator}Load (mN)\n");
+        made.push(file(&head, |x, f| {
+            let [x, f] = [(1e3 * x, 2), (1e3 * f, 2)]
+                .map(|(value, decimals)| grouped(value, decimals, between, decimal));
+            format!("\"{x}\"{separator}\"{f}\"")
+        }));
+    }
+    // A head that stands again, as a rig writes it that records in blocks.
+    let whole = file("", |x, f| format!("{x:.5}\t{f:.5}"));
+    let lines: Vec<&str> = whole.lines().collect();
+    let block = |(at, rows): (usize, &[&str])| {
+        format!(
+            "Timed\t{}\tSec\nTravel\tForce\nmm\tN\n{}\n",
+            30 * at,
+            rows.join("\n")
+        )
+    };
+    made.push(lines.chunks(500).enumerate().map(block).collect());
+    // UTF-16 without a mark is read as bytes below.
+    made
+}
+
+/// Bytes of UTF-16, with and without its mark, give the text.
+#[test]
+fn wide_characters_are_read_without_their_mark() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = file("Time;Weg;Kraft\nsec;mm;N\n", |x, f| {
+        format!("1,5;{};{}", comma(x), comma(f))
+    });
+    for mark in ["", "\u{feff}"] {
+        for order in [u16::to_le_bytes, u16::to_be_bytes] {
+            let marked = format!("{mark}{text}");
+            let bytes: Vec<u8> = marked.encode_utf16().flat_map(order).collect();
+            let path = folder.path().join("curve.txt");
+            std::fs::write(&path, bytes).unwrap();
+            let found = dem_laboratory::read_text(&path).unwrap();
+            assert!(found.trim_start_matches('\u{feff}') == text);
+        }
+    }
+}
+
+/// The crosshead that drives back behind the failure is cut off; a second loading is not.
+#[test]
+fn a_crosshead_that_drives_back_is_cut_off() {
+    let head = "travel (mm),force (N)\n";
+    let good = file(head, |x, f| format!("{x:.5},{f:.5}"));
+    let last_mm = 1e3 * curve(&USUAL).travel_m[1199];
+    for beyond in [0.9, 3.0] {
+        let back = |row: usize| {
+            format!(
+                "{:.5},2.1\n",
+                last_mm * (1.0 - beyond * f64::from(row as u32) / 50.0)
+            )
+        };
+        let back: String = (1..=50).map(back).collect();
+        let found = read(&(good.clone() + &back)).unwrap();
+        assert_eq!(found.travel_m, read(&good).unwrap().travel_m);
+        assert_eq!(
+            found.notes,
+            ["behind the failure the crosshead drives back from line 1202 on: 50 rows are cut off"]
+        );
+    }
+    // Not where it drives back under load, or where a test follows that is half as strong.
+    let rows: Vec<&str> = good.lines().skip(1).collect();
+    let unloaded: String = rows[..700]
+        .iter()
+        .chain(rows[..700].iter().rev())
+        .map(|row| format!("{row}\n"))
+        .collect();
+    let weak = file("", |x, f| format!("{x:.5},{:.5}", 0.4 * f));
+    for other in [head.to_owned() + &unloaded, good + &weak] {
+        let refused = read(&other).expect_err("refused").to_string();
+        assert!(refused.contains("the travel goes back from"), "{refused}");
     }
 }
 
@@ -150,11 +294,11 @@ fn damaged_files_have_one_clear_message() {
         ),
         (
             good.replace(" (N)", " (kg)"),
-            "the unit of the force is 'kg', which is unknown; add --force-unit with one of",
+            "the unit of the force is 'kg', which is unknown; add --force-unit kgf if the weight of kilograms is meant",
         ),
         (
-            good.replace("travel (mm)", "travel (inch)"),
-            "the unit of the travel is 'inch', which is unknown; add --travel-unit with one of",
+            good.replace("travel (mm)", "travel (cubit)"),
+            "the unit of the travel is 'cubit', which is unknown; add --travel-unit with one of",
         ),
         (
             good.replace(head, ""),
@@ -163,6 +307,32 @@ fn damaged_files_have_one_clear_message() {
         (
             good.replace("travel", "strain").replace("(mm)", "(%)"),
             "no column is known as the travel: 1 'strain [%]', 2 'force [N]'; name one by --travel-column NAME or its number",
+        ),
+        (
+            file("Extension (um),Load (N)\n", |x, f| {
+                let whole = |value: f64| grouped(value.max(0.0).round(), 0, ',', '.');
+                format!("\"{}\",\"{}\"", whole(1e3 * x), whole(f))
+            }),
+            "line 246: the travel is '1,001', which may be 1.001 or 1001: the file does not show which sign is the decimal one; export it without a sign between thousands",
+        ),
+        (
+            file("Weg (mm),Kraft (N)\n", |x, f| {
+                format!("{},{}", comma(x), comma(f))
+            }),
+            "line 2: has 4 cells below a head of 2: commas stand in numbers and between them; export it with semicolons or tabs, or with a decimal point",
+        ),
+        (
+            good.clone() + "\n" + &good,
+            "line 1204: another test begins: its travel starts again at 0.0000 mm",
+        ),
+        (
+            good.replace("travel (mm)", "strain (%)")
+                .replace("force (N)", "stress (MPa)"),
+            "no column is known as the travel: 1 'strain [%]', 2 'stress [MPa]'; export travel and force instead of strain and stress",
+        ),
+        (
+            changed(400, "1.2,1e300"),
+            "line 400: the force is 1e300 N, more than any test rig has (1e9); check the number and its unit",
         ),
         (
             file("travel (mm),force (N),load (kN)\n", |x, f| {
@@ -216,23 +386,136 @@ fn doubtful_specimens_are_named() {
     assert!(bent.starts_with("it has no linear part"), "{bent}");
 }
 
+/// Numbers that no material has are a wrong unit or dimension.
+#[test]
+fn impossible_specimens_are_left_out() {
+    let doubts_with = |travel: f64, force: f64, height_m: f64| {
+        let mut one = specimen("a", &USUAL);
+        let size = Dimensions {
+            height_m: Some(height_m),
+            ..dimensions()
+        };
+        one.specimen = dem_laboratory::Specimen::new(TestType::FourPointBending, &size).unwrap();
+        one.curve.travel_m.iter_mut().for_each(|x| *x *= travel);
+        one.curve.force_n.iter_mut().for_each(|f| *f *= force);
+        evaluate(vec![one])[0].doubts.join("; ")
+    };
+    assert_eq!(doubts_with(1.0, 1.0, 0.035), "");
+    for (travel, force, height_m, wanted) in [
+        (1e3, 1.0, 0.035, "its strain at failure is"),
+        (1e-4, 1.0, 0.035, "its strain at failure is"),
+        (
+            1.0,
+            1.0,
+            35.0,
+            "its height of 35 m is more than its support span of 0.18 m",
+        ),
+        (1.0, 1e6, 0.035, "not between 1 kPa and 1 TPa"),
+        (1.0, 1e-5, 0.035, "not between 1 kPa and 1 TPa"),
+    ] {
+        let found = doubts_with(travel, force, height_m);
+        assert!(
+            found.contains(wanted),
+            "{travel} {force} {height_m}: {found}"
+        );
+        assert!(found.contains("check the units"), "{found}");
+    }
+}
+
+/// A specimen 43 % weaker than the others is named; usual scatter is not.
+#[test]
+fn outliers_are_named() {
+    let notes = |factors: &[f64]| {
+        let specimens = factors.iter().enumerate().map(|(at, factor)| {
+            let made = Made {
+                failure_n: factor * USUAL.failure_n,
+                seed: at as u64,
+                ..USUAL
+            };
+            specimen("a", &made)
+        });
+        let found = evaluate(specimens.collect());
+        found
+            .iter()
+            .map(|one| one.notes.join("; "))
+            .collect::<Vec<String>>()
+    };
+    for factors in [
+        vec![1.0, 1.02, 0.57],
+        vec![1.0, 0.98, 1.01, 0.57],
+        vec![1.0, 1.04, 0.97, 1.01, 0.99, 0.57],
+    ] {
+        let found = notes(&factors);
+        let (last, others) = found.split_last().unwrap();
+        assert!(
+            last.contains("% below the mean of the others, an outlier"),
+            "{found:?}"
+        );
+        assert!(others.iter().all(String::is_empty), "{found:?}");
+    }
+    assert!(notes(&[1.0, 0.9, 1.12, 0.95, 1.05]).concat().is_empty());
+    assert!(notes(&[1.0, 0.57])[1].contains("43 % below that of the other specimen"));
+}
+
+/// A large drift is subtracted and named where the unloaded cell behind the failure confirms it,
+/// and named without being subtracted where nothing does.
+#[test]
+fn a_large_drift_needs_an_unloaded_tail() {
+    // 3.4 % of the largest force up to it.
+    let made = Made {
+        drift_n: 2.0,
+        before_m: 1.2e-3,
+        noise_n: 0.05,
+        ..USUAL
+    };
+    let found = |made: &Made| {
+        let one = evaluate(vec![specimen("a", made)]).remove(0);
+        (
+            one.young_modulus_pa.unwrap(),
+            one.notes.join("; "),
+            one.doubts,
+        )
+    };
+    let (without, none, _) = found(&Made {
+        drift_n: 0.0,
+        ..made
+    });
+    assert_eq!(none, "");
+    let (confirmed, said, doubts) = found(&made);
+    assert!(said.starts_with("the load cell drifts by"), "{said}");
+    assert!(doubts.is_empty(), "{doubts:?}");
+    assert!((confirmed / without - 1.0).abs() < 5e-3);
+    let (not, said, _) = found(&Made { tail: 0.3, ..made });
+    assert!(said.contains("not subtracted"), "{said}");
+    let rise = 2.0 / 4e-3 / USUAL.stiffness_n_m;
+    assert!(
+        (not / without - 1.0 - rise).abs() < 0.02,
+        "{not} {without} {rise}"
+    );
+}
+
 #[test]
 fn two_peaks_cracks_outside_and_other_units_are_named() {
-    let mut slipped = specimen("slipped", &USUAL);
+    let other = |name: &str, seed: u64| specimen(name, &Made { seed, ..USUAL });
+    let mut slipped = other("slipped", 4);
     for (at, force) in slipped.curve.force_n.iter_mut().enumerate() {
         if (600..660).contains(&at) {
             *force *= 0.5;
         }
     }
-    let mut outside = specimen("outside", &USUAL);
+    let mut outside = other("outside", 5);
     outside.crack_m = Some(-0.05);
-    let mut kilo = specimen("kilo", &USUAL);
+    let mut kilo = other("kilo", 6);
     kilo.curve
         .force_n
         .iter_mut()
         .for_each(|force| *force *= 1e-3);
-    let good = ["a", "b", "c"].map(|name| specimen(name, &USUAL));
-    let all = good.into_iter().chain([slipped, outside, kilo]).collect();
+    let good = [("a", 1), ("b", 2), ("c", 3)].map(|(name, seed)| other(name, seed));
+    let copy = other("copy", 2);
+    let all = good
+        .into_iter()
+        .chain([slipped, outside, kilo, copy])
+        .collect();
     let found = evaluate(all);
     let doubts: Vec<&str> = found
         .iter()
@@ -251,7 +534,8 @@ fn two_peaks_cracks_outside_and_other_units_are_named() {
         doubts[2].contains("one of them is in another unit"),
         "{doubts:?}"
     );
-    assert_eq!(doubts.len(), 3, "{doubts:?}");
+    assert_eq!(doubts[3], "it has the same rows as b");
+    assert_eq!(doubts.len(), 4, "{doubts:?}");
 }
 
 #[test]

@@ -26,6 +26,7 @@ pub(crate) fn dimensions() -> Dimensions {
 pub(crate) fn specimen(name: &str, made: &Made) -> MeasuredSpecimen {
     MeasuredSpecimen {
         name: name.to_owned(),
+        test: TestType::FourPointBending,
         specimen: Specimen::new(TestType::FourPointBending, &dimensions()).unwrap(),
         crack_m: None,
         curve: curve(made),

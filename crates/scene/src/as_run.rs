@@ -55,6 +55,16 @@ fn set_paths(root: &mut Entries, scene: &Scene, to: &Path) {
     }
     let measured = scene.test.as_ref().and_then(|test| test.measured.as_ref());
     if let (Some(measured), Some(test)) = (measured, table(root, "test")) {
+        let is_option = |node: &Node| matches!(node.origin, Origin::Option(_));
+        if (test.iter()).any(|(name, node)| name == "measured" && is_option(node)) {
+            // Its numbers stand above those of the scene.
+            let has_modulus = measured.material.young_modulus_pa.is_some();
+            test.retain(|(name, node)| match name.as_str() {
+                "young_modulus" => is_option(node) || !has_modulus,
+                "strength" => is_option(node),
+                _ => true,
+            });
+        }
         set_path(test, "measured", &measured.file, to);
     }
 }

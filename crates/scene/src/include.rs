@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::field::Field;
+use super::merge::take;
 use super::paths::{named_path, text_of};
 use super::root::SCENE;
 use super::table::Table;
@@ -62,8 +63,8 @@ pub(super) fn folder_of(source: &str) -> &Path {
     Path::new(source).parent().unwrap_or(Path::new(""))
 }
 
-/// Adds the tables of the included files. A table that is there already is replaced by one of a
-/// file that `--set` names, and refused otherwise.
+/// Adds the tables of the included files. Of a file that `--set` names, the keys stand above those
+/// of a table that is there already, which a note reports; otherwise such a table is refused.
 fn include(document: &mut Document, folder: &Path) -> Result<Vec<PathBuf>> {
     let Some(field) = Table::root(document, &SCENE)?.get(INCLUDE) else {
         return Ok(Vec::new());
@@ -110,6 +111,12 @@ fn merge(document: &mut Document, table: &str, node: Node, replaces: bool) -> Re
         return Err(Diagnostic::input(place, problem, "write [materials.NAME]"));
     };
     let mut taken: Vec<(String, Node)> = Vec::new();
+    let file = match origin {
+        Origin::Included(file, _) => document.included.get(file).cloned(),
+        _ => None,
+    };
+    let file = format!("--material {}", file.unwrap_or_default());
+    let mut notes: Vec<String> = Vec::new();
     let Value::Table(root) = &mut document.root.value else {
         return Ok(());
     };
@@ -126,22 +133,27 @@ fn merge(document: &mut Document, table: &str, node: Node, replaces: bool) -> Re
     if let Value::Table(own) = &mut own.value {
         for (name, node) in added {
             match own.iter_mut().find(|(other, _)| *other == name) {
+                Some((_, old)) if replaces => {
+                    let path = format!("{table}.{}", key(&name));
+                    notes.extend(take(old, node, &path, &file));
+                }
                 Some((_, old)) => taken.push((name, std::mem::replace(old, node))),
                 None => own.push((name, node)),
             }
         }
     }
+    document.notes.append(&mut notes);
     match taken.first() {
-        Some((name, old)) if !replaces => {
+        Some((name, old)) => {
             let problem = format!("{place} has [{table}.{name}] as well");
-            let remedy = "remove or rename one; dem-run --material replaces tables of a scene";
+            let remedy = "remove or rename one; dem-run --material puts the keys of a file above those of a scene";
             Err(Diagnostic::input(
                 document.place(old.origin),
                 problem,
                 remedy,
             ))
         }
-        _ => Ok(()),
+        None => Ok(()),
     }
 }
 
@@ -212,7 +224,7 @@ pub fn set_text(path: &str, value: f64, unit: &str) -> String {
     }
 }
 
-/// The `--set` value that includes these files as well, and replaces tables by theirs.
+/// The `--set` value that includes these files as well, their keys above those of the scene.
 pub fn include_text(files: &[String]) -> String {
     let names: Vec<String> = files.iter().map(|name| quoted(name)).collect();
     format!("{INCLUDE_TOO}=[{}]", names.join(", "))

@@ -30,6 +30,7 @@ mod listing;
 mod load;
 mod material;
 mod measure;
+mod merge;
 mod names;
 mod numbers;
 mod outlet;

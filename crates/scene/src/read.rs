@@ -104,9 +104,14 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     if run.steps_by_body {
         steps_by_body::refuse_others(&root, &run)?;
     }
+    let mut notes = document.notes.clone();
+    if let Some(field) = root.get("test") {
+        notes.extend(test::conflicts(&field, test.as_ref())?);
+    }
     Ok(Scene {
         source: source.to_owned(),
         included,
+        notes,
         run,
         materials,
         bonds,

@@ -40,6 +40,9 @@ pub struct Scene {
     pub source: String,
     /// `include`: files that its materials, contacts and bonds also come from.
     pub included: Vec<PathBuf>,
+    /// What files of materials and of measured curves change that the scene has otherwise, a
+    /// sentence each.
+    pub notes: Vec<String>,
     /// `[run]`
     pub run: Run,
     /// `[materials.NAME]`
@@ -101,7 +104,7 @@ pub(super) static SCENE: Schema = Schema {
         Key::new(
             "include",
             Kind::List(&Kind::Text("a file of materials, contacts and bonds")),
-            "Files with further `[materials]`, `[contacts]` and `[bonds]`, relative to the folder of the scene. `--material` adds a file, whose tables replace those of the same names.",
+            "Files with further `[materials]`, `[contacts]` and `[bonds]`, relative to the folder of the scene. `--material` adds a file, whose keys stand above those of tables of the same names.",
         ),
         Key::table("run", &run::RUN, run::RUN.doc).required("{ end_time = \"1 s\" }"),
         named(

@@ -46,6 +46,8 @@ pub(super) struct Document {
     pub(super) options: Vec<String>,
     /// Names of the included files.
     pub(super) included: Vec<String>,
+    /// What was changed that the text has otherwise, a sentence each.
+    pub(super) notes: Vec<String>,
     /// The root table.
     pub(super) root: Node,
 }
@@ -63,6 +65,7 @@ impl Document {
             name: name.to_owned(),
             options: Vec::new(),
             included: Vec::new(),
+            notes: Vec::new(),
             root: Node {
                 origin: Origin::Line(1),
                 value: Value::Table(parse_tables(name, text, &Origin::Line)?),

@@ -21,6 +21,8 @@ mod quality;
 mod questions;
 mod rules;
 mod stages;
+mod test_rig;
+mod test_section;
 pub mod test_setup;
 pub mod time_step;
 mod unfinished;
@@ -157,7 +159,8 @@ pub fn plan(
     state.supports = supports(scene, &groups)?;
     start(scene, &groups, &bodies, &mut state)?;
     state.loads = loads(scene, &groups, &state.supports)?;
-    let mut notes = masses::notes(scene, &masses);
+    let mut notes = scene.notes.clone();
+    notes.extend(masses::notes(scene, &masses));
     state.model.rules = rules(scene, &templates, &about)?;
     state.population.inlets = vec![InletProgress::default(); state.model.rules.inlets.len()];
     state.population.by_daughters = vec![0; templates.len()];
@@ -206,6 +209,10 @@ pub fn plan(
         setup(scene, test, &state, particles, &halves, tested_m3)
     });
     let test = test.transpose()?;
+    if let Some(setup) = &test {
+        notes.extend(setup.notes.iter().cloned());
+        warnings.extend(setup.warnings.iter().cloned());
+    }
     Ok(Plan {
         state,
         bodies,
@@ -362,6 +369,15 @@ fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> 
             2.0 * radii_m.iter().map(|radius| radius.powi(4)).sum::<f64>() / cubes
         }
     };
+    let fine_fraction = |name: &String| {
+        let volume = |largest_m: f64| -> f64 {
+            let fine = radii_m(name)
+                .iter()
+                .filter(|radius| 2.0 * **radius < largest_m);
+            fine.map(|radius| radius.powi(3)).sum()
+        };
+        volume(0.1 * sieve_m(name)) / volume(f64::INFINITY).max(f64::MIN_POSITIVE)
+    };
     (scene.bodies.iter())
         .map(|(name, body)| NamedBody {
             name: name.clone(),
@@ -369,6 +385,7 @@ fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> 
             sieve_m: sieve_m(name),
             smallest_diameter_m: smallest_diameter_m(name),
             mean_diameter_m: mean_diameter_m(name),
+            fine_fraction: fine_fraction(name),
         })
         .collect()
 }

@@ -2,4 +2,5 @@
 
 mod evaluation;
 mod pictures;
+mod section;
 mod theory;

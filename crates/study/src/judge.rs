@@ -190,7 +190,7 @@ pub(crate) fn in_words(study: &Study, measure: usize) -> Option<String> {
     Some(match (&measure.of, &measure.reference) {
         (_, Reference::None) => return None,
         (MeasureOf::Balance(_), _) => "an error by itself".to_owned(),
-        (MeasureOf::Figure(_), Reference::ClosedForm) => "the theory of the test".to_owned(),
+        (MeasureOf::Figure(_), Reference::ClosedForm) => "the target of the test".to_owned(),
         (_, Reference::IfAny | Reference::ClosedForm) => "the reference of the scene".to_owned(),
         (_, Reference::Value(text)) => text.clone(),
         (MeasureOf::Masses(_), Reference::Finest(at)) => format!(

@@ -7,6 +7,7 @@
 //! [`response_plot`]s, [`want`] the fastest run that is accurate enough. [`search`] adds points to
 //! the study until the value that is looked for is found.
 
+mod chance;
 pub mod cluster;
 pub mod collect;
 pub mod curves;

@@ -26,8 +26,9 @@ pub(crate) fn add_search(page: &mut Page, table: &SweepTable) {
         page.figure(&plot.svg());
     }
     page.small(&format!(
-        "Bisection until the interval is no wider than {}: the points tried, ascending.",
-        search.shown(search.tolerance)
+        "Bisection until the interval is no wider than {}, its resolution; 95 % confidence: between the nearest points whose {} is two standard errors off the value. The points tried, ascending.",
+        search.shown(search.tolerance),
+        search.statistic.word()
     ));
     let parameter = with_unit(&search.parameter, &search.unit);
     let name = match search.statistic {

@@ -61,6 +61,9 @@ pub enum SearchResult {
         between: [f64; 2],
         /// True if, at an end, the mean or median may lie on the other side of the value.
         is_uncertain: bool,
+        /// The nearest points tried on both sides whose mean or median is surely on theirs, by
+        /// twice its standard error; None on a side without any. None: single runs show no scatter.
+        sure_between: Option<[Option<f64>; 2]>,
     },
     /// The means or medians at both ends of the range are on the same side of the value.
     NotBracketed,
@@ -208,6 +211,7 @@ fn search_case(
                 at: f64::midpoint(between[0], between[1]),
                 between,
                 is_uncertain: own.iter().filter(is_end).any(is_uncertain),
+                sure_between: sure_between(&own, &points, find.statistic, value, between),
             }
         }
         Step::NotBracketed => SearchResult::NotBracketed,
@@ -227,6 +231,32 @@ fn search_case(
         tried,
         result,
     }
+}
+
+/// The nearest points on both sides of an interval from which on the mean or median is surely on
+/// the side of that end. None: no point has several values.
+fn sure_between(
+    own: &[&ResponsePoint],
+    places: &[f64],
+    statistic: Average,
+    value: f64,
+    between: [f64; 2],
+) -> Option<[Option<f64>; 2]> {
+    if own.iter().all(|point| point.values.len() < 2) {
+        return None;
+    }
+    let place = |point: &ResponsePoint| places[point.choice[0]];
+    let sure = || {
+        own.iter()
+            .filter(|point| !is_uncertain(point, statistic, value))
+    };
+    let below = sure()
+        .map(|point| place(point))
+        .filter(|at| *at <= between[0]);
+    let above = sure()
+        .map(|point| place(point))
+        .filter(|at| *at >= between[1]);
+    Some([below.reduce(f64::max), above.reduce(f64::min)])
 }
 
 /// Whether the mean or median of a point may lie on the other side of a value: the mean by its
@@ -294,12 +324,14 @@ impl Search {
             SearchResult::Found {
                 at,
                 between: [low, high],
+                sure_between,
                 ..
             } => format!(
-                "{measure} passes {value} between {parameter} = {} and {}, middle {}{of_case}",
+                "{measure} passes {value} between {parameter} = {} and {}, middle {}{of_case} (resolution of the search; {})",
                 self.shown(*low),
                 self.shown(*high),
-                self.shown(*at)
+                self.shown(*at),
+                self.certainty(*sure_between)
             ),
             SearchResult::NotBracketed => format!(
                 "{value} does not lie between the values of {measure} at the ends{of_case}: {}",
@@ -309,6 +341,19 @@ impl Search {
                 "the search for {measure} = {value}{of_case} is not finished: {} points have values",
                 case.tried.len()
             ),
+        }
+    }
+
+    /// What the scatter of the runs says of a result.
+    fn certainty(&self, sure_between: Option<[Option<f64>; 2]>) -> String {
+        match sure_between {
+            None => "one run at each point: its uncertainty is not known".to_owned(),
+            Some([Some(low), Some(high)]) => format!(
+                "with 95 % confidence between {} and {}",
+                self.shown(low),
+                self.shown(high)
+            ),
+            Some(_) => "no point tried is surely on one of its sides".to_owned(),
         }
     }
 

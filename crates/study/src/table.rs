@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use dem_scene::study::{Axis, RunTime, Study};
 
+use super::chance;
 use super::expand::Run;
 use super::failure_line::FailureLine;
 use super::front::{Point, front};
@@ -76,6 +77,7 @@ impl SweepTable {
             notes.push("each run was done once: how far run times scatter is not known".to_owned());
         }
         let responses = responses(study, runs, &rows);
+        notes.extend(chance::notes(study, &responses));
         let find = looked_for.and_then(|value| {
             let of = study.find.as_ref()?.measure;
             let response = responses.iter().find(|response| response.measure == of)?;

@@ -245,11 +245,8 @@ mod tests {
             radii: vec![1e-3; particles as usize],
             bond_radii: vec![1e-3; bonds.len()],
             bond_lengths: vec![2e-3; bonds.len()],
-            bond_damages: Vec::new(),
-            bond_plastics: Vec::new(),
-            bond_joints: Vec::new(),
             bonds,
-            about: About::default(),
+            ..Body::default()
         }
     }
 

@@ -26,19 +26,23 @@ pub(crate) fn add_test(page: &mut Page, summary: &Value) {
     );
 }
 
-/// Named values with their theory, as `[{name, value, unit, theory, error}]`.
+/// Named values with their targets, as `[{name, value, unit, theory, error, theory_is}]`.
 fn add_figures(page: &mut Page, title: &str, figures: &Value) {
     let Some(figures) = figures.as_array().filter(|figures| !figures.is_empty()) else {
         return;
     };
-    let with_theory = figures.iter().any(|figure| figure["theory"].is_number());
+    let compared = figures.iter().filter(|figure| figure["theory"].is_number());
+    let mut sources: Vec<&str> = compared.map(source).collect();
+    sources.sort_unstable();
+    sources.dedup();
     let mut columns = vec![Column::text(""), Column::number("")];
-    if with_theory {
+    if let [first, ..] = sources[..] {
+        let target = if sources.len() == 1 { first } else { "target" };
         columns = vec![
             Column::text(""),
-            Column::number("measured"),
-            Column::number("theory"),
-            Column::number("error"),
+            Column::number("simulated"),
+            Column::number(target),
+            Column::number("deviation"),
         ];
     }
     let cells = |figure: &Value| {
@@ -48,8 +52,16 @@ fn add_figures(page: &mut Page, title: &str, figures: &Value) {
             value.map_or(String::new(), |value| show_quantity(value, unit))
         };
         let mut cells = vec![text(&figure["name"]).to_owned(), shown(&figure["value"])];
-        if with_theory {
-            cells.push(shown(&figure["theory"]));
+        if !sources.is_empty() {
+            let mut target = shown(&figure["theory"]);
+            if sources.len() > 1 && !target.is_empty() {
+                target += match source(figure) {
+                    MEASURED => " (measured)",
+                    CLOSED_FORM => " (closed form)",
+                    _ => "",
+                };
+            }
+            cells.push(target);
             cells.push(figure["error"].as_f64().map_or(String::new(), percent));
         }
         cells.into()
@@ -59,6 +71,18 @@ fn add_figures(page: &mut Page, title: &str, figures: &Value) {
         rows: figures.iter().map(cells).collect(),
         columns,
     });
+}
+
+const MEASURED: &str = "target (measured)";
+const CLOSED_FORM: &str = "closed form";
+
+/// Where the expected value of a figure comes from.
+fn source(figure: &Value) -> &'static str {
+    match text(&figure["theory_is"]) {
+        "measured" => MEASURED,
+        "closed-form" => CLOSED_FORM,
+        _ => "target",
+    }
 }
 
 /// Measures, breakage, and bodies that came and went.

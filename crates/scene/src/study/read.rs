@@ -76,6 +76,17 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         Some(field) => values::settings(&field, folder)?,
         None => Vec::new(),
     };
+    let varies = |path: &str| {
+        let values = axes.iter().flat_map(|axis| &axis.values);
+        values
+            .flat_map(|value| &value.settings)
+            .any(|setting| setting.path == path)
+    };
+    if let (Some(both), Some(field)) = (fixed.iter().find(|one| varies(&one.path)), root.get("set"))
+    {
+        let problem = format!("[set] gives {}, which varies", both.path);
+        return Err(field.refuse(problem, "remove it from [set]: it would have no effect"));
+    }
     let mut measures = Vec::new();
     for (name, field) in root.named("measures")? {
         measures.push(measure(&name, &field, &axes)?);

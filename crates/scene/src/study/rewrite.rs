@@ -66,6 +66,7 @@ pub fn rewritten(
 /// A scene without the parts that depend on the place of its file.
 fn comparable(mut scene: Scene) -> Scene {
     scene.source.clear();
+    scene.notes.clear();
     for body in scene.bodies.values_mut() {
         if let BodySource::File(path) = &mut body.source {
             *path = absolute(path);

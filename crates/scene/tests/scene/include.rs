@@ -81,7 +81,7 @@ bonds.cake = { young_modulus = "15 MPa", poisson_ratio = 0.3, failure = { tensil
 "#;
 
 #[test]
-fn files_named_by_set_replace_tables_of_the_scene() {
+fn files_named_by_set_stand_above_the_scene() {
     let other = CAKE.replace("15 MPa", "30 MPa");
     let own = SCENE.replace("include = [\"cake.toml\"]\n", CAKE_FIRST);
     let folder = Folder::new(&[("scene.toml", &own), ("other.toml", &other)]);
@@ -91,6 +91,12 @@ fn files_named_by_set_replace_tables_of_the_scene() {
         .unwrap();
     assert_eq!(scene.bonds["cake"].young_modulus_pa, 30e6);
     assert_eq!(scene.contacts.len(), 1);
+    assert_eq!(
+        scene.notes,
+        [format!(
+            "--material {name} changes bonds.cake.young_modulus = \"15 MPa\" to \"30 MPa\""
+        )]
+    );
     // A value that is set stands above the file, whatever the order.
     let both = [
         "bonds.cake.young_modulus=40 MPa".to_owned(),
@@ -98,6 +104,42 @@ fn files_named_by_set_replace_tables_of_the_scene() {
     ];
     let scene = folder.read(&both).unwrap();
     assert_eq!(scene.bonds["cake"].young_modulus_pa, 40e6);
+}
+
+/// The keys that a file does not have stay, and are named; strengths and laws are not mixed.
+#[test]
+fn keys_that_a_file_does_not_have_stay() {
+    let own = SCENE.replace("include = [\"cake.toml\"]\n", CAKE_FIRST)
+        .replace(
+            "failure = { tensile_strength = \"0.2 MPa\", shear_strength = 1e5 }",
+            "damping = { damping_ratio = 0.1 }, failure = { tensile_strength = \"0.2 MPa\", shear_strength = 1e5, weibull_modulus = 8 }",
+        );
+    let found = CAKE
+        .replace(
+            "tensile_strength = \"0.2 MPa\", shear_strength = 1e5",
+            "von_mises_strength = 3e5",
+        )
+        .replace("friction = 0.5", "law = \"linear\", normal_stiffness = 1e5");
+    let folder = Folder::new(&[("scene.toml", &own), ("found.toml", &found)]);
+    let name = folder.path("found.toml").display().to_string();
+    let scene = folder
+        .read(&[include_text(std::slice::from_ref(&name))])
+        .unwrap();
+    let bond = &scene.bonds["cake"];
+    assert_eq!(bond.failure.weibull_modulus, Some(8.0));
+    assert_eq!(bond.failure.von_mises_strength_pa, Some(3e5));
+    assert_eq!(bond.failure.tensile_strength_pa, None);
+    assert_eq!(
+        scene.notes,
+        [
+            format!(
+                "--material {name} replaces contacts.cake-cake as a whole, as its law is another one: it was {{ friction = 0.5, restitution = 0.3 }}"
+            ),
+            format!(
+                "--material {name} removes bonds.cake.failure.tensile_strength = \"0.2 MPa\", bonds.cake.failure.shear_strength = 1e5; it does not have bonds.cake.damping = {{ damping_ratio = 0.1 }}, bonds.cake.failure.weibull_modulus = 8, which the scene keeps"
+            ),
+        ]
+    );
 }
 
 /// Files of the scene stay when others are added.

@@ -34,6 +34,60 @@ fn a_test_with_a_measured_material() {
     );
 }
 
+/// A measured file that the command line names stands above the targets of the scene, and one of
+/// the scene does not; both are named. The scene of the run has the same targets.
+#[test]
+fn two_targets_are_named_and_the_command_line_wins() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(self::folder().join("measured-test.toml")).unwrap();
+    let own = "young_modulus = \"9 MPa\"\nstrength = \"0.1 MPa\"\n";
+    let without = text.replace("measured = \"measured.json\"\n", own);
+    let json = self::folder().join("measured.json");
+    std::fs::copy(&json, folder.path().join("measured.json")).unwrap();
+    let read = |text: &str, options: &[&str]| {
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, text).unwrap();
+        let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
+        let scene = read_scene(&path, &options).unwrap();
+        let as_run = dem_scene::scene_as_run(text, &scene, &options, folder.path()).unwrap();
+        std::fs::write(&path, as_run).unwrap();
+        let again = read_scene(&path, &[]).unwrap().test.unwrap();
+        let test = scene.test.unwrap();
+        let targets =
+            |test: &dem_scene::Test| [test.young_modulus_pa, test.strength_pa].map(Option::unwrap);
+        assert_eq!(targets(&again), targets(&test));
+        (targets(&test), scene.notes.join("\n"))
+    };
+    let option = format!("test.measured={}", json.display());
+    let (targets, said) = read(&without, &[&option]);
+    assert_eq!(targets, [12.05e6, 0.21e6]);
+    assert_eq!(
+        said.matches("given on the command line), and not test.")
+            .count(),
+        2,
+        "{said}"
+    );
+    assert!(
+        said.contains("the target is 12.05 MPa, measured ("),
+        "{said}"
+    );
+    // A number of the command line stands above the file of the command line.
+    let (targets, _) = read(&without, &[&option, "test.strength=0.3 MPa"]);
+    assert_eq!(targets, [12.05e6, 0.3e6]);
+    // Both in the scene: its numbers are meant, which is said.
+    let (targets, said) = read(&(text + own), &[]);
+    assert_eq!(targets, [9e6, 0.1e6]);
+    assert!(
+        said.contains("the target is test.young_modulus = 9 MPa, and not 12.05 MPa"),
+        "{said}"
+    );
+    // The same numbers are no conflict.
+    let same = without
+        .replace("9 MPa", "12.05 MPa")
+        .replace("0.1 MPa", "0.21 MPa");
+    assert_eq!(read(&same, &[&option]).1, "");
+}
+
 /// A test determines the end of the run, and all its defaults are shown as text.
 #[test]
 fn a_laboratory_test() {

@@ -1,6 +1,7 @@
 //! Which numbers are varied, and which result each is to give.
 
 use dem_calibration::{Number, Unknown};
+use dem_io::units::quantity;
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::TestType;
 use dem_scene::{Scene, Test, written_value};
@@ -108,10 +109,12 @@ impl Chooser<'_> {
         };
         if let Some((path, result)) = text.split_once('=') {
             let (result, value) = result.rsplit_once(':').unwrap_or((result, ""));
-            let target: Option<f64> = value.parse().ok();
+            let target = self
+                .target(result, value)
+                .map_err(|error| error.within(&place()))?;
             let Some(target) = target.filter(|target| *target > 0.0 && target.is_finite()) else {
                 let problem = format!("'{value}' is not a positive number");
-                let remedy = "write PATH=MEASURE:VALUE with the value in SI units";
+                let remedy = "write PATH=MEASURE:VALUE with the value in SI units, or with a unit";
                 return Err(Diagnostic::input(place(), problem, remedy));
             };
             let measures = self.scene.measures.keys().map(String::as_str);
@@ -155,6 +158,29 @@ impl Chooser<'_> {
                 );
                 Err(Diagnostic::input(place(), "it is not known", remedy))
             }
+        }
+    }
+
+    /// The wanted value of a result, as its measure gives it: a number in SI, or with a unit. None:
+    /// it is no number. An angle of repose is given in degrees, and needs its unit.
+    fn target(&self, result: &str, value: &str) -> Result<Option<f64>> {
+        let plain: Option<f64> = value.parse().ok();
+        let Some(measure) = self.scene.measures.get(result) else {
+            return Ok(plain);
+        };
+        let dimension = measure.quantity.dimension();
+        match plain {
+            Some(number) if dimension.si == "deg" => {
+                let problem = format!("the unit of {result}:{value} is missing");
+                let remedy = format!(
+                    "write \"{number} deg\" or \"{number} rad\": its results are in degrees"
+                );
+                Err(Diagnostic::input("", problem, remedy))
+            }
+            None if value.starts_with(|c: char| c.is_ascii_digit()) => {
+                quantity(value, dimension).map(Some)
+            }
+            _ => Ok(plain),
         }
     }
 

@@ -2,7 +2,7 @@
 //! wanted results.
 
 use std::collections::BTreeMap;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -93,6 +93,9 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
     let text = text_of(file, "a scene")?;
     let overrides = options.scene.all_overrides();
     let scene = scene_from_text(&text, &source, &overrides)?;
+    for note in &scene.notes {
+        let _ = writeln!(std::io::stderr(), "note: {}", visible(note));
+    }
     let mut packings = Packings::of(options.recipes()?, &options.scene.body, &scene)?;
     packings.count = options.packings.unwrap_or(PACKINGS);
     let files = OutputFiles::of(&options.output, packings.case_names().len())?;

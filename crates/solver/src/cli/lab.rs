@@ -21,7 +21,8 @@ pub(super) struct LabArguments {
     /// Files of the test rig, one for each specimen: CSV or text with columns of travel and force
     #[arg(value_name = "FILE", required_unless_present = "specimens")]
     files: Vec<PathBuf>,
-    /// Type of test: four-point-bending, three-point-bending, brazilian-disc, compression, tension
+    /// Type of test: four-point-bending, three-point-bending, brazilian-disc, compression, tension,
+    /// dog-bone
     #[arg(long = "type", value_name = "TYPE")]
     test: String,
     /// File to write; a page of the same name, ending in .html, is written with it
@@ -128,9 +129,10 @@ pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
 
 impl LabArguments {
     fn test_type(&self) -> Result<TestType> {
+        // A curve of force over travel gives neither the pressure nor the plane of the others.
         let mut known = TestType::NAMES
             .iter()
-            .filter(|(_, test)| !test.is_dynamic());
+            .filter(|(_, test)| !test.is_dynamic() && !test.has_residual());
         let found = known.clone().find(|(name, _)| *name == self.test);
         found.map(|(_, test)| *test).ok_or_else(|| {
             let names: Vec<&str> = known.by_ref().map(|(name, _)| *name).collect();
@@ -203,6 +205,7 @@ impl LabArguments {
         Ok(MeasuredSpecimen {
             curve: curve.map_err(|error| error.within(&name))?,
             crack_m: listed.crack_m,
+            test,
             specimen,
             name,
         })
@@ -230,7 +233,7 @@ fn summary(found: &MeasuredMaterial, evaluated: &[EvaluatedSpecimen]) -> serde_j
                 "offset_n": regions.offset_n,
                 "drift_n_m": regions.drift_n_m,
                 "noise_n": regions.noise_n,
-                "notes": one.measured.curve.notes,
+                "notes": one.all_notes(),
                 "left_out": one.doubts,
             })
         })
@@ -246,7 +249,7 @@ fn print(
 ) -> Result<()> {
     write_standard_output(|out| {
         for one in evaluated {
-            for note in &one.measured.curve.notes {
+            for note in &one.all_notes() {
                 writeln!(out, "note         {}: {note}", visible(&one.measured.name))?;
             }
             if !one.doubts.is_empty() {

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::body::files::body_files;
 use dem_io::body::read_body;
+use dem_io::hash::file_hash;
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::cli::Recipe;
 use dem_scene::{BodySource, Scene, read_bodies};
@@ -61,6 +62,13 @@ impl Packings {
                 "--body",
                 "the body is packed anew",
                 remedy,
+            ));
+        }
+        if let Some((file, other)) = same_files(&packings.files) {
+            return Err(Diagnostic::input(
+                format!("--body {}", file.display()),
+                format!("it is the same packing as {}", other.display()),
+                "name each packing once: twice the same one would count as scatter",
             ));
         }
         if packings.recipes.is_empty() && packings.files.is_empty() {
@@ -182,6 +190,16 @@ impl Packings {
         files.extend(self.recipes.iter().flat_map(Recipe::files));
         files
     }
+}
+
+/// The first file whose content another one before it has, and that one.
+fn same_files(files: &[PathBuf]) -> Option<(&PathBuf, &PathBuf)> {
+    let hashes: Vec<Option<u64>> = files.iter().map(|file| file_hash(file)).collect();
+    let twice = |at: &usize| {
+        let before = (0..*at).find(|other| hashes[*at].is_some() && hashes[*other] == hashes[*at]);
+        before.map(|other| (&files[*at], &files[other]))
+    };
+    (0..files.len()).find_map(|at| twice(&at))
 }
 
 /// Smallest extent of a body over the mean diameter of its spheres.

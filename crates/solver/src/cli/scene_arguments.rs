@@ -16,7 +16,7 @@ pub(super) struct SceneArguments {
     /// out if there is only one body
     #[arg(long, value_name = "[NAME=]FILE")]
     pub(super) body: Vec<String>,
-    /// File of materials, contacts and bonds, as dem-run calibrate writes it: its tables replace
+    /// File of materials, contacts and bonds, as dem-run calibrate writes it: its keys stand above
     /// those of the scene
     #[arg(long, value_name = "FILE")]
     pub(super) material: Vec<PathBuf>,

@@ -13,7 +13,7 @@ use dem_io::safe_write::write_file;
 use dem_io::write_target::{need_folder_of, refuse_input};
 use dem_io::{Diagnostic, Result};
 use dem_scene::study::{
-    Combine, Reference, Study, read_study, reference_values, rewritten, scene_with,
+    Combine, MeasureOf, Reference, Study, read_study, reference_values, rewritten, scene_with,
     settle_references, value_to_find,
 };
 use dem_scene::text_of;
@@ -22,6 +22,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use self::results::{list, say, write_files};
 use super::progress::Log;
 use crate::interrupt::Interrupt;
+use crate::laboratory::dynamic::T10;
 use dem_study::collect::outcome;
 use dem_study::expand::{MOST_UNASKED, Run, runs};
 use dem_study::folder::{Earlier, SweepFolder};
@@ -311,7 +312,15 @@ fn not_found(study: &Study, table: &SweepTable) -> Option<Diagnostic> {
     let name = &table.measures[search.measure].name;
     let mut cases = search.cases.iter();
     let lost = cases.find(|case| case.result == SearchResult::NotBracketed)?;
-    let remedy = "widen from and to, or look for a value between these";
+    let is_t10 = match &study.measures[search.measure].of {
+        MeasureOf::Figure(name) => name == T10,
+        _ => false,
+    };
+    let remedy = if is_t10 {
+        "look for a value between these, or widen from and to; t10 cannot exceed the share of the spheres that are smaller than a tenth of the body ('largest possible t10' of its runs): if that is the limit, take smaller spheres"
+    } else {
+        "widen from and to, or look for a value between these"
+    };
     Some(Diagnostic::failed(
         &find.place,
         search.in_words(lost, name),

@@ -1,16 +1,11 @@
 //! The curve of a test: its means, its elastic part and its peak.
 
-use dem_laboratory::Line;
+use dem_laboratory::{elastic_line, elastic_rows};
 
 use super::record::{Record, Row};
 
-/// Fractions of the largest load between which the stiffness is the slope of the load: below, pins
-/// settle into the surface; above, bonds break.
-const SLOPE: [f64; 2] = [0.2, 0.6];
 /// Time over which loads are averaged, in periods of the lowest frequency.
 const WINDOW: f64 = 0.05;
-/// Smallest number of rows for a slope.
-const FEWEST_ROWS: usize = 3;
 
 /// Ratio of load to displacement in the elastic part of a test.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,11 +25,10 @@ pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
 /// The slope of the load over a displacement `way`, between 20 % and 60 % of the largest load, by
 /// least squares. None: too few rows.
 pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
-    let elastic = elastic_range(rows)?;
     let (ways_m, loads_n): (Vec<f64>, Vec<f64>) =
-        elastic.iter().map(|row| (way(row), row.load_n())).unzip();
-    let line = Line::fitted(&ways_m, &loads_n);
-    line.slope.is_finite().then(|| Slope {
+        rows.iter().map(|row| (way(row), row.load_n())).unzip();
+    let line = elastic_line(&ways_m, &loads_n, peak(rows)?.load_n())?;
+    Some(Slope {
         stiffness_n_m: line.slope,
         start_m: line.zero(),
     })
@@ -42,13 +36,9 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
 
 /// The rows between 20 % and 60 % of the largest load. None: too few for a slope.
 pub(super) fn elastic_range(rows: &[Row]) -> Option<&[Row]> {
-    let peak = peak(rows)?;
-    let up_to = |fraction: f64| {
-        rows.iter()
-            .position(|row| row.load_n() >= fraction * peak.load_n())
-    };
-    let elastic = &rows[up_to(SLOPE[0])?..up_to(SLOPE[1])?];
-    (elastic.len() >= FEWEST_ROWS).then_some(elastic)
+    let loads_n: Vec<f64> = rows.iter().map(Row::load_n).collect();
+    let elastic = elastic_rows(&loads_n, peak(rows)?.load_n())?;
+    Some(&rows[elastic])
 }
 
 /// Travel at which the line fitted to the load over the travel has no load, m: play until

@@ -8,7 +8,7 @@ use dem_plots::{Axis, Line, Plot};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::figure::Figure;
+use super::figure::{Figure, Source};
 use crate::plan::test_setup::Setup;
 use crate::stages::contacts::{self, pair_force_n};
 use crate::stages::walls::{self, touch_force_n};
@@ -144,7 +144,7 @@ pub(super) fn figures(setup: &Setup, found: &DiscStress) -> Vec<Figure> {
             sum(&|slab| slab.stress_pa[which]) / count,
             sum(&|slab| slab.theory_pa[which]) / count,
         ];
-        (count > 0.0).then(|| Figure::new(name, value, "Pa", Some(theory)))
+        (count > 0.0).then(|| Figure::new(name, value, "Pa", Some(theory)).by(Source::ClosedForm))
     };
     let across = mean(ACROSS, 0, 0.25 * diameter_m);
     let along = mean(ALONG, 1, diameter_m / 12.0);

@@ -16,7 +16,7 @@ use super::curve::rows_of;
 use super::evaluate::{
     FAILURE_FORCE, LARGEST_FORCE, STRENGTH, TestInput, TestResult, first_broken, without_figures,
 };
-use super::figure::Figure;
+use super::figure::{Figure, Source};
 use super::record::{Record, Row};
 use crate::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 use crate::state::loads::factor_at;
@@ -51,6 +51,8 @@ pub const EQUILIBRIUM: &str = "force equilibrium";
 pub const UNBOOKED: &str = "energy unaccounted for";
 /// Share of the mass finer than a tenth of the body's size.
 pub const T10: &str = "t10";
+/// Share of the mass of the spheres that are smaller than that: t10 cannot be larger.
+pub const LARGEST_T10: &str = "largest possible t10";
 
 /// Evaluates a dynamic test: its figures are those of its bars or its weight, and its travel has no
 /// play.
@@ -91,8 +93,9 @@ impl Found {
 
     fn compare(&mut self, name: &str, value: Option<f64>, unit: &str, theory: Option<f64>) {
         let value = value.filter(|value| value.is_finite());
-        self.figures
-            .extend(value.map(|value| Figure::new(name, value, unit, theory)));
+        self.figures.extend(
+            value.map(|value| Figure::new(name, value, unit, theory).by(Source::ClosedForm)),
+        );
     }
 }
 
@@ -451,5 +454,6 @@ fn of_weight(found: &mut Found, evidence: &TestInput<'_>, weight: &Weight) {
         );
         found.add("d50", Some(pieces.sizes.d50_m), "m");
         found.add(T10, pieces.sizes.t10, "");
+        found.add(LARGEST_T10, Some(pieces.largest_t10), "");
     }
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::confined::{self, POISSON_RATIO, PRESSURE_OFF, RESIDUAL, RESIDUAL_FRICTION};
 use super::curve::{peak, play_m, rows_of, slope};
 use super::disc_stress::{self, ACROSS, ALONG};
-use super::figure::Figure;
+use super::figure::{Figure, Source};
 use super::pieces::Pieces;
 use super::record::{Record, Row};
 use crate::physics::bond::failure::Cause;
@@ -294,9 +294,41 @@ impl Measured {
             ),
             Specimen::Bar { length_m, area_m2 } => {
                 measured.bar(test.kind, [length_m, setup.gauge_m], area_m2);
+                let looked = [
+                    ("section of the body", setup.section_m2, "m2"),
+                    (PRESSED, setup.pressed, ""),
+                ];
+                for (name, value, unit) in looked {
+                    if let Some(value) = value {
+                        measured.dimension(name, value, unit);
+                    }
+                }
             }
         }
+        measured.name_sources(test);
         measured
+    }
+
+    /// Says which targets were measured.
+    fn name_sources(&mut self, test: &Test) {
+        let Some(reference) = &test.measured else {
+            return;
+        };
+        let material = &reference.material;
+        let modulus_pa = material.young_modulus_pa.map(|modulus| modulus.mean);
+        let is_disc = modulus_pa.is_none();
+        let strength_is = test.strength_pa == Some(material.strength_pa.mean);
+        let modulus_is = test.young_modulus_pa.is_some() && test.young_modulus_pa == modulus_pa;
+        for figure in &mut self.figures {
+            let is_measured = match figure.name.as_str() {
+                STRENGTH | FAILURE_FORCE => strength_is,
+                STIFFNESS => modulus_is || is_disc,
+                _ => modulus_is,
+            };
+            if is_measured && figure.theory_is.is_some() {
+                figure.theory_is = Some(Source::Measured);
+            }
+        }
     }
 
     fn add(&mut self, name: &str, value: Option<f64>, unit: &str, theory: Option<f64>) {
@@ -401,6 +433,8 @@ impl Measured {
     }
 }
 
+/// The smaller part of the two ends of a body that plates press.
+const PRESSED: &str = "pressed part of its ends";
 /// Names of figures that are looked up: ratio of load to travel.
 pub const STIFFNESS: &str = "stiffness";
 /// Modulus of a beam from the travel, without shear: Platzer 2022, eq. 18.

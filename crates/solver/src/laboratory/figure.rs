@@ -2,6 +2,29 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Where the expected value of a figure comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    /// The scene gives it, or the number from which it follows.
+    Target,
+    /// It was measured (`test.measured`).
+    Measured,
+    /// A closed form.
+    ClosedForm,
+}
+
+impl Source {
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Target => "target",
+            Self::Measured => "target (measured)",
+            Self::ClosedForm => "closed form",
+        }
+    }
+}
+
 /// A number of a test, and its expected value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
@@ -15,6 +38,9 @@ pub struct Figure {
     pub theory: Option<f64>,
     /// (value - theory)/|theory|.
     pub error: Option<f64>,
+    /// Where the expected value comes from. None: there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub theory_is: Option<Source>,
 }
 
 impl Figure {
@@ -25,6 +51,13 @@ impl Figure {
             unit: unit.to_owned(),
             theory,
             error: theory.map(|theory| (value - theory) / theory.abs()),
+            theory_is: theory.map(|_| Source::Target),
         }
+    }
+
+    /// The same with another source of its expected value, if it has one.
+    pub(super) fn by(self, source: Source) -> Self {
+        let theory_is = self.theory_is.map(|_| source);
+        Self { theory_is, ..self }
     }
 }

@@ -236,8 +236,8 @@ fn curve_csv(record: &Record, play_m: f64) -> String {
     out
 }
 
-/// Load over displacement of the rows used in the evaluation ([`rows_of`]), with the theory's line
-/// if the scene gives a modulus, and the measured curve ([`measured_curve`]) unless it is empty.
+/// Load over displacement of the rows used in the evaluation ([`rows_of`]), with the line of
+/// the target stiffness if there is one, and the measured curve ([`measured_curve`]) unless it is empty.
 pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
     let play_m = if result.is_dynamic() {
         0.0
@@ -265,12 +265,13 @@ pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
             dashed: false,
         });
     }
-    let theory = ["specimen stiffness", "stiffness"]
-        .iter()
-        .find_map(|name| named(result, name)?.theory);
-    if let (Some(stiffness), Some(peak)) = (theory, peak(rows)) {
+    let target = ["specimen stiffness", "stiffness"].iter().find_map(|name| {
+        let figure = named(result, name)?;
+        Some((figure.theory?, figure.theory_is?))
+    });
+    if let (Some((stiffness, source)), Some(peak)) = (target, peak(rows)) {
         lines.push(Line {
-            name: "theory".to_owned(),
+            name: format!("{}: stiffness", source.name()),
             points: vec![[0.0, 0.0], [peak.load_n() / stiffness, peak.load_n()]],
             dashed: true,
         });
@@ -288,7 +289,7 @@ pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
         x: Axis::of("displacement (m)"),
         y: Axis::of("load (N)"),
         lines,
-        reference: failure.map(|force| (force, "failure force wanted".to_owned())),
+        reference: failure.map(|force| (force, "target: failure force".to_owned())),
         ..Plot::default()
     }
 }

@@ -12,6 +12,8 @@ pub struct Pieces {
     pub largest_kg: f64,
     /// Their sizes.
     pub sizes: SizeSummary,
+    /// Mass fraction of its spheres that are smaller than a tenth of it: the largest t10 possible.
+    pub largest_t10: f64,
 }
 
 impl Pieces {
@@ -25,6 +27,7 @@ impl Pieces {
             mass_kg: sizes.mass_kg,
             largest_kg: fragments.largest_kg(number as u32),
             sizes,
+            largest_t10: state.model.bodies[number].fine_fraction,
         })
     }
 }

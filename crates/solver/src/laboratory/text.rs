@@ -6,9 +6,9 @@ use dem_io::units::{show_quantity, significant};
 use dem_laboratory::TestType;
 
 use super::confined::PRESSURE_OFF;
-use super::dynamic::{EQUILIBRIUM, UNBOOKED};
+use super::dynamic::{EQUILIBRIUM, LARGEST_T10, T10, UNBOOKED};
 use super::evaluate::{STIFFNESS, TestResult};
-use super::figure::Figure;
+use super::figure::{Figure, Source};
 use super::files::percent;
 
 /// Smallest change at half the rate that is reported.
@@ -16,6 +16,8 @@ const MUCH: f64 = 0.02;
 /// Largest difference of the forces on both ends of a specimen over the largest load, between half
 /// of that load and all of it, at which it counts as in equilibrium.
 const APART: f64 = 0.1;
+/// Share of the largest possible t10 above which the size of the spheres decides it.
+const NEAR_CEILING: f64 = 0.5;
 /// Largest deviation of a lateral pressure that counts as constant.
 const UNSTEADY: f64 = 0.01;
 /// Share of the broken bonds outside the neck of a dog bone, or the middle half of a bar between
@@ -116,6 +118,16 @@ impl TestResult {
             doubts.push(format!(
                 "{} of the energy of the impact is unaccounted for: take a smaller step (run.safety_factor)",
                 percent(unbooked)
+            ));
+        }
+        if let (Some(t10), Some(most)) = (self.figure(T10), self.figure(LARGEST_T10))
+            && most < 1.0 - MUCH
+            && t10 > NEAR_CEILING * most
+        {
+            doubts.push(format!(
+                "t10 is {}, and cannot exceed {}, the share of the spheres that are smaller than a tenth of the body: their size decides, and not the material; take smaller spheres",
+                significant(t10, 3),
+                significant(most, 3)
             ));
         }
         if self.test_type() == Some(TestType::HopkinsonTension)
@@ -234,7 +246,8 @@ fn line(figure: &Figure, width: usize) -> String {
     );
     if let (Some(theory), Some(error)) = (figure.theory, figure.error) {
         text += &format!(
-            "   theory {}   error {}",
+            "   {} {}   deviation {}",
+            figure.theory_is.unwrap_or(Source::Target).name(),
             show_quantity(theory, &figure.unit),
             percent(error)
         );

@@ -6,6 +6,8 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::{Scene, Test, Wall, WallShape};
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::test_rig::{Said, compare_with_body, compare_with_pins, dimension};
+use super::test_section::look_at_bar;
 use crate::state::State;
 use dem_laboratory::theory::Beam;
 use dem_laboratory::{Specimen, TestType};
@@ -101,6 +103,15 @@ pub struct Setup {
     pub strip: Vec<InSlab>,
     /// Number of slabs of equal height into which they fall.
     pub slabs: usize,
+    /// Section of a body that is pressed or pulled along its length, measured on it, m2. None: it
+    /// is not measured.
+    pub section_m2: Option<f64>,
+    /// The smaller of the parts of its two ends that plates press. None: it is not measured.
+    pub pressed: Option<f64>,
+    /// What was assumed, a sentence each.
+    pub notes: Vec<String>,
+    /// Reasons to doubt the test, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 impl Setup {
@@ -125,6 +136,19 @@ impl Setup {
             sides: Vec::new(),
             strip: Vec::new(),
             slabs: 0,
+            section_m2: None,
+            pressed: None,
+            notes: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The same with what was said on its dimensions.
+    fn saying(self, said: Said) -> Self {
+        Self {
+            notes: said.notes,
+            warnings: said.warnings,
+            ..self
         }
     }
 }
@@ -180,6 +204,14 @@ pub fn setup(
         mean_radius_m,
         ..found
     };
+    if let (Specimen::Bar { length_m, area_m2 }, true) = (setup.specimen, has_section(test.kind)) {
+        let free_m = free_m(test, state, halves);
+        let sizes = ((length_m, area_m2), (volume_m3, free_m));
+        let looked = look_at_bar(scene, test, state, particles, sizes.0, sizes.1);
+        setup.section_m2 = looked.section_m2;
+        setup.pressed = looked.pressed;
+        setup.warnings.extend(looked.warnings);
+    }
     if test.kind == TestType::DirectShear {
         // It is as wide as the particles that break off.
         setup.crack_within_m += 4.0 * mean_radius_m;
@@ -188,6 +220,22 @@ pub fn setup(
     }
     choose_strip(&mut setup, state, particles);
     Ok(setup)
+}
+
+/// Whether force over area is a result of the test.
+fn has_section(kind: TestType) -> bool {
+    !matches!(kind, TestType::DropWeight | TestType::DirectShear)
+}
+
+/// Length of a body between what is pulled and what is held, m. None: nothing is held.
+fn free_m(test: &Test, state: &State, halves: &[Vec<u32>; 2]) -> Option<f64> {
+    if halves.iter().any(Vec::is_empty) {
+        return None;
+    }
+    let direction = Vector3::from(test.direction);
+    let [[pulled_m, _], [_, held_m]] =
+        (halves.each_ref()).map(|half| extent(state, half, &direction));
+    Some((pulled_m - held_m).max(0.0))
 }
 
 /// Refuses a body that is too long for the pulse in its bars, or too heavy for the weight.
@@ -323,14 +371,27 @@ fn beam(
         places
     };
     let (loaded, held) = (place(&loads), place(&supports));
+    let mut said = Said::default();
+    let [wide_m, high_m] = [across, direction].map(|way| size(extent(&way)));
+    compare_with_pins(
+        "support_span",
+        test.support_span_m,
+        held[1] - held[0],
+        &mut said,
+    );
+    compare_with_body(test, "width", test.width_m, wide_m, &mut said);
+    compare_with_body(test, "height", test.height_m, high_m, &mut said);
     let beam = Beam {
         span_m: test.support_span_m.unwrap_or(held[1] - held[0]),
         loading_span_m: match loaded[..] {
-            [left, right] => test.loading_span_m.unwrap_or(right - left),
+            [left, right] => {
+                compare_with_pins("loading_span", test.loading_span_m, right - left, &mut said);
+                test.loading_span_m.unwrap_or(right - left)
+            }
             _ => 0.0,
         },
-        width_m: test.width_m.unwrap_or_else(|| size(extent(&across))),
-        height_m: test.height_m.unwrap_or_else(|| size(extent(&direction))),
+        width_m: dimension(test, "width", test.width_m, wide_m, &mut said),
+        height_m: dimension(test, "height", test.height_m, high_m, &mut said),
     };
     let [low, high] = extent(&along);
     if !(low < held[1] && high > held[0]) || beam.span_m <= beam.loading_span_m {
@@ -356,7 +417,8 @@ fn beam(
         along.into(),
         centre.into(),
         crack_within_m,
-    ))
+    )
+    .saying(said))
 }
 
 /// Middle of a pin and unit vector along it.
@@ -373,7 +435,7 @@ fn pin(name: &str, wall: &Wall) -> std::result::Result<Pin, Refusal> {
 }
 
 /// Initial position of a point of a wall's shape.
-fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
+pub(super) fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
     let turned = UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
     let pivot = Vector3::from(wall.pivot_m);
     pivot + turned * (Vector3::from(point_m) - pivot)
@@ -470,7 +532,7 @@ fn pulls_apart(scene: &Scene, test: &Test, state: &State, halves: &[Vec<u32>; 2]
 
 /// The middle of a wall. None: it is not known where the surface of an STL file would meet the
 /// body.
-fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
+pub(super) fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
     Some(match &wall.shape {
         WallShape::Plane { point_m, .. } => placed(wall, *point_m),
         WallShape::Box { min, max } => 0.5 * (placed(wall, *min) + placed(wall, *max)),
@@ -508,20 +570,26 @@ fn disc(
             "take a disc whose axis is square to direction, or another kind of test",
         ));
     }
-    let diameter_m = test.height_m.unwrap_or(high_m);
+    let mut said = Said::default();
+    let thick_m = size(extent(&axis));
+    compare_with_body(test, "height", test.height_m, high_m, &mut said);
+    compare_with_body(test, "width", test.width_m, thick_m, &mut said);
+    let diameter_m = dimension(test, "height", test.height_m, high_m, &mut said);
+    let thickness_m = dimension(test, "width", test.width_m, thick_m, &mut said);
     let centre = middle(extent(&along)) * along
         + middle(extent(&axis)) * axis
         + middle(extent(&direction)) * direction;
     Ok(Setup::of(
         Specimen::Disc {
             diameter_m,
-            thickness_m: test.width_m.unwrap_or_else(|| size(extent(&axis))),
+            thickness_m,
         },
         test.direction,
         along.into(),
         centre.into(),
         NEAR_DIAMETER * diameter_m,
-    ))
+    )
+    .saying(said))
 }
 
 /// A bar along the load.
@@ -533,14 +601,13 @@ fn bar(
 ) -> std::result::Result<Setup, Refusal> {
     let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
     let of_body_m = size(extent(&direction));
-    let length_m = test.length_m.unwrap_or(of_body_m);
+    let mut said = Said::default();
+    let length_m = dimension(test, "length", test.length_m, of_body_m, &mut said);
     // A box around the body, with its edges along the direction and the other axes.
     let others = axes.iter().filter(|axis| axis.dot(&direction).abs() < 0.5);
     let around_m2: f64 = others.map(|axis| size(extent(axis))).product();
-    let area_m2 = test
-        .area_m2
-        .or(volume_m3.map(|volume| volume / of_body_m))
-        .unwrap_or(around_m2);
+    let section_m2 = volume_m3.map_or(around_m2, |volume| volume / of_body_m);
+    let area_m2 = dimension(test, "area", test.area_m2, section_m2, &mut said);
     for (key, given, largest, unit) in [
         ("length", test.length_m, of_body_m, "m"),
         ("area", test.area_m2, around_m2, "m2"),
@@ -564,7 +631,8 @@ fn bar(
         test.direction,
         centre.into(),
         0.5 * GAUGE * length_m,
-    ))
+    )
+    .saying(said))
 }
 
 /// A dog bone: the crack belongs into its neck, whose length and section are given.

@@ -26,6 +26,9 @@ pub struct NamedBody {
     pub smallest_diameter_m: f64,
     /// Mean diameter of its spheres, by mass, m; 0 for a body of one sphere.
     pub mean_diameter_m: f64,
+    /// Mass fraction of its spheres that are smaller than a tenth of its size: t10 cannot be
+    /// larger.
+    pub fine_fraction: f64,
 }
 
 /// Data fixed by the plan: no step changes them.

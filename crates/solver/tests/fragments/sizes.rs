@@ -93,6 +93,7 @@ fn pieces() -> (Fragments, Model) {
         sieve_m,
         smallest_diameter_m: 3e-3,
         mean_diameter_m: 3e-3,
+        fine_fraction: 0.5,
     };
     let model = Model {
         bodies: vec![

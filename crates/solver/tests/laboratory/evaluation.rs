@@ -66,6 +66,10 @@ pub(crate) fn setup(specimen: Specimen) -> Setup {
         sides: Vec::new(),
         strip: Vec::new(),
         slabs: 0,
+        section_m2: None,
+        pressed: None,
+        notes: Vec::new(),
+        warnings: Vec::new(),
     }
 }
 

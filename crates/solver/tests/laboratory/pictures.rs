@@ -25,7 +25,11 @@ fn the_curve_has_the_lines_of_the_load_the_body_and_the_theory() {
     let names: Vec<&str> = plot.lines.iter().map(|line| line.name.as_str()).collect();
     assert_eq!(
         names,
-        ["crosshead travel", "deflection of the specimen", "theory"]
+        [
+            "crosshead travel",
+            "deflection of the specimen",
+            "target: stiffness"
+        ]
     );
     // The body's line passes through the origin and ends at the break.
     let of_body = &plot.lines[1].points;

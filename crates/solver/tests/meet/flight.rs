@@ -126,7 +126,7 @@ supports.floor = {{ group = \"floor\", {support} }}
         );
         let scene = crate::helpers::scene(&text);
         let bodies = dem_scene::read_bodies(&scene).unwrap();
-        let plan = dem_run::plan::plan(&scene, &bodies, 1, false).unwrap();
+        let plan = dem_run::plan::plan(&scene, bodies, 1, false).unwrap();
         plan.forecast.warnings
     };
     let never = "'ball' never meets anything in free flight";

@@ -44,7 +44,7 @@ fn ball(at_mm: [f64; 3], velocity_m_s: [f64; 3]) -> String {
 fn planned(text: &str) -> State {
     let scene = scene(text);
     let bodies = read_bodies(&scene).unwrap();
-    plan(&scene, &bodies, 1, false).unwrap().state
+    plan(&scene, bodies, 1, false).unwrap().state
 }
 
 /// What a run shows: the largest force of all walls together along z, N; the largest number of

@@ -103,7 +103,7 @@ fn pair(name: &str, height_m: f64, velocity_m_s: f64) -> String {
 fn planned(text: &str) -> State {
     let scene = scene(text);
     let bodies = read_bodies(&scene).unwrap();
-    plan(&scene, &bodies, 1, false).unwrap().state
+    plan(&scene, bodies, 1, false).unwrap().state
 }
 
 /// Falls undamped, and comes to rest on the floor.
