@@ -73,7 +73,7 @@ fn a_rate_by_number_is_kept_between_start_and_end() {
 fn shares_by_mass_are_those_of_the_mass_that_is_fed() {
     let bodies = format!("{BALL}{}{WIDE}", lump("lump", "start_as = \"clump\""));
     let fed_kg = |shares: &str| {
-        let inlet = format!("bodies = {{ ball = 1, lump = 3 }}\n{shares}rate = 20000\n");
+        let inlet = format!("bodies = {{ ball = 1, lump = 3 }}\n{shares}rate = 5000\n");
         let mut state = fed(&bodies, &inlet);
         run_to(&mut state, 0.1);
         let of_lump = state
@@ -94,11 +94,11 @@ fn shares_by_mass_are_those_of_the_mass_that_is_fed() {
     };
     let (balls_kg, lumps_kg, _) = fed_kg("shares_by = \"mass\"\n");
     assert!(
-        (lumps_kg / balls_kg / 3.0 - 1.0).abs() < 0.15,
+        (lumps_kg / balls_kg / 3.0 - 1.0).abs() < 0.3,
         "{lumps_kg} {balls_kg}"
     );
     let (_, _, by_number) = fed_kg("");
-    assert!((by_number / 3.0 - 1.0).abs() < 0.15, "{by_number}");
+    assert!((by_number / 3.0 - 1.0).abs() < 0.3, "{by_number}");
 }
 
 #[test]

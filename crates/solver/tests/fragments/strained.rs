@@ -16,7 +16,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::run_into;
 
 const PLASTIC: &str = "plasticity = { normal_yield_strength = 2e5, shear_yield_strength = 1e5, torsion_yield_strength = 1e5, bending_yield_strength = 1e5, hardening_ratio = 0.2 }";
-const JOINT: &str = "model = \"flat-joint\", radial_elements = 2, circumferential_elements = 7, friction = 0.4, failure = { tensile_strength = 1e5, cohesion = 1e5, friction_angle = \"20 deg\" }";
+const JOINT: &str = "model = \"flat-joint\", radial_elements = 2, circumferential_elements = 7, joint_friction = 0.4, failure = { tensile_strength = 1e5, cohesion = 1e5, friction_angle = \"20 deg\" }";
 
 /// Names and keys of kinds of bonds.
 const KINDS: [(&str, &str); 8] = [
@@ -39,7 +39,7 @@ const TURN: [f64; 3] = [0.3, -0.8, 1.1];
 fn scene(kind: &str, body: &str) -> Scene {
     let text = format!(
         "version = 1
-        run = {{ end_time = 1e-9 }}
+        run = {{ end_time = 1e-3 }}
         materials.rock = {{ density = 2500 }}
         bonds.rock = {{ young_modulus = 1e8, poisson_ratio = 0.25, {kind} }}
         bodies.chain = {{ particles = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 1.2e-3], [2.5e-3, 2e-3, 0, 1e-3], [1e-3, 2e-3, 1.9e-3, 1e-3], [-1e-3, 2.5e-3, 2e-3, 0.9e-3]], bond_list = [[0, 1], [1, 2], [2, 3], [3, 4], [0, 2]], material = \"rock\", bonds = \"rock\"{body} }}
@@ -66,6 +66,7 @@ fn strained(kind: &str) -> (Scene, Plan) {
     // What yields or slides does so at these positions, and loads are summed no further.
     state.previous_time_step_s = 0.0;
     interact(state);
+    state.ledger = Default::default();
     (scene, plan)
 }
 
@@ -97,7 +98,9 @@ fn fragment(folder: &Path, output: &str) -> Output {
 /// The body that dem-run fragment makes of this state.
 fn taken(folder: &Path, scene: &Scene, plan: &Plan) -> Body {
     let results = ResultsFolder::create(&folder.join("out"), Existing::Replace).unwrap();
-    run_into(&results, plan.clone(), scene, None, 2.0).unwrap();
+    let mut scene = scene.clone();
+    scene.run.end_time_s = 1e-9;
+    run_into(&results, plan.clone(), &scene, None, 2.0).unwrap();
     let done = fragment(folder, "left.vtp");
     assert!(done.status.success(), "{done:?}");
     read_body(&folder.join("left.vtp")).unwrap()
