@@ -18,8 +18,10 @@ use super::run_into;
 const PLASTIC: &str = "plasticity = { normal_yield_strength = 2e5, shear_yield_strength = 1e5, torsion_yield_strength = 1e5, bending_yield_strength = 1e5, hardening_ratio = 0.2 }";
 const JOINT: &str = "model = \"flat-joint\", radial_elements = 2, circumferential_elements = 7, joint_friction = 0.4, failure = { tensile_strength = STRENGTH, cohesion = STRENGTH, friction_angle = \"20 deg\" }";
 
-/// Strengths that are tried, Pa, until bonds are damaged and none is broken.
-const STRENGTHS: [&str; 8] = ["1e5", "1.5e5", "2e5", "2.5e5", "3e5", "3.5e5", "4e5", "5e5"];
+/// Strengths that are tried, Pa, until bonds are damaged and the body is still one piece.
+fn strengths() -> impl Iterator<Item = f64> {
+    (0..40).map(|n| 5e4 * 1.08_f64.powi(n))
+}
 
 /// Names and keys of kinds of bonds.
 const KINDS: [(&str, &str); 8] = [
@@ -132,9 +134,7 @@ fn same(name: &str, before: &(Vec<[Vector3<f64>; 2]>, f64), after: &(Vec<[Vector
 fn every_bond_keeps_its_forces_and_what_it_has_been_through() {
     let folder = tempfile::tempdir().unwrap();
     for (name, kind) in KINDS {
-        let of_strength = STRENGTHS
-            .iter()
-            .map(|strength| kind.replace("STRENGTH", strength));
+        let of_strength = strengths().map(|pa| kind.replace("STRENGTH", &pa.to_string()));
         let tried = of_strength.map(|kind| {
             let (first, plan) = strained(&kind);
             (kind, first, plan)
@@ -142,7 +142,11 @@ fn every_bond_keeps_its_forces_and_what_it_has_been_through() {
         let is_good = |plan: &Plan| {
             let bonds = &plan.state.bonds;
             let mut elements = bonds.joints.iter().flat_map(|joint| &joint.elements);
-            let whole = (0..bonds.len()).all(|at| !bonds.is_broken(at));
+            // At most one of the bonds between the first three, which hold each other twice.
+            let broken = (0..bonds.len()).filter(|at| bonds.is_broken(*at));
+            let number = |end: u32| plan.bodies[0].number_of(end).unwrap();
+            let broken: Vec<[u32; 2]> = broken.map(|at| bonds.ends[at].map(number)).collect();
+            let whole = broken.len() < 2 && broken.as_flattened().iter().all(|end| *end < 3);
             whole
                 && match name {
                     "joint" => elements.any(|element| element.slip_m != [0.0; 3]),
