@@ -10,7 +10,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::bodies::PlacedBody;
 use super::bonds::Bonds;
 use super::particles::Pose;
-use crate::physics::bond::flat_joint::{Element, FlatJointLaw, elements_from, first_edge};
+use crate::physics::bond::flat_joint::{
+    Element, FlatJointLaw, elements, elements_from, first_edge,
+};
 use crate::physics::bond::incremental::History;
 use crate::physics::bond::plasticity::{PlasticDeformation, StressFree};
 use crate::physics::rigid::rotation_vector;
@@ -131,10 +133,12 @@ pub(crate) fn restore(
         let is_reversed = placed.particles[a as usize] != bonds.ends[at][0];
         let within = |error: Diagnostic| error.within(&format!("bond {original}"));
         if let Some(direction) = body.bond_directions.get(original) {
-            bonds.set_direction(
-                at,
-                &(sign(is_reversed) * Vector3::from(*direction).normalize()),
-            );
+            let direction = sign(is_reversed) * Vector3::from(*direction).normalize();
+            bonds.set_direction(at, &direction);
+            if let Some(law) = bonds.rules[bonds.rule_of(at)].flat_joint {
+                // Those of the line of centres lie across another direction.
+                bonds.joints[at].elements = elements(&law, bonds.radius_m(at), &direction);
+            }
         }
         if let Some(sum) = body.bond_sums.get(original) {
             load(bonds, at, sum, rotation, is_reversed).map_err(within)?;
