@@ -137,5 +137,5 @@ supports.floor = {{ group = \"floor\", {support} }}
     }
     assert!(says(&warnings(0.0151, "fixed = true")));
     // It may be in the way later.
-    assert!(!says(&warnings(0.0151, "velocity = [0.1, 0, 0]")));
+    assert!(!says(&warnings(0.0151, "velocity = { x = 0.1 }")));
 }
