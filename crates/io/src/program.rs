@@ -1,6 +1,7 @@
 //! Functions common to both programs: signals, shell completions, man pages.
 
 use std::ffi::OsString;
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
@@ -8,7 +9,7 @@ use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Command, Parser};
 pub use clap_complete::Shell;
 
-use super::standard_output::write_standard_output;
+use super::standard_output::{write_standard_bytes, write_standard_output};
 use crate::diagnostic::{Diagnostic, Result};
 
 /// Turns a file size limit of the shell (`ulimit -f`) into a write error, like a full disk, instead
@@ -72,7 +73,13 @@ pub fn parsed<P: Parser>(name: &str, given: &[OsString], renamed: &[(&str, &str)
     matches
         .and_then(|matches| P::from_arg_matches(&matches))
         .map_err(|error| {
-            if !error.use_stderr() || error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
+            if !error.use_stderr() {
+                return match print_rendered(&error) {
+                    Ok(()) => std::process::exit(0),
+                    Err(failed) => failed,
+                };
+            }
+            if error.kind() == DisplayHelpOnMissingArgumentOrSubcommand {
                 error.exit();
             }
             let command = P::command();
@@ -85,6 +92,17 @@ pub fn parsed<P: Parser>(name: &str, given: &[OsString], renamed: &[(&str, &str)
                 format!("see {name}{sub} --help"),
             )
         })
+}
+
+/// Prints help or a version, in colour on a terminal.
+fn print_rendered(help: &clap::Error) -> Result<()> {
+    let text = help.render();
+    let text = if std::io::stdout().is_terminal() {
+        text.ansi().to_string()
+    } else {
+        text.to_string()
+    };
+    write_standard_bytes(|out| out.write_all(text.as_bytes()))
 }
 
 /// The command, with values of options that may begin with a minus sign, so that a negative number

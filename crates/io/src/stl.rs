@@ -7,12 +7,18 @@
 
 mod ascii;
 mod facets;
+mod precision;
 mod write;
 
 use crate::diagnostic::{Diagnostic, Result};
+use crate::units::significant;
+use ascii::begins_with_solid;
 pub(crate) use facets::Facets;
 use facets::{REMEDY_AGAIN, is_blank};
-use std::io::{Cursor, Read, Seek, SeekFrom};
+use precision::moved_by_single_precision;
+pub use precision::single_precision_keeps;
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::path::Path;
 pub use write::write_stl;
 
 /// Bytes of the header and the count of a binary file.
@@ -21,6 +27,14 @@ const BINARY_START: usize = 84;
 const BINARY_FACET: usize = 50;
 /// Largest number of facets: three corners each must be numbered with 32 bits.
 const MOST_FACETS: usize = 1_000_000_000;
+
+/// Largest number of bytes of an STL that is no file of the disk, and of padding after the last
+/// facet there.
+const MOST_STREAM: u64 = 1 << 30;
+const MOST_PADDING: u64 = 1 << 20;
+
+/// Part of the size by which single precision may move corners without a word.
+const MOST_MOVED: f64 = 1e-4;
 
 /// The remedy for a file that is not truncated but of another type.
 const REMEDY_OTHER: &str = "give an ASCII or binary STL file";
@@ -38,11 +52,13 @@ pub(crate) fn read_facets(bytes: &[u8]) -> Result<Facets> {
             REMEDY_OTHER,
         ));
     }
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let utf_16 = text_of_utf_16(bytes);
+    let text = utf_16.as_deref().unwrap_or(bytes);
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let facets = if binary_length(bytes) == Some(bytes.len()) {
         read_binary(bytes)?
     } else if is_text(text) {
-        if !starts_with_word(text, b"solid") {
+        if !begins_with_solid(text) {
             let start: String = String::from_utf8_lossy(&text[..text.len().min(20)])
                 .escape_debug()
                 .collect();
@@ -71,6 +87,42 @@ pub(crate) fn read_facets(bytes: &[u8]) -> Result<Facets> {
     Ok(facets)
 }
 
+/// The bytes of an STL that comes through a pipe or a device, which may have no end: reading stops
+/// where an STL of that beginning would end.
+///
+/// # Errors
+/// Those of `input`; it goes on after the end.
+pub fn read_stream(input: &mut dyn Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    input.take(BINARY_START as u64).read_to_end(&mut bytes)?;
+    let is_binary = !is_text(&bytes) && text_of_utf_16(&bytes).is_none();
+    let end = match binary_length(&bytes) {
+        Some(length) if is_binary => (length as u64 + MOST_PADDING).min(MOST_STREAM),
+        _ => MOST_STREAM,
+    };
+    input
+        .take(end + 1 - bytes.len() as u64)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > end {
+        return Err(io::Error::other(format!(
+            "it goes on after {end} bytes, where its first bytes let an STL end"
+        )));
+    }
+    Ok(bytes)
+}
+
+/// The bytes of an STL file; one that is no file of the disk, such as a named pipe, is read as by
+/// [`read_stream`].
+///
+/// # Errors
+/// As [`read_stream`].
+pub fn read_stl_file(path: &Path) -> io::Result<Vec<u8>> {
+    if std::fs::metadata(path)?.is_file() {
+        return std::fs::read(path);
+    }
+    read_stream(&mut std::fs::File::open(path)?)
+}
+
 /// Length according to the header of a binary file; `None` for fewer bytes than a header.
 fn binary_length(bytes: &[u8]) -> Option<usize> {
     let count: [u8; 4] = bytes.get(80..BINARY_START)?.try_into().ok()?;
@@ -85,15 +137,43 @@ fn is_text(bytes: &[u8]) -> bool {
     let has_control = beginning
         .iter()
         .any(|b| b.is_ascii_control() && !is_blank(*b) && *b != 0x1a);
-    !has_control && (beginning.is_ascii() || starts_with_word(bytes, b"solid"))
+    !has_control && (beginning.is_ascii() || begins_with_solid(bytes))
 }
 
-/// True if the first word is `word`, in upper or lower case.
-fn starts_with_word(text: &[u8], word: &[u8]) -> bool {
-    let text = text.trim_ascii_start();
-    text.len() >= word.len()
-        && text[..word.len()].eq_ignore_ascii_case(word)
-        && text.get(word.len()).is_none_or(u8::is_ascii_whitespace)
+/// A text in UTF-16, with or without a mark of the order of its bytes, in UTF-8; none if it is not
+/// one that begins like a text of ASCII.
+fn text_of_utf_16(bytes: &[u8]) -> Option<Vec<u8>> {
+    let is_big = match bytes.get(..4)? {
+        [0xff, 0xfe, letter, 0] | [letter, 0, _, 0] if is_letter(*letter) => false,
+        [0xfe, 0xff, 0, letter] | [0, letter, 0, _] if is_letter(*letter) => true,
+        _ => return None,
+    };
+    let units = bytes.chunks_exact(2).map(|pair| match is_big {
+        true => u16::from_be_bytes([pair[0], pair[1]]),
+        false => u16::from_le_bytes([pair[0], pair[1]]),
+    });
+    let text: String = char::decode_utf16(units)
+        .map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER))
+        .collect();
+    Some(text.into_bytes())
+}
+
+/// True for a byte with which a text can begin.
+fn is_letter(byte: u8) -> bool {
+    byte.is_ascii_graphic() || is_blank(byte)
+}
+
+/// A note if the single precision of a binary file moves corners by a part of the size that shows
+/// in the volume.
+fn precision_note(corners: &[[[f64; 3]; 3]]) -> Option<String> {
+    let moved = moved_by_single_precision(corners.iter().flatten());
+    (moved.share_of_size > MOST_MOVED).then(|| {
+        format!(
+            "The numbers of a binary STL have seven digits: this far from the origin its corners may be off by {} units of the file, {} % of its size. Export it near the origin, or as text.",
+            significant(moved.by, 2),
+            significant(100.0 * moved.share_of_size, 2)
+        )
+    })
 }
 
 /// The part of a binary file with the length given in its header. An error for another type of
@@ -167,8 +247,8 @@ fn read_binary(bytes: &[u8]) -> Result<Facets> {
         corners.push(facet);
     }
     Ok(Facets {
+        warnings: precision_note(&corners).into_iter().collect(),
         corners,
-        warnings: Vec::new(),
     })
 }
 
@@ -272,6 +352,34 @@ mod tests {
                 "{text}"
             );
         }
+    }
+
+    #[test]
+    fn reading_of_what_has_no_end_stops() {
+        let whole = binary(b"", &[FACET, FACET]);
+        assert_eq!(read_stream(&mut &whole[..]).unwrap(), whole);
+        let text = b"solid a\nendsolid a\n";
+        assert_eq!(read_stream(&mut &text[..]).unwrap(), text);
+        for beginning in [&[0; 10][..], &whole] {
+            let mut endless = beginning.chain(io::repeat(0));
+            let said = read_stream(&mut endless).expect_err("refused").to_string();
+            assert!(said.starts_with("it goes on after 104"), "{said}");
+        }
+    }
+
+    #[test]
+    fn a_binary_far_from_the_origin_has_a_note() {
+        let note = |offset: f32| {
+            let far = FACET.map(|corner| corner.map(|x| x + offset));
+            read_facets(&binary(b"", &[far])).unwrap().warnings
+        };
+        assert!(note(0.0).is_empty() && note(1e2).is_empty());
+        // The numbers from 2^19 to 2^20 are 1/16 apart.
+        let warnings = note(1e6);
+        assert!(
+            warnings[0].contains("may be off by 0.031 units of the file, 3.1 % of its size"),
+            "{warnings:?}"
+        );
     }
 
     #[test]

@@ -81,6 +81,8 @@ pub struct BodyReport {
     pub bond_range: f64,
     /// The search for the overlap, if there was one.
     pub density_search: Option<DensitySearch>,
+    /// What the sizes leave out, one sentence each.
+    pub notes: Vec<String>,
     /// Repairs of the surface.
     pub repairs: dem_io::surface::Repairs,
     /// Times of the stages.
@@ -107,6 +109,9 @@ pub fn make_body(
         history: made.packed.packing.history,
         bond_range: made.bond_range,
         density_search: made.packed.density_search,
+        notes: (settings.packing.sizes.note().iter())
+            .map(|note| (*note).to_owned())
+            .collect(),
         repairs: surface.repairs.clone(),
         seconds: made.seconds,
     };

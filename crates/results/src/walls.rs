@@ -1,6 +1,7 @@
 //! The walls of a frame for ParaView: triangles as .vtp, `frames/walls_000123.vtp`.
 //!
-//! Points and vectors are in single precision, which suffices for drawing; the forces are in the
+//! Points and vectors are in single precision, which suffices for drawing (points in double where
+//! they are so far from the origin that single precision would move them); the forces are in the
 //! field data as well, in full. Large walls that never move are not written again with each frame:
 //! they are in `frames/walls_fixed.vtp`, which every time of `frames.pvd` lists. Such a wall of
 //! 100,000 triangles takes 2.6 MB once; a moving one takes 5 MB in each frame.
@@ -10,6 +11,7 @@ use std::io::{self, Write};
 use dem_io::body::stored_walls::{
     FIXED_WALLS, FIXED_WALLS_FILE, FORCE, VELOCITY, WALL, WALL_FORCES, WALL_NAMES,
 };
+use dem_io::stl::single_precision_keeps;
 use dem_io::vtk::{
     Cells, NamedArray, PolyData, Values, exact, write_number, write_text, write_texts,
     write_vectors,
@@ -103,9 +105,14 @@ fn write(
     out: &mut dyn Write,
     write_fields: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
+    let exact_place = |i: usize| walls.points_m[i];
+    let place = |i: usize| single(walls.points_m[i]);
     PolyData {
         points: walls.points_m.len(),
-        place: Values::SingleVectors(&|i| single(walls.points_m[i])),
+        place: match single_precision_keeps(walls.points_m.iter()) {
+            true => Values::SingleVectors(&place),
+            false => Values::Vectors(&exact_place),
+        },
         cells: Cells::Triangles(walls.triangles.len(), &|i| walls.triangles[i]),
         point_data: &[],
         cell_data,

@@ -61,10 +61,32 @@ impl Pair {
         &self,
         read: impl FnOnce(&mut dyn BufRead, &mut dyn BufRead) -> Result<Body>,
     ) -> Result<Body> {
-        let mut particles = open(&self.particles)?;
         let mut bonds = open(&self.bonds)?;
+        self.read_with(&mut bonds, read)
+    }
+
+    /// Reads the spheres, and the bonds if there is a file of bonds; `no_bonds` is such a file
+    /// without bonds.
+    fn read_spheres(
+        &self,
+        mut no_bonds: &[u8],
+        read: impl FnOnce(&mut dyn BufRead, &mut dyn BufRead) -> Result<Body>,
+    ) -> Result<Body> {
+        if self.bonds.exists() {
+            self.read(read)
+        } else {
+            self.read_with(&mut no_bonds, read)
+        }
+    }
+
+    fn read_with(
+        &self,
+        bonds: &mut dyn BufRead,
+        read: impl FnOnce(&mut dyn BufRead, &mut dyn BufRead) -> Result<Body>,
+    ) -> Result<Body> {
+        let mut particles = open(&self.particles)?;
         // The readers name the file "particles" or "bonds".
-        read(&mut particles, &mut bonds).map_err(|mut error| {
+        read(&mut particles, bonds).map_err(|mut error| {
             for (part, path) in [("particles", &self.particles), ("bonds", &self.bonds)] {
                 if let Some(place) = error
                     .place
@@ -164,6 +186,31 @@ pub fn read_body(path: &Path) -> Result<Body> {
         Storage::Lammps(path) => lammps::read(&mut open(&path)?).map_err(within),
         Storage::Csv(pair) => pair.read(csv::read),
         Storage::Txt(pair) => pair.read(txt::read),
+    }
+}
+
+/// As [`read_body`], also of a list of spheres without bonds: a .csv or .txt of particles that has
+/// no file of bonds beside it, under its own name or that of the pair.
+///
+/// # Errors
+/// As [`read_body`].
+pub fn read_spheres(path: &Path) -> Result<Body> {
+    refuse_shape(path)?;
+    let of_list = |mut pair: Pair| {
+        if !pair.particles.exists() && path.is_file() {
+            pair.particles = path.to_owned();
+        }
+        pair
+    };
+    match Storage::named(path)? {
+        Storage::Csv(pair) => {
+            let mut no_bonds = Vec::new();
+            csv::write_bonds(&Body::default(), &mut no_bonds)
+                .map_err(|error| Diagnostic::failed("", error.to_string(), ""))?;
+            of_list(pair).read_spheres(&no_bonds, csv::read)
+        }
+        Storage::Txt(pair) => of_list(pair).read_spheres(b"", txt::read),
+        _ => read_body(path),
     }
 }
 

@@ -1,21 +1,18 @@
 //! ASCII STL -> facets: `solid NAME (facet normal N N N outer loop (vertex X Y Z)*3 endloop
 //! endfacet)* endsolid NAME`, any number of times; upper or lower case, any white space. Normals
-//! are skipped: many programs write them wrongly or not at all.
+//! are skipped: many programs write them wrongly or not at all. Comments, `end loop` in two words
+//! and files of one line are read as well.
 
 use super::facets::{Facets, REMEDY_AGAIN, is_blank};
 use crate::diagnostic::{Diagnostic, Result};
 
-/// Reads the facets of all `solid` blocks in `text`, which begins with "solid".
+/// Reads the facets of all `solid` blocks in `text`, which begins with "solid" after comments.
 pub(super) fn read(text: &[u8]) -> Result<Facets> {
-    let mut words = Words {
-        text,
-        next: 0,
-        line: 1,
-    };
+    let mut words = Words::of(text);
     let mut facets = Facets::default();
     while let Some(word) = words.next_word() {
         if is(word, "solid") {
-            words.skip_line();
+            words.skip_name("facet");
             read_solid(&mut words, &mut facets)?;
         } else if !word.iter().all(|b| *b == 0 || *b == 0x1a) {
             return Err(unexpected(&words, word, "'solid' or the end of the file"));
@@ -24,26 +21,36 @@ pub(super) fn read(text: &[u8]) -> Result<Facets> {
     Ok(facets)
 }
 
+/// True if the first word after comments is "solid".
+pub(super) fn begins_with_solid(text: &[u8]) -> bool {
+    Words::of(text)
+        .next_word()
+        .is_some_and(|word| is(word, "solid"))
+}
+
 /// Reads facets up to `endsolid`.
 fn read_solid(words: &mut Words, facets: &mut Facets) -> Result<()> {
     loop {
-        match words.next_word() {
-            Some(word) if is(word, "facet") => {
-                let facet = read_facet(words, facets.corners.len() + 1)?;
-                facets.corners.push(facet);
-            }
-            Some(word) if is(word, "endsolid") => {
-                words.skip_line();
-                return Ok(());
-            }
-            Some(word) => return Err(unexpected(words, word, "'facet' or 'endsolid'")),
-            None => {
-                facets.warnings.push(format!(
-                    "The file ends at line {} without 'endsolid'.",
-                    words.line
-                ));
-                return Ok(());
-            }
+        let Some(word) = words.next_word() else {
+            facets.warnings.push(format!(
+                "The file ends at line {} without 'endsolid'.",
+                words.line
+            ));
+            return Ok(());
+        };
+        let number = facets.corners.len() + 1;
+        if is(word, "facet") {
+            let facet = read_facet(words, number)?;
+            facets.corners.push(facet);
+        } else if is(word, "outer") {
+            // Some programs leave out the lines of facets.
+            let facet = read_loop(words, number)?;
+            facets.corners.push(facet);
+        } else if words.is_end_of(word, "solid") {
+            words.skip_name("solid");
+            return Ok(());
+        } else {
+            return Err(unexpected(words, word, "'facet' or 'endsolid'"));
         }
     }
 }
@@ -57,6 +64,14 @@ fn read_facet(words: &mut Words, number: usize) -> Result<[[f64; 3]; 3]> {
         }
     }
     expect(words, word, "outer")?;
+    let corners = read_loop(words, number)?;
+    let word = words.need(number)?;
+    expect_end(words, word, "facet")?;
+    Ok(corners)
+}
+
+/// Reads the text after the word `outer`, up to `endloop`.
+fn read_loop(words: &mut Words, number: usize) -> Result<[[f64; 3]; 3]> {
     let word = words.need(number)?;
     expect(words, word, "loop")?;
     let mut corners = [[0.0; 3]; 3];
@@ -68,17 +83,13 @@ fn read_facet(words: &mut Words, number: usize) -> Result<[[f64; 3]; 3]> {
             *coordinate = finite_number(words, word, number)?;
         }
     }
-    for keyword in ["endloop", "endfacet"] {
-        let word = words.need(number)?;
-        expect(words, word, keyword)?;
-    }
+    let word = words.need(number)?;
+    expect_end(words, word, "loop")?;
     Ok(corners)
 }
 
 fn finite_number(words: &Words, word: &[u8], facet: usize) -> Result<f64> {
-    let value: Option<f64> = std::str::from_utf8(word)
-        .ok()
-        .and_then(|text| text.parse().ok());
+    let value = std::str::from_utf8(word).ok().and_then(number);
     let place = format!("line {}, triangle {facet}", words.line);
     match value {
         Some(value) if value.is_finite() => Ok(value),
@@ -95,11 +106,26 @@ fn finite_number(words: &Words, word: &[u8], facet: usize) -> Result<f64> {
     }
 }
 
+/// A number, also with the exponent of Fortran: 1.5D+02.
+fn number(text: &str) -> Option<f64> {
+    let parsed = text.parse().ok();
+    parsed.or_else(|| text.replacen(['d', 'D'], "e", 1).parse().ok())
+}
+
 fn expect(words: &Words, word: &[u8], keyword: &str) -> Result<()> {
     if is(word, keyword) {
         Ok(())
     } else {
         Err(unexpected(words, word, &format!("'{keyword}'")))
+    }
+}
+
+/// As [`expect`], for `endloop` and `endfacet`, which may be two words.
+fn expect_end(words: &mut Words, word: &[u8], of: &str) -> Result<()> {
+    if words.is_end_of(word, of) {
+        Ok(())
+    } else {
+        Err(unexpected(words, word, &format!("'end{of}'")))
     }
 }
 
@@ -136,7 +162,27 @@ struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
+    fn of(text: &'a [u8]) -> Self {
+        Self {
+            text,
+            next: 0,
+            line: 1,
+        }
+    }
+
+    /// The next word that is not in a comment: from `#`, `;`, `!` or `//` to the end of the line.
     fn next_word(&mut self) -> Option<&'a [u8]> {
+        loop {
+            let word = self.any_word()?;
+            let is_comment = matches!(word[0], b'#' | b';' | b'!') || word.starts_with(b"//");
+            if !is_comment {
+                return Some(word);
+            }
+            self.skip_line();
+        }
+    }
+
+    fn any_word(&mut self) -> Option<&'a [u8]> {
         while let Some(byte) = self.text.get(self.next).filter(|b| is_blank(**b)) {
             let line_end =
                 *byte == b'\n' || *byte == b'\r' && self.text.get(self.next + 1) != Some(&b'\n');
@@ -148,6 +194,20 @@ impl<'a> Words<'a> {
             self.next += 1;
         }
         (self.next > start).then(|| &self.text[start..self.next])
+    }
+
+    /// True if a word just read ends a block: `endloop`, or `end loop`, whose second word is then
+    /// read as well.
+    fn is_end_of(&mut self, word: &[u8], of: &str) -> bool {
+        if !is(word, "end") {
+            return is(word, &format!("end{of}"));
+        }
+        let before = (self.next, self.line);
+        let is_end = self.next_word().is_some_and(|word| is(word, of));
+        if !is_end {
+            (self.next, self.line) = before;
+        }
+        is_end
     }
 
     /// The next word of an incomplete facet. A word at the very end of the text may be truncated.
@@ -168,7 +228,7 @@ impl<'a> Words<'a> {
         self.next == self.text.len()
     }
 
-    /// Skips the rest of the line: the name of a solid can be anything.
+    /// Skips the rest of the line.
     fn skip_line(&mut self) {
         while self
             .text
@@ -176,6 +236,26 @@ impl<'a> Words<'a> {
             .is_some_and(|b| !matches!(b, b'\n' | b'\r'))
         {
             self.next += 1;
+        }
+    }
+
+    /// Skips the name of a solid, which can be anything: the rest of the line, unless facets follow
+    /// in it, as in a file of one line. After `endsolid` these begin with another `solid`.
+    fn skip_name(&mut self, begins_with: &str) {
+        let before = self.next;
+        self.skip_line();
+        let mut words = Words::of(&self.text[before..self.next]);
+        let (mut begin, mut last_two) = (None, [&b""[..]; 2]);
+        while let Some(word) = words.any_word() {
+            if is(word, begins_with) {
+                begin = Some(words.next - word.len());
+            }
+            let is_facet = is(last_two[0], "outer") && is(last_two[1], "loop");
+            if let Some(begin) = begin.filter(|_| is_facet && is(word, "vertex")) {
+                self.next = before + begin;
+                return;
+            }
+            last_two = [last_two[1], word];
         }
     }
 }
@@ -216,6 +296,40 @@ mod tests {
             "solid a\n{}endsolid a",
             FACET.replace("0 0 1", "nan -nan(ind) 1e999")
         );
+        let parted = format!("solid a\n{FACET}end solid a\n").replace("end", "end ");
+        let parted = parted.replace("end  ", "end ");
+        let fortran = format!(
+            "solid a\n{}endsolid a",
+            FACET.replace("1 0", "1.0D+00 0.d0")
+        );
+        let one_line = format!("solid facet normal\n{FACET}endsolid a\n").replace('\n', "\t");
+        let commented = format!(
+            "# by hand\nsolid a # b\n; second\n{}endsolid a\n// end\n",
+            FACET.replace("endloop", "endloop ! of three")
+        );
+        let bare = format!("solid a\n{FACET}endsolid a\n")
+            .replace("facet normal 0 0 1\n", "")
+            .replace("endfacet\n", "");
+        for text in [parted, fortran, one_line, commented, bare] {
+            assert_eq!(read_facets(text.as_bytes()).unwrap(), plain, "{text}");
+        }
+        let two_in_a_line = format!("solid a solid\n{FACET}endsolid a solid b\n{FACET}endsolid");
+        let two_in_a_line = read_facets(two_in_a_line.replace('\n', " ").as_bytes()).unwrap();
+        assert_eq!(two_in_a_line.corners.len(), 2);
+        for big in [false, true] {
+            let units = format!("\u{feff}solid a\n{FACET}endsolid a\n");
+            let bytes: Vec<u8> = (units.encode_utf16())
+                .flat_map(|unit| {
+                    if big {
+                        unit.to_be_bytes()
+                    } else {
+                        unit.to_le_bytes()
+                    }
+                })
+                .collect();
+            assert_eq!(read_facets(&bytes).unwrap(), plain);
+            assert_eq!(read_facets(&bytes[2..]).unwrap(), plain);
+        }
         let old_mac = format!("solid a\n{FACET}endsolid a\n").replace('\n', "\r");
         for text in [shouted, marked, old_mac, without_normal, nan_normal] {
             assert_eq!(read_facets(text.as_bytes()).unwrap(), plain, "{text}");

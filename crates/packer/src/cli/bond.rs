@@ -3,7 +3,7 @@
 use super::arguments::BondCommand;
 use crate::bond_spheres::bond_spheres;
 use dem_io::body::{
-    NO_FRAME, body_summary, files::body_files, read_body, read_particles, write_body,
+    NO_FRAME, body_summary, files::body_files, read_particles, read_spheres, write_body,
 };
 use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
@@ -21,7 +21,9 @@ pub(super) fn bond(command: &BondCommand) -> Result<()> {
     let (from, to) = (&command.spheres, &command.output);
     let files = body_files(to)?;
     files.iter().try_for_each(|file| need_folder_of(file))?;
-    refuse_to_replace(&files, &body_files(from)?)?;
+    let mut read = body_files(from)?;
+    read.push(from.clone());
+    refuse_to_replace(&files, &read)?;
     let place = from.display().to_string();
     let mut spheres = spheres_of(from)?;
     if !spheres.bonds.is_empty() && !command.replace {
@@ -51,13 +53,13 @@ pub(super) fn bond(command: &BondCommand) -> Result<()> {
 /// A body, or the loose spheres of a frame of a run.
 fn spheres_of(file: &Path) -> Result<Body> {
     if file.extension().is_none_or(|ending| ending != "vtp") {
-        return read_body(file);
+        return read_spheres(file);
     }
     match read_particles(file) {
         Ok(frame) => frame
             .loose_spheres()
             .map_err(|e| e.within(&file.display().to_string())),
-        Err(error) if error.problem.starts_with(NO_FRAME) => read_body(file),
+        Err(error) if error.problem.starts_with(NO_FRAME) => read_spheres(file),
         Err(error) => Err(error),
     }
 }

@@ -121,7 +121,7 @@ pub(super) fn summary_text(surface: &Surface, made: &BodyReport, output: &Path) 
         made.seconds.report,
         significant(made.quality.particles as f64 / seconds, 3)
     );
-    for warning in &surface.warnings {
+    for warning in surface.warnings.iter().chain(&made.notes) {
         text += &format!("note             {warning}\n");
     }
     text += &match made.quality.warnings.len() {

@@ -2,10 +2,10 @@
 
 use super::arguments::Reading;
 use crate::sizes::Sizes;
+use dem_io::stl::{read_stl_file, read_stream};
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_io::units::{length_unit_m, show_length};
 use dem_io::{Diagnostic, Result, Surface};
-use std::io::Read;
 use std::path::Path;
 
 /// The surface of the shape in a file, or in standard input (`-`).
@@ -22,13 +22,9 @@ pub(super) fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
     }
     let unit_m = length_unit_m(&reading.unit).map_err(|e| e.within("--unit"))?;
     let (name, bytes) = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        std::io::stdin()
-            .lock()
-            .read_to_end(&mut bytes)
-            .map(|_| ("standard input".to_owned(), bytes))
+        read_stream(&mut std::io::stdin().lock()).map(|bytes| ("standard input".to_owned(), bytes))
     } else {
-        std::fs::read(path).map(|bytes| (path.display().to_string(), bytes))
+        read_stl_file(path).map(|bytes| (path.display().to_string(), bytes))
     }
     .map_err(|e| {
         let (problem, remedy) = if path.is_dir() {

@@ -7,6 +7,10 @@ use super::warnings::RARE;
 use crate::sizes::Fit;
 use dem_io::units::{show_length, significant};
 
+/// Noise of an eigenvalue of a fabric above which chance explains nearly any of them: of 35 bonds
+/// and fewer.
+const MOST_NOISE: f64 = 0.05;
+
 /// A name and its text.
 type Line = (&'static str, String);
 
@@ -178,6 +182,8 @@ pub(super) fn fabric(fabric: &Fabric) -> String {
     let [a, b, c] = fabric.eigenvalues;
     let verdict = if fabric.chance < RARE {
         "anisotropic"
+    } else if fabric.sigma > MOST_NOISE {
+        "too few bonds to tell whether isotropic"
     } else {
         "isotropic"
     };

@@ -16,6 +16,7 @@ const SMALLEST_FRACTION_KEPT: f64 = 0.01;
 pub struct Sizes {
     by: Basis,
     description: String,
+    note: Option<String>,
     min_m: f64,
     max_m: f64,
     mean_volume_m3: f64,
@@ -118,6 +119,11 @@ impl Sizes {
         self.min_m == self.max_m
     }
 
+    /// What was left out of a sieve curve that does not go from 0 to 100 %, as a sentence.
+    pub fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
     /// One human-readable line: the distribution, its limits and means, and the changes made to it.
     pub fn describe(&self) -> &str {
         &self.description
@@ -160,6 +166,7 @@ impl Sizes {
         let mut sizes = Self {
             by,
             description: String::new(),
+            note: cut_note(law, by, [min_m, max_m]),
             min_m,
             max_m,
             mean_volume_m3,
@@ -196,6 +203,34 @@ impl Sizes {
             show_length(self.mass.mean),
         )
     }
+}
+
+/// What was left out of a sieve curve, between whose openings no sizes are known.
+fn cut_note(law: &Law, by: Basis, [min_m, max_m]: [f64; 2]) -> Option<String> {
+    let Law::Sieve(curve) = law else {
+        return None;
+    };
+    let [below, above] = curve.left_out;
+    let of = match by {
+        Basis::Number => "number",
+        Basis::Mass => "mass",
+    };
+    let part = |fraction: f64, which: &str, size_m: f64| {
+        (fraction > 0.0).then(|| {
+            let percent = significant(100.0 * fraction, 3);
+            format!("the {percent} % {which} {}", show_length(size_m))
+        })
+    };
+    let parts: Vec<String> = [part(below, "below", min_m), part(above, "above", max_m)]
+        .into_iter()
+        .flatten()
+        .collect();
+    (!parts.is_empty()).then(|| {
+        format!(
+            "The sieve curve leaves {} by {of} without sizes: these are left out, and the rest counts as 100 %. Add the size that nothing passes, or that everything passes, to keep them.",
+            parts.join(" and ")
+        )
+    })
 }
 
 fn unreachable_sizes(name: &str, kept: f64, min: f64, max: f64) -> Diagnostic {

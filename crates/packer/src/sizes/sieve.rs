@@ -6,7 +6,8 @@
 //! finest first; `#` begins a comment; with semicolons a decimal comma is accepted.
 
 use dem_io::units::{length_m, length_unit_m, significant};
-use dem_io::{Diagnostic, Result};
+use dem_io::{Diagnostic, Result, read_input};
+use std::path::Path;
 
 /// Largest gap at 0 or 100 % of a curve that is still stretched to the full range.
 const LARGEST_GAP: f64 = 0.05;
@@ -20,6 +21,8 @@ pub struct SieveCurve {
     pub passing: Vec<f64>,
     /// Changes to the curve, to be appended to a sentence. May be empty.
     pub note: String,
+    /// Fractions below the smallest and above the largest opening that were left out. Length 2.
+    pub left_out: [f64; 2],
 }
 
 struct Row {
@@ -30,10 +33,11 @@ struct Row {
 
 /// The curve in a file.
 pub(super) fn read(path: &str) -> Result<SieveCurve> {
-    let text = std::fs::read_to_string(path).map_err(|e| {
+    let bytes = read_input(Path::new(path), "a sieve curve")?;
+    let text = String::from_utf8(bytes).map_err(|_| {
         Diagnostic::input(
             path,
-            format!("cannot read the sieve curve: {e}"),
+            "the sieve curve is not text in UTF-8",
             "give the path of a text file of openings and passing",
         )
     })?;
@@ -265,5 +269,6 @@ fn curve(mut rows: Vec<Row>) -> Result<SieveCurve> {
             .map(|r| (r.passing - first) / (last - first))
             .collect(),
         note,
+        left_out: [first, 1.0 - last],
     })
 }

@@ -178,3 +178,31 @@ fn what_cannot_be_bonded_is_refused() {
             .success()
     );
 }
+
+#[test]
+fn a_list_of_spheres_needs_no_file_of_bonds() {
+    let bench = Bench::new();
+    let list = "# three in a line\n0 0 0 0.005\n0.005 0 0 0.005\n0.01 0 0 0.005\n";
+    std::fs::write(bench.path("stone.txt"), list).unwrap();
+    std::fs::write(bench.path("line.particles.txt"), list).unwrap();
+    let table = "radius_m,x_m,y_m,z_m\n0.005,0,0,0\n0.005,0.005,0,0\n0.005,0.01,0,0\n";
+    std::fs::write(bench.path("table.csv"), table).unwrap();
+    for name in ["stone.txt", "line.txt", "table.csv"] {
+        let output = bond(&bench, &[name, "-o", "s.vtp"]);
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(output.status.success(), "{name}");
+        // Two bonds tell nothing of directions.
+        assert!(
+            said.contains("too few bonds to tell whether isotropic"),
+            "{said}"
+        );
+        let body = read_body(&bench.path("s.vtp")).unwrap();
+        assert_eq!((body.radii.len(), body.bonds.len()), (3, 2), "{name}");
+    }
+    let output = bond(&bench, &["stone.txt", "-o", "stone.txt"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        std::fs::read_to_string(bench.path("stone.txt")).unwrap(),
+        list
+    );
+}

@@ -260,6 +260,32 @@ fn an_endless_pipe_is_refused_at_once() {
     }
 }
 
+/// A shape or a sieve curve without end is refused before memory ends, and help that cannot be
+/// written is a failure.
+#[cfg(target_os = "linux")]
+#[test]
+fn endless_shapes_and_full_disks_end_in_an_error() {
+    for (arguments, code) in [
+        (&["info", "zero.stl"][..], 2),
+        (&["zero.stl", "-d", "1mm", "-o", "b.vtp"], 2),
+        (&["--help"], 1),
+        (&["--version"], 1),
+    ] {
+        let bench = Bench::new();
+        std::os::unix::fs::symlink("/dev/zero", bench.path("zero.stl")).unwrap();
+        let output = dem_pack()
+            .args(arguments)
+            .current_dir(bench.folder.path())
+            .stdout(fs::File::options().write(true).open("/dev/full").unwrap())
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+    assert!(dem_pack().arg("--help").output().unwrap().status.success());
+}
+
 /// Neither the shape nor the sieve curve nor the converted body is overwritten, under whatever
 /// name.
 #[cfg(unix)]

@@ -217,3 +217,34 @@ fn one_size() {
             .all(|r| (r / 0.6e-3 - 1.0).abs() < 1e-14)
     );
 }
+
+/// What a sieve curve leaves out is said where a person reads it.
+#[test]
+fn a_curve_that_does_not_reach_from_0_to_100_has_a_note() {
+    let bench = Bench::new();
+    let file = bench.stl("box.stl", &cuboid([16.0, 16.0, 16.0]));
+    let said = |curve: &str| {
+        let path = bench.path("curve.csv");
+        fs::write(&path, curve).unwrap();
+        let sizes = format!("sieve:{}", path.display());
+        let output = super::dem_pack()
+            .arg(&file)
+            .args(["-d", &sizes, "--basis", "mass", "-o"])
+            .arg(bench.path("b.csv"))
+            .output()
+            .unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let cut = said("opening_mm,passing_percent\n1.6,3\n2.0,15\n2.5,60\n3.15,96\n");
+    assert!(
+        cut.contains("note             The sieve curve leaves the 3 % below 1.6 mm and the 4 % above 3.15 mm by mass without sizes"),
+        "{cut}"
+    );
+    let one = said("opening_mm,passing_percent\n1.6,0\n2.0,15\n2.5,60\n3.15,96\n");
+    assert!(
+        one.contains("leaves the 4 % above 3.15 mm by mass"),
+        "{one}"
+    );
+    let whole = said("opening_mm,passing_percent\n1.6,0\n2.0,15\n2.5,60\n3.15,100\n");
+    assert!(!whole.contains("note"), "{whole}");
+}

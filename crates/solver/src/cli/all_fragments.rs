@@ -69,9 +69,9 @@ fn write_files(frame: &StoredFrame, path: &Path, output: &Path, as_hulls: bool) 
             let centres_m: Vec<[f64; 3]> = members.iter().map(|&i| frame.positions[i]).collect();
             let radii_m: Vec<f64> = members.iter().map(|&i| frame.radii[i]).collect();
             let facets = convex_hull(&centres_m, &radii_m).map_err(named)?;
-            let facets: Vec<[[f32; 3]; 3]> = facets
+            let facets: Vec<[[f64; 3]; 3]> = facets
                 .iter()
-                .map(|facet| facet.map(|corner| corner.map(|x| (MM * x) as f32)))
+                .map(|facet| facet.map(|corner| corner.map(|x| MM * x)))
                 .collect();
             let file = file_of(output, id, "stl");
             let header = format!(

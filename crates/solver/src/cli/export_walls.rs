@@ -41,8 +41,8 @@ pub(super) fn pending_walls(
 }
 
 fn pending_stl(walls: &StoredWalls, folder: &Path, number: usize) -> Result<PendingFile> {
-    let corner = |point: u32| walls.points_m[point as usize].map(|x| x as f32);
-    let facets: Vec<[[f32; 3]; 3]> = (walls.triangles.iter())
+    let corner = |point: u32| walls.points_m[point as usize];
+    let facets: Vec<[[f64; 3]; 3]> = (walls.triangles.iter())
         .map(|triangle| triangle.map(corner))
         .collect();
     let header = format!("walls {}, m", visible(&walls.names.join(", ")));

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use dem_io::stl::read_stl_file;
 use dem_io::surface::{OpenSurface, read_open_surface};
 use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result};
@@ -43,7 +44,7 @@ impl Sizes {
 /// The surface from a file that a scene names, in m.
 pub(crate) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
     let file = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| {
+    let bytes = read_stl_file(path).map_err(|error| {
         Diagnostic::input(
             &file,
             format!("cannot be read: {error}"),

@@ -1,0 +1,39 @@
+//! What single precision does to corners.
+
+use super::MOST_MOVED;
+use crate::bounds::Bounds;
+
+/// Rounding of corners to single precision, in the unit of the corners.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Moved {
+    /// Half the distance of two neighbouring numbers, where coordinates are largest.
+    pub(super) by: f64,
+    /// The same as a part of the longest extent of the corners.
+    pub(super) share_of_size: f64,
+}
+
+/// How far the numbers of single precision lie apart at these corners.
+pub(super) fn moved_by_single_precision<'a>(
+    corners: impl Iterator<Item = &'a [f64; 3]> + Clone,
+) -> Moved {
+    let largest = corners
+        .clone()
+        .flatten()
+        .fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let single = largest as f32;
+    let by = 0.5 * f64::from(single.next_up() - single);
+    let bounds = Bounds::of(corners.copied());
+    let size = (0..3)
+        .map(|k| bounds.high[k] - bounds.low[k])
+        .fold(0.0, f64::max);
+    Moved {
+        by,
+        share_of_size: by / size.max(f64::MIN_POSITIVE),
+    }
+}
+
+/// True if single precision moves none of these corners by a part of their size that shows in the
+/// volume.
+pub fn single_precision_keeps<'a>(corners: impl Iterator<Item = &'a [f64; 3]> + Clone) -> bool {
+    moved_by_single_precision(corners).share_of_size <= MOST_MOVED
+}
