@@ -23,7 +23,7 @@ use crate::home::Home;
 use tracks::{Ranges, Tracks};
 
 pub(crate) use choose::ChosenFrame;
-pub(crate) use pieces::colours as piece_colours;
+pub(crate) use pieces::Pieces;
 pub(crate) use spheres::Spheres;
 pub(crate) use tracks::most_of;
 pub(crate) use walls::read as read_walls;
@@ -67,8 +67,10 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
     };
     let mut tracks = Tracks::new();
     let mut names = Names::default();
+    let pieces = Pieces::of(subject.folder);
     for frame in &chosen.frames {
         let spheres = Spheres::read(frame, chosen.every, chosen.with_bonds)?;
+        pieces.refuse_unknown(&spheres, &frame.path)?;
         tracks.push(&spheres, &scales);
         tracks.push_walls(walls::read(frame)?.as_ref(), &scales);
         if names.bodies.is_empty() {
@@ -77,7 +79,8 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
         names.can_break |= spheres.can_break;
         names.has_bonds |= !spheres.bonds.is_empty();
     }
-    let head = head(subject, &chosen, &scales, &tracks, &names);
+    let pieces = pieces.colours(tracks.last_fragment());
+    let head = head(subject, &chosen, &scales, (&tracks, pieces), &names);
     let data = encoded(tracks.all())
         .map_err(|error| dem_io::Diagnostic::failed("report.html", error.to_string(), ""))?;
     Ok(Some(markup(&head.to_string(), &data, &chosen)))
@@ -106,7 +109,7 @@ fn head(
     subject: &Subject<'_>,
     chosen: &Chosen,
     scales: &tracks::Scales,
-    tracks: &Tracks,
+    (tracks, pieces): (&Tracks, Vec<[u8; 3]>),
     names: &Names,
 ) -> serde_json::Value {
     let mut modes = vec![if names.can_break { "piece" } else { "body" }];
@@ -122,7 +125,6 @@ fn head(
     }
     let scale = (0..COLOURS).map(|k| hex(viridis(k as f64 / (COLOURS - 1) as f64)));
     let times_s: Vec<f64> = chosen.frames.iter().map(|frame| frame.time_s).collect();
-    let pieces = piece_colours(subject.folder, tracks.last_fragment());
     let bodies = (0..=tracks.last_body()).map(|body| hex(of_fragment(body, 1.0)));
     json!({
         "time_texts": times_s.iter().map(|time_s| time_text(*time_s)).collect::<Vec<_>>(),
@@ -155,10 +157,10 @@ fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// The elements of the view. Texts within scripts must not contain `</`; JSON may write it as
-/// `<\/`, and base64 has none.
+/// The elements of the view. Texts within scripts must contain neither `</` nor `<!--`; JSON may
+/// write `<` as `\u003c`, and base64 has none.
 fn markup(head: &str, data: &str, chosen: &Chosen) -> Markup {
-    let head = head.replace("</", "<\\/");
+    let head = head.replace('<', "\\u003c");
     html! {
         style { (PreEscaped(STYLE)) }
         div id="view" data-state="loading" {

@@ -12,7 +12,7 @@ use dem_io::text::exact;
 
 /// The first line of the table of what leaves. Length, width and thickness are those of the box
 /// along the principal axes, the longest first.
-pub const COLUMNS: &str = "time_s,fragment_id,body,material,outlet,mass_kg,equivalent_diameter_m,length_m,width_m,thickness_m";
+pub const COLUMNS: &str = "time_s,fragment_id,body,material,outlet,mass_kg,equivalent_diameter_m,length_m,width_m,thickness_m,sieve_m";
 
 /// The first line of the size distribution.
 pub const DISTRIBUTION_COLUMNS: &str = "body,location,sieve_m,passing_kg,passing_fraction,resolved";
@@ -36,6 +36,8 @@ pub struct DischargeRow<'a> {
     pub equivalent_diameter_m: f64,
     /// Lengths of its box, the longest first, m. Length 3.
     pub box_lengths_m: [f64; 3],
+    /// Side of the smallest square opening that it passes, m.
+    pub sieve_m: f64,
 }
 
 /// The file of what leaves.
@@ -112,7 +114,7 @@ impl DischargeFile {
 fn line(row: &DischargeRow<'_>) -> String {
     let [length, width, thickness] = row.box_lengths_m.map(exact);
     format!(
-        "{},{},{},{},{},{},{},{length},{width},{thickness}\n",
+        "{},{},{},{},{},{},{},{length},{width},{thickness},{}\n",
         exact(row.time_s),
         row.fragment_id,
         field(row.body),
@@ -120,6 +122,7 @@ fn line(row: &DischargeRow<'_>) -> String {
         field(row.outlet),
         exact(row.mass_kg),
         exact(row.equivalent_diameter_m),
+        exact(row.sieve_m),
     )
 }
 

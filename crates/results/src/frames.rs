@@ -177,7 +177,7 @@ impl FrameFiles {
     }
 
     /// Names in the folder of the files of frame `number`, in the order of their parts.
-    fn files_of(&self, number: usize) -> Vec<String> {
+    pub fn files_of(&self, number: usize) -> Vec<String> {
         let mut files = vec![frame_name(number)];
         if self.walls != WallFiles::None {
             files.push(walls_name(number));

@@ -22,6 +22,7 @@ mod seen;
 mod settings;
 pub mod snapshot;
 pub mod statics;
+mod sums;
 mod taken_in;
 
 use dem_io::Result;

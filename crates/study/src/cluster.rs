@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use dem_io::Result;
-use dem_io::safe_write::write_file;
+use dem_io::safe_write::PendingFile;
 
 use super::folder::{COMMANDS, SLURM, SNAKEFILE};
 use super::jobs::{refuse_unlistable, shell_word};
@@ -41,10 +41,14 @@ pub fn write_cluster_files(
         .collect();
     let slurm = slurm(here, &whole, runs.len(), threads);
     let snakefile = snakefile(here, &whole, runs, threads);
+    let mut pending = Vec::new();
     for (name, text) in [(COMMANDS, lines), (SLURM, slurm), (SNAKEFILE, snakefile)] {
-        write_file(&folder.join(name), |out| out.write_all(text.as_bytes()))?;
+        let path = folder.join(name);
+        pending.push(PendingFile::write(&path, |out| {
+            out.write_all(text.as_bytes())
+        })?);
     }
-    Ok(())
+    pending.into_iter().try_for_each(PendingFile::publish)
 }
 
 /// A job array: task N runs line N of the commands.

@@ -4,6 +4,7 @@
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
+use dem_io::safe_write::UNFINISHED_PREFIX;
 use dem_io::write_target::is_same_file;
 use dem_io::{Diagnostic, Result};
 use dem_results::folder::lock_file;
@@ -79,8 +80,7 @@ impl SweepFolder {
                 remedy,
             ));
         }
-        let is_empty = fs::read_dir(path).map_or(true, |mut entries| entries.next().is_none());
-        if !is_sweep && !is_empty {
+        if !is_sweep && !is_just_begun(path) {
             let problem = "this folder holds something else than a sweep";
             let remedy = "name another one with --output";
             return Err(Diagnostic::input(place, problem, remedy));
@@ -227,6 +227,21 @@ impl SweepFolder {
             "replace them with --force, or name another folder with --output",
         ))
     }
+}
+
+/// True if a folder holds nothing, or only what a sweep that was killed before it wrote its
+/// identity has made.
+fn is_just_begun(path: &Path) -> bool {
+    let is_begin = |entry: &PathBuf| {
+        let name = entry.file_name().and_then(|name| name.to_str());
+        match name {
+            Some(RUNS) => entries(entry).is_ok_and(|runs| runs.is_empty()),
+            Some(LOCK) => true,
+            Some(name) => name.starts_with(UNFINISHED_PREFIX),
+            None => false,
+        }
+    };
+    entries(path).map_or(true, |entries| entries.iter().all(is_begin))
 }
 
 /// True if this file is the identity of a sweep.

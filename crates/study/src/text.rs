@@ -166,10 +166,11 @@ fn line(cells: &[String]) -> String {
     let cells: Vec<String> = cells
         .iter()
         .map(|cell| {
-            if cell.contains([',', '"', '\n', '\r']) {
+            let cell = visible(cell);
+            if cell.contains([',', '"']) {
                 format!("\"{}\"", cell.replace('"', "\"\""))
             } else {
-                cell.clone()
+                cell.into_owned()
             }
         })
         .collect();

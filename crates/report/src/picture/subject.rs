@@ -11,7 +11,7 @@ use dem_plots::{blue_to_red, viridis};
 
 use super::colour_by::ColourBy;
 use crate::home::Home;
-use crate::view::{ChosenFrame, Spheres, most_of, piece_colours, read_walls};
+use crate::view::{ChosenFrame, Pieces, Spheres, most_of, read_walls};
 
 /// A frame in memory.
 pub(super) struct Seen {
@@ -107,8 +107,10 @@ impl Colours {
             highest: 0.0,
         };
         let mut last = 0;
+        let pieces = Pieces::of(folder);
         for frame in frames {
             let spheres = Seen::read(frame)?.spheres;
+            pieces.refuse_unknown(&spheres, &frame.0)?;
             last = spheres.fragments.iter().copied().fold(last, u32::max);
             colours.refuse_missing(&spheres, frame)?;
             let all = (0..spheres.centres_m.len()).map(|i| colours.value(&spheres, i).abs());
@@ -118,7 +120,7 @@ impl Colours {
             };
             colours.highest = colours.highest.max(highest);
         }
-        colours.pieces = piece_colours(folder, last);
+        colours.pieces = pieces.colours(last);
         Ok(colours)
     }
 

@@ -20,6 +20,7 @@ fn row(fragment_id: u32, time_s: f64) -> DischargeRow<'static> {
         mass_kg: 0.1 * time_s,
         equivalent_diameter_m: 1.0 / 3.0,
         box_lengths_m: [0.5, 0.25, 0.125],
+        sieve_m: 0.25,
     }
 }
 
@@ -34,7 +35,7 @@ fn discharge_looks_as_documented_and_goes_on_after_an_interruption() {
     file.append(std::iter::empty()).unwrap();
     let whole = fs::read_to_string(&path).unwrap();
     assert!(whole.starts_with(&format!(
-        "{COLUMNS}\n0.5,7,\"cake, old\",stone,floor,0.05,0.3333333333333333,0.5,0.25,0.125\n"
+        "{COLUMNS}\n0.5,7,\"cake, old\",stone,floor,0.05,0.3333333333333333,0.5,0.25,0.125,0.25\n"
     )));
     assert_eq!(whole.lines().count(), 4);
     let mut file = DischargeFile::continue_at(&path, checkpoint).unwrap();

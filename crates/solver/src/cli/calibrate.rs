@@ -2,6 +2,7 @@
 //! wanted results.
 
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -21,6 +22,7 @@ use dem_io::text::visible;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::cli::Recipe;
+use dem_results::folder::lock_file;
 use dem_scene::{Scene, material_text, scene_from_text, text_of};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -100,6 +102,7 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
     packings.count = options.packings.unwrap_or(PACKINGS);
     let files = OutputFiles::of(&options.output, packings.case_names().len())?;
     files.refuse(options, &scene, &packings)?;
+    let _lock = files.lock()?;
     let scene_text = SceneText {
         text: &text,
         source: &source,
@@ -185,6 +188,20 @@ impl CalibrateArguments {
     }
 }
 
+/// The lock on the files of a calibration. The system releases it when the program ends for
+/// whatever reason; its file is removed when this is dropped.
+struct Lock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // It does no harm if it stays.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
 /// The files that a calibration writes.
 struct OutputFiles {
     /// The material file of each size.
@@ -217,6 +234,26 @@ impl OutputFiles {
             page,
             record,
         })
+    }
+
+    /// Keeps other calibrations from writing the same files as long as the lock lives.
+    ///
+    /// # Errors
+    /// Another one is writing them (exit code 2); no permission (exit code 1).
+    fn lock(&self) -> Result<Lock> {
+        let name = self.record.file_name().unwrap_or_default();
+        let path = self
+            .record
+            .with_file_name(format!(".{}.lock", name.to_string_lossy()));
+        let file = lock_file(&path).map_err(|error| explain(&path, &error))?;
+        let file = file.ok_or_else(|| {
+            Diagnostic::input(
+                self.record.display().to_string(),
+                "another calibration is writing it",
+                "wait until that has ended, or write to another --output",
+            )
+        })?;
+        Ok(Lock { path, _file: file })
     }
 
     fn all(&self) -> Vec<PathBuf> {

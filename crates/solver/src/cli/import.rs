@@ -6,11 +6,13 @@ use std::path::PathBuf;
 use clap::Args;
 use dem_io::Result;
 use dem_io::colour::{Colour, on_standard_error};
+use dem_io::safe_write::explain;
 use dem_io::standard_output::write_standard_output;
 use dem_io::text::{counted, visible};
 use dem_results::Existing;
 
-use crate::lammps::import::import as import_run;
+use super::new_folder::WholeFolder;
+use crate::lammps::import::{Came, import as import_run};
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
@@ -27,6 +29,19 @@ pub(super) struct ImportArguments {
     quiet: bool,
 }
 
+/// Imports into a new folder under a temporary name first, so that it appears whole; an existing
+/// one is filled where it is.
+fn import_whole(arguments: &ImportArguments, existing: Existing) -> Result<Came> {
+    let output = &arguments.output;
+    if std::fs::symlink_metadata(output).is_ok() || output.file_name().is_none() {
+        return import_run(&arguments.folder, output, existing);
+    }
+    let folder = WholeFolder::beside(output).map_err(|error| explain(output, &error))?;
+    let came = import_run(&arguments.folder, folder.path(), existing)?;
+    folder.publish()?;
+    Ok(came)
+}
+
 /// Reads the dumps and writes frames and page.
 ///
 /// # Errors
@@ -37,7 +52,7 @@ pub(super) fn import(arguments: &ImportArguments) -> Result<()> {
     } else {
         Existing::Refuse
     };
-    let came = import_run(&arguments.folder, &arguments.output, existing)?;
+    let came = import_whole(arguments, existing)?;
     if arguments.quiet {
         return Ok(());
     }

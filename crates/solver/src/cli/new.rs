@@ -16,9 +16,13 @@ use dem_pack::cli::Recipe;
 use dem_scene::reference;
 
 use self::shape::{cuboid, cylinder, stl};
+use super::new_folder::WholeFolder;
 
 /// Name of the file of keys for editors, as in the first line of each scene.
 const SCHEMA: &str = "scene.schema.json";
+
+/// Name of the shape.
+const SHAPE: &str = "shape.stl";
 
 #[derive(Debug, Args)]
 pub(super) struct NewArguments {
@@ -75,10 +79,13 @@ impl Template {
 /// The folder exists, or cannot be written.
 pub(super) fn new(arguments: &NewArguments) -> Result<()> {
     let folder = &arguments.folder;
-    fs::create_dir(folder).map_err(|error| cannot(folder, &error))?;
-    let file = |name: &str| folder.join(name);
+    if fs::symlink_metadata(folder).is_ok() {
+        return Err(cannot(folder, &ErrorKind::AlreadyExists.into()));
+    }
+    let made = WholeFolder::beside(folder).map_err(|error| cannot(folder, &error))?;
+    let file = |name: &str| made.path().join(name);
     let (facets, diameter) = arguments.template.shape();
-    let shape = file("shape.stl");
+    let shape = file(SHAPE);
     write_file(&shape, |out| out.write_all(stl(&facets).as_bytes()))?;
     let options = ["--diameter", diameter, "--overlap", "0.25"];
     // A name that begins with - is no option.
@@ -90,7 +97,8 @@ pub(super) fn new(arguments: &NewArguments) -> Result<()> {
     let shape = here.join(shape).display().to_string();
     let recipe = std::iter::once(shape).chain(options.map(str::to_owned));
     let recipe = Recipe::parse(&recipe.collect::<Vec<String>>())?;
-    let (body, _) = recipe.make(recipe.seed(), &|_, _| Ok(()))?;
+    let (mut body, _) = recipe.make(recipe.seed(), &|_, _| Ok(()))?;
+    body.about.source = Some(here.join(folder).join(SHAPE).display().to_string());
     write_body(&body, &file("body.vtp"))?;
     for (name, text) in reference::files() {
         if name == SCHEMA {
@@ -100,6 +108,7 @@ pub(super) fn new(arguments: &NewArguments) -> Result<()> {
     let scene = file("scene.toml");
     let text = arguments.template.scene();
     write_file(&scene, |out| out.write_all(text.as_bytes()))?;
+    made.publish()?;
     write_standard_output(|out| {
         let shown = folder.display().to_string();
         let shown = visible(&shown);

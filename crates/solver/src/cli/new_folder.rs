@@ -1,8 +1,10 @@
-//! A folder that a command fills: new or empty, and gone again if the command fails.
+//! A folder that a command fills: new or empty, and gone again if the command fails; or one that
+//! appears with all its files or not at all.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use dem_io::safe_write::{UNFINISHED_PREFIX, explain};
 use dem_io::{Diagnostic, Result};
 
 /// A folder that was made, or was there and empty. Dropped before [`NewFolder::keep`], one that was
@@ -55,6 +57,56 @@ impl Drop for NewFolder {
         if self.is_made {
             // The user must see the problem itself.
             let _ = fs::remove_dir(&self.path);
+        }
+    }
+}
+
+/// A folder that is filled under a temporary name beside its own, and then renamed: killed on the
+/// way, a command leaves no half of it under its name.
+#[derive(Debug)]
+pub(crate) struct WholeFolder {
+    target: PathBuf,
+    temporary: PathBuf,
+    is_there: bool,
+}
+
+impl WholeFolder {
+    /// Makes the temporary folder. `target`: the later folder, which does not exist yet.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub(crate) fn beside(target: &Path) -> std::io::Result<Self> {
+        let name = format!("{UNFINISHED_PREFIX}{}", std::process::id());
+        let temporary = target.with_file_name(name);
+        fs::create_dir(&temporary)?;
+        Ok(Self {
+            target: target.to_owned(),
+            temporary,
+            is_there: true,
+        })
+    }
+
+    /// Where its files are written.
+    pub(crate) fn path(&self) -> &Path {
+        &self.temporary
+    }
+
+    /// All its files are there: it gets its name.
+    ///
+    /// # Errors
+    /// There is such a folder meanwhile, which is not empty; it cannot be renamed (exit code 1).
+    pub(crate) fn publish(mut self) -> Result<()> {
+        fs::rename(&self.temporary, &self.target).map_err(|error| explain(&self.target, &error))?;
+        self.is_there = false;
+        Ok(())
+    }
+}
+
+impl Drop for WholeFolder {
+    fn drop(&mut self) {
+        if self.is_there {
+            // The user must see the problem itself.
+            let _ = fs::remove_dir_all(&self.temporary);
         }
     }
 }

@@ -218,6 +218,7 @@ pub(super) fn write_discharge(state: &State, files: &mut Files<'_>) -> Result<()
         mass_kg: one.size.mass_kg,
         equivalent_diameter_m: one.size.equivalent_diameter_m,
         box_lengths_m: one.size.box_lengths_m,
+        sieve_m: one.size.sieve_m,
     };
     file.append(all[*written..].iter().map(row))?;
     *written = all.len();

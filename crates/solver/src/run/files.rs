@@ -43,6 +43,9 @@ impl<'a> Files<'a> {
         has_fragments: bool,
         continued: Option<&Progress>,
     ) -> Result<Self> {
+        if let Some(at) = continued {
+            at.sums.check(folder.path())?;
+        }
         let fragments = has_fragments.then(|| match continued {
             Some(at) => FragmentFile::continue_at(&folder.fragments(), at.fragments_bytes),
             None => FragmentFile::create(&folder.fragments()),
@@ -117,6 +120,7 @@ pub(super) fn save(
     if let Some(pictures) = &files.pictures {
         progress.pictures = pictures.taken();
     }
+    sum_files(progress, files)?;
     let measures = probes.iter().map(|probe| probe.history).collect();
     let snapshot = Snapshot::taken(
         state,
@@ -127,6 +131,32 @@ pub(super) fn save(
         progress.clone(),
     );
     write_checkpoint(&files.folder.checkpoint(), &snapshot.to_bytes()?)
+}
+
+/// Updates the check sums of the tables, and adds those of new frames.
+fn sum_files(progress: &mut Progress, files: &Files<'_>) -> Result<()> {
+    let folder = files.folder;
+    let fragments = files.fragments.as_ref();
+    let discharge = files.discharge.as_ref();
+    let tables = [
+        Some((folder.series(), progress.series_bytes)),
+        Some((folder.events(), progress.events_bytes)),
+        fragments.map(|_| (folder.fragments(), progress.fragments_bytes)),
+        discharge.map(|_| (folder.discharge(), progress.discharge_bytes)),
+    ];
+    for (path, bytes) in tables.into_iter().flatten() {
+        if let Some(name) = path.file_name().and_then(|name| name.to_str()) {
+            progress.sums.update(folder.path(), name, Some(bytes))?;
+        }
+    }
+    for number in 0..progress.frame_times_s.len() {
+        for name in files.frames.files_of(number) {
+            if !progress.sums.has(&name) {
+                progress.sums.update(folder.path(), &name, None)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Adds to a message that the run can be resumed from its checkpoint, if there is one.

@@ -9,6 +9,7 @@ use super::last_tenth::LastTenth;
 use super::pictures::Taken;
 use super::schedule::{OutputSchedule, first_after};
 use super::seen::Seen;
+use super::sums::Sums;
 use crate::check::limit::Bound;
 use crate::laboratory::record::Record;
 use crate::plan::time_step::{StepBasis, StepChoice};
@@ -26,6 +27,8 @@ pub struct Progress {
     pub(super) events_bytes: u64,
     pub(super) fragments_bytes: u64,
     pub(super) discharge_bytes: u64,
+    /// Check sums of these tables and of the frames.
+    pub(super) sums: Sums,
     /// Number of fragments when they were written last.
     pub(super) fragments_written: u64,
     pub(super) frame_times_s: Vec<f64>,

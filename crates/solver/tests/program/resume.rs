@@ -176,6 +176,32 @@ fn a_run_that_is_over_says_so_and_can_be_taken_further() {
     assert!(said.contains("ended by rest"), "{said}");
 }
 
+/// A flipped bit in a table or a frame would stay in the results of the whole run.
+#[test]
+fn changed_tables_and_frames_are_not_continued() {
+    let bench = begun("bodies.toml", &["--set", "run.end_time=1 ms"]);
+    let resume = ["--output", "out", "--resume", "--set", "run.end_time=2 ms"];
+    let frame = fs::read_dir(bench.path("out/frames")).unwrap();
+    let frames = frame.map(|entry| entry.unwrap().path());
+    let frame = frames.filter(|path| path.extension().is_some_and(|e| e == "vtp"));
+    let files = [bench.path("out/series.csv"), bench.path("out/events.csv")];
+    for file in files.into_iter().chain(frame.min()) {
+        let whole = fs::read(&file).unwrap();
+        let mut changed = whole.clone();
+        let at = whole.len() - 20;
+        changed[at] ^= 1;
+        fs::write(&file, &changed).unwrap();
+        let said = bench.bad(&good("bodies.toml"), &resume, 2);
+        let name = file.file_name().unwrap().to_str().unwrap();
+        assert!(
+            said.contains(name) && said.contains("check sum differs"),
+            "{said}"
+        );
+        fs::write(&file, &whole).unwrap();
+    }
+    bench.good(&good("bodies.toml"), &resume);
+}
+
 #[test]
 fn a_step_that_is_given_is_taken_when_a_run_goes_on() {
     let bench = begun("bodies.toml", &["--set", "run.end_time=0.5 ms"]);
