@@ -17,7 +17,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::Serialize;
 
 use crate::plan::Plan;
-use crate::plan::measures::FEWEST_IN_HEAP;
+use crate::plan::measures::{FEWEST_IN_HEAP, FEWEST_MIXED_CELLS};
 use crate::stages::clumps::synchronous;
 use crate::stages::ledger::Balance;
 use crate::stages::totals::synchronous_motions;
@@ -452,6 +452,10 @@ impl Probe {
             None
         } else if left == 0 && self.measure.within.is_none() {
             Some(format!("{name} has no value: nothing of \"{of}\" is left"))
+        } else if self.measure.quantity == Quantity::AngleOfRepose && left >= FEWEST_IN_HEAP {
+            Some(format!(
+                "{name} has no value: \"{of}\" is not one round heap, but several, a ridge or a ring; name the body of one heap in \"of\""
+            ))
         } else if self.measure.quantity == Quantity::AngleOfRepose {
             Some(format!(
                 "{name} has no value: an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{of}\" has {left}"
@@ -459,7 +463,7 @@ impl Probe {
         } else if self.measure.quantity == Quantity::MixingIndex {
             let within = self.measure.within.as_deref().unwrap_or_default();
             Some(format!(
-                "{name} has no value: the region \"{within}\" has nothing of one of the two, or cell_size is so small that no cell has two pieces"
+                "{name} has no value: the region \"{within}\" has nothing of one of the two, cell_size is so small that no cell has two pieces, or so large that fewer than {FEWEST_MIXED_CELLS} cells hold something"
             ))
         } else if self.measure.quantity == Quantity::BulkingFactor {
             let within = self.measure.within.as_deref().unwrap_or_default();

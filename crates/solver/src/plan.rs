@@ -47,7 +47,7 @@ use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::clumps::Template;
 use crate::state::clusters::Clusters;
-use crate::state::clusters::sizes::{Sphere, box_lengths_m};
+use crate::state::clusters::sizes::{Sphere, sieve_m};
 use crate::state::events::TopologyChange;
 use crate::state::loads::GroupLoad;
 use crate::state::model::NamedBody;
@@ -347,14 +347,14 @@ fn first_step(
 
 /// Names, materials and sizes of all bodies.
 fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> {
-    let sieve_m = |name: &String| {
+    let size_m = |name: &String| {
         let body = read.get(name);
         let spheres: Vec<Sphere> = body.map_or(Vec::new(), |body| {
             let both = body.positions.iter().zip(&body.radii);
             both.map(|(place, radius)| Sphere::of_unit_density(*place, *radius))
                 .collect()
         });
-        box_lengths_m(&spheres)[1]
+        sieve_m(&spheres)
     };
     let radii_m = |name: &String| read.get(name).map_or(&[][..], |body| &body.radii);
     let smallest_diameter_m = |name: &String| {
@@ -376,13 +376,13 @@ fn named_bodies(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<NamedBody> 
                 .filter(|radius| 2.0 * **radius < largest_m);
             fine.map(|radius| radius.powi(3)).sum()
         };
-        volume(0.1 * sieve_m(name)) / volume(f64::INFINITY).max(f64::MIN_POSITIVE)
+        volume(0.1 * size_m(name)) / volume(f64::INFINITY).max(f64::MIN_POSITIVE)
     };
     (scene.bodies.iter())
         .map(|(name, body)| NamedBody {
             name: name.clone(),
             material: body.material.clone(),
-            sieve_m: sieve_m(name),
+            sieve_m: size_m(name),
             smallest_diameter_m: smallest_diameter_m(name),
             mean_diameter_m: mean_diameter_m(name),
             fine_fraction: fine_fraction(name),

@@ -10,12 +10,16 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::spheres::{Sphere, across};
+use crate::plan::measures::FEWEST_MIXED_CELLS;
 use crate::state::regions::Region;
 
 /// Points of a sphere that a border cuts: its part on one side is known to some thousandths.
 const POINTS: usize = 500;
 /// Columns of a heap are this wide, in mean diameters.
 const COLUMN: f64 = 0.5;
+/// A column that a sphere enters by less than about half of this part of its radius is beside it:
+/// rounding must not decide for spheres that lie side by side.
+const TOUCHED: f64 = 1e-6;
 
 /// Mass of the part of some spheres that is in a region, kg.
 pub(super) fn mass_within_kg(spheres: &[Sphere], region: &Region) -> f64 {
@@ -70,9 +74,13 @@ pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
             .map(|side| [x, y].map(|middle| ((middle + side * radius_m) / width_m).floor() as i64));
         for i in from[0]..=to[0] {
             for j in from[1]..=to[1] {
-                let [cx, cy] = [i, j].map(|n| (n as f64 + 0.5) * width_m);
-                let left_m2 = radius_m * radius_m - (cx - x).powi(2) - (cy - y).powi(2);
-                if left_m2 >= 0.0 {
+                // The point of the column nearest to the axis of the sphere is the highest.
+                let [aside_m, across_m] = [(i, x), (j, y)].map(|(n, middle)| {
+                    let [low, high] = [n as f64, (n + 1) as f64].map(|end| end * width_m);
+                    (low - middle).max(middle - high).max(0.0)
+                });
+                let left_m2 = radius_m * radius_m - aside_m.powi(2) - across_m.powi(2);
+                if left_m2 > TOUCHED * radius_m * radius_m {
                     let top = tops.entry([i, j]).or_insert(f64::NEG_INFINITY);
                     *top = top.max(z + left_m2.sqrt());
                 }
@@ -152,8 +160,12 @@ impl Mixture {
     /// mixture of pieces of different mass (Stange 1954): sr^2 = p (1 - p) (p m_b + (1 - p) m_a)/M,
     /// with the mean mass m_a and m_b of the pieces of either set, by mass, and M of what a cell
     /// holds. It is s0^2 / n for n equal pieces in each cell. NaN if the region has nothing of one
-    /// of them, or no more than one piece in each cell.
+    /// of them, no more than one piece in each cell, or fewer than [`FEWEST_MIXED_CELLS`] cells: one
+    /// cell is as mixed as can be, whatever lies in it.
     pub(super) fn lacey_index(&self) -> f64 {
+        if self.cells_kg.len() < FEWEST_MIXED_CELLS {
+            return f64::NAN;
+        }
         let all_kg: f64 = self.cells().map(|cell| cell.mass_kg).sum();
         let first_kg: f64 = self.cells_kg.values().map(|[first, _]| first).sum();
         let fraction = first_kg / all_kg;

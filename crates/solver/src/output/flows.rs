@@ -7,7 +7,7 @@ use dem_results::FlowRow;
 use serde::Serialize;
 
 use crate::state::State;
-use crate::state::clusters::sizes::size_of;
+use crate::state::clusters::sizes::mass_kg_of;
 use crate::state::clusters::{Cluster, Clusters};
 
 /// Where the mass of a body is at the end of a run.
@@ -66,8 +66,8 @@ pub(crate) fn body_flows(
         }
     }
     for id in clusters.living() {
-        let size = size_of(id, clusters, &state.particles, &state.clumps);
-        flows[size.body as usize].inside_kg += size.mass_kg;
+        let mass_kg = mass_kg_of(id, clusters, &state.particles, &state.clumps);
+        flows[clusters.history[id as usize].body as usize].inside_kg += mass_kg;
     }
     let history = &clusters.history;
     let is_of_other = |cluster: &Cluster| {

@@ -1,11 +1,11 @@
 //! Size distribution of fragments: those inside at the end, those discharged, and both, by body.
 //!
-//! Size is the opening of the smallest sieve that a fragment passes, the second of its three box
-//! lengths.
+//! Size is the opening of the smallest sieve that a fragment passes.
 
 use std::collections::BTreeMap;
 
 use dem_results::DistributionRow;
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::state::State;
@@ -104,8 +104,9 @@ impl Fragments {
         let clusters = state.clusters.as_ref()?;
         let size = |id: u32| size_of(id, clusters, &state.particles, &state.clumps);
         let discharged = state.population.discharged.iter();
+        let living: Vec<u32> = clusters.living().collect();
         Some(Self {
-            inside: clusters.living().map(size).collect(),
+            inside: living.into_par_iter().map(size).collect(),
             discharged: discharged.map(|one| one.size).collect(),
         })
     }
@@ -122,7 +123,7 @@ impl Fragments {
         let all = discharged.chain(inside);
         let own = all.filter(|one| body.is_none_or(|body| body == one.body));
         let mut chosen: Vec<FragmentSize> = own.copied().collect();
-        chosen.sort_by(|a, b| a.sieve_m().total_cmp(&b.sieve_m()));
+        chosen.sort_by(|a, b| a.sieve_m.total_cmp(&b.sieve_m));
         chosen
     }
 
@@ -207,7 +208,7 @@ impl Fragments {
             return Vec::new();
         };
         let sieves_m = match sieves_m {
-            [] => self::sieves_m(first.sieve_m(), last.sieve_m()),
+            [] => self::sieves_m(first.sieve_m, last.sieve_m),
             given => given.to_vec(),
         };
         let mut rows = Vec::new();
@@ -220,7 +221,7 @@ impl Fragments {
                     continue;
                 }
                 for &sieve_m in &sieves_m {
-                    let end = chosen.partition_point(|one| one.sieve_m() <= sieve_m);
+                    let end = chosen.partition_point(|one| one.sieve_m <= sieve_m);
                     let passing_kg = mass_kg(&chosen[..end]);
                     rows.push(DistributionRow {
                         body: name,
@@ -263,10 +264,10 @@ impl Fragments {
 pub fn steps(sorted: &[FragmentSize]) -> Vec<[f64; 2]> {
     let total_kg = mass_kg(sorted);
     let (mut sum_kg, mut points) = (0.0, Vec::new());
-    for same in sorted.chunk_by(|a, b| a.sieve_m() == b.sieve_m()) {
-        points.push([same[0].sieve_m(), sum_kg / total_kg]);
+    for same in sorted.chunk_by(|a, b| a.sieve_m == b.sieve_m) {
+        points.push([same[0].sieve_m, sum_kg / total_kg]);
         sum_kg += mass_kg(same);
-        points.push([same[0].sieve_m(), sum_kg / total_kg]);
+        points.push([same[0].sieve_m, sum_kg / total_kg]);
     }
     points
 }
@@ -287,10 +288,10 @@ fn summary(sorted: &[FragmentSize], tenth_m: Option<f64>) -> Option<SizeSummary>
             sum_kg += one.mass_kg;
             sum_kg >= fraction * mass_kg
         });
-        reached.unwrap_or(last).sieve_m()
+        reached.unwrap_or(last).sieve_m
     };
     let fines_kg = |tenth_m: f64| {
-        let fines = sorted.partition_point(|one| one.sieve_m() < tenth_m);
+        let fines = sorted.partition_point(|one| one.sieve_m < tenth_m);
         self::mass_kg(&sorted[..fines])
     };
     Some(SizeSummary {

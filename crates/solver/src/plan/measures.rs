@@ -10,6 +10,8 @@ use crate::state::State;
 
 /// Smallest number of particles for which an angle of repose has a meaning.
 pub(crate) const FEWEST_IN_HEAP: usize = 50;
+/// Smallest number of cells with something in them for which a mixing index has a meaning.
+pub(crate) const FEWEST_MIXED_CELLS: usize = 10;
 
 /// Refuses a force or a contact if nothing can touch, a contact between two groups with common
 /// particles, a slope of a heap of few particles, bulking of what has no shape, and broken bonds

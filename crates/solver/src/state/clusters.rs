@@ -5,6 +5,7 @@
 
 mod detection;
 pub mod fragments;
+mod sieve;
 pub mod sizes;
 
 pub use detection::{Cluster, Clusters, Split};

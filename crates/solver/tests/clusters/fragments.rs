@@ -100,6 +100,8 @@ proptest! {
             let members = clusters.members(fragment.fragment_id).iter();
             let largest = members.map(|i| spheres[*i as usize].4).fold(0.0, f64::max);
             prop_assert!(size.box_lengths_m[2] >= 2.0 * largest - 1e-12);
+            prop_assert!(size.sieve_m >= 2.0 * largest - 1e-12);
+            prop_assert!(size.sieve_m <= size.box_lengths_m[1] + 1e-12);
             if fragment.particles == 1 {
                 let at = clusters.members(fragment.fragment_id)[0] as usize;
                 let (place, velocity, spin, force, radius) = spheres[at];

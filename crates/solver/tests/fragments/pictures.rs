@@ -52,7 +52,7 @@ fn numbers_step_when_clusters_split() {
 fn shares_step_at_every_size_up_to_all_of_the_mass() {
     let fragment = |mass_kg: f64, size_m: f64| FragmentSize {
         mass_kg,
-        box_lengths_m: [1.0, size_m, 0.01],
+        sieve_m: size_m,
         ..FragmentSize::default()
     };
     let all = [fragment(1.0, 0.1), fragment(2.0, 0.1), fragment(5.0, 0.5)];

@@ -1,7 +1,7 @@
 //! Sizes of fragments: boxes, sieves, distributions and their numbers.
 
 use dem_run::output::sizes::{Fragments, sieves_m};
-use dem_run::state::clusters::sizes::{FragmentSize, Sphere, box_lengths_m};
+use dem_run::state::clusters::sizes::{FragmentSize, Sphere, box_lengths_m, sieve_m};
 use dem_run::state::model::{Model, NamedBody};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
@@ -51,6 +51,138 @@ proptest! {
 fn a_sphere_has_its_diameter() {
     assert_eq!(box_lengths_m(&block([1; 3], [0.0; 3], [3.0; 3])), [2.0; 3]);
     assert_eq!(box_lengths_m(&[]), [0.0; 3]);
+    assert_eq!(sieve_m(&block([1; 3], [0.0; 3], [3.0; 3])), 2.0);
+    assert_eq!(sieve_m(&block([2, 1, 1], [0.7; 3], [3.0; 3])), 2.0);
+    assert_eq!(sieve_m(&[]), 0.0);
+}
+
+/// A number from 0 to 1, the next of a sequence.
+fn next(state: &mut u64) -> f64 {
+    *state = state
+        .wrapping_mul(6_364_136_223_846_793_005)
+        .wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// The smallest square opening by an independent search: openings at random, then the best of them
+/// turned at random by smaller and smaller angles.
+fn searched_m(spheres: &[Sphere]) -> f64 {
+    let mut state = 7;
+    let width_m = |along: Vector3<f64>| {
+        let ends = spheres.iter().map(|sphere| {
+            let at = Vector3::from(sphere.centre_m).dot(&along);
+            [at - sphere.radius_m, at + sphere.radius_m]
+        });
+        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |so_far, end| {
+            [so_far[0].min(end[0]), so_far[1].max(end[1])]
+        });
+        high - low
+    };
+    let side_m = |q: &UnitQuaternion<f64>| width_m(q * Vector3::x()).max(width_m(q * Vector3::y()));
+    let mut turn = |most: f64| {
+        let axis = [(); 3].map(|()| 2.0 * next(&mut state) - 1.0);
+        UnitQuaternion::from_scaled_axis(Vector3::from(axis) * most)
+    };
+    let mut found: Vec<(f64, UnitQuaternion<f64>)> = (0..3000)
+        .map(|_| turn(3.0))
+        .map(|q| (side_m(&q), q))
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut best_m = f64::INFINITY;
+    for (mut least_m, mut q) in found.into_iter().take(20) {
+        for n in 0..400 {
+            let tried = turn(0.2 * 0.98_f64.powi(n)) * q;
+            let side_m = side_m(&tried);
+            if side_m < least_m {
+                (least_m, q) = (side_m, tried);
+            }
+        }
+        best_m = best_m.min(least_m);
+    }
+    best_m
+}
+
+/// Spheres of a block that `keeps` their places, with radii that scatter by 2 %.
+fn body(
+    counts: [i32; 3],
+    turned: [f64; 3],
+    state: &mut u64,
+    keeps: impl Fn(Vector3<f64>) -> bool,
+) -> Vec<Sphere> {
+    let upright = block(counts, [0.0; 3], [0.0; 3]);
+    let middle = Vector3::from(counts.map(|n| f64::from(n - 1)));
+    let kept = |(at, _): &(&Sphere, Sphere)| keeps(Vector3::from(at.centre_m) - middle);
+    let mut spheres: Vec<Sphere> = upright
+        .iter()
+        .zip(block(counts, turned, [5.0, -3.0, 2.0]))
+        .filter(kept)
+        .map(|(_, sphere)| sphere)
+        .collect();
+    for sphere in &mut spheres {
+        sphere.radius_m *= 1.0 - 0.02 * next(state);
+        sphere.mass_kg *= sphere.radius_m.powi(3);
+    }
+    spheres
+}
+
+/// Regression: sizes were taken along the principal axes of inertia, which a cube has not, so that
+/// one of 42 mm with slightly unequal spheres had 61.7 mm.
+#[test]
+fn a_sieve_size_is_the_smallest_square_opening() {
+    let mut state = 3;
+    let diagonal = |length: f64| (length - 2.0) / 2.0_f64.sqrt() + 2.0;
+    let mut chip_radii_m = || [4.0, 7.0, 1.5].map(|r| r * (1.0 + 0.2 * next(&mut state)));
+    let chips = [chip_radii_m(), chip_radii_m()];
+    for turned in [[0.0; 3], [0.4, -1.1, 0.8], [2.0, 0.3, -0.5]] {
+        let mut all = vec![
+            ("cube", body([7, 7, 7], turned, &mut state, |_| true), 14.0),
+            ("rod", body([9, 2, 2], turned, &mut state, |_| true), 4.0),
+            (
+                "needle",
+                body([60, 1, 1], turned, &mut state, |_| true),
+                2.0,
+            ),
+            // On edge, along the diagonal of the opening.
+            (
+                "plate",
+                body([9, 9, 1], turned, &mut state, |_| true),
+                diagonal(18.0),
+            ),
+            (
+                "long plate",
+                body([14, 6, 1], turned, &mut state, |_| true),
+                diagonal(12.0),
+            ),
+            (
+                "disc",
+                body([15, 15, 1], turned, &mut state, |at| at.norm() < 14.1),
+                f64::NAN,
+            ),
+        ];
+        for radii_m in chips {
+            let inside = |at: Vector3<f64>| at.component_div(&Vector3::from(radii_m)).norm() < 1.0;
+            all.push((
+                "chip",
+                body([9, 9, 5], turned, &mut state, inside),
+                f64::NAN,
+            ));
+        }
+        for (name, spheres, wanted_m) in all {
+            let found_m = sieve_m(&spheres);
+            let searched_m = searched_m(&spheres);
+            assert!(
+                (found_m / searched_m - 1.0).abs() < 0.02,
+                "{name}, {turned:?}: {found_m}, searched {searched_m}"
+            );
+            assert!(found_m <= box_lengths_m(&spheres)[1] * (1.0 + 1e-12));
+            if wanted_m.is_finite() {
+                assert!(
+                    (found_m / wanted_m - 1.0).abs() < 0.025,
+                    "{name}, {turned:?}: {found_m}, wanted {wanted_m}"
+                );
+            }
+        }
+    }
 }
 
 #[test]
@@ -82,6 +214,7 @@ fn fragment(body: u32, mass_kg: f64, size_m: f64) -> FragmentSize {
         mass_kg,
         equivalent_diameter_m: size_m,
         box_lengths_m: [2.0 * size_m, size_m, 0.5 * size_m],
+        sieve_m: size_m,
     }
 }
 

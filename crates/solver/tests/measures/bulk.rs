@@ -109,12 +109,12 @@ fn a_lattice_has_the_bulk_density_of_its_cell() {
 
 #[test]
 fn the_surface_of_a_heap_is_that_of_its_spheres() {
-    // Spheres side by side on the ground: each has the upper half of a ball on a cylinder under it,
-    // 5/3 pi r^3.
+    // Spheres side by side on the ground: each has the columns of width r that it enters, up to the
+    // highest point of each: 14.378 r^3 in the mean over its places.
     let mut random = Random(5);
     let spheres: Vec<[f64; 4]> = (0..400)
         .map(|n| {
-            let [i, j] = [n % 20, n / 20].map(|n| 3.0 * f64::from(n));
+            let [i, j] = [n % 20, n / 20].map(|n| 4.0 * f64::from(n));
             [
                 i + random.within(-0.5, 0.5),
                 j + random.within(-0.5, 0.5),
@@ -125,12 +125,60 @@ fn the_surface_of_a_heap_is_that_of_its_spheres() {
         .collect();
     let rest = "[measures.m]\nquantity = \"bulk_density\"\n";
     let found = values(&scene(&spheres, &[], rest))[0];
-    assert!((found / (0.8 * DENSITY) - 1.0).abs() < 0.02, "{found}");
+    let wanted = 4.0 / 3.0 * PI / 14.378 * DENSITY;
+    assert!((found / wanted - 1.0).abs() < 0.02, "{found} {wanted}");
     // Upwards is against gravity: seen from the side, rows stand above each other.
     let fallen = scene(&spheres, &[], rest)
         .replace("end_time = 1\n", "end_time = 1\ngravity = [-9.81, 0, 0]\n");
     let sideways = values(&fallen)[0];
     assert!(sideways < 0.9 * found, "{sideways} {found}");
+}
+
+/// Regression: the height in the middle of each column was taken, and no column whose middle is
+/// beside all spheres, so that a solid had more than its own density.
+#[test]
+fn a_heap_of_a_lattice_has_the_density_of_its_cell() {
+    let density = |shift: f64, [n, layers]: [i32; 2]| {
+        let place = |n: i32| 2.0 * f64::from(n) + 1.0 + shift;
+        let spheres: Vec<[f64; 4]> = (0..n * n * layers)
+            .map(|at| [at % n, at / n % n, at / n / n].map(place))
+            .map(|[x, y, z]| [x, y, z, 1.0])
+            .collect();
+        values(&scene(
+            &spheres,
+            &[],
+            "[measures.m]\nquantity = \"bulk_density\"\n",
+        ))[0]
+    };
+    let wanted = DENSITY * PI / 6.0;
+    assert_near(density(0.0, [12, 3]), wanted, 1e-9 * wanted);
+    assert_near(density(7.0, [5, 1]), wanted, 1e-9 * wanted);
+    // Beside the grid of columns the rim takes half a column more on each side.
+    let off = |size: [i32; 2]| 1.0 - density(0.3, size) / wanted;
+    let (small, large) = (off([6, 6]), off([40, 40]));
+    assert!((0.0..0.16).contains(&small), "{small}");
+    assert!(large < 0.03 && large < 0.25 * small, "{large}");
+}
+
+#[test]
+fn few_cells_have_no_mixing_index() {
+    let side = |x: f64| -> Vec<[f64; 4]> {
+        (0..125)
+            .map(|n| [n % 5, n / 5 % 5, n / 25].map(f64::from))
+            .map(|[i, j, k]| [x + i, j + 0.5, k + 0.5, 0.4])
+            .collect()
+    };
+    let (a, b) = (side(0.5), side(5.5));
+    let found = |cell: f64| {
+        let rest = format!(
+            "[regions.room]\nbox = {{ min = [0, 0, 0], max = [10, 5, 5] }}\n[measures.m]\nof = \"a\"\nwith = \"b\"\nquantity = \"mixing_index\"\nwithin = \"room\"\ncell_size = {cell}\n"
+        );
+        values(&scene(&a, &b, &rest))[0]
+    };
+    for too_large in [100.0, 10.0, 5.0] {
+        assert!(found(too_large).is_nan(), "{too_large}");
+    }
+    assert_near(found(1.25), 0.0, 1e-12);
 }
 
 #[test]

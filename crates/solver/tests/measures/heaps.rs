@@ -283,3 +283,24 @@ fn a_bed_that_is_flat_on_top_has_no_slope() {
         assert_near(angle_deg(&spheres, DOWN), 0.0, 1e-6);
     }
 }
+
+/// Regression: the cone with the spread of two heaps 0.3 m apart had a slope of 0.3 degrees.
+#[test]
+fn several_heaps_have_no_slope() {
+    let mut random = Random(29);
+    let cone = Cone::of(12.0, 30.0);
+    let heap = dropped(&cone, 0.1, &mut random);
+    assert_near(angle_deg(&heap, DOWN), 30.0, 1.5);
+    let reach = cone.radius();
+    let at = |[x, y]: [f64; 2]| {
+        let moved = move |(place, radius): &Sphere| (place + Vector3::new(x, y, 0.0), *radius);
+        heap.iter().map(moved).collect::<Vec<Sphere>>()
+    };
+    let triangle = [0.0_f64, 2.1, 4.2].map(|turn| [turn.cos(), turn.sin()]);
+    for apart in [2.0, 3.0, 8.0] {
+        let two = [at([0.0; 2]), at([0.6, 0.8].map(|x| apart * reach * x))].concat();
+        assert!(angle_deg(&two, DOWN).is_nan(), "two, {apart}");
+        let three = triangle.map(|place| at(place.map(|x| x * apart * reach / 3.0_f64.sqrt())));
+        assert!(angle_deg(&three.concat(), DOWN).is_nan(), "three, {apart}");
+    }
+}

@@ -1,9 +1,10 @@
-//! Sizes of fragments by the box around them.
+//! Sizes of fragments: the box around them, and the sieve opening that they pass.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::detection::Clusters;
+use super::sieve::{Ball, smallest_opening_m};
 use crate::physics::rotation::rotation;
 use crate::shape::inertia::of_spheres;
 use crate::state::clumps::Clumps;
@@ -21,13 +22,8 @@ pub struct FragmentSize {
     /// Lengths of the box around its spheres along its principal axes of inertia, the longest
     /// first, m. Length 3.
     pub box_lengths_m: [f64; 3],
-}
-
-impl FragmentSize {
-    /// Size of the smallest sieve opening that it passes, m: the second of its box lengths.
-    pub fn sieve_m(&self) -> f64 {
-        self.box_lengths_m[1]
-    }
+    /// Side of the smallest square opening that it passes, m: see [`sieve_m`].
+    pub sieve_m: f64,
 }
 
 /// A fragment or a body that has left through an outlet.
@@ -50,8 +46,30 @@ pub fn size_of(
     particles: &Particles,
     clumps: &Clumps,
 ) -> FragmentSize {
+    let (spheres, mass_kg) = spheres_of(id, clusters, particles, clumps);
+    let cubes: f64 = spheres.iter().map(|s| s.radius_m.powi(3)).sum();
+    FragmentSize {
+        body: clusters.history[id as usize].body,
+        mass_kg,
+        equivalent_diameter_m: 2.0 * cubes.cbrt(),
+        box_lengths_m: box_lengths_m(&spheres),
+        sieve_m: sieve_m(&spheres),
+    }
+}
+
+/// Mass of a present cluster, whether it is a clump or not, kg.
+pub fn mass_kg_of(id: u32, clusters: &Clusters, particles: &Particles, clumps: &Clumps) -> f64 {
+    spheres_of(id, clusters, particles, clumps).1
+}
+
+/// The spheres of a present cluster, and its mass, kg.
+fn spheres_of(
+    id: u32,
+    clusters: &Clusters,
+    particles: &Particles,
+    clumps: &Clumps,
+) -> (Vec<Sphere>, f64) {
     let members = clusters.members(id);
-    let body = clusters.history[id as usize].body;
     let carrier = members.first().and_then(|&i| clumps.carrier_of(i as usize));
     let spheres: Vec<Sphere> = match carrier {
         // The particles contain only its outer spheres.
@@ -82,13 +100,7 @@ pub fn size_of(
         Some(at) => clumps.template(&clumps.all[at]).mass_kg,
         None => spheres.iter().map(|s| s.mass_kg).sum(),
     };
-    let cubes: f64 = spheres.iter().map(|s| s.radius_m.powi(3)).sum();
-    FragmentSize {
-        body,
-        mass_kg,
-        equivalent_diameter_m: 2.0 * cubes.cbrt(),
-        box_lengths_m: box_lengths_m(&spheres),
-    }
+    (spheres, mass_kg)
 }
 
 /// A sphere of a fragment.
@@ -125,20 +137,34 @@ pub fn box_lengths_m(spheres: &[Sphere]) -> [f64; 3] {
         [one] => return [2.0 * one.radius_m; 3],
         _ => {}
     }
+    let mut low = Vector3::repeat(f64::INFINITY);
+    let mut high = Vector3::repeat(f64::NEG_INFINITY);
+    for (place, radius_m) in in_principal_axes(spheres) {
+        low = low.inf(&place.add_scalar(-radius_m));
+        high = high.sup(&place.add_scalar(radius_m));
+    }
+    let mut lengths_m: [f64; 3] = (high - low).into();
+    lengths_m.sort_by(|a, b| b.total_cmp(a));
+    lengths_m
+}
+
+/// Side of the smallest square opening that some spheres pass together, in the best direction and
+/// turned in the best way, m. Zero for no spheres.
+pub fn sieve_m(spheres: &[Sphere]) -> f64 {
+    if let [one] = spheres {
+        return 2.0 * one.radius_m;
+    }
+    smallest_opening_m(&in_principal_axes(spheres))
+}
+
+/// Centres about the common one, in the principal axes of inertia, and radii, m.
+fn in_principal_axes(spheres: &[Sphere]) -> Vec<Ball> {
     let centres_m: Vec<[f64; 3]> = spheres.iter().map(|s| s.centre_m).collect();
     let masses_kg: Vec<f64> = spheres.iter().map(|s| s.mass_kg).collect();
     let inertias_kg_m2: Vec<f64> = spheres.iter().map(|s| s.inertia_kg_m2).collect();
     let properties = of_spheres(&centres_m, &masses_kg, &inertias_kg_m2);
     let to_principal = rotation(properties.axes).inverse();
     let centre = Vector3::from(properties.centre_m);
-    let mut low = Vector3::repeat(f64::INFINITY);
-    let mut high = Vector3::repeat(f64::NEG_INFINITY);
-    for sphere in spheres {
-        let place = to_principal * (Vector3::from(sphere.centre_m) - centre);
-        low = low.inf(&place.add_scalar(-sphere.radius_m));
-        high = high.sup(&place.add_scalar(sphere.radius_m));
-    }
-    let mut lengths_m: [f64; 3] = (high - low).into();
-    lengths_m.sort_by(|a, b| b.total_cmp(a));
-    lengths_m
+    let place = |s: &Sphere| to_principal * (Vector3::from(s.centre_m) - centre);
+    spheres.iter().map(|s| (place(s), s.radius_m)).collect()
 }
