@@ -18,8 +18,9 @@ const STARTS: usize = 8;
 const SAME_VIEW: f64 = 0.95;
 /// Angles by which a frame is turned to improve it: the first, and the last, rad.
 const STEPS: [f64; 2] = [0.12, 1e-4];
-/// Smallest relative gain that counts.
-const GAIN: f64 = 1e-12;
+/// Smallest relative gain that counts, over the angle of the turn, 1/rad: smaller ones would take
+/// many turns and change nothing.
+const GAIN: f64 = 0.02;
 /// Number of spheres above which only those at the surface are looked at, as seen from some
 /// directions: a sphere seen from none of them stands out by 0.3 % of the size at most.
 const MANY: usize = 60;
@@ -143,7 +144,7 @@ fn improved(balls: &[Ball], mut opening: Opening) -> (Opening, f64) {
         for turn in turns() {
             let turned = UnitQuaternion::from_scaled_axis(turn * step);
             let tried = opening.map(|direction| turned * direction);
-            if let Some(side_m) = side_m(balls, &tried, least_m * (1.0 - GAIN)) {
+            if let Some(side_m) = side_m(balls, &tried, least_m * (1.0 - GAIN * step)) {
                 (opening, least_m, is_better) = (tried, side_m, true);
             }
         }
