@@ -33,7 +33,10 @@ struct Row {
 
 /// The curve in a file.
 pub(super) fn read(path: &str) -> Result<SieveCurve> {
-    let bytes = read_input(Path::new(path), "a sieve curve")?;
+    let bytes = read_input(Path::new(path), "a sieve curve").map_err(|mut error| {
+        error.problem = format!("cannot read the sieve curve: {}", error.problem);
+        error
+    })?;
     let text = String::from_utf8(bytes).map_err(|_| {
         Diagnostic::input(
             path,
