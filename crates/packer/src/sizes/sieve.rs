@@ -35,6 +35,7 @@ struct Row {
 pub(super) fn read(path: &str) -> Result<SieveCurve> {
     let bytes = read_input(Path::new(path), "a sieve curve").map_err(|mut error| {
         error.problem = format!("cannot read the sieve curve: {}", error.problem);
+        error.remedy = "give the path of a text file of openings and passing".to_owned();
         error
     })?;
     let text = String::from_utf8(bytes).map_err(|_| {
