@@ -15,6 +15,8 @@ use crate::state::clusters::sizes::{Sphere, box_lengths_m};
 /// across below which a body shows its particles more than its material.
 const ENOUGH_BONDS: f64 = 3.0;
 const ENOUGH_ACROSS: f64 = 10.0;
+/// A body of fewer spheres is written by hand, and no packing.
+const FEWEST: usize = 20;
 /// Width of a chain of spheres over the largest diameter.
 const CHAIN: f64 = 1.05;
 
@@ -58,7 +60,7 @@ fn of_body(body: &Body) -> Vec<String> {
     let [_, width_m, thickness_m] = box_lengths_m(&spheres);
     let diameter_m = 2.0 * body.radii.iter().copied().fold(0.0, f64::max);
     // A bar of single spheres is no packing: its bonds are the material.
-    if width_m <= CHAIN * diameter_m {
+    if count < FEWEST || width_m <= CHAIN * diameter_m {
         return warnings;
     }
     let volume = |radius: &f64| radius.powi(3);
