@@ -6,7 +6,7 @@
 
 use super::chunks::{ordered_sum, ordered_sums};
 use super::stage::{NO_SAVING, Need, Stage};
-use crate::physics::contact::law::ContactKind;
+use crate::physics::contact::law::{ContactKind, Law};
 use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j, pairs_adhesion_j};
@@ -22,6 +22,7 @@ use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
 use crate::state::walls::{Wall, WallLoad};
 use serde::Serialize;
+use std::f64::consts::PI;
 
 /// The ledgers of energy and momentum.
 pub(crate) const LEDGER: Stage = Stage {
@@ -81,6 +82,35 @@ fn pressed_by_a_millionth_j(state: &State) -> f64 {
     })
 }
 
+/// Energy that the attraction of ends that touch, adhesion or liquid, releases until their elastic
+/// force balances it, for one contact of each particle by the law that attracts it most, J.
+/// Contacts may be shorter than the time between two looks at the ledger.
+fn attraction_at_rest_j(state: &State) -> f64 {
+    let Some(contacts) = &state.contacts else {
+        return 0.0;
+    };
+    let of_walls = state.walls.iter().flat_map(|wall| &wall.model.kinds);
+    let kinds: Vec<&ContactKind> = contacts.model.kinds.iter().chain(of_walls).collect();
+    let poses = &state.particles.poses;
+    ordered_sum(poses.len(), |i| {
+        let radius_m = poses[i].radius_m();
+        let of_kind = |kind: &&ContactKind| {
+            let adhesion_n = match &kind.law {
+                Law::DerjaguinMullerToporov(law) => 2.0 * PI * law.work_of_adhesion_j_m2 * radius_m,
+                Law::HertzMindlin(_) | Law::Linear(_) => 0.0,
+            };
+            let bridge_n = kind.bridge.map_or(0.0, |bridge| bridge.largest_n(radius_m));
+            let attraction_n = adhesion_n + bridge_n;
+            // The overlap at rest, by the growth of Hertz's force from a small one.
+            let small_m = 1e-6 * radius_m;
+            let stiffness_n_m = kind.normal_n_m(small_m, radius_m);
+            let overlap_m = (1.5 * attraction_n * small_m.sqrt() / stiffness_n_m).powf(2.0 / 3.0);
+            attraction_n * overlap_m.min(radius_m)
+        };
+        kinds.iter().map(of_kind).fold(0.0, f64::max)
+    })
+}
+
 /// The ledger of a state before its first step.
 pub fn opened(state: &State) -> EnergyLedger {
     let p = &state.particles;
@@ -109,6 +139,7 @@ pub fn opened(state: &State) -> EnergyLedger {
         let stretch = 1e-6 * bonds.initial_length_m(at);
         0.5 * bonds.normal(at) * stretch * stretch
     };
+    ledger.attraction_j = attraction_at_rest_j(state);
     ledger.rounding_floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
     let pressed = state.contacts.as_ref();
     let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
