@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::walls::velocity_at;
+use super::walls::{chunks, velocity_at};
 use crate::physics::contact::law::ContactKind;
 use crate::physics::contact::relaxation::relaxed;
 use crate::physics::rotation::rotation;
@@ -29,7 +29,7 @@ use crate::state::clump_touches::ClumpTouch;
 use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::meetings::Meetings;
-use crate::state::particles::{Motion, Particles};
+use crate::state::particles::{Motion, Particles, Pose};
 use crate::state::walls::Wall;
 
 /// Clumps handled by one task.
@@ -63,7 +63,7 @@ pub(crate) fn share_masses(state: &mut State) -> usize {
         seen.add_pairs(&contacts.scratch.partitions, touches);
     }
     let in_use = state.scratch.meetings.iter();
-    for meetings in in_use.take(super::walls::chunks(&state.walls)) {
+    for meetings in in_use.take(chunks(&state.walls)) {
         add_walls(&state.walls, meetings, contacts, p, touches);
     }
     let free = p.free;
@@ -216,7 +216,7 @@ struct Part<'a> {
 }
 
 impl Part<'_> {
-    fn set_masses(self, all: &Clumps, poses: &[crate::state::particles::Pose]) {
+    fn set_masses(self, all: &Clumps, poses: &[Pose]) {
         if self.clumps.len() > CHUNK {
             let (clumps, others) = self.clumps.split_at(self.clumps.len() / 2);
             let first = others[0].first as usize;

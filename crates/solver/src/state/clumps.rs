@@ -265,8 +265,8 @@ impl Template {
         first..first + self.outer.len()
     }
 
-    /// Inverse mass and inverse mean moment of inertia, 1/kg and 1/(kg m2): the values that
-    /// contacts use for each of its spheres.
+    /// Inverse mass and inverse mean moment of inertia, 1/kg and 1/(kg m2): the values of each of
+    /// its spheres that touches nothing. Contacts share them.
     pub(crate) fn inert(&self) -> [f64; 2] {
         let mean = self.moments_kg_m2.iter().sum::<f64>() / 3.0;
         [1.0 / self.mass_kg, 1.0 / mean]

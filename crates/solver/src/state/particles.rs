@@ -60,11 +60,11 @@ impl Pose {
 pub struct Motion {
     /// m/s. Length 3.
     pub velocity_m_s: [f64; 3],
-    /// 1/mass, 1/kg.
+    /// 1/mass, 1/kg: of a sphere of a clump, that which its contacts see.
     pub inverse_mass: f64,
     /// rad/s. Length 3.
     pub spin_rad_s: [f64; 3],
-    /// 1/moment of inertia, 1/(kg m2).
+    /// 1/moment of inertia, 1/(kg m2): as the inverse mass.
     pub inverse_inertia: f64,
 }
 

@@ -2,8 +2,8 @@
 
 use crate::physics::number::{Number, Vec3};
 
-/// A sphere that may be in contact: a free one, or one of a clump, which then has the clump's mass
-/// and moment of inertia.
+/// A sphere that may be in contact: a free one, or one of a clump, which then has its share of the
+/// clump's mass and moment of inertia.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSphere<T = f64> {
     /// Velocity of the centre halfway through the step, m/s: its displacement in the step over the
