@@ -27,7 +27,7 @@ use crate::state::walls::Wall;
 pub(crate) const FARTHEST: f64 = 0.5;
 /// Fraction of the step of any impact that flat landings of clumps take: all of the energy of a
 /// body is in them, and is to be kept to 1e-3.
-const FLAT: f64 = 0.5;
+const FLAT: f64 = 0.4;
 
 /// The chosen step and its basis.
 #[derive(Debug, Clone, Copy, PartialEq)]
