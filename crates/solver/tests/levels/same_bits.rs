@@ -42,7 +42,7 @@ fn cakes(end_s: f64) -> String {
         + &cake("b", "soft", 0.13, 0.0)
         + &cake("c", "hard", 0.26, -4.0)
         + &clump("d", 1e-3, -1.0)
-        + &clump("e", 34e-3, -2.5)
+        + &clump("e", 34e-3, -1.4)
 }
 
 #[test]
