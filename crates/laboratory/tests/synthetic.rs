@@ -75,6 +75,39 @@ fn modulus_and_strength_come_back() {
     }
 }
 
+/// The stiffness of a curve without a straight part, F = c x^1.5 as of soft contacts, is its slope
+/// between 20 % and 60 % of the largest force, as in a simulated test.
+#[test]
+fn the_stiffness_of_a_curved_part_is_that_of_a_simulated_test() {
+    let (c, failure_m) = (4e6, 2e-3_f64);
+    let travel_m: Vec<f64> = (0..2000).map(|row| 2e-6 * f64::from(row)).collect();
+    let force = |x: &f64| match x - 1e-3 {
+        way if way > failure_m => 0.0,
+        way => c * way.max(0.0).powf(1.5),
+    };
+    let force_n: Vec<f64> = travel_m.iter().map(force).collect();
+    let largest_n = c * failure_m.powf(1.5);
+    let inner = travel_m
+        .iter()
+        .zip(&force_n)
+        .filter(|(x, force)| **x < 1e-3 + failure_m && (0.2..0.6).contains(&(**force / largest_n)));
+    let (ways, forces): (Vec<f64>, Vec<f64>) = inner.map(|(x, force)| (*x, *force)).unzip();
+    let wanted = dem_laboratory::Line::fitted(&ways, &forces);
+    let lines = (1..=travel_m.len()).collect();
+    let one = MeasuredSpecimen {
+        curve: Curve::new(travel_m, force_n, lines).unwrap(),
+        ..specimen("soft", &USUAL)
+    };
+    let found = evaluate(vec![one]).remove(0);
+    assert!((found.regions.stiffness_n_m / wanted.slope - 1.0).abs() < 2e-3);
+    assert!((found.regions.start_m - wanted.zero()).abs() < 2e-6);
+    assert!(
+        found.notes[0].starts_with("the slope changes by"),
+        "{:?}",
+        found.notes
+    );
+}
+
 #[test]
 fn several_specimens_have_a_mean_and_a_scatter() {
     let stiffnesses = [17e3, 18e3, 20e3];

@@ -243,7 +243,8 @@ fn pressed(
     } else {
         seen.outline(low_m, low_m + depth_m)
     };
-    let half_m = 0.5 * seen.diameter_m;
+    // A layer of a lattice is always in it.
+    let half_m = 0.51 * seen.diameter_m;
     let inner = [0.35, 0.5, 0.65].map(|at| {
         let middle_m = low_m + at * (high_m - low_m);
         area_m2(&seen.outline(middle_m - half_m, middle_m + half_m))

@@ -25,6 +25,8 @@ fn block(upper: &str, degrees: f64, kind: &str, more: &str) -> String {
     format!(
         r#"version = 1
 [run]
+end_time = "1 ms"
+time_step = "1 us"
 [materials.rock]
 density = 2500
 young_modulus = "1 GPa"

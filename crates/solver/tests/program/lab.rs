@@ -82,8 +82,8 @@ fn three_specimens_of_three_rigs_have_a_modulus_and_a_strength() {
 #[test]
 fn a_table_names_dimensions_and_cracks() {
     let bench = Bench::new();
-    for name in ["one.csv", "two.csv", "three.csv"] {
-        bench.write(name, csv(&USUAL));
+    for (seed, name) in (1..).zip(["one.csv", "two.csv", "three.csv"]) {
+        bench.write(name, csv(&Made { seed, ..USUAL }));
     }
     let table = bench.write(
         "specimens.csv",
@@ -251,6 +251,12 @@ fn a_simulated_test_is_compared_with_the_measured_curve() {
     // Modulus and strength of the measured material are what the results are compared with.
     let theory = value("strength")["theory"].as_f64().unwrap();
     assert!((theory / 0.2e6 - 1.0).abs() < 0.005, "{theory}");
+    assert_eq!(value("strength")["theory_is"], "measured");
+    assert_eq!(value("modulus by travel")["theory_is"], "measured");
+    let page = std::fs::read_to_string(bench.path("out/report.html")).unwrap();
+    for column in ["simulated", "target (measured)", "deviation"] {
+        assert!(page.contains(column), "{column}");
+    }
     let plot = std::fs::read_to_string(bench.path("out/plots/force-displacement.svg")).unwrap();
     assert!(plot.contains("measured"));
     let inputs = summary["inputs"].to_string();

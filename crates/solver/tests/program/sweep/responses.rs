@@ -201,6 +201,36 @@ fn the_median_is_found_where_that_is_looked_for() {
     assert!(said.contains("its runs are of another [find]"), "{said}");
 }
 
+/// An axis that changes nothing, and a value that stands twice, make scatter that is none.
+#[test]
+fn seeds_without_effect_and_equal_values_are_named() {
+    let rest = REST
+        .replace("average_over = \"loads.tip.force\"\n", "")
+        .replace(
+            "\"loads.tip.force\" = [[\"0.9 kN\", 0, 0], [\"1.1 kN\", 0, 0]]",
+            "\"run.seed\" = [1, 2, 2]\n\"bonds.steel.young_modulus\" = [\"100 GPa\"]",
+        );
+    let bench = bench(&format!("{rest}[measures.tip]\n"));
+    good(&bench, &[]);
+    let notes = json(&bench)["notes"].to_string();
+    assert!(
+        notes.contains("run.seed changes no value of any measure"),
+        "{notes}"
+    );
+    assert!(
+        notes.contains("run.seed has the value 2 more than once"),
+        "{notes}"
+    );
+    // What varies cannot be set as well.
+    let both = rest.replace("[set]", "[set]\n\"run.seed\" = 7");
+    bench.write("study.toml", format!("{both}[measures.tip]\n"));
+    let said = bad(&bench, &["--force"], 2);
+    assert!(
+        said.contains("[set] gives run.seed, which varies; remove it from [set]"),
+        "{said}"
+    );
+}
+
 #[test]
 fn a_value_is_found() {
     let bench = study_bench(FIND);
@@ -209,6 +239,10 @@ fn a_value_is_found() {
     assert!(said.contains("20 runs of spring.toml, once each"), "{said}");
     assert!(
         said.contains("find         tip passes 2e-8 m between bonds.steel.young_modulus = 15"),
+        "{said}"
+    );
+    assert!(
+        said.contains(" (resolution of the search; with 95 % confidence between "),
         "{said}"
     );
     let table = json(&bench);
