@@ -316,7 +316,7 @@ impl SizeSummary {
         model: &Model,
     ) -> Self {
         let is_fragment = |size_m: f64| {
-            let mut own = sorted.iter().filter(|one| one.sieve_m() == size_m);
+            let mut own = sorted.iter().filter(|one| one.sieve_m == size_m);
             own.any(|one| {
                 let body = model.bodies.get(one.body as usize);
                 body.is_some_and(|body| size_m < WHOLE * body.sieve_m)
