@@ -15,8 +15,8 @@ use crate::units::significant;
 use ascii::begins_with_solid;
 pub(crate) use facets::Facets;
 use facets::{REMEDY_AGAIN, is_blank};
-use precision::moved_by_single_precision;
 pub use precision::single_precision_keeps;
+use precision::{MOST_MOVED, moved_by_single_precision};
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 pub use write::write_stl;
@@ -32,9 +32,6 @@ const MOST_FACETS: usize = 1_000_000_000;
 /// facet there.
 const MOST_STREAM: u64 = 1 << 30;
 const MOST_PADDING: u64 = 1 << 20;
-
-/// Part of the size by which single precision may move corners without a word.
-const MOST_MOVED: f64 = 1e-4;
 
 /// The remedy for a file that is not truncated but of another type.
 const REMEDY_OTHER: &str = "give an ASCII or binary STL file";

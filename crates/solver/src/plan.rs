@@ -24,6 +24,7 @@ mod stages;
 mod test_rig;
 mod test_section;
 pub mod test_setup;
+mod test_walls;
 pub mod time_step;
 mod unfinished;
 mod walls;
@@ -195,20 +196,7 @@ pub fn plan(
     forecast.warnings = told_once(forecast.warnings, scene.bodies.keys());
     let stages = planned_stages(&state, scene);
     leave_out(&stages, &mut state);
-    let test = scene.test.as_ref().map(|test| {
-        let particles = particles_of(&groups, &test.body);
-        let supports = scene.supports.values();
-        let (driven, held): (Vec<_>, Vec<_>) =
-            supports.partition(|support| test.crosshead.contains(&support.group));
-        let halves = [driven, held].map(|supports| -> Vec<u32> {
-            let all = supports.iter();
-            all.flat_map(|support| particles_of(&groups, &support.group))
-                .copied()
-                .collect()
-        });
-        setup(scene, test, &state, particles, &halves, tested_m3)
-    });
-    let test = test.transpose()?;
+    let test = planned_test(scene, &groups, &state, tested_m3)?;
     if let Some(setup) = &test {
         notes.extend(setup.notes.iter().cloned());
         warnings.extend(setup.warnings.iter().cloned());
@@ -228,6 +216,29 @@ pub fn plan(
         forecast,
         inputs,
     })
+}
+
+/// The test of a scene. `shape_m3`: volume of the shape of the tested body.
+fn planned_test(
+    scene: &Scene,
+    groups: &BTreeMap<String, Vec<u32>>,
+    state: &State,
+    shape_m3: Option<f64>,
+) -> Result<Option<Setup>> {
+    let Some(test) = &scene.test else {
+        return Ok(None);
+    };
+    let particles = particles_of(groups, &test.body);
+    let supports = scene.supports.values();
+    let (driven, held): (Vec<_>, Vec<_>) =
+        supports.partition(|support| test.crosshead.contains(&support.group));
+    let halves = [driven, held].map(|supports| -> Vec<u32> {
+        let all = supports.iter();
+        all.flat_map(|support| particles_of(groups, &support.group))
+            .copied()
+            .collect()
+    });
+    setup(scene, test, state, particles, &halves, shape_m3).map(Some)
 }
 
 /// Largest acceleration that a run can be made with, m/s2: a thousand times that of an

@@ -283,7 +283,8 @@ fn piped(arguments: &[&str], input: &[u8]) -> Output {
 /// Standard error without the warnings at the start of a run, which can be doubtful and still end
 /// well: `verdict.rs` tests those.
 fn without_warnings(said: &str) -> String {
-    let lines = said.lines().filter(|line| !line.starts_with("warning: "));
+    let is_said = |line: &&str| !line.starts_with("warning: ") && !line.starts_with("note: ");
+    let lines = said.lines().filter(is_said);
     lines.map(|line| format!("{line}\n")).collect()
 }
 

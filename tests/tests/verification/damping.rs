@@ -432,8 +432,7 @@ fn particle_damping() -> [String; 2] {
     ]
 }
 
-/// Fall of a sphere with particle damping: speed after 1000 steps, in the first of which it is at
-/// rest and not damped.
+/// Fall of a sphere with local damping, which does not act on what nothing holds.
 fn fall() -> String {
     let cases = [0.0, 0.2, 0.5].map(|gamma| {
         let mut state = started(&format!(
@@ -450,8 +449,7 @@ fn fall() -> String {
         }
         let since_s = state.time_s - 0.5 * state.time_step_s;
         let acceleration = -velocity(&state, 0).z / since_s;
-        let bound = 1e-9 + 1e-3 * gamma / (1.0 - gamma);
-        Case::new(format!("{gamma}"), acceleration, (1.0 - gamma) * GRAVITY_M_S2, bound)
+        Case::new(format!("{gamma}"), acceleration, GRAVITY_M_S2, 1e-9)
     });
     compared("gamma", "m/s2", &cases)
 }

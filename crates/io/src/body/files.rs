@@ -61,8 +61,9 @@ impl Pair {
         &self,
         read: impl FnOnce(&mut dyn BufRead, &mut dyn BufRead) -> Result<Body>,
     ) -> Result<Body> {
+        let particles = open(&self.particles)?;
         let mut bonds = open(&self.bonds)?;
-        self.read_with(&mut bonds, read)
+        self.read_with(particles, &mut bonds, read)
     }
 
     /// Reads the spheres, and the bonds if there is a file of bonds; `no_bonds` is such a file
@@ -75,16 +76,16 @@ impl Pair {
         if self.bonds.exists() {
             self.read(read)
         } else {
-            self.read_with(&mut no_bonds, read)
+            self.read_with(open(&self.particles)?, &mut no_bonds, read)
         }
     }
 
     fn read_with(
         &self,
+        mut particles: impl BufRead,
         bonds: &mut dyn BufRead,
         read: impl FnOnce(&mut dyn BufRead, &mut dyn BufRead) -> Result<Body>,
     ) -> Result<Body> {
-        let mut particles = open(&self.particles)?;
         // The readers name the file "particles" or "bonds".
         read(&mut particles, bonds).map_err(|mut error| {
             for (part, path) in [("particles", &self.particles), ("bonds", &self.bonds)] {

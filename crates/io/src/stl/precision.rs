@@ -1,7 +1,9 @@
 //! What single precision does to corners.
 
-use super::MOST_MOVED;
 use crate::bounds::Bounds;
+
+/// Part of the size by which single precision may move corners without a word.
+pub(super) const MOST_MOVED: f64 = 1e-4;
 
 /// Rounding of corners to single precision, in the unit of the corners.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use dem_io::body::{read_body, write_body};
 
-use super::bodies::triangle;
+use super::bodies::{triangle, with_derived_bonds};
 
 #[test]
 fn an_unknown_ending_lists_the_known_ones() {
@@ -91,7 +91,7 @@ fn a_full_disk_is_said() {
     for name in ["full.vtp", "full.data"] {
         let link = folder.path().join(name);
         std::os::unix::fs::symlink("/dev/full", &link).unwrap();
-        let error = write_body(&triangle(), &link).unwrap_err();
+        let error = write_body(&with_derived_bonds(triangle()), &link).unwrap_err();
         assert_eq!(error.exit_code(), 1);
         assert!(error.problem.starts_with("no space left"), "{error}");
     }

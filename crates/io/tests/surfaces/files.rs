@@ -13,7 +13,6 @@ fn clean_files_need_no_repair_and_no_word() {
         ("02_binary_box_mm", 2400.0),
         ("13_thin_plate_50x50x1", 2500.0),
         ("19_solid_header_binary_box", 2400.0),
-        ("20_offset_1e6_box_float32", 2400.0),
         ("22_torus_R20_r5", 9_849.800_933),
         ("29_dumbbell_neck_d1", 8_313.289_231),
     ] {
@@ -27,6 +26,16 @@ fn clean_files_need_no_repair_and_no_word() {
         };
         assert_eq!(surface.repairs, clean, "{name}");
     }
+}
+
+#[test]
+fn single_precision_far_from_the_origin_is_noted() {
+    let surface = shape("20_offset_1e6_box_float32");
+    assert_volume(&surface, 2400.0);
+    let [note] = &surface.warnings[..] else {
+        panic!("{:?}", surface.warnings);
+    };
+    assert!(note.contains("0.16 % of its size"), "{note}");
 }
 
 #[test]

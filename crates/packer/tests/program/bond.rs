@@ -191,13 +191,13 @@ fn a_list_of_spheres_needs_no_file_of_bonds() {
         let output = bond(&bench, &[name, "-o", "s.vtp"]);
         let said = String::from_utf8(output.stdout).unwrap();
         assert!(output.status.success(), "{name}");
-        // Two bonds tell nothing of directions.
+        // Three bonds tell nothing of directions: the ends touch as well.
         assert!(
             said.contains("too few bonds to tell whether isotropic"),
             "{said}"
         );
         let body = read_body(&bench.path("s.vtp")).unwrap();
-        assert_eq!((body.radii.len(), body.bonds.len()), (3, 2), "{name}");
+        assert_eq!((body.radii.len(), body.bonds.len()), (3, 3), "{name}");
     }
     let output = bond(&bench, &["stone.txt", "-o", "stone.txt"]);
     assert_eq!(output.status.code(), Some(2));

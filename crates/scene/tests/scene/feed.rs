@@ -278,6 +278,7 @@ fn values_in_words() {
             "replacement.pair.restore.strain_energy 0.01 J/kg",
             "replacement.pair.restore.fluctuation_velocity 0.005 m/s",
             "inlets.feed.bodies rock: 3, cake: 0.5",
+            "inlets.feed.shares_by number",
             "inlets.feed.region gate",
             "inlets.feed.rate 4 1/s",
             "inlets.feed.velocity [3, 0, 0] m/s",

@@ -5,7 +5,7 @@ use dem_io::units::{show_quantity, significant};
 use dem_scene::{Scene, Test, Wall, WallShape};
 use nalgebra::Vector3;
 
-use super::test_setup::{middle_of, placed};
+use super::test_walls::{middle_of, placed};
 use crate::state::State;
 use dem_laboratory::TestType;
 

@@ -4,10 +4,11 @@
 use dem_io::units::{show_length, show_quantity, significant};
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Scene, Test, Wall, WallShape};
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use super::test_rig::{Said, compare_with_body, compare_with_pins, dimension};
 use super::test_section::look_at_bar;
+use super::test_walls::{middle_of, placed};
 use crate::state::State;
 use dem_laboratory::theory::Beam;
 use dem_laboratory::{Specimen, TestType};
@@ -434,13 +435,6 @@ fn pin(name: &str, wall: &Wall) -> std::result::Result<Pin, Refusal> {
     Ok((0.5 * (from + to), (to - from).normalize()))
 }
 
-/// Initial position of a point of a wall's shape.
-pub(super) fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
-    let turned = UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
-    let pivot = Vector3::from(wall.pivot_m);
-    pivot + turned * (Vector3::from(point_m) - pivot)
-}
-
 /// Normal of a plane at the start. None: it is another shape.
 fn normal_of(wall: &Wall) -> Option<Vector3<f64>> {
     let WallShape::Plane { point_m, normal } = wall.shape else {
@@ -528,19 +522,6 @@ fn pulls_apart(scene: &Scene, test: &Test, state: &State, halves: &[Vec<u32>; 2]
     };
     let place = format!("{}: [test]", scene.source);
     Err(Diagnostic::input(place, problem, remedy))
-}
-
-/// The middle of a wall. None: it is not known where the surface of an STL file would meet the
-/// body.
-pub(super) fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
-    Some(match &wall.shape {
-        WallShape::Plane { point_m, .. } => placed(wall, *point_m),
-        WallShape::Box { min, max } => 0.5 * (placed(wall, *min) + placed(wall, *max)),
-        WallShape::Cylinder { from_m, to_m, .. } => {
-            0.5 * (placed(wall, *from_m) + placed(wall, *to_m))
-        }
-        WallShape::Stl { .. } => return None,
-    })
 }
 
 /// A disc: its axis is the one of x, y and z, perpendicular to the load, along which it is

@@ -4,6 +4,8 @@
 //! half at its end. So the ledger is as accurate as the step: its error falls with the square of
 //! the time step.
 
+use nalgebra::Vector3;
+
 use super::chunks::{ordered_sum, ordered_sums};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::contact::law::{ContactKind, Law};
@@ -431,15 +433,6 @@ pub fn balance(state: &mut State) -> Balance {
     ledger.attraction_j = ledger.attraction_j.max(attraction_j);
     ledger.momentum_scale = ledger.momentum_scale.max(scales[0]);
     ledger.angular_momentum_scale = ledger.angular_momentum_scale.max(scales[1]);
-    let off = |is: [f64; 3], should: [f64; 3], scale: f64| {
-        over(
-            (0..3)
-                .map(|k| (is[k] - should[k]).powi(2))
-                .sum::<f64>()
-                .sqrt(),
-            scale,
-        )
-    };
     Balance {
         kinetic_j: kinetic,
         elastic_normal_j: elastic.normal,
@@ -476,6 +469,11 @@ pub fn balance(state: &mut State) -> Balance {
         ),
         momentum_scales: [ledger.momentum_scale, ledger.angular_momentum_scale],
     }
+}
+
+/// Distance of a vector from what it should be, over a scale.
+fn off(is: [f64; 3], should: [f64; 3], scale: f64) -> f64 {
+    over((Vector3::from(is) - Vector3::from(should)).norm(), scale)
 }
 
 /// A ratio; 0 if there is nothing to compare with.

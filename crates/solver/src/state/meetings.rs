@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::particles::Pose;
 use super::walls::WallContact;
-use crate::geometry::Touch;
+use crate::geometry::{Place, Touch};
 
 /// What some of the particles near a wall meet. Valid for one step.
 #[derive(Debug, Clone, Default)]
@@ -76,6 +76,24 @@ pub struct Joint {
     pub chunk: usize,
     /// Number of the meeting in the chunk.
     pub at: usize,
+}
+
+/// A touch of a sphere with a wall: the wall, the place, and whether it continues a contact.
+pub type WallTouch = (usize, Place, bool);
+
+/// Vectors of the search for walls that meet, kept from step to step for their memory only.
+#[derive(Debug, Clone, Default)]
+pub struct JointBuffers {
+    /// Meetings of particles that touch several walls.
+    pub joints: Vec<Joint>,
+    /// The first chunk of meetings of each touched wall, and the one after its last.
+    pub of_walls: Vec<[usize; 2]>,
+    /// The touches of one sphere.
+    pub touches: Vec<WallTouch>,
+    /// Those of them that are yet to be compared.
+    pub left: Vec<usize>,
+    /// Of those that stand for one surface, the one kept and one dropped.
+    pub doubles: Vec<(usize, usize)>,
 }
 
 /// Interaction of a particle and a wall at one point.

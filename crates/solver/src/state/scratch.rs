@@ -4,7 +4,7 @@ use super::bridges::BridgeScratch;
 use super::clump_touches::ClumpTouch;
 use super::clusters::Clusters;
 use super::events::Events;
-use super::meetings::{Joint, Meetings};
+use super::meetings::{JointBuffers, Meetings};
 use super::particles::{Motion, Wrench};
 use super::partitions::Partition;
 use super::population::{OutletWatch, Surroundings};
@@ -43,7 +43,7 @@ pub struct Scratch {
     /// Where particles meet a wall: for each chunk of those near it.
     pub meetings: Vec<Meetings>,
     /// Meetings of particles that touch several walls.
-    pub joints: Vec<Joint>,
+    pub joints: JointBuffers,
     /// What touches each sphere that a clump carries. All are cleared between steps.
     pub clump_touches: Vec<ClumpTouch>,
     /// Power that each clump takes in, W: see `stages/intake.rs`.

@@ -190,7 +190,8 @@ fn a_body_that_starts_inside_a_solid_surface_is_refused() {
         let text = scene(&wall(name, &triangles), inside, "");
         let notes = tried(&text).unwrap().notes;
         assert!(notes[0].contains(said), "{notes:?}");
-        assert_eq!(notes.len(), 1, "{notes:?}");
+        let of_surface = notes.iter().filter(|note| !note.contains("pivot"));
+        assert_eq!(of_surface.count(), 1, "{notes:?}");
     }
 }
 

@@ -37,7 +37,7 @@ fn it_falls_as_clumps_become_clusters_and_rises_when_it_may() {
     let changes = steps_of_events(&bench, "following");
     let (cause, [before_s, after_s]) = &changes[0];
     assert!(
-        cause == "replacement" && *before_s > 4.0 * after_s,
+        cause == "replacement" && *before_s > 2.0 * after_s,
         "{changes:?}"
     );
     let rises = |(cause, [before_s, after_s]): &(String, [f64; 2])| {

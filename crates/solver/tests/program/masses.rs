@@ -105,7 +105,7 @@ fn a_body_density_and_a_mass_are_kept_and_noted_no_more() {
     let bench = bench(&[], Some(SHAPE_M3));
     for (set, kg) in [
         ("bodies.row.body_density=2050 kg/m3", 2050.0 * SHAPE_M3),
-        ("bodies.row.mass=1 g", 1e-3),
+        ("bodies.row.mass=0.1 g", 1e-4),
     ] {
         let [_, errors] = said(&bench, &["scene.toml", "--set", set]);
         assert_eq!(errors, "");

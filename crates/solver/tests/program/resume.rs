@@ -427,7 +427,7 @@ loads.b = { group = "b", force = [0, "1e-5 N", 0] }
 supports.c = { group = "c", velocity = { y = "1 mm/s" } }
 regions.below = { box = { min = ["-2 mm", "-2 mm", "-1 m"], max = ["2 mm", "2 mm", "-5 mm"] } }
 outlets.below = { inside = "below" }
-output = { frames = "5 ms" }
+output = { frames = "5 ms", series = "10 us" }
 "#,
     );
     bench.good(&scene, &["--output", "whole"]);

@@ -277,7 +277,7 @@ fn a_sweep_compares_it_with_steps() {
         String::from_utf8_lossy(&output.stderr)
     );
     let table = bench.path("study-sweep/sweep.csv");
-    let [steps, at_once] = numbers(&table, "tip_deflection_value")[..] else {
+    let [steps, at_once] = numbers(&table, "tip_deflection_value (m)")[..] else {
         panic!("two runs")
     };
     assert!((at_once / steps - 1.0).abs() < 1e-8);

@@ -3,9 +3,9 @@
 //! Of the touches that stand for one surface the nearest is kept, with the contact history of the
 //! wall from which the sphere comes.
 
+use crate::geometry::Touch;
 use crate::geometry::one_surface::is_one;
-use crate::geometry::{Place, Touch};
-use crate::state::meetings::{Joint, Meeting, Meetings};
+use crate::state::meetings::{Joint, JointBuffers, Meeting, Meetings, WallTouch};
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::Wall;
 
@@ -14,24 +14,32 @@ use crate::state::walls::Wall;
 const AS_NEAR: f64 = 1e-6;
 
 /// Keeps, of meetings of a particle with several walls that stand for one surface, only one.
-/// `joints`: kept for its memory.
+/// `buffers`: kept for their memory.
 pub(super) fn join_walls(
     walls: &[Wall],
     meetings: &mut [Meetings],
     particles: &Particles,
-    joints: &mut Vec<Joint>,
+    buffers: &mut JointBuffers,
 ) {
-    find_joints(walls.len(), meetings, particles, joints);
+    find_joints(walls.len(), meetings, particles, buffers);
+    let JointBuffers {
+        joints,
+        touches,
+        left,
+        doubles,
+        ..
+    } = buffers;
     for some in joints.chunk_by(|a, b| a.particle == b.particle) {
         let pose = &particles.poses[some[0].particle as usize];
-        let touches = some.iter().map(|joint| {
+        touches.clear();
+        touches.extend(some.iter().map(|joint| {
             let meeting = &meetings[joint.chunk].all[joint.at];
             let shape = &walls[joint.wall].model.shape;
             let place = shape.place(meeting.there, pose.radius_m());
             (joint.wall, place, meeting.old.is_some())
-        });
-        let touches: Vec<(usize, Place, bool)> = touches.collect();
-        for (kept, dropped) in doubles(&touches, pose.radius_m()) {
+        }));
+        find_doubles(touches, pose.radius_m(), left, doubles);
+        for &(kept, dropped) in doubles.iter() {
             drop_double(walls, meetings, pose, [&some[kept], &some[dropped]]);
         }
     }
@@ -50,18 +58,21 @@ fn find_joints(
     walls: usize,
     meetings: &[Meetings],
     particles: &Particles,
-    joints: &mut Vec<Joint>,
+    JointBuffers {
+        joints, of_walls, ..
+    }: &mut JointBuffers,
 ) {
     joints.clear();
     let first_of = |wall: usize| meetings.partition_point(|some| some.of.0 < wall);
-    let of_walls: Vec<[usize; 2]> = (0..walls)
+    let touched = (0..walls)
         .map(|wall| [first_of(wall), first_of(wall + 1)])
         .filter(|[first, end]| {
             meetings[*first..*end]
                 .iter()
                 .any(|some| !some.all.is_empty())
-        })
-        .collect();
+        });
+    of_walls.clear();
+    of_walls.extend(touched);
     let count = |[first, end]: [usize; 2]| -> usize {
         meetings[first..end].iter().map(|some| some.all.len()).sum()
     };
@@ -128,11 +139,17 @@ fn add_common(
     }
 }
 
-/// Which of the touches of a sphere with several walls stand for one surface: pairs of the one kept
-/// and one dropped. For each the wall, the place, and whether it continues a contact.
-fn doubles(touches: &[(usize, Place, bool)], radius_m: f64) -> Vec<(usize, usize)> {
-    let mut found = Vec::new();
-    let mut left: Vec<usize> = (0..touches.len()).collect();
+/// Finds which of the touches of a sphere with several walls stand for one surface: pairs of the
+/// one kept and one dropped. `left`: kept for its memory.
+fn find_doubles(
+    touches: &[WallTouch],
+    radius_m: f64,
+    left: &mut Vec<usize>,
+    found: &mut Vec<(usize, usize)>,
+) {
+    found.clear();
+    left.clear();
+    left.extend(0..touches.len());
     let distance_m = |at: usize| touches[at].1.touch.distance_m;
     loop {
         let nearest = left.iter().map(|at| distance_m(*at));
@@ -145,7 +162,7 @@ fn doubles(touches: &[(usize, Place, bool)], radius_m: f64) -> Vec<(usize, usize
             (!place.is_flat, !goes_on, *wall)
         });
         let Some(kept) = kept else {
-            return found;
+            return;
         };
         left.retain(|&at| {
             let is_double = at != kept
@@ -193,8 +210,9 @@ pub(crate) fn drop_doubles(walls: &[Wall], touches: &mut Vec<(usize, Touch)>, ra
         let shape = &walls[*wall].model.shape;
         (*wall, shape.place(*touch, radius_m), false)
     });
-    let places: Vec<(usize, Place, bool)> = places.collect();
-    let dropped = doubles(&places, radius_m);
+    let places: Vec<WallTouch> = places.collect();
+    let mut dropped = Vec::new();
+    find_doubles(&places, radius_m, &mut Vec::new(), &mut dropped);
     let mut at = 0..;
     touches.retain(|_| {
         let at = at.next();

@@ -1,0 +1,24 @@
+//! Where the walls of a test are at the start.
+
+use dem_scene::{Wall, WallShape};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Initial position of a point of a wall's shape.
+pub(super) fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
+    let turned = UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));
+    let pivot = Vector3::from(wall.pivot_m);
+    pivot + turned * (Vector3::from(point_m) - pivot)
+}
+
+/// The middle of a wall. None: it is not known where the surface of an STL file would meet the
+/// body.
+pub(super) fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
+    Some(match &wall.shape {
+        WallShape::Plane { point_m, .. } => placed(wall, *point_m),
+        WallShape::Box { min, max } => 0.5 * (placed(wall, *min) + placed(wall, *max)),
+        WallShape::Cylinder { from_m, to_m, .. } => {
+            0.5 * (placed(wall, *from_m) + placed(wall, *to_m))
+        }
+        WallShape::Stl { .. } => return None,
+    })
+}
