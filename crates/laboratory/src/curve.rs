@@ -334,10 +334,8 @@ impl Wanted<'_> {
         })?;
         let values = table.numbers(column, self.name)?;
         let values: Vec<f64> = values.into_iter().map(|value| size * value).collect();
-        match values
-            .iter()
-            .position(|value| !(value.abs() <= self.largest))
-        {
+        let is_possible = |value: &f64| value.abs() <= self.largest;
+        match values.iter().position(|value| !is_possible(value)) {
             Some(row) => {
                 let problem = format!(
                     "the {} is {:e} {}, more than any test rig has ({:e})",

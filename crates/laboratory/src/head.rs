@@ -92,7 +92,7 @@ fn is_row_of_units(cells: &[String]) -> bool {
     let is_name = |cell: &&str| !is_unit(cell) && (cell.contains(' ') || cell.contains(['(', '[']));
     filled.iter().any(|cell| is_travel_or_force(cell))
         && 2 * known >= filled.len()
-        && !filled.iter().any(|cell| is_name(cell))
+        && !filled.iter().any(is_name)
 }
 
 /// Whether cells are the head of a table: one of them is a unit, or a name with one.

@@ -2,7 +2,7 @@
 //!
 //! A touch is a point of the wall that is nearer to the centre than the wall around it. A flat or
 //! convex wall has one; in a concave corner each side has one. Walls that meet, and the facets of a
-//! rough surface, act as one surface: see [`one_surface`].
+//! rough surface, act as one surface: see `one_surface`.
 //!
 //! Planes, boxes and cylinders are solid: a centre inside is pushed out the shortest way. A
 //! [`Mesh`] is a surface with two sides, open or closed: it pushes towards the side of the centre,

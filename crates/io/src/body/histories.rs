@@ -257,7 +257,8 @@ pub(super) fn check(histories: &BondHistories<'_>, lengths_m: &[f64]) -> Result<
     } = *histories;
     for (bond, [x, y, z]) in directions.iter().enumerate() {
         let size = (x * x + y * y + z * z).sqrt();
-        if !((size - 1.0).abs() < LENGTH_OF_UNIT) {
+        let is_unit = (size - 1.0).abs() < LENGTH_OF_UNIT;
+        if !is_unit {
             return Err(wrong(bond, "its direction without load is no unit vector"));
         }
     }

@@ -156,7 +156,7 @@ impl StoredFrame {
             !self.broken[*bond] && ends == [id; 2]
         };
         let bonds: Vec<usize> = (0..self.bonds.len()).filter(is_whole).collect();
-        let (turns_rad, bond_directions) = self.form_without_load(id, &members, &bonds)?;
+        let [turns_rad, bond_directions] = self.form_without_load(id, &members, &bonds)?;
         let is_damaged = |bond: &usize| self.damages.get(*bond).is_some_and(|damage| *damage > 0.0);
         let has_yielded = |bond: &usize| {
             let plastic = self.plastics.get(*bond);
@@ -233,7 +233,7 @@ impl StoredFrame {
         id: u32,
         members: &[usize],
         bonds: &[usize],
-    ) -> Result<(Vec<[f64; 3]>, Vec<[f64; 3]>)> {
+    ) -> Result<[Vec<[f64; 3]>; 2]> {
         if bonds.is_empty() {
             return Ok(Default::default());
         }
@@ -264,7 +264,7 @@ impl StoredFrame {
         }
         let turns = members.iter().map(|&i| turns_rad[i]);
         let directions = bonds.iter().map(|&bond| self.bond_directions[bond]);
-        Ok((turns.collect(), directions.collect()))
+        Ok([turns.collect(), directions.collect()])
     }
 
     fn unknown(&self, id: u32) -> Diagnostic {

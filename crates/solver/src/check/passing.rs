@@ -153,7 +153,9 @@ fn meeting_s(one: &Mover<'_>, other: &Mover<'_>, until_s: f64) -> Option<f64> {
         // They meet only once the gap is closed, so they may go a little farther.
         let way_m = gap.max(0.0) + 2.0 * closed_m;
         at_s += 2.0 * way_m / (speed + (speed * speed + 2.0 * pull * way_m).sqrt());
-        if !(at_s <= until_s) {
+        // At no speed it is NaN.
+        let is_in_time = at_s <= until_s;
+        if !is_in_time {
             return None;
         }
     }

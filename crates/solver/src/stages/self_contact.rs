@@ -23,7 +23,7 @@ use crate::state::bonds::Bonds;
 use crate::state::clusters::Clusters;
 use crate::state::contacts::Contacts;
 use crate::state::particles::{Particles, Pose};
-use crate::state::self_contacts::SelfContacts;
+use crate::state::self_contacts::{Look, SelfContacts};
 
 /// Pieces of fewer particles have no two that are unbonded.
 const LEAST_PARTICLES: usize = 3;
@@ -118,28 +118,31 @@ struct Pieces<'a> {
     step_s: f64,
 }
 
-/// What a look at a piece found.
-struct Look {
-    /// Number of its cluster.
-    piece: u32,
-    /// Distance that each of its particles may move until the next look, m.
-    left_m: f64,
-    /// If its pairs were searched for: those to be listed, and the least gap of the others, m.
-    searched: Option<(Vec<[u32; 2]>, f64)>,
-}
-
 impl Pieces<'_> {
     fn look(&self, own: &mut SelfContacts, chunks_moved_m: &[f64]) -> usize {
         self.begin(own);
-        let new = self.find_new(own);
+        let mut due = std::mem::take(&mut own.due);
+        due.clear();
+        self.find_new(own, &mut due);
         self.add_parted(own);
-        let due = self.find_due(own, chunks_moved_m);
-        let looks: Vec<Look> = (new.par_iter().map(|&piece| self.search(piece, 0.0)))
-            .chain(due.par_iter().map(|&piece| self.look_at(own, piece)))
-            .collect();
+        self.find_due(own, chunks_moved_m, &mut due);
+        if due.is_empty() {
+            own.due = due;
+            return 0;
+        }
+        let mut looks = std::mem::take(&mut own.looks);
+        let look = |&(piece, is_new): &(u32, bool)| match is_new {
+            true => self.search(piece, 0.0),
+            false => self.look_at(own, piece),
+        };
+        due.par_iter().map(look).collect_into_vec(&mut looks);
         self.relist(own, &looks);
-        let sizes = due.iter().map(|&piece| self.clusters.members(piece).len());
-        sizes.sum()
+        let known = due.iter().filter(|(_, is_new)| !is_new);
+        let looked = known
+            .map(|&(piece, _)| self.clusters.members(piece).len())
+            .sum();
+        (own.due, own.looks) = (due, looks);
+        looked
     }
 
     /// Forgets everything if the particles are not those of the last look.
@@ -166,15 +169,14 @@ impl Pieces<'_> {
             && self.contacts.touches_itself(members[0])
     }
 
-    /// Updates the pieces if there are other clusters than at the last look. Returns those that are
-    /// to be searched. What broke off from a piece keeps its places and its least gap.
-    fn find_new(&self, own: &mut SelfContacts) -> Vec<u32> {
+    /// Updates the pieces if there are other clusters than at the last look, and lists those that
+    /// are to be searched. What broke off from a piece keeps its places and its least gap.
+    fn find_new(&self, own: &mut SelfContacts, due: &mut Vec<(u32, bool)>) {
         let ever = self.clusters.history.len();
         let known = own.clusters_ever.unwrap_or(0);
         if own.clusters_ever == Some(ever) {
-            return Vec::new();
+            return;
         }
-        let mut new = Vec::new();
         for piece in (known as u32..ever as u32).filter(|&piece| self.is_piece(piece)) {
             if own.least_gaps_m.contains_key(&piece) {
                 continue;
@@ -184,13 +186,12 @@ impl Pieces<'_> {
                 Some(&gap_m) => {
                     own.least_gaps_m.insert(piece, gap_m);
                 }
-                None => new.push(piece),
+                None => due.push((piece, true)),
             }
         }
         own.least_gaps_m.retain(|&piece, _| self.is_piece(piece));
         own.pairs.retain(|&pair| self.clusters.is_within(pair));
         own.clusters_ever = Some(ever);
-        new
     }
 
     /// Lists the pairs whose bond has broken, if they are still of one piece.
@@ -208,29 +209,28 @@ impl Pieces<'_> {
         }
     }
 
-    /// The known pieces of which a particle may have used up its distance, and those that may have
-    /// soon.
-    fn find_due(&self, own: &mut SelfContacts, chunks_moved_m: &[f64]) -> Vec<u32> {
+    /// Lists the known pieces of which a particle may have used up its distance, and those of which
+    /// one may have soon.
+    fn find_due(&self, own: &mut SelfContacts, chunks_moved_m: &[f64], due: &mut Vec<(u32, bool)>) {
         let moved_m = |chunk: usize| chunks_moved_m.get(chunk).copied().unwrap_or(0.0);
         let left = own.chunks_left_m.iter().enumerate();
         let mut urgent =
             left.filter(|(chunk, [left_m, _])| *left_m <= STEPS_LEFT * moved_m(*chunk));
         if urgent.next().is_none() {
-            return Vec::new();
+            return;
         }
-        let mut due = Vec::new();
         for chunk in chunks_of(self.particles.free) {
             let [left_m, allowance_m] = &mut own.chunks_left_m[chunk];
             if *left_m <= (STEPS_LEFT * moved_m(chunk)).max(SOON * *allowance_m) {
                 *left_m = f64::INFINITY;
                 let some = &self.clusters.of_particle[chunk_of(chunk, self.particles.free)];
-                due.extend(some.chunk_by(|a, b| a == b).map(|same| same[0]));
+                due.extend(some.chunk_by(|a, b| a == b).map(|same| (same[0], false)));
             }
         }
         due.sort_unstable();
         due.dedup();
-        due.retain(|piece| own.least_gaps_m.contains_key(piece));
-        due
+        // What is no piece has no gap.
+        due.retain(|(piece, is_new)| *is_new || own.least_gaps_m.contains_key(piece));
     }
 
     /// Looks how far the particles of a known piece have moved beside each other.

@@ -224,7 +224,7 @@ impl Bonds {
         })
     }
 
-    /// Adds a bond that follows the rule with this number, and has its [`moment_ratios`]. Bonds
+    /// Adds a bond that follows the rule with this number, and has its moment ratios. Bonds
     /// must be added in the order given at [`Bonds`].
     pub fn push(
         &mut self,

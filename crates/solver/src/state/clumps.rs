@@ -115,7 +115,7 @@ pub struct Template {
     pub bonds_of_file: Arc<Vec<u32>>,
     /// Mean stress times volume from which its bonds would break, N m; infinite if they cannot.
     pub breaks_from_n_m: f64,
-    /// See [`Template::landing`].
+    /// What its clumps land on, once it is known.
     #[serde(skip)]
     pub landing: KnownLanding,
 }

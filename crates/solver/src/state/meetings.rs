@@ -79,21 +79,21 @@ pub struct Joint {
 }
 
 /// A touch of a sphere with a wall: the wall, the place, and whether it continues a contact.
-pub type WallTouch = (usize, Place, bool);
+pub(crate) type WallTouch = (usize, Place, bool);
 
 /// Vectors of the search for walls that meet, kept from step to step for their memory only.
 #[derive(Debug, Clone, Default)]
-pub struct JointBuffers {
+pub(crate) struct JointBuffers {
     /// Meetings of particles that touch several walls.
-    pub joints: Vec<Joint>,
+    pub(crate) joints: Vec<Joint>,
     /// The first chunk of meetings of each touched wall, and the one after its last.
-    pub of_walls: Vec<[usize; 2]>,
+    pub(crate) of_walls: Vec<[usize; 2]>,
     /// The touches of one sphere.
-    pub touches: Vec<WallTouch>,
+    pub(crate) touches: Vec<WallTouch>,
     /// Those of them that are yet to be compared.
-    pub left: Vec<usize>,
+    pub(crate) left: Vec<usize>,
     /// Of those that stand for one surface, the one kept and one dropped.
-    pub doubles: Vec<(usize, usize)>,
+    pub(crate) doubles: Vec<(usize, usize)>,
 }
 
 /// Interaction of a particle and a wall at one point.

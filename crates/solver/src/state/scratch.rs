@@ -43,7 +43,7 @@ pub struct Scratch {
     /// Where particles meet a wall: for each chunk of those near it.
     pub meetings: Vec<Meetings>,
     /// Meetings of particles that touch several walls.
-    pub joints: JointBuffers,
+    pub(crate) joints: JointBuffers,
     /// What touches each sphere that a clump carries. All are cleared between steps.
     pub clump_touches: Vec<ClumpTouch>,
     /// Power that each clump takes in, W: see `stages/intake.rs`.

@@ -4,6 +4,17 @@ use std::collections::BTreeMap;
 
 use super::events::REMOVED;
 
+/// What a look at a piece found.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Look {
+    /// Number of its cluster.
+    pub(crate) piece: u32,
+    /// Distance that each of its particles may move until the next look, m.
+    pub(crate) left_m: f64,
+    /// If its pairs were searched for: those to be listed, and the least gap of the others, m.
+    pub(crate) searched: Option<(Vec<[u32; 2]>, f64)>,
+}
+
 /// Pairs of unbonded particles of one piece that may touch, and how far the particles of each piece
 /// may move until it must be known whether others have come near each other.
 #[derive(Debug, Clone, Default)]
@@ -26,6 +37,10 @@ pub struct SelfContacts {
     /// For each chunk of free particles the distance that they may still move, and that which they
     /// could move at the last look, m.
     pub(crate) chunks_left_m: Vec<[f64; 2]>,
+    /// The pieces that are looked at in a step, and whether each is new: kept for their memory only.
+    pub(crate) due: Vec<(u32, bool)>,
+    /// What was found there: kept for its memory only.
+    pub(crate) looks: Vec<Look>,
 }
 
 impl SelfContacts {
