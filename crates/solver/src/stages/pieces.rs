@@ -47,8 +47,9 @@ pub(crate) fn find_pieces_now(state: &mut State) -> usize {
     let ends = |bond: &u32| state.bonds.ends[*bond as usize];
     let parted = state.unsearched.drain(..).map(|bond| ends(&bond));
     if let Some(contacts) = &mut state.contacts {
-        let own = &mut contacts.scratch.self_contacts;
-        own.parted.extend(parted);
+        if contacts.model.self_contact {
+            contacts.scratch.self_contacts.parted.extend(parted);
+        }
         for split in &state.scratch.events.splits {
             search_for_fragments(contacts, clusters, &split.children);
         }

@@ -91,6 +91,10 @@ pub(crate) fn find_self_contacts(state: &mut State) -> usize {
         return 0;
     };
     let mut own = std::mem::take(&mut contacts.scratch.self_contacts);
+    // Bonds that bodies with steps of their own have broken since their last common time.
+    let broken = state.unsearched.iter();
+    own.parted
+        .extend(broken.map(|&bond| state.bonds.ends[bond as usize]));
     let looked = match &state.clusters {
         Some(clusters) => {
             let pieces = Pieces {
@@ -322,8 +326,9 @@ impl Pieces<'_> {
             }
             for some in members.chunk_by(|&a, &b| a as usize / CHUNK == b as usize / CHUNK) {
                 let [left_m, allowance_m] = &mut own.chunks_left_m[some[0] as usize / CHUNK];
-                *left_m = left_m.min(look.left_m);
-                *allowance_m = *left_m;
+                if look.left_m < *left_m {
+                    (*left_m, *allowance_m) = (look.left_m, look.left_m);
+                }
             }
         }
     }
@@ -349,5 +354,10 @@ fn deformation_m(members: &[u32], places_m: &[[f64; 3]], poses: &[Pose]) -> f64 
     let apart = members
         .iter()
         .map(|i| now(i) - centre_now - turn * (before(i) - centre_before));
-    apart.map(|apart| apart.norm()).fold(0.0, f64::max)
+    let farthest_m = apart.map(|apart| apart.norm()).fold(0.0, f64::max);
+    if turn[(0, 0)].is_finite() {
+        farthest_m
+    } else {
+        f64::INFINITY
+    }
 }

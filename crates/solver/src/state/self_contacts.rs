@@ -57,9 +57,6 @@ impl SelfContacts {
         if self.places_m.is_empty() {
             return;
         }
-        if self.places_m.is_empty() {
-            return;
-        }
         let stays = |i: u32| {
             let to = now.get(i as usize).copied().unwrap_or(REMOVED);
             Some(to).filter(|&to| (to as usize) < free)

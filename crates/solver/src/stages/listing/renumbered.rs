@@ -50,6 +50,8 @@ pub(crate) fn renumber_lists(
     find_mean_radius(&mut contacts, &state.particles, 0);
     let own = &mut contacts.scratch.self_contacts;
     own.renumber(now, state.particles.free);
+    // Contacts beside bonds are known by the old numbers.
+    own.is_changed |= !contacts.scratch.beside.is_empty();
     let stays = |i: u32| Some(now[i as usize]).filter(|&to| to != REMOVED && !is_new(to));
     for wall in &mut state.walls {
         wall.near = wall.near.iter().filter_map(|&i| stays(i)).collect();
