@@ -1,4 +1,5 @@
-//! Writes the table of doc/self-contact.md: scenes with and without contacts within pieces. From the
+//! Writes the table of doc/self-contact.md: scenes with and without contacts within pieces. From
+//! the
 //! folder of the clone:
 //!
 //! ```sh

@@ -2,7 +2,8 @@
 //!
 //! Layout: points = particles (Float64, m), lines = bonds (two points each), point data `radius_m`
 //! and, of a strained body, `rotation_rad`, cell data `bond_radius_m`, `initial_length_m` and, if
-//! bonds are damaged, `damage`, or what [`super::histories`] names if they are sheared or bent, have
+//! bonds are damaged, `damage`, or what [`super::histories`] names if they are sheared or bent,
+//! have
 //! yielded or are flat joints with failed elements; field data:
 //! `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
 //! encoding see [`crate::vtk`].

@@ -22,7 +22,8 @@ pub enum Existing {
 }
 
 impl ResultsFolder {
-    /// Makes the folder `path`, with those that it is in, or uses the existing one, and checks that it can be written to.
+    /// Makes the folder `path`, with those that it is in, or uses the existing one, and checks that
+    /// it can be written to.
     ///
     /// # Errors
     /// It is not empty, by `existing`; there is none to continue; another run is writing into it

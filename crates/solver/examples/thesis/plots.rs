@@ -25,7 +25,8 @@ pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
 }
 
 /// Load over travel of the first packing of each row with the first two readings, beside the
-/// line that follows from the equations of Platzer 2022: its stiffness up to its largest force. Nothing unless all have
+/// line that follows from the equations of Platzer 2022: its stiffness up to its largest force.
+/// Nothing unless all have
 /// been run.
 fn curves(results: &Path) -> Option<String> {
     let mut lines = vec![Line {

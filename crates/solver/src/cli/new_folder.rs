@@ -16,7 +16,8 @@ pub(super) struct NewFolder {
 }
 
 impl NewFolder {
-    /// Makes a folder, with those that it is in, or takes an empty one. `option`: the option that names it.
+    /// Makes a folder, with those that it is in, or takes an empty one. `option`: the option that
+    /// names it.
     ///
     /// # Errors
     /// It is not empty, is no folder, or cannot be made.

@@ -2,7 +2,8 @@
 
 use dem_io::{Diagnostic, Result};
 
-/// Stack of each thread. Without optimisation, the loops over contacts in AVX-512 need more than the
+/// Stack of each thread. Without optimisation, the loops over contacts in AVX-512 need more than
+/// the
 /// usual 2 MiB.
 const STACK_BYTES: usize = 32 << 20;
 

@@ -237,7 +237,8 @@ fn curve_csv(record: &Record, play_m: f64) -> String {
 }
 
 /// Load over displacement of the rows used in the evaluation ([`rows_of`]), with the line of
-/// the target stiffness if there is one, and the measured curve ([`measured_curve`]) unless it is empty.
+/// the target stiffness if there is one, and the measured curve ([`measured_curve`]) unless it is
+/// empty.
 pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
     let play_m = if result.is_dynamic() {
         0.0

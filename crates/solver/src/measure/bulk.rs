@@ -160,7 +160,8 @@ impl Mixture {
     /// mixture of pieces of different mass (Stange 1954): sr^2 = p (1 - p) (p m_b + (1 - p) m_a)/M,
     /// with the mean mass m_a and m_b of the pieces of either set, by mass, and M of what a cell
     /// holds. It is s0^2 / n for n equal pieces in each cell. NaN if the region has nothing of one
-    /// of them, no more than one piece in each cell, or fewer than [`FEWEST_MIXED_CELLS`] cells: one
+    /// of them, no more than one piece in each cell, or fewer than [`FEWEST_MIXED_CELLS`] cells:
+    /// one
     /// cell is as mixed as can be, whatever lies in it.
     pub(super) fn lacey_index(&self) -> f64 {
         if self.cells_kg.len() < FEWEST_MIXED_CELLS {

@@ -136,7 +136,8 @@ pub(crate) fn warnings(
     warnings
 }
 
-/// Densities that are hardly those of a solid in kg/m3, written or by the mass of a body: a sentence
+/// Densities that are hardly those of a solid in kg/m3, written or by the mass of a body: a
+/// sentence
 /// each. `bodies`: those of the state.
 pub(crate) fn odd_densities(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> Vec<String> {
     let of_materials = scene.materials.iter().filter_map(|(name, material)| {

@@ -1,4 +1,5 @@
-//! Warnings about bodies that no program has looked at: from a table, or written in the scene. Those
+//! Warnings about bodies that no program has looked at: from a table, or written in the scene.
+//! Those
 //! of dem-pack are in its files.
 
 use std::collections::BTreeMap;

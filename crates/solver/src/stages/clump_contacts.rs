@@ -11,7 +11,8 @@
 //!   w^2 = (F M^-1 F) / (sum k s^2),
 //!
 //! Rayleigh's quotient of the motion that is made: exact for a contact alone (k times the inverse
-//! mass at its point), and for contacts in a mode of the clump on its springs. It lies between 0 and
+//! mass at its point), and for contacts in a mode of the clump on its springs. It lies between 0
+//! and
 //! T = sum k (g M^-1 g), the sum of the squares of all six frequencies. Pushes that balance each
 //! other, as of two plates that press, accelerate nothing: there it is at least their mean, T/6, so
 //! that no mode is damped by more than sqrt(6) zeta.
@@ -181,7 +182,7 @@ fn add_walls(
     touches: &mut [ClumpTouch],
 ) {
     let wall = &walls[meetings.of.0];
-    for meeting in meetings.all.iter().filter(|meeting| !meeting.is_double) {
+    for meeting in &meetings.all {
         let i = meeting.particle as usize;
         let Some(touch) = (i.checked_sub(particles.free)).and_then(|n| touches.get_mut(n)) else {
             continue;

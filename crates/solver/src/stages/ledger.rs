@@ -19,6 +19,7 @@ use crate::stages::supports::reactions_work_j;
 use crate::stages::totals::{kinetic_energy, momenta, synchronous_motions_of_free};
 use crate::stages::walls::touches_adhesion_j;
 use crate::state::State;
+use crate::state::contacts::Contacts;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
@@ -65,14 +66,19 @@ pub(crate) fn advance_time(state: &mut State) -> usize {
     0
 }
 
+/// The types of contacts among particles and with walls.
+fn all_kinds<'a>(contacts: &'a Contacts, walls: &'a [Wall]) -> Vec<&'a ContactKind> {
+    let of_walls = walls.iter().flat_map(|wall| &wall.model.kinds);
+    contacts.model.kinds.iter().chain(of_walls).collect()
+}
+
 /// Contact energy of all particles at an overlap of a millionth of their radii, by the stiffest law
 /// of the scene, J; 0 if nothing can touch.
 fn pressed_by_a_millionth_j(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
     };
-    let of_walls = state.walls.iter().flat_map(|wall| &wall.model.kinds);
-    let kinds: Vec<&ContactKind> = contacts.model.kinds.iter().chain(of_walls).collect();
+    let kinds = all_kinds(contacts, &state.walls);
     let poses = &state.particles.poses;
     ordered_sum(poses.len(), |i| {
         let radius_m = poses[i].radius_m();
@@ -91,8 +97,7 @@ fn attraction_at_rest_j(state: &State) -> f64 {
     let Some(contacts) = &state.contacts else {
         return 0.0;
     };
-    let of_walls = state.walls.iter().flat_map(|wall| &wall.model.kinds);
-    let kinds: Vec<&ContactKind> = contacts.model.kinds.iter().chain(of_walls).collect();
+    let kinds = all_kinds(contacts, &state.walls);
     let poses = &state.particles.poses;
     ordered_sum(poses.len(), |i| {
         let radius_m = poses[i].radius_m();
@@ -215,7 +220,8 @@ pub struct Balance {
     pub flow_energy_j: f64,
     /// Actual minus expected energy, J.
     pub energy_error_j: f64,
-    /// The same, divided by the largest energy or work so far: kinetic and elastic energy, adhesion,
+    /// The same, divided by the largest energy or work so far: kinetic and elastic energy,
+    /// adhesion,
     /// liquid bridges, gravity, losses, and the work of loads, supports and walls, each by itself.
     pub energy_error: f64,
     /// That largest energy or work, J.

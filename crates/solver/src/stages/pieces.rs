@@ -23,7 +23,8 @@ pub(crate) const CLUSTERS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Searches for fragments if bonds have broken. Particles that no bond joins any more may touch from
+/// Searches for fragments if bonds have broken. Particles that no bond joins any more may touch
+/// from
 /// the next step on. Returns the number of clusters searched.
 pub(crate) fn find_pieces(state: &mut State) -> usize {
     if state.clusters.is_none() {
@@ -44,8 +45,8 @@ pub(crate) fn find_pieces_now(state: &mut State) -> usize {
     };
     let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
     state.scratch.events.splits = clusters.update(state.time_s, &damaged, &state.bonds);
-    let ends = |bond: &u32| state.bonds.ends[*bond as usize];
-    let parted = state.unsearched.drain(..).map(|bond| ends(&bond));
+    let parted = state.unsearched.drain(..);
+    let parted = parted.map(|bond| state.bonds.ends[bond as usize]);
     if let Some(contacts) = &mut state.contacts {
         if contacts.model.self_contact {
             contacts.scratch.self_contacts.parted.extend(parted);

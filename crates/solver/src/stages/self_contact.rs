@@ -34,7 +34,8 @@ const NEAR: f64 = 1e-3;
 /// Pairs are listed whose gap two particles can close in this number of steps at their speed.
 const STEPS: f64 = 8.0;
 /// Pairs are listed whose gap is below this multiple of the deformation since the last search, so
-/// that searches become rarer as a piece deforms, up to a gap of this fraction of the largest radius.
+/// that searches become rarer as a piece deforms, up to a gap of this fraction of the largest
+/// radius.
 const DEFORMATION: [f64; 2] = [8.0, 0.25];
 /// A search is due when less than this fraction of half the least gap is left.
 const LEFT: f64 = 0.25;

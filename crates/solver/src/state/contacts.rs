@@ -84,7 +84,8 @@ impl ContactHistory {
 pub struct ContactModel {
     /// Types of contacts.
     pub kinds: Vec<ContactKind>,
-    /// For each pair of materials the number of the contact type, or 255 for none: row by row, length
+    /// For each pair of materials the number of the contact type, or 255 for none: row by row,
+    /// length
     /// materials squared.
     pub kind_of: Vec<u8>,
     /// Particles can never touch each other, only walls: there is one piece, and it cannot break.

@@ -37,7 +37,8 @@ pub struct SelfContacts {
     /// For each chunk of free particles the distance that they may still move, and that which they
     /// could move at the last look, m.
     pub(crate) chunks_left_m: Vec<[f64; 2]>,
-    /// The pieces that are looked at in a step, and whether each is new: kept for their memory only.
+    /// The pieces that are looked at in a step, and whether each is new: kept for their memory
+    /// only.
     pub(crate) due: Vec<(u32, bool)>,
     /// What was found there: kept for its memory only.
     pub(crate) looks: Vec<Look>,

@@ -10,7 +10,8 @@ use crate::helpers::scene;
 /// Half the distance of neighbours in the block, m.
 const R: f64 = 3e-3;
 
-/// A block of 6 x 6 x 10 spheres of 6 mm between plates, turned by an angle about y. `upper`: shape of
+/// A block of 6 x 6 x 10 spheres of 6 mm between plates, turned by an angle about y. `upper`: shape
+/// of
 /// the upper plate; `more`: lines of [test].
 fn block(upper: &str, degrees: f64, kind: &str, more: &str) -> String {
     let mut particles = Vec::new();
