@@ -3,6 +3,7 @@
 
 mod alike;
 pub(crate) mod bodies;
+pub mod bounces;
 mod clumps;
 pub(crate) mod contacts;
 mod daughters;
@@ -179,6 +180,7 @@ pub fn plan(
     warnings.extend(questions::doubts(scene, &state, &bodies));
     warnings.extend(without_contacts(scene, &state, &bodies));
     notes.extend(questions::notes(scene, &state, &bodies, &unused_bonds));
+    notes.extend(bounces::notes(scene, &state));
     state.ledger = opened(&state);
     let step = first_step(scene, &bodies, &mut state, allow_any_step)?;
     if scene.run.integrator == Integrator::Leapfrog {

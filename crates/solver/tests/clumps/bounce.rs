@@ -1,6 +1,7 @@
 //! Clumps bounce as their material says, on any number of contacts.
 
 use dem_run::plan::Plan;
+use dem_run::plan::bounces::bonded_restitution;
 use dem_run::shape::landing::RigidSpheres;
 use dem_run::stages::ledger::balance;
 use dem_run::state::State;
@@ -282,6 +283,74 @@ fn packed_bodies_bounce_as_their_material_says() {
         );
         assert!(worst < 1e-3, "{file} {law} {restitution}: {worst:e}");
     }
+}
+
+/// A block of 3 x 3 x `layers` spheres, with bonds along the edges of the grid and across its
+/// faces, a hundred times as stiff as its contacts: its speed after a bounce over that before.
+fn bonded_rebound(law: &str, restitution: f64, layers: u32) -> f64 {
+    let places = grid([3, 3, layers]);
+    let near = |a: &[f64; 3], b: &[f64; 3]| {
+        let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+        squares.sum::<f64>().sqrt() < 3.0 * RADIUS_M
+    };
+    let pairs = (0..places.len()).flat_map(|a| (0..a).map(move |b| [b, a]));
+    let pairs: Vec<[usize; 2]> = pairs
+        .filter(|[a, b]| near(&places[*a], &places[*b]))
+        .collect();
+    let more = format!("bonds = \"m\"\nbond_list = {pairs:?}\nvelocity = [0, 0, -0.1]");
+    let stiff = "[bonds.m]\nyoung_modulus = \"10 GPa\"\npoisson_ratio = 0.25\n";
+    let falls = stiff.to_owned() + &body("b", &places, &more);
+    let Plan { mut state, .. } = planned(&with_floor(law, restitution, &falls));
+    let worst = bounce(&mut state, |_| ());
+    assert!(worst < 1e-3, "{law} {restitution} {layers}: {worst:e}");
+    let motions = state.particles.motions.iter();
+    let momentum = motions.clone().map(|m| m.velocity_m_s[2] / m.inverse_mass);
+    let mass = motions.map(|m| 1.0 / m.inverse_mass);
+    momentum.sum::<f64>() / mass.sum::<f64>() / 0.1
+}
+
+/// Each contact of the lowest layer stops all that stand on it; the page has the same values.
+#[test]
+fn bonded_blocks_rebound_the_faster_the_more_layers_they_have() {
+    let page = include_str!("../../../../doc/contacts.md");
+    for restitution in [0.2, 0.5, 0.8] {
+        let expected = [1, 2, 4, 8].map(|layers| bonded_restitution(restitution, layers.into()));
+        let [a, b, c, d] = expected;
+        let row = format!("| {restitution} | {a:.2} | {b:.2} | {c:.2} | {d:.2} |");
+        assert!(page.contains(&row), "{row}");
+        for (layers, law) in [(1, HERTZ), (2, LINEAR), (4, HERTZ), (8, LINEAR)] {
+            let expected = bonded_restitution(restitution, layers.into());
+            let found = bonded_rebound(law, restitution, layers);
+            eprintln!("{layers} {law} {restitution}: {found:.4}, by the formula {expected:.4}");
+            assert!(
+                (found / expected - 1.0).abs() < 0.01,
+                "{layers} {law} {restitution}"
+            );
+        }
+    }
+}
+
+/// The packed cake lands on a few of its spheres: a run that replaces it says that it then bounces
+/// otherwise. A plate of one layer bounces as before.
+#[test]
+fn a_replaced_body_that_bounces_otherwise_is_noted() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/bodies/cake.vtp");
+    let note = |body: &str| {
+        let replaced = format!(
+            "[bonds.m]\nyoung_modulus = \"50 MPa\"\npoisson_ratio = 0.25\n\
+             failure = {{ tensile_strength = \"1 MPa\" }}\n\
+             [bodies.b]\n{body}\nmaterial = \"m\"\nbonds = \"m\"\n{FALLS}\n\
+             [replacement.b]\nwhen = {{ time = 0.5 }}\n"
+        );
+        let Plan { notes, .. } = planned(&with_floor(HERTZ, 0.5, &replaced));
+        notes
+            .into_iter()
+            .find(|note| note.contains("rebounds from a flat landing"))
+    };
+    let cake = note(&format!("file = \"{file}\"\nposition = [0, 0, 1]"));
+    assert!(cake.is_some_and(|note| note.contains("at 0.5 of its speed as a clump")));
+    let plate = "particles = [[0, 0, 0.01, 0.001], [0.002, 0, 0.01, 0.001]]\nbond_list = [[0, 1]]";
+    assert_eq!(note(plate), None);
 }
 
 /// The first impacts of a rod need no smaller step than those of its spheres; a flat landing takes
