@@ -11,6 +11,7 @@ use crate::check::linear::{
     StiffestContacts, at_impact, at_landing, largest_contact_rate_1_s2, stiffest_contact,
 };
 use crate::geometry::{Bounds, Shape};
+use crate::physics::contact::ImpactLaw;
 use crate::stages::population::apply_topology_change;
 use crate::stages::walls::fastest_point_m_s;
 use crate::state::State;
@@ -25,9 +26,6 @@ use crate::state::walls::Wall;
 
 /// Largest fraction of the smallest radius that a particle may move in a step.
 pub(crate) const FARTHEST: f64 = 0.5;
-/// Fraction of the step of any impact that flat landings of clumps take: all of the energy of a
-/// body is in them, and is to be kept to 1e-3.
-const FLAT: f64 = 0.4;
 
 /// The chosen step and its basis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,11 +105,12 @@ impl StepBasis {
             [0.0; 2]
         };
         let share = share_of_impact(state, run.safety_factor);
+        let flat_share = share_of_landing(state, run.safety_factor);
         let limits = [
             (run.safety_factor * foreseen_s, "stability"),
             (share * safe_step(k, c), "impacts foreseen"),
             (
-                FLAT * share * safe_step(flat[0], flat[1]),
+                flat_share * safe_step(flat[0], flat[1]),
                 "flat landings of clumps",
             ),
             (
@@ -490,17 +489,25 @@ fn wall_speed(wall: &Wall, state: &State) -> f64 {
 pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
     let [k, c, _] = at_impact(state, speed_m_s);
     let [flat_k, flat_c, _] = at_landing(state, speed_m_s);
-    let share = share_of_impact(state, safety);
-    (share * safe_step(k, c)).min(FLAT * share * safe_step(flat_k, flat_c))
+    let of_impact = share_of_impact(state, safety) * safe_step(k, c);
+    of_impact.min(share_of_landing(state, safety) * safe_step(flat_k, flat_c))
 }
 
 pub(super) fn share_of_impact(state: &State, safety: f64) -> f64 {
+    smallest_share(state, safety, |law| law.impact_fraction())
+}
+
+fn share_of_landing(state: &State, safety: f64) -> f64 {
+    smallest_share(state, safety, |law| law.landing_fraction())
+}
+
+fn smallest_share(state: &State, safety: f64, fraction: fn(&dyn ImpactLaw) -> f64) -> f64 {
     let of_particles = state
         .contacts
         .iter()
         .flat_map(|contacts| &contacts.model.kinds);
     let kinds = of_particles.chain(state.walls.iter().flat_map(|wall| &wall.model.kinds));
-    let fractions = kinds.map(|kind| kind.law.at_impact().impact_fraction());
+    let fractions = kinds.map(|kind| fraction(kind.law.at_impact()));
     let usual = fractions.fold(1.0, f64::min);
     // The factor is exactly 1 at the default safety.
     safety / SAFETY * usual

@@ -73,6 +73,10 @@ impl ImpactLaw for DerjaguinMullerToporov {
         self.hertz_mindlin.impact_fraction()
     }
 
+    fn landing_fraction(&self) -> f64 {
+        self.hertz_mindlin.landing_fraction()
+    }
+
     fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64 {
         ImpactLaw::normal_n_m(&self.hertz_mindlin, overlap_m, effective_radius_m)
     }

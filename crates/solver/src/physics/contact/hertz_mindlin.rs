@@ -103,10 +103,15 @@ impl<T: Number> NormalLaw<T> for HertzMindlin<T> {
 /// conserves its energy to about 3e-3, and at 0.9 to 4e-2 (second order). Bonds vibrate for a long
 /// time and conserve their energy on average; a contact does not.
 const IMPACT_FRACTION: f64 = 0.25;
+const LANDING_FRACTION: f64 = 0.1;
 
 impl ImpactLaw for HertzMindlin {
     fn impact_fraction(&self) -> f64 {
         IMPACT_FRACTION
+    }
+
+    fn landing_fraction(&self) -> f64 {
+        LANDING_FRACTION
     }
 
     fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64 {

@@ -60,6 +60,10 @@ pub trait ImpactLaw {
     /// factor: it keeps the energy error of a single impact small.
     fn impact_fraction(&self) -> f64;
 
+    /// The same for flat landings of clumps: all of the energy of a body is in them, and is to be
+    /// kept to 1e-3.
+    fn landing_fraction(&self) -> f64;
+
     /// Tangent stiffness along the normal, N/m, at an overlap, m, above 0, with an effective
     /// radius, m.
     fn normal_n_m(&self, overlap_m: f64, effective_radius_m: f64) -> f64;
