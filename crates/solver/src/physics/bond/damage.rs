@@ -8,8 +8,12 @@
 //! w_e = s A/k, w_c = 2 G_f/s, D = w_c (w_max - w_e)/(w_max (w_c - w_e)).
 //!
 //! The ratio w_c/w_e is 2 G_f k/(s^2 A), so that a bond pulled or sheared apart takes G_f A
-//! whatever its length. Force and moments are those of the intact bond times 1 - D, except the
-//! axial force of a pressed bond: a crack that closes carries pressure as before.
+//! whatever its length. (k is the normal stiffness for tension and von Mises, the shear stiffness
+//! for shear and cohesion.) Bent alone, it takes a quarter of that; twisted alone, half of it if
+//! k_tor = k_s r^2/2, and less with beams; sheared by von Mises, k_n/(3 k_s) times it. Of several
+//! criteria the one with the largest D counts. Strengths raised by the strain rate raise stress and
+//! opening alike. Force and moments are those of the intact bond times 1 - D, except the axial
+//! force of a pressed bond: a crack that closes carries pressure as before.
 
 use std::f64::consts::PI;
 

@@ -7,9 +7,10 @@
 //!
 //! F = k (u - u_p), |F - H u_p| <= F_y, H = k h/(1 - h).
 //!
-//! Beyond yield F rises by h k. F_y is s A for the axial and the shear force, s I/r for bending and
-//! s J/r for torsion: the stresses that failure criteria use. Modes yield independently of each
-//! other, and time does not enter.
+//! Beyond yield F rises by h k, and a mode that was pulled to F_1 yields the other way at
+//! F_1 - 2 F_y. A cycle of amplitude u_a takes 4 F_y (1 - h) (u_a - F_y/k). F_y is s A for the
+//! axial and the shear force, s I/r for bending and s J/r for torsion: the stresses that failure
+//! criteria use. Modes yield independently of each other, and time does not enter.
 //!
 //! Plastic deformation changes the bond at which no force acts: its length, its direction, and how
 //! its two ends are turned relative to their particles. The total formulation acts on that bond, so

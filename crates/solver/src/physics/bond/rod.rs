@@ -83,8 +83,8 @@ impl Rod {
         12.0 * self.young_modulus_pa * self.second_moment_m4() / self.shape.length_m.powi(3)
     }
 
-    /// Stiffness with this shear stiffness, N/m, those of a round rod in tension, torsion and
-    /// bending (J = 2 I, I = A r^2/4), and shear in the middle.
+    /// Stiffness with this shear stiffness, N/m, and shear in the middle. The others are those of a
+    /// round rod: k_n = E A/L, k_tor = G J/L and k_ben = E I/L, with J = 2 I and I = A r^2/4.
     pub fn with_shear(&self, shear_n_m: f64) -> Stiffness {
         let length = self.shape.length_m;
         let second_moment = self.second_moment_m4();

@@ -3,8 +3,8 @@
 use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
-/// Axial and bending stress at the edge with the largest compression. The strength does not rise
-/// with the strain rate.
+/// Axial and bending stress at the edge with the largest compression: -F_n/A + M_ben r/I. The
+/// strength does not rise with the strain rate.
 pub(super) struct Compression;
 
 impl FailureCriterion for Compression {

@@ -3,7 +3,7 @@
 use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
-/// Shear force and torsion together.
+/// Shear force and torsion together: F_s/A + M_tor r/J.
 pub(super) struct Shear;
 
 impl FailureCriterion for Shear {

@@ -3,7 +3,7 @@
 use crate::physics::bond::stresses::{Criteria, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
-/// Axial and bending stress at the edge with the largest tension.
+/// Axial and bending stress at the edge with the largest tension: F_n/A + M_ben r/I.
 pub(super) struct Tension;
 
 impl FailureCriterion for Tension {

@@ -3,7 +3,8 @@
 use crate::physics::bond::stresses::{Criteria, EquivalentStress, FailureCriterion, Stresses};
 use crate::physics::number::Number;
 
-/// Equivalent stress, whose normal part counts only in tension.
+/// Equivalent stress sqrt(sigma^2 + 3 tau^2), whose normal part sigma counts only in tension.
+/// [`EquivalentStress`] defines both stresses.
 pub(super) struct VonMises;
 
 impl FailureCriterion for VonMises {

@@ -2,7 +2,7 @@
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
-/// Each mode as for a rod of the bond's length.
+/// Each mode as for a rod of the bond's length: k_s = G A/L.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ElasticSolid;
 

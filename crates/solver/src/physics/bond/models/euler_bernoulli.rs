@@ -3,7 +3,7 @@
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
-/// Slender beam: no shear deformation.
+/// Slender beam, without shear deformation: k_s = 12 E I/L^3.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EulerBernoulli;
 

@@ -3,8 +3,8 @@
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
-/// Shear stiffness is the normal stiffness divided by `kappa`; the section is in the middle of the
-/// bond.
+/// k_s = k_n/kappa, k_ben = m k_n r^2/4 and k_tor = m k_s r^2/2, with the ratio m of the second
+/// moments. The section is in the middle of the bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FlatJoint {
     /// Ratio of normal to shear stiffness, 2 (1 + nu) unless given.

@@ -2,8 +2,8 @@
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
-/// Shear stiffness is the normal stiffness divided by `kappa`; shear acts halfway between the
-/// surfaces of the spheres.
+/// Springs spread over the section: k_n = E A/L, k_s = k_n/kappa, k_ben = k_n r^2/4 and
+/// k_tor = k_s r^2/2. Shear acts halfway between the surfaces of the spheres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Parallel {
     /// Ratio of normal to shear stiffness, 2 (1 + nu) unless given.

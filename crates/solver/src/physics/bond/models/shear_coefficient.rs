@@ -2,7 +2,8 @@
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
-/// Like the elastic solid bond, with the shear stiffness multiplied by a coefficient.
+/// Like the elastic solid bond, with the shear stiffness multiplied by a coefficient:
+/// k_s = alpha G A/L.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ShearCoefficient {
     /// Shear coefficient, 0.9 for a circular section.

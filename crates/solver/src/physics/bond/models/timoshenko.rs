@@ -2,7 +2,9 @@
 
 use crate::physics::bond::rod::{Rod, RodModel, Stiffness};
 
-/// Beam with shear deformation, shear form factor 10/9.
+/// Beam with shear deformation, shear form factor 10/9:
+///
+/// k_s = 12 E I/(L^3 (1 + Phi)), Phi = 20 r^2 (1 + nu)/(3 L^2).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Timoshenko;
 
