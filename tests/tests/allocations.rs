@@ -59,21 +59,6 @@ fn wet() -> String {
         + &format!("bodies.heap = {{ particles = [{spheres}], material = \"stone\" }}\n")
 }
 
-/// A block on the floor and, far from it, one of a softer material, which takes longer steps.
-fn hard_and_soft(bonds: &str, more: &str) -> String {
-    let soft = block(0.5, bonds, &format!(", position = [0.1, 0, -1e-9]{more}"));
-    let (_, soft) = soft.split_once("bonds.glue").unwrap();
-    let soft = soft.replace("1e8", "1e6").replace("glue", "gum");
-    block(0.5 - 1e-9, bonds, "").replace("gravity", "steps_by_body = true, gravity")
-        + "materials.rubber = { density = 2500, young_modulus = 1e6, poisson_ratio = 0.3 }
-contacts.rubber-stone = { restitution = 0.5, friction = 0.4 }
-contacts.rubber-rubber = { restitution = 0.5, friction = 0.4 }
-bonds.gum"
-        + &soft
-            .replace("block", "soft")
-            .replace("\"stone\"", "\"rubber\"")
-}
-
 /// Steps of a scene, after as many that are not counted: the allocations in each, and the state.
 fn allocations(text: &str) -> (Vec<u64>, State) {
     const STEPS: usize = 200;
@@ -137,26 +122,16 @@ fn a_step_takes_no_memory() {
             block(0.5 - 1e-6, strengths, ", start_as = \"clump\"")
                 + "replacement.block.when = { contact_force = 1e9, principal_stress = 1e12 }\n",
         ),
-        ("steps by body", hard_and_soft(strengths, "")),
-        (
-            "steps by body, damped",
-            hard_and_soft(", damping = { damping_ratio = 0.1 }", ""),
-        ),
     ] {
         let (found, state) = allocations(&text);
         let looks = match name {
             // Where the bonded zone of a body is now, is found once in fifty steps.
             "part bonded" => found.len() / 50,
-            // Which bodies may take longer steps is found once in nine common steps.
-            _ if name.starts_with("steps by body") => found.len().div_ceil(9),
             _ => 0,
         };
         let bridges = state.bridges.as_ref();
         let is_wet = bridges.is_some_and(|all| !all.pairs.is_empty() && !all.walls.is_empty());
         assert_eq!(is_wet, name == "liquid bridges");
-        let levels = state.levels.as_ref();
-        let takes_longer = levels.is_some_and(|levels| levels.of_particle.iter().any(|&of| of > 0));
-        assert_eq!(takes_longer, name.starts_with("steps by body"));
         let taking = found.iter().filter(|&&count| count > 0).count();
         assert!(taking <= looks, "{name}: {found:?}");
     }
@@ -258,13 +233,12 @@ fn counted(text: &str) -> Vec<Counted> {
     const STEPS: usize = 9000;
     let stage = |name: &str| step::stages().iter().position(|stage| stage.name == name);
     let search = stage("neighbour search").unwrap();
-    let looks = ["steps by body", "sleep"].map(|name| stage(name).unwrap());
+    let sleep = stage("sleep").unwrap();
     on_one_thread(|| {
         let mut state = started(text);
         let mut is_changed = false;
         let one = |_| {
-            let done =
-                |state: &State| [search, looks[0], looks[1]].map(|n| state.scratch.clock.done(n));
+            let done = |state: &State| [search, sleep].map(|n| state.scratch.clock.done(n));
             let left_m = |state: &State| state.walls[0].skin_left_m;
             let (before, left_before_m) = (done(&state), left_m(&state));
             let next_try_of =
@@ -273,13 +247,13 @@ fn counted(text: &str) -> Vec<Counted> {
             let allocations = measure(|| _ = step(&mut state)).count_total;
             let events = &state.scratch.events;
             let [broke, came] = [!events.broken.is_empty(), !events.population.is_empty()];
-            let [searched, levels, sleep] = [0, 1, 2].map(|n| done(&state)[n] > before[n]);
+            let [searched, looked] = [0, 1].map(|n| done(&state)[n] > before[n]);
             is_changed |= broke || came;
             let counted = Counted {
                 searched,
                 listed_at_wall: left_m(&state) > left_before_m,
                 any_asleep: (0..state.particles.len()).any(|i| state.particles.sleeps(i)),
-                looked: levels || sleep,
+                looked,
                 is_changed,
                 broke,
                 came,
@@ -308,7 +282,6 @@ fn memory_is_taken_only_by_breaks_inlets_and_lists_that_grow() {
         ("breaking", breaking()),
         ("fed", fed()),
         ("asleep", asleep()),
-        ("steps by body", hard_and_soft("", FLUNG)),
     ] {
         let steps = counted(&text);
         let is_quiet = |step: &&Counted| !(step.is_changed || step.waited || step.looked);

@@ -51,7 +51,6 @@ mod search;
 mod shape;
 mod sleep;
 mod statics;
-mod steps_by_body;
 pub mod study;
 mod support;
 mod table;

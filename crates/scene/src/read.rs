@@ -16,7 +16,7 @@ use super::tree::option_place;
 use super::{
     body, bond, clusters, contact, contact_beside_bond, fall_check, group, initial, inlet, load,
     material, measure, outlet, output, region, relaxation, replacement, run, search, sleep,
-    statics, steps_by_body, support, test, wall, zone_check,
+    statics, support, test, wall, zone_check,
 };
 use crate::field::Field;
 use dem_io::diagnostic::Result;
@@ -100,9 +100,6 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     contact_beside_bond::refuse_others(&root, &run)?;
     if run.integrator == Integrator::Static {
         statics::refuse_what_moves(&root)?;
-    }
-    if run.steps_by_body {
-        steps_by_body::refuse_others(&root, &run)?;
     }
     let mut notes = document.notes.clone();
     if let Some(field) = root.get("test") {

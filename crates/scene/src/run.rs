@@ -25,9 +25,6 @@ pub struct Run {
     pub safety_factor: f64,
     /// `adaptive`: the automatic step follows the limit up as well as down; false unless given.
     pub adaptive: bool,
-    /// `steps_by_body`: bodies whose limit allows it take steps of two, four or eight time steps;
-    /// false unless given.
-    pub steps_by_body: bool,
     /// `gravity`, m/s2; 0 unless given. Length 3.
     pub gravity_m_s2: [f64; 3],
     /// `local_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).
@@ -104,12 +101,6 @@ pub(super) static RUN: Schema = Schema {
             false,
             "The automatic step follows the stability limit up as well as down.",
         ),
-        Key::flag(
-            "steps_by_body",
-            false,
-            "Bodies whose limit allows it take steps of two, four or eight time steps, as long as they are near no body \
-             that cannot.",
-        ),
         Key::vector("gravity", &ACCELERATION, "Gravity."),
         Key::number("local_damping", "Local (non-viscous) damping of particles: gamma of Chen et al. 2022, eqs. 11 and 12.")
             .within(Included(0.0), Excluded(1.0))
@@ -152,7 +143,6 @@ one_field_a_key! {
         time_step_s: "time_step",
         safety_factor: "safety_factor",
         adaptive: "adaptive",
-        steps_by_body: "steps_by_body",
         gravity_m_s2: "gravity",
         local_damping: "local_damping",
         seed: "seed",

@@ -486,16 +486,14 @@ fn refuse_others(table: &Table<'_>, kind: TestType) -> Result<()> {
 /// Refuses settings of the run with which bars and weights, or walls that keep a pressure, cannot
 /// move, and of which a test takes none of its loads.
 fn refuse_run(table: &Table<'_>, kind: TestType, run: &Run) -> Result<()> {
-    let key = match (run.integrator, run.steps_by_body) {
-        (Integrator::Static, _) => "run.integrator = \"static\"",
-        (_, true) => "run.steps_by_body",
-        _ => return Ok(()),
-    };
-    let has_no_statics = kind.has_residual() && run.integrator == Integrator::Static;
-    if !kind.is_dynamic() && !has_no_statics {
+    let has_no_statics = kind.is_dynamic() || kind.has_residual();
+    if run.integrator != Integrator::Static || !has_no_statics {
         return Ok(());
     }
-    let problem = format!("a {} test cannot be combined with {key}", kind.name());
+    let problem = format!(
+        "a {} test cannot be combined with run.integrator = \"static\"",
+        kind.name()
+    );
     Err(table.refuse(problem, "remove it"))
 }
 

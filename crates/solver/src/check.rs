@@ -5,6 +5,5 @@ pub(crate) mod laws;
 pub mod limit;
 pub mod linear;
 pub mod lowest_frequency;
-pub(crate) mod own_limit;
 pub(crate) mod passing;
 pub mod watchdog;

@@ -13,7 +13,6 @@ pub(crate) mod groups;
 pub(crate) mod held;
 mod initial;
 pub(crate) mod inputs;
-mod levels;
 pub(crate) mod masses;
 pub(crate) mod measures;
 mod outputs;
@@ -72,7 +71,6 @@ use self::groups::{held_degrees_of_freedom, particles_of, resolve_groups};
 use self::held::refuse_loose;
 use self::initial::start;
 use self::inputs::Inputs;
-use self::levels::place_levels;
 use self::measures::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::placement::placed;
@@ -350,7 +348,6 @@ fn first_step(
             StepChoice::none(scene.run.end_time_s)
         }
     };
-    place_levels(scene, state, &mut step);
     state.time_step_s = step.step_s;
     choose_skin(scene, step.impact_speed_m_s, state);
     state.fastest_m_s = step.impact_speed_m_s;

@@ -15,7 +15,6 @@ pub mod events;
 pub(crate) mod grids;
 pub mod groups;
 pub(crate) mod ledger;
-pub mod levels;
 pub mod loads;
 pub mod meetings;
 pub mod model;
@@ -51,7 +50,6 @@ use self::clusters::Clusters;
 use self::contacts::{ContactPartition, Contacts};
 use self::damping_rate::damping_rate_1_s;
 use self::ledger::EnergyLedger;
-use self::levels::{CYCLE, Levels, length};
 use self::loads::GroupLoad;
 use self::model::Model;
 use self::particles::{Particles, Wrench};
@@ -84,8 +82,6 @@ pub struct State {
     pub rigid_parts: RigidParts,
     /// Particles grouped into connected pieces. None: nothing can break, and nothing can touch.
     pub clusters: Option<Clusters>,
-    /// Bonds that broke since the last search for fragments.
-    pub unsearched: Vec<u32>,
     /// Bodies added, removed and replaced so far.
     pub population: Population,
     /// Contacts between particles of different clusters. None: nothing can touch.
@@ -94,8 +90,6 @@ pub struct State {
     pub bridges: Option<Bridges>,
     /// Sleeping bodies. None: no body can sleep.
     pub sleep: Option<Sleep>,
-    /// Bodies with steps of their own. None: all bodies take the same steps.
-    pub levels: Option<Levels>,
     /// Walls, in the order of their names.
     pub walls: Vec<Wall>,
     /// Forces and contacts that measures record in every step. Empty: none.
@@ -159,11 +153,9 @@ impl State {
             bonds,
             rigid_parts: RigidParts::default(),
             clusters: None,
-            unsearched: Vec::new(),
             contacts: None,
             bridges: None,
             sleep: None,
-            levels: None,
             walls: Vec::new(),
             watches: Vec::new(),
             loads: Vec::new(),
@@ -360,39 +352,10 @@ impl State {
         0.5 * (self.previous_time_step_s + self.time_step_s)
     }
 
-    /// Number of time steps from one time at which all bodies are to the next.
-    pub(crate) fn cycle(&self) -> u64 {
-        if self.levels.is_some() { CYCLE } else { 1 }
-    }
-
-    /// Length of such a cycle, s.
-    pub(crate) fn cycle_s(&self) -> f64 {
-        self.cycle() as f64 * self.time_step_s
-    }
-
-    /// The previous step of a particle and its next, s.
-    pub(crate) fn steps_of_s(&self, i: usize) -> [f64; 2] {
-        let Some(levels) = &self.levels else {
-            return self.steps_s();
-        };
-        let now = levels.of_particle[i];
-        let before = levels.scratch.before.get(i).copied().unwrap_or(now);
-        [
-            length(before) * self.previous_time_step_s,
-            length(now) * self.time_step_s,
-        ]
-    }
-
     /// Division of the work on contacts.
-    pub(crate) fn contact_partitions(&self) -> Vec<&ContactPartition> {
-        match (&self.levels, &self.contacts) {
-            (_, None) => Vec::new(),
-            (Some(levels), _) => {
-                let groups = levels.scratch.groups.iter();
-                groups.flat_map(|group| &group.contacts).collect()
-            }
-            (None, Some(contacts)) => contacts.scratch.partitions.iter().collect(),
-        }
+    pub(crate) fn contact_partitions(&self) -> &[ContactPartition] {
+        let contacts = self.contacts.as_ref();
+        contacts.map_or(&[], |contacts| &contacts.scratch.partitions)
     }
 
     /// The previous step and the next, s.

@@ -24,19 +24,13 @@ use crate::stages::intake::{DAUGHTERS, take_in_energy};
 use crate::stages::ledger::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
 };
-use crate::stages::levels::{
-    LEVELS, end_cycle, in_all_groups, in_groups_now, is_common_time, is_renumbered, join_groups,
-    keep_breaks, keep_pushes, note_drift, set_levels, tick, watch_between,
-};
 use crate::stages::listing::{SEARCH, renew_lists, use_up_skin};
 use crate::stages::loads::{LOADS, apply_loads};
 use crate::stages::local_damping::{PARTICLE_DAMPING, compute_particle_damping};
 use crate::stages::motion::{GRAVITY, MOTION, count_falling, drift_particles, kick_particles};
 use crate::stages::pieces::{CLUSTERS, find_pieces};
 use crate::stages::plasticity::{PLASTICITY, compute_plastic_bonds};
-use crate::stages::replacement::{
-    REPLACEMENT, SQUEEZE, count_squeezing, note_fired, replace_clumps,
-};
+use crate::stages::replacement::{REPLACEMENT, SQUEEZE, count_squeezing, replace_clumps};
 use crate::stages::restoring::restore_clumps;
 use crate::stages::rigid_parts::{
     RIGID_PARTS, drift_rigid_parts, gather_rigid_parts, kick_rigid_parts,
@@ -60,24 +54,17 @@ type Part = (&'static Stage, fn(&mut State) -> usize);
 
 /// First half of a step: the forces on the particles at their present positions, and the velocities
 /// that follow from them.
-const INTERACT: [&[Part]; 3] = [BEFORE_CONTACTS, AHEAD_OF_CONTACTS, FROM_CONTACTS];
-
-const BEFORE_CONTACTS: &[Part] = &[
+const INTERACT: &[Part] = &[
     (&SELF_CONTACT, find_self_contacts),
     (&SEARCH, renew_lists),
-    (&LEVELS, set_levels),
     (&MOTION, clear_wrenches),
     (&BONDS, compute_bonds),
     (&HISTORIES, compute_incremental_bonds),
     (&PLASTICITY, compute_plastic_bonds),
     (&FLAT_JOINTS, compute_flat_joints),
     (&DAMAGE, press_damaged_bonds),
-];
-
-/// What contacts need from stages whose forces follow theirs.
-const AHEAD_OF_CONTACTS: &[Part] = &[(&WALLS, find_wall_contacts), (&CLUMPS, share_masses)];
-
-const FROM_CONTACTS: &[Part] = &[
+    (&WALLS, find_wall_contacts),
+    (&CLUMPS, share_masses),
     (&CONTACTS, compute_contacts),
     (&RELAXATION, count_relaxing),
     (&ROLLING, count_rolling),
@@ -109,7 +96,7 @@ const FROM_CONTACTS: &[Part] = &[
 ];
 
 /// Second half, with velocities half a step later: bodies are added, removed and replaced.
-const EXCHANGE: [&[Part]; 1] = [&[
+const EXCHANGE: &[Part] = &[
     (&LEDGER, count_bond_steps),
     (&FLOW, apply_inlets_and_outlets),
     (&DAUGHTERS, replace_by_daughters),
@@ -117,10 +104,10 @@ const EXCHANGE: [&[Part]; 1] = [&[
     (&REPLACEMENT, replace_clumps),
     (&SQUEEZE, count_squeezing),
     (&ZONES, follow_zones),
-]];
+];
 
 /// Everything moves on.
-const DRIFT: [&[Part]; 1] = [&[
+const DRIFT: &[Part] = &[
     (&SLEEP, update_sleep),
     (&MOTION, drift_particles),
     (&RIGID_PARTS, drift_rigid_parts),
@@ -128,16 +115,7 @@ const DRIFT: [&[Part]; 1] = [&[
     (&WALLS, drift_walls),
     (&SEARCH, use_up_skin),
     (&LEDGER, advance_time),
-]];
-
-/// Stages of the first half that are done once for all groups of bodies with steps of their own,
-/// before the groups and after them.
-const OF_ALL: [&[&Stage]; 2] = [
-    &[&SELF_CONTACT, &SEARCH, &LEVELS],
-    &[&CLUSTERS, &OUTPUT, &CHECKS],
 ];
-/// Stages of the second half that are done for each group.
-const OF_BODIES: [&Stage; 2] = [&MOTION, &CLUMPS];
 
 /// Stages that have work in few steps only: they are timed in each.
 const IN_FEW_STEPS: [&Stage; 4] = [&SEARCH, &CLUSTERS, &FLOW, &REPLACEMENT];
@@ -156,16 +134,7 @@ pub fn interact(state: &mut State) {
     if !state.ledger.is_open {
         state.ledger = opened(state);
     }
-    if state.levels.is_none() {
-        return run(&INTERACT, &TABLE.interact, state, |_| true);
-    }
-    run(&INTERACT, &TABLE.interact, state, |stage| {
-        OF_ALL[0].contains(&stage)
-    });
-    in_all_groups(state, interact_group);
-    run(&INTERACT, &TABLE.interact, state, |stage| {
-        OF_ALL[1].contains(&stage)
-    });
+    run(INTERACT, &TABLE.interact, state);
 }
 
 /// Second half of a step. Afterwards poses and time are those at the end of the step.
@@ -177,65 +146,28 @@ pub fn advance(state: &mut State) {
 /// Adds, removes and replaces bodies, while poses are those of `time_s` and velocities those half a
 /// step later.
 pub fn exchange(state: &mut State) {
-    run(&EXCHANGE, &TABLE.exchange, state, |_| true);
-    if is_renumbered(state) {
-        // Bodies with steps of their own move on for a whole cycle without another search.
-        run(&INTERACT, &TABLE.interact, state, |stage| {
-            [&SELF_CONTACT, &SEARCH].contains(&stage)
-        });
-    }
+    run(EXCHANGE, &TABLE.exchange, state);
 }
 
-/// Moves everything on to the end of the step; bodies with steps of their own to the next time that
-/// they have in common.
+/// Moves everything on to the end of the step.
 pub fn drift(state: &mut State) {
-    if state.levels.is_none() {
-        return run(&DRIFT, &TABLE.drift, state, |_| true);
-    }
-    join_groups(state);
-    loop {
-        in_groups_now(state, drift_group);
-        tick(state);
-        if is_common_time(state) {
-            break;
+    run(DRIFT, &TABLE.drift, state);
+}
+
+/// Does the parts whose stages are not left out. `stages`: for each part the number of its stage.
+fn run(parts: &[Part], stages: &[usize], state: &mut State) {
+    state.scratch.clock.start(state.steps);
+    for ((_, part), &stage) in parts.iter().zip(stages) {
+        if state.scratch.clock.is_left_out(stage) {
+            continue;
         }
-        in_groups_now(state, |state| {
-            interact_group(state);
-            keep_breaks(state);
-            keep_pushes(state);
-            note_fired(state);
-        });
-        watch_between(state);
-    }
-    end_cycle(state);
-    run(&DRIFT, &TABLE.drift, state, |stage| *stage == SEARCH);
-}
-
-fn interact_group(state: &mut State) {
-    let is_own = |stage: &Stage| !OF_ALL.iter().any(|some| some.contains(&stage));
-    run(&INTERACT, &TABLE.interact, state, is_own);
-}
-
-fn drift_group(state: &mut State) {
-    run(&DRIFT, &TABLE.drift, state, |stage| {
-        OF_BODIES.contains(&stage)
-    });
-    note_drift(state);
-}
-
-/// Does those parts whose stages are meant.
-fn run(parts: &[&[Part]], stages: &[usize], state: &mut State, is_meant: fn(&Stage) -> bool) {
-    state.scratch.clock.start(state.steps / state.cycle());
-    for ((own, part), &stage) in parts.iter().copied().flatten().zip(stages) {
-        if is_meant(own) && !state.scratch.clock.is_left_out(stage) {
-            let began = TABLE.in_few_steps[stage].then(Instant::now);
-            let items = part(state);
-            let clock = &mut state.scratch.clock;
-            clock.did(stage, items);
-            match began {
-                Some(began) => clock.book_since(stage, began),
-                None => clock.book(stage),
-            }
+        let began = TABLE.in_few_steps[stage].then(Instant::now);
+        let items = part(state);
+        let clock = &mut state.scratch.clock;
+        clock.did(stage, items);
+        match began {
+            Some(began) => clock.book_since(stage, began),
+            None => clock.book(stage),
         }
     }
 }
@@ -266,11 +198,7 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
         })
     };
     let mut numbers = |parts: &[Part]| parts.iter().map(&mut number).collect::<Vec<usize>>();
-    // What is done ahead has the place of the stage that it belongs to.
-    let (before, from) = (numbers(BEFORE_CONTACTS), numbers(FROM_CONTACTS));
-    let interact = [before, numbers(AHEAD_OF_CONTACTS), from].concat();
-    let exchange = numbers(EXCHANGE[0]);
-    let drift = numbers(DRIFT[0]);
+    let [interact, exchange, drift] = [INTERACT, EXCHANGE, DRIFT].map(&mut numbers);
     Table {
         in_few_steps: (stages.iter().map(|stage| IN_FEW_STEPS.contains(stage))).collect(),
         stages,

@@ -19,7 +19,6 @@ pub(crate) mod joints;
 pub mod limit_map;
 pub(crate) mod long;
 pub(crate) mod oscillator;
-pub(crate) mod own_steps;
 pub mod prediction;
 pub(crate) mod softening;
 pub(crate) mod swap;

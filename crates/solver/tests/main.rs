@@ -21,7 +21,6 @@ mod failure;
 mod fragments;
 mod laboratory;
 mod leave_out;
-mod levels;
 mod measures;
 mod meet;
 mod notation;

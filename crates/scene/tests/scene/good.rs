@@ -576,7 +576,6 @@ run.rest_energy_ratio           never
 run.time_step                   auto
 run.safety_factor               0.9
 run.adaptive                    false
-run.steps_by_body               false
 run.gravity                     [0, 0, 0] m/s2
 run.local_damping               0
 run.seed                        0

@@ -361,7 +361,7 @@ pub fn largest_contact_rate_1_s2(state: &State, matters: StiffestContacts) -> f6
         .map(|kind| matters.least_overlap_m(&kind.law))
         .collect();
     // Whatever touches was close at the last check of all pairs.
-    let of_partition = |partition: &&ContactPartition| {
+    let of_partition = |partition: &ContactPartition| {
         let mut largest = 0.0_f64;
         for ((kind, [_, own]), least_m) in contacts
             .model
@@ -427,17 +427,7 @@ impl StiffestContacts {
 /// more. With contacts beside bonds something presses at any speed, as loads and supports do: the
 /// stiffness of a linear law counts in full, and that of Hertz's law from no overlap on.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
-    at_impact_of(state, speed_m_s, |_| true)
-}
-
-/// The same for those first particles that are meant, by their number.
-pub(crate) fn at_impact_of(
-    state: &State,
-    speed_m_s: f64,
-    is_meant: impl Fn(usize) -> bool,
-) -> [f64; 3] {
-    let first = first_to_hit(state).into_iter();
-    at_impacts(state, speed_m_s, first.filter(|hit| is_meant(hit.particle)))
+    at_impacts(state, speed_m_s, first_to_hit(state).into_iter())
 }
 
 /// The same for flat landings of clumps alone, on all spheres that a plane touches at once. 0 if
@@ -445,11 +435,6 @@ pub(crate) fn at_impact_of(
 pub(crate) fn at_landing(state: &State, speed_m_s: f64) -> [f64; 3] {
     let first = first_to_hit(state).into_iter();
     at_impacts(state, speed_m_s, first.filter(|hit| hit.is_flat))
-}
-
-/// The same for a clump.
-pub(crate) fn at_impact_of_clump(state: &State, speed_m_s: f64, clump: &Clump) -> [f64; 3] {
-    at_impacts(state, speed_m_s, hits_first(state, clump).into_iter())
 }
 
 /// The same for these.

@@ -103,9 +103,6 @@ fn different(input: &Input<'_>) -> Vec<String> {
     if input.plan.is_adaptive {
         lines.push("The time step stays that of the start.".to_owned());
     }
-    if scene.run.steps_by_body {
-        lines.push("`run.steps_by_body`: all bodies take the same step.".to_owned());
-    }
     if input.plan.state.damping_rate_1_s > 0.0 {
         lines.push("Damping of bonds is of first order in the time step, in Crumble of second: it shortens the largest stable step.".to_owned());
     }

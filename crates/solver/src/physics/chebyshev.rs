@@ -8,9 +8,6 @@
 /// How much R stays below 1.
 const EPSILON: f64 = 2.0 / 13.0;
 
-/// Number of choices that are remembered.
-const KNOWN: usize = 16;
-
 /// Fewest stages of second order.
 const FEWEST: usize = 2;
 
@@ -63,18 +60,6 @@ impl Polynomial {
 }
 
 impl Chebyshev {
-    /// As [`Self::covering`], from those that were chosen before, each with its eigenvalue: bodies
-    /// with steps of their own need several.
-    pub fn of_known(known: &mut Vec<(f64, Self)>, largest: f64) -> &Self {
-        let at = known.iter().position(|(covered, _)| *covered == largest);
-        let at = at.unwrap_or_else(|| {
-            known.truncate(KNOWN - 1);
-            known.insert(0, (largest, Self::covering(largest)));
-            0
-        });
-        &known[at].1
-    }
-
     /// The fewest stages for eigenvalues up to `largest`, with their limit if that is larger.
     pub fn covering(largest: f64) -> Self {
         let mut count = FEWEST.max((0.5 * largest).max(0.0).sqrt() as usize);

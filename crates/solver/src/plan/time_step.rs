@@ -247,25 +247,17 @@ pub(crate) fn choose_step(
 /// One body of each template as it is added: a clump, or a bonded cluster if its inlet feeds bonded
 /// bodies. Their positions are such that they do not touch. None: there are no templates.
 pub(crate) fn arriving(state: &State) -> Option<State> {
-    coming(state, false).map(|coming| coming.state)
+    coming(state, false)
 }
 
 /// The same with all bodies bonded that can be.
 pub(crate) fn arriving_as_clusters(state: &State) -> Option<State> {
-    coming(state, true).map(|coming| coming.state)
-}
-
-/// One body of each shape that may be added.
-pub(super) struct Coming {
-    /// The bodies. The number of a cluster is that of its shape.
-    pub(super) state: State,
-    /// For each template the number of its shape.
-    pub(super) shape_of: Vec<usize>,
+    coming(state, true)
 }
 
 /// One body of each shape; if clumps are `replaced`, as a cluster if it can become one. None: there
 /// are no templates.
-pub(super) fn coming(state: &State, replaced: bool) -> Option<Coming> {
+fn coming(state: &State, replaced: bool) -> Option<State> {
     let becomes_one = |n: usize| {
         let starts = state
             .model
@@ -292,11 +284,8 @@ pub(super) fn coming(state: &State, replaced: bool) -> Option<Coming> {
             && one.bonds == other.bonds
     };
     let mut shapes: Vec<usize> = Vec::new();
-    let mut shape_of = Vec::with_capacity(templates.len());
     for n in 0..templates.len() {
-        let known = shapes.iter().position(|&other| same(other, n));
-        shape_of.push(known.unwrap_or(shapes.len()));
-        if known.is_none() {
+        if !shapes.iter().any(|&other| same(other, n)) {
             shapes.push(n);
         }
     }
@@ -343,10 +332,7 @@ pub(super) fn coming(state: &State, replaced: bool) -> Option<Coming> {
     };
     apply_topology_change(&mut bonded, come);
     apply_topology_change(&mut bonded, swap);
-    Some(Coming {
-        state: bonded,
-        shape_of,
-    })
+    Some(bonded)
 }
 
 /// The shapes, and for each that daughters can replace the smallest sphere that can come of it.
@@ -493,7 +479,7 @@ pub fn impact_step_s(state: &State, speed_m_s: f64, safety: f64) -> f64 {
     of_impact.min(share_of_landing(state, safety) * safe_step(flat_k, flat_c))
 }
 
-pub(super) fn share_of_impact(state: &State, safety: f64) -> f64 {
+fn share_of_impact(state: &State, safety: f64) -> f64 {
     smallest_share(state, safety, |law| law.impact_fraction())
 }
 

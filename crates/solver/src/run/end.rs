@@ -5,7 +5,7 @@ use dem_io::units::significant;
 use dem_results::write_json;
 
 use super::begin::Run;
-use super::events::{write_breaks_between, write_sleep, write_zones};
+use super::events::{write_sleep, write_zones};
 use super::finish::End;
 use super::nothing_happened::{empty_measures, parted_without_contacts, zero_measures};
 use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
@@ -21,7 +21,6 @@ use crate::output::sizes::Fragments;
 use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
 use crate::state::clusters::fragments as fragments_of;
 use crate::state::clusters::fragments::Fragment;
-use crate::state::levels::Levels;
 use crate::step::{advance, number_of, stages};
 
 impl Run<'_> {
@@ -151,10 +150,7 @@ impl Run<'_> {
         ];
         advance(&mut self.state);
         self.follow_population()?;
-        let (state, bodies) = (&self.state, &self.bodies);
-        self.progress.seen.note_breaks_between(state, bodies);
         if let Some(files) = &mut self.files {
-            write_breaks_between(state, bodies, files)?;
             write_zones(&self.state, files)?;
             write_sleep(&self.state, files)?;
             let events = files.events.take_back(lengths[0])?;
@@ -217,7 +213,6 @@ impl Run<'_> {
             flows: body_flows(state, &self.planned.masses),
             taken_in: progress.seen.taken.summary(scene),
             sleep: state.sleep.as_ref().map(SleepSummary::of),
-            updates_skipped_by_longer_steps: state.levels.as_ref().map(Levels::updates_skipped),
             steps: state.steps,
             time_step_s: state.time_step_s,
             adaptive: scene.run.adaptive.then(|| AdaptiveSummary {

@@ -11,7 +11,6 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::bond_of_file;
 use crate::state::clusters::sizes::Discharged;
-use crate::state::events::Break;
 use crate::state::events::PopulationEvent;
 use crate::state::events::STARTS_BONDED;
 
@@ -21,33 +20,7 @@ pub(super) fn write_breaks(
     bodies: &[PlacedBody],
     files: &mut Files<'_>,
 ) -> Result<()> {
-    let now = (state.steps, state.time_s);
-    let broken = &state.scratch.events.broken;
-    write(broken.iter().map(|one| (now, one)), state, bodies, files)
-}
-
-/// Those that broke since then, up to the next common time of all bodies.
-pub(super) fn write_breaks_between(
-    state: &State,
-    bodies: &[PlacedBody],
-    files: &mut Files<'_>,
-) -> Result<()> {
-    let broken = &state.scratch.events.broken_between;
-    write(
-        broken.iter().map(|(at, one)| (*at, one)),
-        state,
-        bodies,
-        files,
-    )
-}
-
-fn write<'a>(
-    broken: impl Iterator<Item = ((u64, f64), &'a Break)>,
-    state: &State,
-    bodies: &[PlacedBody],
-    files: &mut Files<'_>,
-) -> Result<()> {
-    for ((step, time_s), broken) in broken {
+    for broken in &state.scratch.events.broken {
         let ends = state.bonds.ends[broken.bond as usize];
         let found = bond_of_file(bodies, broken.bond as usize);
         let mut ends = ends.map(|end| {
@@ -57,8 +30,8 @@ fn write<'a>(
         });
         ends.sort_unstable();
         let event = Event {
-            step,
-            time_s,
+            step: state.steps,
+            time_s: state.time_s,
             kind: "bond_broken",
             bond: found.map(|(_, number)| u64::from(number)),
             particle_a: ends[0],

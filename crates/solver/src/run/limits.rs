@@ -246,8 +246,7 @@ impl<'a> Limits<'a> {
         // So that the end time is met.
         let left_s = self.end_s - state.time_s;
         let step_s = if left_s > 0.0 {
-            let steps = (left_s / largest_s).ceil() as u64;
-            left_s / steps.next_multiple_of(state.cycle()) as f64
+            left_s / (left_s / largest_s).ceil()
         } else {
             largest_s
         };

@@ -8,8 +8,7 @@ use dem_io::{Diagnostic, Result};
 
 use super::begin::Run;
 use super::events::{
-    write_breaks, write_breaks_between, write_discharge, write_population, write_sleep,
-    write_splits, write_zones,
+    write_breaks, write_discharge, write_population, write_sleep, write_splits, write_zones,
 };
 use super::files::{interruption, save, with_checkpoint};
 use super::fragments::write_fragments;
@@ -21,7 +20,6 @@ use crate::output::frames::FrameOrder;
 use crate::output::series;
 use crate::stages::clumps::place_all;
 use crate::stages::ledger::{Balance, CHECKS, balance};
-use crate::stages::pieces::find_pieces_now;
 use crate::stages::stage::Stage;
 use crate::stages::touching::contacts_now;
 use crate::stages::watching::OUTPUT;
@@ -91,9 +89,6 @@ impl Run<'_> {
         let test = self.watch.as_ref();
         let over = test.is_some_and(|watch| watch.note(&mut self.progress.test, &self.state));
         let due = self.due(over);
-        if due.end {
-            self.find_last_pieces()?;
-        }
         let since = due.any().then(Instant::now);
         if due.any() {
             place_all(&self.state.clumps, &mut self.state.particles);
@@ -114,15 +109,9 @@ impl Run<'_> {
             self.progress
                 .note(&self.state, &balance, self.schedule.rest);
             rests = self.progress.has_rested(&self.state);
-            if rests && !due.end {
-                self.find_last_pieces()?;
-            }
             if due.row || rests {
                 self.write_row(&balance, tell)?;
                 exceeded = self.progress.exceeded.is_some() && !due.end && !rests;
-            }
-            if exceeded {
-                self.find_last_pieces()?;
             }
             balanced = Some(balance);
         }
@@ -156,11 +145,8 @@ impl Run<'_> {
     /// Those of the files.
     pub(super) fn follow(&mut self) -> Result<Option<Ended>> {
         let replaced = self.follow_population()?;
-        let (state, bodies) = (&self.state, &self.bodies);
-        self.progress.seen.note_breaks_between(state, bodies);
         if let Some(files) = &mut self.files {
-            write_breaks_between(state, bodies, files)?;
-            write_zones(state, files)?;
+            write_zones(&self.state, files)?;
             write_sleep(&self.state, files)?;
         }
         let since = self
@@ -327,16 +313,6 @@ impl Run<'_> {
             files.order = FrameOrder::new(&self.bodies, &self.state);
         }
         Ok(replaced)
-    }
-
-    /// Searches for fragments a last time if bonds have broken since the last search.
-    fn find_last_pieces(&mut self) -> Result<()> {
-        if self.state.unsearched.is_empty() {
-            return Ok(());
-        }
-        find_pieces_now(&mut self.state);
-        let files = self.files.as_mut();
-        files.map_or(Ok(()), |files| write_splits(&self.state, files))
     }
 
     /// Writes a checkpoint, if results are kept.

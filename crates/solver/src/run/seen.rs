@@ -19,7 +19,6 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::called;
 use crate::state::clusters::fragments::Fragment;
-use crate::state::events::Break;
 use crate::state::events::PopulationEvent;
 use crate::state::events::REMOVED;
 use crate::state::events::STARTS_BONDED;
@@ -74,25 +73,8 @@ impl Seen {
     /// Records the bonds that have broken in this step, and the strains of those that broke at
     /// their strength.
     pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
-        let broken = &state.scratch.events.broken;
-        self.note(broken.iter().map(|one| (state.time_s, one)), state, bodies);
-    }
-
-    /// The same for those that broke since then, up to the next common time of all bodies.
-    pub(super) fn note_breaks_between(&mut self, state: &State, bodies: &[PlacedBody]) {
-        let broken = &state.scratch.events.broken_between;
-        let broken = broken.iter().map(|((_, time_s), one)| (*time_s, one));
-        self.note(broken, state, bodies);
-    }
-
-    fn note<'a>(
-        &mut self,
-        broken: impl Iterator<Item = (f64, &'a Break)>,
-        state: &State,
-        bodies: &[PlacedBody],
-    ) {
-        for (time_s, broken) in broken {
-            self.last_break_s = Some(time_s);
+        for broken in &state.scratch.events.broken {
+            self.last_break_s = Some(state.time_s);
             let at = broken.bond as usize;
             if state.bonds.was_damaged(at) {
                 continue;

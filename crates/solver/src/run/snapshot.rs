@@ -164,20 +164,9 @@ impl<'a> Snapshot<'a> {
         let of_run = &self.instructions;
         *state =
             (restored.filter(|_| is_same)).ok_or_else(|| other_bodies(of_run, instructions()))?;
-        if state.levels.is_some() != state.model.levels.is_some() {
-            return Err(other_levels());
-        }
         *bodies = self.bodies.to_vec();
         Ok(())
     }
-}
-
-fn other_levels() -> Diagnostic {
-    Diagnostic::input(
-        "",
-        "with the time step of the scene now, other bodies can take longer steps than in the run of this checkpoint",
-        "keep run.time_step, run.safety_factor and run.steps_by_body as they were, or start again without --resume",
-    )
 }
 
 /// `of_run`, `here`: the vector instructions of both processors.

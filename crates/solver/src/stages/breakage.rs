@@ -151,12 +151,8 @@ pub(crate) fn count_frictional(state: &mut State) -> usize {
         .sum()
 }
 
-/// Divides the work again once enough bonds have broken since the last division. Groups of bodies
-/// with steps of their own are divided again at the next common time.
+/// Divides the work again once enough bonds have broken since the last division.
 fn leave_out_broken(state: &mut State) {
-    if state.levels.is_some() {
-        return;
-    }
     let computed: usize = state
         .scratch
         .partitions

@@ -146,10 +146,6 @@ impl Seen<'_> {
             return;
         }
         let awake = ends.map(|i| !p.sleeps(i));
-        // Of bodies with steps of their own, what is not stepped now counts as asleep.
-        if self.contacts.scratch.is_of_group && awake.contains(&false) {
-            return;
-        }
         let length_m = square.sqrt();
         let radius_m = a.radius_m() * b.radius_m() / reach_m;
         let origin_m = self.contacts.histories[at].origin_m();

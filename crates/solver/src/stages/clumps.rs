@@ -379,7 +379,7 @@ fn drift_one(clump: &mut Clump, template: &Template, time_step_s: f64) -> (f64, 
 pub(crate) fn synchronous(state: &State) -> Vec<Clump> {
     let mut now = state.clumps.all.clone();
     for clump in now.iter_mut().filter(|clump| !clump.asleep) {
-        let back_s = -0.5 * state.steps_of_s(clump.first as usize)[1];
+        let back_s = -0.5 * state.time_step_s;
         let template = state.clumps.template(clump);
         kick_one(clump, template, state.model.gravity_m_s2, back_s);
     }

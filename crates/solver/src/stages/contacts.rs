@@ -187,11 +187,6 @@ pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: 
         contacts: known,
         poses: &p.poses,
         motions: &p.motions,
-        idle: if known.scratch.is_of_group {
-            &p.asleep
-        } else {
-            &[]
-        },
         checks_all,
         dt,
     };

@@ -173,8 +173,9 @@ fn remember(state: &mut State, memory: f64) {
 
 fn damp_in_stages(state: &mut State, largest: f64) {
     let kick_s = state.kick_s();
-    let mut known = std::mem::take(&mut state.scratch.stages);
-    let stages = Chebyshev::of_known(&mut known, largest);
+    let known = state.scratch.stages.take();
+    let known = known.filter(|(covered, _)| *covered == largest);
+    let (_, stages) = known.unwrap_or_else(|| (largest, Chebyshev::covering(largest)));
     predict(state, Prediction::Undamped);
     let mut force = std::mem::take(&mut state.bond_resistance);
     let [mut before, mut now, mut first] = std::mem::take(&mut state.scratch.damping_stages);
@@ -207,7 +208,7 @@ fn damp_in_stages(state: &mut State, largest: f64) {
     }
     state.bond_resistance = force;
     state.scratch.damping_stages = [before, now, first];
-    state.scratch.stages = known;
+    state.scratch.stages = Some((largest, stages));
 }
 
 /// Which damping of bonds a prediction counts.

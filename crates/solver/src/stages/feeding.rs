@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use super::levels::renumber_levels;
 use super::listing::lengthen_lists;
 use crate::state::State;
 use crate::state::clumps::{Clump, Clumps};
@@ -47,10 +46,8 @@ pub(super) fn add_clumps(state: &mut State, coming: Vec<Clump>) -> Renumbering {
         contacts.divide(count, state.scratch.threads);
         lengthen_lists(contacts, &state.particles, &state.clumps, before);
     }
-    let particles: Vec<u32> = (0..before[0] as u32).collect();
-    renumber_levels(state, &particles, &[]);
     Renumbering {
-        particles,
+        particles: (0..before[0] as u32).collect(),
         bonds: (0..state.bonds.len() as u32).collect(),
         free: state.particles.free as u32,
         created: Vec::new(),

@@ -56,9 +56,8 @@ pub(crate) fn count_bond_steps(state: &mut State) -> usize {
         let clumps = state.clumps.all.iter();
         let left_out = clumps.map(|clump| state.clumps.template(clump).bonds.len() as u64);
         let rigid = state.rigid_parts.bonds;
-        let steps = state.cycle();
-        state.population.bond_steps[1] += steps * (left_out.sum::<u64>() + rigid);
-        state.population.bond_steps[0] += steps * (state.bonds.len() as u64 - rigid);
+        state.population.bond_steps[1] += left_out.sum::<u64>() + rigid;
+        state.population.bond_steps[0] += state.bonds.len() as u64 - rigid;
     }
     0
 }

@@ -23,8 +23,7 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
     let (steps, time_s) = (state.steps, state.time_s);
     let asks =
         |inlet: &Inlet, come: &InletProgress| steps >= come.next_try && is_due(inlet, come, time_s);
-    let cycle_s = state.cycle() as f64 * state.previous_time_step_s;
-    let moved_m = state.fastest_m_s * cycle_s;
+    let moved_m = state.fastest_m_s * state.previous_time_step_s;
     for near in &mut state.scratch.surroundings {
         near.left_m -= moved_m;
     }
@@ -50,10 +49,8 @@ pub(super) fn coming(state: &mut State) -> Vec<Clump> {
             continue;
         }
         let near = &mut surroundings[n];
-        let ahead_m = ahead_m(inlet, state);
-        let is_known = near.left_m > ahead_m;
-        if !is_known {
-            *near = around(inlet, state, ahead_m);
+        if near.left_m <= 0.0 {
+            *near = around(inlet, state);
         }
         while asks(inlet, &come) {
             let Some(clump) = next_body(n, inlet, &mut come, state, near, &coming) else {
@@ -136,7 +133,7 @@ fn next_body(
     };
     let template = &state.clumps.templates[which as usize];
     let region = &state.model.rules.regions[inlet.region];
-    let reach_m = template.largest_reach_m() + ahead_m(inlet, state);
+    let reach_m = template.largest_reach_m();
     for _ in 0..TRIES {
         come.tries += 1;
         let attempt = come.tries;
@@ -171,16 +168,6 @@ fn next_body(
         }
     }
     None
-}
-
-/// Distance, m, that a body keeps from others as it comes. With steps by body it takes single time
-/// steps and another perhaps longer ones: the two must not touch before both are at one time again.
-fn ahead_m(inlet: &Inlet, state: &State) -> f64 {
-    let speed_m_s = state.fastest_m_s + Vector3::from(inlet.velocity_m_s).norm();
-    match state.levels {
-        Some(_) => state.cycle_s() * speed_m_s,
-        None => 0.0,
-    }
 }
 
 /// Whether a sphere of a clump touches a wall, or is inside a closed surface.
@@ -223,11 +210,11 @@ fn any_rotation([u, v, w]: [f64; 3]) -> UnitQuaternion<f64> {
 
 /// What is near the region of an inlet: all that may be in the way of the bodies that it feeds,
 /// until something has moved by the reach of the largest of them.
-fn around(inlet: &Inlet, state: &State, ahead_m: f64) -> Surroundings {
+fn around(inlet: &Inlet, state: &State) -> Surroundings {
     let fed = inlet.templates.iter();
     let reaches = fed.map(|(of, _)| state.clumps.templates[*of as usize].largest_reach_m());
     let reach_m = reaches.fold(0.0, f64::max);
-    let near_m = 2.0 * (reach_m + ahead_m);
+    let near_m = 2.0 * reach_m;
     let room = state.model.rules.regions[inlet.region].bounds();
     let free = &state.particles.poses[..state.particles.free];
     let particles = (0..)

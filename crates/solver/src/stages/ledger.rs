@@ -307,10 +307,7 @@ pub(crate) fn after_kick(state: &mut State) {
     for broken in &state.scratch.events.broken {
         ledger.released_j += broken.released_j;
     }
-    // With steps by body, at common times only: a group has but its share of the moment.
-    if state.levels.is_none() {
-        ledger.note_fall(state.model.gravity_m_s2);
-    }
+    ledger.note_fall(state.model.gravity_m_s2);
 
     let about = ledger.about_m;
     let mut total = loads_resultant(loads, state.time_s, steps_s, &particles.poses, about);

@@ -15,7 +15,6 @@ use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::contacts::{find_mean_radius, list_within, relist};
-use super::levels::foresee_walls;
 use super::neighbours::{MOST_TASKS, find_pairs};
 use super::sleep::begins_to_move;
 use super::stage::{NO_SAVING, Need, Stage};
@@ -234,7 +233,6 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
 fn put_in_list(state: &mut State, contacts: &mut Contacts, mut pairs: Vec<[u32; 2]>) {
     list_within(state, contacts, &mut pairs);
     relist(contacts, pairs, state);
-    note_relisting(state);
     if contacts.model.relaxes {
         state.scratch.events.work.relaxing += contacts.relaxing();
     }
@@ -245,13 +243,6 @@ fn numbers_of(clusters: Option<&Clusters>) -> (&[u32], Option<usize>) {
     match clusters {
         Some(clusters) => (&clusters.of_particle, Some(clusters.history.len())),
         None => (&[], None),
-    }
-}
-
-/// With steps by body, the groups have lists of their own, which are to be made again.
-fn note_relisting(state: &mut State) {
-    if let Some(levels) = &mut state.levels {
-        levels.scratch.is_relisted = true;
     }
 }
 
@@ -355,7 +346,6 @@ fn list_near_spheres(state: &mut State, pairs: &[[u32; 2]], buffers: &mut NearBu
 
 /// Lists what is near the walls that have moved too far since they were last listed.
 fn list_near_moving_walls(state: &mut State) {
-    foresee_walls(state);
     let Some(mut contacts) = state.contacts.take() else {
         return;
     };
@@ -398,7 +388,6 @@ fn list_near_moving_walls(state: &mut State) {
         }
         list_near_spheres(state, &contacts.pairs, &mut buffers.near);
         contacts.scratch.buffers = buffers;
-        note_relisting(state);
     }
     state.contacts = Some(contacts);
 }

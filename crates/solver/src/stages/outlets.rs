@@ -57,7 +57,7 @@ struct Piece {
 fn piece(id: u32, state: &State) -> Option<Piece> {
     let members = state.clusters.as_ref()?.members(id);
     let first = *members.first()?;
-    let drift_s = state.cycle() as f64 * state.time_step_s;
+    let drift_s = state.time_step_s;
     if let Some(number) = state.clumps.carrier_of(first as usize) {
         let clump = &state.clumps.all[number];
         return Some(Piece {
@@ -95,7 +95,7 @@ fn follow(watch: &mut OutletWatch, state: &State) {
         return;
     };
     // What moves in the coming drift moves about as fast as in the last one.
-    let moved_m = state.fastest_m_s * state.cycle() as f64 * state.previous_time_step_s;
+    let moved_m = state.fastest_m_s * state.previous_time_step_s;
     watch.left_m -= moved_m;
     if watch.left_m <= 2.0 * moved_m {
         let sizes = state.model.rules.outlets.iter().map(|outlet| {

@@ -23,32 +23,28 @@ pub(crate) const CLUSTERS: Stage = Stage {
     saving: NO_SAVING,
 };
 
-/// Searches for fragments if bonds have broken. Particles that no bond joins any more may touch
-/// from
-/// the next step on. Returns the number of clusters searched.
+/// Searches for the fragments of the pieces in which bonds have broken in this step. Returns the
+/// number of clusters searched.
 pub(crate) fn find_pieces(state: &mut State) -> usize {
-    if state.clusters.is_none() {
+    let broken = &state.scratch.events.broken;
+    if broken.is_empty() {
         return 0;
     }
-    let broken = state.scratch.events.broken.iter().map(|broken| broken.bond);
-    state.unsearched.extend(broken);
-    if state.unsearched.is_empty() {
-        return 0;
-    }
-    find_pieces_now(state)
+    let broken: Vec<u32> = broken.iter().map(|broken| broken.bond).collect();
+    find_pieces_of(state, &broken)
 }
 
-/// Searches for the fragments of the pieces in which bonds have broken since the last search.
-pub(crate) fn find_pieces_now(state: &mut State) -> usize {
+/// Searches for the fragments of the pieces of these broken bonds. Particles that no bond joins any
+/// more may touch from the next step on. Returns the number of clusters searched.
+pub fn find_pieces_of(state: &mut State, broken: &[u32]) -> usize {
     let Some(clusters) = &mut state.clusters else {
         return 0;
     };
-    let damaged = clusters.damaged_by(&state.unsearched, &state.bonds);
+    let damaged = clusters.damaged_by(broken, &state.bonds);
     state.scratch.events.splits = clusters.update(state.time_s, &damaged, &state.bonds);
-    let parted = state.unsearched.drain(..);
-    let parted = parted.map(|bond| state.bonds.ends[bond as usize]);
     if let Some(contacts) = &mut state.contacts {
         if contacts.model.self_contact {
+            let parted = broken.iter().map(|&bond| state.bonds.ends[bond as usize]);
             contacts.scratch.self_contacts.parted.extend(parted);
         }
         for split in &state.scratch.events.splits {

@@ -13,7 +13,6 @@ use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
 use crate::stages::feeding::arrived;
-use crate::stages::levels::renumber_levels;
 use crate::stages::listing::renumber_lists;
 use crate::stages::sleep::{count_sleepers, prepare_change};
 use crate::stages::walls::touch_energy_j;
@@ -82,7 +81,7 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
     state.particles = new;
     let bonds = change_bonds(state, &particles, &history, &mut created);
     let radii_m: Vec<f64> = old.poses.iter().map(Pose::radius_m).collect();
-    count_anew(state, &particles, &radii_m, &bonds, &materials_of_new);
+    count_anew(state, &particles, &radii_m, &materials_of_new);
     if let Some(clusters) = &mut state.clusters {
         (clusters.of_particle, clusters.history) = (ids, history);
         // They belong together by construction.
@@ -94,7 +93,6 @@ pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renu
         state.ledger.gain(strain_of(created, state));
     }
     count_sleepers(state);
-    renumber_levels(state, &particles, &created);
     let pressed_j = pressed_j(state);
     state.ledger.gain(pressed_j - pressed_before_j);
     Renumbering {
@@ -372,15 +370,8 @@ fn change_bonds(
 
 /// Renumbers everything else that is indexed by particles and bonds. `old_radii_m`: of the old
 /// particles; `is_new`: the material of new ones.
-fn count_anew(
-    state: &mut State,
-    particles: &[u32],
-    old_radii_m: &[f64],
-    bonds: &[u32],
-    is_new: &[Option<u8>],
-) {
+fn count_anew(state: &mut State, particles: &[u32], old_radii_m: &[f64], is_new: &[Option<u8>]) {
     let count = state.particles.len();
-    renumber(&mut state.unsearched, bonds);
     for support in &mut state.supports {
         support.held.retain_mut(|held| {
             held.particle = particles[held.particle as usize];

@@ -9,7 +9,6 @@ use crate::state::State;
 use crate::state::clumps::Clump;
 use crate::state::events::TopologyChange;
 use crate::state::events::{PopulationEvent, STARTS_BONDED};
-use crate::state::levels::Levels;
 use crate::state::rules::Trigger;
 use crate::state::squeeze::Squeeze;
 
@@ -78,71 +77,13 @@ pub(crate) fn replace_clumps(state: &mut State) -> usize {
         return 0;
     }
     let clumps = state.clumps.all.len();
-    let mut due = all_triggered(state);
-    wait_for_single_steps(state, &mut due);
+    let due = all_triggered(state);
     let (to_clusters, causes): (Vec<usize>, Vec<&'static str>) = due.into_iter().unzip();
     if !to_clusters.is_empty() {
         swap(state, to_clusters, &causes);
     }
     let can_fire = state.model.rules.triggers.iter().any(Option::is_some);
     if can_fire { clumps } else { 0 }
-}
-
-/// With steps by body, notes the clumps of the group that has just been stepped whose trigger fires
-/// between two common times.
-pub(crate) fn note_fired(state: &mut State) {
-    let triggers = &state.model.rules.triggers;
-    let none_stepped = state.clumps.all.iter().all(|clump| clump.asleep);
-    if none_stepped || triggers.iter().all(Option::is_none) {
-        return;
-    }
-    let fired = all_triggered(state);
-    let Some(levels) = &mut state.levels else {
-        return;
-    };
-    for (n, cause) in fired {
-        let clump = &state.clumps.all[n];
-        let is_known = || {
-            levels
-                .fired
-                .iter()
-                .any(|(known, _)| *known == clump.cluster)
-        };
-        if !(clump.asleep || is_known()) {
-            note_waiting(levels, clump, cause);
-        }
-    }
-}
-
-/// Notes a clump that becomes bonded once it takes single time steps.
-fn note_waiting(levels: &mut Levels, clump: &Clump, cause: &str) {
-    let number = CAUSES.iter().position(|known| *known == cause);
-    levels.fired.extend(number.map(|n| (clump.cluster, n)));
-}
-
-/// With steps by body, takes out the clumps that do not take single time steps. They become bonded
-/// at the next common time, by which they and all near them do.
-fn wait_for_single_steps(state: &mut State, due: &mut Vec<(usize, &'static str)>) {
-    let Some(levels) = &mut state.levels else {
-        return;
-    };
-    let clumps = &state.clumps.all;
-    levels.fired.clear();
-    due.retain(|&(n, cause)| {
-        let clump = &clumps[n];
-        let is_ready = levels.of_particle[clump.first as usize] == 0;
-        if !is_ready {
-            note_waiting(levels, clump, cause);
-        }
-        is_ready
-    });
-}
-
-/// The cause for which a clump is to become bonded, if it has been waiting for that.
-fn fired_before(state: &State, clump: &Clump) -> Option<&'static str> {
-    let fired = state.levels.iter().flat_map(|levels| &levels.fired);
-    let mut own = fired.filter(|(cluster, _)| *cluster == clump.cluster);
-    own.next().map(|(_, cause)| CAUSES[*cause])
 }
 
 /// Clumps whose trigger fires: their numbers and the causes.
@@ -162,9 +103,6 @@ fn triggered(state: &State, squeezes: &[Squeeze]) -> impl Iterator<Item = (usize
         let start = rules.starts.get(template);
         if start.is_some_and(|start| start.bonded || start.sphere) {
             return Some((n, STARTS_BONDED));
-        }
-        if let Some(cause) = fired_before(state, clump) {
-            return Some((n, cause));
         }
         let squeeze = squeezes.get(n);
         let cause = match rules.triggers.get(template) {

@@ -42,9 +42,6 @@ pub fn restore_clumps(state: &mut State) -> usize {
         return 0;
     }
     if let Some((renumbering, restored)) = restore(state) {
-        if let Some(levels) = &mut state.levels {
-            levels.looks_next = true;
-        }
         state.population.restored += restored.len() as u32;
         state.scratch.events.renumberings.push(renumbering);
         state.scratch.events.population.extend(restored);

@@ -92,10 +92,6 @@ pub(crate) fn find_self_contacts(state: &mut State) -> usize {
         return 0;
     };
     let mut own = std::mem::take(&mut contacts.scratch.self_contacts);
-    // Bonds that bodies with steps of their own have broken since their last common time.
-    let broken = state.unsearched.iter();
-    own.parted
-        .extend(broken.map(|&bond| state.bonds.ends[bond as usize]));
     let looked = match &state.clusters {
         Some(clusters) => {
             let pieces = Pieces {
@@ -103,7 +99,7 @@ pub(crate) fn find_self_contacts(state: &mut State) -> usize {
                 bonds: &state.bonds,
                 particles: &state.particles,
                 contacts: &contacts,
-                step_s: state.cycle_s(),
+                step_s: state.time_step_s,
             };
             pieces.look(&mut own, &state.scratch.chunks_moved_m)
         }

@@ -137,9 +137,6 @@ fn at_rest_together(state: &mut State, mut may: Vec<bool>) -> Vec<u32> {
     for i in held.chain(loaded) {
         may[id(i) as usize] = false;
     }
-    for cluster in clusters.damaged_by(&state.unsearched, &state.bonds) {
-        may[cluster as usize] = false;
-    }
     let moving = |wall: &&Wall| moves(wall, [state.time_s, state.time_step_s]);
     for touch in state.walls.iter().filter(moving).flat_map(|w| &w.touching) {
         may[id(touch.particle) as usize] = false;

@@ -34,7 +34,7 @@ pub fn synchronous_motions_of_free(state: &State) -> Vec<Motion> {
         if p.sleeps(i) {
             return motion;
         }
-        let half_s = 0.5 * state.steps_of_s(i)[1];
+        let half_s = 0.5 * state.time_step_s;
         let (per_mass, per_inertia) = (
             half_s * motion.inverse_mass,
             half_s * motion.inverse_inertia,
@@ -85,10 +85,8 @@ pub fn motions_before_kick(state: &State) -> Vec<Motion> {
     let mut motions = synchronous_motions(state);
     // In a static equilibrium nothing moves, and there is no step.
     if state.time_step_s > 0.0 {
-        let after = state.particles.motions.iter().enumerate();
-        for (motion, (i, after)) in motions.iter_mut().zip(after) {
-            let [before_s, step_s] = state.steps_of_s(i);
-            let back = before_s / step_s;
+        let back = state.previous_time_step_s / state.time_step_s;
+        for (motion, after) in motions.iter_mut().zip(&state.particles.motions) {
             for (now, after) in motion.velocity_m_s.iter_mut().zip(after.velocity_m_s) {
                 *now -= back * (after - *now);
             }
@@ -97,7 +95,7 @@ pub fn motions_before_kick(state: &State) -> Vec<Motion> {
     // The ends of a bond that broke in this step have had its half of the kick after the
     // comparison.
     for (end, on_end) in state.scratch.events.broken.iter().flat_map(|b| b.ends) {
-        let half_s = 0.5 * state.steps_of_s(end as usize)[0];
+        let half_s = 0.5 * state.previous_time_step_s;
         let motion = &mut motions[end as usize];
         for (velocity, force_n) in motion.velocity_m_s.iter_mut().zip(on_end) {
             *velocity -= half_s * motion.inverse_mass * force_n;

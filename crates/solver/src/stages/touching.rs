@@ -20,16 +20,7 @@ pub(crate) fn touching(state: &State) -> BTreeSet<u32> {
 /// Number of contacts that touch in this step, or did in the previous one.
 pub(crate) fn contacts_now(state: &State) -> usize {
     let of_walls: usize = state.walls.iter().map(|wall| wall.touching.len()).sum();
-    let of_pairs = match (&state.levels, &state.contacts) {
-        (Some(_), _) => {
-            let partitions = state.contact_partitions().into_iter();
-            partitions.map(|partition| partition.computed).sum()
-        }
-        (None, Some(contacts)) => {
-            let partitions = contacts.scratch.partitions.iter();
-            partitions.map(|partition| partition.computed).sum()
-        }
-        (None, None) => 0,
-    };
+    let partitions = state.contact_partitions().iter();
+    let of_pairs: usize = partitions.map(|partition| partition.computed).sum();
     of_walls + of_pairs
 }

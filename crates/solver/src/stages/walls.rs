@@ -91,11 +91,8 @@ pub(super) fn velocity_at(wall: &Wall, point: &Vector3<f64>) -> Vector3<f64> {
 
 /// Determines the motion of the walls in the coming drift.
 pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
-    // With steps by body it is determined once for all groups.
-    if state.levels.is_none() {
-        let steps_s = state.steps_s();
-        plan_motions(&mut state.walls, state.time_s, steps_s);
-    }
+    let steps_s = state.steps_s();
+    plan_motions(&mut state.walls, state.time_s, steps_s);
     0
 }
 

@@ -35,62 +35,24 @@ struct Met {
 
 /// Evaluates the watches, between the forces of a step and its end.
 pub(crate) fn watch(state: &mut State) -> usize {
-    record(state, |_, _| true);
-    0
-}
-
-/// The same between two common times of bodies with steps of their own. Of what does not take
-/// single time steps it records peaks only: its places are those of a later time.
-pub(crate) fn watch_within_cycle(state: &mut State) {
-    record(state, takes_single_steps);
-}
-
-/// Evaluates the watches; records peaks only if not `all` of what they watch is at this time.
-fn record(state: &mut State, all: impl Fn(&Watch, &State) -> bool) {
-    if state.watches.is_empty() {
-        return;
-    }
     let mut watches = std::mem::take(&mut state.watches);
     for watch in &mut watches {
         if let Some(contacts) = &state.contacts {
             let met = met(watch, state, contacts);
-            if all(watch, state) {
-                note(&mut watch.seen, watch.quantity, &met, state);
-            } else if watch.quantity != Quantity::ContactDuration {
-                let value = value(watch.quantity, &met, 0.0);
-                watch.seen.history.note_peak(value);
-            }
+            note(&mut watch.seen, watch.quantity, &met, state);
         }
     }
     state.watches = watches;
-}
-
-fn takes_single_steps(watch: &Watch, state: &State) -> bool {
-    let levels = state.levels.iter().flat_map(|levels| &levels.of_particle);
-    let single = |of: &[bool]| {
-        let mut both = of.iter().zip(levels.clone());
-        both.all(|(is_watched, level)| !is_watched || *level == 0)
-    };
-    match &watch.of {
-        WatchTarget::Wall(_) => false,
-        WatchTarget::Particles(of) | WatchTarget::WithWall(of, _) => single(of),
-        WatchTarget::Between([of, with]) => single(of) && single(with),
-    }
+    0
 }
 
 fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {
     // The lists cover at least this distance, whether rebuilt in this step or in the previous one.
-    let cycle = state.cycle() as f64;
-    let longest_s = cycle * state.time_step_s.max(state.previous_time_step_s);
+    let longest_s = state.time_step_s.max(state.previous_time_step_s);
     let sure_m = 2.0 * state.fastest_m_s * longest_s;
     let now_m = met.overlap_m.max(-sure_m);
     if let Some(before_m) = seen.overlap_m {
-        // With steps by body, it may be a time step or a cycle.
-        let since_s = match (&state.levels, seen.history.last) {
-            (Some(_), Some((before_s, _))) => state.time_s - before_s,
-            _ => state.previous_time_step_s,
-        };
-        seen.touched_s += since_s * share_above_0(before_m, now_m);
+        seen.touched_s += state.previous_time_step_s * share_above_0(before_m, now_m);
     }
     seen.overlap_m = Some(now_m);
     seen.value = value(quantity, met, seen.touched_s);

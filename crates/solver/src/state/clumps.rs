@@ -136,11 +136,6 @@ impl Template {
         self.outer_radii_m().fold(0.0, f64::max) * self.scale
     }
 
-    /// Radius of the smallest outer sphere of its clumps, m.
-    pub(crate) fn smallest_m(&self) -> f64 {
-        self.outer_radii_m().fold(f64::INFINITY, f64::min) * self.scale
-    }
-
     /// Radii of the outer spheres, not scaled, m.
     fn outer_radii_m(&self) -> impl Iterator<Item = f64> {
         self.outer

@@ -141,9 +141,6 @@ pub struct Contacts {
 pub struct ContactScratch {
     /// The last search for the neighbours of each particle.
     pub references: References,
-    /// Whether the contacts of a group of bodies are worked on, not those of all: see
-    /// `levels::Group`.
-    pub is_of_group: bool,
     /// Pairs before the last search, kept for their memory only.
     pub(crate) former_pairs: Vec<[u32; 2]>,
     /// Histories before the last search, kept for their memory only.

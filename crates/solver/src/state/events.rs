@@ -15,9 +15,6 @@ pub struct Events {
     pub time_s: f64,
     /// Bonds that broke in the kick.
     pub broken: Vec<Break>,
-    /// Bonds that broke after it and before the next common time of all bodies, each with the
-    /// steps done before and the time of the kick, s: only with steps by body.
-    pub broken_between: Vec<((u64, f64), Break)>,
     /// Clusters that were found in pieces.
     pub splits: Vec<Split>,
     /// Bodies added, removed or replaced.

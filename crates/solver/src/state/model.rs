@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::bonds::BondRule;
 use super::clumps::Template;
 use super::contacts::ContactModel;
-use super::levels::LevelRule;
 use super::rules::Rules;
 use super::sleep::SleepRule;
 use super::walls::WallModel;
@@ -55,10 +54,6 @@ pub struct Model {
     pub rules: Rules,
     /// Rule by which bodies fall asleep. None: they never do.
     pub sleep: Option<SleepRule>,
-    /// What the steps of bodies follow from. None: all bodies take the same steps. It changes with
-    /// the safety factor, which may be changed in a resumed run.
-    #[serde(skip)]
-    pub levels: Option<Arc<LevelRule>>,
 }
 
 impl Model {

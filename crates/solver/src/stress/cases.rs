@@ -7,7 +7,7 @@ use dem_io::{Diagnostic, Result};
 use super::prediction::Member;
 use super::{
     adhesion, bars, beside, breakage, bridges, daughters, families, friction, impact, joints,
-    limit_map, long, own_steps, softening, swap, yielding, zones,
+    limit_map, long, softening, swap, yielding, zones,
 };
 
 /// A case of the suite.
@@ -32,7 +32,7 @@ impl Case {
 }
 
 /// All cases.
-pub const CASES: [Case; 27] = [
+pub const CASES: [Case; 26] = [
     Case {
         name: "stiffness-ratio",
         extreme: "neighbouring bonds whose stiffnesses differ by 100 to 1e6",
@@ -157,11 +157,6 @@ pub const CASES: [Case; 27] = [
         name: "short-bonds",
         extreme: "bonds down to a billionth of a radius long",
         members: |_| families::short_bonds(),
-    },
-    Case {
-        name: "own-steps",
-        extreme: "bodies whose moduli differ by 10 to 1e6 collide, with steps of their own",
-        members: |_| Ok(own_steps::collisions()),
     },
     Case {
         name: "rest",

@@ -9,6 +9,7 @@ use dem_run::measure::bond_utilisation;
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::plan::{Plan, plan};
 use dem_run::stages::ledger::{balance, opened};
+use dem_run::stages::pieces::find_pieces_of;
 use dem_run::state::State;
 use dem_run::step::{advance, interact, step};
 use nalgebra::Vector3;
@@ -57,7 +58,7 @@ fn cube(overlap: f64, extra: &str) -> String {
 /// Breaks a bond outside a step: it stores no energy if the body is at rest.
 fn vanish(state: &mut State, at: usize) {
     state.bonds.set_broken(at);
-    state.unsearched.push(at as u32);
+    find_pieces_of(state, &[at as u32]);
 }
 
 #[test]

@@ -64,7 +64,6 @@ fn nothing_is_missing() {
         ("size", [8, 0, 0]),
         ("modulus", [8, 0, 0]),
         ("short-bonds", [18, 0, 0]),
-        ("own-steps", [4, 0, 0]),
         ("rest", [3, 0, 0]),
     ] {
         let found = [

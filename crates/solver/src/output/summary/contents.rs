@@ -94,10 +94,6 @@ pub struct Summary {
     /// Sleeping bodies, if any can sleep.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sleep: Option<SleepSummary>,
-    /// Fraction of particle updates that was skipped because bodies took longer steps than others,
-    /// if any could.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub updates_skipped_by_longer_steps: Option<f64>,
     /// Steps from the start.
     pub steps: u64,
     /// Last step, s.

@@ -77,13 +77,6 @@ impl fmt::Display for Summary {
                 100.0 * sleep.particle_updates_skipped,
             )?;
         }
-        if let Some(skipped) = self.updates_skipped_by_longer_steps {
-            writeln!(
-                f,
-                "own steps    {:.0} % of particle updates skipped by bodies with longer steps",
-                100.0 * skipped
-            )?;
-        }
         let strained = [
             ("bonds", self.largest_bond_strain, "edge strain"),
             ("contacts", self.largest_overlap, "of the smaller radius"),

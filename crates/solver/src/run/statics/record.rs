@@ -95,7 +95,6 @@ impl AtRest<'_> {
             population: None,
             taken_in: BTreeMap::new(),
             sleep: None,
-            updates_skipped_by_longer_steps: None,
             steps: state.steps,
             time_step_s: state.time_step_s,
             limit_s: f64::INFINITY,

@@ -44,9 +44,6 @@ fn find_border(partition: &mut ContactPartition, scene: &StepInput<'_>) {
     let (contacts, poses) = (scene.contacts, scene.poses);
     for (n, &at) in (0..).zip(&partition.border) {
         let pair = contacts.pairs[at as usize];
-        if scene.leaves_out(pair) {
-            continue;
-        }
         let [a, b] = pair.map(|i| &poses[i as usize]);
         let reach = a.radius_m() + b.radius_m() + contacts.scratch.close_m;
         if (b.place() - a.place()).norm_squared() < reach * reach {
@@ -76,13 +73,9 @@ fn find_own<T: Lanes>(proof: T::Proof, partition: &mut ContactPartition, scene: 
             fetch_soon_of(poses, soon as usize);
         }
         let eight = &pairs[first..(first + MOST).min(own.end)];
-        let stepped = scene.stepped(eight);
-        if stepped == 0 {
-            continue;
-        }
-        let now = near::<T>(proof, eight, poses, close_m) & stepped;
+        let now = near::<T>(proof, eight, poses, close_m);
         // Unpredictable, so it is computed without a branch.
-        let listed = usize::from((now | *was_close) & stepped);
+        let listed = usize::from(now | *was_close);
         *was_close = now;
         for lane in 0..MOST {
             close[count] = (first + lane) as u32;

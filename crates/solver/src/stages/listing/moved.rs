@@ -75,7 +75,7 @@ pub(super) fn find_due(
         return;
     }
     let p = &state.particles;
-    let step_s = state.cycle_s();
+    let step_s = state.time_step_s;
     let is_due = |i: usize| {
         let [left_m, allowance_m] = free_left_m(p, references, i);
         left_m < least_m(SOON * allowance_m, p.motions[i].speed_m_s() * step_s)
@@ -124,7 +124,7 @@ fn is_urgent(state: &State, references: &mut References) -> bool {
             for i in chunk_of(chunk, p.free) {
                 let [left_m, _] = free_left_m(p, references, i);
                 least_left_m = least_left_m.min(left_m);
-                let moved_m = p.motions[i].speed_m_s() * state.cycle_s();
+                let moved_m = p.motions[i].speed_m_s() * state.time_step_s;
                 urgent |= left_m < STEPS_LEFT * moved_m;
             }
             references.chunks_left_m[chunk] = least_left_m;
@@ -188,7 +188,7 @@ fn clump_left_m(clumps: &Clumps, clump: &Clump, reference: &ClumpReference) -> f
 /// Gives these free particles, ascending, new balls.
 pub(super) fn refer_particles(contacts: &mut Contacts, state: &State, some: &[u32]) {
     let p = &state.particles;
-    let moved_m = |i: usize| p.motions[i].speed_m_s() * state.cycle_s();
+    let moved_m = |i: usize| p.motions[i].speed_m_s() * state.time_step_s;
     for some in some.chunk_by(|&a, &b| a as usize / CHUNK == b as usize / CHUNK) {
         let chunk = some[0] as usize / CHUNK;
         let fastest_m = chunk_of(chunk, p.free).map(moved_m).fold(0.0, f64::max);
@@ -237,7 +237,7 @@ pub(super) fn refer_clumps(
         let template = state.clumps.template(clump);
         let known_m = known.largest_m(clump.template as usize);
         let largest_m = known_m.unwrap_or_else(|| template.largest_m());
-        let moved_m = speed_m_s(clump, template) * state.cycle_s();
+        let moved_m = speed_m_s(clump, template) * state.time_step_s;
         let allowance_m = match allowances {
             None => 0.5 * skin_m,
             Some([least, _]) => {
