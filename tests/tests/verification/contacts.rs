@@ -237,7 +237,7 @@ fn elastic() -> [String; 3] {
     ]
 }
 
-/// Damping ratio for a restitution, by bisection of the closed form on the page.
+/// Damping ratio for a restitution, by bisection of the closed form of `doc/contacts.md`.
 fn damping_ratio(restitution: f64) -> f64 {
     let (mut low, mut high) = (0.0, 100.0);
     for _ in 0..100 {
