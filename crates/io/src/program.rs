@@ -44,31 +44,11 @@ pub fn own_command() -> std::io::Result<(PathBuf, Vec<String>)> {
     }
 }
 
-/// Refuses options that have been renamed: each an old name and the new one.
-///
-/// # Errors
-/// One of the arguments is an old name.
-pub fn refuse_renamed(
-    arguments: impl Iterator<Item = OsString>,
-    renamed: &[(&str, &str)],
-) -> Result<()> {
-    for argument in arguments.skip(1).take_while(|argument| argument != "--") {
-        let argument = argument.to_string_lossy();
-        let option = argument.split('=').next().unwrap_or_default();
-        if let Some((old, new)) = renamed.iter().find(|(old, _)| *old == option) {
-            let problem = format!("is now called {new}");
-            return Err(Diagnostic::input(*old, problem, format!("write {new}")));
-        }
-    }
-    Ok(())
-}
-
 /// The arguments of a program called `name`. Its help and version are printed, and end the program.
 ///
 /// # Errors
-/// An argument has been renamed, or is wrong: the message of clap on one line.
-pub fn parsed<P: Parser>(name: &str, given: &[OsString], renamed: &[(&str, &str)]) -> Result<P> {
-    refuse_renamed(given.iter().cloned(), renamed)?;
+/// An argument is wrong: the message of clap on one line.
+pub fn parsed<P: Parser>(name: &str, given: &[OsString]) -> Result<P> {
     let matches = taking_negative_numbers(P::command()).try_get_matches_from(given);
     matches
         .and_then(|matches| P::from_arg_matches(&matches))

@@ -6,7 +6,7 @@ mod recipe;
 mod report;
 mod shape;
 
-pub use self::arguments::{Arguments, RENAMED};
+pub use self::arguments::Arguments;
 use self::arguments::{Command, PackArguments, Reading};
 use self::bond::bond;
 pub use self::recipe::Recipe;

@@ -161,14 +161,6 @@ impl Word for StrainRateMeasure {
 }
 
 pub(super) fn read(field: &Field<'_>) -> Result<BondFailure> {
-    if let Some(old) = Table::any(field)?.get("compressive") {
-        let problem = format!(
-            "{} was removed: tensile_strength breaks bonds in tension only",
-            old.path
-        );
-        let remedy = "write compressive_strength = \"15 MPa\" for a strength in compression, or leave it out";
-        return Err(old.refuse(problem, remedy));
-    }
     let table = Table::of(field, &FAILURE)?;
     let failure = BondFailure {
         tensile_strength_pa: table.read("tensile_strength")?,

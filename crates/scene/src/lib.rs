@@ -42,7 +42,6 @@ mod read;
 pub mod reference;
 mod region;
 mod relaxation;
-mod renamed;
 mod replacement;
 mod root;
 mod run;

@@ -2,7 +2,6 @@
 
 use super::field::Field;
 use super::names::{suggestion, well_formed};
-use super::renamed::{new_name, why_removed};
 use super::schema::{Key, Schema, Unless};
 use super::tree::{Document, Node, Origin, Value, shortened};
 use dem_io::diagnostic::{Diagnostic, Result};
@@ -103,13 +102,6 @@ impl<'a> Table<'a> {
             return Ok(());
         };
         let field = self.field(key, node);
-        if let Some((new, remedy)) = new_name(self.schema.title, key) {
-            let problem = format!("{} is now called {new}", field.path);
-            return Err(field.refuse(problem, remedy));
-        }
-        if let Some(why) = why_removed(self.schema.title, key) {
-            return Err(field.refuse(format!("{} is no longer a key", field.path), why));
-        }
         let problem = match node.value {
             Value::Table(_) if self.path.is_empty() => {
                 format!("unknown table [{}]", field.path)

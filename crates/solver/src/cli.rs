@@ -47,7 +47,7 @@ use self::run_scene::run_scene;
 use crate::interrupt::Interrupt;
 use crate::run::SoFar;
 
-pub use self::arguments::{Arguments, RENAMED};
+pub use self::arguments::Arguments;
 
 /// The program: does what its command line says, reports an error on standard error, and returns
 /// the exit code. The first of `given` is the name of the program. At Ctrl-C a run stops and keeps

@@ -14,14 +14,6 @@ use dem_io::{Diagnostic, Result};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// Options that had another name before version 0.1, and their new names.
-pub const RENAMED: [(&str, &str); 4] = [
-    ("--bonding-radius", "--bond-range"),
-    ("--bond-radius-factor", "--bond-radius"),
-    ("--settle", "--densify"),
-    ("--by", "--basis"),
-];
-
 /// Largest value for `--densify`: the largest that is chosen automatically.
 const LARGEST_DENSIFY: f64 = SHRINK_RANGE[1];
 
@@ -242,7 +234,7 @@ impl Arguments {
     /// Arguments that cannot be parsed, on one line.
     pub fn parsed(given: impl Iterator<Item = OsString>) -> Result<Self> {
         let given: Vec<OsString> = given.collect();
-        parsed("dem-pack", &given, &RENAMED)
+        parsed("dem-pack", &given)
     }
 }
 

@@ -1,12 +1,12 @@
 //! Bodies by the arguments of dem-pack, for programs that need several packings of a shape.
 
-use super::arguments::{Arguments, PackArguments, RENAMED};
+use super::arguments::{Arguments, PackArguments};
 use super::shape::{check_unit_of_diameter, read_surface};
 use crate::body::{BodyReport, BodySettings, make_body};
 use crate::pack::Progress;
 use crate::sizes::Sizes;
 use clap::Parser;
-use dem_io::program::{on_one_line, refuse_renamed};
+use dem_io::program::on_one_line;
 use dem_io::{Body, Diagnostic, Result, Surface};
 use std::path::PathBuf;
 
@@ -27,7 +27,6 @@ impl Recipe {
     /// STL file that bounds no solid (all exit code 2).
     pub fn parse(arguments: &[String]) -> Result<Self> {
         let line = || std::iter::once("dem-pack".to_owned()).chain(arguments.iter().cloned());
-        refuse_renamed(line().map(Into::into), &RENAMED)?;
         let parsed = Arguments::try_parse_from(line()).map_err(|error| {
             let problem = on_one_line(&error.to_string());
             Diagnostic::input("dem-pack", problem, "see dem-pack --help")

@@ -320,16 +320,3 @@ fn the_report_says_what_body_and_shape_weigh() {
     );
     assert!(!line(&text, "centre ").contains("moments"), "{text}");
 }
-
-#[test]
-fn options_of_another_name_are_refused_with_the_new_one() {
-    for (old, new) in dem_pack::cli::RENAMED {
-        for argument in [old.to_owned(), format!("{old}=1")] {
-            let done = dem_pack().args(["box.stl", &argument]).output().unwrap();
-            let said = String::from_utf8(done.stderr).unwrap();
-            assert_eq!(done.status.code(), Some(2), "{said}");
-            let expected = format!("error: {old}: is now called {new}; write {new}\n");
-            assert_eq!(said, expected);
-        }
-    }
-}

@@ -20,13 +20,6 @@ use super::scene_arguments::SceneArguments;
 use super::stress::StressArguments;
 use super::sweep::SweepArguments;
 
-/// Options that had another name before version 0.1, and their new names.
-pub const RENAMED: [(&str, &str); 3] = [
-    ("--out", "--output"),
-    ("--want", "--max-error"),
-    ("--colour", "--colour-by"),
-];
-
 /// Simulates the breakage of bonded particles with the discrete element method.
 #[derive(Debug, Parser)]
 #[command(
@@ -53,14 +46,14 @@ impl Arguments {
     /// SCENE` is `dem-run SCENE`.
     ///
     /// # Errors
-    /// An unknown command or option, or one that has been renamed (exit code 2).
+    /// An unknown command or option (exit code 2).
     pub fn parsed(given: impl Iterator<Item = OsString>) -> Result<Self> {
         let mut given: Vec<OsString> = given.collect();
         if given.len() > 2 && given[1] == "run" {
             given.remove(1);
         }
         refuse_no_command(&given)?;
-        parsed("dem-run", &given, &RENAMED).map_err(|error| naming_set(error, &given))
+        parsed("dem-run", &given).map_err(|error| naming_set(error, &given))
     }
 }
 

@@ -58,19 +58,6 @@ fn a_shell_that_is_none_is_refused() {
     assert!(output.stdout.is_empty());
 }
 
-#[test]
-fn options_of_another_name_are_refused_with_the_new_one() {
-    for (old, new) in dem_run::cli::RENAMED {
-        for argument in [old.to_owned(), format!("{old}=1")] {
-            let done = dem_run().args(["scene.toml", &argument]).output().unwrap();
-            let said = String::from_utf8(done.stderr).unwrap();
-            assert_eq!(done.status.code(), Some(2), "{said}");
-            let expected = format!("error: {old}: is now called {new}; write {new}\n");
-            assert_eq!(said, expected);
-        }
-    }
-}
-
 /// What `dem-run` says of bad arguments, and that the exit code is 2.
 fn refusal(arguments: &[&str]) -> String {
     let (said, code) = refused(&dem_run().args(arguments).output().unwrap());
