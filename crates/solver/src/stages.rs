@@ -20,7 +20,6 @@ pub(crate) mod flow;
 pub mod incremental;
 pub(crate) mod inlets;
 pub(crate) mod intake;
-pub(crate) mod lanes;
 pub mod ledger;
 pub(crate) mod listing;
 pub mod loads;

@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
 use crate::measure;
-use crate::stages::lanes::instructions;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
+use dem_physics::lanes::instructions;
 
 /// A run between two steps.
 #[derive(Debug, Clone, Serialize, Deserialize)]

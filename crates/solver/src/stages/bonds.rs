@@ -13,11 +13,11 @@ use crate::physics::number::{Rotation, Vec3};
 use crate::stages::blocks::{
     BondGroup, blocks_of, coming_second_ends, fetch_soon_of, for_each_partition, separations,
 };
-use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Computed, Partition};
+use dem_physics::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 
 use LaneChoice::{AsManyLanes, OneLane};
 

@@ -25,11 +25,11 @@ use crate::physics::contact::rolling::RollingFriction;
 use crate::physics::contact::{ContactSprings, Damped, NormalLaw};
 use crate::physics::number::Vec3;
 use crate::stages::blocks::{fetch_soon_of, rows, vectors};
-use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::stages::neighbours::near_pairs;
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, ContactPartition, Contacts};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use dem_physics::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 
 /// Contacts between particles.
 pub const CONTACTS: Stage = Stage {

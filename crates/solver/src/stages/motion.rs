@@ -9,10 +9,10 @@ use super::clumps::awake;
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::physics::rigid::{room_to_small, turn, turn_a_little};
 use crate::stages::chunks::{CHUNK, ordered_sum};
-use crate::stages::lanes::{LaneWork, Lanes, with_lanes};
 use crate::state::State;
 use crate::state::asleep::Asleep;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use dem_physics::lanes::{LaneWork, Lanes, with_lanes};
 
 /// Kick and drift of particles.
 pub const MOTION: Stage = Stage {

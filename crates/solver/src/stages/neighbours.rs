@@ -19,7 +19,6 @@ use rayon::prelude::*;
 use self::among_small::{SmallMeetings, in_order};
 use self::meetings::list_with_small;
 use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
-use super::lanes::{LaneWork, Lanes, next_of, with_most_lanes};
 use crate::geometry::Bounds;
 use crate::physics::number::Vec3;
 use crate::state::balls::{BLOCK, BOXES, Ball, BoxColumns, NOWHERE};
@@ -27,6 +26,7 @@ use crate::state::groups::{KnownClusters, LargeCluster, Searched};
 use crate::state::particles::Pose;
 use crate::state::rigid_balls::Placement;
 use crate::state::search_buffers::{PairBuffers, PairTask};
+use dem_physics::lanes::{LaneWork, Lanes, next_of, with_most_lanes};
 
 /// Largest number of tasks that large clusters are divided into.
 pub(super) const MOST_TASKS: usize = 256;

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::bonds::Kind;
-use super::lanes::{LaneWork, Lanes, with_most_lanes};
 use crate::stages::blocks::{BondGroup, blocks_of, coming_second_ends, fetch_soon_of};
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::Pose;
+use dem_physics::lanes::{LaneWork, Lanes, with_most_lanes};
 
 /// Sets `squares` to the squared utilisations of a range of bonds that share a rule, before any
 /// scatter or strengthening of strengths, to 1e-13 of their terms: the rule has no history, and no

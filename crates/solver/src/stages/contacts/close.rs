@@ -3,9 +3,9 @@
 use super::input::StepInput;
 use crate::physics::number::Vec3;
 use crate::stages::blocks::fetch_soon_of;
-use crate::stages::lanes::{Lanes, MOST};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::Pose;
+use dem_physics::lanes::{Lanes, MOST};
 
 /// Prefetch distance of second particles, in contacts.
 const AHEAD: usize = 32;

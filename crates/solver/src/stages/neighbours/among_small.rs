@@ -1,10 +1,10 @@
 //! Pairs of small clusters, and of these with large ones, by grids.
 
 use crate::physics::number::Vec3;
-use crate::stages::lanes::{LaneWork, Lanes, next_of};
 use crate::state::balls::Ball;
 use crate::state::grids::{Grid, Grids};
 use crate::state::groups::{KnownClusters, Searched};
+use dem_physics::lanes::{LaneWork, Lanes, next_of};
 
 /// Meetings of some balls with all that are in the grids.
 pub(super) struct SmallMeetings<'a> {

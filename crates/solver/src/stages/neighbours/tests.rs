@@ -4,10 +4,10 @@ use proptest::prelude::*;
 
 use super::among_small::SmallMeetings;
 use super::find_pairs;
-use crate::stages::lanes::{LaneWork, with_lanes, with_most_lanes};
 use crate::state::balls::Ball;
 use crate::state::groups::{KnownClusters, Searched};
 use crate::state::search_buffers::PairBuffers;
+use dem_physics::lanes::{LaneWork, with_lanes, with_most_lanes};
 
 /// Pairs of overlapping balls of different clusters of which at least one seeks, one by one.
 fn pairs_sought(balls: &[Ball], clusters: &[u32], seeks: &[bool]) -> Vec<[u32; 2]> {

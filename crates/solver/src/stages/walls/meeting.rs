@@ -10,11 +10,11 @@ use crate::physics::contact::rolling::RollingFriction;
 use crate::physics::number::Vec3;
 use crate::stages::blocks::{rows, vectors};
 use crate::stages::contacts::{contact_sphere, stored_contact};
-use crate::stages::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 use crate::state::contacts::ContactHistory;
 use crate::state::meetings::{Meeting, Met};
 use crate::state::particles::Particles;
 use crate::state::walls::{Wall, WallContact};
+use dem_physics::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
 
 /// A wall and the particles at it.
 pub(super) struct Place<'a> {

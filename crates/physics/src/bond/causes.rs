@@ -1,0 +1,42 @@
+//! How many bonds failed by each criterion.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize, Serializer};
+
+use super::criteria::{COUNT, Cause};
+
+/// How many bonds failed by each criterion, in the order of [`Cause::ALL`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CauseCounts([u64; COUNT]);
+
+impl CauseCounts {
+    /// Counts one more bond.
+    pub fn count(&mut self, cause: Cause) {
+        self.0[cause as usize] += 1;
+    }
+
+    /// Bonds that failed by this criterion.
+    pub fn of(&self, cause: Cause) -> u64 {
+        self.0[cause as usize]
+    }
+
+    /// Writes the counts by the names of their causes.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize_by_name<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(Cause::ALL.map(|cause| (cause.name(), self.of(cause))))
+    }
+}
+
+impl fmt::Display for CauseCounts {
+    /// Those that are not 0: `23 in tension, 2 in shear`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let causes = Cause::ALL.into_iter().filter(|cause| self.of(*cause) > 0);
+        let counts: Vec<String> = causes
+            .map(|cause| format!("{} {}", self.of(cause), cause.phrase()))
+            .collect();
+        f.write_str(&counts.join(", "))
+    }
+}

@@ -1,0 +1,13 @@
+//! Physics as functions of plain numbers, independent of storage, threads, files and scenes: laws of
+//! bonds and contacts, rotation, shapes of walls, and bodies made of spheres.
+
+pub mod bond;
+pub mod chebyshev;
+pub mod contact;
+pub mod dual;
+pub mod geometry;
+pub mod lanes;
+pub mod number;
+pub mod rigid;
+pub mod rotation;
+pub mod shape;
