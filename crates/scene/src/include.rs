@@ -133,7 +133,8 @@ fn merge(document: &mut Document, table: &str, node: Node, replaces: bool) -> Re
     };
     if let Value::Table(own) = &mut own.value {
         for (name, node) in added {
-            match own.iter_mut().find(|(other, _)| *other == name) {
+            let is_same = |other: &str| other == name || is_turned(table, other, &name);
+            match own.iter_mut().find(|(other, _)| is_same(other)) {
                 Some((_, old)) if replaces => {
                     let path = format!("{table}.{}", key(&name));
                     notes.extend(take(old, node, &path, &file));
@@ -160,6 +161,12 @@ fn merge(document: &mut Document, table: &str, node: Node, replaces: bool) -> Re
         }
         None => Ok(()),
     }
+}
+
+/// Whether two names of contacts have the same materials in the other order.
+fn is_turned(table: &str, one: &str, other: &str) -> bool {
+    let mut cuts = one.match_indices('-');
+    table == "contacts" && cuts.any(|(at, _)| format!("{}-{}", &one[at + 1..], &one[..at]) == other)
 }
 
 /// Materials, contacts and bonds of a scene, with included files and `--set` values, as the text of

@@ -186,6 +186,21 @@ fn keys_of_a_scene_and_of_its_file_join() {
     assert_eq!(scene.bonds, whole.bonds);
     assert_eq!(scene.contacts, whole.contacts);
     assert_eq!(scene.materials, whole.materials);
+    // A pair of materials in the other order is the same pair.
+    let of_two = "[materials.fine-steel]\nyoung_modulus = 1e9\n[contacts]\nfine-steel-cake = { friction = 0.5 }\n[run]";
+    let two = SCENE.replace("[run]", of_two);
+    let file = CAKE.replace("[bonds", "cake-fine-steel = { restitution = 0.2 }\n[bonds");
+    let folder = Folder::new(&[("scene.toml", &two), ("cake.toml", &file)]);
+    assert_eq!(folder.read(&[]).unwrap().contacts.len(), 2);
+    let name = folder.path("found.toml").display().to_string();
+    let found = "[contacts]\ncake-fine-steel = { friction = 0.7 }\n";
+    fs::write(folder.path("found.toml"), found).unwrap();
+    let scene = folder.read(&[include_text(&[name])]).unwrap();
+    assert!(
+        scene.notes[0].contains("friction = 0.5 to 0.7"),
+        "{:?}",
+        scene.notes
+    );
     // A file twice adds nothing.
     let twice = own.replace("[\"cake.toml\"]", "[\"cake.toml\", \"cake.toml\"]");
     let folder = Folder::new(&[("scene.toml", &twice), ("cake.toml", CAKE)]);
