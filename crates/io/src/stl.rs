@@ -33,8 +33,12 @@ const MOST_FACETS: usize = 1_000_000_000;
 const MOST_STREAM: u64 = 1 << 30;
 const MOST_PADDING: u64 = 1 << 20;
 
+/// Largest distance of a corner from the middle of all, over that of the median corner.
+const MOST_APART: f64 = 1e9;
+
 /// The remedy for a file that is not truncated but of another type.
 const REMEDY_OTHER: &str = "give an ASCII or binary STL file";
+
 /// Reads an ASCII or binary STL.
 ///
 /// # Errors Not an STL, no facet, missing or too many bytes (bytes after the last facet of a binary
@@ -66,6 +70,13 @@ pub(crate) fn read_facets(bytes: &[u8]) -> Result<Facets> {
             ));
         }
         ascii::read(text)?
+    } else if let Some(plain) = without_attributes(bytes) {
+        let mut facets = read_binary(&plain)?;
+        facets.warnings.push(format!(
+            "{} bytes of attributes after its facets were ignored.",
+            bytes.len() - plain.len()
+        ));
+        facets
     } else {
         let mut facets = read_binary(checked_binary(bytes)?)?;
         let trailing = bytes.len() - BINARY_START - BINARY_FACET * facets.corners.len();
@@ -81,7 +92,57 @@ pub(crate) fn read_facets(bytes: &[u8]) -> Result<Facets> {
             "export the shape again",
         ));
     }
+    refuse_damaged(&facets.corners)?;
     Ok(facets)
+}
+
+/// A binary file without the attributes of its facets, if these have as many bytes as each facet
+/// says at its end, as the definition of the format has it. None: they do not, or have none.
+fn without_attributes(bytes: &[u8]) -> Option<Vec<u8>> {
+    let count = (binary_length(bytes)? - BINARY_START) / BINARY_FACET;
+    let mut plain = bytes[..BINARY_START].to_vec();
+    let mut rest = &bytes[BINARY_START..];
+    for _ in 0..count {
+        let (facet, after) = rest.split_at_checked(BINARY_FACET)?;
+        let length = u16::from_le_bytes([facet[BINARY_FACET - 2], facet[BINARY_FACET - 1]]);
+        plain.extend(facet);
+        rest = after.get(usize::from(length)..)?;
+    }
+    (rest.is_empty() && plain.len() < bytes.len()).then_some(plain)
+}
+
+/// Refuses a corner so far from all others that these would be a point beside it: a number of the
+/// file is damaged.
+fn refuse_damaged(corners: &[[[f64; 3]; 3]]) -> Result<()> {
+    let median = |mut all: Vec<f64>| {
+        let middle = all.len() / 2;
+        *all.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    let of_axis = |k: usize| median(corners.iter().flatten().map(|corner| corner[k]).collect());
+    let middle = [0, 1, 2].map(of_axis);
+    let distance = |corner: &[f64; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|k| corner[k] - middle[k]);
+        x.hypot(y).hypot(z)
+    };
+    let usual = median(corners.iter().flatten().map(distance).collect());
+    let limit = MOST_APART * usual;
+    for (index, facet) in corners.iter().enumerate() {
+        let far = facet.iter().position(|corner| distance(corner) > limit);
+        if let Some(at) = far.filter(|_| usual > 0.0) {
+            let [x, y, z] = facet[at].map(|x| significant(x, 3));
+            let problem = format!(
+                "corner {} is at ({x}, {y}, {z}), {} times as far from the middle as the others: the number is damaged",
+                at + 1,
+                significant(distance(&facet[at]) / usual, 2)
+            );
+            return Err(Diagnostic::input(
+                format!("triangle {} of {}", index + 1, corners.len()),
+                problem,
+                "repair or export the shape again",
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The bytes of an STL that comes through a pipe or a device, which may have no end: reading stops
@@ -349,6 +410,53 @@ mod tests {
                 "{text}"
             );
         }
+    }
+
+    /// As the format is defined, each facet says how many bytes of attributes follow it.
+    #[test]
+    fn attributes_that_follow_facets_are_ignored_with_a_note() {
+        let plain = binary(b"", &[FACET, FACET]);
+        let with = |lengths: [u16; 2]| {
+            let mut bytes = plain[..BINARY_START].to_vec();
+            for (facet, length) in plain[BINARY_START..].chunks(BINARY_FACET).zip(lengths) {
+                bytes.extend(&facet[..BINARY_FACET - 2]);
+                bytes.extend(length.to_le_bytes());
+                bytes.extend(vec![7; usize::from(length)]);
+            }
+            bytes
+        };
+        let wanted = read_facets(&plain).unwrap().corners;
+        for lengths in [[4, 4], [0, 9], [300, 0]] {
+            let facets = read_facets(&with(lengths)).unwrap();
+            assert_eq!(facets.corners, wanted);
+            let count = lengths[0] + lengths[1];
+            assert!(
+                facets.warnings[0].starts_with(&format!("{count} bytes of attributes")),
+                "{:?}",
+                facets.warnings
+            );
+        }
+        // Colours in the place of the count, and nothing that follows.
+        let mut coloured = plain.clone();
+        coloured[BINARY_START + BINARY_FACET - 1] = 0x80;
+        assert!(read_facets(&coloured).unwrap().warnings.is_empty());
+        // Not all of them are there.
+        let cut = with([4, 4]);
+        assert!(problem(&cut[..cut.len() - 1]).contains("bytes too many"));
+    }
+
+    #[test]
+    fn a_damaged_corner_is_named() {
+        let mut facet = FACET;
+        facet[1] = [1e31, 2e25, -1e23];
+        let text = problem(&binary(b"", &[FACET, FACET, facet]));
+        assert!(
+            text.starts_with("triangle 3 of 3: corner 2 is at (1.00e31, "),
+            "{text}"
+        );
+        // A long needle is none.
+        facet[1] = [1e6, 0.0, 0.0];
+        assert!(read_facets(&binary(b"", &[FACET, FACET, facet])).is_ok());
     }
 
     #[test]

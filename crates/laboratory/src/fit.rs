@@ -62,3 +62,21 @@ pub(crate) fn median(values: &[f64]) -> f64 {
         f64::midpoint(sorted[half - 1], sorted[half])
     }
 }
+
+/// Standard deviation of the noise, from second differences, which leave out everything smooth. At
+/// least a ten-thousandth of the range; 0 for fewer than three values.
+pub(crate) fn noise(force_n: &[f64]) -> f64 {
+    if force_n.len() < 3 {
+        return 0.0;
+    }
+    let bends: Vec<f64> = force_n
+        .windows(3)
+        .map(|f| (f[0] - 2.0 * f[1] + f[2]).abs())
+        .collect();
+    let most = force_n
+        .iter()
+        .fold(f64::NEG_INFINITY, |most, f| most.max(*f));
+    let least = force_n.iter().fold(f64::INFINITY, |least, f| least.min(*f));
+    let of_normal = 0.674_489_750_196_081_7 * 6.0_f64.sqrt();
+    (median(&bends) / of_normal).max(1e-4 * (most - least))
+}

@@ -5,7 +5,8 @@ use std::ops::Range;
 
 use crate::curve::Curve;
 use crate::elastic::{ELASTIC, elastic_line, elastic_rows};
-use crate::fit::{Line, mean, median};
+use crate::fit::{Line, mean, median, noise};
+use crate::largest::largest_force;
 
 /// Rows by which the part before contact is known, at least.
 const FEWEST_BEFORE: usize = 8;
@@ -57,8 +58,7 @@ pub struct Regions {
     pub start_m: f64,
     /// Travel at which the line fitted to the linear part has no force, m.
     pub linear_start_m: f64,
-    /// Largest force, N: of a line fitted to the last rows before it, so that noise does not raise
-    /// it.
+    /// Largest force, N, as [`largest_force`] has it.
     pub largest_n: f64,
     /// What speaks against the curve, a sentence each.
     pub doubts: Vec<String>,
@@ -83,7 +83,7 @@ impl Regions {
             .collect();
         let peak = largest(&corrected_n);
         let contact = baseline.contact.min(peak);
-        let largest_n = end_value(&travel[contact..=peak], &corrected_n[contact..=peak]);
+        let largest_n = largest_force(travel, &corrected_n).map_or(f64::NAN, |found| found.force_n);
         let mut doubts = Vec::new();
         if contact == 0 {
             doubts.push(
@@ -286,21 +286,6 @@ fn level(x: &[f64], y: &[f64]) -> Line {
     }
 }
 
-/// Standard deviation of the noise, from second differences, which leave out everything smooth. At
-/// least a ten-thousandth of the range.
-fn noise(force_n: &[f64]) -> f64 {
-    let bends: Vec<f64> = force_n
-        .windows(3)
-        .map(|f| (f[0] - 2.0 * f[1] + f[2]).abs())
-        .collect();
-    let most = force_n
-        .iter()
-        .fold(f64::NEG_INFINITY, |most, f| most.max(*f));
-    let least = force_n.iter().fold(f64::INFINITY, |least, f| least.min(*f));
-    let of_normal = 0.674_489_750_196_081_7 * 6.0_f64.sqrt();
-    (median(&bends) / of_normal).max(1e-4 * (most - least))
-}
-
 /// Row of the largest value.
 fn largest(values: &[f64]) -> usize {
     (1..values.len()).fold(0, |best, row| {
@@ -310,16 +295,6 @@ fn largest(values: &[f64]) -> usize {
             best
         }
     })
-}
-
-/// Value at the last of some rows, by a line through the last fiftieth of them.
-fn end_value(x: &[f64], y: &[f64]) -> f64 {
-    let count = (x.len() / 50).clamp(5, 50).min(x.len());
-    let from = x.len() - count;
-    if count < 3 || x[from] == x[x.len() - 1] {
-        return y[y.len() - 1];
-    }
-    Line::fitted(&x[from..], &y[from..]).at(x[x.len() - 1])
 }
 
 /// First row from `from` on at which the force has reached a level.

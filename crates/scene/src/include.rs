@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::field::Field;
-use super::merge::take;
+use super::merge::{Conflict, join, take};
 use super::paths::{named_path, text_of};
 use super::root::SCENE;
 use super::table::Table;
@@ -64,7 +64,8 @@ pub(super) fn folder_of(source: &str) -> &Path {
 }
 
 /// Adds the tables of the included files. Of a file that `--set` names, the keys stand above those
-/// of a table that is there already, which a note reports; otherwise such a table is refused.
+/// of a table that is there already, which a note reports; otherwise they are added to it, and a
+/// key with another value is refused.
 fn include(document: &mut Document, folder: &Path) -> Result<Vec<PathBuf>> {
     let Some(field) = Table::root(document, &SCENE)?.get(INCLUDE) else {
         return Ok(Vec::new());
@@ -110,7 +111,7 @@ fn merge(document: &mut Document, table: &str, node: Node, replaces: bool) -> Re
         let problem = format!("{table} is not a table");
         return Err(Diagnostic::input(place, problem, "write [materials.NAME]"));
     };
-    let mut taken: Vec<(String, Node)> = Vec::new();
+    let mut conflict: Option<Box<Conflict>> = None;
     let file = match origin {
         Origin::Included(file, _) => document.included.get(file).cloned(),
         _ => None,
@@ -132,29 +133,40 @@ fn merge(document: &mut Document, table: &str, node: Node, replaces: bool) -> Re
     };
     if let Value::Table(own) = &mut own.value {
         for (name, node) in added {
-            match own.iter_mut().find(|(other, _)| *other == name) {
+            let is_same = |other: &str| other == name || is_turned(table, other, &name);
+            match own.iter_mut().find(|(other, _)| is_same(other)) {
                 Some((_, old)) if replaces => {
                     let path = format!("{table}.{}", key(&name));
                     notes.extend(take(old, node, &path, &file));
                 }
-                Some((_, old)) => taken.push((name, std::mem::replace(old, node))),
+                Some((_, old)) => {
+                    let path = format!("{table}.{}", key(&name));
+                    conflict = conflict.or(join(old, node, &path).err());
+                }
                 None => own.push((name, node)),
             }
         }
     }
     document.notes.append(&mut notes);
-    match taken.first() {
-        Some((name, old)) => {
-            let problem = format!("{place} has [{table}.{name}] as well");
-            let remedy = "remove or rename one; dem-run --material puts the keys of a file above those of a scene";
+    match conflict {
+        Some(found) => {
+            let there = document.place(found.added);
+            let problem = format!("{} ({there})", found.problem);
+            let remedy = "remove one of them; dem-run --material puts the keys of a file above those of a scene";
             Err(Diagnostic::input(
-                document.place(old.origin),
+                document.place(found.own),
                 problem,
                 remedy,
             ))
         }
         None => Ok(()),
     }
+}
+
+/// Whether two names of contacts have the same materials in the other order.
+fn is_turned(table: &str, one: &str, other: &str) -> bool {
+    let mut cuts = one.match_indices('-');
+    table == "contacts" && cuts.any(|(at, _)| format!("{}-{}", &one[at + 1..], &one[..at]) == other)
 }
 
 /// Materials, contacts and bonds of a scene, with included files and `--set` values, as the text of

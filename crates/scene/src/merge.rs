@@ -1,7 +1,7 @@
-//! What a file of materials changes in tables that a scene has itself.
+//! What a file of materials changes in tables that a scene has itself, or adds to them.
 
 use super::toml_text::toml;
-use super::tree::{Node, Value, shortened};
+use super::tree::{Node, Origin, Value, shortened};
 
 /// Keys that decide what the others of their table mean: another value, and the whole table is
 /// that of the file.
@@ -98,6 +98,78 @@ fn merge(own: &mut Node, added: Node, path: &str, changes: &mut Changes) {
             None => own.push((name, node)),
         }
     }
+}
+
+/// Two values that a scene and its included file have for one key, or keys of which one stands for
+/// the other.
+#[derive(Debug)]
+pub(super) struct Conflict {
+    /// Where the scene has it.
+    pub(super) own: Origin,
+    /// Where the file has it.
+    pub(super) added: Origin,
+    /// What differs.
+    pub(super) problem: String,
+}
+
+/// Adds the keys of a table of an included file to a table of the same name. `path`: that of the
+/// table.
+///
+/// # Errors
+/// Both have a key with different values, or keys that stand for one another.
+pub(super) fn join(
+    own: &mut Node,
+    added: Node,
+    path: &str,
+) -> std::result::Result<(), Box<Conflict>> {
+    let (own_at, added_at) = (own.origin, added.origin);
+    let conflict = |own: Origin, added: Origin, problem: String| {
+        let found = Conflict {
+            own,
+            added,
+            problem,
+        };
+        Err(Box::new(found))
+    };
+    let decides = |node: &Node, key: &str| entry(node, key).map(toml);
+    let differing = |key: &&&str| decides(own, key) != decides(&added, key);
+    if let Some(key) = DECIDING.iter().find(differing) {
+        let problem = format!("{path} has another {key}");
+        return conflict(own_at, added_at, problem);
+    }
+    let (Value::Table(own), Value::Table(added)) = (&mut own.value, added.value) else {
+        return conflict(own_at, added_at, format!("{path} is not a table in both"));
+    };
+    for group in ALTERNATIVES {
+        let of = |table: &[(String, Node)]| -> Vec<String> {
+            let keys = table.iter().map(|(key, _)| key);
+            keys.filter(|key| group.contains(&key.as_str()))
+                .cloned()
+                .collect()
+        };
+        let (here, there) = (of(own), of(&added));
+        let holds = |all: &[String], some: &[String]| some.iter().all(|key| all.contains(key));
+        if !holds(&here, &there) && !holds(&there, &here) {
+            let [here, there] = [here, there].map(|keys| keys.join(", "));
+            let problem = format!("{path} has {here} here, and {there} there");
+            return conflict(own_at, added_at, problem);
+        }
+    }
+    for (name, node) in added {
+        match own.iter_mut().find(|(other, _)| *other == name) {
+            Some((_, old)) if name == FAILURE && is_table(old) && is_table(&node) => {
+                join(old, node, &format!("{path}.{FAILURE}"))?;
+            }
+            Some((_, old)) if toml(old) == toml(&node) => {}
+            Some((_, old)) => {
+                let there = shortened(&toml(&node), SHOWN);
+                let problem = format!("{} here, and {there} there", shown(path, &name, old));
+                return conflict(old.origin, node.origin, problem);
+            }
+            None => own.push((name, node)),
+        }
+    }
+    Ok(())
 }
 
 fn is_table(node: &Node) -> bool {

@@ -4,6 +4,8 @@ mod bonds;
 mod bulk;
 mod heap;
 mod members;
+mod mixing;
+mod mixture;
 mod objects;
 mod spheres;
 mod whole;
@@ -25,18 +27,16 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clusters::fragments;
 use crate::state::events::Renumbering;
-use crate::state::regions::Region;
 use crate::state::watches::{Seen, Watch, WatchTarget};
 
-use self::bulk::Mixture;
 use self::members::{Members, wall_number};
 use self::spheres::spheres;
 use self::whole::{Motions, Starts, start_centre, starts, turned_before};
 
 pub(crate) use self::bonds::utilisation_under;
 pub use self::bonds::{DynamicUtilisation, bond_utilisation, dynamic_utilisations, load};
-pub use self::bulk::MixedCell;
-pub use crate::state::watches::History;
+pub use self::mixture::MixedCell;
+pub use crate::state::watches::{History, IndexError};
 
 /// A measure and its particles.
 #[derive(Debug, Clone, PartialEq)]
@@ -220,6 +220,9 @@ pub fn read_probes(probes: &mut [Probe], state: &State, balance: &Balance) -> Ve
             None => {
                 let value = probe.read(state, &common, balance);
                 probe.history.note(state.time_s, value);
+                if let Some(error) = probe.mixing(state).and_then(|mixture| mixture.error()) {
+                    probe.history.note_error(error);
+                }
                 value
             }
         };
@@ -395,32 +398,12 @@ impl Probe {
                 0.0 => f64::NAN,
                 density => self.solid_density_kg_m3 / density,
             },
-            (Quantity::MixingIndex, Some(region)) => self.mixture(state, region).lacey_index(),
+            (Quantity::MixingIndex, _) => {
+                (self.mixing(state)).map_or(f64::NAN, |mixture| mixture.lacey_index())
+            }
             (_, Some(region)) => bulk::mass_within_kg(&own, region),
             (_, None) => 0.0 + own.iter().map(|sphere| sphere.mass_kg).sum::<f64>(),
         }
-    }
-
-    /// Its two sets in the cells of a region.
-    fn mixture(&self, state: &State, region: &Region) -> Mixture {
-        let own = spheres(&self.members, state);
-        let others = self.with.as_ref().map(|with| spheres(with, state));
-        let cell_m = self.measure.cell_size_m.unwrap_or(f64::NAN);
-        Mixture::of([&own, &others.unwrap_or_default()], region, cell_m)
-    }
-
-    /// Whether it is a mixing index.
-    pub(crate) fn mixes(&self) -> bool {
-        self.measure.quantity == Quantity::MixingIndex
-    }
-
-    /// What the cells of a mixing index hold. Empty for other quantities.
-    pub fn mixed_cells(&self, state: &State) -> Vec<MixedCell> {
-        let region = self.region.filter(|_| self.mixes());
-        let region = region.map(|at| &state.model.rules.regions[at]);
-        region.map_or(Vec::new(), |region| {
-            self.mixture(state, region).cells().collect()
-        })
     }
 
     /// Value of a quantity of intact bonds at their strain rates.

@@ -23,6 +23,7 @@ mod few_steps;
 mod histories;
 mod inputs;
 mod interrupted;
+mod kills;
 mod lab;
 pub(crate) mod laboratory;
 mod lammps;

@@ -6,7 +6,7 @@ use super::disk::{entries, refuse_unless_empty};
 use super::lock::LOCK;
 use super::names::{
     CHECKPOINT, ENDED, FILM, FILM_STRIP, FRAMES, INDEX, PICTURES, PLOTS, SCENE, SINGLE_FILES,
-    frame_number, picture_number, walls_number,
+    SUMMARY, frame_number, picture_number, walls_number,
 };
 use super::paths::ResultsFolder;
 use super::write::is_scene_as_run;
@@ -87,6 +87,8 @@ impl ResultsFolder {
     pub(super) fn remove_results(&self) -> Result<()> {
         // First, so that a partly removed folder is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
+        // Nor for a whole one.
+        self.remove_files("", |name| name == SUMMARY)?;
         self.remove_files("", |name| SINGLE_FILES.contains(&name))?;
         let is_ours = is_scene_as_run(&self.scene());
         self.remove_files("", |name| name == SCENE && is_ours)?;

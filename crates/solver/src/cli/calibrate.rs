@@ -103,6 +103,8 @@ pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> 
     let files = OutputFiles::of(&options.output, packings.case_names().len())?;
     files.refuse(options, &scene, &packings)?;
     let _lock = files.lock()?;
+    // Another one may have ended since.
+    files.refuse(options, &scene, &packings)?;
     let scene_text = SceneText {
         text: &text,
         source: &source,
@@ -202,6 +204,21 @@ impl Drop for Lock {
     }
 }
 
+/// Whether an open file still has its name.
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let there = std::fs::metadata(path).ok();
+    let both = file.metadata().ok().zip(there);
+    both.is_some_and(|(a, b)| (a.dev(), a.ino()) == (b.dev(), b.ino()))
+}
+
+/// Elsewhere an open file cannot be removed.
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> bool {
+    true
+}
+
 /// The files that a calibration writes.
 struct OutputFiles {
     /// The material file of each size.
@@ -245,15 +262,20 @@ impl OutputFiles {
         let path = self
             .record
             .with_file_name(format!(".{}.lock", name.to_string_lossy()));
-        let file = lock_file(&path).map_err(|error| explain(&path, &error))?;
-        let file = file.ok_or_else(|| {
-            Diagnostic::input(
-                self.record.display().to_string(),
-                "another calibration is writing it",
-                "wait until that has ended, or write to another --output",
-            )
-        })?;
-        Ok(Lock { path, _file: file })
+        loop {
+            let file = lock_file(&path).map_err(|error| explain(&path, &error))?;
+            let file = file.ok_or_else(|| {
+                Diagnostic::input(
+                    self.record.display().to_string(),
+                    "another calibration is writing it",
+                    "wait until that has ended, or write to another --output",
+                )
+            })?;
+            // One that has ended meanwhile may have removed this file, and a third made another.
+            if is_at(&file, &path) {
+                return Ok(Lock { path, _file: file });
+            }
+        }
     }
 
     fn all(&self) -> Vec<PathBuf> {

@@ -1,7 +1,8 @@
 //! A folder that a command fills: new or empty, and gone again if the command fails; or one that
 //! appears with all its files or not at all.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use dem_io::safe_write::{UNFINISHED_PREFIX, explain};
@@ -69,21 +70,33 @@ pub(crate) struct WholeFolder {
     target: PathBuf,
     temporary: PathBuf,
     is_there: bool,
+    /// Locked as long as the command fills it.
+    _lock: Option<File>,
 }
 
 impl WholeFolder {
-    /// Makes the temporary folder. `target`: the later folder, which does not exist yet.
+    /// Makes the temporary folder, and removes those of commands that were killed. `target`: the
+    /// later folder, which does not exist yet.
     ///
     /// # Errors
     /// It cannot be made.
-    pub(crate) fn beside(target: &Path) -> std::io::Result<Self> {
-        let name = format!("{UNFINISHED_PREFIX}{}", std::process::id());
-        let temporary = target.with_file_name(name);
-        fs::create_dir(&temporary)?;
+    pub(crate) fn beside(target: &Path) -> io::Result<Self> {
+        remove_abandoned(target);
+        let mut number = 0;
+        let temporary = loop {
+            let name = format!("{UNFINISHED_PREFIX}{}-{number}", std::process::id());
+            let temporary = target.with_file_name(name);
+            match fs::create_dir(&temporary) {
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => number += 1,
+                made => break made.map(|()| temporary),
+            }
+        }?;
+        let lock = File::open(&temporary).ok();
         Ok(Self {
             target: target.to_owned(),
             temporary,
             is_there: true,
+            _lock: lock.filter(|folder| folder.try_lock().is_ok()),
         })
     }
 
@@ -100,6 +113,29 @@ impl WholeFolder {
         fs::rename(&self.temporary, &self.target).map_err(|error| explain(&self.target, &error))?;
         self.is_there = false;
         Ok(())
+    }
+}
+
+/// Removes the temporary folders beside a path whose commands do not run any more. Another command
+/// has not locked its own yet while that is empty: such a folder stays.
+fn remove_abandoned(target: &Path) {
+    let beside = target.with_file_name(".");
+    for entry in fs::read_dir(beside).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let rest = name
+            .to_str()
+            .and_then(|name| name.strip_prefix(UNFINISHED_PREFIX));
+        let is_ours = rest.and_then(|rest| rest.split_once('-')).is_some();
+        let path = entry.path();
+        let is_folder = || fs::symlink_metadata(&path).is_ok_and(|found| found.is_dir());
+        let is_filled = || fs::read_dir(&path).is_ok_and(|mut entries| entries.next().is_some());
+        if is_ours && is_folder() && is_filled() {
+            let folder = File::open(&path).ok();
+            if folder.is_some_and(|folder| folder.try_lock().is_ok()) {
+                // What cannot be removed does no harm.
+                let _ = fs::remove_dir_all(&path);
+            }
+        }
     }
 }
 

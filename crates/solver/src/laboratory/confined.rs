@@ -4,7 +4,7 @@ use dem_laboratory::Line;
 use dem_laboratory::theory::PEAK_AXIAL_STRESS;
 use dem_scene::Test;
 
-use super::curve::{elastic_range, peak};
+use super::curve::{elastic_range, largest_n, peak};
 use super::figure::Figure;
 use super::record::Row;
 use crate::plan::test_setup::Setup;
@@ -49,7 +49,7 @@ pub(super) fn figures(test: &Test, setup: &Setup, rows: &[Row]) -> Vec<Figure> {
         .filter(|_| has_passed_its_peak(rows))
         .map(stress);
     if let Some(confinement) = &test.confinement {
-        let strength_pa = peak(rows).map(|row| stress(row.load_n()));
+        let strength_pa = largest_n(rows).map(stress);
         add(POISSON_RATIO, poisson_ratio(setup, rows), "");
         let axial_pa = strength_pa.map(|strength| strength + confinement.pressure_pa);
         add(

@@ -1,6 +1,6 @@
 //! The curve of a test: its means, its elastic part and its peak.
 
-use dem_laboratory::{elastic_line, elastic_rows};
+use dem_laboratory::{elastic_line, elastic_rows, largest_force};
 
 use super::record::{Record, Row};
 
@@ -27,7 +27,7 @@ pub fn rows_of(record: &Record, lowest_frequency_hz: f64) -> Vec<Row> {
 pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
     let (ways_m, loads_n): (Vec<f64>, Vec<f64>) =
         rows.iter().map(|row| (way(row), row.load_n())).unzip();
-    let line = elastic_line(&ways_m, &loads_n, peak(rows)?.load_n())?;
+    let line = elastic_line(&ways_m, &loads_n, largest_n(rows)?)?;
     Some(Slope {
         stiffness_n_m: line.slope,
         start_m: line.zero(),
@@ -37,7 +37,7 @@ pub fn slope(rows: &[Row], way: impl Fn(&Row) -> f64) -> Option<Slope> {
 /// The rows between 20 % and 60 % of the largest load. None: too few for a slope.
 pub(super) fn elastic_range(rows: &[Row]) -> Option<&[Row]> {
     let loads_n: Vec<f64> = rows.iter().map(Row::load_n).collect();
-    let elastic = elastic_rows(&loads_n, peak(rows)?.load_n())?;
+    let elastic = elastic_rows(&loads_n, largest_n(rows)?)?;
     Some(&rows[elastic])
 }
 
@@ -47,7 +47,68 @@ pub(crate) fn play_m(rows: &[Row]) -> f64 {
     slope(rows, |row| row.travel_m).map_or(0.0, |slope| slope.start_m)
 }
 
+/// The largest load, N, by the rule for measured curves. None: no rows.
+pub fn largest_n(rows: &[Row]) -> Option<f64> {
+    let (ways_m, loads_n): (Vec<f64>, Vec<f64>) =
+        rows.iter().map(|row| (row.travel_m, row.load_n())).unzip();
+    Some(largest_force(&ways_m, &loads_n)?.force_n)
+}
+
 /// The row with the largest load.
 pub fn peak(rows: &[Row]) -> Option<&Row> {
     rows.iter().max_by(|a, b| a.load_n().total_cmp(&b.load_n()))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic)]
+    use dem_laboratory::{Curve, Regions};
+
+    use super::*;
+
+    /// A curve of a test and the same curve of a rig have the same stiffness, play and strength, to
+    /// the last digit: smooth and noisy ones, straight and curved. Before contact nothing loads the cell: a noisy
+    /// curve without such a part has an offset.
+    #[test]
+    fn simulated_and_measured_curves_have_one_rule() {
+        let mut last = 7_u64;
+        let mut noise = || {
+            last = last.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (last >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        for (power, scatter, before_m) in [
+            (1.0, 0.0, 0.0),
+            (1.0, 0.02, 2e-4),
+            (1.5, 0.0, 2e-4),
+            (1.5, 0.004, 2e-4),
+            (0.6, 0.05, 2e-4),
+        ] {
+            let row = |n: usize| {
+                let travel_m = 2e-6 * n as f64;
+                let way = (travel_m - before_m) / 1.6e-3;
+                let load_n = match way {
+                    way if way <= 0.0 || way > 1.0 => 0.0,
+                    way => 80.0 * (way.powf(power) + scatter * noise()).max(0.0),
+                };
+                Row {
+                    travel_m,
+                    force_n: load_n,
+                    reaction_n: load_n,
+                    ..Row::default()
+                }
+            };
+            let rows: Vec<Row> = (0..1000).map(row).collect();
+            let (ways_m, loads_n) = rows.iter().map(|row| (row.travel_m, row.force_n)).unzip();
+            let curve = Curve::new(ways_m, loads_n, (1..=rows.len()).collect()).unwrap();
+            let measured = Regions::of(&curve);
+            let simulated = slope(&rows, |row| row.travel_m).unwrap();
+            assert_eq!(simulated.stiffness_n_m, measured.stiffness_n_m);
+            assert_eq!(simulated.start_m, measured.start_m);
+            let largest_n = largest_n(&rows).unwrap();
+            assert_eq!(largest_n, measured.largest_n, "{power} {scatter}");
+            // Of the largest of many rows noise would make up to half of its range more.
+            let off = largest_n / 80.0 - 1.0;
+            assert!(off.abs() < 1e-3 + 0.2 * scatter, "{power} {scatter}: {off}");
+        }
+    }
 }

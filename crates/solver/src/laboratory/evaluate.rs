@@ -5,7 +5,7 @@ use dem_scene::{BondKind, Test};
 use serde::{Deserialize, Serialize};
 
 use super::confined::{self, POISSON_RATIO, PRESSURE_OFF, RESIDUAL, RESIDUAL_FRICTION};
-use super::curve::{peak, play_m, rows_of, slope};
+use super::curve::{largest_n, peak, play_m, rows_of, slope};
 use super::disc_stress::{self, ACROSS, ALONG};
 use super::figure::{Figure, Source};
 use super::pieces::Pieces;
@@ -160,7 +160,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
     let by_travel = slope(rows, |row| row.travel_m);
     let measured = !setup.moving.is_empty();
     let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
-    let largest = peak(rows).map(Row::load_n);
+    let largest = largest_n(rows);
     let mut measured = Measured::of(
         test,
         setup,

@@ -9,6 +9,7 @@ use super::clumps::has_bodies;
 use super::duration::{frame_every, step_s, steps};
 use super::files::{BONDS, BROKEN, FRAMES};
 use super::input::Input;
+use super::walls::WrittenWall;
 
 /// The page as Markdown.
 pub(super) fn page(input: &Input<'_>) -> String {
@@ -121,6 +122,11 @@ fn different(input: &Input<'_>) -> Vec<String> {
         .any(|wall| wall.regions[0].starts_with("cylinder"))
     {
         lines.push("On cylinders, LAMMPS takes the curvature of the wall into account; in Crumble a wall is flat where it is touched.".to_owned());
+    }
+    // Planes alone meet in corners only, where each of them pushes here as well.
+    let is_plane = |wall: &WrittenWall| wall.regions.iter().all(|one| one.starts_with("plane"));
+    if input.walls.len() > 1 && !input.walls.iter().all(is_plane) {
+        lines.push("Where walls meet as one surface, as two boxes side by side do, LAMMPS pushes a sphere with each of them; in Crumble with the nearer one.".to_owned());
     }
     if input.walls.iter().any(|wall| wall.regions.len() > 1) {
         lines.push("In LAMMPS the faces of a surface that is open go on upwards beyond its rim, and nothing touches the rim.".to_owned());

@@ -1,4 +1,4 @@
-//! Bulk quantities: mass and bulk density of a region, bulk density of a heap, and mixing.
+//! Bulk quantities: mass and bulk density of a region, bulk density of a heap.
 //!
 //! A sphere counts with the part of it that is in a region: of [`POINTS`] points spread evenly
 //! through it, those within.
@@ -10,7 +10,6 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::spheres::{Sphere, across};
-use crate::plan::measures::FEWEST_MIXED_CELLS;
 use crate::state::regions::Region;
 
 /// Points of a sphere that a border cuts: its part on one side is known to some thousandths.
@@ -90,96 +89,4 @@ pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
     let heights = tops.values().map(|top| top - lowest_m);
     let volume_m3 = width_m * width_m * heights.sum::<f64>();
     spheres.iter().map(|s| s.mass_kg).sum::<f64>() / volume_m3
-}
-
-/// What the cubic cells of a region hold of two sets of spheres. Spheres count where their centres
-/// are.
-pub(super) struct Mixture {
-    /// Mass of either set in each cell that is not empty, kg.
-    cells_kg: BTreeMap<[i64; 3], [f64; 2]>,
-    /// Mean mass of the pieces of either set, by mass, kg; of a piece that several cells share, its
-    /// parts in them.
-    piece_kg: [f64; 2],
-    /// Lowest corner of the cell 0, 0, 0, m.
-    low_m: Vector3<f64>,
-    /// Edge of the cells, m.
-    cell_m: f64,
-}
-
-/// A cell of a mixture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MixedCell {
-    /// Its centre, m. Length 3.
-    pub centre_m: [f64; 3],
-    /// Mass of both sets in it, kg.
-    pub mass_kg: f64,
-    /// Mass fraction of the first set.
-    pub fraction: f64,
-}
-
-impl Mixture {
-    /// That of two sets in a region, in cells with this edge, m.
-    pub(super) fn of(sets: [&[Sphere]; 2], region: &Region, cell_m: f64) -> Self {
-        let low_m = Vector3::from(region.bounds().low);
-        let mut cells_kg: BTreeMap<[i64; 3], [f64; 2]> = BTreeMap::new();
-        let piece_kg = [0, 1].map(|k| {
-            let mut parts_kg: BTreeMap<([i64; 3], u32), f64> = BTreeMap::new();
-            let inside = sets[k].iter();
-            for sphere in inside.filter(|s| region.contains(s.place_m.into())) {
-                let cell = ((sphere.place_m - low_m) / cell_m).map(|x| x.floor() as i64);
-                cells_kg.entry(cell.into()).or_default()[k] += sphere.mass_kg;
-                *parts_kg.entry((cell.into(), sphere.piece)).or_default() += sphere.mass_kg;
-            }
-            let squares: f64 = parts_kg.values().map(|kg| kg * kg).sum();
-            squares / parts_kg.values().sum::<f64>()
-        });
-        Self {
-            cells_kg,
-            piece_kg,
-            low_m,
-            cell_m,
-        }
-    }
-
-    /// The cells that are not empty.
-    pub(super) fn cells(&self) -> impl Iterator<Item = MixedCell> {
-        self.cells_kg.iter().map(|(number, [first, second])| {
-            let corner = Vector3::from(number.map(|n| n as f64 + 0.5));
-            let mass_kg = first + second;
-            MixedCell {
-                centre_m: (self.low_m + self.cell_m * corner).into(),
-                mass_kg,
-                fraction: first / mass_kg,
-            }
-        })
-    }
-
-    /// Lacey's index (Lacey 1954), 0 for sets apart and 1 for a random mixture:
-    /// (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the first set
-    /// among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a random
-    /// mixture of pieces of different mass (Stange 1954): sr^2 = p (1 - p) (p m_b + (1 - p) m_a)/M,
-    /// with the mean mass m_a and m_b of the pieces of either set, by mass, and M of what a cell
-    /// holds. It is s0^2 / n for n equal pieces in each cell. NaN if the region has nothing of one
-    /// of them, no more than one piece in each cell, or fewer than [`FEWEST_MIXED_CELLS`] cells:
-    /// one
-    /// cell is as mixed as can be, whatever lies in it.
-    pub(super) fn lacey_index(&self) -> f64 {
-        if self.cells_kg.len() < FEWEST_MIXED_CELLS {
-            return f64::NAN;
-        }
-        let all_kg: f64 = self.cells().map(|cell| cell.mass_kg).sum();
-        let first_kg: f64 = self.cells_kg.values().map(|[first, _]| first).sum();
-        let fraction = first_kg / all_kg;
-        let apart = fraction * (1.0 - fraction);
-        let squares = (self.cells()).map(|cell| cell.mass_kg * (cell.fraction - fraction).powi(2));
-        let variance = squares.sum::<f64>() / all_kg;
-        let cell_kg = all_kg / self.cells_kg.len() as f64;
-        let piece_kg = fraction * self.piece_kg[1] + (1.0 - fraction) * self.piece_kg[0];
-        let random = apart * piece_kg / cell_kg;
-        // Both are 0 if one is missing; rounding must not make an index of that.
-        if !(apart > 0.0 && piece_kg < (1.0 - 1e-9) * cell_kg) {
-            return f64::NAN;
-        }
-        (apart - variance) / (apart - random)
-    }
 }

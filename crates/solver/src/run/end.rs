@@ -49,6 +49,7 @@ impl Run<'_> {
             warnings.extend(past_outlets(&self.state, pieces));
             warnings.extend(self.rigid_hits().warnings(self.scene));
             warnings.extend(empty_measures(&self.state, self.scene, &self.probes, seen));
+            warnings.extend(self.probes.iter().filter_map(Probe::coarse_cells));
         }
         if !is_stopped && self.scene.test.is_none() {
             let (last_tenth, touched) = (&self.progress.last_tenth, |n| seen.has_touched_wall(n));

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::SAME_WAY;
 use crate::geometry::Touch;
+use crate::geometry::one_surface::is_one;
 use crate::physics::contact::liquid_bridge::LiquidBridge;
 use crate::stages::chunks::CHUNK;
 use crate::state::State;
@@ -179,7 +180,7 @@ fn at_walls(state: &mut State, bridges: &mut Bridges, scratch: &mut BridgeScratc
             *stepped = followed(state, contacts, all, bridge, touches);
         }
     });
-    add_new_at_walls(state, contacts, stepped, keys);
+    add_new_at_walls(state, contacts, all, stepped, keys);
     bridges.walls.clear();
     for (n, stepped) in stepped.iter_mut().enumerate() {
         let bridge = &mut stepped.bridge;
@@ -284,11 +285,13 @@ fn followed(
     stepped_at_wall(&law, pose.radius_m(), now, gaps_m, [true, is_there])
 }
 
-/// Adds the bridges of wet particles that touch a wall and have none yet at the same feature.
-/// `keys`: room for those of the bridges.
+/// Adds the bridges of wet particles that touch a wall and have none yet at the same feature; where
+/// walls meet, one goes over from wall to wall. `all`: the bridges before the step, `keys`: room for
+/// those of the bridges.
 fn add_new_at_walls(
     state: &State,
     contacts: &Contacts,
+    all: &[WallBridge],
     stepped: &mut Vec<Stepped<WallBridge>>,
     keys: &mut Vec<[u32; 3]>,
 ) {
@@ -315,6 +318,12 @@ fn add_new_at_walls(
             let law = wall.kind(contacts.materials[i]).bridge;
             if let Some(law) = law.filter(|_| !is_known) {
                 let p = &state.particles;
+                if let Some(at) = moved_from(state, contacts, all, stepped, &bridge) {
+                    let gaps_m = [all[at].gap_m, bridge.gap_m];
+                    let radius_m = p.poses[i].radius_m();
+                    stepped[at] = stepped_at_wall(&law, radius_m, bridge, gaps_m, [true; 2]);
+                    continue;
+                }
                 let drift_s = state.previous_time_step_s;
                 let before_m = bridge.gap_m - opening_m_s(wall, p, &bridge) * drift_s;
                 let (radius_m, gaps_m) = (p.poses[i].radius_m(), [before_m, bridge.gap_m]);
@@ -328,6 +337,55 @@ fn add_new_at_walls(
             }
         }
     }
+}
+
+/// The place in `all` of the bridge of the same particle with another wall, of the same liquid, that
+/// stands for the same surface: see [`is_one`]. None: there is none.
+fn moved_from(
+    state: &State,
+    contacts: &Contacts,
+    all: &[WallBridge],
+    stepped: &[Stepped<WallBridge>],
+    bridge: &WallBridge,
+) -> Option<usize> {
+    let i = bridge.particle as usize;
+    let pose = &state.particles.poses[i];
+    let radius_m = pose.radius_m();
+    let law = |wall: u32| {
+        state.walls[wall as usize]
+            .kind(contacts.materials[i])
+            .bridge
+    };
+    let place = |bridge: &WallBridge| {
+        let distance_m = radius_m + bridge.gap_m;
+        let normal = -Vector3::from(bridge.normal);
+        let touch = Touch {
+            point: (pose.place() + distance_m * normal).into(),
+            normal: normal.into(),
+            distance_m,
+            feature: bridge.feature,
+        };
+        let wall = &state.walls[bridge.wall as usize];
+        wall.model.shape.place(touch, radius_m)
+    };
+    let others = (0..state.walls.len() as u32).filter(|wall| *wall != bridge.wall);
+    let others = others.filter(|wall| law(*wall) == law(bridge.wall));
+    let mut before = others.flat_map(|wall| {
+        let from = all.partition_point(|one| one.key() < [wall, bridge.particle, 0]);
+        let own = all[from..].iter();
+        let own = own.take_while(move |one| (one.wall, one.particle) == (wall, bridge.particle));
+        (from..).zip(own).map(|(at, _)| at)
+    });
+    before.find(|&at| {
+        let old = &stepped[at];
+        let is_there = !old.is_ruptured && old.bridge.wall == all[at].wall;
+        let places = [place(&old.bridge), place(bridge)];
+        let [nearer, farther] = match old.bridge.gap_m < bridge.gap_m {
+            true => places,
+            false => [places[1], places[0]],
+        };
+        is_there && is_one(&nearer, &farther, radius_m)
+    })
 }
 
 /// Speed at which the gap between a particle and a wall opened in the drift, m/s.

@@ -54,6 +54,25 @@ pub struct History {
     pub integral: f64,
     /// Duration of the integral, s.
     pub duration_s: f64,
+    /// Of a mixing index, how far it may be off: the last value, and any so far.
+    pub index_errors: [IndexError; 2],
+}
+
+/// How far a mixing index may be off.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct IndexError {
+    /// Standard error, as cells hold a limited number of pieces.
+    pub standard: f64,
+    /// What the index is too large by, as its two sets lie apart within cells: at least a third of
+    /// it. All of the index if cells hold too few pieces to tell.
+    pub within_cells: f64,
+}
+
+impl IndexError {
+    /// Both parts together.
+    pub fn sum(&self) -> f64 {
+        self.standard + self.within_cells
+    }
 }
 
 impl History {
@@ -67,6 +86,15 @@ impl History {
         }
         self.last = Some((time_s, value));
         self.note_peak(value);
+    }
+
+    /// Records how far the present value of a mixing index may be off.
+    pub(crate) fn note_error(&mut self, error: IndexError) {
+        let [last, largest] = &mut self.index_errors;
+        *last = error;
+        if error.sum() > largest.sum() {
+            *largest = error;
+        }
     }
 
     /// Records a value that counts for the largest and the smallest only.

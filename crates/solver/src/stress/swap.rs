@@ -1,16 +1,19 @@
 //! Clumps that are replaced while two plates squeeze them.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::sync::atomic::AtomicBool;
+
+use dem_io::{Diagnostic, Result};
+use rayon::prelude::*;
 
 use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
-use super::trial::Trial;
+use super::trial::{Outcome, Trial};
+use crate::output::summary::Summary;
 
 /// Radius of the spheres of the block, m.
 const RADIUS_M: f64 = 1e-3;
 /// Spheres along an edge of the block.
 const EDGE: usize = 3;
-/// Bonds of the block: those of neighbours along its edges.
-const BONDS: usize = 3 * EDGE * EDGE * (EDGE - 1);
 /// What a swap may add to the error of the energy: that of the run itself is smaller.
 const ENERGY_ERROR: f64 = 1e-3;
 /// The same for the momentum.
@@ -30,6 +33,11 @@ const MOST_SWAPS: f64 = 100.0;
 const STRENGTHS_PA: [f64; 2] = [2e6, 0.4e6];
 /// Fracture energy of bonds that soften, J/m2.
 const FRACTURE_J_M2: f64 = 200.0;
+/// Largest difference of what bonds lose to softening from that of the twin: until its swap the
+/// block does not bend, and it does not swing with the plates as the twin has begun to.
+const DAMAGE_ERROR: f64 = 0.15;
+/// The same for how far the largest stress goes beyond the strength.
+const UTILISATION_ERROR: f64 = 1e-4;
 /// What breaking bonds may add to the error of the energy: the verdict of a run permits as much.
 const BREAKAGE_ERROR: f64 = 1e-2;
 
@@ -38,9 +46,13 @@ const BREAKAGE_ERROR: f64 = 1e-2;
 /// scene asks for: clump spheres that are larger than those of the cluster, whose overlap vanishes
 /// with the clump and is booked; a cluster that becomes a clump again at every check, and is
 /// replaced at once; a block from an inlet. A tilted block is loaded beyond the strength of its
-/// bonds: they soften, break, or hold because the strain rate strengthens them.
-pub(crate) fn swaps() -> Vec<Member> {
-    let mut members = Vec::new();
+/// bonds: they soften, break, or hold because the strain rate strengthens them, as those of a twin
+/// do that is bonded from the start, in the same place between the same plates.
+///
+/// # Errors
+/// A twin that does not come to its end; interrupted.
+pub(crate) fn swaps(interrupted: &AtomicBool) -> Result<Vec<Member>> {
+    let mut blocks: Vec<(String, Block, Expected)> = Vec::new();
     for scale in [1.0, 1.02] {
         let upright = Block {
             scale,
@@ -69,31 +81,68 @@ pub(crate) fn swaps() -> Vec<Member> {
             when: TRIGGERS[1],
             ..block.clone()
         };
-        let mut add = |what: &str, block: Block, more: Vec<Shown>| {
-            members.push(block.member(format!("{what}, clump spheres x {scale}"), more));
+        let mut add = |what: &str, block: Block, expected: Expected| {
+            blocks.push((format!("{what}, clump spheres x {scale}"), block, expected));
         };
         let undamped = Block {
             restitution: 1.0,
             ..upright.clone()
         };
-        add("replaced", upright.clone(), whole());
-        add("replaced without damping", undamped, freed(scale));
+        add("replaced", upright.clone(), Expected::Whole);
+        add("replaced without damping", undamped, Expected::Freed);
         add(
             "replaced by the force of a contact",
             by_force(&upright),
-            whole(),
+            Expected::Whole,
         );
-        add("restored and replaced again", restored(&upright), whole());
-        add("fed", fed(&upright), whole());
-        add("softening", softens.clone(), damaged());
-        add("softening and restored", restored(&softens), damaged());
-        add("softening and fed", fed(&softens), damaged());
-        add("breaking", tilted(""), broken());
+        add(
+            "restored and replaced again",
+            restored(&upright),
+            Expected::Whole,
+        );
+        add("fed", fed(&upright), Expected::Whole);
+        add("softening", softens.clone(), Expected::Damaged);
+        add(
+            "softening and restored",
+            restored(&softens),
+            Expected::Damaged,
+        );
+        add("softening and fed", fed(&softens), Expected::Damaged);
+        add("breaking", tilted(""), Expected::Broken);
         let strengthens =
             ", rate_strengthening = true, strain_rate_measure = \"relative-velocity\"";
-        add("held by its strain rate", tilted(strengthens), held());
+        add(
+            "held by its strain rate",
+            tilted(strengthens),
+            Expected::Held,
+        );
     }
-    members
+    let member = |(what, block, expected): (String, Block, Expected)| {
+        let more = match expected {
+            Expected::Whole => whole(),
+            Expected::Freed => freed(block.scale),
+            Expected::Damaged => damaged(&block.twin(interrupted)?),
+            Expected::Broken => broken(&block.twin(interrupted)?),
+            Expected::Held => held(&block.twin(interrupted)?),
+        };
+        Ok(block.member(what, more))
+    };
+    blocks.into_par_iter().map(member).collect()
+}
+
+/// What a block is expected to do.
+#[derive(Debug, Clone, Copy)]
+enum Expected {
+    /// Nothing breaks.
+    Whole,
+    /// The same, and what its contacts have stored is gone.
+    Freed,
+    /// As its twin, its bonds soften and hold.
+    Damaged,
+    /// As in its twin, bonds break.
+    Broken,
+    /// As in its twin, bonds hold beyond their strength.
+    Held,
 }
 
 /// Nothing breaks.
@@ -131,39 +180,41 @@ fn freed(scale: f64) -> Vec<Shown> {
     shown
 }
 
-/// Bonds take up to all of their fracture energy, and at least a hundredth of it, and hold.
-fn damaged() -> Vec<Shown> {
-    let all_j = BONDS as f64 * FRACTURE_J_M2 * PI * RADIUS_M * RADIUS_M;
+/// Bonds lose as much to softening as those of the twin, and hold.
+fn damaged(twin: &Summary) -> Vec<Shown> {
+    let [least, largest] = [-DAMAGE_ERROR, DAMAGE_ERROR].map(|off| 1.0 + off);
+    let lost_j = Quantity::BondDamage.of(twin);
     let mut shown = whole();
     shown.push(Shown::between(
         Quantity::BondDamage,
         "J",
-        0.01 * all_j,
-        all_j,
+        least * lost_j,
+        largest * lost_j,
     ));
     shown
 }
 
-/// Some of the bonds break, or all.
-fn broken() -> Vec<Shown> {
+/// As many bonds break as in the twin, into as many fragments.
+fn broken(twin: &Summary) -> Vec<Shown> {
+    let as_twin = |quantity: Quantity| Shown {
+        value: quantity.of(twin),
+        ..Shown::at_most(quantity, 0.0)
+    };
     vec![
         Shown::at_most(Quantity::EnergyError, BREAKAGE_ERROR),
-        Shown::between(Quantity::BrokenBonds, "", 1.0, BONDS as f64),
+        as_twin(Quantity::BrokenBonds),
+        as_twin(Quantity::Fragments),
     ]
 }
 
-/// Bonds hold although stresses exceed their strength, at least by a tenth: it is larger by the
-/// dynamic increase factor.
-fn held() -> Vec<Shown> {
+/// Bonds hold although stresses exceed their strength, as far as those of the twin do: it is larger
+/// by the dynamic increase factor.
+fn held(twin: &Summary) -> Vec<Shown> {
     let mut shown = whole();
-    let beyond = Quantity::Measure("largest_utilisation");
-    shown.push(Shown::between(beyond, "", 1.1, 5.0));
-    shown.push(Shown::between(
-        Quantity::Measure("largest_dynamic_utilisation"),
-        "",
-        0.0,
-        1.0,
-    ));
+    for name in ["largest_utilisation", "largest_dynamic_utilisation"] {
+        let value = Quantity::Measure(name).of(twin);
+        shown.push(Shown::measure(name, "", value, UTILISATION_ERROR * value));
+    }
     shown
 }
 
@@ -196,7 +247,7 @@ impl Block {
         shown.extend(more);
         Member {
             what,
-            trial: Trial::of(self.scene()),
+            trial: Trial::of(self.scene(false)),
             way: ObservationMethod::Run,
             prediction: Prediction::Ends(shown),
         }
@@ -211,7 +262,17 @@ impl Block {
         }
     }
 
-    fn scene(&self) -> String {
+    /// What the run of the twin gives: the block in the same place, bonded from the start.
+    fn twin(&self, interrupted: &AtomicBool) -> Result<Summary> {
+        let refused = |said: String| Err(Diagnostic::failed("dem-run stress", said, ""));
+        match Trial::of(self.scene(true)).run(interrupted)? {
+            Outcome::Ended(summary) => Ok(*summary),
+            Outcome::Refused(said) | Outcome::Stopped(said) => refused(said),
+        }
+    }
+
+    /// The scene of the block, or of its twin, which is bonded from the start.
+    fn scene(&self, is_bonded: bool) -> String {
         let Self {
             scale,
             failure,
@@ -230,12 +291,13 @@ impl Block {
                 }
             }
         }
-        let position = match self.is_fed {
-            true => String::new(),
-            false => format!("position = [0, 0, {}]", RADIUS_M * scale),
-        };
         // An inlet needs room.
         let gap_m = if self.is_fed { 2e-6 } else { 0.0 };
+        let lowest_m = RADIUS_M * scale + gap_m;
+        let position = match self.is_fed && !is_bonded {
+            true => String::new(),
+            false => format!("position = [0, 0, {lowest_m}]"),
+        };
         let [_, _, height_m] = self.centre_m([EDGE - 1; 3]);
         let top_m = height_m + 2.0 * (RADIUS_M * scale + gap_m);
         let tensile_pa = STRENGTHS_PA[usize::from(self.is_tilted)];
@@ -256,24 +318,29 @@ particles = [{}]
 bond_list = [{}]
 material = \"rock\"
 bonds = \"rock\"
-start_as = \"clump\"
-clump.scale = {scale}
 {position}
-[replacement.block]
-when = {{ {} }}
 ",
             particles.join(", "),
             bonds.join(", "),
-            self.when
         );
-        if self.restores {
+        if !is_bonded {
+            scene += &format!(
+                "start_as = \"clump\"
+clump.scale = {scale}
+[replacement.block]
+when = {{ {} }}
+",
+                self.when
+            );
+        }
+        if self.restores && !is_bonded {
             scene += "restore = { leaves = \"far\", min_particles = 2, strain_energy = \"1e6 J/kg\", fluctuation_velocity = \"100 m/s\" }
 [regions.far]
 box = { min = [1, 1, 1], max = [2, 2, 2] }
 ";
         }
-        if self.is_fed {
-            scene += &self.inlet(RADIUS_M * scale + gap_m);
+        if self.is_fed && !is_bonded {
+            scene += &self.inlet(lowest_m);
         } else {
             scene += "[measures]
 largest_utilisation = { of = \"block\", quantity = \"largest_utilisation\", statistic = \"largest\" }

@@ -139,3 +139,47 @@ fn a_bridge_moves_along_a_mesh() {
     }
     assert_eq!(bridges(&state).formed_and_ruptured, [1, 0]);
 }
+
+/// Where two boxes meet, a bridge goes over from one to the other: there is one all the time, none
+/// is formed or lost, and the sphere moves as over one box.
+#[test]
+fn a_bridge_goes_over_a_joint_of_walls() {
+    let run = |boxes: &[[f64; 2]]| {
+        let walls = boxes.iter().zip(["a", "b", "c"]).map(|([from, to], name)| {
+            format!("walls.{name} = {{ box = {{ min = [{from:?}, -1, -1], max = [{to:?}, 1, 0] }}, material = \"glass\" }}\n")
+        });
+        let mut state = planned(&format!(
+            "{}{}{}",
+            head(1.0, 0.5, "initial_overlap = \"keep\", time_step = 5e-6").replace(
+                "[contacts.glass-glass]\n",
+                &(walls.collect::<String>() + "[contacts.glass-glass]\n")
+            ),
+            ball("ball", [-2e-3, 0.0, RADIUS_M - 1e-8], [0.1, 0.02, 0.0]),
+            "",
+        ));
+        let mut count = 0;
+        while state.time_s < 0.05 {
+            step_and_balance(&mut state);
+            count = count.max(bridges(&state).walls.len());
+        }
+        assert_eq!(count, 1);
+        assert_eq!(bridges(&state).formed_and_ruptured, [1, 0]);
+        let friction_j: f64 = state.walls.iter().map(|wall| wall.friction_j).sum();
+        let (place, lost_j) = (state.particles.poses[0].place(), bridges(&state).lost_j);
+        (place, friction_j, lost_j, step_and_balance(&mut state))
+    };
+    let (place, friction_j, lost_j, balance) = run(&[[-1.0, 1.0]]);
+    assert!(place.x > 1e-3, "it has crossed the joint: {place}");
+    for boxes in [
+        &[[-1.0, 0.0], [0.0, 1.0]][..],
+        &[[0.0, 1.0], [-1.0, 0.0]],
+        &[[-1.0, -1e-3], [-1e-3, 2e-4], [2e-4, 1.0]],
+    ] {
+        let (other, other_friction_j, other_lost_j, other_balance) = run(boxes);
+        assert!((other - place).norm() < 1e-6 * RADIUS_M, "{other} {place}");
+        assert_near(other_friction_j, friction_j, 1e-6);
+        assert_near(other_lost_j, lost_j, 1e-6);
+        let off_j = other_balance.energy_error_j - balance.energy_error_j;
+        assert!(off_j.abs() < 1e-6 * WATER.work_j(RADIUS_M), "{off_j:e}");
+    }
+}

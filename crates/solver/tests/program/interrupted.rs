@@ -16,7 +16,7 @@ fn send(signal: &str, child: &Child) {
     assert!(sent.unwrap().success());
 }
 
-fn start(mut command: Command) -> Child {
+pub(super) fn start(mut command: Command) -> Child {
     command
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -32,7 +32,7 @@ fn lines(path: &Path) -> usize {
 }
 
 /// Waits until a condition holds, or the program has ended.
-fn wait_until(child: &mut Child, happened: impl Fn() -> bool) {
+pub(super) fn wait_until(child: &mut Child, happened: impl Fn() -> bool) {
     let since = Instant::now();
     while !happened() && child.try_wait().unwrap().is_none() {
         assert!(since.elapsed() < Duration::from_secs(60), "nothing happens");

@@ -101,7 +101,7 @@ fn near(found: f64, wanted: f64) {
 }
 
 /// Two bonded spheres above a plate, with everything that is carried over.
-const SCENE: &str = r#"version = 1
+pub(super) const SCENE: &str = r#"version = 1
 [run]
 end_time = "10 ms"
 time_step = "1 us"
@@ -284,6 +284,7 @@ fn contacts_and_walls_are_read_back() {
         "load push",
         "support hold",
         "1 bond as",
+        "Where walls meet as one surface",
     ] {
         assert!(page.contains(part), "{part}");
     }
