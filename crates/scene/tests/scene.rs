@@ -1,6 +1,7 @@
 //! The reader of scenes: valid scenes, refused scenes and the messages.
 
 mod as_run;
+mod cases;
 mod corpus;
 mod every_key;
 mod feed;

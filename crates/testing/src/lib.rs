@@ -9,7 +9,7 @@
 pub mod made_test;
 mod messages;
 
-pub use messages::{hold_messages, messages_of};
+pub use messages::hold_messages;
 
 use std::io::Write;
 use std::path::Path;

@@ -12,7 +12,8 @@ pub fn hold_messages(folder: &Path, found: &[String]) {
     if std::env::var_os("RENEW_MESSAGES").is_some() {
         std::fs::write(&path, found.join("\n") + "\n").unwrap();
     }
-    let expected = messages_of(folder);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let expected: Vec<String> = text.lines().map(str::to_owned).collect();
     if found == expected {
         return;
     }
@@ -26,13 +27,4 @@ pub fn hold_messages(folder: &Path, found: &[String]) {
         only(&expected, found, "expected"),
         only(found, &expected, "got     "),
     );
-}
-
-/// The lines of `messages.txt` in a folder.
-///
-/// # Panics
-/// There is no such file.
-pub fn messages_of(folder: &Path) -> Vec<String> {
-    let text = std::fs::read_to_string(folder.join("messages.txt")).unwrap();
-    text.lines().map(str::to_owned).collect()
 }
