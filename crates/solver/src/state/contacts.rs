@@ -72,6 +72,13 @@ impl ContactHistory {
         self.tangential[3]
     }
 
+    /// Whether the two have parted, and a force is still to be counted back.
+    #[inline(always)]
+    pub(crate) fn ends_with_a_jump(&self) -> bool {
+        let [x, y, z, _] = self.damping;
+        self.overlap_m() == 0.0 && [x, y, z] != [0.0; 3]
+    }
+
     /// Overlap at which the law begins, m.
     #[inline(always)]
     pub fn origin_m(&self) -> f64 {

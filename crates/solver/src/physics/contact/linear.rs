@@ -97,8 +97,8 @@ fn due_of_kick<T: Number>(touch: &ContactKinematics<T>, overlap_before_m: T, dt:
 }
 
 /// Fraction of its own limit at which an impact is resolved: the force starts with a jump in slope.
-/// Restitution is then accurate to 1 %, and to 4 % at twice the step.
-const IMPACT_FRACTION: f64 = 0.125;
+/// Two spheres conserve their energy to 0.9 % then, whenever in a step they touch (second order).
+const IMPACT_FRACTION: f64 = 0.095;
 
 impl ImpactLaw for Linear {
     fn impact_fraction(&self) -> f64 {
