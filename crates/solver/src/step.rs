@@ -155,6 +155,7 @@ pub fn interact(state: &mut State) {
     state.scratch.events.begin(state.steps, state.time_s);
     if !state.ledger.is_open {
         state.ledger = opened(state);
+        state.open_islands();
     }
     if state.levels.is_none() {
         return run(&INTERACT, &TABLE.interact, state, |_| true);

@@ -245,6 +245,9 @@ pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, state: &Stat
     let poses = &state.particles.poses;
     let relaxes = contacts.model.relaxes;
     let clusters = state.clusters.as_ref();
+    if let Some(clusters) = clusters {
+        contacts.islands.join_pairs(&pairs, clusters);
+    }
     let has_origin = |pair| relaxes || clusters.is_some_and(|clusters| clusters.is_within(pair));
     contacts.relist(pairs, poses.len(), |pair| {
         let overlap_m = overlap_m(poses, pair);
