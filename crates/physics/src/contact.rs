@@ -26,6 +26,7 @@
 pub mod assembly;
 pub mod dmt;
 pub mod hertz_mindlin;
+mod jumps;
 pub mod kinematics;
 pub mod law;
 pub mod linear;
@@ -40,6 +41,7 @@ pub mod slider;
 pub use normal::{ImpactLaw, NormalLaw, NormalResponse};
 
 use crate::number::{Number, Vec3};
+use jumps::of_a_step_more;
 use kinematics::{ContactKinematics, FrameRotation};
 use rolling::RollingFriction;
 use slider::coulomb_return_map;
@@ -81,6 +83,9 @@ pub struct Response<T = f64> {
     pub lost: Lost<T>,
     /// The damping part of force and moment.
     pub damping: Damping<T>,
+    /// Part of the force for an attraction that began or ended within the step, N, which acts in
+    /// that step only.
+    pub jump_n: Vec3<T>,
 }
 
 /// Elastic energy of a contact by mode, J.
@@ -222,6 +227,17 @@ pub fn response<T: Number, L: NormalLaw<T>>(
         [normal, normal.if_positive(normal)]
     };
 
+    let force = touch.normal * normal;
+    let none = normal.zero();
+    let [pushed, jump_n] = if L::ATTRACTS {
+        let overlaps_m = [springs.overlap_m, touch.overlap_m];
+        let more = of_a_step_more(overlaps_m, apart.scale(dt));
+        let jump_n = touch.normal * -(law.attraction_at_touch_n(touch) * more);
+        [force + jump_n, jump_n]
+    } else {
+        [force, Vec3(none, none, none)]
+    };
+
     let across = touch.velocity_m_s - touch.middle * apart;
     let friction_step = coulomb_return_map(
         &carry,
@@ -250,7 +266,7 @@ pub fn response<T: Number, L: NormalLaw<T>>(
             rolling_rad: rolled.spring,
             overlap_m: touch.overlap_m.if_positive(touch.overlap_m),
         },
-        force_on_b: touch.normal * normal - friction_step.force - friction_step.damping,
+        force_on_b: pushed - friction_step.force - friction_step.damping,
         moment_on_b: -rolled.force - rolled.damping,
         energy: ContactEnergy {
             normal: normal_response.energy_j,
@@ -266,6 +282,7 @@ pub fn response<T: Number, L: NormalLaw<T>>(
             tangential_n: -friction_step.damping,
             rolling_n_m: -rolled.damping,
         },
+        jump_n,
     }
 }
 

@@ -180,6 +180,7 @@ pub fn plan(
     notes.extend(questions::notes(scene, &state, &bodies, &unused_bonds));
     notes.extend(bounces::notes(scene, &state));
     state.ledger = opened(&state);
+    state.open_islands();
     let step = first_step(scene, &bodies, &mut state, allow_any_step)?;
     if scene.run.integrator == Integrator::Leapfrog {
         bound_damping(&mut state);

@@ -14,6 +14,7 @@ pub mod damping_rate;
 pub mod events;
 pub(crate) mod grids;
 pub mod groups;
+pub mod islands;
 pub(crate) mod ledger;
 pub mod loads;
 pub mod meetings;
@@ -300,7 +301,16 @@ impl State {
         if let Some(contacts) = &mut self.contacts {
             contacts.divide(self.particles.len(), self.scratch.partitions.len().max(1));
         }
+        self.open_islands();
         Some(self)
+    }
+
+    /// Begins to follow islands of pieces.
+    pub(crate) fn open_islands(&mut self) {
+        if let (Some(contacts), Some(clusters)) = (&mut self.contacts, &self.clusters) {
+            let may_come = !self.model.rules.are_none();
+            (contacts.islands).open(self.walls.len(), clusters, may_come);
+        }
     }
 
     /// The template of the scene that a template comes from.

@@ -133,6 +133,7 @@ pub fn interact(state: &mut State) {
     state.scratch.events.begin(state.steps, state.time_s);
     if !state.ledger.is_open {
         state.ledger = opened(state);
+        state.open_islands();
     }
     run(INTERACT, &TABLE.interact, state);
 }

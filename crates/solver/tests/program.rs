@@ -195,6 +195,8 @@ fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
             "steps_per_s",
             "bond_steps_per_s",
             "time_by_stage",
+            // Of what followed the last start.
+            "part_error",
             "results",
         ] {
             value.as_object_mut().unwrap().remove(of_time);

@@ -39,8 +39,8 @@ pub struct Assembled<T = f64> {
 /// Result for a contact after a step of `dt`, s. A pair that separated while overlapping becomes
 /// ordinary below `least_overlap` times its effective radius.
 #[inline(always)]
-pub fn assemble<T: Number>(
-    law: &impl NormalLaw<T>,
+pub fn assemble<T: Number, L: NormalLaw<T>>(
+    law: &L,
     rolling: &impl RollingFriction<T>,
     touch: &ContactKinematics<T>,
     before: &StoredContact<T>,
@@ -55,16 +55,26 @@ pub fn assemble<T: Number>(
     };
     let response = response(law, rolling, &touch, &before.springs, dt);
     let damped = response.damping.total();
+    let [lost, remembered] = if L::ATTRACTS {
+        // See `jumps`: what is counted in this step is counted back in the next.
+        let [less, more] = [-response.jump_n, response.jump_n];
+        [less, more].map(|jump_n| Damped {
+            force_n: damped.force_n + jump_n,
+            ..damped
+        })
+    } else {
+        [damped; 2]
+    };
     Assembled {
         remembered: StoredContact {
             springs: response.springs,
-            damped,
+            damped: remembered,
             origin_m: relaxed.origin_m,
         },
         overlap_m: touch.overlap_m,
         torques: torques(&touch, response.force_on_b, response.moment_on_b),
         friction_j: response.lost.sliding + response.lost.rolling,
-        damping_j: damped.lost_j(&before.damped, &touch, dt),
+        damping_j: lost.lost_j(&before.damped, &touch, dt),
         response,
     }
 }

@@ -4,6 +4,7 @@
 //!
 //! - F_n = 4/3 E* sqrt(R*) d^(3/2) - 2 pi w R*; the pull-off force is 2 pi w R*, at d = 0;
 //! - energy 8/15 E* sqrt(R*) d^(5/2) - 2 pi w R* d, which is continuous where the ends separate;
+//! - the attraction begins and ends with a jump, within a step: see [`super::jumps`];
 //! - friction, rolling and damping follow from Hertz's part of the force, which presses the ends.
 //!
 //! It holds for small, stiff particles: Tabor's parameter (R* w^2/(E*^2 z^3))^(1/3), with z the
@@ -58,8 +59,15 @@ impl<T: Number> NormalLaw<T> for DerjaguinMullerToporov<T> {
 
     #[inline(always)]
     fn attraction_n(&self, touch: &ContactKinematics<T>) -> T {
+        touch
+            .overlap_m
+            .if_positive(self.attraction_at_touch_n(touch))
+    }
+
+    #[inline(always)]
+    fn attraction_at_touch_n(&self, touch: &ContactKinematics<T>) -> T {
         let force = self.work_of_adhesion_j_m2 * touch.effective_radius_m;
-        touch.overlap_m.if_positive(force.scale(2.0 * PI))
+        force.scale(2.0 * PI)
     }
 
     #[inline(always)]

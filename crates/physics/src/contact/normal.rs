@@ -43,6 +43,12 @@ pub trait NormalLaw<T: Number> {
         touch.overlap_m.zero()
     }
 
+    /// That force of ends that just touch, N.
+    #[inline(always)]
+    fn attraction_at_touch_n(&self, touch: &ContactKinematics<T>) -> T {
+        touch.overlap_m.zero()
+    }
+
     /// Energy of the attraction of ends that touch, J, part of the energy of the contact: below 0.
     /// That of an attraction that does not depend on the overlap, unless a law has its own.
     #[inline(always)]

@@ -24,6 +24,12 @@ pub(crate) fn add_time(page: &mut Page, summary: &Value) {
     .into_iter()
     .map(|row| row.map(str::to_owned))
     .collect::<Vec<_>>();
+    let part = &summary["part_error"];
+    if part.is_object() {
+        let error = significant(number(&part["energy_error"]), 2);
+        let bodies = texts(&part["bodies"]).join(", ");
+        rows.insert(1, [format!("energy error of {bodies} by itself"), error]);
+    }
     let steps = value("steps");
     if steps > 0.0 {
         let limit = value("fraction_of_limit");

@@ -5,4 +5,4 @@ mod parts;
 mod text;
 
 pub use contents::{Summary, Unfinished, Verdict};
-pub use parts::{AdaptiveSummary, PopulationSummary, SleepSummary, TakenIn};
+pub use parts::{AdaptiveSummary, PartError, PopulationSummary, SleepSummary, TakenIn};

@@ -18,7 +18,9 @@ use crate::measure::Probe;
 use crate::output::flows::body_flows;
 use crate::output::fragments::FragmentSummary;
 use crate::output::sizes::Fragments;
-use crate::output::summary::{AdaptiveSummary, PopulationSummary, SleepSummary, Summary, Verdict};
+use crate::output::summary::{
+    AdaptiveSummary, PartError, PopulationSummary, SleepSummary, Summary, Verdict,
+};
 use crate::state::clusters::fragments as fragments_of;
 use crate::state::clusters::fragments::Fragment;
 use crate::step::{advance, number_of, stages};
@@ -226,6 +228,7 @@ impl Run<'_> {
             steps_per_s,
             bond_steps_per_s: steps_per_s * bonds,
             energy_error,
+            part_error: PartError::above(energy_error, state),
             momentum_error,
             angular_momentum_error,
             balance: ended.balance,

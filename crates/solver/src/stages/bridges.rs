@@ -418,19 +418,26 @@ fn stepped_at_wall(
 
 /// Energy of all bridges, J: see [`LiquidBridge::energy_j`].
 pub(crate) fn bridges_energy_j(state: &State) -> f64 {
-    let (Some(bridges), Some(contacts)) = (&state.bridges, &state.contacts) else {
-        return 0.0;
-    };
+    bridge_energies_j(state).map(|(_, energy_j)| energy_j).sum()
+}
+
+/// The energy of each bridge, J, and its first particle.
+pub(crate) fn bridge_energies_j(state: &State) -> impl Iterator<Item = (u32, f64)> {
+    let known = state.bridges.as_ref().zip(state.contacts.as_ref());
     let radius_m = |i: u32| state.particles.poses[i as usize].radius_m();
-    let of_pairs = bridges.pairs.iter().filter_map(|bridge| {
-        let [a, b] = bridge.pair.map(radius_m);
-        let law = contacts.model.kinds[contacts.kind(bridge.pair)].bridge?;
-        Some(law.energy_j(bridge.gap_m, a * b / (a + b)))
-    });
-    let of_walls = bridges.walls.iter().filter_map(|bridge| {
-        let material = contacts.materials[bridge.particle as usize];
-        let law = state.walls[bridge.wall as usize].kind(material).bridge?;
-        Some(law.energy_j(bridge.gap_m, radius_m(bridge.particle)))
-    });
-    of_pairs.chain(of_walls).sum()
+    known.into_iter().flat_map(move |(bridges, contacts)| {
+        let of_pairs = bridges.pairs.iter().filter_map(move |bridge| {
+            let [a, b] = bridge.pair.map(radius_m);
+            let law = contacts.model.kinds[contacts.kind(bridge.pair)].bridge?;
+            let energy_j = law.energy_j(bridge.gap_m, a * b / (a + b));
+            Some((bridge.pair[0], energy_j))
+        });
+        let of_walls = bridges.walls.iter().filter_map(move |bridge| {
+            let material = contacts.materials[bridge.particle as usize];
+            let law = state.walls[bridge.wall as usize].kind(material).bridge?;
+            let energy_j = law.energy_j(bridge.gap_m, radius_m(bridge.particle));
+            Some((bridge.particle, energy_j))
+        });
+        of_pairs.chain(of_walls)
+    })
 }

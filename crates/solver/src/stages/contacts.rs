@@ -240,6 +240,9 @@ pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, state: &Stat
     let poses = &state.particles.poses;
     let relaxes = contacts.model.relaxes;
     let clusters = state.clusters.as_ref();
+    if let Some(clusters) = clusters {
+        contacts.islands.join_pairs(&pairs, clusters);
+    }
     let has_origin = |pair| relaxes || clusters.is_some_and(|clusters| clusters.is_within(pair));
     contacts.relist(pairs, poses.len(), |pair| {
         let overlap_m = overlap_m(poses, pair);
@@ -347,7 +350,8 @@ impl<T: Lanes> ContactWork<T> for KindWork<'_, '_, T> {
 
     #[inline(always)]
     fn with(self, law: &impl NormalLaw<T>, rolling: &impl RollingFriction<T>) {
-        self.work.of_kind::<T>(self.proof, self.kind, law, rolling);
+        self.work
+            .of_kind::<T, _>(self.proof, self.kind, law, rolling);
     }
 }
 
@@ -356,11 +360,11 @@ impl PartitionWork<'_> {
     /// their order.
     #[inline(always)]
     #[expect(clippy::needless_range_loop, reason = "lanes are gone through")]
-    fn of_kind<T: Lanes>(
+    fn of_kind<T: Lanes, L: NormalLaw<T>>(
         &mut self,
         proof: T::Proof,
         kind: usize,
-        law: &impl NormalLaw<T>,
+        law: &L,
         rolling: &impl RollingFriction<T>,
     ) {
         let Self {
@@ -375,7 +379,7 @@ impl PartitionWork<'_> {
             let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
             let pair = |lane: usize| pairs[partition.border[number(lane)] as usize];
             let history = |lane: usize| &partition.border_histories[number(lane)];
-            let met = scene.meet::<T, _>(proof, law, rolling, pair, history);
+            let met = scene.meet::<T, _, _>(proof, law, rolling, pair, history);
             for lane in 0..some.len() {
                 let b = pair(lane)[1] as usize - particles.start;
                 met.forces.add_to_b(lane, &mut books.wrenches[b]);
@@ -400,7 +404,7 @@ impl PartitionWork<'_> {
                 numbers[lane] = some[lane.min(some.len() - 1)] as usize;
                 ends[lane] = pairs[numbers[lane]];
             }
-            let met = scene.meet::<T, _>(
+            let met = scene.meet::<T, _, _>(
                 proof,
                 law,
                 rolling,
@@ -425,6 +429,10 @@ impl PartitionWork<'_> {
                     if let Some([rolled, rolling_damped]) = &met.rolled {
                         history.rolling = rolled[lane];
                         history.rolling_damping = rolling_damped[lane];
+                    }
+                    if L::ATTRACTS && history.ends_with_a_jump() {
+                        let own = numbers[lane] - own.start;
+                        partition.was_close[own / 8] |= 1 << (own % 8);
                     }
                 }
             }
@@ -494,10 +502,10 @@ impl Forces {
 impl StepInput<'_> {
     /// Contact forces on the particles, one contact for each lane.
     #[inline(always)]
-    fn meet<'a, T: Lanes, R: RollingFriction<T>>(
+    fn meet<'a, T: Lanes, L: NormalLaw<T>, R: RollingFriction<T>>(
         &self,
         proof: T::Proof,
-        law: &impl NormalLaw<T>,
+        law: &L,
         rolling: &R,
         pair: impl Fn(usize) -> [u32; 2],
         history: impl Fn(usize) -> &'a ContactHistory,
@@ -509,8 +517,12 @@ impl StepInput<'_> {
         let touch = contact_kinematics(place_b - place_a, [a, b], self.dt);
         let (overlap_m, origin_m) = (before.springs.overlap_m, before.origin_m);
         let nothing = overlap_m.zero();
-        let touched =
+        let mut touched =
             touch.overlap_m.above(nothing) | overlap_m.above(nothing) | origin_m.above(nothing);
+        if L::ATTRACTS {
+            // A jump of the attraction is to be counted back.
+            touched |= before.damped.force_n.square().above(nothing);
+        }
         let least_overlap = self.contacts.model.least_overlap;
         let met = assemble(law, rolling, &touch, &before, least_overlap, self.dt);
         let StoredContact {

@@ -13,10 +13,16 @@ use dem_physics::lanes::{LaneWork, Lanes, with_most_lanes};
 
 /// Elastic energy of all bonds by mode.
 pub fn elastic_energy(state: &State) -> BondEnergy {
+    elastic_energy_of(state, 0..state.bonds.len())
+}
+
+/// Elastic energy of some consecutive bonds by mode.
+pub(crate) fn elastic_energy_of(state: &State, some: Range<usize>) -> BondEnergy {
     let (bonds, poses) = (&state.bonds, &state.particles.poses[..]);
-    let [normal, shear, torsion, bending] = sums_of_chunks(bonds.len(), |range| {
+    let first = some.start;
+    let [normal, shear, torsion, bending] = sums_of_chunks(some.len(), |range| {
         let mut sums = [0.0; 4];
-        for (rule, run) in bonds.runs(range) {
+        for (rule, run) in bonds.runs(first + range.start..first + range.end) {
             if bonds.rules[rule].is_single() {
                 sums = run.fold(sums, |sums, at| add(sums, energy(bonds, poses, at)));
             } else {

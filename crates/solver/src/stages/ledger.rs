@@ -13,13 +13,14 @@ use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j, pairs_adhesion_j};
 use crate::stages::elastic::elastic_energy;
+use crate::stages::islands::look_at_islands;
 use crate::stages::loads::{add_resultant, loads_power_w, loads_resultant};
 use crate::stages::motion::power_w;
+use crate::stages::rounding::{all_kinds, pressed_by_a_millionth_j, stretched_by_a_millionth_j};
 use crate::stages::supports::reactions_work_j;
 use crate::stages::totals::{kinetic_energy, momenta, synchronous_motions_of_free};
 use crate::stages::walls::touches_adhesion_j;
 use crate::state::State;
-use crate::state::contacts::Contacts;
 use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
@@ -64,30 +65,6 @@ pub(crate) fn advance_time(state: &mut State) -> usize {
     state.previous_time_step_s = state.time_step_s;
     state.steps += 1;
     0
-}
-
-/// The types of contacts among particles and with walls.
-fn all_kinds<'a>(contacts: &'a Contacts, walls: &'a [Wall]) -> Vec<&'a ContactKind> {
-    let of_walls = walls.iter().flat_map(|wall| &wall.model.kinds);
-    contacts.model.kinds.iter().chain(of_walls).collect()
-}
-
-/// Contact energy of all particles at an overlap of a millionth of their radii, by the stiffest law
-/// of the scene, J; 0 if nothing can touch.
-fn pressed_by_a_millionth_j(state: &State) -> f64 {
-    let Some(contacts) = &state.contacts else {
-        return 0.0;
-    };
-    let kinds = all_kinds(contacts, &state.walls);
-    let poses = &state.particles.poses;
-    ordered_sum(poses.len(), |i| {
-        let radius_m = poses[i].radius_m();
-        let overlap_m = 1e-6 * radius_m;
-        let stiffness = kinds
-            .iter()
-            .map(|kind| kind.normal_n_m(overlap_m, radius_m));
-        0.5 * stiffness.fold(0.0, f64::max) * overlap_m * overlap_m
-    })
 }
 
 /// Energy that the attraction of ends that touch, adhesion or liquid, releases until their elastic
@@ -141,13 +118,8 @@ pub fn opened(state: &State) -> EnergyLedger {
         ..EnergyLedger::default()
     };
     let elastic = elastic_energy(state).total();
-    let bonds = &state.bonds;
-    let stretched = |at: usize| {
-        let stretch = 1e-6 * bonds.initial_length_m(at);
-        0.5 * bonds.normal(at) * stretch * stretch
-    };
     ledger.attraction_j = attraction_at_rest_j(state);
-    ledger.rounding_floor_j = ordered_sum(bonds.len(), stretched) + pressed_by_a_millionth_j(state);
+    ledger.rounding_floor_j = stretched_by_a_millionth_j(state) + pressed_by_a_millionth_j(state);
     let pressed = state.contacts.as_ref();
     let pressed = pressed.map_or(0.0, |contacts| elastic_energy_j(contacts, p));
     let pressed = pressed
@@ -380,8 +352,9 @@ fn adhesion_j(state: &State) -> f64 {
 /// energies and momenta.
 pub fn balance(state: &mut State) -> Balance {
     let motions = synchronous_motions_of_free(state);
-    let p = &state.particles;
     let clumps = synchronous(state);
+    look_at_islands(state, &motions, &clumps);
+    let p = &state.particles;
     let of_clumps = clumps.iter();
     let of_clumps: f64 = of_clumps
         .map(|clump| clump.kinetic_j(state.clumps.template(clump)))

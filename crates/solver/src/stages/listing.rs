@@ -15,6 +15,7 @@ use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
 use super::clumps;
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::contacts::{find_mean_radius, list_within, relist};
+use super::islands::join_at_moving_walls;
 use super::neighbours::{MOST_TASKS, find_pairs};
 use super::sleep::begins_to_move;
 use super::stage::{NO_SAVING, Need, Stage};
@@ -46,7 +47,7 @@ pub(crate) const SEARCH: Stage = Stage {
         let contacts = state.contacts.as_ref();
         let of_contacts = contacts.map_or(0, |c| {
             let lists = size_of_val(&c.pairs[..]) + size_of_val(&c.scratch.former_pairs[..]);
-            let kept = c.scratch.buffers.bytes();
+            let kept = c.scratch.buffers.bytes() + c.islands.bytes();
             lists + kept + size_of_val(&c.lost_j[..]) + c.materials.len()
         });
         of_contacts + clusters_bytes(state, ClusterUser::Contacts)
@@ -226,6 +227,7 @@ fn search_for(state: &mut State, contacts: &mut Contacts, buffers: &mut SearchBu
     }
     list_near_spheres(state, &pairs, &mut buffers.near);
     put_in_list(state, contacts, pairs);
+    join_at_moving_walls(contacts, state);
     seeks.iter().filter(|&&seeks| seeks).count()
 }
 
@@ -388,6 +390,7 @@ fn list_near_moving_walls(state: &mut State) {
         }
         list_near_spheres(state, &contacts.pairs, &mut buffers.near);
         contacts.scratch.buffers = buffers;
+        join_at_moving_walls(&mut contacts, state);
     }
     state.contacts = Some(contacts);
 }

@@ -68,6 +68,13 @@ pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
             &mut state.scratch.meetings,
             state.previous_time_step_s,
         );
+        if let Some(clusters) = (state.clusters.as_ref()).filter(|_| contacts.islands.is_open()) {
+            let met = state.scratch.meetings[..chunks(&state.walls)].iter();
+            for met in met.flat_map(|some| &some.met) {
+                let piece = clusters.of_particle[met.touch.particle as usize];
+                (contacts.islands).lose_at_walls(piece, met.lost_j[0] + met.lost_j[1]);
+            }
+        }
     }
     near_walls(&state.walls)
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::islands::Islands;
 use super::references::References;
 use super::search_buffers::SearchBuffers;
 use super::self_contacts::SelfContacts;
@@ -72,6 +73,13 @@ impl ContactHistory {
         self.tangential[3]
     }
 
+    /// Whether the two have parted, and a force is still to be counted back.
+    #[inline(always)]
+    pub(crate) fn ends_with_a_jump(&self) -> bool {
+        let [x, y, z, _] = self.damping;
+        self.overlap_m() == 0.0 && [x, y, z] != [0.0; 3]
+    }
+
     /// Overlap at which the law begins, m.
     #[inline(always)]
     pub fn origin_m(&self) -> f64 {
@@ -131,6 +139,10 @@ pub struct Contacts {
     pub lost_j: Vec<[f64; 2]>,
     /// The same for removed particles, J.
     pub lost_by_removed_j: [f64; 2],
+    /// Pieces that have come near each other, and their energies. Not saved: what was near depends
+    /// on when the lists were renewed, and so on interruptions.
+    #[serde(skip)]
+    pub islands: Islands,
     /// Data that can be rebuilt.
     #[serde(skip)]
     pub scratch: ContactScratch,

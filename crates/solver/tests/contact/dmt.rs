@@ -100,6 +100,37 @@ fn an_undamped_impact_loses_nothing() {
     assert!(off(4000.0).abs() < 2e-3, "{}", off(4000.0));
 }
 
+/// The attraction begins and ends within a step: wherever in it that is, the error of the energy
+/// falls with the square of the step. It is that of a sphere that comes and leaves without a loss,
+/// over the depth of the attraction.
+#[test]
+fn touching_and_parting_within_a_step_leave_no_error_of_first_order() {
+    let speed = 0.02;
+    let largest = |steps: f64| {
+        let dt = period_s() / steps;
+        let off = |phase: f64| {
+            let gap_m = (1.0 + phase) * speed * dt;
+            let mut world = on_floor(law(1.0, 0.0), -gap_m, dt);
+            let mass = 1.0 / world.bodies[1].per_mass;
+            world.bodies[1].velocity = Vec3(0.0, 0.0, -speed);
+            let mut parted = 0;
+            while parted < 3 {
+                world.step();
+                let is_away = world.touch().overlap_m < 0.0;
+                parted += usize::from(is_away && world.bodies[1].velocity.2 > 0.0);
+            }
+            let gained_j = 0.5 * mass * (world.bodies[1].velocity.2.powi(2) - speed * speed);
+            gained_j / (PULL_OFF_N * at_rest_m())
+        };
+        (0..20)
+            .map(|n| off(f64::from(n) / 20.0).abs())
+            .fold(0.0, f64::max)
+    };
+    let [coarse, fine] = [60.0, 240.0].map(largest);
+    assert!(coarse < 5e-3, "{coarse}");
+    assert!(fine < coarse / 12.0, "{coarse} {fine}");
+}
+
 /// A slow sphere with damping stays, at the overlap at rest; a fast one leaves.
 #[test]
 fn what_is_too_slow_sticks() {

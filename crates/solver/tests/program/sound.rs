@@ -51,6 +51,87 @@ fn attraction_does_not_stop_a_run() {
     }
 }
 
+/// A contact law of the scene, and the time that an impact at a speed takes with it, s, with its
+/// effective radius, m, and mass, kg.
+fn impact(law: &str, young_pa: f64, radius_m: f64, mass_kg: f64, speed_m_s: f64) -> (String, f64) {
+    let stiffness_n_m = 0.05 * young_pa * radius_m;
+    let effective_pa = young_pa / (2.0 * (1.0 - 0.25 * 0.25));
+    let hertz_s = 2.94 * (15.0 * mass_kg / (16.0 * radius_m.sqrt() * effective_pa)).powf(0.4)
+        / speed_m_s.powf(0.2);
+    let attraction_n = 2.0 * std::f64::consts::PI * 0.05 * radius_m;
+    let at_rest_m = (attraction_n / (4.0 / 3.0 * effective_pa * radius_m.sqrt())).powf(2.0 / 3.0);
+    match law {
+        "linear" => (
+            format!("law = \"linear\", normal_stiffness = {stiffness_n_m}"),
+            std::f64::consts::PI * (mass_kg / stiffness_n_m).sqrt(),
+        ),
+        "dmt" => (
+            "law = \"dmt\", work_of_adhesion = 0.05".to_owned(),
+            hertz_s + 6.0 * (mass_kg * at_rest_m / (1.5 * attraction_n)).sqrt(),
+        ),
+        _ => ("law = \"hertz-mindlin\"".to_owned(), hertz_s),
+    }
+}
+
+/// A sphere that meets a wall, or another of its size, until it has left again. `phase`: by how
+/// much later it comes, in parts of its way.
+fn meets(law: &str, [radius_m, speed_m_s]: [f64; 2], rest: f64, pair: bool, phase: f64) -> String {
+    let young_pa = if speed_m_s > 10.0 { 50e9 } else { 50e6 };
+    let share = if pair { 0.5 } else { 1.0 };
+    let mass_kg = share * 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3);
+    let (law, impact_s) = impact(law, young_pa, share * radius_m, mass_kg, speed_m_s);
+    let gap_m = (0.01 * radius_m).min(2.0 * speed_m_s * impact_s) * (1.0 + phase);
+    let end_s = 2.0 * gap_m / speed_m_s + 3.0 * impact_s;
+    let (other, height_m) = if pair {
+        let other = "bodies.t = { particles = [[0, 0, 0, RADIUS]], material = \"a\" }";
+        (
+            other.replace("RADIUS", &radius_m.to_string()),
+            2.0 * radius_m,
+        )
+    } else {
+        let wall =
+            "walls.w = { plane = { point = [0, 0, 0], normal = [0, 0, 1] }, material = \"a\" }";
+        (wall.to_owned(), radius_m)
+    };
+    format!(
+        "version = 1
+run.end_time = {end_s}
+materials.a = {{ density = 2500, young_modulus = {young_pa}, poisson_ratio = 0.25 }}
+contacts.a-a = {{ restitution = {rest}, friction = 0.4, {law} }}
+bodies.s = {{ particles = [[0, 0, {}, {radius_m}]], material = \"a\", velocity = [0, 0, {}] }}
+{other}
+",
+        height_m + gap_m,
+        -speed_m_s
+    )
+}
+
+/// Over all sizes, speeds and laws: the automatic step resolves an impact so well that nothing
+/// stops, and that its energy is not doubted. The force of the linear law begins with its full
+/// slope: with the usual step, two spheres that lose nothing have an error of up to 1.4 %, and are
+/// rightly doubted.
+#[test]
+fn the_energy_of_every_impact_closes() {
+    let bench = Bench::new();
+    let mut phase = 0.0;
+    for radius_m in [1e-6, 1e-4, 1e-2, 1.0] {
+        for speed_m_s in [1e-5, 1e-3, 0.1, 1.0, 100.0] {
+            for law in ["linear", "hertz-mindlin", "dmt"] {
+                for (restitution, pair) in [(1.0, true), (1.0, false), (0.9, true), (0.1, false)] {
+                    phase = (phase + 0.0037) % 0.1;
+                    let mut scene = meets(law, [radius_m, speed_m_s], restitution, pair, phase);
+                    if law == "linear" {
+                        scene += "run.safety_factor = 0.68\n";
+                    }
+                    let summary = json(&bench, "meets.toml", &scene);
+                    let error = summary["energy_error"].as_f64().unwrap();
+                    assert!(error < 0.01, "{error}\n{scene}");
+                }
+            }
+        }
+    }
+}
+
 /// LAMMPS report 4180: it must stick, and nothing is wrong with its energy.
 #[test]
 fn a_slow_sphere_sticks_and_its_energy_closes() {
@@ -112,4 +193,43 @@ walls.lid = { plane = { point = [0, 0, 0.0201], normal = [0, 0, -1] }, material 
 ";
     let summary = json(&bench, "pressed.toml", scene);
     assert_eq!(summary["verdict"]["sound"], true, "{}", summary["verdict"]);
+}
+
+/// Bodies of all kinds beside a ball of some kJ: what walls, belts, loads, gravity, adhesion, bridges
+/// and bonds do to each of them is in its own balance.
+#[test]
+fn bodies_by_themselves_are_sound() {
+    let bench = Bench::new();
+    let scene = "version = 1
+run = { end_time = 0.1, gravity = [0, 0, -9.81] }
+materials.stone = { density = 2000, young_modulus = \"50 MPa\", poisson_ratio = 0.3 }
+materials.wet = { density = 2000, young_modulus = \"50 MPa\", poisson_ratio = 0.3 }
+materials.glue = { density = 2000, young_modulus = \"50 MPa\", poisson_ratio = 0.3 }
+contacts.stone-stone = { restitution = 0.6, friction = 0.5 }
+contacts.wet-wet = { restitution = 0.6, liquid_bridge = { surface_tension = 0.073, volume = 1e-10 } }
+contacts.wet-stone = { restitution = 0.6, liquid_bridge = { surface_tension = 0.073, volume = 1e-10 } }
+contacts.glue-glue = { restitution = 0.6, law = \"dmt\", work_of_adhesion = 0.5 }
+contacts.glue-stone = { restitution = 0.6, law = \"dmt\", work_of_adhesion = 0.5 }
+contacts.glue-wet = { restitution = 0.6 }
+bonds.bond = { young_modulus = \"50 MPa\", poisson_ratio = 0.3 }
+bodies.heavy = { particles = [[0, 50, 30, 0.5]], material = \"stone\", velocity = [100, 0, 0] }
+bodies.shaken = { particles = [[0, 0, 0.0101, 0.01]], material = \"stone\" }
+bodies.carried = { particles = [[1, 0, 0.0101, 0.01]], material = \"stone\" }
+bodies.pushed = { particles = [[2, 0, 0.0101, 0.01]], material = \"stone\" }
+bodies.wet = { particles = [[2, 2, 0.0101, 0.01]], material = \"wet\" }
+bodies.sticky = { particles = [[2, 1, 0.0101, 0.01]], material = \"glue\" }
+bodies.bar = { particles = [[2, -1, 0.012, 0.01], [2.015, -1, 0.012, 0.01], [2.03, -1, 0.018, 0.01]], bond_list = [[0, 1], [1, 2]], material = \"stone\", bonds = \"bond\", velocity = [0, 0, -1] }
+bodies.clump = { particles = [[2, -2, 0.012, 0.01], [2.015, -2, 0.014, 0.01]], material = \"stone\", start_as = \"clump\", velocity = [0.2, 0, -1] }
+groups.it = { body = \"pushed\", particles = [0] }
+loads.push = { group = \"it\", force = [0.5, 0, 0] }
+walls.floor = { box = { min = [1.8, -3, -0.1], max = [9, 3, 0] }, material = \"stone\" }
+walls.shaker = { box = { min = [-0.1, -0.1, -0.1], max = [0.1, 0.1, 0] }, material = \"stone\", displacement = [0, 0, 0.005], table = [[0, 0], [0.03, 1], [0.06, 0], [0.1, 1]] }
+walls.belt = { box = { min = [0.9, -0.1, -0.1], max = [1.1, 0.1, 0] }, material = \"stone\", surface_velocity = [0.5, 0, 0] }
+";
+    let summary = json(&bench, "parts.toml", scene);
+    let whole = summary["energy_error"].as_f64().unwrap();
+    assert!(whole < 1e-6, "{whole}");
+    let part = &summary["part_error"];
+    let error = part["energy_error"].as_f64().unwrap();
+    assert!(error > whole && error < 0.01, "{part}");
 }

@@ -40,6 +40,29 @@ fn every_doubtful_scene_is_called_so() {
     hold_messages(scenes[0].parent().unwrap(), &messages);
 }
 
+/// A heavy ball beside it does not hide the energy error of a small body: it has that of a run
+/// without the ball.
+#[test]
+fn a_small_body_is_judged_by_its_own_energy() {
+    let bench = Bench::new();
+    let scenes = corpus("doubtful");
+    let scene = (scenes.iter()).find(|path| path.ends_with("small-beside-heavy.toml"));
+    let text = std::fs::read_to_string(scene.unwrap()).unwrap();
+    let summary = json(&bench, scene.unwrap(), &["--json", "--quiet"]);
+    let number = |value: &Value| value.as_f64().unwrap();
+    assert!(number(&summary["energy_error"]) < 1e-6);
+    let part = &summary["part_error"];
+    assert_eq!(part["bodies"], serde_json::json!(["pebble"]));
+
+    let lines = text.lines().filter(|line| !line.starts_with("bodies.ball"));
+    let alone = bench.write("alone.toml", lines.collect::<Vec<_>>().join("\n"));
+    let alone = json(&bench, &alone, &["--json", "--quiet"]);
+    assert!(alone["part_error"].is_null(), "{}", alone["part_error"]);
+    let [part, alone] = [part, &alone].map(|of| number(&of["energy_error"]));
+    assert!(alone > 0.02, "{alone}");
+    assert!((part / alone - 1.0).abs() < 1e-3, "{part} {alone}");
+}
+
 /// Pieces in free flight are no doubt in what has been simulated: a note gives the time at which
 /// the pair that can still break reaches the plate, sqrt(2 h/g), and there is none without a plate.
 #[test]

@@ -7,7 +7,7 @@ use dem_io::body::mass::BodyMass;
 use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
-use super::parts::{AdaptiveSummary, PopulationSummary, SleepSummary, TakenIn};
+use super::parts::{AdaptiveSummary, PartError, PopulationSummary, SleepSummary, TakenIn};
 use crate::laboratory::evaluate::TestResult;
 use crate::measure::Measured;
 use crate::output::equilibrium::EquilibriumSummary;
@@ -111,6 +111,9 @@ pub struct Summary {
     pub bond_steps_per_s: f64,
     /// Largest relative energy error of the run.
     pub energy_error: f64,
+    /// That of bodies apart from all others, by themselves, if it is larger.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part_error: Option<PartError>,
     /// Largest relative momentum error of the run.
     pub momentum_error: f64,
     /// Largest relative angular momentum error of the run.
@@ -226,6 +229,15 @@ impl Summary {
                 "the energy is off by {} of the largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: take a smaller step (run.safety_factor)",
                 significant(self.energy_error, 2),
                 significant(self.balance.energy_scale_j, 3)
+            ));
+        }
+        let part = self.part_error.as_ref();
+        if let Some(part) = part.filter(|part| part.energy_error > LARGE_ENERGY_ERROR) {
+            doubts.push(format!(
+                "the energy of {} by itself is off by {} of its largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: take a smaller step (run.safety_factor)",
+                part.named(),
+                significant(part.energy_error, 2),
+                significant(part.energy_scale_j, 3)
             ));
         }
         if self.fraction_of_limit > 1.0 {

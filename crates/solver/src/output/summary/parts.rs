@@ -9,6 +9,54 @@ use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::sleep::Sleep;
 
+/// Number of bodies that are named; the others are counted.
+const NAMED: usize = 3;
+
+/// Energy error of bodies apart from all others, by themselves.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PartError {
+    /// Their names: those that came near each other.
+    pub bodies: Vec<String>,
+    /// `fragment_id` of their first piece.
+    pub fragment_id: u32,
+    /// The error, J.
+    pub energy_error_j: f64,
+    /// Their largest energy or work, each by itself, J.
+    pub energy_scale_j: f64,
+    /// The error, relative to that.
+    pub energy_error: f64,
+}
+
+impl PartError {
+    /// The largest of a state, if it is more than this relative error of the whole.
+    pub(crate) fn above(energy_error: f64, state: &State) -> Option<Self> {
+        let largest = state.contacts.as_ref()?.islands.largest()?;
+        (largest.ratio() > energy_error).then(|| Self {
+            bodies: (largest.bodies.iter())
+                .map(|body| state.model.body_name(*body).to_owned())
+                .collect(),
+            fragment_id: largest.piece,
+            energy_error_j: largest.error_j,
+            energy_scale_j: largest.scale_j,
+            energy_error: largest.ratio(),
+        })
+    }
+
+    /// The bodies in words.
+    pub(crate) fn named(&self) -> String {
+        let first: Vec<&str> = self.bodies.iter().take(NAMED).map(String::as_str).collect();
+        let others = match self.bodies.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            others => format!(" and {others} others"),
+        };
+        format!(
+            "'{}'{others} (piece {})",
+            first.join("', '"),
+            self.fragment_id
+        )
+    }
+}
+
 /// Range of an adaptive step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct AdaptiveSummary {

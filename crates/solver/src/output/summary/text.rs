@@ -117,6 +117,14 @@ impl Summary {
             significant(self.momentum_error, 2),
             significant(self.angular_momentum_error, 2),
         )?;
+        if let Some(part) = &self.part_error {
+            let error = significant(part.energy_error, 2);
+            writeln!(
+                f,
+                "             energy {error} of {} by itself",
+                part.named()
+            )?;
+        }
         writeln!(
             f,
             "steps        {} of {} s, {}; ended by {}",

@@ -103,6 +103,7 @@ impl AtRest<'_> {
             steps_per_s,
             bond_steps_per_s: steps_per_s * state.bonds.len() as f64,
             energy_error: f64::NAN,
+            part_error: None,
             momentum_error: f64::NAN,
             angular_momentum_error: f64::NAN,
             balance: *self.balance,

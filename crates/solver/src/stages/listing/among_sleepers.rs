@@ -9,6 +9,7 @@ use crate::geometry::Bounds;
 use crate::stages::chunks::{chunk_of, chunks_of, in_tasks};
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{find_mean_radius, list_within, relist};
+use crate::stages::islands::join_at_moving_walls;
 use crate::stages::neighbours::{ball_of, find_pairs_of_all};
 use crate::stages::sleep::{disturbed, freeze_contacts, wake};
 use crate::stages::walls::list_near;
@@ -75,6 +76,7 @@ fn list_awake(state: &mut State) -> usize {
             state.scratch.events.work.relaxing += contacts.relaxing();
         }
     }
+    join_at_moving_walls(&mut contacts, state);
     state.contacts = Some(contacts);
     searched
 }
