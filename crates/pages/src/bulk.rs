@@ -1,0 +1,259 @@
+//! doc/bulk.md. The route: from a poured density to the density of the particles, to the overlap of
+//! a body, and back by shattering it (Platzer 2022, 3.1.1 and 4.5.1.5). The heaps: angles of repose
+//! of beads that run out of a lifted tube, and of the same beads poured.
+
+use std::path::Path;
+
+use dem_io::body::mass::of_named_density;
+use dem_io::body::write_body;
+use dem_pack::{BodySettings, BondSettings, PackSettings, make_body};
+
+use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
+use crate::cells::{change, mean, mean_and_range};
+use crate::shapes::{bar, sizes};
+use crate::table::{Table, write};
+
+const PAGE: &str = "doc/bulk.md";
+/// Densities of the material as a laboratory measures them, kg/m3: poured, and solid.
+const BULK_KG_M3: f64 = 1200.0;
+const SOLID_KG_M3: f64 = 1800.0;
+/// Density of the particles with which the first pouring is run, kg/m3.
+const TRIAL_KG_M3: f64 = 2050.0;
+/// Diameters, as those of data/scenes/pour-box.toml.
+const DIAMETERS: &str = "3.5mm..5mm";
+const SEEDS: [u64; 3] = [1, 2, 3];
+
+/// Coefficients of rolling friction of the heaps.
+const ROLLING: [f64; 3] = [0.2, 0.1, 0.05];
+
+pub(crate) fn tables() -> [Table; 2] {
+    let seeds = SEEDS.map(|seed| seed.to_string()).into_iter();
+    let route = [
+        "seed",
+        "poured, at 2050 kg/m3",
+        "particle density",
+        "overlap",
+        "solid density",
+        "shattered: bulk density",
+        "off",
+        "bulking factor",
+    ];
+    let heaps = [
+        "rolling friction",
+        "lifted by 30 mm/s",
+        "lifted by 75 mm/s",
+        "poured",
+        "bulk density in the tube",
+        "in the heap lifted by 30 mm/s",
+    ];
+    let rolling = ROLLING.map(|rolling| rolling.to_string());
+    [
+        Table::new(PAGE, "bulk route", &route, seeds.chain(["mean".to_owned()])),
+        Table::new(PAGE, "bulk heaps", &heaps, rolling),
+    ]
+}
+
+/// From a poured density to that of a solid and back.
+#[allow(clippy::print_stdout, reason = "it prints a number of the page")]
+pub(crate) fn route(bench: &Bench) -> Result<(), Failed> {
+    let run = |name: &str, scene: &str, set: &[String], bar: Option<&Path>| {
+        let mut options = sets(set);
+        options.extend(bar.map(|bar| body("bar", bar)));
+        let scene = format!("data/scenes/{scene}.toml");
+        bench.run(name, &scene, &options)
+    };
+    let [mut table, _] = tables();
+    let poured = at_once(|seed| {
+        let set = [format!("run.seed={seed}")];
+        run(&format!("poured-{seed}"), "pour-box", &set, None)?.measured("bulk_density")
+    })?;
+    // The particle density of the material: the mean of all pourings.
+    let particle_kg_m3 = TRIAL_KG_M3 * BULK_KG_M3 / mean(&poured);
+    let shattered = at_once(|seed| {
+        let file = bench.folder.join(format!("bar-{seed}.vtp"));
+        let (overlap, solid_kg_m3) = pack(seed, particle_kg_m3, &file)?;
+        let set = [format!("materials.cake.density={particle_kg_m3}")];
+        let bulk = run(
+            &format!("shattered-{seed}"),
+            "shatter-box",
+            &set,
+            Some(&file),
+        )?;
+        let bulk_kg_m3 = bulk.measured("bulk_density")?;
+        Ok([
+            overlap,
+            solid_kg_m3,
+            bulk_kg_m3,
+            bulk.measured("bulking_factor")?,
+        ])
+    })?;
+    let density = |kg_m3: f64| format!("{kg_m3:.0} kg/m3");
+    let off = |bulk_kg_m3: f64| change(bulk_kg_m3 / BULK_KG_M3 - 1.0, 1);
+    for (poured_kg_m3, [overlap, solid_kg_m3, bulk_kg_m3, factor]) in poured.iter().zip(&shattered)
+    {
+        table.row([
+            density(*poured_kg_m3),
+            density(particle_kg_m3),
+            format!("{overlap:.3}"),
+            density(*solid_kg_m3),
+            density(*bulk_kg_m3),
+            off(*bulk_kg_m3),
+            format!("{factor:.3}"),
+        ]);
+    }
+    let back = mean(
+        &shattered
+            .iter()
+            .map(|of_seed| of_seed[2])
+            .collect::<Vec<_>>(),
+    );
+    table.row([
+        density(mean(&poured)),
+        density(particle_kg_m3),
+        String::new(),
+        String::new(),
+        density(back),
+        off(back),
+        String::new(),
+    ]);
+    write(&[table])?;
+
+    // The same body, which breaks where it lies.
+    let set = [
+        format!("materials.cake.density={particle_kg_m3}"),
+        "bodies.bar.position=[0,0,\"0.1 mm\"]".to_owned(),
+        "regions.bed.box.max=[\"15 mm\",\"15 mm\",\"15 mm\"]".to_owned(),
+        "regions.bed.box.min=[\"-15 mm\",\"-15 mm\",\"6 mm\"]".to_owned(),
+    ];
+    let file = bench.folder.join(format!("bar-{}.vtp", SEEDS[0]));
+    let lying = run("lying", "shatter-box", &set, Some(&file))?.measured("bulk_density")?;
+    println!("\nBroken on the floor, below the bars: {lying:.0} kg/m3.");
+    Ok(())
+}
+
+/// Ways to make a heap of 1,500 beads.
+#[derive(Clone, Copy)]
+enum Way {
+    /// data/scenes/lifted-cylinder.toml, lifted by 30 mm/s.
+    Lifted,
+    /// By 75 mm/s.
+    LiftedFast,
+    /// data/scenes/wet-heap.toml, dry and with the beads of the other scene.
+    Poured,
+}
+
+impl Way {
+    /// The scene, a word for the folder, and the options.
+    fn options(self, rolling: f64, seed: u64) -> (&'static str, &'static str, Vec<String>) {
+        let lifted =
+            ["bead", "plate"].map(|on| format!("contacts.bead-{on}.rolling_friction={rolling}"));
+        let (scene, word, mut set) = match self {
+            Self::Lifted => ("lifted-cylinder", "lifted-30", lifted.to_vec()),
+            Self::LiftedFast => {
+                let faster = [
+                    "walls.tube.table=[[\"0.5 s\",0],[\"1.3 s\",1]]",
+                    "run.end_time=\"1.6 s\"",
+                ];
+                let set = lifted.into_iter().chain(faster.map(str::to_owned));
+                ("lifted-cylinder", "lifted-75", set.collect())
+            }
+            Self::Poured => {
+                let rolling = format!("contacts.glass-glass.rolling_friction={rolling}");
+                let set = [rolling].into_iter().chain(POURED.map(str::to_owned));
+                ("wet-heap", "poured", set.collect())
+            }
+        };
+        set.push(format!("run.seed={seed}"));
+        (scene, word, sets(&set))
+    }
+}
+
+/// Settings with which `wet-heap.toml` pours 1,500 dry beads of `lifted-cylinder.toml`.
+const POURED: [&str; 10] = [
+    "contacts.glass-glass.liquid_bridge.surface_tension=1e-9",
+    "contacts.glass-glass.friction=0.5",
+    "contacts.glass-glass.restitution=0.4",
+    "materials.glass.young_modulus=\"2 MPa\"",
+    "bodies.bead.particles=[[0,0,0,\"2 mm\"]]",
+    "regions.gate.box={min=[\"-10 mm\",\"-10 mm\",\"45 mm\"],max=[\"10 mm\",\"10 mm\",\"65 mm\"]}",
+    "inlets.pour.count=1500",
+    "inlets.pour.rate=\"1000 /s\"",
+    "inlets.pour.end=\"2 s\"",
+    "run.end_time=\"2.2 s\"",
+];
+
+/// Angles of repose of lifted and poured heaps.
+pub(crate) fn heaps(bench: &Bench) -> Result<(), Failed> {
+    let [_, mut table] = tables();
+    for rolling in ROLLING {
+        let runs = |way: Way| {
+            at_once(|seed| {
+                let (scene, word, mut options) = way.options(rolling, seed);
+                options.push(ONE_THREAD.to_owned());
+                let scene = format!("data/scenes/{scene}.toml");
+                bench.run(&format!("{word}-{rolling}-{seed}"), &scene, &options)
+            })
+        };
+        let [lifted, fast, poured] = [
+            runs(Way::Lifted)?,
+            runs(Way::LiftedFast)?,
+            runs(Way::Poured)?,
+        ];
+        let angle = |of: &[Run]| of_runs(of, "angle_of_repose", "degrees", 1);
+        let density = |name: &str| of_runs(&lifted, name, "kg/m3", 0);
+        table.row([
+            angle(&lifted)?,
+            angle(&fast)?,
+            angle(&poured)?,
+            density("poured_bulk_density")?,
+            density("heap_bulk_density")?,
+        ]);
+    }
+    write(&[table])
+}
+
+/// Mean of a measure over runs, and its smallest and largest value.
+fn of_runs(runs: &[Run], measure: &str, unit: &str, digits: usize) -> Result<String, Failed> {
+    let values = runs.iter().map(|run| run.measured(measure));
+    let values: Vec<f64> = values.collect::<Result<_, _>>()?;
+    Ok(mean_and_range(&values, unit, digits))
+}
+
+/// The results of some work for each seed, all at once.
+fn at_once<T: Send>(work: impl Fn(u64) -> Result<T, Failed> + Sync) -> Result<Vec<T>, Failed> {
+    let done: Vec<Result<T, String>> = std::thread::scope(|scope| {
+        let work = &work;
+        let spawn = |seed| scope.spawn(move || work(seed).map_err(|error| error.to_string()));
+        let threads: Vec<_> = SEEDS.map(spawn).into();
+        let join = |thread: std::thread::ScopedJoinHandle<'_, Result<T, String>>| {
+            thread
+                .join()
+                .unwrap_or_else(|_| Err("a thread failed".to_owned()))
+        };
+        threads.into_iter().map(join).collect()
+    });
+    done.into_iter()
+        .map(|result| result.map_err(Failed::from))
+        .collect()
+}
+
+/// Packs the bar so that it has the solid density. Returns its overlap and its solid density,
+/// kg/m3.
+fn pack(seed: u64, particle_kg_m3: f64, file: &Path) -> Result<(f64, f64), Failed> {
+    let settings = BodySettings {
+        bonds: BondSettings {
+            range: 1.0,
+            ..BondSettings::default()
+        },
+        particle_density_kg_m3: Some(particle_kg_m3),
+        solid_density_kg_m3: Some(SOLID_KG_M3),
+        ..BodySettings::new(PackSettings {
+            seed,
+            ..PackSettings::new(sizes(DIAMETERS)?)
+        })
+    };
+    let (body, made) = make_body(&bar(1.0)?, &settings, &|_, _| Ok(()))?;
+    write_body(&body, file)?;
+    let solid = of_named_density(&body).and_then(|mass| mass.solid_density_kg_m3);
+    Ok((made.quality.overlap, solid.ok_or("no density")?))
+}

@@ -1,0 +1,434 @@
+//! doc/packing-method.md, and the packing of doc/performance.md, in the bending sample and the bar of
+//! `data/shapes`. Each packing of the table of growth is made in a process of its own, to measure
+//! its memory separately (Linux only).
+
+use std::process::Command;
+use std::time::Instant;
+
+use dem_io::body::vtp;
+use dem_io::surface::Surface;
+use dem_io::{Body, Diagnostic};
+use dem_pack::cli::thread_pool;
+use dem_pack::internals::{Boundary, Vector3};
+use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Sizes, make_body};
+use dem_plots::{Axis, Marks, Plot, Point};
+
+use crate::bench::{Bench, Failed, draw};
+use crate::cells::{mean, median};
+use crate::shapes::{bar, shape, sizes, surface_of};
+use crate::table::{Table, write};
+
+/// Values of `--densify` in the first table.
+const DENSIFY: [f64; 10] = [
+    0.0, 0.01, 0.02, 0.025, 0.03, 0.033, 0.036, 0.039, 0.041, 0.043,
+];
+/// Seeds over which each line of the first table is averaged.
+const SEEDS: [u64; 3] = [1, 2, 3];
+/// Seeds of the packings that are timed.
+const TIMED_SEEDS: [u64; 5] = [1, 2, 3, 4, 5];
+/// Approximate number of spheres in the bending sample for diameters of 1.2 mm to 1.5 mm.
+const SPHERES_OF_1_35_MM: f64 = 87_000.0;
+
+/// Approximate numbers of spheres in the table of growth.
+const COUNTS: [usize; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];
+
+/// Bodies that are timed, and their diameters.
+const CASES: [(&str, &str); 5] = [
+    ("bar", "1.2mm..1.5mm"),
+    ("box of 28,000 spheres", "0.956mm..1.195mm"),
+    ("scan of 81,920 facets", "0.956mm..1.195mm"),
+    ("narrow sizes", "2mm..3mm"),
+    ("wide sizes, by mass", "0.2mm..4mm"),
+];
+
+pub(crate) fn tables() -> [Table; 3] {
+    const PAGE: &str = "doc/packing-method.md";
+    let densify = [
+        "`--densify`",
+        "spheres",
+        "overall",
+        "interior",
+        "eigenvalue off 1/3, sigma",
+        "sizes off, of chance",
+        "removed",
+        "front, s",
+        "densification, s",
+        "spheres/s",
+    ];
+    let growth = [
+        "spheres",
+        "threads",
+        "front, s",
+        "densifying, s",
+        "all, s",
+        "us/sphere",
+        "memory, bytes/sphere",
+        "interior",
+        "overall",
+    ];
+    let ratios = [
+        "case",
+        "diameters",
+        "spheres",
+        "all, us/sphere",
+        "densifying, us/sphere",
+        "steps",
+        "spheres/s",
+        "touch the wall",
+        "interior",
+    ];
+    let fractions = DENSIFY.map(|fraction| fraction.to_string());
+    let cases = CASES.map(|(case, _)| case);
+    [
+        Table::new(PAGE, "packing densify", &densify, fractions),
+        Table::new(PAGE, "packing growth", &growth, [""; 0]),
+        Table::new("doc/performance.md", "packing ratios", &ratios, cases),
+    ]
+}
+
+/// Density, isotropy, sizes and time of a fraction of densification: means over the seeds.
+struct Quality {
+    densify: f64,
+    spheres: f64,
+    overall: f64,
+    interior: f64,
+    /// Deviation of an eigenvalue of the fabric from 1/3, over the standard deviation of chance.
+    anisotropy: f64,
+    /// Distance between the sizes placed and those requested, over the limit of chance (95 %).
+    size_error: f64,
+    removed: f64,
+    front_s: f64,
+    densifying_s: f64,
+    all_s: f64,
+}
+
+impl Quality {
+    fn of(densify: f64, all: &[BodyReport]) -> Self {
+        let mean =
+            |value: &dyn Fn(&BodyReport) -> f64| mean(&all.iter().map(value).collect::<Vec<_>>());
+        Self {
+            densify,
+            spheres: mean(&|made| made.quality.particles as f64),
+            overall: mean(&|made| made.quality.generating_density),
+            interior: mean(&|made| {
+                let interior = made.quality.interior_generating_density.as_ref();
+                interior.map_or(f64::NAN, |fraction| fraction.value)
+            }),
+            anisotropy: mean(&|made| {
+                let fabric = made.quality.interior_fabric.as_ref();
+                fabric.map_or(f64::NAN, |fabric| fabric.largest_deviation_in_sigma)
+            }),
+            size_error: mean(&|made| {
+                let fit = &made.quality.sizes_by_number;
+                fit.distance / fit.limit_95
+            }),
+            removed: mean(&|made| made.history.removed as f64),
+            front_s: mean(&|made| made.history.front_seconds),
+            densifying_s: mean(&|made| made.history.densify_seconds),
+            all_s: mean(&|made| made.seconds.packing + made.seconds.bonds + made.seconds.report),
+        }
+    }
+
+    fn seconds_per_sphere(&self) -> f64 {
+        self.all_s / self.spheres
+    }
+}
+
+/// Quality over run time on one thread, for diameters of 2 mm to 3 mm without overlap.
+pub(crate) fn densify(_: &Bench) -> Result<(), Failed> {
+    let surface = bending_sample()?;
+    let [mut table, ..] = tables();
+    let mut qualities = Vec::new();
+    for densify in DENSIFY {
+        let all = SEEDS.map(|seed| {
+            let settings = settings("2mm..3mm", Some(densify), seed)?;
+            Ok(on_threads(1, || make_body(&surface, &settings, &|_, _| Ok(())))?.1)
+        });
+        let all: Vec<BodyReport> = all.into_iter().collect::<Result<_, Failed>>()?;
+        let row = Quality::of(densify, &all);
+        table.row([
+            format!("{:.0}", row.spheres),
+            format!("{:.4}", row.overall),
+            format!("{:.4}", row.interior),
+            format!("{:.1}", row.anisotropy),
+            format!("{:.2}", row.size_error),
+            format!("{:.1}", row.removed),
+            format!("{:.2}", row.front_s),
+            format!("{:.2}", row.densifying_s),
+            format!("{:.0}", row.spheres / row.all_s),
+        ]);
+        qualities.push(row);
+    }
+    plots(&qualities)?;
+    write(&[table])
+}
+
+/// Name of the file of a plot, its title, the label of its axis, and the value.
+type Quantity = (
+    &'static str,
+    &'static str,
+    &'static str,
+    fn(&Quality) -> f64,
+);
+
+/// Draws density, isotropy and error of the sizes over run time.
+fn plots(table: &[Quality]) -> Result<(), Failed> {
+    let quantities: [Quantity; 3] = [
+        (
+            "density",
+            "Density of the interior",
+            "fraction of volume",
+            |row| row.interior,
+        ),
+        (
+            "isotropy",
+            "Contact directions: chance gives about 2",
+            "deviation of an eigenvalue (standard deviations)",
+            |row| row.anisotropy,
+        ),
+        (
+            "sizes",
+            "Sizes placed: chance stays below 1 in 95 %",
+            "distance from the requested sizes (of chance)",
+            |row| row.size_error,
+        ),
+    ];
+    for (name, title, label, value) in quantities {
+        let point = |row: &Quality| Point {
+            at: [row.seconds_per_sphere(), value(row)],
+            filled: true,
+            title: format!("--densify {}", row.densify),
+            ..Point::default()
+        };
+        let plot = Plot {
+            title: title.to_owned(),
+            x: Axis::of("run time per sphere, one thread (s)"),
+            y: Axis::of(label),
+            marks: vec![Marks {
+                points: table.iter().map(point).collect(),
+                chains: vec![table.iter().map(|row| point(row).at).collect()],
+                ..Marks::default()
+            }],
+            ..Plot::default()
+        };
+        draw(&format!("doc/densify-{name}.svg"), &plot)?;
+    }
+    Ok(())
+}
+
+/// Time and memory over the number of spheres, on one thread and on two.
+pub(crate) fn growth(_: &Bench) -> Result<(), Failed> {
+    let [_, mut table, _] = tables();
+    for count in COUNTS {
+        for threads in ["1", "2"] {
+            let mut one = Command::new(std::env::current_exe()?);
+            let done = one
+                .args(["packing", "growth", &count.to_string(), threads])
+                .output()?;
+            if !done.status.success() {
+                return Err(String::from_utf8_lossy(&done.stderr).into());
+            }
+            let cells = String::from_utf8(done.stdout)?;
+            table.row(cells.split_whitespace().map(str::to_owned));
+        }
+    }
+    write(&[table])
+}
+
+/// Time per sphere of a job on one thread, and its packing: medians over packings with different
+/// seeds, since the number of steps that densifying needs varies from one to the next.
+struct Timed {
+    spheres: f64,
+    all_us: f64,
+    densifying_us: f64,
+    densifying_steps: f64,
+    /// Number of spheres that touch the wall.
+    at_wall: f64,
+    /// NaN if the shape has no interior for spheres of this size.
+    interior: f64,
+}
+
+impl Timed {
+    fn of(surface: &Surface, sizes: Sizes) -> Result<Self, Failed> {
+        let mut settings = BodySettings::new(PackSettings::new(sizes));
+        let boundary = Boundary::new(surface)?;
+        let mut rows = Vec::new();
+        for seed in TIMED_SEEDS {
+            settings.packing.seed = seed;
+            let (body, made) = on_threads(1, || make_body(surface, &settings, &|_, _| Ok(())))?;
+            let (seconds, history) = (&made.seconds, &made.history);
+            let all = seconds.packing + seconds.bonds + seconds.report;
+            let spheres = made.quality.particles as f64;
+            let interior = made.quality.interior_generating_density;
+            rows.push([
+                spheres,
+                1e6 * all / spheres,
+                1e6 * history.densify_seconds / spheres,
+                history.densify_steps as f64,
+                touching_the_wall(surface, &boundary, &body) as f64,
+                interior.map_or(f64::NAN, |fraction| fraction.value),
+            ]);
+        }
+        let median = |column: usize| median(rows.iter().map(|row| row[column]));
+        Ok(Self {
+            spheres: median(0),
+            all_us: median(1),
+            densifying_us: median(2),
+            densifying_steps: median(3),
+            at_wall: median(4),
+            interior: median(5),
+        })
+    }
+}
+
+/// The number of spheres that come within a thousandth of their radius of the surface.
+fn touching_the_wall(surface: &Surface, boundary: &Boundary, body: &Body) -> usize {
+    let touches = |(centre_m, radius_m): &(&[f64; 3], &f64)| {
+        let local = [0, 1, 2].map(|k| (centre_m[k] - surface.origin_m[k]) / surface.unit_m);
+        !boundary.clears(&Vector3::from(local), 1.001 * *radius_m / surface.unit_m)
+    };
+    body.positions
+        .iter()
+        .zip(&body.radii)
+        .filter(touches)
+        .count()
+}
+
+/// Spheres per second in the bar, the time of a scan over that of a box, and the time of wide sizes
+/// over that of narrow ones: defaults of the program.
+#[allow(clippy::print_stdout, reason = "it prints ratios of the page")]
+pub(crate) fn ratios(_: &Bench) -> Result<(), Failed> {
+    let [.., mut table] = tables();
+    let surfaces = [
+        bar(1.0)?,
+        bar(0.665)?,
+        cut_into_four(&shape("rock", 1.0)?)?,
+        bar(2.13)?,
+        bar(0.56)?,
+    ];
+    let mut timed = Vec::new();
+    for ((name, diameters), surface) in CASES.into_iter().zip(&surfaces) {
+        let sizes = match name.contains("by mass") {
+            true => Sizes::parse(diameters, Basis::Mass)?,
+            false => sizes(diameters)?,
+        };
+        let row = Timed::of(surface, sizes)?;
+        let interior = match row.interior.is_nan() {
+            true => "-".to_owned(),
+            false => format!("{:.4}", row.interior),
+        };
+        table.row([
+            diameters.to_owned(),
+            row.spheres.to_string(),
+            format!("{:.1}", row.all_us),
+            format!("{:.1}", row.densifying_us),
+            row.densifying_steps.to_string(),
+            format!("{:.0}", 1e6 / row.all_us),
+            row.at_wall.to_string(),
+            interior,
+        ]);
+        timed.push(row);
+    }
+    write(&[table])?;
+    println!(
+        "densifying, scan over box: {:.2}; wide over narrow sizes: {:.2}",
+        timed[2].densifying_us / timed[1].densifying_us,
+        timed[4].all_us / timed[3].all_us
+    );
+    Ok(())
+}
+
+/// The surface with each facet cut into four.
+fn cut_into_four(surface: &Surface) -> Result<Surface, Failed> {
+    let facets = surface.triangles.len();
+    let mut stl = vec![0; 80];
+    stl.extend((4 * facets as u32).to_le_bytes());
+    let middle = |p: [f64; 3], q: [f64; 3]| [0, 1, 2].map(|k| 0.5 * (p[k] + q[k]));
+    for facet in 0..facets {
+        let [a, b, c] = surface.corners(facet);
+        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+        for corners in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            stl.extend([0; 12]);
+            for x in corners.as_flattened() {
+                stl.extend(((x * surface.unit_m / 1e-3) as f32).to_le_bytes());
+            }
+            stl.extend([0; 2]);
+        }
+    }
+    surface_of(&stl, "scan", 1.0)
+}
+
+/// Prints the cells of a row of the table of growth.
+#[allow(
+    clippy::print_stdout,
+    reason = "the program that started this one reads it"
+)]
+pub(crate) fn one_size(spheres: &str, threads: &str) -> Result<(), Failed> {
+    let surface = bending_sample()?;
+    let before = peak_memory_bytes();
+    let factor = (SPHERES_OF_1_35_MM / spheres.parse::<f64>()?).cbrt();
+    let settings = settings(&format!("{}mm..{}mm", 1.2 * factor, 1.5 * factor), None, 1)?;
+    let started = Instant::now();
+    let made = on_threads(threads.parse()?, || {
+        let (body, made) = make_body(&surface, &settings, &|_, _| Ok(()))?;
+        vtp::write(&body, &mut std::io::sink())
+            .map_err(|e| Diagnostic::failed("", e.to_string(), ""))?;
+        Ok(made)
+    })?;
+    let seconds = started.elapsed().as_secs_f64();
+    let placed = made.quality.particles as f64;
+    let memory = peak_memory_bytes().zip(before).map_or_else(
+        || "-".to_owned(),
+        |(peak, before)| format!("{:.0}", (peak - before) / placed),
+    );
+    let interior = made.quality.interior_generating_density;
+    println!(
+        "{placed} {threads} {:.2} {:.2} {seconds:.2} {:.1} {memory} {:.4} {:.4}",
+        made.history.front_seconds,
+        made.history.densify_seconds,
+        1e6 * seconds / placed,
+        interior.map_or(f64::NAN, |fraction| fraction.value),
+        made.quality.generating_density,
+    );
+    Ok(())
+}
+
+fn bending_sample() -> Result<Surface, Failed> {
+    shape("bending-sample", 1.0)
+}
+
+fn on_threads<T: Send>(
+    threads: usize,
+    work: impl FnOnce() -> dem_io::Result<T> + Send,
+) -> Result<T, Failed> {
+    Ok(thread_pool(Some(threads))?.install(work)?)
+}
+
+/// Settings for spheres without overlap. Bonds join those that touch, so that the fabric is that of
+/// the contacts.
+fn settings(diameters: &str, densify: Option<f64>, seed: u64) -> Result<BodySettings, Failed> {
+    Ok(BodySettings {
+        packing: PackSettings {
+            sizes: sizes(diameters)?,
+            overlap: 0.0,
+            seed,
+            densify,
+            seed_point_m: None,
+        },
+        bonds: BondSettings {
+            range: 1.001,
+            ..BondSettings::default()
+        },
+        particle_density_kg_m3: None,
+        solid_density_kg_m3: None,
+    })
+}
+
+/// Peak memory of this process, as Linux counts it.
+fn peak_memory_bytes() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(1024.0 * line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok()?)
+}
