@@ -8,7 +8,7 @@ use dem_io::body::mass::of_named_density;
 use dem_io::body::write_body;
 use dem_pack::{BodySettings, BondSettings, PackSettings, make_body};
 
-use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
+use crate::bench::{Bench, Failed, Run, body, sets};
 use crate::cells::{change, mean, mean_and_range};
 use crate::shapes::{bar, sizes};
 use crate::table::{Table, write};
@@ -28,28 +28,14 @@ const ROLLING: [f64; 3] = [0.2, 0.1, 0.05];
 
 pub(crate) fn tables() -> [Table; 2] {
     let seeds = SEEDS.map(|seed| seed.to_string()).into_iter();
-    let route = [
-        "seed",
-        "poured, at 2050 kg/m3",
-        "particle density",
-        "overlap",
-        "solid density",
-        "shattered: bulk density",
-        "off",
-        "bulking factor",
-    ];
-    let heaps = [
-        "rolling friction",
-        "lifted by 30 mm/s",
-        "lifted by 75 mm/s",
-        "poured",
-        "bulk density in the tube",
-        "in the heap lifted by 30 mm/s",
-    ];
+    let route = "seed | poured, at 2050 kg/m3 | particle density | overlap | solid density | \
+        shattered: bulk density | off | bulking factor";
+    let heaps = "rolling friction | lifted by 30 mm/s | lifted by 75 mm/s | poured | \
+        bulk density in the tube | in the heap lifted by 30 mm/s";
     let rolling = ROLLING.map(|rolling| rolling.to_string());
     [
-        Table::new(PAGE, "bulk route", &route, seeds.chain(["mean".to_owned()])),
-        Table::new(PAGE, "bulk heaps", &heaps, rolling),
+        Table::new(PAGE, "bulk route", route, seeds.chain(["mean".to_owned()])),
+        Table::new(PAGE, "bulk heaps", heaps, rolling),
     ]
 }
 
@@ -63,13 +49,13 @@ pub(crate) fn route(bench: &Bench) -> Result<(), Failed> {
         bench.run(name, &scene, &options)
     };
     let [mut table, _] = tables();
-    let poured = at_once(|seed| {
+    let poured = of_seeds(|seed| {
         let set = [format!("run.seed={seed}")];
         run(&format!("poured-{seed}"), "pour-box", &set, None)?.measured("bulk_density")
     })?;
     // The particle density of the material: the mean of all pourings.
     let particle_kg_m3 = TRIAL_KG_M3 * BULK_KG_M3 / mean(&poured);
-    let shattered = at_once(|seed| {
+    let shattered = of_seeds(|seed| {
         let file = bench.folder.join(format!("bar-{seed}.vtp"));
         let (overlap, solid_kg_m3) = pack(seed, particle_kg_m3, &file)?;
         let set = [format!("materials.cake.density={particle_kg_m3}")];
@@ -131,42 +117,27 @@ pub(crate) fn route(bench: &Bench) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Ways to make a heap of 1,500 beads.
-#[derive(Clone, Copy)]
-enum Way {
-    /// data/scenes/lifted-cylinder.toml, lifted by 30 mm/s.
-    Lifted,
-    /// By 75 mm/s.
-    LiftedFast,
-    /// data/scenes/wet-heap.toml, dry and with the beads of the other scene.
-    Poured,
-}
+/// Ways to make a heap of 1,500 beads: the scene, a word for the folder, the contacts that roll,
+/// and what else is set. The scene lifts the tube by 30 mm/s.
+type Way = (
+    &'static str,
+    &'static str,
+    &'static [&'static str],
+    &'static [&'static str],
+);
 
-impl Way {
-    /// The scene, a word for the folder, and the options.
-    fn options(self, rolling: f64, seed: u64) -> (&'static str, &'static str, Vec<String>) {
-        let lifted =
-            ["bead", "plate"].map(|on| format!("contacts.bead-{on}.rolling_friction={rolling}"));
-        let (scene, word, mut set) = match self {
-            Self::Lifted => ("lifted-cylinder", "lifted-30", lifted.to_vec()),
-            Self::LiftedFast => {
-                let faster = [
-                    "walls.tube.table=[[\"0.5 s\",0],[\"1.3 s\",1]]",
-                    "run.end_time=\"1.6 s\"",
-                ];
-                let set = lifted.into_iter().chain(faster.map(str::to_owned));
-                ("lifted-cylinder", "lifted-75", set.collect())
-            }
-            Self::Poured => {
-                let rolling = format!("contacts.glass-glass.rolling_friction={rolling}");
-                let set = [rolling].into_iter().chain(POURED.map(str::to_owned));
-                ("wet-heap", "poured", set.collect())
-            }
-        };
-        set.push(format!("run.seed={seed}"));
-        (scene, word, sets(&set))
-    }
-}
+const BEADS: [&str; 2] = ["bead-bead", "bead-plate"];
+const WAYS: [Way; 3] = [
+    ("lifted-cylinder", "lifted-30", &BEADS, &[]),
+    ("lifted-cylinder", "lifted-75", &BEADS, &FASTER),
+    ("wet-heap", "poured", &["glass-glass"], &POURED),
+];
+
+/// Settings with which the tube is lifted by 75 mm/s.
+const FASTER: [&str; 2] = [
+    "walls.tube.table=[[\"0.5 s\",0],[\"1.3 s\",1]]",
+    "run.end_time=\"1.6 s\"",
+];
 
 /// Settings with which `wet-heap.toml` pours 1,500 dry beads of `lifted-cylinder.toml`.
 const POURED: [&str; 10] = [
@@ -186,19 +157,18 @@ const POURED: [&str; 10] = [
 pub(crate) fn heaps(bench: &Bench) -> Result<(), Failed> {
     let [_, mut table] = tables();
     for rolling in ROLLING {
-        let runs = |way: Way| {
-            at_once(|seed| {
-                let (scene, word, mut options) = way.options(rolling, seed);
-                options.push(ONE_THREAD.to_owned());
-                let scene = format!("data/scenes/{scene}.toml");
-                bench.run(&format!("{word}-{rolling}-{seed}"), &scene, &options)
+        let runs = |(scene, word, contacts, more): Way| {
+            of_seeds(|seed| {
+                let rolls = |on: &&str| format!("contacts.{on}.rolling_friction={rolling}");
+                let mut set: Vec<String> = contacts.iter().map(rolls).collect();
+                set.extend(more.iter().map(|&set| set.to_owned()));
+                set.push(format!("run.seed={seed}"));
+                let name = format!("{word}-{rolling}-{seed}");
+                bench.run(&name, &format!("data/scenes/{scene}.toml"), &sets(&set))
             })
         };
-        let [lifted, fast, poured] = [
-            runs(Way::Lifted)?,
-            runs(Way::LiftedFast)?,
-            runs(Way::Poured)?,
-        ];
+        let [lifted, fast, poured] = WAYS.map(runs);
+        let (lifted, fast, poured) = (lifted?, fast?, poured?);
         let angle = |of: &[Run]| of_runs(of, "angle_of_repose", "degrees", 1);
         let density = |name: &str| of_runs(&lifted, name, "kg/m3", 0);
         table.row([
@@ -212,29 +182,16 @@ pub(crate) fn heaps(bench: &Bench) -> Result<(), Failed> {
     write(&[table])
 }
 
+/// The results of some work for each seed.
+fn of_seeds<T>(work: impl FnMut(u64) -> Result<T, Failed>) -> Result<Vec<T>, Failed> {
+    SEEDS.into_iter().map(work).collect()
+}
+
 /// Mean of a measure over runs, and its smallest and largest value.
 fn of_runs(runs: &[Run], measure: &str, unit: &str, digits: usize) -> Result<String, Failed> {
     let values = runs.iter().map(|run| run.measured(measure));
     let values: Vec<f64> = values.collect::<Result<_, _>>()?;
     Ok(mean_and_range(&values, unit, digits))
-}
-
-/// The results of some work for each seed, all at once.
-fn at_once<T: Send>(work: impl Fn(u64) -> Result<T, Failed> + Sync) -> Result<Vec<T>, Failed> {
-    let done: Vec<Result<T, String>> = std::thread::scope(|scope| {
-        let work = &work;
-        let spawn = |seed| scope.spawn(move || work(seed).map_err(|error| error.to_string()));
-        let threads: Vec<_> = SEEDS.map(spawn).into();
-        let join = |thread: std::thread::ScopedJoinHandle<'_, Result<T, String>>| {
-            thread
-                .join()
-                .unwrap_or_else(|_| Err("a thread failed".to_owned()))
-        };
-        threads.into_iter().map(join).collect()
-    });
-    done.into_iter()
-        .map(|result| result.map_err(Failed::from))
-        .collect()
 }
 
 /// Packs the bar so that it has the solid density. Returns its overlap and its solid density,

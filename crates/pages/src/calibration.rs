@@ -6,7 +6,7 @@ use dem_io::units::significant;
 use dem_laboratory::Statistic;
 
 use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
-use crate::cells::{cells, mean};
+use crate::cells::mean;
 use crate::table::{Table, write};
 
 const PAGE: &str = "doc/calibration.md";
@@ -39,36 +39,16 @@ const CHI_SQUARED: [(usize, [f64; 2]); 3] = [
 ];
 
 pub(crate) fn tables() -> [Table; 2] {
-    let sizes = [
-        "spheres",
-        "particles",
-        "bonds",
-        "across the body",
-        "bonds.cake.young_modulus",
-        "modulus without shear",
-        "scatter",
-        "bonds.cake.failure.von_mises_strength",
-        "strength",
-        "scatter",
-        "run time of a test",
-        "curve apart",
-    ];
-    let scatter = [
-        "width over mean diameter",
-        "diameters",
-        "packings",
-        "spheres",
-        "bonds",
-        "modulus, MPa",
-        "its coefficient of variation",
-        "strength, MPa",
-        "its coefficient of variation",
-        "processor time of a test",
-    ];
+    let sizes = "spheres | particles | bonds | across the body | bonds.cake.young_modulus | \
+        modulus without shear | scatter | bonds.cake.failure.von_mises_strength | \
+        strength | scatter | run time of a test | curve apart";
+    let scatter = "width over mean diameter | diameters | packings | spheres | bonds | modulus, MPa | \
+        its coefficient of variation | strength, MPa | its coefficient of variation | \
+        processor time of a test";
     let ratios = RATIOS.map(|(ratio, ..)| ratio.to_string());
     [
-        Table::new(PAGE, "calibration sizes", &sizes, SIZES),
-        Table::new(PAGE, "calibration scatter", &scatter, ratios),
+        Table::new(PAGE, "calibration sizes", sizes, SIZES),
+        Table::new(PAGE, "calibration scatter", scatter, ratios),
     ]
 }
 
@@ -82,11 +62,13 @@ pub(crate) fn sizes(bench: &Bench) -> Result<(), Failed> {
     let lab: Vec<&str> = lab.split_whitespace().chain([measured.as_str()]).collect();
     bench.command(&lab)?;
     let record = bench.folder.join("sizes.json");
-    let mut calibrate = cells([
+    let mut calibrate = [
         "calibrate",
         "data/scenes/four-point-bending.toml",
         ONE_THREAD,
-    ]);
+    ]
+    .map(str::to_owned)
+    .to_vec();
     calibrate.extend(sets(&[format!("test.measured={measured:?}")]));
     calibrate.push(format!(
         "--output={}",

@@ -98,7 +98,7 @@ pub(crate) fn thousands(number: f64) -> String {
     text
 }
 
-/// Texts as cells.
-pub(crate) fn cells<const N: usize>(cells: [&str; N]) -> Vec<String> {
-    cells.map(str::to_owned).into()
+/// The cells of a row of text, between ` | `.
+pub(crate) fn cells(row: &str) -> Vec<String> {
+    row.split(" | ").map(str::to_owned).collect()
 }

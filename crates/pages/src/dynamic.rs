@@ -7,22 +7,16 @@ use crate::bench::{Bench, Failed, Run, draw};
 use crate::cells::ends;
 use crate::table::{Table, write};
 
+const ENERGIES: [&str; 2] = ["impact energy", "absorbed energy"];
+
 pub(crate) fn tables() -> [Table; 2] {
     const PAGE: &str = "doc/dynamic-tests.md";
     const WORDS: &str = "dynamic heights";
-    let heights = [
-        "impact",
-        "impact energy",
-        "absorbed energy",
-        "largest fragment",
-        "d50",
-        "t10",
-    ];
-    let law = ["E", "A", "b", "A b", "t10 off by at most"];
-    let energies = ["impact energy", "absorbed energy"];
+    let heights = "impact | impact energy | absorbed energy | largest fragment | d50 | t10";
+    let law = "E | A | b | A b | t10 off by at most";
     [
-        Table::new(PAGE, WORDS, &heights, [""; 0]),
-        Table::new(PAGE, WORDS, &law, energies),
+        Table::new(PAGE, WORDS, heights, [""; 0]),
+        Table::new(PAGE, WORDS, law, ENERGIES),
     ]
 }
 
@@ -40,7 +34,7 @@ pub(crate) fn heights(bench: &Bench) -> Result<(), Failed> {
         }
     }
     let (mut lines, mut marks) = (Vec::new(), Vec::new());
-    for (name, points) in ["impact energy", "absorbed energy"].into_iter().zip(points) {
+    for (name, points) in ENERGIES.into_iter().zip(points) {
         let law = Breakage::fitted(&points);
         let off = points.iter().map(|[e, t10]| (law.t10(*e) - t10).abs());
         laws.row([

@@ -43,161 +43,104 @@ const CASES: [(&str, &str); 5] = [
 
 pub(crate) fn tables() -> [Table; 3] {
     const PAGE: &str = "doc/packing-method.md";
-    let densify = [
-        "`--densify`",
-        "spheres",
-        "overall",
-        "interior",
-        "eigenvalue off 1/3, sigma",
-        "sizes off, of chance",
-        "removed",
-        "front, s",
-        "densification, s",
-        "spheres/s",
-    ];
-    let growth = [
-        "spheres",
-        "threads",
-        "front, s",
-        "densifying, s",
-        "all, s",
-        "us/sphere",
-        "memory, bytes/sphere",
-        "interior",
-        "overall",
-    ];
-    let ratios = [
-        "case",
-        "diameters",
-        "spheres",
-        "all, us/sphere",
-        "densifying, us/sphere",
-        "steps",
-        "spheres/s",
-        "touch the wall",
-        "interior",
-    ];
+    let densify = "`--densify` | spheres | overall | interior | eigenvalue off 1/3, sigma | \
+        sizes off, of chance | removed | front, s | densification, s | spheres/s";
+    let growth = "spheres | threads | front, s | densifying, s | all, s | us/sphere | \
+        memory, bytes/sphere | interior | overall";
+    let ratios = "case | diameters | spheres | all, us/sphere | densifying, us/sphere | steps | \
+        spheres/s | touch the wall | interior";
     let fractions = DENSIFY.map(|fraction| fraction.to_string());
     let cases = CASES.map(|(case, _)| case);
     [
-        Table::new(PAGE, "packing densify", &densify, fractions),
-        Table::new(PAGE, "packing growth", &growth, [""; 0]),
-        Table::new("doc/performance.md", "packing ratios", &ratios, cases),
+        Table::new(PAGE, "packing densify", densify, fractions),
+        Table::new(PAGE, "packing growth", growth, [""; 0]),
+        Table::new("doc/performance.md", "packing ratios", ratios, cases),
     ]
-}
-
-/// Density, isotropy, sizes and time of a fraction of densification: means over the seeds.
-struct Quality {
-    densify: f64,
-    spheres: f64,
-    overall: f64,
-    interior: f64,
-    /// Deviation of an eigenvalue of the fabric from 1/3, over the standard deviation of chance.
-    anisotropy: f64,
-    /// Distance between the sizes placed and those requested, over the limit of chance (95 %).
-    size_error: f64,
-    removed: f64,
-    front_s: f64,
-    densifying_s: f64,
-    all_s: f64,
-}
-
-impl Quality {
-    fn of(densify: f64, all: &[BodyReport]) -> Self {
-        let mean =
-            |value: &dyn Fn(&BodyReport) -> f64| mean(&all.iter().map(value).collect::<Vec<_>>());
-        Self {
-            densify,
-            spheres: mean(&|made| made.quality.particles as f64),
-            overall: mean(&|made| made.quality.generating_density),
-            interior: mean(&|made| {
-                let interior = made.quality.interior_generating_density.as_ref();
-                interior.map_or(f64::NAN, |fraction| fraction.value)
-            }),
-            anisotropy: mean(&|made| {
-                let fabric = made.quality.interior_fabric.as_ref();
-                fabric.map_or(f64::NAN, |fabric| fabric.largest_deviation_in_sigma)
-            }),
-            size_error: mean(&|made| {
-                let fit = &made.quality.sizes_by_number;
-                fit.distance / fit.limit_95
-            }),
-            removed: mean(&|made| made.history.removed as f64),
-            front_s: mean(&|made| made.history.front_seconds),
-            densifying_s: mean(&|made| made.history.densify_seconds),
-            all_s: mean(&|made| made.seconds.packing + made.seconds.bonds + made.seconds.report),
-        }
-    }
-
-    fn seconds_per_sphere(&self) -> f64 {
-        self.all_s / self.spheres
-    }
 }
 
 /// Quality over run time on one thread, for diameters of 2 mm to 3 mm without overlap.
 pub(crate) fn densify(_: &Bench) -> Result<(), Failed> {
-    let surface = bending_sample()?;
+    let surface = shape("bending-sample", 1.0)?;
     let [mut table, ..] = tables();
-    let mut qualities = Vec::new();
+    let mut means = Vec::new();
     for densify in DENSIFY {
-        let all = SEEDS.map(|seed| {
+        let mut rows = Vec::new();
+        for seed in SEEDS {
             let settings = settings("2mm..3mm", Some(densify), seed)?;
-            Ok(on_threads(1, || make_body(&surface, &settings, &|_, _| Ok(())))?.1)
-        });
-        let all: Vec<BodyReport> = all.into_iter().collect::<Result<_, Failed>>()?;
-        let row = Quality::of(densify, &all);
-        table.row([
-            format!("{:.0}", row.spheres),
-            format!("{:.4}", row.overall),
-            format!("{:.4}", row.interior),
-            format!("{:.1}", row.anisotropy),
-            format!("{:.2}", row.size_error),
-            format!("{:.1}", row.removed),
-            format!("{:.2}", row.front_s),
-            format!("{:.2}", row.densifying_s),
-            format!("{:.0}", row.spheres / row.all_s),
-        ]);
-        qualities.push(row);
+            let (_, made) = on_threads(1, || make_body(&surface, &settings, &|_, _| Ok(())))?;
+            rows.push(quality(&made));
+        }
+        let row = columns(&rows, mean);
+        table.row((0..9).map(|at| match [0, 4, 4, 1, 2, 1, 2, 2, 0][at] {
+            _ if at == ALL_S => format!("{:.0}", row[0] / row[ALL_S]),
+            digits => format!("{:.digits$}", row[at]),
+        }));
+        means.push(row);
     }
-    plots(&qualities)?;
+    plots(&means)?;
     write(&[table])
 }
 
-/// Name of the file of a plot, its title, the label of its axis, and the value.
-type Quantity = (
-    &'static str,
-    &'static str,
-    &'static str,
-    fn(&Quality) -> f64,
-);
+/// Of the columns of some rows, a value each.
+fn columns<const N: usize>(rows: &[[f64; N]], of: fn(&[f64]) -> f64) -> [f64; N] {
+    std::array::from_fn(|at| of(&rows.iter().map(|row| row[at]).collect::<Vec<_>>()))
+}
+
+/// Columns of the quality of a packing.
+const INTERIOR: usize = 2;
+const ANISOTROPY: usize = 3;
+const SIZE_ERROR: usize = 4;
+const ALL_S: usize = 8;
+
+/// Spheres, density of all and of the interior, deviation of an eigenvalue of the fabric from 1/3
+/// over the standard deviation of chance, distance between the sizes placed and those requested
+/// over the limit of chance (95 %), spheres removed, times of the front, of densifying, of all.
+fn quality(made: &BodyReport) -> [f64; 9] {
+    let (quality, history) = (&made.quality, &made.history);
+    let interior = quality.interior_generating_density.as_ref();
+    let fabric = quality.interior_fabric.as_ref();
+    [
+        quality.particles as f64,
+        quality.generating_density,
+        interior.map_or(f64::NAN, |fraction| fraction.value),
+        fabric.map_or(f64::NAN, |fabric| fabric.largest_deviation_in_sigma),
+        quality.sizes_by_number.distance / quality.sizes_by_number.limit_95,
+        history.removed as f64,
+        history.front_seconds,
+        history.densify_seconds,
+        made.seconds.packing + made.seconds.bonds + made.seconds.report,
+    ]
+}
 
 /// Draws density, isotropy and error of the sizes over run time.
-fn plots(table: &[Quality]) -> Result<(), Failed> {
-    let quantities: [Quantity; 3] = [
+fn plots(means: &[[f64; 9]]) -> Result<(), Failed> {
+    // Name of the file of a plot, its title, the label of its axis, and the column.
+    let quantities = [
         (
             "density",
             "Density of the interior",
             "fraction of volume",
-            |row| row.interior,
+            INTERIOR,
         ),
         (
             "isotropy",
             "Contact directions: chance gives about 2",
             "deviation of an eigenvalue (standard deviations)",
-            |row| row.anisotropy,
+            ANISOTROPY,
         ),
         (
             "sizes",
             "Sizes placed: chance stays below 1 in 95 %",
             "distance from the requested sizes (of chance)",
-            |row| row.size_error,
+            SIZE_ERROR,
         ),
     ];
-    for (name, title, label, value) in quantities {
-        let point = |row: &Quality| Point {
-            at: [row.seconds_per_sphere(), value(row)],
+    for (name, title, label, column) in quantities {
+        let at = |row: &[f64; 9]| [row[ALL_S] / row[0], row[column]];
+        let point = |(densify, row): (&f64, &[f64; 9])| Point {
+            at: at(row),
             filled: true,
-            title: format!("--densify {}", row.densify),
+            title: format!("--densify {densify}"),
             ..Point::default()
         };
         let plot = Plot {
@@ -205,8 +148,8 @@ fn plots(table: &[Quality]) -> Result<(), Failed> {
             x: Axis::of("run time per sphere, one thread (s)"),
             y: Axis::of(label),
             marks: vec![Marks {
-                points: table.iter().map(point).collect(),
-                chains: vec![table.iter().map(|row| point(row).at).collect()],
+                points: DENSIFY.iter().zip(means).map(point).collect(),
+                chains: vec![means.iter().map(at).collect()],
                 ..Marks::default()
             }],
             ..Plot::default()
@@ -235,50 +178,28 @@ pub(crate) fn growth(_: &Bench) -> Result<(), Failed> {
     write(&[table])
 }
 
-/// Time per sphere of a job on one thread, and its packing: medians over packings with different
-/// seeds, since the number of steps that densifying needs varies from one to the next.
-struct Timed {
-    spheres: f64,
-    all_us: f64,
-    densifying_us: f64,
-    densifying_steps: f64,
-    /// Number of spheres that touch the wall.
-    at_wall: f64,
-    /// NaN if the shape has no interior for spheres of this size.
-    interior: f64,
-}
-
-impl Timed {
-    fn of(surface: &Surface, sizes: Sizes) -> Result<Self, Failed> {
-        let mut settings = BodySettings::new(PackSettings::new(sizes));
-        let boundary = Boundary::new(surface)?;
-        let mut rows = Vec::new();
-        for seed in TIMED_SEEDS {
-            settings.packing.seed = seed;
-            let (body, made) = on_threads(1, || make_body(surface, &settings, &|_, _| Ok(())))?;
-            let (seconds, history) = (&made.seconds, &made.history);
-            let all = seconds.packing + seconds.bonds + seconds.report;
-            let spheres = made.quality.particles as f64;
-            let interior = made.quality.interior_generating_density;
-            rows.push([
-                spheres,
-                1e6 * all / spheres,
-                1e6 * history.densify_seconds / spheres,
-                history.densify_steps as f64,
-                touching_the_wall(surface, &boundary, &body) as f64,
-                interior.map_or(f64::NAN, |fraction| fraction.value),
-            ]);
-        }
-        let median = |column: usize| median(rows.iter().map(|row| row[column]));
-        Ok(Self {
-            spheres: median(0),
-            all_us: median(1),
-            densifying_us: median(2),
-            densifying_steps: median(3),
-            at_wall: median(4),
-            interior: median(5),
-        })
+/// Number of spheres, times of a job on one thread and of densifying per sphere, us, steps of
+/// densifying, spheres that touch the wall, density of the interior, not a number if there is none:
+/// medians over packings with different seeds, since the number of steps that densifying needs
+/// varies from one to the next.
+fn timed(surface: &Surface, sizes: Sizes) -> Result<[f64; 6], Failed> {
+    let mut settings = BodySettings::new(PackSettings::new(sizes));
+    let boundary = Boundary::new(surface)?;
+    let mut rows = Vec::new();
+    for seed in TIMED_SEEDS {
+        settings.packing.seed = seed;
+        let (body, made) = on_threads(1, || make_body(surface, &settings, &|_, _| Ok(())))?;
+        let [spheres, _, interior, .., densifying_s, all_s] = quality(&made);
+        rows.push([
+            spheres,
+            1e6 * all_s / spheres,
+            1e6 * densifying_s / spheres,
+            made.history.densify_steps as f64,
+            touching_the_wall(surface, &boundary, &body) as f64,
+            interior,
+        ]);
     }
+    Ok(columns(&rows, |values| median(values.iter().copied())))
 }
 
 /// The number of spheres that come within a thousandth of their radius of the surface.
@@ -306,34 +227,33 @@ pub(crate) fn ratios(_: &Bench) -> Result<(), Failed> {
         bar(2.13)?,
         bar(0.56)?,
     ];
-    let mut timed = Vec::new();
+    let mut times_us = Vec::new();
     for ((name, diameters), surface) in CASES.into_iter().zip(&surfaces) {
         let sizes = match name.contains("by mass") {
             true => Sizes::parse(diameters, Basis::Mass)?,
             false => sizes(diameters)?,
         };
-        let row = Timed::of(surface, sizes)?;
-        let interior = match row.interior.is_nan() {
-            true => "-".to_owned(),
-            false => format!("{:.4}", row.interior),
-        };
+        let [spheres, all_us, densifying_us, steps, at_wall, interior] = timed(surface, sizes)?;
         table.row([
             diameters.to_owned(),
-            row.spheres.to_string(),
-            format!("{:.1}", row.all_us),
-            format!("{:.1}", row.densifying_us),
-            row.densifying_steps.to_string(),
-            format!("{:.0}", 1e6 / row.all_us),
-            row.at_wall.to_string(),
-            interior,
+            spheres.to_string(),
+            format!("{all_us:.1}"),
+            format!("{densifying_us:.1}"),
+            steps.to_string(),
+            format!("{:.0}", 1e6 / all_us),
+            at_wall.to_string(),
+            match interior.is_nan() {
+                true => "-".to_owned(),
+                false => format!("{interior:.4}"),
+            },
         ]);
-        timed.push(row);
+        times_us.push([densifying_us, all_us]);
     }
     write(&[table])?;
     println!(
         "densifying, scan over box: {:.2}; wide over narrow sizes: {:.2}",
-        timed[2].densifying_us / timed[1].densifying_us,
-        timed[4].all_us / timed[3].all_us
+        times_us[2][0] / times_us[1][0],
+        times_us[4][1] / times_us[3][1]
     );
     Ok(())
 }
@@ -364,7 +284,7 @@ fn cut_into_four(surface: &Surface) -> Result<Surface, Failed> {
     reason = "the program that started this one reads it"
 )]
 pub(crate) fn one_size(spheres: &str, threads: &str) -> Result<(), Failed> {
-    let surface = bending_sample()?;
+    let surface = shape("bending-sample", 1.0)?;
     let before = peak_memory_bytes();
     let factor = (SPHERES_OF_1_35_MM / spheres.parse::<f64>()?).cbrt();
     let settings = settings(&format!("{}mm..{}mm", 1.2 * factor, 1.5 * factor), None, 1)?;
@@ -391,10 +311,6 @@ pub(crate) fn one_size(spheres: &str, threads: &str) -> Result<(), Failed> {
         made.quality.generating_density,
     );
     Ok(())
-}
-
-fn bending_sample() -> Result<Surface, Failed> {
-    shape("bending-sample", 1.0)
 }
 
 fn on_threads<T: Send>(

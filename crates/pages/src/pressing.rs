@@ -45,19 +45,11 @@ struct Made {
 }
 
 pub(crate) fn tables() -> [Table; 1] {
-    let head = [
-        "way",
-        "spheres",
-        "processor time",
-        "slower",
-        "density, lowest to highest fifth",
-        "stands out of the wall: mean, largest",
-        "overlap of neighbours: mean, scatter, largest",
-        "bonds per particle",
-        "fabric inside",
-    ];
+    let head = "way | spheres | processor time | slower | density, lowest to highest fifth | \
+        stands out of the wall: mean, largest | \
+        overlap of neighbours: mean, scatter, largest | bonds per particle | fabric inside";
     let ways = COARSER.iter().flat_map(|_| [FRONT, PRESSED]);
-    [Table::new("doc/pressing.md", "pressing", &head, ways)]
+    [Table::new("doc/pressing.md", "pressing", head, ways)]
 }
 
 const FRONT: &str = "front";

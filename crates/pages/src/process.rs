@@ -69,25 +69,12 @@ fn ways() -> impl Iterator<Item = (usize, bool)> {
 }
 
 pub(crate) fn tables() -> [Table; 3] {
-    let of = |head: &[&'static str], first_cells: Vec<String>| {
-        Table::new("doc/process.md", "process", head, first_cells)
-    };
-    let of_ways = [
-        "cakes and lumps are",
-        "DIF",
-        "processor time",
-        "bonds broken",
-        "pieces",
-        "cake: d10, d50, d80, mm",
-        "lump: d10, d50, d80, mm",
-        "left with the product",
-        "energy error",
-    ];
-    let minute = [
-        "a minute of the process",
-        "product belt 0.1 m/s",
-        "product belt 20 mm/s",
-    ];
+    let of =
+        |head, first_cells: Vec<String>| Table::new("doc/process.md", "process", head, first_cells);
+    let of_ways = "cakes and lumps are | DIF | processor time | bonds broken | pieces | \
+        cake: d10, d50, d80, mm | lump: d10, d50, d80, mm | left with the product | \
+        energy error";
+    let minute = "a minute of the process | product belt 0.1 m/s | product belt 20 mm/s";
     let mut flows = ["fed: cakes and lumps, rates times masses", "fed: rock"]
         .map(str::to_owned)
         .to_vec();
@@ -98,11 +85,11 @@ pub(crate) fn tables() -> [Table; 3] {
     flows.extend(left.map(|what| format!("discharged through `product`{what}")));
     [
         of(
-            &of_ways,
+            of_ways,
             ways().map(|(way, _)| WAYS[way].0.to_owned()).collect(),
         ),
-        of(&minute, ROWS.map(str::to_owned).to_vec()),
-        of(&["mass flow", "kg/s"], flows),
+        of(minute, ROWS.map(str::to_owned).to_vec()),
+        of("mass flow | kg/s", flows),
     ]
 }
 

@@ -27,16 +27,9 @@ struct Run {
 /// The table of times, for both pages, and that of the masses.
 pub(crate) fn tables() -> [Table; 3] {
     const WORDS: &str = "replacement";
-    let of_times = [
-        "2 s of the chute, one thread",
-        "processor time",
-        "faster",
-        "energy error",
-        "bond updates skipped",
-        "fragments discharged",
-        "mass discharged",
-    ];
-    let of_masses = ["distance of the masses (KS)", "by number", "by mass"];
+    let of_times = "2 s of the chute, one thread | processor time | faster | energy error | \
+        bond updates skipped | fragments discharged | mass discharged";
+    let of_masses = "distance of the masses (KS) | by number | by mass";
     let ways = WAYS.map(|(name, what)| format!("`{name}.toml`: {what}"));
     let [bonded, chute, back] = WAYS.map(|(name, _)| format!("`{name}.toml`"));
     let mut pairs = [&bonded, &chute, &back]
@@ -46,9 +39,9 @@ pub(crate) fn tables() -> [Table; 3] {
     pairs.extend([&chute, &back].map(|way| format!("{way}, all seeds together")));
     let page = "doc/replacement.md";
     [
-        Table::new("README.md", WORDS, &of_times, ways.clone()),
-        Table::new(page, WORDS, &of_times, ways),
-        Table::new(page, WORDS, &of_masses, pairs),
+        Table::new("README.md", WORDS, of_times, ways.clone()),
+        Table::new(page, WORDS, of_times, ways),
+        Table::new(page, WORDS, of_masses, pairs),
     ]
 }
 

@@ -13,40 +13,22 @@ use crate::table::{Table, write};
 const GRAVITY_M_S2: f64 = 9.81;
 
 pub(crate) fn tables() -> [Table; 4] {
-    let of = |words, head: &[&'static str], first_cells: Vec<&'static str>| {
+    let of = |words, head, first_cells: Vec<&'static str>| {
         Table::new("doc/round-robin.md", words, head, first_cells)
     };
-    let silo = [
-        "floor",
-        "spheres",
-        "hole",
-        "hole over diameter",
-        "spheres per second",
-        "Beverloo",
-        "off",
-    ];
-    let bed = ["", "here", "reference"];
-    let penetration = [
-        "spheres",
-        "speed",
-        "bed",
-        "bulk density",
-        "depth",
-        "Uehara et al. 2003",
-        "Katsuragi and Durian 2013",
-        "time to 99 % of the depth",
-        "by their law",
-        "displacement of the ball",
-    ];
+    let silo = "floor | spheres | hole | hole over diameter | spheres per second | Beverloo | off";
+    let bed = " | here | reference";
+    let penetration = "spheres | speed | bed | bulk density | depth | Uehara et al. 2003 | \
+        Katsuragi and Durian 2013 | time to 99 % of the depth | by their law | \
+        displacement of the ball";
     let drum = "round-robin drum";
-    let silos = SILOS.iter().map(|silo| silo.floor);
-    let silos = silos.chain(OTHERS.map(|_| "cone, by others")).collect();
+    let silos = SILOS.map(|silo| silo.floor).into();
     let balls = CASES.map(|case| case.spheres).into();
     [
-        of("round-robin silo", &silo, silos),
-        of(drum, &["power", "", "off"], POWERS.into()),
-        of(drum, &bed, BED.into()),
-        of("round-robin penetration", &penetration, balls),
+        of("round-robin silo", silo, silos),
+        of(drum, "power |  | off", POWERS.into()),
+        of(drum, bed, BED.into()),
+        of("round-robin penetration", penetration, balls),
     ]
 }
 
@@ -78,63 +60,68 @@ fn beverloo_kg_s(bulk_kg_m3: f64, hole_m: f64, diameter_m: f64) -> f64 {
 /// Solid fraction of the bed of a silo.
 const SOLID: f64 = 0.6;
 
-/// Spheres per second of others in the paper's silo, spheres of 4 mm: the hole, m, the mean of
-/// eight programs for the larger one, and MUSEN and LIGGGHTS for the smaller one.
-const OTHERS: [(f64, f64); 2] = [(0.060, 23_200.0), (0.040, 7_700.0)];
-
 /// A silo, and the flow out of it.
 struct Silo {
-    /// How its table calls its floor.
     floor: &'static str,
-    is_cone: bool,
     material: &'static str,
     density_kg_m3: f64,
     hole_m: f64,
     bead_m: f64,
+    /// Spheres per second of others: the mean of eight programs for the larger hole, and MUSEN and
+    /// LIGGGHTS for the smaller one.
+    of_others_1_s: Option<f64>,
 }
 
+const fn silo_of(floor: &'static str, hole_m: f64, bead_m: f64) -> Silo {
+    Silo {
+        floor,
+        material: "M1",
+        density_kg_m3: 2500.0,
+        hole_m,
+        bead_m,
+        of_others_1_s: None,
+    }
+}
+
+/// On a flat floor (`silo-round-robin.toml`), and that of the paper (`silo-cone.toml`), which has
+/// spheres of 4 mm.
+const SILOS: [Silo; 7] = [
+    silo_of("flat", 0.018, 4e-3),
+    silo_of("flat", 0.022, 4e-3),
+    Silo {
+        material: "M2",
+        density_kg_m3: 2000.0,
+        ..silo_of("flat", 0.022, 4e-3)
+    },
+    silo_of("cone", 0.060, 8e-3),
+    silo_of("cone", 0.060, 6e-3),
+    Silo {
+        of_others_1_s: Some(23_200.0),
+        ..silo_of("cone, by others", 0.060, 4e-3)
+    },
+    Silo {
+        of_others_1_s: Some(7_700.0),
+        ..silo_of("cone, by others", 0.040, 4e-3)
+    },
+];
+
 impl Silo {
-    /// `silo-round-robin.toml`.
-    const fn flat(material: &'static str, density_kg_m3: f64, hole_m: f64) -> Self {
-        Self {
-            floor: "flat",
-            is_cone: false,
-            material,
-            density_kg_m3,
-            hole_m,
-            bead_m: 4e-3,
-        }
-    }
-
-    /// The paper's: `silo-cone.toml`.
-    const fn cone(floor: &'static str, hole_m: f64, bead_m: f64) -> Self {
-        Self {
-            floor,
-            is_cone: true,
-            material: "M1",
-            density_kg_m3: 2500.0,
-            hole_m,
-            bead_m,
-        }
-    }
-
     fn bead_kg(&self) -> f64 {
         self.density_kg_m3 * PI / 6.0 * self.bead_m.powi(3)
     }
 
     /// Runs its scene with this seed. Returns the spheres that flow out per second.
     fn run(&self, bench: &Bench, number: usize, seed: u32) -> Result<f64, Failed> {
-        let (scene, plate, between_s) = if self.is_cone {
-            ("silo-cone", "cone", [1.0, 1.4])
-        } else {
-            ("silo-round-robin", "floor", [0.45, 0.75])
+        let (scene, plate, between_s) = match self.floor {
+            "flat" => ("silo-round-robin", "floor", [0.45, 0.75]),
+            _ => ("silo-cone", "cone", [1.0, 1.4]),
         };
         let mut set = vec![
             format!("run.seed={seed}"),
             format!("bodies.bead.material={}", self.material.to_lowercase()),
             format!("walls.{plate}.scale={:.2}", 100.0 * self.hole_m),
         ];
-        if self.is_cone {
+        if plate == "cone" {
             let count = 1e5 * (4e-3 / self.bead_m).powi(3);
             set.extend([
                 format!("bodies.bead.particles=[[0,0,0,{}]]", 0.5 * self.bead_m),
@@ -150,26 +137,15 @@ impl Silo {
     }
 }
 
-const SILOS: [Silo; 5] = [
-    Silo::flat("M1", 2500.0, 0.018),
-    Silo::flat("M1", 2500.0, 0.022),
-    Silo::flat("M2", 2000.0, 0.022),
-    Silo::cone("cone", 0.060, 8e-3),
-    Silo::cone("cone", 0.060, 6e-3),
-];
-
 pub(crate) fn silo(bench: &Bench) -> Result<(), Failed> {
-    let mut flows = Vec::new();
-    for (number, silo) in SILOS.into_iter().enumerate() {
-        let seeds = if silo.is_cone { 1..=1 } else { 1..=5 };
-        let of_seeds = seeds.map(|seed| silo.run(bench, number, seed));
-        let of_seeds: Vec<f64> = of_seeds.collect::<Result<_, _>>()?;
-        flows.push((silo, of_seeds));
-    }
-    let by_others = |(hole_m, per_s)| (Silo::cone("cone, by others", hole_m, 4e-3), vec![per_s]);
-    flows.extend(OTHERS.map(by_others));
     let [mut table, ..] = tables();
-    for (silo, of_seeds) in flows {
+    for (number, silo) in SILOS.iter().enumerate() {
+        let seeds = if silo.floor == "flat" { 1..=5 } else { 1..=1 };
+        let of_seeds = seeds.map(|seed| match silo.of_others_1_s {
+            Some(per_s) => Ok(per_s),
+            None => silo.run(bench, number, seed),
+        });
+        let of_seeds: Vec<f64> = of_seeds.collect::<Result<_, Failed>>()?;
         let bulk_kg_m3 = SOLID * silo.density_kg_m3;
         let law_kg_s = beverloo_kg_s(bulk_kg_m3, silo.hole_m, silo.bead_m);
         let law_1_s = law_kg_s / silo.bead_kg();

@@ -74,9 +74,9 @@ pub(crate) fn tables() -> [Table; 1] {
         first_cells.extend(readings.iter().map(|_| format!("`{scene}.toml`")));
     }
     first_cells.extend([(); 4].map(|()| format!("`chute.toml`, {SEEDS} seeds")));
-    let head = ["scene", "", "never", "`self_contact`"];
+    let head = "scene |  | never | `self_contact`";
     let page = "doc/self-contact.md";
-    [Table::new(page, "self-contact", &head, first_cells)]
+    [Table::new(page, "self-contact", head, first_cells)]
 }
 
 pub(crate) fn self_contact(bench: &Bench) -> Result<(), Failed> {

@@ -17,18 +17,19 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// A table with these first cells; none if they are results too.
+    /// A table with this head, its cells between ` | `, and these first cells; none if they are
+    /// results too.
     pub(crate) fn new<T: Into<String>>(
         page: &'static str,
         words: &'static str,
-        head: &[&'static str],
+        head: &'static str,
         first_cells: impl IntoIterator<Item = T>,
     ) -> Self {
         let first_cells = first_cells.into_iter().map(|cell| vec![cell.into()]);
         Self {
             page,
             words,
-            head: head.to_vec(),
+            head: head.split(" | ").collect(),
             rows: first_cells.collect(),
             filled: 0,
         }

@@ -13,6 +13,7 @@ use super::bending::READINGS;
 use super::samples::{BARE, PACKINGS, Sample, Table, scene};
 use super::watch::Watch;
 use crate::bench::{Bench, Failed};
+use crate::cells::cells;
 
 /// A fall of Platzer 2022. The sample begins just above the plate.
 #[derive(Debug, Clone, Copy)]
@@ -116,6 +117,12 @@ pub(crate) fn rows() -> Vec<Row> {
 }
 
 impl Row {
+    /// The first cells of its row.
+    pub(crate) fn title(&self) -> Vec<String> {
+        let table = self.sample.table.number();
+        cells(&format!("{table} | `{}` | {}", self.reading, self.damping))
+    }
+
     pub(crate) fn name(&self, fall: &str, seed: u32) -> String {
         let Self {
             sample,

@@ -95,7 +95,7 @@ pub(crate) fn tables(results: &Path) -> [Table; 9] {
     ]
 }
 
-fn table(words: &'static str, head: &[&'static str], rows: Vec<Vec<String>>) -> Table {
+fn table(words: &'static str, head: &'static str, rows: Vec<Vec<String>>) -> Table {
     let mut table = Table::new(PAGE, words, head, [""; 0]);
     for row in rows {
         table.row(row);
@@ -115,14 +115,9 @@ fn all(results: &[Value], name: &str) -> Vec<f64> {
 }
 
 fn sample(results: &Path) -> Table {
-    let mut rows = vec![cells([
-        "Platzer 2022, 3.2.3",
-        "",
-        "77,487",
-        "377,052",
-        "4.87",
-        "132 s; 780 min by filling",
-    ])];
+    let mut rows = vec![cells(
+        "Platzer 2022, 3.2.3 |  | 77,487 | 377,052 | 4.87 | 132 s; 780 min by filling",
+    )];
     for samples in samples::counted() {
         let reports = results_of(results, samples.iter().map(|sample| sample.name()));
         let quality: Vec<Value> = reports
@@ -151,26 +146,20 @@ fn sample(results: &Path) -> Table {
             },
         ]);
     }
-    let head = [
-        "sample, 180 mm x 30 mm x 35 mm",
-        "packings",
-        "spheres",
-        "bonds",
-        "bonds per sphere",
-        "time",
-    ];
-    table("thesis sample", &head, rows)
+    let head = "sample, 180 mm x 30 mm x 35 mm | packings | spheres | bonds | bonds per sphere | \
+        time";
+    table("thesis sample", head, rows)
 }
 
 fn steps(results: &Path) -> Table {
-    let mut rows = vec![cells(["step of Platzer 2022", "2", "4"])];
+    let mut rows = vec![cells("step of Platzer 2022 | 2 | 4")];
     for (damping, _) in steps::DAMPING {
         let [one, two] =
             [Spheres::One, Spheres::Two].map(|table| steps::limit_us(results, table, damping));
         rows.push(vec![damping.to_owned(), one, two]);
     }
-    let head = ["damping of the bonds", "table 1, us", "table 2, us"];
-    table("thesis steps", &head, rows)
+    let head = "damping of the bonds | table 1, us | table 2, us";
+    table("thesis steps", head, rows)
 }
 
 /// The bending tests of a row that have been run.
@@ -214,19 +203,9 @@ fn bent_cells(runs: &[Run]) -> Vec<String> {
 
 /// The tests with some readings of eq. 13.
 fn bending(results: &Path, is_shown: fn(&bending::Row) -> bool) -> Table {
-    let mut rows = vec![cells([
-        "Platzer 2022",
-        "",
-        "",
-        "18.23",
-        "12.05",
-        "51.45",
-        "2.82",
-        "0.21",
-        "",
-        "",
-        "",
-    ])];
+    let mut rows = vec![cells(
+        "Platzer 2022 |  |  | 18.23 | 12.05 | 51.45 | 2.82 | 0.21 |  |  | ",
+    )];
     for row in bending::rows().iter().filter(|row| is_shown(row)) {
         let sample = format!(
             "{}, bond range {}",
@@ -236,27 +215,17 @@ fn bending(results: &Path, is_shown: fn(&bending::Row) -> bool) -> Table {
         let first = vec![sample, format!("`{}`", row.reading)];
         rows.push([first, bent_cells(&bent(results, row))].concat());
     }
-    table(BENDING, &BENDING_HEAD, rows)
+    table(BENDING, BENDING_HEAD, rows)
 }
 
-const BENDING_HEAD: [&str; 11] = [
-    "sample",
-    "reading of eq. 13",
-    "packings",
-    "stiffness, N/mm",
-    "E by eq. 18, MPa",
-    "F_max, N",
-    "w_max, mm",
-    "strength by eq. 19, MPa",
-    "first bond breaks at, N",
-    "broken bonds between the pins, %",
-    "processor time, s",
-];
+const BENDING_HEAD: &str = "sample | reading of eq. 13 | packings | stiffness, N/mm | E by eq. 18, MPa | \
+    F_max, N | w_max, mm | strength by eq. 19, MPa | first bond breaks at, N | \
+    broken bonds between the pins, % | processor time, s";
 
 /// Processor time and steps of the bending test with table 1 over those with table 2, of the bare
 /// front.
 fn speed(results: &Path) -> Table {
-    let mut rows = vec![cells(["Platzer 2022, 4.5.3.3", "36", ""])];
+    let mut rows = vec![cells("Platzer 2022, 4.5.3.3 | 36 | ")];
     for reading in READINGS {
         let of = |table: Spheres, name: &str| {
             let mut all = bending::rows();
@@ -276,8 +245,8 @@ fn speed(results: &Path) -> Table {
             rounded(ratio("/steps"), 1),
         ]);
     }
-    let head = ["table 1 over table 2", "processor time", "steps"];
-    table(BENDING, &head, rows)
+    let head = "table 1 over table 2 | processor time | steps";
+    table(BENDING, head, rows)
 }
 
 /// The drops of a row that have been run.
@@ -285,30 +254,16 @@ fn fallen(results: &Path, row: &drops::Row, fall: &str) -> Vec<Value> {
     results_of(results, (1..=row.packings).map(|seed| row.name(fall, seed)))
 }
 
-fn drop_name(row: &drops::Row) -> Vec<String> {
-    vec![
-        row.sample.table.number().to_string(),
-        format!("`{}`", row.reading),
-        row.damping.to_owned(),
-        if row.dif { "yes" } else { "no" }.to_owned(),
-    ]
-}
-
 /// Broken bonds, mean, and fraction of the largest piece, least to most; packings.
 fn drops(results: &Path) -> Table {
-    let thesis = |with: &str, outcome: fn(&str) -> &str| {
-        let mut row = cells(["Platzer 2022", "", "0.6", with]);
-        row.extend(FALLS.iter().map(|fall| outcome(fall.name).to_owned()));
-        row
-    };
-    // Without the factor it has falls at 15 degrees only: figs. 51 and 52.
-    let without = |fall: &str| match fall.starts_with("15") {
-        true => "broken",
-        false => "not shown",
-    };
-    let mut rows = vec![thesis("yes", |_| "intact"), thesis("no", without)];
+    let mut rows = vec![
+        cells("Platzer 2022 |  | 0.6 | yes | intact | intact | intact | intact"),
+        // Without the factor it has falls at 15 degrees only: figs. 51 and 52.
+        cells("Platzer 2022 |  | 0.6 | no | broken | broken | not shown | not shown"),
+    ];
     for row in drops::rows() {
-        let mut cells = drop_name(&row);
+        let mut cells = row.title();
+        cells.push(if row.dif { "yes" } else { "no" }.to_owned());
         for fall in FALLS {
             let runs = fallen(results, &row, fall.name);
             cells.push(match runs.len() {
@@ -322,32 +277,17 @@ fn drops(results: &Path) -> Table {
         }
         rows.push(cells);
     }
-    table(DROPS, &DROPS_HEAD, rows)
+    table(DROPS, DROPS_HEAD, rows)
 }
 
-const DROPS_HEAD: [&str; 8] = [
-    "table",
-    "reading of eq. 13",
-    "damping ratio",
-    "DIF",
-    "15 degrees, flat",
-    "15 degrees, upright",
-    "25 degrees, flat",
-    "25 degrees, upright",
-];
+const DROPS_HEAD: &str = "table | reading of eq. 13 | damping ratio | DIF | 15 degrees, flat | \
+    15 degrees, upright | 25 degrees, flat | 25 degrees, upright";
 
 /// Largest utilisation of each bond during the drop, of the first packing, with the factor.
 fn utilisation(results: &Path) -> Table {
-    let mut rows = vec![cells([
-        "Platzer 2022, figs. 55 and 56",
-        "",
-        "0.6",
-        "25-flat",
-        "",
-        "",
-        "at most 71",
-        "mostly below 50",
-    ])];
+    let mut rows = vec![cells(
+        "Platzer 2022, figs. 55 and 56 |  | 0.6 | 25-flat |  |  | at most 71 | mostly below 50",
+    )];
     for row in drops::rows().iter().filter(|row| row.dif) {
         for fall in FALLS {
             let run = fallen(results, row, fall.name).first().cloned();
@@ -355,29 +295,20 @@ fn utilisation(results: &Path) -> Table {
             let percent = |name: &str, digits: usize| {
                 rounded(100.0 * number(&run["utilisation"][name]), digits)
             };
-            rows.push(vec![
-                row.sample.table.number().to_string(),
-                format!("`{}`", row.reading),
-                row.damping.to_owned(),
+            let mut cells = row.title();
+            cells.extend([
                 fall.name.to_owned(),
                 percent("median", 0),
                 percent("exceeded_by_1_in_100", 0),
                 percent("exceeded_by_1_in_1000", 0),
                 percent("fraction_above_half", 1),
             ]);
+            rows.push(cells);
         }
     }
-    let head = [
-        "table",
-        "reading of eq. 13",
-        "damping ratio",
-        "fall",
-        "median, %",
-        "exceeded by 1 % of bonds, %",
-        "by 0.1 %, %",
-        "bonds above 50 %, %",
-    ];
-    table(DROPS, &head, rows)
+    let head = "table | reading of eq. 13 | damping ratio | fall | median, % | \
+        exceeded by 1 % of bonds, % | by 0.1 %, % | bonds above 50 %, %";
+    table(DROPS, head, rows)
 }
 
 /// Of samples whose bonds do not break: the number of bonds whose utilisation exceeds 1, the
@@ -400,9 +331,9 @@ fn strengthening(results: &Path) -> Table {
             }
         }
     }
-    let mut head = ["table", "damping ratio", "reading of eq. 13", "factor"].to_vec();
-    head.extend(&DROPS_HEAD[4..]);
-    table("thesis strengthening", &head, rows)
+    let head = "table | damping ratio | reading of eq. 13 | factor | 15 degrees, flat | \
+        15 degrees, upright | 25 degrees, flat | 25 degrees, upright";
+    table("thesis strengthening", head, rows)
 }
 
 /// A cell of that table, for a reading and a way to apply the factor.
@@ -449,10 +380,7 @@ fn rebound(results: &Path) -> Table {
             scattered(&percent, 1, ""),
         ]
     };
-    let head = [
-        "damping of the bonds, sample of table 2",
-        "packings",
-        "rebound over height of the fall, %",
-    ];
-    table("thesis rebound", &head, rebound::DAMPING.map(row).into())
+    let head = "damping of the bonds, sample of table 2 | packings | \
+        rebound over height of the fall, %";
+    table("thesis rebound", head, rebound::DAMPING.map(row).into())
 }
