@@ -29,6 +29,8 @@ mod table;
 mod tests;
 mod thesis;
 
+use std::process::ExitCode;
+
 use bench::{Bench, Failed};
 
 /// Computes and writes what some words ask for.
@@ -65,16 +67,25 @@ const COMMANDS: [(&str, Work); 27] = [
     ("thesis strengthening", thesis::strengthening::compute),
 ];
 
-fn main() -> Result<(), Failed> {
+#[allow(clippy::print_stderr, reason = "it says what is wrong")]
+fn main() -> ExitCode {
+    match work() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn work() -> Result<(), Failed> {
     let mut words: Vec<String> = std::env::args().skip(1).collect();
     let resumes = words.last().is_some_and(|word| word == "--resume");
     words.truncate(words.len() - usize::from(resumes));
-    if let ["packing", "growth", spheres, threads] =
-        words.iter().map(String::as_str).collect::<Vec<_>>()[..]
-    {
-        return packing::one_size(spheres, threads);
-    }
     let wanted = words.join(" ");
+    if let Some(size) = wanted.strip_prefix("packing growth ") {
+        return packing::one_size(size);
+    }
     let command = COMMANDS.iter().find(|(words, _)| *words == wanted);
     let Some((_, work)) = command else {
         let all = COMMANDS.map(|(words, _)| words).join("\n");

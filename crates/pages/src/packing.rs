@@ -283,7 +283,8 @@ fn cut_into_four(surface: &Surface) -> Result<Surface, Failed> {
     clippy::print_stdout,
     reason = "the program that started this one reads it"
 )]
-pub(crate) fn one_size(spheres: &str, threads: &str) -> Result<(), Failed> {
+pub(crate) fn one_size(size: &str) -> Result<(), Failed> {
+    let (spheres, threads) = size.split_once(' ').ok_or("write spheres and threads")?;
     let surface = shape("bending-sample", 1.0)?;
     let before = peak_memory_bytes();
     let factor = (SPHERES_OF_1_35_MM / spheres.parse::<f64>()?).cbrt();

@@ -2,7 +2,7 @@
 
 use crate::bench::{Bench, Failed, ONE_THREAD, body, sets};
 
-use super::samples::{BARE, PACKINGS, Sample, Table};
+use super::samples::{BARE, COARSE, PACKINGS, Sample};
 
 /// Readings of Platzer 2022, eq. 13: values of `equivalent_stress`. The first, eq. 13 at its word,
 /// is that of the program unless given.
@@ -23,8 +23,8 @@ pub(crate) struct Row {
 pub(crate) fn rows() -> Vec<Row> {
     let fine = Sample { long: true, ..BARE };
     let coarse = Sample {
-        table: Table::Two,
-        ..fine
+        long: true,
+        ..COARSE
     };
     let densified = |of: Sample| Sample { bare: false, ..of };
     let row = |sample, packings, reading| Row {

@@ -1,59 +1,45 @@
 //! Drops onto an inclined plate, with and without the dynamic increase factor.
 
 use std::path::Path;
-use std::time::Instant;
 
+use dem_run::plan;
 use dem_run::state::clusters::fragments;
 use dem_run::step::{advance, interact};
-use dem_run::{balance, plan};
-use dem_scene::{Scene, read_bodies};
+use dem_scene::read_bodies;
 use serde_json::{Value, json};
 
 use super::bending::READINGS;
-use super::samples::{BARE, PACKINGS, Sample, Table, scene};
+use super::samples::{BARE, COARSE, PACKINGS, Sample, Table, scene};
 use super::watch::Watch;
 use crate::bench::{Bench, Failed};
 use crate::cells::cells;
 
-/// A fall of Platzer 2022. The sample begins just above the plate.
+/// A fall of Platzer 2022: its name, the angle of the plate, whether the sample stands, and where
+/// it begins just above the plate, mm.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Fall {
-    pub(crate) name: &'static str,
-    pub(crate) angle: &'static str,
-    /// Settings of the scene.
-    pub(crate) sets: &'static [&'static str],
-}
-
-const UPRIGHT: &str = "bodies.sample.rotation={axis=[0,1,0],angle=\"-90 deg\"}";
+pub(crate) struct Fall(pub(crate) &'static str, u32, bool, [f64; 3]);
 
 pub(crate) const FALLS: [Fall; 4] = [
-    Fall {
-        name: "15-flat",
-        angle: "15 deg",
-        sets: &["bodies.sample.position=[\"-90 mm\",\"-15 mm\",\"26 mm\"]"],
-    },
-    Fall {
-        name: "15-upright",
-        angle: "15 deg",
-        sets: &[
-            UPRIGHT,
-            "bodies.sample.position=[\"17.5 mm\",\"-15 mm\",\"6 mm\"]",
-        ],
-    },
-    Fall {
-        name: "25-flat",
-        angle: "25 deg",
-        sets: &["bodies.sample.position=[\"-90 mm\",\"-15 mm\",\"44 mm\"]"],
-    },
-    Fall {
-        name: "25-upright",
-        angle: "25 deg",
-        sets: &[
-            UPRIGHT,
-            "bodies.sample.position=[\"17.5 mm\",\"-15 mm\",\"10 mm\"]",
-        ],
-    },
+    Fall("15-flat", 15, false, [-90.0, -15.0, 26.0]),
+    Fall("15-upright", 15, true, [17.5, -15.0, 6.0]),
+    Fall("25-flat", 25, false, [-90.0, -15.0, 44.0]),
+    Fall("25-upright", 25, true, [17.5, -15.0, 10.0]),
 ];
+
+impl Fall {
+    /// Settings of the scene.
+    pub(crate) fn sets(&self) -> Vec<String> {
+        let Self(_, angle, is_upright, [x, y, z]) = self;
+        let mut sets = vec![
+            format!("walls.plate.rotation.angle=\"{angle} deg\""),
+            format!("bodies.sample.position=[\"{x} mm\",\"{y} mm\",\"{z} mm\"]"),
+        ];
+        if *is_upright {
+            sets.push("bodies.sample.rotation={axis=[0,1,0],angle=\"-90 deg\"}".to_owned());
+        }
+        sets
+    }
+}
 
 /// Damping ratios of the bonds: the largest round one with which the steps of Platzer 2022 are
 /// stable, and the printed one.
@@ -70,48 +56,39 @@ pub(crate) struct Row {
     pub(crate) dif: bool,
 }
 
-pub(crate) fn rows() -> Vec<Row> {
-    let fine = Row {
-        sample: BARE,
-        packings: 1,
-        reading: READINGS[0],
-        damping: DAMPING[0],
-        dif: true,
-    };
-    let coarse = Row {
-        sample: Sample {
-            table: Table::Two,
-            ..BARE
+/// Drops with the first reading and the factor.
+pub(crate) const fn row(sample: Sample, damping: &'static str) -> Row {
+    Row {
+        sample,
+        packings: match sample.table {
+            Table::One => 1,
+            Table::Two => PACKINGS,
         },
-        packings: PACKINGS,
-        ..fine
-    };
-    let mut rows = Vec::new();
-    for damping in DAMPING {
-        for reading in READINGS {
-            rows.push(Row {
-                reading,
-                damping,
-                ..coarse
-            });
-        }
+        reading: READINGS[0],
+        damping,
+        dif: true,
     }
-    for reading in READINGS {
-        rows.push(Row {
+}
+
+pub(crate) fn rows() -> Vec<Row> {
+    let coarse = |damping| {
+        READINGS.map(|reading| Row {
             reading,
-            dif: false,
-            packings: 1,
-            ..coarse
-        });
-    }
+            ..row(COARSE, damping)
+        })
+    };
+    let mut rows = DAMPING.map(coarse).concat();
+    rows.extend(coarse(DAMPING[0]).map(|row| Row {
+        dif: false,
+        packings: 1,
+        ..row
+    }));
     for reading in [READINGS[0], READINGS[1]] {
-        for dif in [true, false] {
-            rows.push(Row {
-                reading,
-                dif,
-                ..fine
-            });
-        }
+        rows.extend([true, false].map(|dif| Row {
+            reading,
+            dif,
+            ..row(BARE, DAMPING[0])
+        }));
     }
     rows
 }
@@ -124,18 +101,10 @@ impl Row {
     }
 
     pub(crate) fn name(&self, fall: &str, seed: u32) -> String {
-        let Self {
-            sample,
-            reading,
-            damping,
-            ..
-        } = self;
         let dif = if self.dif { "dif" } else { "static" };
-        let table = sample.table.number();
-        format!(
-            "drop-{table}-{}-{reading}-{damping}-{dif}-{fall}-{seed}",
-            sample.texture()
-        )
+        let (table, texture) = (self.sample.table.number(), self.sample.texture());
+        let [reading, damping] = [self.reading, self.damping];
+        format!("drop-{table}-{texture}-{reading}-{damping}-{dif}-{fall}-{seed}")
     }
 
     /// Settings of the scene.
@@ -149,11 +118,10 @@ impl Row {
             "bonds.cake.damping={{damping_ratio={}}}",
             self.damping
         ));
-        sets.push(format!("walls.plate.rotation.angle=\"{}\"", fall.angle));
         if !self.dif {
             sets.push("bonds.cake.failure.rate_strengthening=false".to_owned());
         }
-        sets.extend(fall.sets.iter().map(|set| (*set).to_owned()));
+        sets.extend(fall.sets());
         sets
     }
 }
@@ -162,7 +130,7 @@ pub(crate) fn compute(bench: &Bench) -> Result<(), Failed> {
     for row in rows() {
         for fall in FALLS {
             for seed in 1..=row.packings {
-                let name = row.name(fall.name, seed);
+                let name = row.name(fall.0, seed);
                 let sample = Sample { seed, ..row.sample };
                 sample.keep(bench, &name, |body| drop(body, &row.sets(&fall)))?;
             }
@@ -173,35 +141,19 @@ pub(crate) fn compute(bench: &Bench) -> Result<(), Failed> {
 
 /// Drops a sample, and says what became of it.
 fn drop(body: &Path, sets: &[String]) -> Result<Value, Failed> {
-    let scene: Scene = scene("drop", Some(body), sets)?;
-    let started = Instant::now();
+    let scene = scene("drop", Some(body), sets)?;
     let mut state = plan(&scene, read_bodies(&scene)?, 1, false)?.state;
     let mut watch = Watch::new(&state);
-    let (mut first_s, mut last_s) = (None, None);
     while state.time_s < scene.run.end_time_s {
         interact(&mut state);
         watch.look(&state);
-        if !state.scratch.events.broken.is_empty() {
-            first_s = first_s.or(Some(state.time_s));
-            last_s = Some(state.time_s);
-        }
         advance(&mut state);
     }
-    let energy_error = balance(&mut state).energy_error;
     let clusters = state.clusters.as_ref().ok_or("no clusters")?;
     let pieces = fragments::fragments(clusters, &state.particles, &state.clumps, None);
     let masses_kg = || pieces.iter().map(|piece| piece.mass_kg);
     Ok(json!({
-        "spheres": state.particles.poses.len(),
-        "bonds": state.bonds.len(),
-        "steps": state.steps,
-        "time_step_s": state.time_step_s,
-        "seconds": started.elapsed().as_secs_f64(),
-        "energy_error": energy_error,
         "broken": state.broken_count,
-        "first_broken_s": first_s,
-        "last_broken_s": last_s,
-        "pieces": pieces.len(),
         "largest": masses_kg().fold(0.0, f64::max) / masses_kg().sum::<f64>(),
         "utilisation": watch.report(),
     }))

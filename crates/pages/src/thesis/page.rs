@@ -265,7 +265,7 @@ fn drops(results: &Path) -> Table {
         let mut cells = row.title();
         cells.push(if row.dif { "yes" } else { "no" }.to_owned());
         for fall in FALLS {
-            let runs = fallen(results, &row, fall.name);
+            let runs = fallen(results, &row, fall.0);
             cells.push(match runs.len() {
                 0 => String::new(),
                 count => format!(
@@ -290,14 +290,14 @@ fn utilisation(results: &Path) -> Table {
     )];
     for row in drops::rows().iter().filter(|row| row.dif) {
         for fall in FALLS {
-            let run = fallen(results, row, fall.name).first().cloned();
+            let run = fallen(results, row, fall.0).first().cloned();
             let run = run.unwrap_or_default();
             let percent = |name: &str, digits: usize| {
                 rounded(100.0 * number(&run["utilisation"][name]), digits)
             };
             let mut cells = row.title();
             cells.extend([
-                fall.name.to_owned(),
+                fall.0.to_owned(),
                 percent("median", 0),
                 percent("exceeded_by_1_in_100", 0),
                 percent("exceeded_by_1_in_1000", 0),
@@ -325,7 +325,7 @@ fn strengthening(results: &Path) -> Table {
                     way.to_owned(),
                 ];
                 for fall in FALLS {
-                    cells.push(endured(results, &row, fall.name, [*reading, name]));
+                    cells.push(endured(results, &row, fall.0, [*reading, name]));
                 }
                 rows.push(cells);
             }
@@ -337,13 +337,9 @@ fn strengthening(results: &Path) -> Table {
 }
 
 /// A cell of that table, for a reading and a way to apply the factor.
-fn endured(
-    results: &Path,
-    row: &strengthening::Row,
-    fall: &str,
-    [reading, way]: [&str; 2],
-) -> String {
-    let runs = results_of(results, (1..=row.packings).map(|seed| row.name(fall, seed)));
+fn endured(results: &Path, row: &drops::Row, fall: &str, [reading, way]: [&str; 2]) -> String {
+    let names = (1..=row.packings).map(|seed| strengthening::name(row, fall, seed));
+    let runs = results_of(results, names);
     let runs = runs.iter().map(|run| run["readings"][reading][way].clone());
     let runs: Vec<Value> = runs.collect();
     let percent = |name: &str, digits: usize| {

@@ -16,20 +16,18 @@ use dem_scene::read_bodies;
 use serde_json::{Value, json};
 
 use super::bending::READINGS;
-use super::drops::{FALLS, Fall};
-use super::samples::{BARE, PACKINGS, Sample, Table, scene};
+use super::drops::{FALLS, Fall, Row, row};
+use super::samples::{BARE, COARSE, Sample, scene};
 use super::watch::rate_1_s;
 use crate::bench::{Bench, Failed};
 
 /// Time between two looks, s.
 const EVERY_S: f64 = 25e-6;
 
-/// The readings of eq. 13, in the order of [`READINGS`].
-const EQUIVALENT_STRESSES: [EquivalentStress; READINGS.len()] = [
+/// The first readings of eq. 13, in the order of [`READINGS`].
+const EQUIVALENT_STRESSES: [EquivalentStress; 2] = [
     EquivalentStress::ForcesOnly,
     EquivalentStress::AxialInTension,
-    EquivalentStress::TensileEdge,
-    EquivalentStress::BondInTension,
 ];
 
 /// Ways to apply the factor: how they are called in the results, and on the page.
@@ -40,64 +38,35 @@ pub(crate) const WAYS: [(&str, &str); 4] = [
     ("held_without_end", "the largest so far, also above 50/s"),
 ];
 
-/// Drops that differ by packing and fall only.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Row {
-    pub(crate) sample: Sample,
-    pub(crate) packings: u32,
-    pub(crate) damping: &'static str,
+pub(crate) fn rows() -> [Row; 3] {
+    [row(COARSE, "0.2"), row(COARSE, "0.6"), row(BARE, "0.2")]
 }
 
-pub(crate) fn rows() -> Vec<Row> {
-    let fine = Row {
-        sample: BARE,
-        packings: 1,
-        damping: "0.2",
-    };
-    let coarse = Row {
-        sample: Sample {
-            table: Table::Two,
-            ..BARE
-        },
-        packings: PACKINGS,
-        ..fine
-    };
-    let damped = Row {
-        damping: "0.6",
-        ..coarse
-    };
-    vec![coarse, damped, fine]
+pub(crate) fn name(row: &Row, fall: &str, seed: u32) -> String {
+    let table = row.sample.table.number();
+    format!("strengthening-{table}-{}-{fall}-{seed}", row.damping)
 }
 
-impl Row {
-    pub(crate) fn name(&self, fall: &str, seed: u32) -> String {
-        let table = self.sample.table.number();
-        format!("strengthening-{table}-{}-{fall}-{seed}", self.damping)
-    }
-
-    /// Settings of the scene: bonds whose strength no stress reaches.
-    pub(crate) fn sets(&self, fall: &Fall) -> Vec<String> {
-        let mut sets = self.sample.table.sets();
-        sets.retain(|set| !set.contains("failure"));
-        sets.extend([
-            "bonds.cake.failure={von_mises_strength=\"1 GPa\"}".to_owned(),
-            format!("bonds.cake.damping={{damping_ratio={}}}", self.damping),
-            format!("walls.plate.rotation.angle=\"{}\"", fall.angle),
-        ]);
-        sets.extend(fall.sets.iter().map(|set| (*set).to_owned()));
-        sets
-    }
+/// Settings of the scene.
+pub(crate) fn sets(row: &Row, fall: &Fall) -> Vec<String> {
+    let mut sets = row.sample.table.unbreakable_sets();
+    sets.push(format!(
+        "bonds.cake.damping={{damping_ratio={}}}",
+        row.damping
+    ));
+    sets.extend(fall.sets());
+    sets
 }
 
 pub(crate) fn compute(bench: &Bench) -> Result<(), Failed> {
     for row in rows() {
         for fall in FALLS {
             for seed in 1..=row.packings {
-                let name = row.name(fall.name, seed);
+                let name = name(&row, fall.0, seed);
                 let sample = Sample { seed, ..row.sample };
                 let strength_pa = sample.table.strength_pa();
                 sample.keep(bench, &name, |body| {
-                    drop(body, &row.sets(&fall), strength_pa)
+                    drop(body, &sets(&row, &fall), strength_pa)
                 })?;
             }
         }
@@ -124,12 +93,9 @@ fn drop(body: &Path, sets: &[String], strength_pa: f64) -> Result<Value, Failed>
 /// Largest utilisation of each bond so far.
 struct Used {
     /// For each reading and way, for each bond.
-    largest: Vec<[[f32; WAYS.len()]; READINGS.len()]>,
+    largest: Vec<[[f32; WAYS.len()]; EQUIVALENT_STRESSES.len()]>,
     /// The largest factors of each bond so far, up to 50/s and without end.
     held: Vec<[f64; 2]>,
-    /// The largest utilisation of all bonds by the first reading and the last way, and its time, s.
-    most: f32,
-    time_of_most_s: f64,
 }
 
 impl Used {
@@ -137,8 +103,6 @@ impl Used {
         Self {
             largest: vec![Default::default(); bonds],
             held: vec![[1.0; 2]; bonds],
-            most: 0.0,
-            time_of_most_s: 0.0,
         }
     }
 
@@ -154,11 +118,6 @@ impl Used {
                 }
             }
         }
-        let ends = self.largest.iter().map(|one| one[0][WAYS.len() - 1]);
-        let most = ends.fold(0.0, f32::max);
-        if most > self.most {
-            (self.most, self.time_of_most_s) = (most, state.time_s);
-        }
     }
 
     fn report(&self) -> Value {
@@ -172,17 +131,13 @@ impl Used {
                 "fraction_above_half": above(0.5) as f64 / all.len() as f64,
             })
         };
-        let ways = |reading: usize| -> serde_json::Map<String, Value> {
-            let of =
-                |(way, (name, _)): (usize, &(&str, &str))| ((*name).to_owned(), of(reading, way));
-            WAYS.iter().enumerate().map(of).collect()
-        };
-        let readings: serde_json::Map<String, Value> = READINGS
-            .iter()
-            .enumerate()
-            .map(|(reading, name)| ((*name).to_owned(), Value::Object(ways(reading))))
-            .collect();
-        json!({ "bonds": self.largest.len(), "time_of_largest_s": self.time_of_most_s, "readings": readings })
+        let mut report = json!({ "readings": {} });
+        for reading in 0..EQUIVALENT_STRESSES.len() {
+            for (way, (name, _)) in WAYS.iter().enumerate() {
+                report["readings"][READINGS[reading]][*name] = of(reading, way);
+            }
+        }
+        report
     }
 }
 

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use dem_io::Body;
 use dem_pack::{BodySettings, BondSettings, PackSettings, make_body};
 
-use super::samples::{BARE, PACKINGS, Sample, Table, scene};
+use super::samples::{COARSE, PACKINGS, Sample, Table, scene};
 use super::{bending, drops, oscillation, rebound, steps, strengthening};
 use crate::bench::root;
 use crate::shapes::{shape, sizes};
@@ -27,7 +27,8 @@ fn scenes_take_what_cases_set() {
         asked.extend(drops::FALLS.iter().map(|fall| ("drop", row.sets(fall))));
     }
     for row in strengthening::rows() {
-        asked.extend(drops::FALLS.iter().map(|fall| ("drop", row.sets(fall))));
+        let sets = |fall| strengthening::sets(&row, fall);
+        asked.extend(drops::FALLS.iter().map(|fall| ("drop", sets(fall))));
     }
     asked.extend(rebound::DAMPING.map(|(_, damping)| ("drop", rebound::sets(damping))));
     for (_, damping) in steps::DAMPING {
@@ -71,11 +72,7 @@ fn cheap_rows_come_out_as_on_the_page() {
         let [_, text, _] = parts(&page, words, 0).unwrap();
         rows(text).into_iter().find(|row| row[0] == name).unwrap()
     };
-    let coarse = Sample {
-        table: Table::Two,
-        ..BARE
-    };
-    let packing = |seed| packed(&Sample { seed, ..coarse });
+    let packing = |seed| packed(&Sample { seed, ..COARSE });
     let bodies: Vec<Body> = (1..=PACKINGS).map(packing).collect();
     let row = row_of("thesis sample", "table 2, bare front, bond range 1.0");
     let shown = |cell: &str| -> Vec<usize> {

@@ -62,16 +62,12 @@ impl Watch {
         let mut largest = self.largest.clone();
         largest.sort_by(f64::total_cmp);
         let quantile = |share: f64| largest[(share * (largest.len() - 1) as f64) as usize];
-        let above = |level: f64| {
-            largest.iter().filter(|used| **used > level).count() as f64 / largest.len() as f64
-        };
+        let above_half = largest.iter().filter(|used| **used > 0.5).count();
         json!({
-            "largest": quantile(1.0),
             "exceeded_by_1_in_1000": quantile(0.999),
             "exceeded_by_1_in_100": quantile(0.99),
             "median": quantile(0.5),
-            "fraction_above_half": above(0.5),
-            "fraction_above_71_percent": above(0.71),
+            "fraction_above_half": above_half as f64 / largest.len() as f64,
             "time_of_largest_mean_s": self.time_s,
             "cell_m": CELL_M,
             "cells": self.cells(),
