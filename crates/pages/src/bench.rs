@@ -6,7 +6,6 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use dem_plots::Plot;
 use dem_run::laboratory::evaluate::TestResult;
 use serde_json::Value;
 
@@ -45,11 +44,6 @@ pub(crate) fn sets<T: Display>(all: &[T]) -> Vec<String> {
 /// The option that gives a body of a scene its file.
 pub(crate) fn body(name: &str, file: &Path) -> String {
     format!("--body={name}={}", file.display())
-}
-
-/// Writes a plot into a folder of the repository.
-pub(crate) fn draw(file: &str, plot: &Plot) -> Result<(), Failed> {
-    Ok(std::fs::write(root().join(file), plot.svg().file())?)
 }
 
 /// A JSON file, if it is there.

@@ -1,10 +1,11 @@
 //! doc/dynamic-tests.md: t10 and sizes of a disc under a drop weight.
 
 use dem_io::units::significant;
-use dem_plots::{Axis, Line, Marks, Plot, Point};
+use dem_plots::{Axis, Marks, Plot, Point};
 
-use crate::bench::{Bench, Failed, Run, draw};
+use crate::bench::{Bench, Failed, Run};
 use crate::cells::ends;
+use crate::plots::{dashed, draw, plot};
 use crate::table::{Table, write};
 
 const ENERGIES: [&str; 2] = ["impact energy", "absorbed energy"];
@@ -46,11 +47,11 @@ pub(crate) fn heights(bench: &Bench) -> Result<(), Failed> {
         let energies: Vec<f64> = points.iter().map(|[e, _]| *e).collect();
         let [first, last] = ends(&energies);
         let along = (0..=100).map(|i| first * (last / first).powf(0.01 * f64::from(i)));
-        lines.push(Line {
-            name: format!("A (1 - exp(-b E)), {name}"),
-            points: along.map(|e| [e, 100.0 * law.t10(e)]).collect(),
-            dashed: true,
-        });
+        let along = along.map(|e| [e, 100.0 * law.t10(e)]);
+        lines.push(dashed(
+            &format!("A (1 - exp(-b E)), {name}"),
+            along.collect(),
+        ));
         let at = |[e, t10]: &[f64; 2]| Point {
             at: [*e, 100.0 * t10],
             filled: true,
@@ -62,13 +63,11 @@ pub(crate) fn heights(bench: &Bench) -> Result<(), Failed> {
             ..Marks::default()
         });
     }
+    let title = "fines of a disc under a drop weight";
     let plot = Plot {
-        title: "fines of a disc under a drop weight".to_owned(),
         x: Axis::log("energy over the mass of the disc (kWh/t)"),
-        y: Axis::of("t10 (%)"),
-        lines,
         marks,
-        ..Plot::default()
+        ..plot(title, "", "t10 (%)", lines)
     };
     draw("doc/t10.svg", &plot)?;
     write(&[table, laws])

@@ -18,6 +18,7 @@ mod dynamic;
 mod laboratory;
 mod packing;
 mod pictures;
+mod plots;
 mod pressing;
 mod process;
 mod replacement;

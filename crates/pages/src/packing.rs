@@ -11,10 +11,11 @@ use dem_io::{Body, Diagnostic};
 use dem_pack::cli::thread_pool;
 use dem_pack::internals::{Boundary, Vector3};
 use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Sizes, make_body};
-use dem_plots::{Axis, Marks, Plot, Point};
+use dem_plots::{Marks, Plot, Point};
 
-use crate::bench::{Bench, Failed, draw};
+use crate::bench::{Bench, Failed};
 use crate::cells::{mean, median};
+use crate::plots::{draw, plot};
 use crate::shapes::{bar, shape, sizes, surface_of};
 use crate::table::{Table, write};
 
@@ -143,16 +144,14 @@ fn plots(means: &[[f64; 9]]) -> Result<(), Failed> {
             title: format!("--densify {densify}"),
             ..Point::default()
         };
+        let x = "run time per sphere, one thread (s)";
         let plot = Plot {
-            title: title.to_owned(),
-            x: Axis::of("run time per sphere, one thread (s)"),
-            y: Axis::of(label),
             marks: vec![Marks {
                 points: DENSIFY.iter().zip(means).map(point).collect(),
                 chains: vec![means.iter().map(at).collect()],
                 ..Marks::default()
             }],
-            ..Plot::default()
+            ..plot(title, x, label, Vec::new())
         };
         draw(&format!("doc/densify-{name}.svg"), &plot)?;
     }

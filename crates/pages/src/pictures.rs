@@ -1,9 +1,10 @@
 //! Pictures of pages that come of studies and have no table.
 
-use dem_plots::{Axis, Line, Marks, Plot, Point};
+use dem_plots::{Axis, Marks, Plot, Point};
 use dem_run::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 
-use crate::bench::{Bench, Failed, draw, root};
+use crate::bench::{Bench, Failed, root};
+use crate::plots::{dashed, draw, line, plot};
 
 /// `doc/failure-models.svg` of doc/studies.md: load over travel with each failure model.
 pub(crate) fn failure_models(bench: &Bench) -> Result<(), Failed> {
@@ -11,21 +12,11 @@ pub(crate) fn failure_models(bench: &Bench) -> Result<(), Failed> {
     for run in bench.study("failure-models")? {
         let curve = run.columns("force-displacement.csv", ["displacement_m", "load_n"])?;
         let shown = curve.iter().step_by(curve.len() / 400 + 1);
-        lines.push(Line {
-            name: run.settings[0].clone(),
-            points: shown
-                .map(|[travel_m, load_n]| [1e3 * travel_m, *load_n])
-                .collect(),
-            dashed: false,
-        });
+        let shown = shown.map(|[travel_m, load_n]| [1e3 * travel_m, *load_n]);
+        lines.push(line(&run.settings[0], shown.collect()));
     }
-    let plot = Plot {
-        title: "one bending test with each failure model".to_owned(),
-        x: Axis::of("travel (mm)"),
-        y: Axis::of("load (N)"),
-        lines,
-        ..Plot::default()
-    };
+    let title = "one bending test with each failure model";
+    let plot = plot(title, "travel (mm)", "load (N)", lines);
     draw("doc/failure-models.svg", &plot)
 }
 
@@ -62,18 +53,13 @@ pub(crate) fn strain_rate(bench: &Bench) -> Result<(), Failed> {
     let theory = (0..=50)
         .map(|i| lowest * (highest / lowest).powf(f64::from(i) / 50.0))
         .map(|rate| [rate, dynamic_increase_factor(rate, 0.0)]);
+    let title = "strength of a disc over its strain rate";
+    let y = "strength over static strength";
     let plot = Plot {
-        title: "strength of a disc over its strain rate".to_owned(),
         x: Axis::log("strain rate (1/s)"),
-        y: Axis::of("strength over static strength"),
-        lines: vec![Line {
-            name: "eq. 20".to_owned(),
-            points: theory.collect(),
-            dashed: true,
-        }],
         marks: marks.into(),
         filled: Some(["in equilibrium", "not in equilibrium: not valid"].map(str::to_owned)),
-        ..Plot::default()
+        ..plot(title, "", y, vec![dashed("eq. 20", theory.collect())])
     };
     draw("doc/strain-rate.svg", &plot)
 }

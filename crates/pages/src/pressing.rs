@@ -8,11 +8,11 @@ use dem_laboratory::Statistic;
 use dem_pack::{
     BodySettings, BondSettings, Fabric, PackSettings, Spheres, bond_fabric, bond_spheres, make_body,
 };
-use dem_plots::{Axis, Line, Plot};
 use dem_results::folder::{frame_in, frames_in};
 
-use crate::bench::{Bench, Failed, ONE_THREAD, draw};
+use crate::bench::{Bench, Failed, ONE_THREAD};
 use crate::cells::ends;
+use crate::plots::{draw, line, plot};
 use crate::shapes::{bar, sizes};
 use crate::table::{Table, write};
 
@@ -65,16 +65,14 @@ pub(crate) fn pressing(bench: &Bench) -> Result<(), Failed> {
             table.row(row(made, front.processor_s));
         }
         if coarser == 1.0 {
-            lines.extend([line(FRONT, &front), line(PRESSED, &pressed)]);
+            lines.extend([
+                line(FRONT, profile(&front)),
+                line(PRESSED, profile(&pressed)),
+            ]);
         }
     }
-    let plot = Plot {
-        title: "Solid density over the height".to_owned(),
-        x: Axis::of("height (mm)"),
-        y: Axis::of("solid density (kg/m3)"),
-        lines,
-        ..Plot::default()
-    };
+    let [title, x] = ["Solid density over the height", "height (mm)"];
+    let plot = plot(title, x, "solid density (kg/m3)", lines);
     draw("doc/pressing-density.svg", &plot)?;
     write(&[table])
 }
@@ -176,16 +174,12 @@ fn densities_kg_m3(made: &Made, layers: usize) -> impl Iterator<Item = f64> + '_
     let layer_m = made.height_m / layers as f64;
     let layer_m3 = 4.0 * HALF_WIDTH_M * HALF_WIDTH_M * layer_m;
     (0..layers).map(move |layer| {
-        let low_m = if layer == 0 {
-            f64::NEG_INFINITY
-        } else {
-            layer as f64 * layer_m
+        let plane_m = |number: usize| match number {
+            0 => f64::NEG_INFINITY,
+            _ if number == layers => f64::INFINITY,
+            _ => number as f64 * layer_m,
         };
-        let high_m = if layer + 1 == layers {
-            f64::INFINITY
-        } else {
-            (layer + 1) as f64 * layer_m
-        };
+        let [low_m, high_m] = [layer, layer + 1].map(plane_m);
         let spheres = made.body.positions.iter().zip(&made.body.radii);
         let volumes = spheres.map(|(place, radius)| {
             below_m3(*radius, high_m - place[2]) - below_m3(*radius, low_m - place[2])
@@ -247,16 +241,12 @@ fn fabric_text(made: &Made) -> String {
     }
 }
 
-/// The density over the height, in ten layers.
-fn line(name: &str, made: &Made) -> Line {
+/// The density over the height, mm, in ten layers.
+fn profile(made: &Made) -> Vec<[f64; 2]> {
     let layers = 2 * LAYERS;
     let middle_mm = |layer: usize| 1e3 * made.height_m * (layer as f64 + 0.5) / layers as f64;
-    let points = densities_kg_m3(made, layers).enumerate();
-    Line {
-        name: name.to_owned(),
-        points: points
-            .map(|(layer, density)| [middle_mm(layer), density])
-            .collect(),
-        ..Line::default()
-    }
+    let densities = densities_kg_m3(made, layers).enumerate();
+    densities
+        .map(|(layer, density)| [middle_mm(layer), density])
+        .collect()
 }

@@ -4,10 +4,10 @@
 use std::f64::consts::PI;
 
 use dem_laboratory::Line as Fit;
-use dem_plots::{Axis, Line, Plot};
 
-use crate::bench::{Bench, Failed, Run, draw, sets};
+use crate::bench::{Bench, Failed, Run, sets};
 use crate::cells::{change, ends, mean, mean_and_range};
+use crate::plots::{dashed, draw, line, plot};
 use crate::table::{Table, write};
 
 const GRAVITY_M_S2: f64 = 9.81;
@@ -247,21 +247,15 @@ pub(crate) fn drum(bench: &Bench) -> Result<(), Failed> {
         let index = at.map_or(String::new(), |[_, index]| format!("{index:.2}"));
         bed.row([index, "0 apart, 1 mixed at random".to_owned()]);
     }
-    let line = |name: &str, points| Line {
-        name: name.to_owned(),
-        points,
-        ..Line::default()
-    };
-    let plot = Plot {
-        title: "mass in the lower quarter on the sinking side".to_owned(),
-        x: Axis::of("time since the start of the drum (s)"),
-        y: Axis::of("mass (kg)"),
-        lines: vec![
-            line("M1", small),
-            line("M2", turning(&run, "large_in_zone_2_kg")?),
-        ],
-        ..Plot::default()
-    };
+    let large = turning(&run, "large_in_zone_2_kg")?;
+    let lines = vec![line("M1", small), line("M2", large)];
+    let title = "mass in the lower quarter on the sinking side";
+    let plot = plot(
+        title,
+        "time since the start of the drum (s)",
+        "mass (kg)",
+        lines,
+    );
     draw("doc/round-robin-drum.svg", &plot)?;
     write(&[power, bed])
 }
@@ -400,35 +394,19 @@ pub(crate) fn penetration(bench: &Bench) -> Result<(), Failed> {
         let fall = fall(&run, case.speed_m_s, &mut table)?;
         // Sizes at the same speed: each line of a plot has a colour of its own.
         if case.speed_m_s > 4.0 && !case.spheres.contains(',') {
-            lines.push(Line {
-                name: format!("spheres of {}", case.spheres),
-                points: displacements(&fall.heights)?,
-                ..Line::default()
-            });
+            let name = format!("spheres of {}", case.spheres);
+            lines.push(line(&name, displacements(&fall.heights)?));
         }
         if at + 1 == CASES.len() {
             let every_ms = fall.law.iter().step_by(1000);
-            lines.push(Line {
-                name: "Katsuragi and Durian 2013".to_owned(),
-                points: every_ms
-                    .map(|[t, depth]| [fall.falls_s + t, -1e3 * (fall.gap_m + depth)])
-                    .collect(),
-                dashed: true,
-            });
+            let law = every_ms.map(|[t, depth]| [fall.falls_s + t, -1e3 * (fall.gap_m + depth)]);
+            lines.push(dashed("Katsuragi and Durian 2013", law.collect()));
         }
     }
-    lines.push(Line {
-        name: "LIGGGHTS and MUSEN, at rest".to_owned(),
-        points: vec![[0.08, -90.7], [0.13, -90.7]],
-        dashed: true,
-    });
-    let plot = Plot {
-        title: "a ball that hits a bed of spheres at 5 m/s".to_owned(),
-        x: Axis::of("time (s)"),
-        y: Axis::of("displacement (mm)"),
-        lines,
-        ..Plot::default()
-    };
+    let at_rest = vec![[0.08, -90.7], [0.13, -90.7]];
+    lines.push(dashed("LIGGGHTS and MUSEN, at rest", at_rest));
+    let title = "a ball that hits a bed of spheres at 5 m/s";
+    let plot = plot(title, "time (s)", "displacement (mm)", lines);
     draw("doc/round-robin-penetration.svg", &plot)?;
     write(&[table])
 }

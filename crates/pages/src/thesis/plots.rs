@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use dem_plots::{Axis, Line, Plot};
 use serde_json::Value;
 
 use super::bending::{self, READINGS};
@@ -10,6 +9,7 @@ use super::drops;
 use super::map::{self, View};
 use super::oscillation;
 use crate::bench::{finished, number, read};
+use crate::plots::{dashed, line, plot};
 
 /// Every plot whose results are there, with the name of its file.
 pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
@@ -27,11 +27,8 @@ pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
 /// line that follows from the equations of Platzer 2022: its stiffness up to its largest force.
 /// Nothing unless all have been run.
 fn curves(results: &Path) -> Option<String> {
-    let mut lines = vec![Line {
-        name: "Platzer 2022".to_owned(),
-        points: vec![[0.0, 0.0], [2.82e-3, 51.45]],
-        dashed: true,
-    }];
+    let equations = vec![[0.0, 0.0], [2.82e-3, 51.45]];
+    let mut lines = vec![dashed("Platzer 2022", equations)];
     for row in bending::rows() {
         let shown = row.sample.bond_range == "1.0" && READINGS[..2].contains(&row.reading);
         if !shown {
@@ -44,49 +41,31 @@ fn curves(results: &Path) -> Option<String> {
         let curve = curve
             .into_iter()
             .filter(|[displacement_m, _]| *displacement_m >= 0.0);
-        lines.push(Line {
-            name: format!("{}, {}", row.sample.title(), row.reading),
-            points: curve.step_by(4).collect(),
-            dashed: false,
-        });
+        let name = format!("{}, {}", row.sample.title(), row.reading);
+        lines.push(line(&name, curve.step_by(4).collect()));
     }
-    let plot = Plot {
-        title: "Four-point bending, printed bonds".to_owned(),
-        x: Axis::of("travel of the pins (m)"),
-        y: Axis::of("load (N)"),
-        lines,
-        ..Plot::default()
-    };
-    Some(plot.svg().file())
+    let [title, x] = [
+        "Four-point bending, printed bonds",
+        "travel of the pins (m)",
+    ];
+    Some(plot(title, x, "load (N)", lines).svg().file())
 }
 
 fn oscillations(results: &Path) -> Option<String> {
     let all = read(&results.join(oscillation::FILE))?;
-    let line = |one: &Value| {
-        let points = one["points"].as_array().map_or(&[][..], Vec::as_slice);
-        Line {
-            name: format!("d = {}", one["damping"].as_str().unwrap_or_default()),
-            points: points
-                .iter()
-                .step_by(4)
-                .map(|point| [number(&point[0]), number(&point[1])])
-                .collect(),
-            dashed: false,
-        }
+    let of_damping = |one: &Value| {
+        let points = one["points"].as_array().into_iter().flatten().step_by(4);
+        let points = points.map(|point| [number(&point[0]), number(&point[1])]);
+        let damping = one["damping"].as_str().unwrap_or_default();
+        line(&format!("d = {damping}"), points.collect())
     };
-    let plot = Plot {
-        title: "Two bonded particles, pulled and released".to_owned(),
-        x: Axis::of("time (s)"),
-        y: Axis::of("elongation (m)"),
-        lines: all
-            .as_array()
-            .map_or(&[][..], Vec::as_slice)
-            .iter()
-            .map(line)
-            .collect(),
-        ..Plot::default()
-    };
-    Some(plot.svg().file())
+    let lines = all.as_array()?.iter().map(of_damping).collect();
+    let title = "Two bonded particles, pulled and released";
+    Some(
+        plot(title, "time (s)", "elongation (m)", lines)
+            .svg()
+            .file(),
+    )
 }
 
 /// Utilisation and factor in the first drop of this kind that has been run with the factor, the
