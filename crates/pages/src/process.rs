@@ -95,10 +95,10 @@ pub(crate) fn tables() -> [Table; 3] {
 
 /// The bodies of spheres with these diameters.
 fn packed(bench: &Bench, diameters: &str) -> Result<[PathBuf; 2], Failed> {
-    let diameters = format!("--diameter={diameters}");
-    let options = [&diameters, "--overlap=0.25", "--bond-range=1.1", "--seed=3"];
+    let option = format!("--diameter={diameters}");
+    let options = [&option, "--overlap=0.25", "--bond-range=1.1", "--seed=3"];
     let [cake, lump] =
-        BREAKABLE.map(|(body, shape)| bench.pack(&format!("{body}{diameters}"), shape, &options));
+        BREAKABLE.map(|(body, shape)| bench.pack(&format!("{body}-{diameters}"), shape, &options));
     Ok([cake?, lump?])
 }
 

@@ -11,6 +11,7 @@ use dem_pack::{BodySettings, BondSettings, PackSettings, make_body};
 use super::samples::{COARSE, PACKINGS, Sample, Table, scene};
 use super::{bending, drops, oscillation, rebound, steps, strengthening};
 use crate::bench::root;
+use crate::cells::ends;
 use crate::shapes::{shape, sizes};
 use crate::table::{parts, rows};
 
@@ -100,18 +101,16 @@ fn cheap_rows_come_out_as_on_the_page() {
 fn the_pair_oscillates_as_two_masses_on_a_spring() {
     let curves = oscillation::curves().unwrap();
     let free = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        points
-            .iter()
-            .copied()
-            .filter(|point| point[0] > 0.3e-3)
-            .collect()
+        let points = points.iter().copied();
+        points.filter(|point| point[0] > 0.3e-3).collect()
     };
     let undamped = free(&curves[0]);
-    let crossings: Vec<f64> = undamped
-        .windows(2)
-        .filter(|pair| pair[0][1] < 0.0 && pair[1][1] >= 0.0)
-        .map(|pair| pair[0][0] - pair[0][1] * (pair[1][0] - pair[0][0]) / (pair[1][1] - pair[0][1]))
-        .collect();
+    let rises = |pair: &&[[f64; 2]]| pair[0][1] < 0.0 && pair[1][1] >= 0.0;
+    let zero = |pair: &[[f64; 2]]| {
+        let ([t, x], [next_s, next_m]) = (pair[0], pair[1]);
+        t - x * (next_s - t) / (next_m - x)
+    };
+    let crossings: Vec<f64> = undamped.windows(2).filter(rises).map(zero).collect();
     let [first, .., last] = crossings[..] else {
         panic!("{crossings:?}")
     };
@@ -121,19 +120,14 @@ fn the_pair_oscillates_as_two_masses_on_a_spring() {
     let stiffness_n_m = 15e6 * PI * radius_m.powi(2) / length_m;
     let theory_s = 2.0 * PI * (0.5 * mass_kg / stiffness_n_m).sqrt();
     // Leapfrog shortens the period by (omega dt)^2/24, 4e-5 here.
-    assert!(
-        (period_s / theory_s - 1.0).abs() < 2e-4,
-        "{period_s} {theory_s}"
-    );
-    let most_m = undamped.iter().map(|point| point[1]).fold(0.0, f64::max);
-    let back = |points: &[[f64; 2]]| {
-        free(points)
-            .iter()
-            .map(|point| -point[1] / most_m)
-            .fold(f64::NEG_INFINITY, f64::max)
-    };
-    assert!(back(&curves[1]) > 0.3);
-    for overdamped in &curves[2..] {
+    let off = period_s / theory_s - 1.0;
+    assert!(off.abs() < 2e-4, "{period_s} {theory_s}");
+    let lengths = |points: &[[f64; 2]]| free(points).iter().map(|point| point[1]).collect();
+    let of_curves: Vec<Vec<f64>> = curves.iter().map(|points| lengths(points)).collect();
+    let [_, most_m] = ends(&of_curves[0]);
+    let back = |curve: &[f64]| -ends(curve)[0] / most_m;
+    assert!(back(&of_curves[1]) > 0.3);
+    for overdamped in &of_curves[2..] {
         assert!(back(overdamped) < 1e-3);
     }
 }
