@@ -4,13 +4,8 @@
 
 use std::path::Path;
 
-use dem_io::body::mass::of_named_density;
-use dem_io::body::write_body;
-use dem_pack::{BodySettings, BondSettings, PackSettings, make_body};
-
-use crate::bench::{Bench, Failed, Run, body, sets};
-use crate::cells::{change, mean, mean_and_range};
-use crate::shapes::{bar, sizes};
+use crate::bench::{Bench, Failed, Run, body, number, read, sets};
+use crate::cells::{change, columns, mean, mean_and_range};
 use crate::table::{Table, write};
 
 const PAGE: &str = "doc/bulk.md";
@@ -42,35 +37,40 @@ pub(crate) fn tables() -> [Table; 2] {
 /// From a poured density to that of a solid and back.
 #[allow(clippy::print_stdout, reason = "it prints a number of the page")]
 pub(crate) fn route(bench: &Bench) -> Result<(), Failed> {
-    let run = |name: &str, scene: &str, set: &[String], bar: Option<&Path>| {
-        let mut options = sets(set);
-        options.extend(bar.map(|bar| body("bar", bar)));
-        let scene = format!("data/scenes/{scene}.toml");
-        bench.run(name, &scene, &options)
-    };
     let [mut table, _] = tables();
     let poured = of_seeds(|seed| {
-        let set = [format!("run.seed={seed}")];
-        run(&format!("poured-{seed}"), "pour-box", &set, None)?.measured("bulk_density")
+        let set = sets(&[format!("run.seed={seed}")]);
+        let run = bench.run(&format!("poured-{seed}"), "data/scenes/pour-box.toml", &set)?;
+        run.measured("bulk_density")
     })?;
     // The particle density of the material: the mean of all pourings.
     let particle_kg_m3 = TRIAL_KG_M3 * BULK_KG_M3 / mean(&poured);
+    let shatter = |name: &str, file: &Path, more: &[&str]| {
+        let mut options = sets(&[format!("materials.cake.density={particle_kg_m3}")]);
+        options.extend(sets(more));
+        options.push(body("bar", file));
+        bench.run(name, "data/scenes/shatter-box.toml", &options)
+    };
+    let mut bars = Vec::new();
     let shattered = of_seeds(|seed| {
-        let file = bench.folder.join(format!("bar-{seed}.vtp"));
-        let (overlap, solid_kg_m3) = pack(seed, particle_kg_m3, &file)?;
-        let set = [format!("materials.cake.density={particle_kg_m3}")];
-        let bulk = run(
-            &format!("shattered-{seed}"),
-            "shatter-box",
-            &set,
-            Some(&file),
-        )?;
-        let bulk_kg_m3 = bulk.measured("bulk_density")?;
+        let options = [
+            format!("--diameter={DIAMETERS}"),
+            "--bond-range=1.0".to_owned(),
+            format!("--particle-density={particle_kg_m3}"),
+            format!("--solid-density={SOLID_KG_M3}"),
+            format!("--seed={seed}"),
+        ];
+        let file = bench.pack(&format!("bar-{seed}"), "bar", &options)?;
+        let report = read(&file.with_extension("json")).ok_or("no report")?;
+        let made = |name: &str| number(&report["quality"][name]);
+        let bulk = shatter(&format!("shattered-{seed}"), &file, &[])?;
+        bars.push(file);
+        let [bulk_kg_m3, factor] = ["bulk_density", "bulking_factor"].map(|of| bulk.measured(of));
         Ok([
-            overlap,
-            solid_kg_m3,
-            bulk_kg_m3,
-            bulk.measured("bulking_factor")?,
+            made("overlap"),
+            made("solid_density_kg_m3"),
+            bulk_kg_m3?,
+            factor?,
         ])
     })?;
     let density = |kg_m3: f64| format!("{kg_m3:.0} kg/m3");
@@ -87,32 +87,28 @@ pub(crate) fn route(bench: &Bench) -> Result<(), Failed> {
             format!("{factor:.3}"),
         ]);
     }
-    let back = mean(
-        &shattered
-            .iter()
-            .map(|of_seed| of_seed[2])
-            .collect::<Vec<_>>(),
-    );
+    let [_, _, back, _] = columns(&shattered, mean);
+    let (poured, particles, back_off) =
+        (density(mean(&poured)), density(particle_kg_m3), off(back));
+    let none = String::new;
     table.row([
-        density(mean(&poured)),
-        density(particle_kg_m3),
-        String::new(),
-        String::new(),
+        poured,
+        particles,
+        none(),
+        none(),
         density(back),
-        off(back),
-        String::new(),
+        back_off,
+        none(),
     ]);
     write(&[table])?;
 
     // The same body, which breaks where it lies.
     let set = [
-        format!("materials.cake.density={particle_kg_m3}"),
-        "bodies.bar.position=[0,0,\"0.1 mm\"]".to_owned(),
-        "regions.bed.box.max=[\"15 mm\",\"15 mm\",\"15 mm\"]".to_owned(),
-        "regions.bed.box.min=[\"-15 mm\",\"-15 mm\",\"6 mm\"]".to_owned(),
+        "bodies.bar.position=[0,0,\"0.1 mm\"]",
+        "regions.bed.box.max=[\"15 mm\",\"15 mm\",\"15 mm\"]",
+        "regions.bed.box.min=[\"-15 mm\",\"-15 mm\",\"6 mm\"]",
     ];
-    let file = bench.folder.join(format!("bar-{}.vtp", SEEDS[0]));
-    let lying = run("lying", "shatter-box", &set, Some(&file))?.measured("bulk_density")?;
+    let lying = shatter("lying", &bars[0], &set)?.measured("bulk_density")?;
     println!("\nBroken on the floor, below the bars: {lying:.0} kg/m3.");
     Ok(())
 }
@@ -192,25 +188,4 @@ fn of_runs(runs: &[Run], measure: &str, unit: &str, digits: usize) -> Result<Str
     let values = runs.iter().map(|run| run.measured(measure));
     let values: Vec<f64> = values.collect::<Result<_, _>>()?;
     Ok(mean_and_range(&values, unit, digits))
-}
-
-/// Packs the bar so that it has the solid density. Returns its overlap and its solid density,
-/// kg/m3.
-fn pack(seed: u64, particle_kg_m3: f64, file: &Path) -> Result<(f64, f64), Failed> {
-    let settings = BodySettings {
-        bonds: BondSettings {
-            range: 1.0,
-            ..BondSettings::default()
-        },
-        particle_density_kg_m3: Some(particle_kg_m3),
-        solid_density_kg_m3: Some(SOLID_KG_M3),
-        ..BodySettings::new(PackSettings {
-            seed,
-            ..PackSettings::new(sizes(DIAMETERS)?)
-        })
-    };
-    let (body, made) = make_body(&bar(1.0)?, &settings, &|_, _| Ok(()))?;
-    write_body(&body, file)?;
-    let solid = of_named_density(&body).and_then(|mass| mass.solid_density_kg_m3);
-    Ok((made.quality.overlap, solid.ok_or("no density")?))
 }

@@ -60,6 +60,11 @@ pub(crate) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
+/// Of the columns of some rows, a value each.
+pub(crate) fn columns<const N: usize>(rows: &[[f64; N]], of: fn(&[f64]) -> f64) -> [f64; N] {
+    std::array::from_fn(|at| of(&rows.iter().map(|row| row[at]).collect::<Vec<_>>()))
+}
+
 pub(crate) fn median(values: impl IntoIterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);

@@ -14,9 +14,9 @@ use dem_pack::{Basis, BodyReport, BodySettings, BondSettings, PackSettings, Size
 use dem_plots::{Marks, Plot, Point};
 
 use crate::bench::{Bench, Failed};
-use crate::cells::{mean, median};
+use crate::cells::{columns, mean, median};
 use crate::plots::{draw, plot};
-use crate::shapes::{bar, shape, sizes, surface_of};
+use crate::shapes::{shape, sizes, surface_of};
 use crate::table::{Table, write};
 
 /// Values of `--densify` in the first table.
@@ -80,11 +80,6 @@ pub(crate) fn densify(_: &Bench) -> Result<(), Failed> {
     }
     plots(&means)?;
     write(&[table])
-}
-
-/// Of the columns of some rows, a value each.
-fn columns<const N: usize>(rows: &[[f64; N]], of: fn(&[f64]) -> f64) -> [f64; N] {
-    std::array::from_fn(|at| of(&rows.iter().map(|row| row[at]).collect::<Vec<_>>()))
 }
 
 /// Columns of the quality of a packing.
@@ -220,11 +215,11 @@ fn touching_the_wall(surface: &Surface, boundary: &Boundary, body: &Body) -> usi
 pub(crate) fn ratios(_: &Bench) -> Result<(), Failed> {
     let [.., mut table] = tables();
     let surfaces = [
-        bar(1.0)?,
-        bar(0.665)?,
+        shape("bar", 1.0)?,
+        shape("bar", 0.665)?,
         cut_into_four(&shape("rock", 1.0)?)?,
-        bar(2.13)?,
-        bar(0.56)?,
+        shape("bar", 2.13)?,
+        shape("bar", 0.56)?,
     ];
     let mut times_us = Vec::new();
     for ((name, diameters), surface) in CASES.into_iter().zip(&surfaces) {

@@ -13,7 +13,7 @@ use dem_results::folder::{frame_in, frames_in};
 use crate::bench::{Bench, Failed, ONE_THREAD};
 use crate::cells::ends;
 use crate::plots::{draw, line, plot};
-use crate::shapes::{bar, sizes};
+use crate::shapes::{shape, sizes};
 use crate::table::{Table, write};
 
 /// The bar: 30 mm x 30 mm around the z axis, 60 mm high.
@@ -80,7 +80,7 @@ pub(crate) fn pressing(bench: &Bench) -> Result<(), Failed> {
 /// The bar by the front of dem-pack, with the overlap that gives the density, on one thread.
 fn front(coarser: f64) -> Result<Made, Failed> {
     let diameters = format!("{}mm..{}mm", 3.0 * coarser, 4.0 * coarser);
-    let surface = bar(1.0)?;
+    let surface = shape("bar", 1.0)?;
     let settings = BodySettings {
         bonds: touching(),
         particle_density_kg_m3: Some(PARTICLE_DENSITY_KG_M3),

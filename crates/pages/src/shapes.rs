@@ -11,11 +11,6 @@ pub(crate) fn shape(name: &str, scale: f64) -> Result<Surface, Failed> {
     surface_of(&std::fs::read(root().join(&file))?, &file, scale)
 }
 
-/// The bar: 30 mm x 30 mm around the z axis, 60 mm high.
-pub(crate) fn bar(scale: f64) -> Result<Surface, Failed> {
-    shape("bar", scale)
-}
-
 /// The same from the bytes of a file.
 pub(crate) fn surface_of(stl: &[u8], name: &str, scale: f64) -> Result<Surface, Failed> {
     let reading = ReadSettings {

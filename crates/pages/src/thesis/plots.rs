@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use serde_json::Value;
-
 use super::bending::{self, READINGS};
 use super::drops;
 use super::map::{self, View};
@@ -15,7 +13,7 @@ use crate::plots::{dashed, line, plot};
 pub(crate) fn all(results: &Path) -> Vec<(&'static str, String)> {
     let plots = [
         ("thesis-bending.svg", curves(results)),
-        ("thesis-oscillation.svg", oscillations(results)),
+        ("thesis-oscillation.svg", oscillations()),
         ("thesis-25-flat.svg", utilisation(results, "25-flat")),
         ("thesis-25-upright.svg", utilisation(results, "25-upright")),
     ];
@@ -51,15 +49,12 @@ fn curves(results: &Path) -> Option<String> {
     Some(plot(title, x, "load (N)", lines).svg().file())
 }
 
-fn oscillations(results: &Path) -> Option<String> {
-    let all = read(&results.join(oscillation::FILE))?;
-    let of_damping = |one: &Value| {
-        let points = one["points"].as_array().into_iter().flatten().step_by(4);
-        let points = points.map(|point| [number(&point[0]), number(&point[1])]);
-        let damping = one["damping"].as_str().unwrap_or_default();
-        line(&format!("d = {damping}"), points.collect())
-    };
-    let lines = all.as_array()?.iter().map(of_damping).collect();
+fn oscillations() -> Option<String> {
+    let mut lines = Vec::new();
+    for damping in oscillation::DAMPING {
+        let points = oscillation::curve(damping).ok()?.into_iter().step_by(4);
+        lines.push(line(&format!("d = {damping}"), points.collect()));
+    }
     let title = "Two bonded particles, pulled and released";
     Some(
         plot(title, "time (s)", "elongation (m)", lines)

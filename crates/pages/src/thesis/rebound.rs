@@ -6,7 +6,6 @@ use dem_run::{plan, step};
 use dem_scene::read_bodies;
 use serde_json::{Value, json};
 
-use super::oscillation;
 use super::samples::{COARSE, PACKINGS, Sample, scene};
 use crate::bench::{Bench, Failed};
 
@@ -63,7 +62,6 @@ pub(crate) fn sets(damping: &str) -> Vec<String> {
 }
 
 pub(crate) fn compute(bench: &Bench) -> Result<(), Failed> {
-    oscillation::compute(bench)?;
     for (label, damping) in DAMPING {
         for seed in 1..=PACKINGS {
             let name = name(label, seed);
