@@ -128,24 +128,25 @@ pub(crate) fn disc_and_bar(bench: &Bench) -> Result<(), Failed> {
     for (scene, shape) in DISC_AND_BAR {
         let tests = SEEDS.map(|seed| tested(bench, scene, (shape, shape), seed, &[]));
         let tests: Vec<(Run, TestResult)> = tests.into_iter().collect::<Result<_, _>>()?;
-        let over = |digits, factor: f64, unit: &str, of: &dyn Fn(&TestResult) -> f64| {
-            let values = tests.iter().map(|(_, test)| factor * of(test));
-            scattered(&values.collect::<Vec<_>>(), digits, unit)
+        let over = |of: &dyn Fn(&(Run, TestResult)) -> f64, digits, unit: &str| {
+            scattered(&tests.iter().map(of).collect::<Vec<_>>(), digits, unit)
         };
-        let bonds: Vec<f64> = tests.iter().map(|(run, _)| run.number("/bonds")).collect();
+        let figure = |name, factor: f64, digits, unit: &str| {
+            over(
+                &|(_, test)| factor * value(&test.figures, name),
+                digits,
+                unit,
+            )
+        };
+        let crack_mm = |test: &TestResult| test.crack.as_ref().map(|crack| 1e3 * crack.offset_m);
+        let changes = |test: &TestResult| value(&test.half_the_rate_changes, FAILURE_FORCE);
         table.row([
-            scattered(&bonds, 0, ""),
-            over(1, 1.0, "N", &|test| value(&test.figures, FAILURE_FORCE)),
-            over(4, 1e-6, "MPa", &|test| value(&test.figures, "strength")),
-            over(2, 1e-6, "MPa", &|test| {
-                value(&test.figures, "specimen modulus")
-            }),
-            over(1, 100.0, "%", &|test| {
-                value(&test.half_the_rate_changes, FAILURE_FORCE)
-            }),
-            over(1, 1e3, "mm", &|test| {
-                test.crack.as_ref().map_or(f64::NAN, |crack| crack.offset_m)
-            }),
+            over(&|(run, _)| run.number("/bonds"), 0, ""),
+            figure(FAILURE_FORCE, 1.0, 1, "N"),
+            figure("strength", 1e-6, 4, "MPa"),
+            figure("specimen modulus", 1e-6, 2, "MPa"),
+            over(&|(_, test)| 100.0 * changes(test), 1, "%"),
+            over(&|(_, test)| crack_mm(test).unwrap_or(f64::NAN), 1, "mm"),
         ]);
     }
     write(&[table])
