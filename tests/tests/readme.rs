@@ -363,20 +363,21 @@ fn the_page_of_studies_names_every_study() {
     }
 }
 
-/// All examples of the solver write tables, but for the one of [the library](doc/library.md).
+/// The words of all tables and pictures that `dem-pages` writes.
 #[test]
-fn the_gallery_names_every_program_that_writes_tables() {
+fn the_gallery_names_every_command_that_writes_tables() {
     let gallery = read("doc/gallery.md");
-    let entries = fs::read_dir(root().join("crates/solver/examples")).unwrap();
-    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    let names: Vec<String> = names
-        .map(|name| name.trim_end_matches(".rs").to_owned())
-        .filter(|name| !["programs", "step_a_scene"].contains(&name.as_str()))
-        .collect();
-    assert!(names.len() >= 11, "{names:?}");
-    for name in names {
-        let command = format!("| `cargo run --release -p dem-run --example {name}");
-        assert!(gallery.contains(&command), "doc/gallery.md lacks {name}");
+    let program = read("crates/pages/src/main.rs");
+    let (_, commands) = program.split_once("const COMMANDS").unwrap();
+    let (commands, _) = commands.split_once("];").unwrap();
+    let lines = commands
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("(\""));
+    let words: Vec<&str> = lines.map(|line| line.split('"').next().unwrap()).collect();
+    assert!(words.len() >= 25, "{words:?}");
+    for words in words {
+        let named = [" -- ", "`"].map(|before| gallery.contains(&format!("{before}{words}`")));
+        assert!(named.contains(&true), "doc/gallery.md lacks {words}");
     }
 }
 

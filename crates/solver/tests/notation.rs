@@ -21,7 +21,7 @@ fn add_words(folder: &Path, words: &mut BTreeSet<String>) {
 fn names_of_the_notation_are_those_of_the_code() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut words = BTreeSet::new();
-    for name in ["io", "laboratory", "packer", "scene", "solver"] {
+    for name in ["io", "laboratory", "packer", "physics", "scene", "solver"] {
         add_words(&root.join("crates").join(name).join("src"), &mut words);
     }
     let page = std::fs::read_to_string(root.join("doc/notation.md")).unwrap();

@@ -131,8 +131,8 @@ pub(super) enum Command {
     /// Write a fragment of a run as a body: its particles as they stand in a frame, and its
     /// unbroken bonds
     #[command(
-        after_help = "Bonds keep their stress-free lengths: a stretched bond stays stretched. Velocities, and bending, torsion and shear of bonds, \
-                      are not kept.\n\
+        after_help = "Bonds keep their stress-free lengths: a stretched bond stays stretched. A .vtp keeps how bonds are bent, twisted and sheared \
+                      as well; other formats are refused for such bonds. Velocities are not kept.\n\
                       Examples:\n  dem-run fragment results --largest -o piece.vtp\n  \
                       dem-run fragment results --all --stl -o hulls"
     )]

@@ -113,7 +113,6 @@ fn different(input: &Input<'_>) -> Vec<String> {
         );
     }
     if input.types.break_at_all() && !input.contacts.laws.is_empty() {
-        lines.push("Particles of one piece without a bond between them push each other where they touch; in Crumble they do not.".to_owned());
         lines.push("Particles that overlap when their bond breaks push each other with the full force of that overlap; in Crumble it becomes the origin of their law.".to_owned());
     }
     if input

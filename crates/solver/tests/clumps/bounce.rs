@@ -370,17 +370,20 @@ fn a_replaced_body_that_bounces_otherwise_is_noted() {
 }
 
 /// The first impacts of a rod need no smaller step than those of its spheres; a flat landing takes
-/// 0.4 of it.
+/// 0.27 of it with the linear law, 0.4 with Hertz's.
 #[test]
 fn slender_clumps_take_about_the_step_of_a_sphere() {
-    for law in [LINEAR, HERTZ] {
+    for (law, flat) in [(LINEAR, 0.27), (HERTZ, 0.4)] {
         let steps = [1, 10, 100].map(|n| {
             let falls = body("b", &grid([n, 1, 1]), FALLS);
             planned(&with_floor(law, 0.5, &falls)).step.step_s
         });
         eprintln!("{law}: {steps:?}");
         for step in &steps[1..] {
-            assert!((0.39..1.5).contains(&(step / steps[0])), "{law} {steps:?}");
+            assert!(
+                (0.98 * flat..1.5).contains(&(step / steps[0])),
+                "{law} {steps:?}"
+            );
         }
     }
 }
