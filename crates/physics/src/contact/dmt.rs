@@ -4,7 +4,7 @@
 //!
 //! - F_n = 4/3 E* sqrt(R*) d^(3/2) - 2 pi w R*; the pull-off force is 2 pi w R*, at d = 0;
 //! - energy 8/15 E* sqrt(R*) d^(5/2) - 2 pi w R* d, which is continuous where the ends separate;
-//! - the attraction begins and ends with a jump, within a step: see [`super::jumps`];
+//! - the attraction begins and ends with a jump, within a step: see `jumps.rs`;
 //! - friction, rolling and damping follow from Hertz's part of the force, which presses the ends.
 //!
 //! It holds for small, stiff particles: Tabor's parameter (R* w^2/(E*^2 z^3))^(1/3), with z the

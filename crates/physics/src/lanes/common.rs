@@ -6,7 +6,7 @@ use crate::number::Number;
 pub trait Lanes: Number {
     /// Proof that the processor supports it.
     type Proof: Copy;
-    /// Number of lanes: 1, [`FOUR`] or [`MOST`].
+    /// Number of lanes: 1, 4 or [`MOST`].
     const COUNT: usize;
 
     /// `COUNT` numbers from a column, from place `first` on.

@@ -153,7 +153,7 @@ impl Seen {
         }
         for partition in state
             .contact_partitions()
-            .into_iter()
+            .iter()
             .filter(|partition| partition.computed > 0)
         {
             for at in partition.close.iter().flat_map(|[_, own]| own) {

@@ -118,7 +118,7 @@ fn touching_pairs(state: &State) -> Vec<[u32; 2]> {
     let Some(contacts) = &state.contacts else {
         return Vec::new();
     };
-    let partitions = state.contact_partitions().into_iter();
+    let partitions = state.contact_partitions().iter();
     let partitions = partitions.filter(|partition| partition.computed > 0);
     let close = partitions.flat_map(|partition| partition.close.iter().flat_map(|[_, own]| own));
     let touching = close.filter(|at| contacts.histories[**at as usize].overlap_m() > 0.0);
