@@ -305,11 +305,32 @@ impl State {
         Some(self)
     }
 
-    /// Begins to follow islands of pieces.
+    /// Begins to follow islands of pieces, with what is near each other now.
     pub(crate) fn open_islands(&mut self) {
-        if let (Some(contacts), Some(clusters)) = (&mut self.contacts, &self.clusters) {
-            let may_come = !self.model.rules.are_none();
-            (contacts.islands).open(self.walls.len(), clusters, may_come);
+        let (Some(contacts), Some(clusters)) = (&mut self.contacts, &self.clusters) else {
+            return;
+        };
+        let islands = &mut contacts.islands;
+        islands.open(self.walls.len(), clusters, !self.model.rules.are_none());
+        islands.join_pairs(&contacts.pairs, clusters);
+        if let Some(sleep) = &self.sleep {
+            let frozen: Vec<[u32; 2]> = sleep.pairs.iter().map(|frozen| frozen.pair).collect();
+            islands.join_pairs(&frozen, clusters);
+        }
+        if let Some(bridges) = &self.bridges {
+            let wet: Vec<[u32; 2]> = bridges.pairs.iter().map(|bridge| bridge.pair).collect();
+            islands.join_pairs(&wet, clusters);
+        }
+        for (number, wall) in (0..).zip(&self.walls).filter(|(_, wall)| wall.does_work()) {
+            let wet = self.bridges.iter().flat_map(|bridges| &bridges.walls);
+            let wet = wet.filter(|bridge| bridge.wall == number);
+            let touching = wall.touching.iter().map(|touch| touch.particle);
+            let near = wall.near.iter().copied().chain(touching);
+            islands.join_with(
+                number,
+                near.chain(wet.map(|bridge| bridge.particle)),
+                clusters,
+            );
         }
     }
 

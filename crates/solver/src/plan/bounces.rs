@@ -38,8 +38,13 @@ pub(super) fn notes(scene: &Scene, state: &State) -> Vec<String> {
         let Some(material) = scene.materials.keys().nth(template.material.into()) else {
             continue;
         };
+        let is_there = |name: &String| {
+            scene.walls.values().any(|wall| wall.material == *name)
+                || scene.bodies.values().any(|body| body.material == *name)
+        };
         let own = scene.contacts.iter();
         let own = own.filter(|contact| contact.materials.contains(material));
+        let own = own.filter(|contact| contact.materials.iter().all(is_there));
         let least = own
             .map(|contact| contact.restitution)
             .min_by(f64::total_cmp);

@@ -1,7 +1,5 @@
 //! The energy of each island of pieces, found when the ledger of the whole is looked at.
 
-use dem_scene::WallMotion;
-
 use super::bridges::bridge_energies_j;
 use super::contacts::{contact_energy_j, pairs_adhesion_j};
 use super::elastic::elastic_energy_of;
@@ -12,18 +10,13 @@ use crate::state::clumps::Clump;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::islands::{IslandSums, Islands};
 use crate::state::particles::Motion;
-use crate::state::walls::Wall;
 
 /// Joins what is near a wall that moves, or whose surface does, with that wall.
 pub(super) fn join_at_moving_walls(contacts: &mut Contacts, state: &State) {
     let Some(clusters) = &state.clusters else {
         return;
     };
-    let moves = |wall: &Wall| {
-        !matches!(wall.model.motion, WallMotion::Fixed)
-            || wall.model.surface_velocity_m_s != [0.0; 3]
-    };
-    for (number, wall) in (0..).zip(&state.walls).filter(|(_, wall)| moves(wall)) {
+    for (number, wall) in (0..).zip(&state.walls).filter(|(_, wall)| wall.does_work()) {
         (contacts.islands).join_with(number, wall.near.iter().copied(), clusters);
     }
 }

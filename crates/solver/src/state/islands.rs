@@ -170,11 +170,10 @@ impl Islands {
         self.know(&clusters.history);
         let first = self.first_piece();
         for i in particles {
-            join(
-                &mut self.names,
-                set,
-                first + clusters.of_particle[i as usize],
-            );
+            let piece = first + clusters.of_particle[i as usize];
+            if self.names[set as usize] != self.names[piece as usize] {
+                join(&mut self.names, set, piece);
+            }
         }
     }
 
@@ -221,7 +220,14 @@ impl Islands {
             .zip(&sums)
             .any(|(name, now)| now.key != 0 && !is_known(name, now.key));
         let floors_j = if any_new { floors_j(self) } else { Vec::new() };
-        for (name, now) in (0..).zip(sums).filter(|(_, now)| now.key != 0) {
+        for (name, now) in (0..).zip(sums) {
+            if now.key == 0 {
+                // All asleep, without the energy that they had: they will begin anew.
+                if let Some(book) = self.books.get_mut(&name) {
+                    book.key = 0;
+                }
+                continue;
+            }
             let floor_j = floors_j.get(name as usize).copied().unwrap_or(0.0);
             self.books.entry(name).or_default().note(now, floor_j);
         }

@@ -79,6 +79,12 @@ pub struct WallScratch {
 }
 
 impl Wall {
+    /// Whether it moves, or its surface does.
+    pub(crate) fn does_work(&self) -> bool {
+        !matches!(self.model.motion, WallMotion::Fixed)
+            || self.model.surface_velocity_m_s != [0.0; 3]
+    }
+
     /// A wall without contacts.
     pub fn new(model: Arc<WallModel>, frame: Frame) -> Self {
         Self {

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use dem_run::physics::contact::dmt::DerjaguinMullerToporov;
 use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
 use dem_run::physics::contact::law::ContactKind;
 use dem_run::physics::contact::law::Law;
@@ -35,12 +36,16 @@ fn pair_input() -> PairInput {
     PairInput::new(0.6, 0.4)
 }
 
-fn hertz() -> Law {
+fn hertz_mindlin() -> HertzMindlin {
     let material = Elastic {
         young_modulus_pa: 1e7,
         poisson_ratio: 0.3,
     };
-    Law::HertzMindlin(HertzMindlin::new([material; 2], &pair_input()))
+    HertzMindlin::new([material; 2], &pair_input())
+}
+
+fn hertz() -> Law {
+    Law::HertzMindlin(hertz_mindlin())
 }
 
 pub(crate) fn kinds() -> [ContactKind; 3] {
@@ -180,6 +185,46 @@ fn shares_and_skins_change_no_bit() {
     for (skin_m, partitions) in [(0.1e-3, 2), (0.1e-3, 5), (0.02e-3, 3), (0.5e-3, 1)] {
         let other = run(skin_m, partitions);
         assert!(one == other, "skin {skin_m}, {partitions} partitions");
+    }
+}
+
+/// Spheres that part fast, so that no listed pair counts as close, still attract each other within
+/// the step: both ends, also where two tasks work on them.
+#[test]
+fn shares_of_a_sticky_cloud_change_no_bit() {
+    let run = |partitions: usize| {
+        let mut state = cloud(0.1e-3, partitions, 1.5e-6);
+        let contacts = state.contacts.as_mut().unwrap();
+        let mut model = ContactModel::clone(&contacts.model);
+        for kind in &mut model.kinds {
+            kind.law = Law::DerjaguinMullerToporov(DerjaguinMullerToporov {
+                hertz_mindlin: hertz_mindlin(),
+                work_of_adhesion_j_m2: 0.05,
+            });
+        }
+        contacts.model = Arc::new(model);
+        state.model.contacts = Some(Arc::clone(&contacts.model));
+        let mut parted = 0;
+        let touching = |state: &State| {
+            let histories = &state.contacts.as_ref().unwrap().histories;
+            histories.iter().filter(|one| one.overlap_m() > 0.0).count()
+        };
+        let mut before = 0;
+        for _ in 0..1000 {
+            interact(&mut state);
+            let now = touching(&state);
+            parted += usize::from(now < before);
+            before = now;
+            let balance = balance(&mut state);
+            assert!(balance.momentum_error < 1e-12, "{balance:?}");
+            advance(&mut state);
+        }
+        assert!(parted > 100, "{parted}");
+        (state.particles.poses, state.particles.motions)
+    };
+    let one = run(1);
+    for partitions in [2, 5] {
+        assert!(one == run(partitions), "{partitions} partitions");
     }
 }
 

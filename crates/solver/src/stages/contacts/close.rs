@@ -39,14 +39,16 @@ pub(super) fn look<T: Lanes>(
     find_own::<T>(proof, partition, scene);
 }
 
-/// Lists the contacts of the border that are close.
+/// Lists the contacts of the border that are close, or touched in the step before: an attraction
+/// that ends within this step still acts on both ends.
 fn find_border(partition: &mut ContactPartition, scene: &StepInput<'_>) {
     let (contacts, poses) = (scene.contacts, scene.poses);
     for (n, &at) in (0..).zip(&partition.border) {
         let pair = contacts.pairs[at as usize];
         let [a, b] = pair.map(|i| &poses[i as usize]);
         let reach = a.radius_m() + b.radius_m() + contacts.scratch.close_m;
-        if (b.place() - a.place()).norm_squared() < reach * reach {
+        let touched = partition.border_histories[n as usize].overlap_m() > 0.0;
+        if touched || (b.place() - a.place()).norm_squared() < reach * reach {
             partition.close[contacts.kind(pair)][0].push(n);
         }
     }
