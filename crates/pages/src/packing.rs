@@ -1,6 +1,6 @@
-//! doc/packing-method.md, and the packing of doc/performance.md, in the bending sample and the bar of
-//! `data/shapes`. Each packing of the table of growth is made in a process of its own, to measure
-//! its memory separately (Linux only).
+//! doc/packing-method.md, and the packing of doc/performance.md, in the bending sample and the bar
+//! of `data/shapes`. Each packing of the table of growth is made in a process of its own, to
+//! measure its memory separately (Linux only).
 
 use std::process::Command;
 use std::time::Instant;

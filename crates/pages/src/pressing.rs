@@ -1,5 +1,5 @@
-//! doc/pressing.md: the bar of `data/shapes/bar.stl` filled by the front of dem-pack, and by filling
-//! a mould and pressing.
+//! doc/pressing.md: the bar of `data/shapes/bar.stl` filled by the front of dem-pack, and by
+//! filling a mould and pressing.
 
 use dem_io::Body;
 use dem_io::body::mass::volume_m3;

@@ -1,5 +1,5 @@
-//! Physics as functions of plain numbers, independent of storage, threads, files and scenes: laws of
-//! bonds and contacts, rotation, shapes of walls, and bodies made of spheres.
+//! Physics as functions of plain numbers, independent of storage, threads, files and scenes: laws
+//! of bonds and contacts, rotation, shapes of walls, and bodies made of spheres.
 
 pub mod bond;
 pub mod chebyshev;

@@ -312,14 +312,12 @@ impl State {
         };
         let islands = &mut contacts.islands;
         islands.open(self.walls.len(), clusters, !self.model.rules.are_none());
-        islands.join_pairs(&contacts.pairs, clusters);
+        islands.join_pairs(contacts.pairs.iter().copied(), clusters);
         if let Some(sleep) = &self.sleep {
-            let frozen: Vec<[u32; 2]> = sleep.pairs.iter().map(|frozen| frozen.pair).collect();
-            islands.join_pairs(&frozen, clusters);
+            islands.join_pairs(sleep.pairs.iter().map(|frozen| frozen.pair), clusters);
         }
         if let Some(bridges) = &self.bridges {
-            let wet: Vec<[u32; 2]> = bridges.pairs.iter().map(|bridge| bridge.pair).collect();
-            islands.join_pairs(&wet, clusters);
+            islands.join_pairs(bridges.pairs.iter().map(|bridge| bridge.pair), clusters);
         }
         for (number, wall) in (0..).zip(&self.walls).filter(|(_, wall)| wall.does_work()) {
             let wet = self.bridges.iter().flat_map(|bridges| &bridges.walls);

@@ -1,5 +1,5 @@
-//! The tables of the page, from the results that are there; what has not been computed anew stays as
-//! it stands on the page.
+//! The tables of the page, from the results that are there; what has not been computed anew stays
+//! as it stands on the page.
 
 use std::path::Path;
 

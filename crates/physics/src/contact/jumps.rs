@@ -3,9 +3,9 @@
 //! The leapfrog applies the force at the end of a step over half of that step and half of the
 //! next. Ends that touch after the fraction 1 - f of a step attract each other for its fraction f:
 //! for f - 1/2 of a step longer than the leapfrog has it. Ends that part after the fraction f do so
-//! for f - 1/2 of a step after the kick before it covers. In both cases this times the attraction is
-//! added to the kick at the end of the step; without it, energy would have an error of first order
-//! in the step.
+//! for f - 1/2 of a step after the kick before it covers. In both cases this times the attraction
+//! is added to the kick at the end of the step; without it, energy would have an error of first
+//! order in the step.
 //!
 //! All of that addition belongs to the step just made, but velocities at the time of the positions
 //! have half of it. The other half is counted with the losses to damping, and counted back in the

@@ -3,8 +3,7 @@
 use dem_io::{Diagnostic, Result};
 
 /// Stack of each thread. Without optimisation, the loops over contacts in AVX-512 need more than
-/// the
-/// usual 2 MiB.
+/// the usual 2 MiB.
 const STACK_BYTES: usize = 32 << 20;
 
 /// Does the work on as many threads as wanted, 1 to 1024, or on all cores; it is told their number.

@@ -67,8 +67,8 @@ mod tests {
     use super::*;
 
     /// A curve of a test and the same curve of a rig have the same stiffness, play and strength, to
-    /// the last digit: smooth and noisy ones, straight and curved. Before contact nothing loads the cell: a noisy
-    /// curve without such a part has an offset.
+    /// the last digit: smooth and noisy ones, straight and curved. Before contact nothing loads the
+    /// cell: a noisy curve without such a part has an offset.
     #[test]
     fn simulated_and_measured_curves_have_one_rule() {
         let mut last = 7_u64;

@@ -8,8 +8,8 @@ use super::mixture::{MixedCell, Mixture};
 use super::spheres::spheres;
 use crate::state::State;
 
-/// Largest error of a mixing index that is not doubtful: at 95 % confidence it is known within twice
-/// as much.
+/// Largest error of a mixing index that is not doubtful: at 95 % confidence it is known within
+/// twice as much.
 const LARGEST_INDEX_ERROR: f64 = 0.05;
 
 impl Probe {

@@ -108,6 +108,11 @@ impl Mixture {
         })
     }
 
+    /// Mass of both sets, kg.
+    fn mass_kg(&self) -> f64 {
+        self.cells().map(|cell| cell.mass_kg).sum()
+    }
+
     /// Lacey's index (Lacey 1954), 0 for sets apart and 1 for a random mixture:
     /// (s0^2 - s^2) / (s0^2 - sr^2), with the variance s^2 of the mass fraction of the first set
     /// among cells, weighted by mass, that of sets apart, s0^2 = p (1 - p), and that of a random
@@ -135,7 +140,7 @@ impl Mixture {
         if self.cells.len() < FEWEST_MIXED_CELLS {
             return None;
         }
-        let all_kg: f64 = self.cells().map(|cell| cell.mass_kg).sum();
+        let all_kg = self.mass_kg();
         let first_kg: f64 = self.cells.values().map(|[first, _]| first.mass_kg).sum();
         let fraction = first_kg / all_kg;
         let apart = fraction * (1.0 - fraction);
@@ -159,7 +164,7 @@ impl Mixture {
             apart,
             random,
         } = *variances;
-        let all_kg: f64 = self.cells().map(|cell| cell.mass_kg).sum();
+        let all_kg = self.mass_kg();
         let squares_kg2: f64 = self.cells().map(|cell| cell.mass_kg.powi(2)).sum();
         let cells = all_kg * all_kg / squares_kg2;
         let inside = (apart - found).max(0.0) / (apart / random - 1.0);
@@ -174,7 +179,7 @@ impl Mixture {
     /// cell shows from a third of it, near a face, to three quarters, in the middle. All of the
     /// variance inside if cells hold too few pieces to tell.
     fn apart_within_cells(&self) -> f64 {
-        let all_kg: f64 = self.cells().map(|cell| cell.mass_kg).sum();
+        let all_kg = self.mass_kg();
         let (mut inside, mut told, mut scatter2) = (0.0, 0.0, 0.0);
         let mut hidden = Vector3::zeros();
         for [first, second] in self.cells.values() {

@@ -286,8 +286,8 @@ fn followed(
 }
 
 /// Adds the bridges of wet particles that touch a wall and have none yet at the same feature; where
-/// walls meet, one goes over from wall to wall. `all`: the bridges before the step, `keys`: room for
-/// those of the bridges.
+/// walls meet, one goes over from wall to wall. `all`: the bridges before the step, `keys`: room
+/// for those of the bridges.
 fn add_new_at_walls(
     state: &State,
     contacts: &Contacts,
@@ -339,8 +339,8 @@ fn add_new_at_walls(
     }
 }
 
-/// The place in `all` of the bridge of the same particle with another wall, of the same liquid, that
-/// stands for the same surface: see [`is_one`]. None: there is none.
+/// The place in `all` of the bridge of the same particle with another wall, of the same liquid,
+/// that stands for the same surface: see [`is_one`]. None: there is none.
 fn moved_from(
     state: &State,
     contacts: &Contacts,

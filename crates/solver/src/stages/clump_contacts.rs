@@ -12,10 +12,9 @@
 //!
 //! Rayleigh's quotient of the motion that is made: exact for a contact alone (k times the inverse
 //! mass at its point), and for contacts in a mode of the clump on its springs. It lies between 0
-//! and
-//! T = sum k (g M^-1 g), the sum of the squares of all six frequencies. Pushes that balance each
-//! other, as of two plates that press, accelerate nothing: there it is at least their mean, T/6, so
-//! that no mode is damped by more than sqrt(6) zeta.
+//! and T = sum k (g M^-1 g), the sum of the squares of all six frequencies. Pushes that balance
+//! each other, as of two plates that press, accelerate nothing: there it is at least their mean,
+//! T/6, so that no mode is damped by more than sqrt(6) zeta.
 
 use std::sync::Arc;
 

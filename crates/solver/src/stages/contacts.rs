@@ -241,7 +241,7 @@ pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, state: &Stat
     let relaxes = contacts.model.relaxes;
     let clusters = state.clusters.as_ref();
     if let Some(clusters) = clusters {
-        contacts.islands.join_pairs(&pairs, clusters);
+        contacts.islands.join_pairs(pairs.iter().copied(), clusters);
     }
     let has_origin = |pair| relaxes || clusters.is_some_and(|clusters| clusters.is_within(pair));
     contacts.relist(pairs, poses.len(), |pair| {

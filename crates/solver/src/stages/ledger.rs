@@ -193,8 +193,8 @@ pub struct Balance {
     /// Actual minus expected energy, J.
     pub energy_error_j: f64,
     /// The same, divided by the largest energy or work so far: kinetic and elastic energy,
-    /// adhesion,
-    /// liquid bridges, gravity, losses, and the work of loads, supports and walls, each by itself.
+    /// adhesion, liquid bridges, gravity, losses, and the work of loads, supports and walls, each
+    /// by itself.
     pub energy_error: f64,
     /// That largest energy or work, J.
     pub energy_scale_j: f64,

@@ -142,7 +142,11 @@ impl Islands {
     }
 
     /// Joins the pieces of these pairs of particles.
-    pub(crate) fn join_pairs(&mut self, pairs: &[[u32; 2]], clusters: &Clusters) {
+    pub(crate) fn join_pairs(
+        &mut self,
+        pairs: impl Iterator<Item = [u32; 2]>,
+        clusters: &Clusters,
+    ) {
         if !self.is_open() {
             return;
         }

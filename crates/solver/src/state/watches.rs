@@ -85,7 +85,10 @@ impl History {
             self.duration_s += time_s - before_s;
         }
         self.last = Some((time_s, value));
-        self.note_peak(value);
+        if !value.is_nan() {
+            self.largest = Some(self.largest.map_or(value, |l| l.max(value)));
+            self.smallest = Some(self.smallest.map_or(value, |s| s.min(value)));
+        }
     }
 
     /// Records how far the present value of a mixing index may be off.
@@ -94,14 +97,6 @@ impl History {
         *last = error;
         if error.sum() > largest.sum() {
             *largest = error;
-        }
-    }
-
-    /// Records a value that counts for the largest and the smallest only.
-    pub(crate) fn note_peak(&mut self, value: f64) {
-        if !value.is_nan() {
-            self.largest = Some(self.largest.map_or(value, |l| l.max(value)));
-            self.smallest = Some(self.smallest.map_or(value, |s| s.min(value)));
         }
     }
 }

@@ -195,8 +195,8 @@ walls.lid = { plane = { point = [0, 0, 0.0201], normal = [0, 0, -1] }, material 
     assert_eq!(summary["verdict"]["sound"], true, "{}", summary["verdict"]);
 }
 
-/// Bodies of all kinds beside a ball of some kJ: what walls, belts, loads, gravity, adhesion, bridges
-/// and bonds do to each of them is in its own balance.
+/// Bodies of all kinds beside a ball of some kJ: what walls, belts, loads, gravity, adhesion,
+/// bridges and bonds do to each of them is in its own balance.
 #[test]
 fn bodies_by_themselves_are_sound() {
     let bench = Bench::new();
