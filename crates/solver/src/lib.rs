@@ -25,9 +25,7 @@
 //! results.
 
 pub(crate) mod calibration;
-pub mod check;
 pub mod cli;
-pub mod clock;
 pub mod interrupt;
 pub mod laboratory;
 pub mod lammps;
@@ -36,31 +34,25 @@ pub mod measure;
 pub mod output;
 pub mod plan;
 pub mod run;
-pub mod stages;
-pub mod state;
-pub mod step;
 pub mod stress;
-pub mod threads;
 
+pub use dem_engine::{Balance, State, balance, check, clock, stages, state, step, threads};
 pub use dem_physics as physics;
 pub use dem_physics::{geometry, shape};
 pub use plan::{Plan, plan};
 pub use run::{RunSettings, run};
-pub use stages::ledger::{Balance, balance};
-pub use state::State;
-pub use step::step;
 
 /// What only tests of this crate reach.
 #[doc(hidden)]
 pub mod internals {
-    pub use crate::check::flight::{FreeBody, Meeting};
+    pub use dem_engine::check::flight::{FreeBody, Meeting};
     pub use crate::output::pictures::subject::{by_body, of_clusters};
-    pub use crate::run::statics::conjugate::ConjugateGradients;
-    pub use crate::run::statics::degrees_of_freedom::DegreesOfFreedom;
-    pub use crate::run::statics::direct::DirectFactor;
-    pub use crate::run::statics::matrix::Matrix;
+    pub use dem_engine::statics::conjugate::ConjugateGradients;
+    pub use dem_engine::statics::degrees_of_freedom::DegreesOfFreedom;
+    pub use dem_engine::statics::direct::DirectFactor;
+    pub use dem_engine::statics::matrix::Matrix;
     pub use crate::shape::union::{Patch, Solid, patches, solid};
-    pub use crate::stages::bonds::bond_wrenches_one_by_one;
+    pub use dem_engine::stages::bonds::bond_wrenches_one_by_one;
 }
 
 /// The code on the page is compiled and run with the tests.

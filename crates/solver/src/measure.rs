@@ -20,14 +20,14 @@ use serde::Serialize;
 
 use crate::plan::Plan;
 use crate::plan::measures::{FEWEST_IN_HEAP, FEWEST_MIXED_CELLS};
-use crate::stages::clumps::synchronous;
-use crate::stages::ledger::Balance;
-use crate::stages::totals::synchronous_motions;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::clusters::fragments;
-use crate::state::events::Renumbering;
-use crate::state::watches::{Seen, Watch, WatchTarget};
+use dem_engine::stages::clumps::synchronous;
+use dem_engine::stages::ledger::Balance;
+use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clusters::fragments;
+use dem_engine::state::events::Renumbering;
+use dem_engine::state::watches::{Seen, Watch, WatchTarget};
 
 use self::members::{Members, wall_number};
 use self::spheres::spheres;
@@ -36,7 +36,7 @@ use self::whole::{Motions, Starts, start_centre, starts, turned_before};
 pub(crate) use self::bonds::utilisation_under;
 pub use self::bonds::{DynamicUtilisation, bond_utilisation, dynamic_utilisations, load};
 pub use self::mixture::MixedCell;
-pub use crate::state::watches::{History, IndexError};
+pub use dem_engine::state::watches::{History, IndexError};
 
 /// A measure and its particles.
 #[derive(Debug, Clone, PartialEq)]

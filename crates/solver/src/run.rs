@@ -30,7 +30,7 @@ use dem_scene::{Integrator, Scene};
 
 use crate::output::summary::Summary;
 use crate::plan::Plan;
-use crate::step::{advance, interact};
+use dem_engine::step::{advance, interact};
 
 use self::begin::Run;
 pub use self::finish::{Finished, finish};

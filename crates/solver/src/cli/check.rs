@@ -20,7 +20,7 @@ use crate::laboratory::arrange::{arrange, tested_body};
 use crate::output::pictures::View;
 use crate::plan::masses;
 use crate::plan::{Plan, PlannedStage, plan};
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Samples that differ by less than this factor are told as one.
 const ALIKE: f64 = 1.2;

@@ -2,8 +2,8 @@
 
 use dem_io::units::significant;
 
-use crate::state::State;
-use crate::step::all_bytes;
+use dem_engine::state::State;
+use dem_engine::step::all_bytes;
 
 /// Memory of the arrays of a state, and estimated memory of later contacts, bytes.
 pub(super) fn memory_bytes(state: &State) -> usize {

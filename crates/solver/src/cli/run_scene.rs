@@ -30,7 +30,7 @@ use crate::run::{
     Finished, INTERRUPTION, Outcome, RunSettings, SoFar, finish, run as run_plan,
     run_as_far_as_it_goes,
 };
-use crate::threads::keep_awake;
+use dem_engine::threads::keep_awake;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {

@@ -8,11 +8,11 @@ use dem_pictures::film::chosen_for_film;
 use dem_pictures::png_file::{Compression, to_png};
 use dem_scene::Scene;
 
-use crate::clock::StageClock;
+use dem_engine::clock::StageClock;
 use crate::output::pictures::View;
 use crate::plan::{Plan, PlannedStage};
-use crate::stages::ledger::CHECKS;
-use crate::step::{number_of, step};
+use dem_engine::stages::ledger::CHECKS;
+use dem_engine::step::{number_of, step};
 
 /// The run time is predicted from this many samples of the first steps of a copy.
 const SAMPLES: usize = 8;

@@ -10,10 +10,10 @@ use dem_scene::{
 };
 use nalgebra::Vector3;
 
-use crate::check::lowest_frequency::lowest_frequency_hz;
+use dem_engine::check::lowest_frequency::lowest_frequency_hz;
 use crate::plan::bodies::place_bodies;
 use crate::plan::test_setup::{extent, side_m2};
-use crate::state::State;
+use dem_engine::state::State;
 use dem_laboratory::theory::ON_PINS;
 
 /// Time that a test with bars takes, in ends of its pulse.

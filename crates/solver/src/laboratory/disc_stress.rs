@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::figure::{Figure, Source};
 use crate::plan::test_setup::Setup;
-use crate::stages::contacts::{self, pair_force_n};
-use crate::stages::walls::{self, touch_force_n};
-use crate::state::State;
+use dem_engine::stages::contacts::{self, pair_force_n};
+use dem_engine::stages::walls::{self, touch_force_n};
+use dem_engine::state::State;
 
 /// Stress across the loaded diameter, the mean of its middle half, Pa.
 pub const ACROSS: &str = "stress across the loaded diameter";

@@ -19,7 +19,7 @@ use super::evaluate::{
 use super::figure::{Figure, Source};
 use super::record::{Record, Row};
 use crate::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
-use crate::state::loads::factor_at;
+use dem_engine::state::loads::factor_at;
 
 /// Fraction of the largest load from which on the body counts as loaded.
 const LOADED: f64 = 0.1;

@@ -1,7 +1,7 @@
 //! What is left of the tested body.
 
 use crate::output::sizes::{Fragments, SizeSummary};
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Pieces of the tested body at the end.
 #[derive(Debug, Clone, Copy, PartialEq)]

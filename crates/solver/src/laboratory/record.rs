@@ -8,9 +8,9 @@ use super::arrange::support_of;
 use super::disc_stress::DiscStress;
 use crate::physics::bond::failure::Cause;
 use crate::plan::test_setup::{Setup, Side};
-use crate::stages::supports::velocity_at_kick;
-use crate::state::State;
-use crate::state::loads::factor_at;
+use dem_engine::stages::supports::velocity_at_kick;
+use dem_engine::state::State;
+use dem_engine::state::loads::factor_at;
 
 /// Number of intervals of a test's full stroke over which forces are averaged.
 const INTERVALS: f64 = 1000.0;

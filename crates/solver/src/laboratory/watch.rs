@@ -14,7 +14,7 @@ use super::pieces::Pieces;
 use super::record::{Loading, Record};
 use crate::plan::Plan;
 use crate::plan::test_setup::Setup;
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Settings of a test in a run.
 #[derive(Debug, Clone, PartialEq)]

@@ -20,8 +20,8 @@ use dem_scene::Scene;
 
 use super::words::refused;
 use crate::physics::bond::failure::Criteria;
-use crate::state::State;
-use crate::state::bonds::BondRule;
+use dem_engine::state::State;
+use dem_engine::state::bonds::BondRule;
 
 /// Relative width of a class: the largest ratio of two values in it is 1 + this.
 pub const CLASS_WIDTH: f64 = 1e-3;

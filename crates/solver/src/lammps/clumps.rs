@@ -11,8 +11,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::molecules::Molecules;
 use crate::physics::rotation::rotation;
-use crate::state::State;
-use crate::state::clumps::Clump;
+use dem_engine::state::State;
+use dem_engine::state::clumps::Clump;
 
 /// Whether a clump is a body of several spheres.
 pub(super) fn is_body(state: &State, clump: &Clump) -> bool {

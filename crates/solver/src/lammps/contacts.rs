@@ -15,7 +15,7 @@ use super::words::refused;
 use crate::physics::contact::law::{ContactKind, Law, Rolling};
 use crate::physics::contact::pair_parameters::PairParameters;
 use crate::plan::Plan;
-use crate::state::contacts::NO_KIND;
+use dem_engine::state::contacts::NO_KIND;
 
 /// The contacts of an export.
 #[derive(Debug, Clone, Default)]

@@ -2,7 +2,7 @@
 
 use dem_scene::Scene;
 
-use crate::check::limit::safe_step;
+use dem_engine::check::limit::safe_step;
 use crate::plan::Plan;
 
 /// Frames of a scene that asks for none.

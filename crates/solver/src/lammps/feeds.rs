@@ -16,9 +16,9 @@ use super::duration::{step_s, steps};
 use super::words::{block, cylinder, numbers, refused};
 use crate::geometry::Bounds;
 use crate::plan::Plan;
-use crate::state::clumps::Template;
-use crate::state::regions::Region;
-use crate::state::rules::{Feed as Rate, Inlet};
+use dem_engine::state::clumps::Template;
+use dem_engine::state::regions::Region;
+use dem_engine::state::rules::{Feed as Rate, Inlet};
 
 /// A body that an inlet feeds.
 #[derive(Debug, Clone, PartialEq)]

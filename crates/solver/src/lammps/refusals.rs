@@ -8,7 +8,7 @@ use dem_scene::{InitialOverlap, Integrator, Scene};
 
 use super::words::refused;
 use crate::plan::Plan;
-use crate::state::bodies::PlacedBody;
+use dem_engine::state::bodies::PlacedBody;
 
 /// Groups that LAMMPS allows, without `all` and those of the export itself.
 const MOST_GROUPS: usize = 27;

@@ -15,8 +15,8 @@ use super::surfaces::{Face, depth_m, faces};
 use super::words::{self, ALONG, block, numbers, refused};
 use crate::geometry::{Bounds, Shape, SolidBox};
 use crate::plan::Plan;
-use crate::state::contacts::NO_KIND;
-use crate::state::walls::Wall;
+use dem_engine::state::contacts::NO_KIND;
+use dem_engine::state::walls::Wall;
 
 /// A wall in the words of LAMMPS.
 #[derive(Debug, Clone)]

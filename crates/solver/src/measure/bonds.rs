@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::damage::utilisation_of_damaged;
 use crate::physics::bond::failure::{Factors, stresses, utilisation};
-use crate::stages::bonds::NEARLY;
-use crate::stages::chunks::CHUNK;
-use crate::stages::totals::motions_before_kick;
-use crate::stages::utilisation::squared_utilisations;
-use crate::state::State;
-use crate::state::particles::Motion;
+use dem_engine::stages::bonds::NEARLY;
+use dem_engine::stages::chunks::CHUNK;
+use dem_engine::stages::totals::motions_before_kick;
+use dem_engine::stages::utilisation::squared_utilisations;
+use dem_engine::state::State;
+use dem_engine::state::particles::Motion;
 
 /// Strain rate of a bond, and the utilisation of the strength that it has at that rate. Both are
 /// those of the failure check: an intact bond that can break has a utilisation below 1.

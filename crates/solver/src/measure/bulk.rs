@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::spheres::{Sphere, across};
-use crate::state::regions::Region;
+use dem_engine::state::regions::Region;
 
 /// Points of a sphere that a border cuts: its part on one side is known to some thousandths.
 const POINTS: usize = 500;

@@ -2,11 +2,11 @@
 
 use dem_scene::Scene;
 
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::clumps::{Clump, Template};
-use crate::state::events::REMOVED;
-use crate::state::events::Renumbering;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clumps::{Clump, Template};
+use dem_engine::state::events::REMOVED;
+use dem_engine::state::events::Renumbering;
 
 /// The particles of a set, a body or `all`, including those carried by clumps.
 #[derive(Debug, Clone, Default, PartialEq)]

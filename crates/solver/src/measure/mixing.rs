@@ -6,7 +6,7 @@ use dem_scene::{Quantity, Statistic};
 use super::Probe;
 use super::mixture::{MixedCell, Mixture};
 use super::spheres::spheres;
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Largest error of a mixing index that is not doubtful: at 95 % confidence it is known within
 /// twice as much.

@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 
 use super::spheres::Sphere;
 use crate::plan::measures::FEWEST_MIXED_CELLS;
-use crate::state::regions::Region;
-use crate::state::watches::IndexError;
+use dem_engine::state::regions::Region;
+use dem_engine::state::watches::IndexError;
 
 /// Fewest pieces of a cell from which one can tell whether its two sets lie apart.
 const FEWEST_TOLD_APART: f64 = 3.0;

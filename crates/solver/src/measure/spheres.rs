@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::members::Members;
-use crate::state::State;
+use dem_engine::state::State;
 
 /// A sphere with its mass.
 #[derive(Debug, Clone, Copy)]

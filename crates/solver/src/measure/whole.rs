@@ -13,11 +13,11 @@ use super::members::Members;
 use crate::physics::rigid::rotation_vector;
 use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::clumps::Clump;
-use crate::state::events::REMOVED;
-use crate::state::particles::Motion;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clumps::Clump;
+use dem_engine::state::events::REMOVED;
+use dem_engine::state::particles::Motion;
 
 /// Initial positions of bodies, by name.
 pub(super) type Starts = BTreeMap<String, Start>;

@@ -6,9 +6,9 @@ use dem_io::body::mass::BodyMass;
 use dem_results::FlowRow;
 use serde::Serialize;
 
-use crate::state::State;
-use crate::state::clusters::sizes::mass_kg_of;
-use crate::state::clusters::{Cluster, Clusters};
+use dem_engine::state::State;
+use dem_engine::state::clusters::sizes::mass_kg_of;
+use dem_engine::state::clusters::{Cluster, Clusters};
 
 /// Where the mass of a body is at the end of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

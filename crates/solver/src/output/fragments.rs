@@ -11,11 +11,11 @@ use serde::Serialize;
 
 use super::sizes::Fragments;
 use crate::measure::Probe;
-use crate::state::State;
-use crate::state::clusters::fragments::mass_fraction_of_largest;
-use crate::state::clusters::sizes::Discharged;
-use crate::state::clusters::{Cluster, Clusters, Fragment, Split};
-use crate::state::model::Model;
+use dem_engine::state::State;
+use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
+use dem_engine::state::clusters::sizes::Discharged;
+use dem_engine::state::clusters::{Cluster, Clusters, Fragment, Split};
+use dem_engine::state::model::Model;
 
 /// Names of the plots of fragments.
 pub(super) const COUNT: &str = "fragments";

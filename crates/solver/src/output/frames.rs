@@ -14,12 +14,12 @@ use crate::measure::{DynamicUtilisation, dynamic_utilisations, load, utilisation
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
 use crate::physics::rigid::rotation_vector;
-use crate::stages::totals::synchronous_motions;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::clusters::fragments::fragment_masses_kg;
-use crate::state::events::REMOVED;
-use crate::state::stored_bonds::{direction_of, joint_of, plastic_of, sum_of};
+use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clusters::fragments::fragment_masses_kg;
+use dem_engine::state::events::REMOVED;
+use dem_engine::state::stored_bonds::{direction_of, joint_of, plastic_of, sum_of};
 
 /// Numbering in a frame: particles and bonds of all bodies, in the order of their files, followed
 /// by the spheres of clumps.

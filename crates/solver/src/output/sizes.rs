@@ -8,9 +8,9 @@ use dem_results::DistributionRow;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::state::State;
-use crate::state::clusters::sizes::{FragmentSize, size_of};
-use crate::state::model::Model;
+use dem_engine::state::State;
+use dem_engine::state::clusters::sizes::{FragmentSize, size_of};
+use dem_engine::state::model::Model;
 
 /// Sizes of the series R 20 of ISO 3 between 1 and 10.
 const R20: [&str; 20] = [

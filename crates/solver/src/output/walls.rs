@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 
 use super::pictures::subject::{around, corners_m, plane_patch, points_of};
 use crate::geometry::Bounds;
-use crate::state::State;
-use crate::state::walls::Wall;
+use dem_engine::state::State;
+use dem_engine::state::walls::Wall;
 
 /// Number of triangles above which a wall that never moves is written once instead of with each
 /// frame.

@@ -27,11 +27,11 @@ use crate::physics::bond::scatter::{body_key, strength_factor};
 use crate::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use crate::physics::bond::total::direction;
 use crate::shape::inertia::of_union;
-use crate::state::bodies::PlacedBody;
-use crate::state::bonds::{BondRule, Bonds, moment_ratios, share_moment_ratios};
-use crate::state::order::spatial_order;
-use crate::state::particles::{Particles, Pose};
-use crate::state::stored_bonds::{restore, turn_particles};
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bonds::{BondRule, Bonds, moment_ratios, share_moment_ratios};
+use dem_engine::state::order::spatial_order;
+use dem_engine::state::particles::{Particles, Pose};
+use dem_engine::state::stored_bonds::{restore, turn_particles};
 
 /// Largest rounding error of a coordinate as a fraction of a radius: with it, a strain of a
 /// thousandth is accurate to a thousandth.

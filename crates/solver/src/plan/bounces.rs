@@ -4,8 +4,8 @@ use dem_io::units::significant;
 use dem_scene::Scene;
 
 use crate::physics::contact::restitution::{damping_ratio, restitution};
-use crate::state::State;
-use crate::state::clumps::Template;
+use dem_engine::state::State;
+use dem_engine::state::clumps::Template;
 
 /// Difference of two restitutions from which it is said.
 const SMALLEST_DIFFERENCE: f64 = 0.1;

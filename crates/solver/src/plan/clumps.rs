@@ -13,10 +13,10 @@ use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation;
 use crate::shape::inertia::{of_spheres, of_union};
 use crate::shape::outer_layer::{FRACTION_OF_SMALLEST, HIDDEN, outer_layer};
-use crate::stages::inlets::angular_momentum;
-use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clump, Scatter, Template, breaks_from_n_m, reach_m, sub_spheres};
-use crate::state::particles::Particles;
+use dem_engine::stages::inlets::angular_momentum;
+use dem_engine::state::bonds::Bonds;
+use dem_engine::state::clumps::{Clump, Scatter, Template, breaks_from_n_m, reach_m, sub_spheres};
+use dem_engine::state::particles::Particles;
 
 /// Names of the bodies that are templates: those that start as clumps, come through inlets, or are
 /// daughters.

@@ -15,12 +15,12 @@ use crate::physics::contact::linear::Linear;
 use crate::physics::contact::liquid_bridge::LiquidBridge;
 use crate::physics::contact::pair_parameters::{Elastic, PairInput};
 use crate::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
-use crate::stages::contacts::{list_contacts, overlap_m};
-use crate::state::State;
-use crate::state::bodies::{PlacedBody, called};
-use crate::state::bridges::Bridges;
-use crate::state::clusters::Clusters;
-use crate::state::contacts::{ContactHistory, ContactModel, Contacts, NO_KIND};
+use dem_engine::stages::contacts::{list_contacts, overlap_m};
+use dem_engine::state::State;
+use dem_engine::state::bodies::{PlacedBody, called};
+use dem_engine::state::bridges::Bridges;
+use dem_engine::state::clusters::Clusters;
+use dem_engine::state::contacts::{ContactHistory, ContactModel, Contacts, NO_KIND};
 
 /// Verlet skin as a fraction of the largest radius, unless the scene sets it or objects are fast;
 /// and the largest such fraction.

@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 
 use super::clumps::template;
 use crate::shape::packing_fit::fit;
-use crate::state::clumps::{Template, sphere_volume_m3};
-use crate::state::rules::{DaughterRule, SizeClass};
+use dem_engine::state::clumps::{Template, sphere_volume_m3};
+use dem_engine::state::rules::{DaughterRule, SizeClass};
 
 /// The scene with the mass of each parent for its daughters, whose bodies in `read` become as large
 /// as the parent: see [`fit`]; bodies with bonds keep their proportions.
@@ -189,7 +189,7 @@ fn smallest_radius_m(
 }
 
 /// Compliances (1 - nu^2)/E of the materials and of the walls, 1/Pa: see
-/// [`crate::state::rules::Rules::compliances`].
+/// [`dem_engine::state::rules::Rules::compliances`].
 pub(super) fn compliances(scene: &Scene) -> [Vec<f64>; 2] {
     let of = |material: &Material, unknown: f64| match material.young_modulus_pa {
         Some(modulus_pa) => (1.0 - material.poisson_ratio.powi(2)) / modulus_pa,

@@ -5,11 +5,11 @@ use dem_io::units::significant;
 use dem_scene::{FeedRate, Scene};
 use serde::Serialize;
 
-use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
-use crate::check::laws::foreseen;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::step::all_bytes;
+use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
+use dem_engine::check::laws::foreseen;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::step::all_bytes;
 
 /// Largest number of bodies whose first contacts are predicted.
 const MOST_BODIES: usize = 8;
@@ -145,7 +145,7 @@ fn to_come(scene: &Scene, state: &State, arriving: Option<&State>) -> Vec<InletF
     let inlets = state.model.rules.inlets.iter().zip(scene.inlets.values());
     inlets
         .map(|(inlet, asked)| {
-            let mean = |of: &dyn Fn(&crate::state::clumps::Template) -> f64| -> f64 {
+            let mean = |of: &dyn Fn(&dem_engine::state::clumps::Template) -> f64| -> f64 {
                 let each = inlet.templates.iter();
                 each.map(|(t, fraction)| fraction * of(&state.clumps.templates[*t as usize]))
                     .sum()

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Pick, Scene};
 
-use crate::state::bodies::PlacedBody;
-use crate::state::particles::Particles;
-use crate::state::supports::GroupSupport;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::particles::Particles;
+use dem_engine::state::supports::GroupSupport;
 
 /// Particles (numbers in the state, ascending) of every set, every body and `all`.
 ///

@@ -3,9 +3,9 @@
 use dem_io::{Diagnostic, Result};
 use nalgebra::{Matrix6, SymmetricEigen, Vector3, Vector6};
 
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::bodies::called;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bodies::called;
 use dem_io::disjoint::{find, join};
 
 /// A rigid motion counts as held from this fraction of the best held one: about 1e-6 in lengths.

@@ -9,8 +9,8 @@ use nalgebra::Vector3;
 
 use super::bodies::check_place;
 use super::groups::{held_degrees_of_freedom, particles_of};
-use crate::state::State;
-use crate::state::bodies::{PlacedBody, called};
+use dem_engine::state::State;
+use dem_engine::state::bodies::{PlacedBody, called};
 
 /// Names of motions along and about the axes in messages.
 const MOTIONS: [&str; 6] = [

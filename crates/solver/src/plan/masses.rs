@@ -14,10 +14,10 @@ use crate::physics::rotation::numbers;
 use crate::physics::rotation::rotation;
 use crate::plan::bodies::material_density_kg_m3;
 use crate::shape::inertia::of_spheres;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::clumps::Template;
-use crate::state::particles::Particles;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clumps::Template;
+use dem_engine::state::particles::Particles;
 
 /// Smallest difference that is reported, percent.
 const WORTH_A_NOTE: f64 = 5.0;

@@ -6,7 +6,7 @@ use dem_io::body::mass::BodyMass;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{ALL, Measure, Quantity, Scene};
 
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Smallest number of particles for which an angle of repose has a meaning.
 pub(crate) const FEWEST_IN_HEAP: usize = 50;

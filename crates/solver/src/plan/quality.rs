@@ -10,7 +10,7 @@ use dem_io::units::{show_length, significant};
 use dem_scene::Scene;
 
 use super::bodies::stays_rigid;
-use crate::state::clusters::sizes::{Sphere, box_lengths_m};
+use dem_engine::state::clusters::sizes::{Sphere, box_lengths_m};
 
 /// As dem-pack: number of bonds per particle below which a body is hardly rigid, and of particles
 /// across below which a body shows its particles more than its material.

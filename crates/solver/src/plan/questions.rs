@@ -9,9 +9,9 @@ use nalgebra::Vector3;
 
 use super::masses::sphere_density_kg_m3;
 use super::unfinished::unfinished;
-use crate::check::laws::LARGEST_OVERLAP;
-use crate::state::State;
-use crate::state::bodies::{PlacedBody, called};
+use dem_engine::check::laws::LARGEST_OVERLAP;
+use dem_engine::state::State;
+use dem_engine::state::bodies::{PlacedBody, called};
 
 /// Distance of atoms in Tabor's parameter, m.
 const ATOMS_M: f64 = 0.3e-9;

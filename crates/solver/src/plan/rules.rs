@@ -15,12 +15,12 @@ use super::walls::surface_of;
 use crate::geometry::{Bounds, Mesh, Shape};
 use crate::physics::rotation::numbers;
 use crate::shape::inertia::of_union;
-use crate::state::State;
-use crate::state::clumps::Template;
-use crate::state::particles::Pose;
-use crate::state::regions::Region;
-use crate::state::rules::{Feed, Inlet, Outlet, PrincipalStress, Restore, Rules, Start, Trigger};
-use crate::state::walls::Wall;
+use dem_engine::state::State;
+use dem_engine::state::clumps::Template;
+use dem_engine::state::particles::Pose;
+use dem_engine::state::regions::Region;
+use dem_engine::state::rules::{Feed, Inlet, Outlet, PrincipalStress, Restore, Rules, Start, Trigger};
+use dem_engine::state::walls::Wall;
 
 /// The rules of the scene for adding, removing and replacing bodies. `about`: information on the
 /// bodies.

@@ -2,10 +2,10 @@
 
 use dem_scene::Scene;
 
-use crate::stages::stage::{Need, Stage};
-use crate::stages::watching::OUTPUT;
-use crate::state::State;
-use crate::step::{number_of, stages};
+use dem_engine::stages::stage::{Need, Stage};
+use dem_engine::stages::watching::OUTPUT;
+use dem_engine::state::State;
+use dem_engine::step::{number_of, stages};
 
 /// A stage of the step: active or skipped, and the reason.
 #[derive(Debug, Clone, PartialEq)]

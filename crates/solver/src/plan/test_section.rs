@@ -6,7 +6,7 @@ use dem_scene::{Scene, Test, Wall, WallShape};
 use nalgebra::Vector3;
 
 use super::test_walls::{middle_of, placed};
-use crate::state::State;
+use dem_engine::state::State;
 use dem_laboratory::TestType;
 
 /// Directions in which the outline of a section is measured.

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use super::test_rig::{Said, compare_with_body, compare_with_pins, dimension};
 use super::test_section::look_at_bar;
 use super::test_walls::{middle_of, placed};
-use crate::state::State;
+use dem_engine::state::State;
 use dem_laboratory::theory::Beam;
 use dem_laboratory::{Specimen, TestType};
 

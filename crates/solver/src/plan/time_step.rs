@@ -6,23 +6,23 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use crate::check::limit::{Limit, limit, safe_step};
-use crate::check::linear::{
+use dem_engine::check::limit::{Limit, limit, safe_step};
+use dem_engine::check::linear::{
     StiffestContacts, at_impact, at_landing, largest_contact_rate_1_s2, stiffest_contact,
 };
 use crate::geometry::{Bounds, Shape};
 use crate::physics::contact::ImpactLaw;
-use crate::stages::population::apply_topology_change;
-use crate::stages::walls::fastest_point_m_s;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clump, Template};
-use crate::state::clusters::Clusters;
-use crate::state::contacts::{ContactModel, Contacts};
-use crate::state::events::TopologyChange;
-use crate::state::particles::Particles;
-use crate::state::walls::Wall;
+use dem_engine::stages::population::apply_topology_change;
+use dem_engine::stages::walls::fastest_point_m_s;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bonds::Bonds;
+use dem_engine::state::clumps::{Clump, Template};
+use dem_engine::state::clusters::Clusters;
+use dem_engine::state::contacts::{ContactModel, Contacts};
+use dem_engine::state::events::TopologyChange;
+use dem_engine::state::particles::Particles;
+use dem_engine::state::walls::Wall;
 
 /// Largest fraction of the smallest radius that a particle may move in a step.
 pub(crate) const FARTHEST: f64 = 0.5;
@@ -535,7 +535,7 @@ fn fall_m(state: &State, down: &Vector3<f64>) -> f64 {
     for wall in &state.walls {
         let to_wall = match &wall.model.shape {
             Shape::Plane(_) => {
-                let far = |pose: &crate::state::particles::Pose| {
+                let far = |pose: &dem_engine::state::particles::Pose| {
                     let mut found = Vec::new();
                     let centre = wall.frame.to_wall(pose.place().into());
                     wall.model.shape.touches(centre, f64::INFINITY, &mut found);

@@ -12,12 +12,12 @@ use nalgebra::Vector3;
 use super::contacts::{Kinds, ROUNDING};
 use crate::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
 use crate::physics::rigid::turn;
-use crate::stages::walls::joints::drop_doubles;
-use crate::stages::walls::touch_energy_j;
-use crate::state::State;
-use crate::state::bodies::{PlacedBody, called};
-use crate::state::contacts::ContactHistory;
-use crate::state::walls::{Wall, WallContact, WallModel};
+use dem_engine::stages::walls::joints::drop_doubles;
+use dem_engine::stages::walls::touch_energy_j;
+use dem_engine::state::State;
+use dem_engine::state::bodies::{PlacedBody, called};
+use dem_engine::state::contacts::ContactHistory;
+use dem_engine::state::walls::{Wall, WallContact, WallModel};
 
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, question_size, surface_warnings};

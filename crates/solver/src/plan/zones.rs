@@ -3,10 +3,10 @@
 use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 
-use crate::stages::zones::form_rigid_parts;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::rules::{Carrier, Rejoin, Zone};
+use dem_engine::stages::zones::form_rigid_parts;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::rules::{Carrier, Rejoin, Zone};
 
 /// Makes the bodies of a scene that are bonded in a region only rigid elsewhere.
 ///

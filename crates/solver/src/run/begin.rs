@@ -15,7 +15,7 @@ use super::pictures::{Order, Pictures};
 use super::progress::Progress;
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
-use crate::check::watchdog::Watchdog;
+use dem_engine::check::watchdog::Watchdog;
 use crate::laboratory::watch::Watch;
 use crate::machine::processor_time_s;
 use crate::measure::{Probe, place_watches, probes, renumber as renumber_probes};
@@ -25,8 +25,8 @@ use crate::output::walls::WallOutput;
 use crate::plan::inputs::Inputs;
 use crate::plan::{Plan, PlannedStage};
 use crate::run::snapshot::fingerprint;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
 
 /// A run: the plan that is stepped, and its monitors.
 pub(super) struct Run<'a> {

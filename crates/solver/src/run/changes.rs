@@ -2,7 +2,7 @@
 
 use dem_scene::{Factor, WallMotion};
 
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Time of the last change of a load, support or wall, s; infinite if a wall never stops moving.
 pub(super) fn last_change_s(state: &State) -> f64 {

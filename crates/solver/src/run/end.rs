@@ -21,9 +21,9 @@ use crate::output::sizes::Fragments;
 use crate::output::summary::{
     AdaptiveSummary, PartError, PopulationSummary, SleepSummary, Summary, Verdict,
 };
-use crate::state::clusters::fragments as fragments_of;
-use crate::state::clusters::fragments::Fragment;
-use crate::step::{advance, number_of, stages};
+use dem_engine::state::clusters::fragments as fragments_of;
+use dem_engine::state::clusters::fragments::Fragment;
+use dem_engine::step::{advance, number_of, stages};
 
 impl Run<'_> {
     /// Writes the remaining files and the summary.

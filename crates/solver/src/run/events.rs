@@ -7,12 +7,12 @@ use dem_results::{DischargeRow, Event};
 use super::files::Files;
 use crate::output::fragments::split_text;
 use crate::plan::time_step::StepChoice;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::bodies::bond_of_file;
-use crate::state::clusters::sizes::Discharged;
-use crate::state::events::PopulationEvent;
-use crate::state::events::STARTS_BONDED;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bodies::bond_of_file;
+use dem_engine::state::clusters::sizes::Discharged;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::state::events::STARTS_BONDED;
 
 /// The bonds that broke in this step, by the numbers of the body's file.
 pub(super) fn write_breaks(

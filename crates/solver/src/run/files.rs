@@ -12,8 +12,8 @@ use crate::measure::Probe;
 use crate::output::frames::FrameOrder;
 use crate::output::walls::WallOutput;
 use crate::run::snapshot::Snapshot;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
 
 /// Files that grow during a run.
 pub(super) struct Files<'a> {

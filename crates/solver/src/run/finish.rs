@@ -23,7 +23,7 @@ use crate::output::plots::{plots_of_every_run, write_plots};
 use crate::output::sizes::Fragments;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Data that a finished run leaves next to its last checkpoint, before it writes plots, film, page
 /// and summary.

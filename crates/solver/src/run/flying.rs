@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use dem_io::units::significant;
 
-use crate::check::flight::{Meeting, free_clusters};
-use crate::stages::touching::touching;
-use crate::state::State;
-use crate::state::clusters::Clusters;
-use crate::state::clusters::fragments::Fragment;
+use dem_engine::check::flight::{Meeting, free_clusters};
+use dem_engine::stages::touching::touching;
+use dem_engine::state::State;
+use dem_engine::state::clusters::Clusters;
+use dem_engine::state::clusters::fragments::Fragment;
 
 /// Fraction of the largest kinetic energy in the relative motion of fragments that shows that they
 /// still move apart.

@@ -5,10 +5,10 @@ use dem_io::Result;
 use super::files::Files;
 use super::progress::Progress;
 use crate::output::fragments::rows;
-use crate::stages::clumps::synchronous;
-use crate::stages::totals::synchronous_motions;
-use crate::state::State;
-use crate::state::clusters::fragments;
+use dem_engine::stages::clumps::synchronous;
+use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::state::State;
+use dem_engine::state::clusters::fragments;
 
 /// Besides at the frames, fragments are written when their number has grown by one in this many.
 /// While there are few, every new one is written, and the number of rows written for all splits

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::changes::last_change_s;
 use crate::measure::Probe;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::events::REMOVED;
-use crate::state::loads::factor_at;
-use crate::state::walls::Wall;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::events::REMOVED;
+use dem_engine::state::loads::factor_at;
+use dem_engine::state::walls::Wall;
 
 /// The last part of a run, in which a final value does not change any more.
 const LATE: f64 = 0.1;

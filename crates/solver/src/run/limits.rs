@@ -7,16 +7,16 @@ use dem_scene::Scene;
 use super::events::{change, look_anew_for_near, new_step};
 use super::files::Files;
 use super::progress::Progress;
-use crate::check::limit::{Bound, bound_near, damping_bound_1_s, limit};
-use crate::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
+use dem_engine::check::limit::{Bound, bound_near, damping_bound_1_s, limit};
+use dem_engine::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
 use crate::plan::time_step::{FARTHEST, StepBasis, StepChoice, arriving, impact_step_s};
-use crate::stages::bonds::largest_strain;
-use crate::stages::damping::WEAK;
-use crate::stages::totals::kinetic_energy;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::bodies::called;
-use crate::state::particles::Pose;
+use dem_engine::stages::bonds::largest_strain;
+use dem_engine::stages::damping::WEAK;
+use dem_engine::stages::totals::kinetic_energy;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bodies::called;
+use dem_engine::state::particles::Pose;
 
 /// Interval between checks of the bond strains, in steps.
 const STRAIN_EVERY: u64 = 64;

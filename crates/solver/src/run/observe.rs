@@ -18,15 +18,15 @@ use super::settings::SoFar;
 use crate::measure::{Probe, read_probes, renumber as renumber_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::series;
-use crate::stages::clumps::place_all;
-use crate::stages::ledger::{Balance, CHECKS, balance};
-use crate::stages::stage::Stage;
-use crate::stages::touching::contacts_now;
-use crate::stages::watching::OUTPUT;
-use crate::state::State;
-use crate::state::bodies::renumber;
-use crate::state::events::PopulationEvent;
-use crate::step::number_of;
+use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::ledger::{Balance, CHECKS, balance};
+use dem_engine::stages::stage::Stage;
+use dem_engine::stages::touching::contacts_now;
+use dem_engine::stages::watching::OUTPUT;
+use dem_engine::state::State;
+use dem_engine::state::bodies::renumber;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::step::number_of;
 
 /// Wall time between two checkpoints unless the scene sets an interval.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 
 use crate::geometry::Shape;
 use crate::output::pictures::around_walls;
-use crate::state::State;
-use crate::state::clusters::fragments::Fragment;
+use dem_engine::state::State;
+use dem_engine::state::clusters::fragments::Fragment;
 
 /// Number of places on its way at which a falling piece is tested for being in an outlet.
 const MOMENTS: u32 = 1000;

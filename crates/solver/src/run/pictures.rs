@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 use super::schedule::{due, first_after, next};
 use crate::output::pictures::View;
 use crate::output::pictures::scale::Scale;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
 
 /// Largest memory for pictures of which the film will be made: about 80 of the usual size.
 const MOST_KEPT_BYTES: usize = 128 << 20;

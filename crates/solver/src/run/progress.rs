@@ -10,11 +10,11 @@ use super::pictures::Taken;
 use super::schedule::{OutputSchedule, first_after};
 use super::seen::Seen;
 use super::sums::Sums;
-use crate::check::limit::Bound;
+use dem_engine::check::limit::Bound;
 use crate::laboratory::record::Record;
 use crate::plan::time_step::{StepBasis, StepChoice};
-use crate::stages::ledger::{Balance, over};
-use crate::state::State;
+use dem_engine::stages::ledger::{Balance, over};
+use dem_engine::state::State;
 
 /// Progress of the output of a run, and of its monitors.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

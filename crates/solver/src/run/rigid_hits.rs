@@ -1,6 +1,6 @@
 //! Hits of rigid clumps that would have broken their bonds: see [`Hits`].
 //!
-//! [`Hits`]: crate::state::squeeze::Hits
+//! [`Hits`]: dem_engine::state::squeeze::Hits
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use dem_io::units::significant;
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
-use crate::state::bodies::PlacedBody;
-use crate::state::bonds::Bonds;
-use crate::state::clumps::{Clumps, sphere_volume_m3};
-use crate::state::rigid_parts::RigidParts;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bonds::Bonds;
+use dem_engine::state::clumps::{Clumps, sphere_volume_m3};
+use dem_engine::state::rigid_parts::RigidParts;
 
 /// Number of bodies that warnings name.
 const NAMED: usize = 3;

@@ -3,7 +3,7 @@
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Default number of rows of the time series.
 const ROWS: f64 = 1000.0;

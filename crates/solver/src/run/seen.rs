@@ -10,19 +10,19 @@ use serde::{Deserialize, Serialize};
 use super::flying::{Flying, still_flying};
 use super::rigid_hits::RigidHits;
 use super::taken_in::Taken;
-use crate::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
-use crate::check::laws::{
+use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
+use dem_engine::check::laws::{
     LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, plastic_strain_warning, strain_warning,
 };
-use crate::stages::bonds::{edge_strain, most_strained, most_strained_edge, most_yielded};
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::bodies::called;
-use crate::state::clusters::fragments::Fragment;
-use crate::state::events::PopulationEvent;
-use crate::state::events::REMOVED;
-use crate::state::events::STARTS_BONDED;
-use crate::state::rules::Outlet;
+use dem_engine::stages::bonds::{edge_strain, most_strained, most_strained_edge, most_yielded};
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bodies::called;
+use dem_engine::state::clusters::fragments::Fragment;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::state::events::REMOVED;
+use dem_engine::state::events::STARTS_BONDED;
+use dem_engine::state::rules::Outlet;
 
 /// Fraction of the run at its end in which a breaking bond shows that breakage is not over.
 const LATE: f64 = 0.05;

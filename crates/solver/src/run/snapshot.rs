@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
 use crate::measure;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
 use dem_physics::lanes::instructions;
 
 /// A run between two steps.

@@ -10,22 +10,12 @@
 //! rotations about those axes. If the particle also rotates far about the others, the result
 //! depends on its path, which here is that of the Newton steps.
 
-pub(crate) mod conjugate;
-mod contacts;
-pub(crate) mod degrees_of_freedom;
-pub(crate) mod direct;
-pub(crate) mod displacements;
 pub mod elastic_test;
-mod estimate;
-pub(crate) mod factor;
-pub(crate) mod matrix;
-pub(crate) mod newton;
 pub(crate) mod press;
 mod record;
 mod seat;
 
-pub use estimate::StaticsEstimate;
-pub use newton::{Cause, Equilibrium, Unsolved, equilibrium};
+pub use dem_engine::statics::{Cause, Equilibrium, StaticsEstimate, Unsolved, equilibrium};
 
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -40,15 +30,15 @@ use crate::output::frames::FrameOrder;
 use crate::output::summary::Summary;
 use crate::plan::Plan;
 use crate::run::settings::{RunSettings, SoFar};
-use crate::stages::elastic::elastic_energy;
-use crate::stages::ledger::Balance;
-use crate::state::State;
-use crate::state::particles::Motion;
+use dem_engine::stages::elastic::elastic_energy;
+use dem_engine::stages::ledger::Balance;
+use dem_engine::state::State;
+use dem_engine::state::particles::Motion;
 
-use crate::check::laws::strain_warning;
+use dem_engine::check::laws::strain_warning;
 
 use self::elastic_test::elastic_test;
-use self::newton::{loads, six};
+use dem_engine::statics::newton::{loads, six};
 use self::record::{AtRest, equilibrium_summary};
 
 /// Brings a plan into equilibrium, measures it and writes the results. `tell` is called from time
@@ -192,7 +182,7 @@ fn problem(unsolved: &Unsolved, scene: &Scene) -> Diagnostic {
 /// Sum of mass times position of all particles, kg m. Length 3.
 fn moments(state: &State) -> [f64; 3] {
     let p = &state.particles;
-    crate::stages::chunks::ordered_sums(p.len(), |i| {
+    dem_engine::stages::chunks::ordered_sums(p.len(), |i| {
         let mass_kg = 1.0 / p.motions[i].inverse_mass;
         let [x, y, z, _] = p.poses[i].position_m;
         [x, y, z].map(|x| mass_kg * x)

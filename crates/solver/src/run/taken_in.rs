@@ -7,7 +7,7 @@ use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use crate::output::summary::TakenIn;
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Largest energies that particles took in, by body: for daughters in one impact, or all if they
 /// are summed, J/kg; for a trigger by impact energy, J.
@@ -21,7 +21,7 @@ impl Taken {
     /// Reads the clumps.
     pub(super) fn look(&mut self, state: &State) {
         let rules = &state.model.rules;
-        let by_energy = |trigger: &Option<crate::state::rules::Trigger>| {
+        let by_energy = |trigger: &Option<dem_engine::state::rules::Trigger>| {
             (trigger.as_ref()).is_some_and(|trigger| trigger.impact_energy_j.is_some())
         };
         if !rules.make_daughters() && !rules.triggers.iter().any(by_energy) {

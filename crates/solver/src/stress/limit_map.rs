@@ -11,10 +11,10 @@ use dem_io::{Body, Diagnostic, Result};
 
 use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
 use super::trial::Trial;
-use crate::stages::elastic::elastic_energy;
-use crate::stages::totals::kinetic_energy;
-use crate::state::State;
-use crate::step::step;
+use dem_engine::stages::elastic::elastic_energy;
+use dem_engine::stages::totals::kinetic_energy;
+use dem_engine::state::State;
+use dem_engine::step::step;
 
 /// Smallest distance between the largest stable and the smallest unstable step, relative to the
 /// step.

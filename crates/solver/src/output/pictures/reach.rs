@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::geometry::{Bounds, Shape};
-use crate::state::State;
+use dem_engine::state::State;
 
 /// Planes at the sides are reached if they are not further from where bodies land than this
 /// multiple of the way there and the size of the inlet.
@@ -118,7 +118,7 @@ pub(crate) fn nearest(region: &Bounds, scene: &Bounds) -> Bounds {
 
 /// All planes.
 fn solids(state: &State) -> Vec<Solid> {
-    let solid = |wall: &crate::state::walls::Wall| match &wall.model.shape {
+    let solid = |wall: &dem_engine::state::walls::Wall| match &wall.model.shape {
         Shape::Plane(plane) => Some(Solid {
             point: wall.frame.to_space(plane.point_m()).into(),
             normal: Vector3::from(wall.frame.direction_to_space(plane.normal())),
@@ -177,11 +177,11 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::geometry::{Frame, Plane};
-    use crate::state::bonds::Bonds;
-    use crate::state::particles::Particles;
-    use crate::state::regions::Region;
-    use crate::state::rules::{Feed, Inlet, Outlet};
-    use crate::state::walls::Wall;
+    use dem_engine::state::bonds::Bonds;
+    use dem_engine::state::particles::Particles;
+    use dem_engine::state::regions::Region;
+    use dem_engine::state::rules::{Feed, Inlet, Outlet};
+    use dem_engine::state::walls::Wall;
 
     /// A gate of 0.2 m x 0.2 m, 0.8 m above a floor.
     fn state(velocity_m_s: [f64; 3], planes: &[([f64; 3], [f64; 3])]) -> State {

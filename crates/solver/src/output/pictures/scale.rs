@@ -10,10 +10,10 @@ use dem_scene::ColourBy;
 
 use crate::measure::{DynamicUtilisation, dynamic_utilisations};
 use crate::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::clusters::fragments::fragment_masses_kg;
-use crate::state::events::REMOVED;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clusters::fragments::fragment_masses_kg;
+use dem_engine::state::events::REMOVED;
 
 /// A scale of colours, the same in all pictures of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]

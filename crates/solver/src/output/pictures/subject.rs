@@ -8,11 +8,11 @@ use dem_pictures::{Ball, Surface};
 use super::reach::{Reach, nearest};
 use super::scale::Scale;
 use crate::geometry::{Bounds, Shape};
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::clusters::Cluster;
-use crate::state::regions::Region;
-use crate::state::walls::Wall;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clusters::Cluster;
+use dem_engine::state::regions::Region;
+use dem_engine::state::walls::Wall;
 
 /// Distance to which planes are drawn beyond the particles, as a fraction of the width of these.
 const ROOM: f64 = 0.55;

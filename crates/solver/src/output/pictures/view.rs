@@ -7,10 +7,10 @@ use super::region_names::write_names;
 use super::scale::Scale;
 use super::subject::{around, balls, outlines_of_regions, points_of, regions_near, surfaces};
 use crate::geometry::Bounds;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::particles::Pose;
-use crate::state::regions::Region;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::particles::Pose;
+use dem_engine::state::regions::Region;
 
 /// Width and height of a picture, px.
 pub(crate) const SIZE_PX: [u32; 2] = [960, 540];

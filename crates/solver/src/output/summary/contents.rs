@@ -16,7 +16,7 @@ use crate::output::fragments::FragmentSummary;
 use crate::output::sizes::Sizes;
 use crate::physics::bond::failure::CauseCounts;
 use crate::plan::inputs::Inputs;
-use crate::stages::ledger::Balance;
+use dem_engine::stages::ledger::Balance;
 
 /// Program and version.
 const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use crate::stages::ledger::over;
-use crate::state::State;
-use crate::state::bodies::PlacedBody;
-use crate::state::sleep::Sleep;
+use dem_engine::stages::ledger::over;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::sleep::Sleep;
 
 /// Number of bodies that are named; the others are counted.
 const NAMED: usize = 3;

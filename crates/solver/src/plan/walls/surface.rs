@@ -9,8 +9,8 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::{Wall as SceneWall, WallShape};
 
 use crate::geometry::{Bounds, Mesh, Shape};
-use crate::state::State;
-use crate::state::particles::Pose;
+use dem_engine::state::State;
+use dem_engine::state::particles::Pose;
 
 /// A surface larger than all bodies together by this factor raises the question of its unit.
 const TOO_LARGE: f64 = 300.0;

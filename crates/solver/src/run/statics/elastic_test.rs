@@ -4,13 +4,13 @@ use dem_io::{Diagnostic, Result};
 use dem_laboratory::Line;
 use dem_scene::Scene;
 
-use super::newton::{Cause, Equilibrium};
+use dem_engine::statics::newton::{Cause, Equilibrium};
 use super::press::{NotPressed, press};
 use crate::laboratory::evaluate::{TestResult, elastic_figures};
 use crate::laboratory::figure::Figure;
 use crate::laboratory::record::{Loading, Row};
 use crate::plan::test_setup::Setup;
-use crate::state::State;
+use dem_engine::state::State;
 
 /// What a test says without steps: everything but its strength.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,19 +4,19 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
-use super::contacts::{MovingWalls, WallForce, add_contacts, wall_forces};
-use super::degrees_of_freedom::DegreesOfFreedom;
-use super::factor::Factor;
-use super::matrix::Matrix;
-use super::newton::{
+use dem_engine::statics::contacts::{MovingWalls, WallForce, add_contacts, wall_forces};
+use dem_engine::statics::degrees_of_freedom::DegreesOfFreedom;
+use dem_engine::statics::factor::Factor;
+use dem_engine::statics::matrix::Matrix;
+use dem_engine::statics::newton::{
     Cause, Equilibrium, Step, cause, largest_bond_force_n, largest_net_n, set_bond_wrenches, six,
 };
 use super::seat::seat;
 use crate::laboratory::record::{Loading, Row};
 use crate::physics::rigid::turn;
 use crate::plan::test_setup::Setup;
-use crate::state::State;
-use crate::state::particles::Pose;
+use dem_engine::state::State;
+use dem_engine::state::particles::Pose;
 
 /// Loads at which the equilibrium is found, as fractions of the largest: the range in which the
 /// stiffness of a test is measured.

@@ -7,7 +7,7 @@ use dem_io::body::mass::BodyMass;
 use dem_results::{EventFile, FrameFiles, ResultsFolder, SeriesFile};
 use dem_scene::Scene;
 
-use super::newton::Equilibrium;
+use dem_engine::statics::newton::Equilibrium;
 use crate::machine::machine;
 use crate::measure::Probe;
 use crate::output::equilibrium::EquilibriumSummary;
@@ -20,10 +20,10 @@ use crate::physics::bond::failure::CauseCounts;
 use crate::plan::inputs::Inputs;
 use crate::run::finish::End;
 use crate::run::settings::RunSettings;
-use crate::stages::bonds::most_strained_edge;
-use crate::stages::ledger::Balance;
-use crate::state::State;
-use crate::state::clusters::fragments as fragments_of;
+use dem_engine::stages::bonds::most_strained_edge;
+use dem_engine::stages::ledger::Balance;
+use dem_engine::state::State;
+use dem_engine::state::clusters::fragments as fragments_of;
 
 /// Summary of an equilibrium with this number of bonds beyond their strength.
 pub(super) fn equilibrium_summary(

@@ -3,10 +3,10 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use super::contacts::{MovingWalls, wall_forces};
+use dem_engine::statics::contacts::{MovingWalls, wall_forces};
 use crate::physics::rigid::turn;
-use crate::state::State;
-use crate::state::particles::Pose;
+use dem_engine::state::State;
+use dem_engine::state::particles::Pose;
 
 /// Advance of the walls in a step of the approach, in mean radii.
 const ADVANCE: f64 = 0.01;

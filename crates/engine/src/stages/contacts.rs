@@ -1,0 +1,600 @@
+//! Contact forces between particles.
+
+mod beside;
+mod close;
+mod input;
+mod stored;
+
+pub(super) use self::beside::list_within;
+pub(crate) use self::stored::pairs_adhesion_j;
+pub use self::stored::{
+    contact_energy_j, elastic_energy_j, lost_j, overlap_m, pair_force_n, touch_point_m,
+};
+
+pub(in crate::stages) use self::stored::{StoredEnergy, StoredForce};
+
+use self::beside::hold_origins;
+use self::close::{close_m, look};
+use self::input::StepInput;
+use super::bonds::any_bond;
+use super::stage::{NO_SAVING, Need, Stage};
+use dem_physics::contact::assembly::{StoredContact, assemble};
+use dem_physics::contact::kinematics::{ContactSphere, contact_kinematics};
+use dem_physics::contact::law::{ContactWork, Rolling};
+use dem_physics::contact::rolling::RollingFriction;
+use dem_physics::contact::{ContactSprings, Damped, NormalLaw};
+use dem_physics::number::Vec3;
+use crate::stages::blocks::{fetch_soon_of, rows, vectors};
+use crate::stages::neighbours::near_pairs;
+use crate::state::State;
+use crate::state::contacts::{ContactHistory, ContactPartition, Contacts};
+use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use dem_physics::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
+
+/// Contacts between particles.
+pub const CONTACTS: Stage = Stage {
+    name: "particle contacts",
+    within: None,
+    need: |state, scene| {
+        let pieces = state.clusters.as_ref().map_or(0, |c| c.living().count());
+        let why_not = if state.contacts.is_some() {
+            "there is one body, and no bond can break"
+        } else if can_break(state) || pieces > 1 || scene.bodies.len() > 1 {
+            "the scene has no [contacts]: bodies and pieces pass through each other"
+        } else {
+            "nothing can touch"
+        };
+        Need::of(
+            can_meet(state),
+            || {
+                let s = if pieces == 1 { "" } else { "s" };
+                format!("{pieces} piece{s} at the start")
+            },
+            why_not,
+        )
+    },
+    bytes: |state| {
+        state.contacts.as_ref().map_or(0, |c| {
+            let of_partitions = c.scratch.partitions.iter().map(|partition| {
+                size_of_val(&partition.border[..])
+                    + size_of_val(&partition.border_histories[..])
+                    + partition.was_close.len()
+            });
+            size_of_val(&c.histories[..])
+                + size_of_val(&c.scratch.former_histories[..])
+                + of_partitions.sum::<usize>()
+        })
+    },
+    saving: NO_SAVING,
+};
+
+/// Overlaps of fragments as they separate.
+pub const RELAXATION: Stage = Stage {
+    name: "relaxation",
+    within: Some(CONTACTS.name),
+    need: |state, scene| {
+        let relaxes = state
+            .contacts
+            .as_ref()
+            .is_some_and(|contacts| contacts.model.relaxes);
+        let why_not = if scene.relaxation.enabled {
+            "no pieces part"
+        } else {
+            "switched off: pieces that part overlapping fly apart"
+        };
+        Need::of(
+            can_meet(state) && relaxes && can_break(state),
+            || "overlaps of pieces that part are where their contact begins".to_owned(),
+            why_not,
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Rolling friction of contacts.
+pub const ROLLING: Stage = Stage {
+    name: "rolling friction",
+    within: Some(CONTACTS.name),
+    need: |state, scene| {
+        let mut contacts = scene.contacts.iter();
+        let rolls = contacts.any(|c| c.rolling != dem_scene::Rolling::None);
+        Need::of(
+            state.contacts.is_some() && rolls,
+            || "materials have it".to_owned(),
+            "no materials have it",
+        )
+    },
+    bytes: |_| 0,
+    saving: NO_SAVING,
+};
+
+/// Whether particles of different pieces can touch each other.
+fn can_meet(state: &State) -> bool {
+    state
+        .contacts
+        .as_ref()
+        .is_some_and(|contacts| !contacts.model.alone)
+}
+
+fn can_break(state: &State) -> bool {
+    state.model.rules.make_daughters() || any_bond(state, |rule| rule.criteria.is_some())
+}
+
+/// Adds the contact forces between particles to the wrenches. Returns the number of pairs in
+/// contact.
+pub(crate) fn compute_contacts(state: &mut State) -> usize {
+    match &mut state.contacts {
+        Some(contacts) if !contacts.model.alone => {
+            hold_origins(contacts, &state.bonds);
+            contact_wrenches(contacts, &mut state.particles, state.previous_time_step_s);
+            contacts
+                .scratch
+                .partitions
+                .iter()
+                .map(|partition| partition.computed)
+                .sum()
+        }
+        _ => 0,
+    }
+}
+
+/// Number of pairs listed in this step whose law begins at an overlap.
+pub(crate) fn count_relaxing(state: &mut State) -> usize {
+    state.scratch.events.work.relaxing
+}
+
+/// Number of touching contacts with rolling friction.
+pub(crate) fn count_rolling(state: &mut State) -> usize {
+    let partitions = state
+        .contacts
+        .iter()
+        .flat_map(|contacts| &contacts.scratch.partitions);
+    partitions.map(|partition| partition.rolled).sum()
+}
+
+/// Prefetch distance of second particles, in contacts.
+const SOON: usize = 16;
+
+/// Adds the contact forces to the wrenches, records the energy lost to friction and damping, and
+/// updates the contact histories, after a step of `dt`, s, in which the particles moved with their
+/// present velocities.
+pub fn contact_wrenches(contacts: &mut Contacts, particles: &mut Particles, dt: f64) {
+    let checks_all = contacts.scratch.close_skin_left_m <= 0.0;
+    if checks_all {
+        contacts.scratch.close_m = close_m(contacts);
+        contacts.scratch.close_skin_left_m = 0.45 * contacts.scratch.close_m;
+    }
+    let mut partitions = std::mem::take(&mut contacts.scratch.partitions);
+    let mut histories = std::mem::take(&mut contacts.histories);
+    let mut lost_j = std::mem::take(&mut contacts.lost_j);
+    for partition in &mut partitions {
+        partition.excessive_overlap = None;
+        // Partitions update their own histories while others still need the previous ones.
+        if checks_all {
+            let remembered = partition.border.iter().map(|&at| histories[at as usize]);
+            partition.border_histories.clear();
+            partition.border_histories.extend(remembered);
+        } else {
+            for n in partition.close.iter().flat_map(|[of_border, _]| of_border) {
+                let n = *n as usize;
+                partition.border_histories[n] = histories[partition.border[n] as usize];
+            }
+        }
+    }
+    let (known, p) = (&*contacts, &mut *particles);
+    let scene = StepInput {
+        contacts: known,
+        poses: &p.poses,
+        motions: &p.motions,
+        checks_all,
+        dt,
+    };
+    let books = PartitionOutput {
+        histories: &mut histories,
+        wrenches: &mut p.wrenches,
+        lost_j: &mut lost_j,
+    };
+    for_each(&mut partitions, books, &scene);
+    contacts.scratch.excessive_overlap = partitions
+        .iter()
+        .filter_map(|partition| partition.excessive_overlap)
+        .min();
+    contacts.scratch.partitions = partitions;
+    contacts.histories = histories;
+    contacts.lost_j = lost_j;
+}
+
+/// Searches again for near pairs, with surfaces closer than `skin_m`. `clusters`: a number for each
+/// particle; particles with the same number do not touch each other.
+pub fn list_contacts(
+    contacts: &mut Contacts,
+    clusters: &[u32],
+    particles: &Particles,
+    skin_m: f64,
+) {
+    find_mean_radius(contacts, particles, 0);
+    let pairs = near_pairs(&particles.poses, clusters, skin_m);
+    let poses = &particles.poses;
+    let relaxes = contacts.model.relaxes;
+    contacts.relist(pairs, particles.len(), |pair| {
+        if relaxes { overlap_m(poses, pair) } else { 0.0 }
+    });
+    contacts.skin_left_m = 0.5 * skin_m;
+}
+
+/// Finds the mean radius of the particles. The sum of the first `known` is the one that was found
+/// last.
+pub(super) fn find_mean_radius(contacts: &mut Contacts, particles: &Particles, known: usize) {
+    let radii_m = &mut contacts.scratch.radii_m;
+    if known == 0 {
+        *radii_m = 0.0;
+    }
+    let new = particles.poses[known..].iter().map(Pose::radius_m);
+    *radii_m = new.fold(*radii_m, |sum, radius_m| sum + radius_m);
+    contacts.scratch.mean_radius_m = *radii_m / particles.len().max(1) as f64;
+}
+
+/// Replaces the list of pairs, and divides the work anew.
+pub(super) fn relist(contacts: &mut Contacts, pairs: Vec<[u32; 2]>, state: &State) {
+    let poses = &state.particles.poses;
+    let relaxes = contacts.model.relaxes;
+    let clusters = state.clusters.as_ref();
+    if let Some(clusters) = clusters {
+        contacts.islands.join_pairs(pairs.iter().copied(), clusters);
+    }
+    let has_origin = |pair| relaxes || clusters.is_some_and(|clusters| clusters.is_within(pair));
+    contacts.relist(pairs, poses.len(), |pair| {
+        let overlap_m = overlap_m(poses, pair);
+        if overlap_m > 0.0 && has_origin(pair) {
+            overlap_m
+        } else {
+            0.0
+        }
+    });
+}
+
+/// Output of a partition: the histories of its own contacts, and data of its own particles.
+struct PartitionOutput<'a> {
+    histories: &'a mut [ContactHistory],
+    wrenches: &'a mut [Wrench],
+    lost_j: &'a mut [[f64; 2]],
+}
+
+impl<'a> PartitionOutput<'a> {
+    fn split(self, contacts: usize, particles: usize) -> [Self; 2] {
+        let (histories, other_histories) = self.histories.split_at_mut(contacts);
+        let (wrenches, other_wrenches) = self.wrenches.split_at_mut(particles);
+        let (lost_j, other_lost_j) = self.lost_j.split_at_mut(particles);
+        [
+            Self {
+                histories,
+                wrenches,
+                lost_j,
+            },
+            Self {
+                histories: other_histories,
+                wrenches: other_wrenches,
+                lost_j: other_lost_j,
+            },
+        ]
+    }
+}
+
+/// Works on all partitions, on as many threads as there are.
+fn for_each(
+    partitions: &mut [ContactPartition],
+    books: PartitionOutput<'_>,
+    scene: &StepInput<'_>,
+) {
+    match partitions {
+        [] => {}
+        [partition] => with_most_lanes(PartitionWork {
+            partition,
+            books,
+            scene,
+        }),
+        _ => {
+            let (left, right) = partitions.split_at_mut(partitions.len() / 2);
+            let [of_left, of_right] = books.split(
+                right[0].own.start - left[0].own.start,
+                right[0].particles.start - left[0].particles.start,
+            );
+            rayon::join(
+                || for_each(left, of_left, scene),
+                || for_each(right, of_right, scene),
+            );
+        }
+    }
+}
+
+/// The work on one partition.
+struct PartitionWork<'a> {
+    partition: &'a mut ContactPartition,
+    books: PartitionOutput<'a>,
+    scene: &'a StepInput<'a>,
+}
+
+impl LaneWork for PartitionWork<'_> {
+    #[inline(always)]
+    fn with<T: Lanes>(mut self, proof: T::Proof) {
+        if self.scene.checks_all {
+            look::<T>(proof, self.partition, self.scene);
+        }
+        (self.partition.computed, self.partition.rolled) = (0, 0);
+        for kind in 0..self.scene.contacts.model.kinds.len() {
+            let before = self.partition.computed;
+            let contact = self.scene.contacts.model.kinds[kind];
+            let work = KindWork::<T> {
+                work: &mut self,
+                proof,
+                kind,
+            };
+            contact.with(|number| T::all(proof, number), work);
+            if self.scene.contacts.model.kinds[kind].rolling != Rolling::Free {
+                self.partition.rolled += self.partition.computed - before;
+            }
+        }
+    }
+}
+
+/// The work on the contacts of one type in a partition.
+struct KindWork<'a, 'b, T: Lanes> {
+    work: &'a mut PartitionWork<'b>,
+    proof: T::Proof,
+    kind: usize,
+}
+
+impl<T: Lanes> ContactWork<T> for KindWork<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with(self, law: &impl NormalLaw<T>, rolling: &impl RollingFriction<T>) {
+        self.work
+            .of_kind::<T, _>(self.proof, self.kind, law, rolling);
+    }
+}
+
+impl PartitionWork<'_> {
+    /// The contacts of one type, border contacts first, so that each particle gets its contacts in
+    /// their order.
+    #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "lanes are gone through")]
+    fn of_kind<T: Lanes, L: NormalLaw<T>>(
+        &mut self,
+        proof: T::Proof,
+        kind: usize,
+        law: &L,
+        rolling: &impl RollingFriction<T>,
+    ) {
+        let Self {
+            partition,
+            books,
+            scene,
+        } = self;
+        let pairs = &scene.contacts.pairs;
+        let (own, particles) = (&partition.own, &partition.particles);
+        let [of_border, close] = &partition.close[kind];
+        for some in of_border.chunks(T::COUNT) {
+            let number = |lane: usize| some[lane.min(some.len() - 1)] as usize;
+            let pair = |lane: usize| pairs[partition.border[number(lane)] as usize];
+            let history = |lane: usize| &partition.border_histories[number(lane)];
+            let met = scene.meet::<T, _, _>(proof, law, rolling, pair, history);
+            for lane in 0..some.len() {
+                let b = pair(lane)[1] as usize - particles.start;
+                met.forces.add_to_b(lane, &mut books.wrenches[b]);
+            }
+        }
+        let histories = &mut books.histories[..];
+        let wrenches = &mut books.wrenches[..];
+        let lost_j = &mut books.lost_j[..];
+        let mut excessive_overlap = partition.excessive_overlap;
+        let mut computed = 0;
+        for (n, some) in close.chunks(T::COUNT).enumerate() {
+            let soon = n * T::COUNT + SOON;
+            for &at in close.get(soon..soon + T::COUNT).unwrap_or_default() {
+                let b = pairs[at as usize][1] as usize;
+                fetch_soon_of(scene.poses, b);
+                fetch_soon_of(scene.motions, b);
+                fetch_soon_of(histories, at as usize - own.start);
+                fetch_soon_of(wrenches, b.wrapping_sub(particles.start));
+            }
+            let (mut numbers, mut ends) = ([0; MOST], [[0; 2]; MOST]);
+            for lane in 0..T::COUNT {
+                numbers[lane] = some[lane.min(some.len() - 1)] as usize;
+                ends[lane] = pairs[numbers[lane]];
+            }
+            let met = scene.meet::<T, _, _>(
+                proof,
+                law,
+                rolling,
+                |lane| ends[lane],
+                |lane| &histories[numbers[lane] - own.start],
+            );
+            if met.excessive_overlap != 0 {
+                // Spare lanes repeat the last contact.
+                let pair = ends[met.excessive_overlap.trailing_zeros() as usize];
+                excessive_overlap = Some(excessive_overlap.map_or(pair, |other| other.min(pair)));
+            }
+            let touched = met.touched & (0xff >> (MOST - some.len()));
+            computed += touched.count_ones() as usize;
+            for lane in 0..T::COUNT {
+                if touched >> lane & 1 == 1 {
+                    let a = ends[lane][0] as usize - particles.start;
+                    lost_j[a][0] += met.friction_j[lane];
+                    lost_j[a][1] += met.damping_j[lane];
+                    let history = &mut histories[numbers[lane] - own.start];
+                    history.tangential = met.tangential[lane];
+                    history.damping = met.damped[lane];
+                    if let Some([rolled, rolling_damped]) = &met.rolled {
+                        history.rolling = rolled[lane];
+                        history.rolling_damping = rolling_damped[lane];
+                    }
+                    if L::ATTRACTS && history.ends_with_a_jump() {
+                        let own = numbers[lane] - own.start;
+                        partition.was_close[own / 8] |= 1 << (own % 8);
+                    }
+                }
+            }
+            for lane in 0..T::COUNT {
+                if touched >> lane & 1 == 1 {
+                    let [a, b] = ends[lane].map(|end| (end as usize).wrapping_sub(particles.start));
+                    met.forces.add_to_a(lane, &mut wrenches[a]);
+                    if b < wrenches.len() {
+                        met.forces.add_to_b(lane, &mut wrenches[b]);
+                    }
+                }
+            }
+        }
+        partition.computed += computed;
+        partition.excessive_overlap = excessive_overlap;
+    }
+}
+
+/// Result for contacts, row by row.
+struct ContactOutput {
+    tangential: [[f64; 4]; MOST],
+    damped: [[f64; 4]; MOST],
+    /// Spring and damping of rolling. None: no rolling friction.
+    rolled: Option<[[[f64; 4]; MOST]; 2]>,
+    friction_j: [f64; MOST],
+    damping_j: [f64; MOST],
+    forces: Forces,
+    /// A bit for each contact, lowest first: whether the two overlap, or did in the previous step.
+    touched: u8,
+    /// The same: whether the two overlap by more than the radius of the smaller one.
+    excessive_overlap: u8,
+}
+
+/// Forces on the second ends of contacts and torques on both ends, row by row: x, y, z and an
+/// unused fourth number.
+struct Forces {
+    on_b: [[f64; 4]; MOST],
+    torques: [[[f64; 4]; MOST]; 2],
+}
+
+impl Forces {
+    #[inline(always)]
+    fn new<T: Lanes>(force_on_b: Vec3<T>, torques: [Vec3<T>; 2]) -> Self {
+        Self {
+            on_b: rows(force_on_b),
+            torques: [rows(torques[0]), rows(torques[1])],
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_a(&self, lane: usize, wrench: &mut Wrench) {
+        for k in 0..4 {
+            wrench.force_n[k] -= self.on_b[lane][k];
+            wrench.torque_n_m[k] += self.torques[0][lane][k];
+        }
+    }
+
+    #[inline(always)]
+    fn add_to_b(&self, lane: usize, wrench: &mut Wrench) {
+        for k in 0..4 {
+            wrench.force_n[k] += self.on_b[lane][k];
+            wrench.torque_n_m[k] += self.torques[1][lane][k];
+        }
+    }
+}
+
+impl StepInput<'_> {
+    /// Contact forces on the particles, one contact for each lane.
+    #[inline(always)]
+    fn meet<'a, T: Lanes, L: NormalLaw<T>, R: RollingFriction<T>>(
+        &self,
+        proof: T::Proof,
+        law: &L,
+        rolling: &R,
+        pair: impl Fn(usize) -> [u32; 2],
+        history: impl Fn(usize) -> &'a ContactHistory,
+    ) -> ContactOutput {
+        let particles = (self.poses, self.motions);
+        let (place_a, a) = contact_sphere::<T>(proof, particles, |lane| pair(lane)[0] as usize);
+        let (place_b, b) = contact_sphere::<T>(proof, particles, |lane| pair(lane)[1] as usize);
+        let before = stored_contact::<T, R>(proof, history);
+        let touch = contact_kinematics(place_b - place_a, [a, b], self.dt);
+        let (overlap_m, origin_m) = (before.springs.overlap_m, before.origin_m);
+        let nothing = overlap_m.zero();
+        let mut touched =
+            touch.overlap_m.above(nothing) | overlap_m.above(nothing) | origin_m.above(nothing);
+        if L::ATTRACTS {
+            // A jump of the attraction is to be counted back.
+            touched |= before.damped.force_n.square().above(nothing);
+        }
+        let least_overlap = self.contacts.model.least_overlap;
+        let met = assemble(law, rolling, &touch, &before, least_overlap, self.dt);
+        let StoredContact {
+            springs,
+            damped,
+            origin_m,
+        } = met.remembered;
+        let Vec3(sx, sy, sz) = springs.tangential_m;
+        let Vec3(dx, dy, dz) = damped.force_n;
+        ContactOutput {
+            touched,
+            excessive_overlap: met.overlap_m.above(a.radius_m.minimum(b.radius_m)),
+            tangential: T::rows([sx, sy, sz, springs.overlap_m]),
+            damped: T::rows([dx, dy, dz, origin_m]),
+            rolled: R::REMEMBERS.then(|| [rows(springs.rolling_rad), rows(damped.moment_n_m)]),
+            friction_j: met.friction_j.values(),
+            damping_j: met.damping_j.values(),
+            forces: Forces::new(met.response.force_on_b, met.torques),
+        }
+    }
+}
+
+/// One history for each lane.
+#[inline(always)]
+pub(super) fn stored_contact<'a, T: Lanes, R: RollingFriction<T>>(
+    proof: T::Proof,
+    history: impl Fn(usize) -> &'a ContactHistory,
+) -> StoredContact<T> {
+    let [sx, sy, sz, overlap_m] = T::columns(proof, |lane| history(lane).tangential);
+    let [dx, dy, dz, origin_m] = T::columns(proof, |lane| history(lane).damping);
+    let nothing = overlap_m.zero();
+    let none = Vec3(nothing, nothing, nothing);
+    let (rolling_rad, moment_n_m) = if R::REMEMBERS {
+        (
+            vectors(proof, |lane| history(lane).rolling),
+            vectors(proof, |lane| history(lane).rolling_damping),
+        )
+    } else {
+        (none, none)
+    };
+    StoredContact {
+        springs: ContactSprings {
+            tangential_m: Vec3(sx, sy, sz),
+            rolling_rad,
+            overlap_m,
+        },
+        damped: Damped {
+            force_n: Vec3(dx, dy, dz),
+            moment_n_m,
+        },
+        origin_m,
+    }
+}
+
+/// One particle for each lane, and its centre, m.
+#[inline(always)]
+pub(super) fn contact_sphere<T: Lanes>(
+    proof: T::Proof,
+    (poses, motions): (&[Pose], &[Motion]),
+    particle: impl Fn(usize) -> usize,
+) -> (Vec3<T>, ContactSphere<T>) {
+    let [x, y, z, radius_m] = T::columns(proof, |lane| poses[particle(lane)].position_m);
+    let [vx, vy, vz, inverse_mass] =
+        T::columns(proof, |lane| motions[particle(lane)].velocity_row());
+    let [wx, wy, wz, inverse_inertia] =
+        T::columns(proof, |lane| motions[particle(lane)].spin_row());
+    let ball = ContactSphere {
+        velocity_m_s: Vec3(vx, vy, vz),
+        spin_rad_s: Vec3(wx, wy, wz),
+        radius_m,
+        inverse_mass_per_kg: inverse_mass,
+        inverse_inertia_per_kg_m2: inverse_inertia,
+    };
+    (Vec3(x, y, z), ball)
+}

@@ -1,0 +1,686 @@
+//! Walls: their motion, and their contacts with particles.
+
+mod driven;
+pub mod joints;
+mod meeting;
+
+use dem_scene::WallMotion;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+use self::driven::{bar_velocity_m_s, weight_velocity_m_s};
+use self::joints::join_walls;
+use self::meeting::Place;
+use super::chunks::{chunk_of, chunks_of, in_tasks};
+use super::stage::{NO_SAVING, Need, Stage};
+use dem_physics::geometry::{Frame, Shape, Touch};
+use dem_physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
+use dem_physics::contact::law::ContactKind;
+use dem_physics::number::Vec3;
+use dem_physics::rigid::turn;
+use crate::stages::contacts::{StoredEnergy, StoredForce};
+use crate::state::State;
+use crate::state::contacts::{ContactHistory, Contacts};
+use crate::state::loads::factor_at;
+use crate::state::meetings::{Meeting, Meetings, Met};
+use crate::state::particles::{Particles, Pose};
+use crate::state::walls::{Wall, WallContact, WallLoad};
+
+/// Contacts with walls, and their motion.
+pub const WALLS: Stage = Stage {
+    name: "walls",
+    within: None,
+    need: |state, _| {
+        let walls = state.walls.len();
+        Need::of(walls > 0, || format!("{walls}"), "no walls")
+    },
+    bytes: |state| {
+        let of_wall = |wall: &Wall| {
+            size_of_val(wall) + size_of_val(&wall.near[..]) + size_of_val(&wall.touching[..])
+        };
+        state.walls.iter().map(of_wall).sum()
+    },
+    saving: NO_SAVING,
+};
+
+/// Finds where particles touch walls, or did in the previous step. Walls that meet act as one
+/// surface.
+pub(crate) fn find_wall_contacts(state: &mut State) -> usize {
+    if state.contacts.is_some() {
+        let (walls, particles) = (&state.walls, &state.particles);
+        let meetings = set_chunks(walls, &mut state.scratch.meetings);
+        let find = |some: &mut Meetings| find_meetings(&walls[some.of.0], particles, some);
+        for_each(meetings, near_walls(walls), find);
+        if meetings.iter().any(|some| some.of.0 != meetings[0].of.0) {
+            join_walls(walls, meetings, particles, &mut state.scratch.joints);
+        }
+    }
+    0
+}
+
+/// Adds the wall forces to the wrenches. Returns the number of particles near walls.
+pub(crate) fn compute_wall_contacts(state: &mut State) -> usize {
+    if let Some(contacts) = &mut state.contacts {
+        wall_wrenches(
+            &mut state.walls,
+            contacts,
+            &mut state.particles,
+            &mut state.scratch.meetings,
+            state.previous_time_step_s,
+        );
+        if let Some(clusters) = (state.clusters.as_ref()).filter(|_| contacts.islands.is_open()) {
+            let met = state.scratch.meetings[..chunks(&state.walls)].iter();
+            for met in met.flat_map(|some| &some.met) {
+                let piece = clusters.of_particle[met.touch.particle as usize];
+                (contacts.islands).lose_at_walls(piece, met.lost_j[0] + met.lost_j[1]);
+            }
+        }
+    }
+    near_walls(&state.walls)
+}
+
+/// Number of particles near walls.
+fn near_walls(walls: &[Wall]) -> usize {
+    walls.iter().map(|wall| wall.near.len()).sum()
+}
+
+/// Number of chunks of the particles near walls.
+pub(super) fn chunks(walls: &[Wall]) -> usize {
+    let of_wall = |wall: &Wall| wall.near.len().div_ceil(CHUNK);
+    walls.iter().map(of_wall).sum()
+}
+
+/// Velocity of a wall at a point, m/s, without that of its surface along itself.
+pub(super) fn velocity_at(wall: &Wall, point: &Vector3<f64>) -> Vector3<f64> {
+    let [velocity, spin] = [wall.velocities_m_s[0], wall.spins_rad_s[0]].map(Vector3::from);
+    velocity + spin.cross(&(point - Vector3::from(wall.frame.position_m)))
+}
+
+/// Determines the motion of the walls in the coming drift.
+pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
+    let steps_s = state.steps_s();
+    plan_motions(&mut state.walls, state.time_s, steps_s);
+    0
+}
+
+/// Particles handled by one task.
+const CHUNK: usize = 256;
+/// Fewer particles near walls than this are left to one thread, which has them in its cache.
+const FEW: usize = 4 * CHUNK;
+/// A contact that moves to another flat part of a wall keeps its history if the cosine of the angle
+/// between the normals exceeds this.
+pub(super) const SAME_WAY: f64 = 0.9;
+/// Fraction of the deviation that a servo corrects in a step.
+const SERVO: f64 = 0.1;
+
+/// Lists the particles whose surface is less than `skin_m` from a wall, without sleeping ones.
+/// `of_tasks`: kept for their memory.
+pub(crate) fn list_near(
+    walls: &mut [Wall],
+    particles: &Particles,
+    skin_m: f64,
+    of_tasks: &mut Vec<Vec<u32>>,
+) {
+    for wall in walls {
+        let mut near = std::mem::take(&mut wall.near);
+        find_near(wall, particles, skin_m, of_tasks, &mut near);
+        wall.near = near;
+    }
+}
+
+/// The same for one wall.
+fn find_near(
+    wall: &Wall,
+    particles: &Particles,
+    skin_m: f64,
+    of_tasks: &mut Vec<Vec<u32>>,
+    all_near: &mut Vec<u32>,
+) {
+    let is_near = nearness(wall, skin_m);
+    let is_near = |&i: &usize| !particles.sleeps(i) && is_near(&particles.poses[i]);
+    let count = chunks_of(particles.len()).len();
+    let of_chunks = in_tasks(count, of_tasks, |chunk, near| {
+        near.clear();
+        if !particles.asleep.is_whole(chunk) {
+            let some = chunk_of(chunk, particles.len());
+            near.extend(some.filter(is_near).map(|i| i as u32));
+        }
+    });
+    all_near.clear();
+    for near in of_chunks {
+        all_near.extend_from_slice(near);
+    }
+}
+
+/// Test whether the surface of a sphere is less than `skin_m` from a wall.
+pub(crate) fn nearness(wall: &Wall, skin_m: f64) -> impl Fn(&Pose) -> bool + Sync {
+    let is_reached = reaches(wall);
+    move |pose| is_reached(pose.place().into(), pose.radius_m() + skin_m)
+}
+
+/// A point of a wall, m, and the unit vector out of it, if it is a plane.
+pub(crate) fn plane_in_space(wall: &Wall) -> Option<[Vector3<f64>; 2]> {
+    let Shape::Plane(plane) = &wall.model.shape else {
+        return None;
+    };
+    let point = wall.frame.to_space(plane.point_m());
+    let normal = wall.frame.direction_to_space(plane.normal());
+    Some([point.into(), normal.into()])
+}
+
+/// Test whether a wall is nearer to a point than a distance, m.
+pub(crate) fn reaches(wall: &Wall) -> impl Fn([f64; 3], f64) -> bool + Sync {
+    let bounds = wall.model.shape.bounds();
+    let in_space = wall.bounds_in_space();
+    let to_wall = wall.frame.all_to_wall();
+    let plane = plane_in_space(wall);
+    move |point, reach_m| {
+        // A plane is infinite: it needs neither box nor frame.
+        if let Some([on_plane, normal]) = &plane {
+            return (Vector3::from(point) - on_plane).dot(normal) < reach_m;
+        }
+        if !in_space.is_near(&point, reach_m) {
+            return false;
+        }
+        let centre = to_wall(point);
+        bounds.is_near(&centre, reach_m) && wall.model.shape.is_within(centre, reach_m)
+    }
+}
+
+/// Adds the wall forces to the wrenches after a step of `dt`, s, and records their reactions on the
+/// walls: at the `meetings` that have been found in this step.
+pub(crate) fn wall_wrenches(
+    walls: &mut [Wall],
+    contacts: &mut Contacts,
+    particles: &mut Particles,
+    meetings: &mut [Meetings],
+    dt: f64,
+) {
+    let meetings = &mut meetings[..chunks(walls)];
+    let meet = |meetings: &mut Meetings| {
+        let wall = &walls[meetings.of.0];
+        let place = Place {
+            wall,
+            walls,
+            olds: &wall.touching,
+            particles,
+            materials: &contacts.materials,
+            least_overlap: contacts.model.least_overlap,
+            dt,
+        };
+        place.meet(&meetings.all, &mut meetings.met);
+    };
+    for_each(meetings, near_walls(walls), meet);
+    for wall in walls.iter_mut() {
+        wall.push = WallLoad::default();
+        wall.scratch.damping = WallLoad::default();
+        wall.scratch.elastic_j = 0.0;
+        wall.stiffness_n_m = 0.0;
+        wall.touching.clear();
+    }
+    for some in meetings {
+        for met in &some.met {
+            book(&mut walls[some.of.0], met, particles);
+        }
+    }
+}
+
+/// Calls `work` for each chunk of `near` particles, with several threads if they are many.
+fn for_each(meetings: &mut [Meetings], near: usize, work: impl Fn(&mut Meetings) + Sync + Send) {
+    if near < FEW {
+        meetings.iter_mut().for_each(work);
+    } else {
+        meetings.par_iter_mut().for_each(work);
+    }
+}
+
+/// Divides the particles near each wall into chunks.
+fn set_chunks<'a>(walls: &[Wall], meetings: &'a mut Vec<Meetings>) -> &'a mut [Meetings] {
+    let mut chunks = 0;
+    for (number, wall) in walls.iter().enumerate() {
+        for first in (0..wall.near.len()).step_by(CHUNK) {
+            if meetings.len() == chunks {
+                meetings.push(Meetings::default());
+            }
+            meetings[chunks].of = (number, first..wall.near.len().min(first + CHUNK));
+            chunks += 1;
+        }
+    }
+    &mut meetings[..chunks]
+}
+
+/// Sets where the particles of a chunk touch a wall, or did in the previous step.
+fn find_meetings(wall: &Wall, particles: &Particles, meetings: &mut Meetings) {
+    let to_wall = wall.frame.all_to_wall();
+    let bounds = wall.model.shape.bounds();
+    let is_solid = matches!(wall.model.shape, Shape::Box(_) | Shape::Cylinder(_));
+    let Meetings {
+        of: (_, range),
+        touches,
+        all: found,
+        ..
+    } = meetings;
+    let some = &wall.near[range.clone()];
+    found.clear();
+    let first = some.first().copied().unwrap_or(0);
+    let mut first = wall.touching.partition_point(|old| old.particle < first);
+    for &particle in some {
+        let old = &wall.touching[first..];
+        let passed = old.iter().take_while(|old| old.particle < particle);
+        first += passed.count();
+        let old = &wall.touching[first..];
+        let own = old.iter().take_while(|old| old.particle == particle);
+        let before = &old[..own.count()];
+        let pose = &particles.poses[particle as usize];
+        let centre = to_wall(pose.place().into());
+        touches.clear();
+        if bounds.is_near(&centre, pose.radius_m()) {
+            wall.model.shape.touches(centre, pose.radius_m(), touches);
+        }
+        let first_found = found.len();
+        add_meetings(
+            &wall.frame,
+            (particle, pose),
+            touches,
+            (first, before),
+            found,
+        );
+        if is_solid
+            && !touches.is_empty()
+            && let Some(meeting) = found.get_mut(first_found)
+        {
+            meeting.is_behind = comes_out_behind(meeting, before);
+        }
+    }
+}
+
+fn book(wall: &mut Wall, met: &Met, particles: &mut Particles) {
+    let i = met.touch.particle as usize;
+    particles.wrenches[i].add(&met.forces[0], &met.torque);
+    let arm = met.point - Vector3::from(wall.frame.position_m);
+    let pushes = [&mut wall.push, &mut wall.scratch.damping];
+    for ((push, force), moment) in pushes.into_iter().zip(met.forces).zip(met.moments) {
+        let about_pivot = arm.cross(&force) + moment;
+        push.add(force.into(), about_pivot.into(), force.dot(&met.belt));
+    }
+    wall.scratch.elastic_j += met.elastic_j;
+    wall.stiffness_n_m += met.stiffness_n_m;
+    wall.friction_j += met.lost_j[0];
+    wall.damping_j += met.lost_j[1];
+    if met.crossed {
+        wall.scratch.crossed = Some(met.touch.particle);
+    }
+    if met.touch.history != ContactHistory::default() {
+        wall.touching.push(met.touch);
+    }
+}
+
+/// Adds the `touches` of a particle, given in the wall's frame, and the contacts that have ended.
+fn add_meetings(
+    frame: &Frame,
+    (particle, pose): (u32, &Pose),
+    touches: &[Touch],
+    (first, before): (usize, &[WallContact]),
+    found: &mut Vec<Meeting>,
+) {
+    let first_found = found.len();
+    let numbered = |at: usize| Some((first + at) as u32);
+    for touch in touches {
+        let there = frame.touch_to_space(touch);
+        let normal = -Vector3::from(there.normal);
+        let old = remembered(before, touches, touch, &normal);
+        found.push(Meeting::new(particle, there, old.and_then(numbered)));
+    }
+    // The losses of contacts that have ended are still to be recorded.
+    for (at, old) in before.iter().enumerate() {
+        let goes_on = |meeting: &Meeting| {
+            let known = meeting.old.map(|known| &before[known as usize - first]);
+            known.is_some_and(|known| known.feature == old.feature)
+        };
+        if !found[first_found..].iter().any(goes_on) {
+            found.push(Meeting::ended(old, pose, (first + at) as u32));
+        }
+    }
+}
+
+/// Whether a particle touches a solid from the opposite side compared with the previous step: it
+/// went through a solid thinner than itself.
+fn comes_out_behind(meeting: &Meeting, before: &[WallContact]) -> bool {
+    let normal = -Vector3::from(meeting.there.normal);
+    before
+        .iter()
+        .any(|old| Vector3::from(old.normal).dot(&normal) < 0.0)
+}
+
+/// Number, in those before, of the contact that a touch continues: that of the same feature. When a
+/// sphere slides from one flat part to the next, it is that of a feature that the sphere no longer
+/// touches and whose normal was nearly the same.
+fn remembered(
+    before: &[WallContact],
+    touches: &[Touch],
+    touch: &Touch,
+    normal: &Vector3<f64>,
+) -> Option<usize> {
+    let same = before.iter().position(|old| old.feature == touch.feature);
+    same.or_else(|| {
+        let left = |old: &&WallContact| touches.iter().all(|t| t.feature != old.feature);
+        let alike = |old: &&WallContact| Vector3::from(old.normal).dot(normal) > SAME_WAY;
+        before.iter().position(|old| left(&old) && alike(&old))
+    })
+}
+
+/// Force of a wall at rest on a particle at rest at one point, from its contact history.
+pub(crate) fn push_at_rest(
+    wall: &Wall,
+    contacts: &Contacts,
+    particles: &Particles,
+    old: &WallContact,
+) -> WallLoad {
+    let pose = &particles.poses[old.particle as usize];
+    let there = Touch {
+        point: pose.place().into(),
+        feature: old.feature,
+        normal: old.normal.map(|n| -n),
+        distance_m: pose.radius_m() - old.history.overlap_m() - old.history.origin_m(),
+    };
+    let place = Place {
+        wall,
+        walls: &[],
+        olds: std::slice::from_ref(old),
+        particles,
+        materials: &contacts.materials,
+        least_overlap: contacts.model.least_overlap,
+        dt: 0.0,
+    };
+    let mut met = Vec::new();
+    place.meet(&[Meeting::new(old.particle, there, Some(0))], &mut met);
+    let mut push = WallLoad::default();
+    for met in met {
+        let arm = met.point - Vector3::from(wall.frame.position_m);
+        let about_pivot = arm.cross(&met.forces[0]) + met.moments[0];
+        push.add(met.forces[0].into(), about_pivot.into(), 0.0);
+    }
+    push
+}
+
+/// Contact of a particle at rest with a wall at rest; `normal` from the wall to its centre, overlap
+/// `overlap_m`.
+pub(crate) fn wall_contact(
+    particles: &Particles,
+    i: usize,
+    normal: &Vector3<f64>,
+    overlap_m: f64,
+) -> ContactKinematics {
+    let foot = WallPoint {
+        normal: (*normal).into(),
+        normal_before: (*normal).into(),
+        distance_m: particles.poses[i].radius_m() - overlap_m,
+        velocity_m_s: Vec3(0.0, 0.0, 0.0),
+        spin_rad_s: Vec3(0.0, 0.0, 0.0),
+    };
+    wall_contact_kinematics(&foot, particles.contact_sphere_at_rest(i), 0.0)
+}
+
+/// A recorded contact of a particle with a wall, both at rest.
+fn recorded(particles: &Particles, touch: &WallContact) -> ContactKinematics {
+    let overlap_m = touch.history.overlap_m();
+    let normal = Vector3::from(touch.normal);
+    let mut recorded = wall_contact(particles, touch.particle as usize, &normal, overlap_m);
+    recorded.overlap_m = overlap_m;
+    recorded
+}
+
+/// Part of the energy of recorded contacts of a wall that is adhesion, J: below 0.
+pub(crate) fn touches_adhesion_j<'a>(
+    wall: &Wall,
+    contacts: &Contacts,
+    particles: &Particles,
+    touches: impl Iterator<Item = &'a WallContact>,
+) -> f64 {
+    if !wall.model.kinds.iter().any(ContactKind::attracts) {
+        return 0.0;
+    }
+    let adhesion_j = |touch: &WallContact| {
+        let kind = wall.kind(contacts.materials[touch.particle as usize]);
+        kind.adhesion_j(&recorded(particles, touch))
+    };
+    touches.map(adhesion_j).sum()
+}
+
+/// Elastic energy of a recorded wall contact, J.
+pub fn touch_energy_j(
+    wall: &Wall,
+    contacts: &Contacts,
+    particles: &Particles,
+    touch: &WallContact,
+) -> f64 {
+    let kind = wall.kind(contacts.materials[touch.particle as usize]);
+    let history = &touch.history;
+    let touch = recorded(particles, touch);
+    kind.with(|number| number, StoredEnergy { touch, history })
+}
+
+/// Where a wall touches a particle in a recorded contact, m.
+pub fn touch_point_m(particles: &Particles, touch: &WallContact) -> Vector3<f64> {
+    let pose = &particles.poses[touch.particle as usize];
+    let lever_m = pose.radius_m() - touch.history.overlap_m();
+    pose.place() - lever_m * Vector3::from(touch.normal)
+}
+
+/// Force of a wall on a particle in a recorded contact, N.
+pub fn touch_force_n(
+    wall: &Wall,
+    contacts: &Contacts,
+    particles: &Particles,
+    old: &WallContact,
+) -> Vector3<f64> {
+    let history = &old.history;
+    let touch = recorded(particles, old);
+    let kind = wall.kind(contacts.materials[old.particle as usize]);
+    kind.with(|number| number, StoredForce { touch, history })
+}
+
+/// Velocity of the surface of a wall where a particle touches it, half the overlap below the
+/// particle's surface, in the step just made (0) or in the next (1), m/s.
+pub(crate) fn surface_velocity_m_s(
+    wall: &Wall,
+    particles: &Particles,
+    touch: &WallContact,
+    step: usize,
+) -> Vector3<f64> {
+    let pose = &particles.poses[touch.particle as usize];
+    let normal = Vector3::from(touch.normal);
+    let overlap_m = touch.history.overlap_m() + touch.history.origin_m();
+    let point = pose.place() - (pose.radius_m() - 0.5 * overlap_m) * normal;
+    let arm = point - Vector3::from(wall.frame.position_m);
+    let belt = Vector3::from(wall.model.surface_velocity_m_s);
+    let [velocity, spin] =
+        [&wall.velocities_m_s, &wall.spins_rad_s].map(|of| Vector3::from(of[step]));
+    velocity + spin.cross(&arm) + belt - normal * belt.dot(&normal)
+}
+
+/// Makes the overlaps of some particles, ascending, with a wall the origins of their laws.
+pub(crate) fn relax_touches(wall: &mut Wall, particles: &Particles, some: &[u32]) {
+    let is_near = nearness(wall, 0.0);
+    let mut found = Vec::new();
+    let mut touches = Vec::new();
+    for &particle in some {
+        let pose = &particles.poses[particle as usize];
+        if !is_near(pose) {
+            continue;
+        }
+        touches.clear();
+        let centre = wall.frame.to_wall(pose.place().into());
+        wall.model
+            .shape
+            .touches(centre, pose.radius_m(), &mut touches);
+        found.extend(touches.iter().map(|touch| {
+            let there = wall.frame.touch_to_space(touch);
+            WallContact {
+                particle,
+                feature: there.feature,
+                normal: there.normal.map(|x| -x),
+                history: ContactHistory::separated_at(pose.radius_m() - there.distance_m),
+            }
+        }));
+    }
+    drop(is_near);
+    wall.touching.extend(found);
+    wall.touching.sort_by_key(|touch| touch.particle);
+}
+
+/// Distance of a sphere from a wall, m; infinite if it exceeds the radius of the sphere.
+pub(crate) fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
+    let centre = wall.frame.to_wall(pose.place().into());
+    let mut touches = Vec::new();
+    let reach_m = 2.0 * pose.radius_m();
+    wall.model.shape.touches(centre, reach_m, &mut touches);
+    let gaps = touches
+        .iter()
+        .map(|touch| touch.distance_m - pose.radius_m());
+    gaps.fold(f64::INFINITY, f64::min)
+}
+
+/// Determines the motion of the walls in the second of two steps, `steps_s`, which begins at
+/// `time_s`.
+pub(crate) fn plan_motions(walls: &mut [Wall], time_s: f64, steps_s: [f64; 2]) {
+    for wall in walls {
+        let [velocity, spin] = planned(wall, time_s, steps_s);
+        wall.velocities_m_s[1] = velocity;
+        wall.spins_rad_s[1] = spin;
+    }
+}
+
+/// Velocity, m/s, and spin, rad/s, of a wall in the second of two steps, `steps_s`, which begins at
+/// `time_s`.
+pub(crate) fn planned(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> [[f64; 3]; 2] {
+    let dt = steps_s[1];
+    match &wall.model.motion {
+        WallMotion::Fixed => [[0.0; 3]; 2],
+        WallMotion::Velocity {
+            velocity_m_s,
+            spin_rad_s,
+            factor,
+        } => {
+            let factor = factor_at(factor, time_s + 0.5 * dt);
+            [
+                velocity_m_s.map(|v| factor * v),
+                spin_rad_s.map(|w| factor * w),
+            ]
+        }
+        WallMotion::Displacement {
+            displacement_m,
+            angular_displacement_rad: turn_rad,
+            factor,
+        } => {
+            let gain = factor_at(factor, time_s + dt) - factor_at(factor, time_s);
+            [
+                displacement_m.map(|d| gain * d / dt),
+                turn_rad.map(|t| gain * t / dt),
+            ]
+        }
+        WallMotion::Servo {
+            force_n,
+            direction,
+            max_velocity_m_s: largest_velocity_m_s,
+            factor,
+        } => {
+            // Without damping, which depends on the wall's own velocity: the two would drive each
+            // other.
+            let elastic = |k: usize| wall.push.force_n[k] - wall.scratch.damping.force_n[k];
+            let pushed: f64 = (0..3).map(|k| elastic(k) * direction[k]).sum();
+            let missing = factor_at(factor, time_s) * force_n - pushed;
+            // Without contact there is no stiffness to work with: the servo moves at its largest
+            // speed.
+            let wanted = if wall.stiffness_n_m > 0.0 {
+                SERVO * missing / (wall.stiffness_n_m * dt)
+            } else {
+                f64::INFINITY.copysign(missing)
+            };
+            let speed = wanted.clamp(-largest_velocity_m_s, *largest_velocity_m_s);
+            [direction.map(|d| speed * d), [0.0; 3]]
+        }
+        WallMotion::Bar {
+            direction,
+            impedance_n_s_m,
+            incident_m_s,
+            factor,
+        } => {
+            let wave_m_s = factor_at(factor, time_s + 0.5 * dt) * incident_m_s;
+            let speed = bar_velocity_m_s(wall, direction, *impedance_n_s_m, wave_m_s, dt);
+            [direction.map(|d| speed * d), [0.0; 3]]
+        }
+        WallMotion::Weight {
+            direction,
+            mass_kg,
+            gravity_m_s2,
+            ..
+        } => {
+            let kick_s = 0.5 * (steps_s[0] + dt);
+            let speed = weight_velocity_m_s(wall, direction, *mass_kg, *gravity_m_s2, kick_s);
+            [direction.map(|d| speed * d), [0.0; 3]]
+        }
+    }
+}
+
+/// Whether a wall moved in the previous step, or its surface moves while it is at rest.
+pub(crate) fn has_moved(wall: &Wall) -> bool {
+    let moving = [
+        wall.velocities_m_s[0],
+        wall.spins_rad_s[0],
+        wall.model.surface_velocity_m_s,
+    ];
+    matches!(
+        wall.model.motion,
+        WallMotion::Servo { .. } | WallMotion::Bar { .. } | WallMotion::Weight { .. }
+    ) || moving != [[0.0; 3]; 3]
+}
+
+/// Whether a wall moves in the second of two steps, `steps_s`, which begins at `time_s`.
+pub(crate) fn will_move(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> bool {
+    planned(wall, time_s, steps_s) != [[0.0; 3]; 2]
+}
+
+/// Largest speed of a wall's point near particles, m/s, from the speed of its pivot, m/s, and its
+/// spin, rad/s.
+pub fn fastest_point_m_s(
+    wall: &Wall,
+    particles: &Particles,
+    [speed_m_s, spin_rad_s]: [f64; 2],
+) -> f64 {
+    if spin_rad_s == 0.0 {
+        return speed_m_s;
+    }
+    let pivot = Vector3::from(wall.frame.position_m);
+    let poses = particles.poses.iter();
+    let far_m = poses.map(|pose| (pose.place() - pivot).norm());
+    speed_m_s + spin_rad_s * far_m.fold(0.0, f64::max)
+}
+
+/// Moves the walls. Returns the largest speed of a wall's point near particles, m/s.
+pub(crate) fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
+    let mut fastest = 0.0_f64;
+    for wall in walls {
+        let ([_, velocity], [_, spin]) = (wall.velocities_m_s, wall.spins_rad_s);
+        let norms = [velocity, spin].map(|of| Vector3::from(of).norm());
+        let speed_m_s = fastest_point_m_s(wall, particles, norms);
+        fastest = fastest.max(speed_m_s);
+        wall.moved_m = dt * speed_m_s;
+        wall.skin_left_m -= wall.moved_m;
+        for (place, velocity) in wall.frame.position_m.iter_mut().zip(velocity) {
+            *place += dt * velocity;
+        }
+        wall.frame.turned = turn(wall.frame.turned, spin.map(|w| w * dt));
+        wall.velocities_m_s[0] = velocity;
+        wall.spins_rad_s[0] = spin;
+    }
+    fastest
+}
+
+/// Moves the walls.
+pub(crate) fn drift_walls(state: &mut State) -> usize {
+    if state.contacts.is_some() {
+        state.fastest_m_s += move_walls(&mut state.walls, &state.particles, state.time_step_s);
+    }
+    0
+}

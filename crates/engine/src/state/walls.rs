@@ -1,0 +1,185 @@
+//! Walls: their position and motion, their contacts and the resulting loads.
+
+use std::sync::Arc;
+
+use dem_scene::WallMotion;
+use serde::{Deserialize, Serialize};
+
+use super::contacts::ContactHistory;
+use dem_physics::geometry::{Bounds, Frame, Shape};
+use dem_physics::contact::law::ContactKind;
+
+/// Definition of a wall in the scene.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct WallModel {
+    /// Its name in the scene.
+    pub name: String,
+    /// Shape in its own frame, whose origin is the pivot.
+    pub shape: Shape,
+    /// Its motion.
+    pub motion: WallMotion,
+    /// Velocity of a belt, m/s. Length 3.
+    pub surface_velocity_m_s: [f64; 3],
+    /// Contact type with each material: numbers in `kinds`. Length materials.
+    pub kind_of: Vec<u8>,
+    /// Types of contacts.
+    pub kinds: Vec<ContactKind>,
+}
+
+/// A wall of the scene, with its present position and motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Wall {
+    /// Its definition, that of the model.
+    #[serde(skip)]
+    pub model: Arc<WallModel>,
+    /// Its present position.
+    pub frame: Frame,
+    /// Velocity of the pivot in the step just made and in the next, m/s.
+    pub velocities_m_s: [[f64; 3]; 2],
+    /// Spin in the step just made and in the next, rad/s.
+    pub spins_rad_s: [[f64; 3]; 2],
+    /// Particles near it, ascending.
+    pub near: Vec<u32>,
+    /// Contacts, by particle and then by feature.
+    pub touching: Vec<WallContact>,
+    /// Its load on the particles that touch it.
+    pub push: WallLoad,
+    /// Its load on sleeping particles that touch it, which is not in `push`.
+    pub load_by_sleepers: WallLoad,
+    /// Sum of the stiffnesses of its contacts along their normals, N/m.
+    pub stiffness_n_m: f64,
+    /// Energy lost to friction so far, J.
+    pub friction_j: f64,
+    /// Energy lost to damping so far, J.
+    pub damping_j: f64,
+    /// Work on the particles up to the present, and in the next half step, J.
+    pub work_j: f64,
+    /// See `work_j`.
+    pub pending_j: f64,
+    /// Distance that the wall may move before its near particles are listed again, m.
+    #[serde(skip)]
+    pub skin_left_m: f64,
+    /// Distance that it moved in the previous step, m.
+    #[serde(skip)]
+    pub moved_m: f64,
+    /// Data valid for one step only.
+    #[serde(skip)]
+    pub scratch: WallScratch,
+}
+
+/// Data of a wall valid for one step only.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct WallScratch {
+    /// The damping part of `push`.
+    pub damping: WallLoad,
+    /// Elastic energy of its contacts, J.
+    pub elastic_j: f64,
+    /// A particle whose centre has gone through its surface.
+    pub crossed: Option<u32>,
+}
+
+impl Wall {
+    /// Whether it moves, or its surface does.
+    pub(crate) fn does_work(&self) -> bool {
+        !matches!(self.model.motion, WallMotion::Fixed)
+            || self.model.surface_velocity_m_s != [0.0; 3]
+    }
+
+    /// A wall without contacts.
+    pub fn new(model: Arc<WallModel>, frame: Frame) -> Self {
+        Self {
+            model,
+            frame,
+            velocities_m_s: [[0.0; 3]; 2],
+            spins_rad_s: [[0.0; 3]; 2],
+            near: Vec::new(),
+            touching: Vec::new(),
+            push: WallLoad::default(),
+            load_by_sleepers: WallLoad::default(),
+            stiffness_n_m: 0.0,
+            friction_j: 0.0,
+            damping_j: 0.0,
+            work_j: 0.0,
+            pending_j: 0.0,
+            skin_left_m: 0.0,
+            moved_m: 0.0,
+            scratch: WallScratch::default(),
+        }
+    }
+
+    /// A wall at rest without contacts and without materials.
+    pub fn standing(shape: Shape, frame: Frame) -> Self {
+        let model = WallModel {
+            shape,
+            ..WallModel::default()
+        };
+        Self::new(Arc::new(model), frame)
+    }
+
+    /// Bounding box in space, m: infinite for a plane.
+    pub fn bounds_in_space(&self) -> Bounds {
+        if matches!(self.model.shape, Shape::Plane(_)) {
+            return self.model.shape.bounds();
+        }
+        let corners = self.model.shape.bounds().corners();
+        Bounds::of(corners.map(|corner| self.frame.to_space(corner)))
+    }
+
+    /// Force, N, and torque about the pivot, N m, on all particles that touch it, awake or asleep.
+    pub fn total_load(&self) -> [[f64; 3]; 2] {
+        let (awake, asleep) = (&self.push, &self.load_by_sleepers);
+        let sum = |a: &[f64; 3], b: &[f64; 3]| [0, 1, 2].map(|k| a[k] + b[k]);
+        [
+            sum(&awake.force_n, &asleep.force_n),
+            sum(&awake.torque_n_m, &asleep.torque_n_m),
+        ]
+    }
+
+    /// Contact type with the material of this number, for which there must be one.
+    pub fn kind(&self, material: u8) -> &ContactKind {
+        &self.model.kinds[usize::from(self.model.kind_of[usize::from(material)])]
+    }
+}
+
+/// A contact between a particle and a wall, with its history.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct WallContact {
+    /// Number of the particle.
+    pub particle: u32,
+    /// Feature of the wall: see [`dem_physics::geometry::Touch`].
+    pub feature: u32,
+    /// Unit vector from the wall to the centre. Length 3.
+    pub normal: [f64; 3],
+    /// Displacements, overlap and origin.
+    pub history: ContactHistory,
+}
+
+/// Resultant load of a wall on the particles that touch it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct WallLoad {
+    /// N.
+    pub force_n: [f64; 3],
+    /// About the wall's pivot, N m.
+    pub torque_n_m: [f64; 3],
+    /// Power supplied by the surface velocity of a belt, W.
+    pub belt_w: f64,
+}
+
+impl WallLoad {
+    /// Adds a force, N, a torque about the pivot, N m, and a power of the belt, W.
+    pub fn add(&mut self, force_n: [f64; 3], torque_n_m: [f64; 3], belt_w: f64) {
+        for k in 0..3 {
+            self.force_n[k] += force_n[k];
+            self.torque_n_m[k] += torque_n_m[k];
+        }
+        self.belt_w += belt_w;
+    }
+
+    /// Power that the wall supplies to the particles while it has this motion, W.
+    pub fn power_w(&self, velocity_m_s: [f64; 3], spin_rad_s: [f64; 3]) -> f64 {
+        let moving: f64 = (0..3)
+            .map(|k| self.force_n[k] * velocity_m_s[k] + self.torque_n_m[k] * spin_rad_s[k])
+            .sum();
+        moving + self.belt_w
+    }
+}
