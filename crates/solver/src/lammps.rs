@@ -34,7 +34,7 @@ use dem_scene::Scene;
 use serde::Serialize;
 
 use self::files::{CLUMPS, DATA, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES};
-use crate::plan::Plan;
+use dem_plan::Plan;
 
 /// What has been written.
 #[derive(Debug, Clone, Copy, Serialize)]

@@ -27,19 +27,17 @@
 pub(crate) mod calibration;
 pub mod cli;
 pub mod interrupt;
-pub mod laboratory;
 pub mod lammps;
 pub(crate) mod machine;
-pub mod measure;
 pub mod output;
-pub mod plan;
 pub mod run;
 pub mod stress;
 
 pub use dem_engine::{Balance, State, balance, check, clock, stages, state, step, threads};
 pub use dem_physics as physics;
+pub use dem_plan::{self as plan, Plan, measure, plan};
 pub use dem_physics::{geometry, shape};
-pub use plan::{Plan, plan};
+pub use dem_rig as laboratory;
 pub use run::{RunSettings, run};
 
 /// What only tests of this crate reach.

@@ -8,6 +8,5 @@ pub(crate) mod frames;
 pub mod pictures;
 pub(crate) mod plots;
 pub(crate) mod series;
-pub mod sizes;
 pub mod summary;
 pub(crate) mod walls;

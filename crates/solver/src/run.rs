@@ -29,7 +29,7 @@ use dem_io::Result;
 use dem_scene::{Integrator, Scene};
 
 use crate::output::summary::Summary;
-use crate::plan::Plan;
+use dem_plan::Plan;
 use dem_engine::step::{advance, interact};
 
 use self::begin::Run;

@@ -295,6 +295,7 @@ impl Search<'_> {
 
 /// A Newton step with the matrix that was computed last.
 pub struct Step<'a> {
+    /// The factor of the stiffness.
     pub factor: &'a Factor,
     /// Fraction to which a solution without factors reduces the residual.
     pub accuracy: f64,

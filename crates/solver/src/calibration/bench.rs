@@ -10,14 +10,16 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Scene, scene_from_text, set_text};
 
 use super::choice::SceneText;
-use crate::laboratory::arrange::{arrange, tested_body};
-use crate::laboratory::evaluate::{
+use dem_rig::arrange::{arrange, tested_body};
+use dem_rig::evaluate::{
     BY_TRAVEL, EQ_18, FAILURE_FORCE, LARGEST_FORCE, MODULUS, STIFFNESS, STRENGTH, TestResult,
 };
-use crate::laboratory::watch::TestSettings;
+use dem_rig::watch::TestSettings;
 use crate::output::summary::Summary;
-use crate::plan::{Plan, plan};
-use crate::run::statics::elastic_test::elastic_test;
+use dem_plan::Plan;
+use dem_rig::plan_with_test;
+use dem_rig::setup::Setup;
+use dem_rig::elastic_test::elastic_test;
 use crate::run::{RunSettings, SoFar, run};
 
 /// First factors beyond this range are left to the tests with steps, which say why.
@@ -74,8 +76,9 @@ impl Bench<'_> {
         tell: &(dyn Fn(f64) + Sync),
     ) -> Result<Trial> {
         let began = Instant::now();
-        let (scene, plan, lowest_hz) = self.planned(factors, at, faster)?;
-        let specimen = plan.test.as_ref().map(|setup| setup.specimen);
+        let planned = self.planned(factors, at, faster)?;
+        let (scene, plan, setup, lowest_hz) = planned;
+        let specimen = setup.as_ref().map(|setup| setup.specimen);
         let settings = RunSettings {
             folder: None,
             resume: None,
@@ -85,6 +88,7 @@ impl Bench<'_> {
                 lowest_frequency_hz,
                 at_twice_the_rate: None,
             }),
+            setup,
         };
         let tell = |so_far: &SoFar| tell(so_far.fraction);
         let summary = run(plan, &scene, settings, &tell)?;
@@ -108,7 +112,7 @@ impl Bench<'_> {
         factors: &[f64],
         at: usize,
         faster: f64,
-    ) -> Result<(Scene, Plan, Option<f64>)> {
+    ) -> Result<(Scene, Plan, Option<Setup>, Option<f64>)> {
         let overrides = overrides(&self.scene, self.unknowns, factors);
         let SceneText { text, source, .. } = self.scene;
         let scene = scene_from_text(text, source, &overrides)?;
@@ -119,8 +123,8 @@ impl Bench<'_> {
             Some(tested) => arrange(&scene, tested, faster)?,
             None => scene,
         };
-        let plan = plan(&scene, bodies, self.threads, self.force_step)?;
-        Ok((scene, plan, tested.map(|body| body.lowest_frequency_hz)))
+        let (plan, setup) = plan_with_test(&scene, bodies, self.threads, self.force_step)?;
+        Ok((scene, plan, setup, tested.map(|body| body.lowest_frequency_hz)))
     }
 
     /// First factors: that on the modulus of the bonds from the stiffness of `packings` packings
@@ -161,9 +165,9 @@ impl Bench<'_> {
 
     /// The result `which` of packing `at` without time steps. None: there is no equilibrium.
     fn elastic(&self, factors: &[f64], at: usize, which: usize) -> Result<Option<f64>> {
-        let (scene, mut plan, _) = self.planned(factors, at, 1.0)?;
+        let (scene, mut plan, setup, _) = self.planned(factors, at, 1.0)?;
         let goes_on = |_: f64| !self.interrupted.load(Ordering::Relaxed);
-        let Some(setup) = plan.test.take() else {
+        let Some(setup) = setup else {
             return Ok(None);
         };
         match elastic_test(&mut plan.state, &scene, &setup, &goes_on) {

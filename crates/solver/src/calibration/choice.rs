@@ -6,7 +6,7 @@ use dem_io::{Diagnostic, Result};
 use dem_laboratory::TestType;
 use dem_scene::{Scene, Test, written_value};
 
-use crate::laboratory::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STIFFNESS, STRENGTH};
+use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STIFFNESS, STRENGTH};
 
 /// Largest deviation of the mean modulus from its target.
 const MODULUS_TOLERANCE: f64 = 0.01;

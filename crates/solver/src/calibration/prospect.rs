@@ -8,11 +8,11 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_laboratory::Specimen;
 use dem_scene::Scene;
 
-use crate::laboratory::arrange::{arrange, tested_body};
-use crate::laboratory::evaluate::{
+use dem_rig::arrange::{arrange, tested_body};
+use dem_rig::evaluate::{
     BY_TRAVEL, EQ_18, STIFFNESS, STRENGTH, measured_curve, stiffness_of_curve,
 };
-use crate::plan::plan;
+use dem_rig::plan_with_test;
 
 /// Smallest ratio of the stroke to the travel at failure of a body that meets its targets: until
 /// pins touch, and until the load has fallen.
@@ -51,9 +51,8 @@ pub(crate) fn prospect(
     bodies.insert(body.to_owned(), packing.clone());
     if let Some(body) = tested_body(scene, &bodies, threads)? {
         let scene = arrange(scene, &body, 1.0)?;
-        prospect.specimen = plan(&scene, bodies, threads, true)?
-            .test
-            .map(|setup| setup.specimen);
+        let (_, setup) = plan_with_test(&scene, bodies, threads, true)?;
+        prospect.specimen = setup.map(|setup| setup.specimen);
     }
     if let Some(specimen) = &prospect.specimen {
         prospect.stiffness_n_m = stiffness_of_curve(test, specimen);

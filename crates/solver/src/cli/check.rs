@@ -16,10 +16,11 @@ use super::pool::in_pool;
 use super::scene_arguments::SceneArguments;
 use super::statics;
 use super::trial::Trial;
-use crate::laboratory::arrange::{arrange, tested_body};
+use dem_rig::arrange::{arrange, tested_body};
 use crate::output::pictures::View;
-use crate::plan::masses;
-use crate::plan::{Plan, PlannedStage, plan};
+use dem_plan::masses;
+use dem_plan::{Plan, PlannedStage};
+use dem_rig::plan_with_test;
 use dem_engine::state::State;
 
 /// Samples that differ by less than this factor are told as one.
@@ -48,7 +49,7 @@ pub(super) fn check_scene(
             Some(body) => arrange(&scene, &body, 1.0)?,
             None => scene,
         };
-        let mut plan = plan(&scene, bodies, threads, arguments.force_step)
+        let (mut plan, _) = plan_with_test(&scene, bodies, threads, arguments.force_step)
             .map_err(|error| arguments.naming_set(error))?;
         plan.inputs.set = arguments.all_overrides();
         if let Some(file) = picture {

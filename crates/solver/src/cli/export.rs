@@ -11,7 +11,7 @@ use super::export_frames::{FramesArguments, export_frames};
 use super::pool::in_pool;
 use super::scene_arguments::SceneArguments;
 use crate::lammps::{self, refusals::refuse_parts};
-use crate::plan::plan;
+use dem_rig::plan_with_test;
 
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -75,7 +75,7 @@ fn export_scene(arguments: &LammpsArguments, threads: usize) -> Result<()> {
     }
     let (scene, bodies) = arguments.scene.read()?;
     refuse_parts(&scene)?;
-    let plan = plan(&scene, bodies, threads, arguments.scene.force_step)?;
+    let (plan, _) = plan_with_test(&scene, bodies, threads, arguments.scene.force_step)?;
     let written = lammps::export(&scene, &plan, &arguments.output)?;
     if arguments.scene.json {
         return write_standard_json(&written);

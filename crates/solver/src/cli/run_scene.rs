@@ -21,10 +21,11 @@ use super::as_run;
 use super::progress::ShownProgress;
 use super::scene_arguments::SceneArguments;
 use crate::interrupt::Interrupt;
-use crate::laboratory::arrange::{arrange, tested_body};
-use crate::laboratory::watch::TestSettings;
+use dem_rig::arrange::{arrange, tested_body};
+use dem_rig::watch::TestSettings;
 use crate::output::summary::Unfinished;
-use crate::plan::{Plan, plan};
+use dem_plan::Plan;
+use dem_rig::plan_with_test;
 use crate::run::snapshot::Snapshot;
 use crate::run::{
     Finished, INTERRUPTION, Outcome, RunSettings, SoFar, finish, run as run_plan,
@@ -97,7 +98,7 @@ pub(super) fn run_scene(
     let path = folder_to_open(arguments, &scene)?;
     let (scene, test, twice) = arranged(scene, &bodies, threads)?;
     let force_step = arguments.scene.force_step;
-    let mut prepared = plan(&scene, bodies, threads, force_step)
+    let (mut prepared, setup) = plan_with_test(&scene, bodies, threads, force_step)
         .map_err(|error| arguments.scene.naming_set(error))?;
     prepared.inputs.set = arguments.scene.all_overrides();
     let inputs = prepared.inputs.clone();
@@ -124,16 +125,18 @@ pub(super) fn run_scene(
             threads,
             interrupted,
             test,
+            setup,
         };
         if let (Some((scene, bodies, test)), Some(own)) = (twice, &mut settings.test) {
             shown.begin("at twice the rate ");
-            let plan = plan(&scene, bodies, threads, force_step)?;
+            let (plan, setup) = plan_with_test(&scene, bodies, threads, force_step)?;
             let settings = RunSettings {
                 folder: None,
                 resume: None,
                 threads,
                 interrupted,
                 test: Some(test),
+                setup,
             };
             own.at_twice_the_rate =
                 keep_awake(|| run_plan(plan, &scene, settings, &progress))?.test;

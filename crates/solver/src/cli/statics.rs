@@ -6,8 +6,8 @@ use dem_scene::Scene;
 use serde_json::json;
 
 use super::memory::size_text;
-use crate::plan::Plan;
-use crate::plan::masses;
+use dem_plan::Plan;
+use dem_plan::masses;
 use crate::run::statics::StaticsEstimate;
 
 /// Keys and tables that have no effect in such a scene.

@@ -10,7 +10,7 @@ use dem_scene::Scene;
 
 use dem_engine::clock::StageClock;
 use crate::output::pictures::View;
-use crate::plan::{Plan, PlannedStage};
+use dem_plan::{Plan, PlannedStage};
 use dem_engine::stages::ledger::CHECKS;
 use dem_engine::step::{number_of, step};
 

@@ -14,7 +14,7 @@ use dem_scene::Scene;
 use super::words::refused;
 use crate::physics::contact::law::{ContactKind, Law, Rolling};
 use crate::physics::contact::pair_parameters::PairParameters;
-use crate::plan::Plan;
+use dem_plan::Plan;
 use dem_engine::state::contacts::NO_KIND;
 
 /// The contacts of an export.

@@ -11,7 +11,7 @@ use super::clumps::is_body;
 use super::contacts::Contacts;
 use super::feeds::Feed;
 use super::molecules::Molecules;
-use crate::plan::Plan;
+use dem_plan::Plan;
 
 /// Density of each particle, kg/m3, with which the spheres of a clump have its mass together.
 fn densities(plan: &Plan) -> Vec<f64> {

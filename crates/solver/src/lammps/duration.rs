@@ -3,7 +3,7 @@
 use dem_scene::Scene;
 
 use dem_engine::check::limit::safe_step;
-use crate::plan::Plan;
+use dem_plan::Plan;
 
 /// Frames of a scene that asks for none.
 const FRAMES_UNASKED: u64 = 100;

@@ -15,7 +15,7 @@ use dem_scene::Scene;
 use super::duration::{step_s, steps};
 use super::words::{block, cylinder, numbers, refused};
 use crate::geometry::Bounds;
-use crate::plan::Plan;
+use dem_plan::Plan;
 use dem_engine::state::clumps::Template;
 use dem_engine::state::regions::Region;
 use dem_engine::state::rules::{Feed as Rate, Inlet};

@@ -4,7 +4,7 @@ use dem_io::Result;
 use dem_scene::{Factor, Hold, Scene};
 
 use super::words::refused;
-use crate::plan::Plan;
+use dem_plan::Plan;
 
 /// A load on a group of particles.
 #[derive(Debug, Clone)]

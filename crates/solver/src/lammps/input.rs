@@ -14,7 +14,7 @@ use super::files::{BONDS, BROKEN, CLUMPS, DATA, FRAMES, TYPES};
 use super::forces::Forces;
 use super::walls::WrittenWall;
 use super::words::numbers;
-use crate::plan::Plan;
+use dem_plan::Plan;
 
 /// What the script is written from.
 pub(super) struct Input<'a> {

@@ -1,6 +1,6 @@
 //! Molecules of an export.
 
-use crate::plan::Plan;
+use dem_plan::Plan;
 
 /// Molecules: a body of the scene, or a clump.
 #[derive(Debug, Clone, Default)]

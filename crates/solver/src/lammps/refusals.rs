@@ -7,7 +7,7 @@ use dem_io::text::counted;
 use dem_scene::{InitialOverlap, Integrator, Scene};
 
 use super::words::refused;
-use crate::plan::Plan;
+use dem_plan::Plan;
 use dem_engine::state::bodies::PlacedBody;
 
 /// Groups that LAMMPS allows, without `all` and those of the export itself.

@@ -14,7 +14,7 @@ use super::forces::formula;
 use super::surfaces::{Face, depth_m, faces};
 use super::words::{self, ALONG, block, numbers, refused};
 use crate::geometry::{Bounds, Shape, SolidBox};
-use crate::plan::Plan;
+use dem_plan::Plan;
 use dem_engine::state::contacts::NO_KIND;
 use dem_engine::state::walls::Wall;
 

@@ -9,8 +9,8 @@ use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
 use dem_scene::Quantity;
 use serde::Serialize;
 
-use super::sizes::Fragments;
-use crate::measure::Probe;
+use dem_plan::measure::sizes::Fragments;
+use dem_plan::measure::Probe;
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
 use dem_engine::state::clusters::sizes::Discharged;

@@ -10,7 +10,7 @@ use dem_io::body::{BondHistories, JointBond, PlasticBond, SummedBond};
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
 use super::walls::WallOutput;
-use crate::measure::{DynamicUtilisation, dynamic_utilisations, load, utilisation_under};
+use dem_plan::measure::{DynamicUtilisation, dynamic_utilisations, load, utilisation_under};
 use crate::physics::bond::BondLoad;
 use crate::physics::bond::failure::stresses;
 use crate::physics::rigid::rotation_vector;

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::fragments::{COUNT, DISCHARGE, SIZES};
 use super::series::ENERGIES;
-use crate::measure::Probe;
+use dem_plan::measure::Probe;
 
 /// Names of plots that any run may have, which no measure may overwrite.
 const OVERALL: [&str; 6] = [ENERGY, ERRORS, BROKEN, COUNT, SIZES, DISCHARGE];

@@ -1,6 +1,6 @@
 //! Columns of the time series: energies, errors, numbers of bonds and particles, every measure.
 
-use crate::measure::Probe;
+use dem_plan::measure::Probe;
 use dem_engine::stages::ledger::Balance;
 use dem_engine::state::State;
 use dem_engine::state::bonds::Bonds;

@@ -16,14 +16,14 @@ use super::progress::Progress;
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
 use dem_engine::check::watchdog::Watchdog;
-use crate::laboratory::watch::Watch;
+use dem_rig::watch::Watch;
 use crate::machine::processor_time_s;
-use crate::measure::{Probe, place_watches, probes, renumber as renumber_probes};
+use dem_plan::measure::{Probe, place_watches, probes, renumber as renumber_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::series;
 use crate::output::walls::WallOutput;
-use crate::plan::inputs::Inputs;
-use crate::plan::{Plan, PlannedStage};
+use dem_plan::inputs::Inputs;
+use dem_plan::{Plan, PlannedStage};
 use crate::run::snapshot::fingerprint;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
@@ -165,8 +165,8 @@ fn watch_of_test<'a>(
     settings: &mut RunSettings<'_>,
 ) -> Option<Watch<'a>> {
     let of_test = settings.test.take()?;
-    let (test, setup) = (scene.test.as_ref()?, plan.test.as_ref()?);
-    Some(Watch::new(scene, test, setup.clone(), of_test, plan))
+    let (test, setup) = (scene.test.as_ref()?, settings.setup.take()?);
+    Some(Watch::new(scene, test, setup, of_test, plan))
 }
 
 /// The files of a run, new or at the point where it is `continued` in this state. `orders`: what

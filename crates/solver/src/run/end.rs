@@ -12,12 +12,12 @@ use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
 use super::past_outlets::{past_outlets, past_walls};
 use super::rigid_hits::RigidHits;
-use crate::laboratory::evaluate::TestResult;
+use dem_rig::evaluate::TestResult;
 use crate::machine::{machine, processor_time_s};
-use crate::measure::Probe;
+use dem_plan::measure::Probe;
 use crate::output::flows::body_flows;
 use crate::output::fragments::FragmentSummary;
-use crate::output::sizes::Fragments;
+use dem_plan::measure::sizes::Fragments;
 use crate::output::summary::{
     AdaptiveSummary, PartError, PopulationSummary, SleepSummary, Summary, Verdict,
 };

@@ -6,7 +6,7 @@ use dem_results::{DischargeRow, Event};
 
 use super::files::Files;
 use crate::output::fragments::split_text;
-use crate::plan::time_step::StepChoice;
+use dem_plan::time_step::StepChoice;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::bodies::bond_of_file;

@@ -8,7 +8,7 @@ use dem_scene::Scene;
 
 use super::pictures::Pictures;
 use super::progress::Progress;
-use crate::measure::Probe;
+use dem_plan::measure::Probe;
 use crate::output::frames::FrameOrder;
 use crate::output::walls::WallOutput;
 use crate::run::snapshot::Snapshot;

@@ -15,14 +15,14 @@ use super::pictures::{Order, Pictures};
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
 use super::snapshot::fingerprint;
-use crate::laboratory::watch::Watch;
-use crate::measure::{Probe, probes};
+use dem_rig::watch::Watch;
+use dem_plan::measure::{Probe, probes};
 use crate::output::flows::flow_rows;
 use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use crate::output::plots::{plots_of_every_run, write_plots};
-use crate::output::sizes::Fragments;
+use dem_plan::measure::sizes::Fragments;
 use crate::output::summary::Summary;
-use crate::plan::Plan;
+use dem_plan::Plan;
 use dem_engine::state::State;
 
 /// Data that a finished run leaves next to its last checkpoint, before it writes plots, film, page
@@ -220,7 +220,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
     if missing.is_empty() {
         return Ok(None);
     }
-    if let (Some(test), Some(setup), Some(of_test)) = (&scene.test, &plan.test, &settings.test) {
+    if let (Some(test), Some(setup), Some(of_test)) = (&scene.test, &settings.setup, &settings.test) {
         Watch::new(scene, test, setup.clone(), of_test.clone(), plan).finish(
             &progress.test,
             &state,

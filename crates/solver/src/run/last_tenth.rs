@@ -5,7 +5,7 @@ use dem_scene::{Quantity, Statistic, WallMotion};
 use serde::{Deserialize, Serialize};
 
 use super::changes::last_change_s;
-use crate::measure::Probe;
+use dem_plan::measure::Probe;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::events::REMOVED;

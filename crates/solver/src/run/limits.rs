@@ -9,7 +9,7 @@ use super::files::Files;
 use super::progress::Progress;
 use dem_engine::check::limit::{Bound, bound_near, damping_bound_1_s, limit};
 use dem_engine::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
-use crate::plan::time_step::{FARTHEST, StepBasis, StepChoice, arriving, impact_step_s};
+use dem_plan::time_step::{FARTHEST, StepBasis, StepChoice, arriving, impact_step_s};
 use dem_engine::stages::bonds::largest_strain;
 use dem_engine::stages::damping::WEAK;
 use dem_engine::stages::totals::kinetic_energy;

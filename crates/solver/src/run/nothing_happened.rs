@@ -3,7 +3,7 @@
 use dem_scene::{Quantity, Scene};
 
 use super::seen::Seen;
-use crate::measure::Probe;
+use dem_plan::measure::Probe;
 use dem_engine::state::State;
 
 /// Measures that are 0 throughout because nothing touched what they measure, or nothing came to

@@ -15,7 +15,7 @@ use super::fragments::write_fragments;
 use super::limits::{CHECK_EVERY_STEPS, tunnelling};
 use super::schedule::{due, next};
 use super::settings::SoFar;
-use crate::measure::{Probe, read_probes, renumber as renumber_probes};
+use dem_plan::measure::{Probe, read_probes, renumber as renumber_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::series;
 use dem_engine::stages::clumps::place_all;

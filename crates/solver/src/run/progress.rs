@@ -11,8 +11,8 @@ use super::schedule::{OutputSchedule, first_after};
 use super::seen::Seen;
 use super::sums::Sums;
 use dem_engine::check::limit::Bound;
-use crate::laboratory::record::Record;
-use crate::plan::time_step::{StepBasis, StepChoice};
+use dem_rig::record::Record;
+use dem_plan::time_step::{StepBasis, StepChoice};
 use dem_engine::stages::ledger::{Balance, over};
 use dem_engine::state::State;
 

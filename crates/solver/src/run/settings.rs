@@ -7,7 +7,8 @@ use dem_io::units::significant;
 use dem_results::ResultsFolder;
 
 use super::snapshot::Snapshot;
-use crate::laboratory::watch::TestSettings;
+use dem_rig::setup::Setup;
+use dem_rig::watch::TestSettings;
 
 /// Settings of a run.
 #[derive(Debug)]
@@ -23,6 +24,9 @@ pub struct RunSettings<'a> {
     /// Settings of the scene's laboratory test, for which it has been arranged. None: it is not
     /// evaluated.
     pub test: Option<TestSettings>,
+    /// The test in its initial arrangement, from the plan. None: the scene has none, or it is not
+    /// evaluated.
+    pub setup: Option<Setup>,
 }
 
 /// How far a run has come.

@@ -11,7 +11,7 @@ use dem_io::{Diagnostic, Result};
 use serde::{Deserialize, Serialize};
 
 use super::progress::Progress;
-use crate::measure;
+use dem_plan::measure;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_physics::lanes::instructions;

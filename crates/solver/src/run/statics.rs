@@ -10,10 +10,7 @@
 //! rotations about those axes. If the particle also rotates far about the others, the result
 //! depends on its path, which here is that of the Newton steps.
 
-pub mod elastic_test;
-pub(crate) mod press;
 mod record;
-mod seat;
 
 pub use dem_engine::statics::{Cause, Equilibrium, StaticsEstimate, Unsolved, equilibrium};
 
@@ -25,10 +22,10 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 
 use crate::machine::processor_time_s;
-use crate::measure::{bond_utilisation, probes, read_probes};
+use dem_plan::measure::{bond_utilisation, probes, read_probes};
 use crate::output::frames::FrameOrder;
 use crate::output::summary::Summary;
-use crate::plan::Plan;
+use dem_plan::Plan;
 use crate::run::settings::{RunSettings, SoFar};
 use dem_engine::stages::elastic::elastic_energy;
 use dem_engine::stages::ledger::Balance;
@@ -37,7 +34,7 @@ use dem_engine::state::particles::Motion;
 
 use dem_engine::check::laws::strain_warning;
 
-use self::elastic_test::elastic_test;
+use dem_rig::elastic_test::elastic_test;
 use dem_engine::statics::newton::{loads, six};
 use self::record::{AtRest, equilibrium_summary};
 
@@ -53,10 +50,14 @@ pub fn run(
     settings: &RunSettings<'_>,
     tell: &dyn Fn(&SoFar),
 ) -> Result<Summary> {
+    if scene.test.is_some() && settings.setup.is_none() {
+        let problem = "the test of the scene has not been set up";
+        let remedy = "plan the scene with its test, and give both to the run";
+        return Err(Diagnostic::failed(scene.source.clone(), problem, remedy));
+    }
     let mut probes = probes(scene, &plan);
     let Plan {
         mut state,
-        test: setup,
         bodies,
         masses,
         notes,
@@ -78,13 +79,13 @@ pub fn run(
         !settings.interrupted.load(Ordering::Relaxed)
     };
     let mut test = None;
-    let found = match (&scene.test, &setup) {
-        (Some(_), Some(setup)) => {
+    let found = match &settings.setup {
+        Some(setup) => {
             let elastic = elastic_test(&mut state, scene, setup, &goes_on)?;
             test = elastic.result(scene);
             elastic.equilibrium
         }
-        _ => {
+        None => {
             let found = equilibrium(&mut state, end_s, &goes_on);
             found.map_err(|unsolved| problem(&unsolved, scene))?
         }

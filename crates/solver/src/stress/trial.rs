@@ -10,9 +10,10 @@ use dem_scene::scene_from_text;
 use dem_scene::{Scene, read_bodies};
 use tempfile::TempDir;
 
-use crate::laboratory::arrange::{TestedBody, arrange};
+use dem_rig::arrange::{TestedBody, arrange};
 use crate::output::summary::Summary;
-use crate::plan::{Plan, plan};
+use dem_plan::Plan;
+use dem_rig::plan_with_test;
 use crate::run::{RunSettings, run};
 
 /// A scene and its files.
@@ -73,7 +74,7 @@ impl Trial {
         let scene = arrange(&scene, &body, 1.0)?;
         let bodies = read_bodies(&scene)?;
         let threads = rayon::current_num_threads();
-        let plan = plan(&scene, bodies, threads, self.force_step)?;
+        let (plan, _) = plan_with_test(&scene, bodies, threads, self.force_step)?;
         Ok((scene, plan, folder))
     }
 
@@ -89,6 +90,7 @@ impl Trial {
                 threads: rayon::current_num_threads(),
                 interrupted,
                 test: None,
+                setup: None,
             };
             let summary = run(plan, &scene, settings, &|_| {});
             drop(folder);

@@ -8,7 +8,7 @@ use dem_pictures::label::colour_bar;
 use dem_plots::viridis;
 use dem_scene::ColourBy;
 
-use crate::measure::{DynamicUtilisation, dynamic_utilisations};
+use dem_plan::measure::{DynamicUtilisation, dynamic_utilisations};
 use crate::physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;

@@ -8,14 +8,14 @@ use dem_io::units::significant;
 use serde::{Serialize, Serializer};
 
 use super::parts::{AdaptiveSummary, PartError, PopulationSummary, SleepSummary, TakenIn};
-use crate::laboratory::evaluate::TestResult;
-use crate::measure::Measured;
+use dem_rig::evaluate::TestResult;
+use dem_plan::measure::Measured;
 use crate::output::equilibrium::EquilibriumSummary;
 use crate::output::flows::BodyFlow;
 use crate::output::fragments::FragmentSummary;
-use crate::output::sizes::Sizes;
+use dem_plan::measure::sizes::Sizes;
 use crate::physics::bond::failure::CauseCounts;
-use crate::plan::inputs::Inputs;
+use dem_plan::inputs::Inputs;
 use dem_engine::stages::ledger::Balance;
 
 /// Program and version.

@@ -6,10 +6,10 @@ use dem_io::text::visible;
 use dem_io::units::significant;
 
 use super::contents::Summary;
-use crate::measure::Measured;
+use dem_plan::measure::Measured;
 use crate::output::equilibrium::EquilibriumSummary;
-use crate::output::sizes::{RESOLVED_DIAMETERS, SizeSummary};
-use crate::plan::masses;
+use dem_plan::measure::sizes::{RESOLVED_DIAMETERS, SizeSummary};
+use dem_plan::masses;
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

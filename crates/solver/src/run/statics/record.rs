@@ -9,7 +9,7 @@ use dem_scene::Scene;
 
 use dem_engine::statics::newton::Equilibrium;
 use crate::machine::machine;
-use crate::measure::Probe;
+use dem_plan::measure::Probe;
 use crate::output::equilibrium::EquilibriumSummary;
 use crate::output::fragments::FragmentSummary;
 use crate::output::frames::FrameOrder;
@@ -17,7 +17,7 @@ use crate::output::series;
 use crate::output::summary::{Summary, Verdict};
 use crate::output::walls::WallOutput;
 use crate::physics::bond::failure::CauseCounts;
-use crate::plan::inputs::Inputs;
+use dem_plan::inputs::Inputs;
 use crate::run::finish::End;
 use crate::run::settings::RunSettings;
 use dem_engine::stages::bonds::most_strained_edge;

@@ -1,0 +1,131 @@
+//! The angle of repose of a heap.
+//!
+//! A cone of height H and radius R has a variance of height of 3/80 H^2, a mean square distance
+//! from its axis of 3/10 R^2 and a covariance of the two of -1/40 H R^2. The first two give its
+//! slope independently of the ground and of mass missing uniformly over its surface: sqrt(8 var z /
+//! mean r^2). Spheres count with their own extent. The third shows whether there is a slope at all:
+//! a bed with a flat top has none. Several heaps, ridges and rings are no cone: they spread farther
+//! one way than the other, or leave the middle empty.
+
+use nalgebra::Vector3;
+
+use super::spheres;
+use crate::measures::FEWEST_IN_HEAP;
+
+/// Spheres farther from the axis than this multiple of the cone's radius have rolled away.
+const ROLLED_AWAY: f64 = 1.25;
+/// The covariance gives a smaller slope than the variances: by up to a fifth for the layers of a
+/// small cone. Any further difference means a flat top.
+const CONICAL: f64 = 0.8;
+
+/// Ratio of the spread of the mass one way to that the other from which it is no round heap: 2.8
+/// for two heaps that touch.
+const ROUND: f64 = 1.6;
+/// Part of the mass that lies within a quarter of the cone's radius from its axis, at least: 0.156
+/// of a cone, 0.104 of a flat disc, 0.03 to 0.07 of heaps in a triangle.
+const IN_MIDDLE: f64 = 0.1;
+
+/// A sphere: mass, kg, radius, m, height, and two coordinates across, m.
+struct Sphere {
+    mass_kg: f64,
+    radius_m: f64,
+    height_m: f64,
+    across_m: [f64; 2],
+}
+
+/// Moments of a heap's mass.
+struct Moments {
+    /// Position of the axis.
+    middle_m: [f64; 2],
+    /// Variance of the height, m2.
+    upright_m2: f64,
+    /// Mean square distance from the axis, m2.
+    across_m2: f64,
+    /// Covariance of height and square distance, m3.
+    covariance_m3: f64,
+}
+
+/// Slope, degrees, of the cone with the same vertical and horizontal spread of mass as the spheres;
+/// 0 if their top is flat. A few that have rolled far away do not change it. NaN for fewer than
+/// [`FEWEST_IN_HEAP`], and if they are not one round heap. `up`: unit vector.
+pub(super) fn angle_of_repose_deg(spheres: &[spheres::Sphere], up: Vector3<f64>) -> f64 {
+    let mut heap = turned(spheres, &up);
+    if heap.len() < FEWEST_IN_HEAP {
+        return f64::NAN;
+    }
+    loop {
+        let moments = moments(&heap);
+        let radius_m = (10.0 / 3.0 * moments.across_m2).sqrt();
+        let before = heap.len();
+        let [x, y] = moments.middle_m;
+        heap.retain(|sphere| {
+            let [sx, sy] = sphere.across_m;
+            (sx - x).hypot(sy - y) <= ROLLED_AWAY * radius_m
+        });
+        if heap.len() == before {
+            if !is_round(&heap, &moments) {
+                return f64::NAN;
+            }
+            let slope = (8.0 * moments.upright_m2 / moments.across_m2).sqrt();
+            let falling = -40.0 * moments.covariance_m3 / radius_m.powi(3);
+            let fraction = (falling / (CONICAL * slope)).clamp(0.0, 1.0);
+            return (fraction * slope).atan().to_degrees();
+        }
+    }
+}
+
+/// True if the mass spreads about equally far in all horizontal directions, and the middle is not
+/// empty, as far as this number of spheres shows it.
+fn is_round(heap: &[Sphere], moments: &Moments) -> bool {
+    let mass_kg: f64 = heap.iter().map(|sphere| sphere.mass_kg).sum();
+    let from_middle = |s: &Sphere| [0, 1].map(|k| s.across_m[k] - moments.middle_m[k]);
+    let mean = |of: &dyn Fn([f64; 2]) -> f64| {
+        let sum: f64 = heap.iter().map(|s| s.mass_kg * of(from_middle(s))).sum();
+        sum / mass_kg
+    };
+    let own_m2 = heap
+        .iter()
+        .map(|s| 0.2 * s.mass_kg * s.radius_m * s.radius_m);
+    let own_m2 = own_m2.sum::<f64>() / mass_kg;
+    let [xx, yy] = [0, 1].map(|k| own_m2 + mean(&|d| d[k] * d[k]));
+    let xy = mean(&|d| d[0] * d[1]);
+    let (half_sum, apart) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
+    let is_equal = half_sum + apart <= ROUND * ROUND * (half_sum - apart);
+    let quarter_m = 0.25 * (10.0 / 3.0 * moments.across_m2).sqrt();
+    let in_middle = mean(&|[x, y]| f64::from(u8::from(x.hypot(y) <= quarter_m)));
+    let scatter = (in_middle / heap.len() as f64).sqrt();
+    is_equal && in_middle + 2.0 * scatter >= IN_MIDDLE
+}
+
+/// The spheres, along axes of which one points up.
+fn turned(spheres: &[spheres::Sphere], up: &Vector3<f64>) -> Vec<Sphere> {
+    let [aside, across] = spheres::across(up);
+    let turned = |sphere: &spheres::Sphere| Sphere {
+        mass_kg: sphere.mass_kg,
+        radius_m: sphere.radius_m,
+        height_m: sphere.place_m.dot(up),
+        across_m: [sphere.place_m.dot(&aside), sphere.place_m.dot(&across)],
+    };
+    spheres.iter().map(turned).collect()
+}
+
+fn moments(heap: &[Sphere]) -> Moments {
+    let mass_kg: f64 = heap.iter().map(|sphere| sphere.mass_kg).sum();
+    let mean =
+        |of: &dyn Fn(&Sphere) -> f64| heap.iter().map(|s| s.mass_kg * of(s)).sum::<f64>() / mass_kg;
+    let middle_m = [0, 1].map(|k| mean(&|s| s.across_m[k]));
+    let height_m = mean(&|s| s.height_m);
+    let square = |s: &Sphere| {
+        let [x, y] = [0, 1].map(|k| s.across_m[k] - middle_m[k]);
+        x * x + y * y
+    };
+    let square_m2 = mean(&square);
+    // A solid sphere's own variance along any axis.
+    let own_m2 = 0.2 * mean(&|s| s.radius_m * s.radius_m);
+    Moments {
+        middle_m,
+        upright_m2: own_m2 + mean(&|s| (s.height_m - height_m).powi(2)),
+        across_m2: 2.0 * own_m2 + square_m2,
+        covariance_m3: mean(&|s| (s.height_m - height_m) * (square(s) - square_m2)),
+    }
+}

@@ -1,0 +1,361 @@
+//! Size distribution of fragments: those inside at the end, those discharged, and both, by body.
+//!
+//! Size is the opening of the smallest sieve that a fragment passes.
+
+use std::collections::BTreeMap;
+
+use dem_results::DistributionRow;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use dem_engine::state::State;
+use dem_engine::state::clusters::sizes::{FragmentSize, size_of};
+use dem_engine::state::model::Model;
+
+/// Sizes of the series R 20 of ISO 3 between 1 and 10.
+const R20: [&str; 20] = [
+    "1", "1.12", "1.25", "1.4", "1.6", "1.8", "2", "2.24", "2.5", "2.8", "3.15", "3.55", "4",
+    "4.5", "5", "5.6", "6.3", "7.1", "8", "9",
+];
+
+/// The places of fragments in the table: names, and whether discharged and present ones are there.
+const LOCATIONS: [(&str, bool, bool); 3] = [
+    ("inside", false, true),
+    ("discharged", true, false),
+    ("both", true, true),
+];
+
+/// Name of all bodies together in the table.
+const ALL: &str = "all";
+
+/// Smallest fragments of which the material decides and not the size of the spheres, in mean
+/// diameters of the spheres.
+pub const RESOLVED_DIAMETERS: f64 = 3.0;
+/// Size of a fragment over that of its body above which it is the body itself.
+const WHOLE: f64 = 0.999;
+
+/// Which figures lie below the size that the spheres resolve.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Unresolved {
+    /// `d10_m`
+    pub d10: bool,
+    /// `d50_m`
+    pub d50: bool,
+    /// `d80_m`
+    pub d80: bool,
+    /// `t10`
+    pub t10: bool,
+}
+
+impl Unresolved {
+    /// Their names.
+    pub fn names(self) -> Vec<&'static str> {
+        let all = [
+            ("d10", self.d10),
+            ("d50", self.d50),
+            ("d80", self.d80),
+            ("t10", self.t10),
+        ];
+        let own = all.into_iter().filter(|(_, is_unresolved)| *is_unresolved);
+        own.map(|(name, _)| name).collect()
+    }
+}
+
+/// Mass, sizes and fines of some fragments.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct SizeSummary {
+    /// Mass of the fragments, kg.
+    pub mass_kg: f64,
+    /// Size up to which a tenth of the mass is, m: that of the first fragment, from the smallest,
+    /// with which the sum reaches a tenth.
+    pub d10_m: f64,
+    /// The same for half of the mass, m.
+    pub d50_m: f64,
+    /// The same for 80 % of the mass, m.
+    pub d80_m: f64,
+    /// Mass fraction smaller than a tenth of the mean size of the bodies before they broke. None:
+    /// no sphere is as small, so that it could only be 0.
+    pub t10: Option<f64>,
+    /// Three mean diameters of the spheres, m: below, the spheres decide and not the material.
+    pub resolved_from_m: f64,
+    /// Those of these figures that lie below that size.
+    pub unresolved: Unresolved,
+}
+
+/// Size distributions at the end of a run.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Sizes {
+    /// Of all bodies together: fragments `inside`, `discharged` ones, and `both`.
+    pub all: BTreeMap<String, SizeSummary>,
+    /// The same for each body.
+    pub bodies: BTreeMap<String, BTreeMap<String, SizeSummary>>,
+}
+
+/// The fragments of a run, inside and discharged.
+#[derive(Debug, Clone, Default)]
+pub struct Fragments {
+    inside: Vec<FragmentSize>,
+    discharged: Vec<FragmentSize>,
+}
+
+impl Fragments {
+    /// Those of a state. None: nothing can break or touch.
+    pub fn of(state: &State) -> Option<Self> {
+        let clusters = state.clusters.as_ref()?;
+        let size = |id: u32| size_of(id, clusters, &state.particles, &state.clumps);
+        let discharged = state.population.discharged.iter();
+        let living: Vec<u32> = clusters.living().collect();
+        Some(Self {
+            inside: living.into_par_iter().map(size).collect(),
+            discharged: discharged.map(|one| one.size).collect(),
+        })
+    }
+
+    /// From these, for tests.
+    pub fn from_parts(inside: Vec<FragmentSize>, discharged: Vec<FragmentSize>) -> Self {
+        Self { inside, discharged }
+    }
+
+    /// Those of a body, or all, in these places, by ascending size.
+    fn chosen(&self, body: Option<u32>, discharged: bool, inside: bool) -> Vec<FragmentSize> {
+        let discharged = self.discharged.iter().filter(|_| discharged);
+        let inside = self.inside.iter().filter(|_| inside);
+        let all = discharged.chain(inside);
+        let own = all.filter(|one| body.is_none_or(|body| body == one.body));
+        let mut chosen: Vec<FragmentSize> = own.copied().collect();
+        chosen.sort_by(|a, b| a.sieve_m.total_cmp(&b.sieve_m));
+        chosen
+    }
+
+    /// Mass of the largest fragment of a body, by its number, kg.
+    pub fn largest_kg(&self, body: u32) -> f64 {
+        let of_body = self.chosen(Some(body), true, true);
+        of_body.iter().map(|one| one.mass_kg).fold(0.0, f64::max)
+    }
+
+    /// Bodies that have fragments, with their names, and all together.
+    fn groups<'a>(&self, model: &'a Model) -> Vec<(Option<u32>, &'a str)> {
+        let has = |number: u32| !self.chosen(Some(number), true, true).is_empty();
+        let bodies = (0..).zip(&model.bodies);
+        let bodies = bodies.map(|(number, body)| (number, body.name.as_str()));
+        let bodies = bodies.filter(|(number, _)| has(*number));
+        let bodies = bodies.map(|(number, name)| (Some(number), name));
+        std::iter::once((None, ALL)).chain(bodies).collect()
+    }
+
+    /// Mean size, by mass, of the bodies that the fragments come from, m.
+    fn mean_size_m(&self, body: Option<u32>, model: &Model) -> f64 {
+        let all = self.chosen(body, true, true);
+        let size = |one: &FragmentSize| {
+            let body = model.bodies.get(one.body as usize);
+            body.map_or(0.0, |body| body.sieve_m)
+        };
+        all.iter().map(|one| one.mass_kg * size(one)).sum::<f64>() / mass_kg(&all)
+    }
+
+    /// Diameter of the smallest sphere of the bodies that the fragments come from, m.
+    fn smallest_m(&self, body: Option<u32>, model: &Model) -> f64 {
+        let all = self.chosen(body, true, true);
+        let bodies = all
+            .iter()
+            .filter_map(|one| model.bodies.get(one.body as usize));
+        bodies.fold(f64::INFINITY, |least, body| {
+            least.min(body.smallest_diameter_m)
+        })
+    }
+
+    /// Size from which fragments of a body, or of all, are resolved, m; 0 for single spheres.
+    fn resolved_from_m(&self, body: Option<u32>, model: &Model) -> f64 {
+        let all = self.chosen(body, true, true);
+        let bodies = all
+            .iter()
+            .filter_map(|one| model.bodies.get(one.body as usize));
+        RESOLVED_DIAMETERS * bodies.fold(0.0, |most: f64, body| most.max(body.mean_diameter_m))
+    }
+
+    /// The numbers of the summary.
+    pub fn sizes(&self, model: &Model) -> Sizes {
+        let mut sizes = Sizes::default();
+        for (body, name) in self.groups(model) {
+            let tenth_m = 0.1 * self.mean_size_m(body, model);
+            let tenth_m = (tenth_m > self.smallest_m(body, model)).then_some(tenth_m);
+            let of_group = LOCATIONS
+                .iter()
+                .filter_map(|(location, discharged, inside)| {
+                    let chosen = self.chosen(body, *discharged, *inside);
+                    let summary = summary(&chosen, tenth_m)?.marked(
+                        &chosen,
+                        self.resolved_from_m(body, model),
+                        tenth_m,
+                        model,
+                    );
+                    Some(((*location).to_owned(), summary))
+                });
+            let of_group = of_group.collect();
+            match body {
+                None => sizes.all = of_group,
+                Some(_) => drop(sizes.bodies.insert(name.to_owned(), of_group)),
+            }
+        }
+        sizes
+    }
+
+    /// The rows of the table: for each body and all, for each place, for each sieve. `sieves_m`:
+    /// openings, m; if empty, those of [`sieves_m`].
+    pub fn rows<'a>(&self, model: &'a Model, sieves_m: &[f64]) -> Vec<DistributionRow<'a>> {
+        let all = self.chosen(None, true, true);
+        let (Some(first), Some(last)) = (all.first(), all.last()) else {
+            return Vec::new();
+        };
+        let sieves_m = match sieves_m {
+            [] => self::sieves_m(first.sieve_m, last.sieve_m),
+            given => given.to_vec(),
+        };
+        let mut rows = Vec::new();
+        for (body, name) in self.groups(model) {
+            let resolved_from_m = self.resolved_from_m(body, model);
+            for (location, discharged, inside) in LOCATIONS {
+                let chosen = self.chosen(body, discharged, inside);
+                let total_kg = mass_kg(&chosen);
+                if total_kg == 0.0 {
+                    continue;
+                }
+                for &sieve_m in &sieves_m {
+                    let end = chosen.partition_point(|one| one.sieve_m <= sieve_m);
+                    let passing_kg = mass_kg(&chosen[..end]);
+                    rows.push(DistributionRow {
+                        body: name,
+                        location,
+                        sieve_m,
+                        passing_kg,
+                        passing_fraction: passing_kg / total_kg,
+                        resolved: sieve_m >= resolved_from_m,
+                    });
+                }
+            }
+        }
+        rows
+    }
+
+    /// Cumulative curves of all fragments, inside and discharged: name of the body, points of size,
+    /// m, and mass fraction with a step at each size, and d50, m.
+    pub fn curves<'a>(&self, model: &'a Model) -> Vec<(&'a str, Vec<[f64; 2]>, f64)> {
+        let curve = |(body, name): (Option<u32>, &'a str)| {
+            let chosen = self.chosen(body, true, true);
+            let d50_m = summary(&chosen, None).map_or(0.0, |summary| summary.d50_m);
+            (name, steps(&chosen), d50_m)
+        };
+        self.groups(model).into_iter().map(curve).collect()
+    }
+
+    /// Size from which all of them are resolved, m: see [`SizeSummary::resolved_from_m`].
+    pub fn all_resolved_from_m(&self, model: &Model) -> f64 {
+        self.resolved_from_m(None, model)
+    }
+
+    /// Number of all fragments, inside and discharged.
+    pub fn count(&self) -> usize {
+        self.inside.len() + self.discharged.len()
+    }
+}
+
+/// Size, m, and mass fraction of all fragments of that size and smaller ones, with a step at every
+/// size. `sorted`: by ascending size.
+pub fn steps(sorted: &[FragmentSize]) -> Vec<[f64; 2]> {
+    let total_kg = mass_kg(sorted);
+    let (mut sum_kg, mut points) = (0.0, Vec::new());
+    for same in sorted.chunk_by(|a, b| a.sieve_m == b.sieve_m) {
+        points.push([same[0].sieve_m, sum_kg / total_kg]);
+        sum_kg += mass_kg(same);
+        points.push([same[0].sieve_m, sum_kg / total_kg]);
+    }
+    points
+}
+
+/// Mass of some fragments, kg. Not the sum of an iterator: that of none is minus zero.
+fn mass_kg(fragments: &[FragmentSize]) -> f64 {
+    fragments.iter().fold(0.0, |sum, one| sum + one.mass_kg)
+}
+
+/// Of fragments by ascending size; `tenth_m`: the size for t10, if it is resolved. None: there are
+/// none.
+fn summary(sorted: &[FragmentSize], tenth_m: Option<f64>) -> Option<SizeSummary> {
+    let last = sorted.last()?;
+    let mass_kg = mass_kg(sorted);
+    let at = |fraction: f64| {
+        let mut sum_kg = 0.0;
+        let reached = sorted.iter().find(|one| {
+            sum_kg += one.mass_kg;
+            sum_kg >= fraction * mass_kg
+        });
+        reached.unwrap_or(last).sieve_m
+    };
+    let fines_kg = |tenth_m: f64| {
+        let fines = sorted.partition_point(|one| one.sieve_m < tenth_m);
+        self::mass_kg(&sorted[..fines])
+    };
+    Some(SizeSummary {
+        mass_kg,
+        d10_m: at(0.1),
+        d50_m: at(0.5),
+        d80_m: at(0.8),
+        t10: tenth_m.map(|tenth_m| fines_kg(tenth_m) / mass_kg),
+        resolved_from_m: 0.0,
+        unresolved: Unresolved::default(),
+    })
+}
+
+impl SizeSummary {
+    /// With marks at the figures of these fragments that are below the size that the spheres
+    /// resolve, m. A body that has not broken is no matter of its spheres.
+    fn marked(
+        self,
+        sorted: &[FragmentSize],
+        resolved_from_m: f64,
+        tenth_m: Option<f64>,
+        model: &Model,
+    ) -> Self {
+        let is_fragment = |size_m: f64| {
+            let mut own = sorted.iter().filter(|one| one.sieve_m == size_m);
+            own.any(|one| {
+                let body = model.bodies.get(one.body as usize);
+                body.is_some_and(|body| size_m < WHOLE * body.sieve_m)
+            })
+        };
+        let is_small = |size_m: f64| size_m < resolved_from_m && is_fragment(size_m);
+        Self {
+            resolved_from_m,
+            unresolved: Unresolved {
+                d10: is_small(self.d10_m),
+                d50: is_small(self.d50_m),
+                d80: is_small(self.d80_m),
+                t10: tenth_m.is_some_and(|tenth_m| tenth_m < resolved_from_m),
+            },
+            ..self
+        }
+    }
+}
+
+/// Openings of test sieves, m: the principal sizes R 20/3 of ISO 565 (1 mm, 1.4 mm, 2 mm, 2.8 mm,
+/// ...), from the last below the smallest fragment to the first that all pass.
+pub fn sieves_m(smallest_m: f64, largest_m: f64) -> Vec<f64> {
+    if !(smallest_m > 0.0 && largest_m.is_finite()) {
+        return Vec::new();
+    }
+    // Every third size of the series, counted from 1 mm; 20 sizes make a decade.
+    let opening_m = |number: i64| -> f64 {
+        let digits = R20[(3 * number).rem_euclid(20) as usize];
+        let decade = (3 * number).div_euclid(20) - 3;
+        format!("{digits}e{decade}").parse().unwrap_or(f64::NAN)
+    };
+    let mut number = (20.0 / 3.0 * (smallest_m * 1e3).log10()).floor() as i64 + 2;
+    while opening_m(number) >= smallest_m {
+        number -= 1;
+    }
+    let mut sieves_m = vec![opening_m(number)];
+    while opening_m(number) < largest_m {
+        number += 1;
+        sieves_m.push(opening_m(number));
+    }
+    sieves_m
+}

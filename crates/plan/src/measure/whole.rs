@@ -1,0 +1,290 @@
+//! A set as a single body: its centre of mass and its motion and rotation.
+//!
+//! A clump counts with its own mass, centre, velocity and angular momentum; the cluster that
+//! replaces it has the same totals of its particles, so that every value is the same before and
+//! after, except for rounding.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use super::members::Members;
+use dem_physics::rigid::rotation_vector;
+use dem_physics::rotation::numbers;
+use dem_physics::rotation::rotation;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clumps::Clump;
+use dem_engine::state::events::REMOVED;
+use dem_engine::state::particles::Motion;
+
+/// Initial positions of bodies, by name.
+pub(super) type Starts = BTreeMap<String, Start>;
+
+/// Initial position of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Start {
+    /// Its particles, by their numbers in its file, m.
+    places: Vec<Vector3<f64>>,
+    /// Its centre, if it was a clump, m.
+    centre: Option<Vector3<f64>>,
+    /// Rotations of its particles, by their numbers in its file.
+    turned: Vec<UnitQuaternion<f64>>,
+}
+
+/// Velocities at the time of the positions: one for each particle, and the motion of each clump.
+#[derive(Debug, Default)]
+pub(super) struct Motions {
+    pub(super) particles: Vec<Motion>,
+    pub(super) clumps: Vec<Clump>,
+}
+
+/// Positions of the bodies of a state that has not been stepped.
+pub(super) fn starts(bodies: &[PlacedBody], state: &State) -> Starts {
+    let place = |i: &u32| state.particles.poses[*i as usize].place();
+    let turned = |i: &u32| state.particles.poses[*i as usize].rotation();
+    let placed = bodies.iter().map(|body| {
+        let start = Start {
+            places: body.particles.iter().map(place).collect(),
+            centre: None,
+            turned: body.particles.iter().map(turned).collect(),
+        };
+        (body.name.clone(), start)
+    });
+    let clumps = state.clumps.all.iter().map(|clump| {
+        let template = state.clumps.template(clump);
+        let mut places = vec![Vector3::zeros(); template.spheres.len()];
+        let mut turned = vec![UnitQuaternion::identity(); template.spheres.len()];
+        for (sphere, &number) in template.file_number.iter().enumerate() {
+            let pose = template.pose(sphere, clump);
+            places[number as usize] = pose.place();
+            turned[number as usize] = pose.rotation();
+        }
+        let start = Start {
+            places,
+            centre: Some(clump.place_m.into()),
+            turned,
+        };
+        (template.body.clone(), start)
+    });
+    placed.chain(clumps).collect()
+}
+
+/// Centre of mass of the initial positions of the members, m. Members that did not exist then do
+/// not count.
+pub(super) fn start_centre(
+    members: &Members,
+    starts: &Starts,
+    bodies: &[PlacedBody],
+    state: &State,
+) -> Vector3<f64> {
+    let mut parts: Vec<(f64, Vector3<f64>)> = Vec::new();
+    for body in bodies {
+        let Some(start) = starts.get(&body.name) else {
+            continue;
+        };
+        for (place, i) in start.places.iter().zip(&body.particles) {
+            if *i != REMOVED && members.particles.binary_search(i).is_ok() {
+                let motion = &state.particles.motions[*i as usize];
+                parts.push((1.0 / motion.inverse_mass, *place));
+            }
+        }
+    }
+    for (_, template) in members.clumps(state, &state.clumps.all) {
+        match starts.get(&template.body) {
+            Some(Start {
+                centre: Some(centre),
+                places,
+                ..
+            }) if places.len() == template.spheres.len() => {
+                parts.push((template.mass_kg, *centre));
+            }
+            // A fragment.
+            Some(start) => {
+                let spheres = template.spheres.iter().zip(template.file_number.iter());
+                parts.extend(spheres.map(|(s, n)| (s.mass_kg, start.places[*n as usize])));
+            }
+            None => {}
+        }
+    }
+    // In the order of the file or of the state: the same mean, except for rounding.
+    mean(&parts)
+}
+
+/// The mean of vectors, each with a weight.
+fn mean(parts: &[(f64, Vector3<f64>)]) -> Vector3<f64> {
+    let Some(&(_, origin)) = parts.first() else {
+        return Vector3::repeat(f64::NAN);
+    };
+    let weight: f64 = parts.iter().map(|(weight, _)| weight).sum();
+    let sum: Vector3<f64> = parts.iter().map(|(w, x)| *w * (x - origin)).sum();
+    origin + sum / weight
+}
+
+/// Centre of mass, m.
+pub(super) fn centre(members: &Members, state: &State) -> Vector3<f64> {
+    mean(&places(members, state))
+}
+
+/// Distance of the centre of mass from a position, m.
+pub(super) fn centre_from(members: &Members, state: &State, from: Vector3<f64>) -> Vector3<f64> {
+    let mut places = places(members, state);
+    for (_, place) in &mut places {
+        *place -= from;
+    }
+    mean(&places)
+}
+
+/// Masses, kg, and positions, m, of particles and clumps.
+fn places(members: &Members, state: &State) -> Vec<(f64, Vector3<f64>)> {
+    let p = &state.particles;
+    let free = members.free(state);
+    let free = free.map(|i| (1.0 / p.motions[i].inverse_mass, p.poses[i].place()));
+    let clumps = members.clumps(state, &state.clumps.all);
+    let clumps = clumps.map(|(clump, template)| (template.mass_kg, clump.place_m.into()));
+    free.chain(clumps).collect()
+}
+
+/// Velocity of the centre of mass, m/s.
+pub(super) fn velocity(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
+    let p = &state.particles;
+    let free = members.free(state).map(|i| {
+        let velocity = Vector3::from(motions.particles[i].velocity_m_s);
+        (1.0 / p.motions[i].inverse_mass, velocity)
+    });
+    let clumps = members.clumps(state, &motions.clumps);
+    let clumps = clumps.map(|(clump, template)| (template.mass_kg, clump.velocity_m_s.into()));
+    let parts: Vec<_> = free.chain(clumps).collect();
+    mean(&parts)
+}
+
+/// Kinetic energy, J.
+pub(super) fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> f64 {
+    let free = members.free(state);
+    let free = free.map(|i| state.particles.kinetic_j(i, &motions.particles[i]));
+    let clumps = members.clumps(state, &motions.clumps);
+    free.sum::<f64>()
+        + clumps
+            .map(|(c, template)| c.kinetic_j(template))
+            .sum::<f64>()
+}
+
+/// Spin of the rigid body with the same inertia and the same angular momentum about the centre of
+/// mass, rad/s. For a single particle or clump, its own.
+pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
+    let p = &state.particles;
+    let (mut free, mut clumps) = (members.free(state), members.clumps(state, &motions.clumps));
+    if let [Some(i), None] = [free.next(), free.next()]
+        && clumps.next().is_none()
+    {
+        return motions.particles[i].spin_rad_s.into();
+    }
+    let about = centre(members, state);
+    let velocity = velocity(members, state, motions);
+    let (mut inertia, mut angular) = (Matrix3::zeros(), Vector3::zeros());
+    let mut add = |mass: f64, place: Vector3<f64>, moving: [f64; 3], own: Matrix3<f64>, l| {
+        let arm = place - about;
+        inertia +=
+            mass * (Matrix3::from_diagonal_element(arm.norm_squared()) - arm * arm.transpose());
+        inertia += own;
+        angular += mass * arm.cross(&(Vector3::from(moving) - velocity)) + l;
+    };
+    for i in members.free(state) {
+        let (own, motion) = (&p.motions[i], &motions.particles[i]);
+        let moment = 1.0 / own.inverse_inertia;
+        let l = moment * Vector3::from(motion.spin_rad_s);
+        let moments = Matrix3::from_diagonal_element(moment);
+        let place = p.poses[i].place();
+        add(
+            1.0 / own.inverse_mass,
+            place,
+            motion.velocity_m_s,
+            moments,
+            l,
+        );
+    }
+    for (clump, template) in members.clumps(state, &motions.clumps) {
+        let to_space = rotation(clump.turned).to_rotation_matrix();
+        let moments = Matrix3::from_diagonal(&template.moments_kg_m2.into());
+        let own = to_space * moments * to_space.transpose();
+        let l = Vector3::from(clump.angular_momentum);
+        add(
+            template.mass_kg,
+            clump.place_m.into(),
+            clump.velocity_m_s,
+            own,
+            l,
+        );
+    }
+    // Every sphere has its own moment of inertia, so the total inertia is invertible.
+    let solved = inertia.cholesky().map(|inertia| inertia.solve(&angular));
+    solved.unwrap_or_else(|| Vector3::repeat(f64::NAN))
+}
+
+/// Mass-weighted mean of the rotation vectors since the start, rad, of 180 degrees at most.
+/// `turned_before`: of particles that were rotated at the start.
+pub(super) fn turn(
+    members: &Members,
+    state: &State,
+    starts: &Starts,
+    turned_before: &BTreeMap<u32, UnitQuaternion<f64>>,
+) -> Vector3<f64> {
+    let p = &state.particles;
+    let mut first: Option<Vector3<f64>> = None;
+    let mut parts = Vec::new();
+    let mut add = |mass_kg: f64, turned: [f64; 4]| {
+        let near = *first.get_or_insert_with(|| rotation_vector(turned).into());
+        parts.push((mass_kg, nearest(rotation_vector(turned).into(), &near)));
+    };
+    for i in members.free(state) {
+        let before = turned_before.get(&(i as u32));
+        let turned = p.poses[i].turned;
+        let since = before.map_or(turned, |b| numbers(&(rotation(turned) * b.inverse())));
+        add(1.0 / p.motions[i].inverse_mass, since);
+    }
+    for (clump, template) in members.clumps(state, &state.clumps.all) {
+        let start = starts.get(&template.body);
+        for (sphere, number) in template.spheres.iter().zip(template.file_number.iter()) {
+            let before = start.and_then(|start| start.turned.get(*number as usize));
+            let before = before.copied().unwrap_or_default();
+            let now = rotation(clump.turned) * rotation(sphere.turned);
+            add(sphere.mass_kg, numbers(&(now * before.inverse())));
+        }
+    }
+    let mean = mean(&parts);
+    nearest(mean, &Vector3::zeros())
+}
+
+/// Of the vectors of one rotation that are shorter than a full revolution, the one nearer to
+/// another.
+fn nearest(turn: Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
+    let angle = turn.norm();
+    if angle == 0.0 {
+        return turn;
+    }
+    let other = turn * (1.0 - TAU / angle);
+    if (other - to).norm() < (turn - to).norm() {
+        other
+    } else {
+        turn
+    }
+}
+
+/// Initial rotations of those of the members' particles that were rotated then.
+pub(super) fn turned_before(
+    members: &Members,
+    starts: &Starts,
+    bodies: &[PlacedBody],
+) -> BTreeMap<u32, UnitQuaternion<f64>> {
+    let known = bodies
+        .iter()
+        .filter_map(|body| Some((body, starts.get(&body.name)?)));
+    let particles = known.flat_map(|(body, start)| body.particles.iter().zip(&start.turned));
+    particles
+        .filter(|(i, turned)| {
+            **turned != UnitQuaternion::identity() && members.particles.binary_search(i).is_ok()
+        })
+        .map(|(i, turned)| (*i, *turned))
+        .collect()
+}

@@ -1,0 +1,583 @@
+//! Results of a test from force and displacement: stiffness, modulus, strength, position of the
+//! crack.
+
+use dem_scene::{BondKind, Test};
+use serde::{Deserialize, Serialize};
+
+use super::confined::{self, POISSON_RATIO, PRESSURE_OFF, RESIDUAL, RESIDUAL_FRICTION};
+use super::curve::{largest_n, peak, play_m, rows_of, slope};
+use super::disc_stress::{self, ACROSS, ALONG};
+use super::figure::{Figure, Source};
+use super::pieces::Pieces;
+use super::record::{Record, Row};
+use dem_physics::bond::failure::Cause;
+use crate::setup::Setup;
+use dem_laboratory::theory::Beam;
+use dem_laboratory::theory::{
+    KAPPA, PEAK_AXIAL_STRESS, bar_stress_pa, disc_modulus_pa, disc_stress_pa,
+};
+use dem_laboratory::{Specimen, TestType, area_between};
+
+/// The first bond that broke.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FirstBroken {
+    /// Time, s.
+    pub time_s: f64,
+    /// Load at that time, N.
+    pub force_n: f64,
+    /// Crosshead travel at that time, from the point where the fitted line has no load, m.
+    pub travel_m: f64,
+    /// Initial position in the body, m. Length 3.
+    pub place_m: [f64; 3],
+    /// Cause of failure.
+    pub cause: Cause,
+}
+
+/// Position of the broken bonds in the initial body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Crack {
+    /// Number of broken bonds.
+    pub bonds: usize,
+    /// Mean distance from the middle of the span, of a bar's length or of the loaded diameter, m.
+    pub offset_m: f64,
+    /// Standard deviation of that, m.
+    pub spread_m: f64,
+    /// The crack is in the expected place if `offset_m` does not exceed this, m: half the loading
+    /// span of a four-point test.
+    pub within_m: f64,
+    /// Whether the crack is in the expected place.
+    pub is_within: bool,
+    /// Fraction of the broken bonds that are individually in the expected place.
+    #[serde(rename = "fraction_within")]
+    pub fraction_within: f64,
+}
+
+/// Result of a test.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestResult {
+    /// Its type, as in the scene.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// Whether the body broke: the load fell below half of its maximum.
+    pub broken: bool,
+    /// Number of broken bonds, and of all bonds.
+    pub broken_bonds: [usize; 2],
+    /// Number of bonds that broke before the largest load.
+    pub broken_at_peak: usize,
+    /// Strength given in the scene, Pa.
+    pub target_strength_pa: Option<f64>,
+    /// Lowest frequency of the body in the test, estimated, Hz.
+    pub lowest_frequency_hz: f64,
+    /// Crosshead velocity, that of the striker, or that of the weight at the impact, m/s.
+    pub rate_m_s: f64,
+    /// Dimensions used in the evaluation.
+    pub dimensions: Vec<Figure>,
+    /// Results.
+    #[serde(rename = "results")]
+    pub figures: Vec<Figure>,
+    /// Bond parameters with which the body would have the modulus and the strength given in the
+    /// scene.
+    pub calibration: Vec<Figure>,
+    /// None: no bond broke.
+    pub first_broken: Option<FirstBroken>,
+    /// None: no bond broke.
+    pub crack: Option<Crack>,
+    /// Displacement, m, from where the fitted line has no load, and load, N.
+    #[serde(skip)]
+    pub curve: Vec<[f64; 2]>,
+    /// Reasons to doubt a dynamic test that its figures do not show.
+    #[serde(skip)]
+    pub reasons: Vec<String>,
+    /// Relative changes of the figures at half the rate: (slow - fast)/fast. Empty: not checked.
+    #[serde(rename = "changes_at_half_the_rate")]
+    pub half_the_rate_changes: Vec<Figure>,
+}
+
+impl TestResult {
+    /// Whether the test was dynamic.
+    pub fn is_dynamic(&self) -> bool {
+        self.test_type().is_some_and(TestType::is_dynamic)
+    }
+
+    /// Its type.
+    pub(super) fn test_type(&self) -> Option<TestType> {
+        let found = TestType::NAMES.iter().find(|(name, _)| *name == self.kind);
+        found.map(|(_, kind)| *kind)
+    }
+
+    /// The value of a figure.
+    pub fn figure(&self, name: &str) -> Option<f64> {
+        let found = self.figures.iter().find(|figure| figure.name == name);
+        found.map(|figure| figure.value)
+    }
+
+    /// Records the relative differences of its figures from those of the same test at twice the
+    /// rate.
+    pub fn compare(&mut self, fast: &Self) {
+        let compared = |figure: &Figure| {
+            let before = fast.figure(&figure.name)?;
+            let change = (figure.value - before) / before.abs();
+            change
+                .is_finite()
+                .then(|| Figure::new(&figure.name, change, "", None))
+        };
+        self.half_the_rate_changes = self.figures.iter().filter_map(compared).collect();
+    }
+}
+
+/// Input of the evaluation.
+#[derive(Debug, Clone, Copy)]
+pub struct TestInput<'a> {
+    /// The test, with its rate.
+    pub test: &'a Test,
+    /// Arrangement of the test.
+    pub setup: &'a Setup,
+    /// Record of the test.
+    pub record: &'a Record,
+    /// Initial position of each broken bond of the record, m.
+    pub places_m: &'a [[f64; 3]],
+    /// Type of the body's bonds.
+    pub bonds: Option<&'a BondKind>,
+    /// Hz.
+    pub lowest_frequency_hz: f64,
+    /// The load fell below half of its maximum.
+    pub broken: bool,
+    /// Number of all bonds.
+    pub all_bonds: usize,
+    /// Pieces of the body at the end. None: it cannot break.
+    pub pieces: Option<Pieces>,
+}
+
+/// Evaluates a quasi-static test. Figures that cannot be determined from its record are omitted.
+pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
+    let TestInput {
+        test,
+        setup,
+        record,
+        ..
+    } = *evidence;
+    let rows = &rows_of(record, evidence.lowest_frequency_hz);
+    let by_travel = slope(rows, |row| row.travel_m);
+    let measured = !setup.moving.is_empty();
+    let of_body = slope(rows, |row| row.deflection_m).filter(|_| measured);
+    let largest = largest_n(rows);
+    let mut measured = Measured::of(
+        test,
+        setup,
+        [by_travel, of_body].map(|slope| Some(slope?.stiffness_n_m)),
+        largest.filter(|_| evidence.broken),
+    );
+    let play_m = play_m(rows);
+    let travel = peak(rows).map(|row| row.travel_m - play_m);
+    measured.add(
+        TRAVEL_AT_FAILURE,
+        travel.filter(|_| evidence.broken),
+        "m",
+        None,
+    );
+    if !evidence.broken {
+        measured.add(LARGEST_FORCE, largest, "N", None);
+    }
+    (measured.figures).extend(confined::figures(test, setup, rows));
+    (measured.figures).extend(disc_stress::figures(setup, &record.disc));
+    let points = rows.iter().map(|row| [row.travel_m - play_m, row.load_n()]);
+    let curve: Vec<[f64; 2]> = points.collect();
+    let wanted = measured_curve(test, &setup.specimen);
+    if !wanted.is_empty() {
+        measured.add(APART, Some(area_between(&curve, &wanted)), "", None);
+    }
+    let first_broken = first_broken(evidence).map(|first| FirstBroken {
+        travel_m: first.travel_m - play_m,
+        ..first
+    });
+    let mut result = TestResult {
+        rate_m_s: test.rate_m_s.unwrap_or(f64::NAN),
+        dimensions: measured.dimensions,
+        figures: measured.figures,
+        first_broken,
+        curve,
+        ..without_figures(evidence, rows)
+    };
+    result.calibration = calibration(&result, evidence);
+    result
+}
+
+/// What all tests have in common.
+pub(super) fn without_figures(evidence: &TestInput<'_>, rows: &[Row]) -> TestResult {
+    TestResult {
+        kind: evidence.test.kind.name().to_owned(),
+        broken: evidence.broken,
+        broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
+        broken_at_peak: broken_at_peak(evidence.record, rows),
+        target_strength_pa: evidence.test.strength_pa,
+        lowest_frequency_hz: evidence.lowest_frequency_hz,
+        rate_m_s: f64::NAN,
+        dimensions: Vec::new(),
+        figures: Vec::new(),
+        calibration: Vec::new(),
+        first_broken: None,
+        crack: crack(evidence),
+        curve: Vec::new(),
+        reasons: Vec::new(),
+        half_the_rate_changes: Vec::new(),
+    }
+}
+
+/// The mean curve of the measured material of a test, for the simulated specimen: displacement, m,
+/// and load, N. Empty: the test names none.
+pub fn measured_curve(test: &Test, specimen: &Specimen) -> Vec<[f64; 2]> {
+    let measured = test.measured.as_ref();
+    measured.map_or_else(Vec::new, |measured| measured.material.curve_of(specimen))
+}
+
+/// The stiffness of the measured material of a test, for the simulated specimen, N/m.
+pub fn stiffness_of_curve(test: &Test, specimen: &Specimen) -> Option<f64> {
+    let material = &test.measured.as_ref()?.material;
+    material.stiffness_of(specimen)
+}
+
+/// Results read from the curve of a test.
+struct Measured {
+    /// Ratio of load to travel, N/m.
+    stiffness_n_m: Option<f64>,
+    /// Ratio of load to the deformation of the body itself, N/m.
+    of_body_n_m: Option<f64>,
+    /// Load at which the body broke, N.
+    failure_n: Option<f64>,
+    /// Modulus given in the scene, Pa.
+    modulus_pa: Option<f64>,
+    /// Strength given in the scene, Pa.
+    strength_pa: Option<f64>,
+    dimensions: Vec<Figure>,
+    figures: Vec<Figure>,
+}
+
+/// Dimensions, stiffness and moduli of a test: `by_travel` and `of_body` are the ratios of the load
+/// to the travel and to the deformation of the body, N/m.
+pub(crate) fn elastic_figures(
+    test: &Test,
+    setup: &Setup,
+    by_travel: Option<f64>,
+    of_body: Option<f64>,
+) -> (Vec<Figure>, Vec<Figure>) {
+    let measured = Measured::of(test, setup, [by_travel, of_body], None);
+    (measured.dimensions, measured.figures)
+}
+
+impl Measured {
+    /// Dimensions and figures from the ratios of the load to travel and deformation, N/m, and the
+    /// load at failure, N.
+    fn of(
+        test: &Test,
+        setup: &Setup,
+        [stiffness_n_m, of_body_n_m]: [Option<f64>; 2],
+        failure_n: Option<f64>,
+    ) -> Self {
+        let mut measured = Self {
+            stiffness_n_m,
+            of_body_n_m,
+            failure_n,
+            modulus_pa: test.young_modulus_pa,
+            strength_pa: test.strength_pa,
+            dimensions: Vec::new(),
+            figures: Vec::new(),
+        };
+        match setup.specimen {
+            Specimen::Beam(beam) => measured.beam(&beam, test.poisson_ratio),
+            Specimen::Disc {
+                diameter_m,
+                thickness_m,
+            } => measured.disc(
+                [diameter_m, thickness_m, setup.gauge_m],
+                test.poisson_ratio,
+                stiffness_of_curve(test, &setup.specimen),
+            ),
+            Specimen::Bar { length_m, area_m2 } => {
+                measured.bar(test.kind, [length_m, setup.gauge_m], area_m2);
+                let looked = [
+                    ("section of the body", setup.section_m2, "m2"),
+                    (PRESSED, setup.pressed, ""),
+                ];
+                for (name, value, unit) in looked {
+                    if let Some(value) = value {
+                        measured.dimension(name, value, unit);
+                    }
+                }
+            }
+        }
+        measured.name_sources(test);
+        measured
+    }
+
+    /// Says which targets were measured.
+    fn name_sources(&mut self, test: &Test) {
+        let Some(reference) = &test.measured else {
+            return;
+        };
+        let material = &reference.material;
+        let modulus_pa = material.young_modulus_pa.map(|modulus| modulus.mean);
+        let is_disc = modulus_pa.is_none();
+        let strength_is = test.strength_pa == Some(material.strength_pa.mean);
+        let modulus_is = test.young_modulus_pa.is_some() && test.young_modulus_pa == modulus_pa;
+        for figure in &mut self.figures {
+            let is_measured = match figure.name.as_str() {
+                STRENGTH | FAILURE_FORCE => strength_is,
+                STIFFNESS => modulus_is || is_disc,
+                _ => modulus_is,
+            };
+            if is_measured && figure.theory_is.is_some() {
+                figure.theory_is = Some(Source::Measured);
+            }
+        }
+    }
+
+    fn add(&mut self, name: &str, value: Option<f64>, unit: &str, theory: Option<f64>) {
+        let figure = value.map(|value| Figure::new(name, value, unit, theory));
+        self.figures.extend(figure);
+    }
+
+    fn dimension(&mut self, name: &str, value: f64, unit: &str) {
+        self.dimensions.push(Figure::new(name, value, unit, None));
+    }
+
+    fn beam(&mut self, beam: &Beam, nu: f64) {
+        self.dimension("support span", beam.span_m, "m");
+        if beam.loading_span_m > 0.0 {
+            self.dimension("loading span", beam.loading_span_m, "m");
+        }
+        self.dimension("width", beam.width_m, "m");
+        self.dimension("height", beam.height_m, "m");
+        let (shape, shear) = (beam.bending_shape_m(), beam.shear_over_bending(nu, KAPPA));
+        let theory = self
+            .modulus_pa
+            .map(|modulus| beam.stiffness_n_m(modulus, nu, KAPPA));
+        self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
+        self.add(SPECIMEN_STIFFNESS, self.of_body_n_m, "N/m", theory);
+        let bending = |k: f64| k / shape;
+        let with_shear = |k: f64| k * (1.0 + shear) / shape;
+        self.add(
+            EQ_18,
+            self.stiffness_n_m.map(bending),
+            "Pa",
+            self.modulus_pa,
+        );
+        self.add(
+            WITH_SHEAR,
+            self.stiffness_n_m.map(with_shear),
+            "Pa",
+            self.modulus_pa,
+        );
+        self.add(
+            MODULUS,
+            self.of_body_n_m.map(with_shear),
+            "Pa",
+            self.modulus_pa,
+        );
+        let theory = self.strength_pa.map(|strength| beam.force_n(strength));
+        self.add(FAILURE_FORCE, self.failure_n, "N", theory);
+        let stress = self.failure_n.map(|force| beam.stress_pa(force));
+        self.add(STRENGTH, stress, "Pa", self.strength_pa);
+    }
+
+    /// Of a disc with this diameter, thickness and gauge length, m; `curve_n_m`: stiffness of the
+    /// measured curve.
+    fn disc(&mut self, sizes_m: [f64; 3], nu: f64, curve_n_m: Option<f64>) {
+        let [diameter_m, thickness_m, gauge_m] = sizes_m;
+        self.dimension("diameter", diameter_m, "m");
+        self.dimension("thickness", thickness_m, "m");
+        self.add(STIFFNESS, self.stiffness_n_m, "N/m", curve_n_m);
+        if gauge_m > 0.0 {
+            self.dimension("gauge length", gauge_m, "m");
+            // The measured points approach each other.
+            let of_gauge = |k: f64| disc_modulus_pa(k.abs(), diameter_m, thickness_m, gauge_m, nu);
+            self.add(
+                MODULUS,
+                self.of_body_n_m.map(of_gauge),
+                "Pa",
+                self.modulus_pa,
+            );
+        }
+        let stress = |force: f64| disc_stress_pa(force, diameter_m, thickness_m);
+        let theory = self.strength_pa.map(|strength| strength / stress(1.0));
+        self.add(FAILURE_FORCE, self.failure_n, "N", theory);
+        self.add(STRENGTH, self.failure_n.map(stress), "Pa", self.strength_pa);
+    }
+
+    /// Of a bar, the neck of a dog bone or a sheared body with this length and gauge length, m.
+    fn bar(&mut self, kind: TestType, [length_m, gauge_m]: [f64; 2], area_m2: f64) {
+        self.dimension("length", length_m, "m");
+        self.dimension("area", area_m2, "m2");
+        if kind != TestType::DirectShear {
+            self.dimension("gauge length", gauge_m, "m");
+        }
+        // The wide ends of a dog bone and the halves of a sheared body yield as well.
+        if matches!(kind, TestType::DogBone | TestType::DirectShear) {
+            self.add(STIFFNESS, self.stiffness_n_m, "N/m", None);
+        } else {
+            let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / length_m);
+            self.add(STIFFNESS, self.stiffness_n_m, "N/m", theory);
+            let of_length = |k: f64| k * length_m / area_m2;
+            let by_travel_pa = self.stiffness_n_m.map(of_length);
+            self.add(BY_TRAVEL, by_travel_pa, "Pa", self.modulus_pa);
+        }
+        let theory = self.modulus_pa.map(|modulus| modulus * area_m2 / gauge_m);
+        // In compression, the measured points approach each other.
+        let of_body = self.of_body_n_m.map(f64::abs);
+        self.add(SPECIMEN_STIFFNESS, of_body, "N/m", theory);
+        let of_gauge = |k: f64| k * gauge_m / area_m2;
+        self.add(MODULUS, of_body.map(of_gauge), "Pa", self.modulus_pa);
+        let stress = |force: f64| bar_stress_pa(force, area_m2);
+        let theory = self.strength_pa.map(|strength| strength * area_m2);
+        self.add(FAILURE_FORCE, self.failure_n, "N", theory);
+        self.add(STRENGTH, self.failure_n.map(stress), "Pa", self.strength_pa);
+    }
+}
+
+/// The smaller part of the two ends of a body that plates press.
+const PRESSED: &str = "pressed part of its ends";
+/// Names of figures that are looked up: ratio of load to travel.
+pub const STIFFNESS: &str = "stiffness";
+/// Modulus of a beam from the travel, without shear: Platzer 2022, eq. 18.
+pub const EQ_18: &str = "modulus without shear";
+/// Ratio of load to the specimen's own deflection or elongation.
+const SPECIMEN_STIFFNESS: &str = "specimen stiffness";
+/// The same as eq. 18, with shear.
+const WITH_SHEAR: &str = "modulus with shear";
+/// Travel at the largest load of a body that broke.
+const TRAVEL_AT_FAILURE: &str = "crosshead travel at failure";
+/// Modulus of a bar from the travel.
+pub const BY_TRAVEL: &str = "modulus by travel";
+/// Modulus of the body from its own deflection or elongation, including shear.
+pub const MODULUS: &str = "specimen modulus";
+/// Largest load before the body broke.
+pub const FAILURE_FORCE: &str = "failure force";
+/// Largest load of a body that did not break.
+pub const LARGEST_FORCE: &str = "largest force";
+/// Area between the measured and the simulated curve, over the area below the measured one.
+const APART: &str = "area between the curves";
+/// Stress at that force according to the formula of the test.
+pub const STRENGTH: &str = "strength";
+
+/// Names of all results of quasi-static tests; each test has some of them.
+pub const RESULTS: [&str; 18] = [
+    STIFFNESS,
+    SPECIMEN_STIFFNESS,
+    EQ_18,
+    WITH_SHEAR,
+    BY_TRAVEL,
+    MODULUS,
+    FAILURE_FORCE,
+    LARGEST_FORCE,
+    STRENGTH,
+    TRAVEL_AT_FAILURE,
+    APART,
+    POISSON_RATIO,
+    PEAK_AXIAL_STRESS,
+    RESIDUAL,
+    RESIDUAL_FRICTION,
+    PRESSURE_OFF,
+    ACROSS,
+    ALONG,
+];
+
+/// Required bond parameters. Stresses and strains are proportional to modulus and strength of the
+/// bonds: one run gives the factor.
+fn calibration(result: &TestResult, evidence: &TestInput<'_>) -> Vec<Figure> {
+    let mut found = Vec::new();
+    let Some(bonds) = evidence.bonds else {
+        return found;
+    };
+    let test = evidence.test;
+    if let Some(modulus) = result.figure(MODULUS) {
+        let factor = modulus / bonds.young_modulus_pa;
+        found.push(Figure::new(
+            "specimen modulus over bond modulus",
+            factor,
+            "",
+            None,
+        ));
+        if let Some(wanted) = test.young_modulus_pa {
+            let name = "bond modulus for the target";
+            found.push(Figure::new(name, wanted / factor, "Pa", None));
+        }
+    }
+    // As in Platzer 2022, section 4.5.3.3, including all compliance at the pins.
+    if let (Some(modulus), Some(wanted)) = (result.figure(EQ_18), test.young_modulus_pa) {
+        let name = "bond modulus by eq. 18";
+        let value = wanted / modulus * bonds.young_modulus_pa;
+        found.push(Figure::new(name, value, "Pa", None));
+    }
+    let failure = &bonds.failure;
+    let of_bonds = failure
+        .von_mises_strength_pa
+        .or(failure.tensile_strength_pa);
+    let of_bonds = of_bonds.or(failure.compressive_strength_pa);
+    let of_bonds = of_bonds.filter(|strength| *strength > 0.0);
+    if let (Some(strength), Some(of_bonds)) = (result.figure(STRENGTH), of_bonds) {
+        let factor = strength / of_bonds;
+        found.push(Figure::new(
+            "specimen strength over bond strength",
+            factor,
+            "",
+            None,
+        ));
+        if let Some(wanted) = test.strength_pa {
+            let name = "bond strength for the target";
+            found.push(Figure::new(name, wanted / factor, "Pa", None));
+        }
+    }
+    found
+}
+
+/// Number of bonds that broke before the largest load.
+fn broken_at_peak(record: &Record, rows: &[Row]) -> usize {
+    let time_s = peak(rows).map_or(0.0, |row| row.time_s);
+    record
+        .broken
+        .partition_point(|broken| broken.time_s <= time_s)
+}
+
+pub(super) fn first_broken(evidence: &TestInput<'_>) -> Option<FirstBroken> {
+    let first = evidence.record.broken.first()?;
+    let rows = &evidence.record.rows;
+    // The last row before it: the next one may already include the fall.
+    let before = rows.partition_point(|row| row.time_s <= first.time_s);
+    let nearest = rows.get(before.saturating_sub(1))?;
+    Some(FirstBroken {
+        time_s: first.time_s,
+        // The anvil feels the impact of a weight later.
+        force_n: match evidence.test.weight {
+            Some(_) => nearest.force_n,
+            None => nearest.load_n(),
+        },
+        travel_m: nearest.travel_m,
+        place_m: *evidence.places_m.first()?,
+        cause: first.cause,
+    })
+}
+
+fn crack(evidence: &TestInput<'_>) -> Option<Crack> {
+    let setup = evidence.setup;
+    let offset = |place: &[f64; 3]| -> f64 {
+        (0..3)
+            .map(|k| (place[k] - setup.middle_m[k]) * setup.along[k])
+            .sum()
+    };
+    let offsets: Vec<f64> = evidence.places_m.iter().map(offset).collect();
+    let count = offsets.len() as f64;
+    if offsets.is_empty() {
+        return None;
+    }
+    let mean = offsets.iter().sum::<f64>() / count;
+    let variance = offsets.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
+    let within_m = setup.crack_within_m;
+    let within = offsets.iter().filter(|x| x.abs() <= within_m).count();
+    Some(Crack {
+        bonds: offsets.len(),
+        offset_m: mean,
+        spread_m: variance.sqrt(),
+        within_m,
+        is_within: mean.abs() <= within_m,
+        fraction_within: within as f64 / count,
+    })
+}
