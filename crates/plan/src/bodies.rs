@@ -15,6 +15,11 @@ use dem_scene::{
 };
 use nalgebra::{UnitQuaternion, Vector3};
 
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bonds::{BondRule, Bonds, moment_ratios, share_moment_ratios};
+use dem_engine::state::order::spatial_order;
+use dem_engine::state::particles::{Particles, Pose};
+use dem_engine::state::stored_bonds::{restore, turn_particles};
 use dem_physics::bond::damage::Damage;
 use dem_physics::bond::damping::{DampingCoefficients, DampingModel, reduced};
 use dem_physics::bond::damping_models::{Chen, ChenByMode, ModeRatios, Platzer};
@@ -27,11 +32,6 @@ use dem_physics::bond::scatter::{body_key, strength_factor};
 use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_physics::bond::total::direction;
 use dem_physics::shape::inertia::of_union;
-use dem_engine::state::bodies::PlacedBody;
-use dem_engine::state::bonds::{BondRule, Bonds, moment_ratios, share_moment_ratios};
-use dem_engine::state::order::spatial_order;
-use dem_engine::state::particles::{Particles, Pose};
-use dem_engine::state::stored_bonds::{restore, turn_particles};
 
 /// Largest rounding error of a coordinate as a fraction of a radius: with it, a strain of a
 /// thousandth is accurate to a thousandth.

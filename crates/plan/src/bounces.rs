@@ -3,9 +3,9 @@
 use dem_io::units::significant;
 use dem_scene::Scene;
 
-use dem_physics::contact::restitution::{damping_ratio, restitution};
 use dem_engine::state::State;
 use dem_engine::state::clumps::Template;
+use dem_physics::contact::restitution::{damping_ratio, restitution};
 
 /// Difference of two restitutions from which it is said.
 const SMALLEST_DIFFERENCE: f64 = 0.1;

@@ -9,14 +9,14 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::{place_body, stays_rigid};
 use super::contacts::Kinds;
-use dem_physics::rotation::numbers;
-use dem_physics::rotation::rotation;
-use dem_physics::shape::inertia::{of_spheres, of_union};
-use dem_physics::shape::outer_layer::{FRACTION_OF_SMALLEST, HIDDEN, outer_layer};
 use dem_engine::stages::inlets::angular_momentum;
 use dem_engine::state::bonds::Bonds;
 use dem_engine::state::clumps::{Clump, Scatter, Template, breaks_from_n_m, reach_m, sub_spheres};
 use dem_engine::state::particles::Particles;
+use dem_physics::rotation::numbers;
+use dem_physics::rotation::rotation;
+use dem_physics::shape::inertia::{of_spheres, of_union};
+use dem_physics::shape::outer_layer::{FRACTION_OF_SMALLEST, HIDDEN, outer_layer};
 
 /// Names of the bodies that are templates: those that start as clumps, come through inlets, or are
 /// daughters.

@@ -6,6 +6,12 @@ use std::sync::Arc;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Contact, ContactLaw, InitialOverlap, Material, Rolling as SceneRolling, Scene};
 
+use dem_engine::stages::contacts::{list_contacts, overlap_m};
+use dem_engine::state::State;
+use dem_engine::state::bodies::{PlacedBody, called};
+use dem_engine::state::bridges::Bridges;
+use dem_engine::state::clusters::Clusters;
+use dem_engine::state::contacts::{ContactHistory, ContactModel, Contacts, NO_KIND};
 use dem_physics::contact::dmt::DerjaguinMullerToporov;
 use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::law::ContactKind;
@@ -15,12 +21,6 @@ use dem_physics::contact::linear::Linear;
 use dem_physics::contact::liquid_bridge::LiquidBridge;
 use dem_physics::contact::pair_parameters::{Elastic, PairInput};
 use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
-use dem_engine::stages::contacts::{list_contacts, overlap_m};
-use dem_engine::state::State;
-use dem_engine::state::bodies::{PlacedBody, called};
-use dem_engine::state::bridges::Bridges;
-use dem_engine::state::clusters::Clusters;
-use dem_engine::state::contacts::{ContactHistory, ContactModel, Contacts, NO_KIND};
 
 /// Verlet skin as a fraction of the largest radius, unless the scene sets it or objects are fast;
 /// and the largest such fraction.

@@ -11,9 +11,9 @@ use dem_scene::{CountedEnergy, Daughters, Material, Scene, WholeMass};
 use nalgebra::Vector3;
 
 use super::clumps::template;
-use dem_physics::shape::packing_fit::fit;
 use dem_engine::state::clumps::{Template, sphere_volume_m3};
 use dem_engine::state::rules::{DaughterRule, SizeClass};
+use dem_physics::shape::packing_fit::fit;
 
 /// The scene with the mass of each parent for its daughters, whose bodies in `read` become as large
 /// as the parent: see [`fit`]; bodies with bonds keep their proportions.

@@ -37,7 +37,6 @@ use dem_scene::{Integrator, Quantity, Scene};
 
 use dem_engine::check::limit::damping_bound_1_s;
 use dem_engine::check::passing::passes_through;
-use dem_physics::chebyshev::{MOST, limit};
 use dem_engine::stages::damping::WEAK;
 use dem_engine::stages::ledger::opened;
 use dem_engine::stages::population::apply_topology_change;
@@ -54,6 +53,7 @@ use dem_engine::state::population::{InletProgress, OutletTotals};
 use dem_engine::state::sleep::{Sleep, SleepRule};
 use dem_engine::state::supports::GroupSupport;
 use dem_engine::state::supports::HeldParticle;
+use dem_physics::chebyshev::{MOST, limit};
 
 use self::alike::told_once;
 use self::bodies::place_bodies;

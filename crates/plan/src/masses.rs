@@ -10,14 +10,14 @@ use dem_io::units::significant;
 use dem_scene::{BodySource, Scene, WholeMass};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use dem_physics::rotation::numbers;
-use dem_physics::rotation::rotation;
 use crate::bodies::material_density_kg_m3;
-use dem_physics::shape::inertia::of_spheres;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clumps::Template;
 use dem_engine::state::particles::Particles;
+use dem_physics::rotation::numbers;
+use dem_physics::rotation::rotation;
+use dem_physics::shape::inertia::of_spheres;
 
 /// Smallest difference that is reported, percent.
 const WORTH_A_NOTE: f64 = 5.0;

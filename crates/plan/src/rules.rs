@@ -12,15 +12,17 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::daughters::{compliances, daughter_rules};
 use super::walls::surface_of;
-use dem_physics::geometry::{Bounds, Mesh, Shape};
-use dem_physics::rotation::numbers;
-use dem_physics::shape::inertia::of_union;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Template;
 use dem_engine::state::particles::Pose;
 use dem_engine::state::regions::Region;
-use dem_engine::state::rules::{Feed, Inlet, Outlet, PrincipalStress, Restore, Rules, Start, Trigger};
+use dem_engine::state::rules::{
+    Feed, Inlet, Outlet, PrincipalStress, Restore, Rules, Start, Trigger,
+};
 use dem_engine::state::walls::Wall;
+use dem_physics::geometry::{Bounds, Mesh, Shape};
+use dem_physics::rotation::numbers;
+use dem_physics::shape::inertia::of_union;
 
 /// The rules of the scene for adding, removing and replacing bodies. `about`: information on the
 /// bodies.

@@ -10,8 +10,6 @@ use dem_engine::check::limit::{Limit, limit, safe_step};
 use dem_engine::check::linear::{
     StiffestContacts, at_impact, at_landing, largest_contact_rate_1_s2, stiffest_contact,
 };
-use dem_physics::geometry::{Bounds, Shape};
-use dem_physics::contact::ImpactLaw;
 use dem_engine::stages::population::apply_topology_change;
 use dem_engine::stages::walls::fastest_point_m_s;
 use dem_engine::state::State;
@@ -23,6 +21,8 @@ use dem_engine::state::contacts::{ContactModel, Contacts};
 use dem_engine::state::events::TopologyChange;
 use dem_engine::state::particles::Particles;
 use dem_engine::state::walls::Wall;
+use dem_physics::contact::ImpactLaw;
+use dem_physics::geometry::{Bounds, Shape};
 
 /// Largest fraction of the smallest radius that a particle may move in a step.
 pub const FARTHEST: f64 = 0.5;

@@ -69,7 +69,12 @@ fn unfinished_at(factor: &Factor, at_s: f64) -> Option<(f64, f64)> {
             let [_, last] = *points.last()?;
             let full_s = points.iter().find(|[_, factor]| *factor == last)?[0];
             let found = rises && last > 0.0 && is_late(full_s);
-            found.then(|| (dem_engine::state::loads::factor_at(factor, at_s) / last, full_s))
+            found.then(|| {
+                (
+                    dem_engine::state::loads::factor_at(factor, at_s) / last,
+                    full_s,
+                )
+            })
         }
     }
 }

@@ -10,14 +10,14 @@ use dem_scene::{InitialOverlap, Scene, Wall as SceneWall, WallMotion, WallShape}
 use nalgebra::Vector3;
 
 use super::contacts::{Kinds, ROUNDING};
-use dem_physics::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
-use dem_physics::rigid::turn;
 use dem_engine::stages::walls::joints::drop_doubles;
 use dem_engine::stages::walls::touch_energy_j;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
 use dem_engine::state::contacts::ContactHistory;
 use dem_engine::state::walls::{Wall, WallContact, WallModel};
+use dem_physics::geometry::{Cylinder, Frame, Mesh, Plane, Shape, SolidBox, Touch};
+use dem_physics::rigid::turn;
 
 pub(super) use self::surface::surface_of;
 use self::surface::{Sizes, question_size, surface_warnings};

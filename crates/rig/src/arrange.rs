@@ -10,11 +10,11 @@ use dem_scene::{
 };
 use nalgebra::Vector3;
 
-use dem_engine::check::lowest_frequency::lowest_frequency_hz;
-use dem_plan::bodies::place_bodies;
 use crate::setup::{extent, side_m2};
+use dem_engine::check::lowest_frequency::lowest_frequency_hz;
 use dem_engine::state::State;
 use dem_laboratory::theory::ON_PINS;
+use dem_plan::bodies::place_bodies;
 
 /// Time that a test with bars takes, in ends of its pulse.
 const AFTER_PULSE: f64 = 1.5;

@@ -18,8 +18,8 @@ use super::evaluate::{
 };
 use super::figure::{Figure, Source};
 use super::record::{Record, Row};
-use dem_physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 use dem_engine::state::loads::factor_at;
+use dem_physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 
 /// Fraction of the largest load from which on the body counts as loaded.
 const LOADED: f64 = 0.1;

@@ -4,13 +4,13 @@ use dem_io::{Diagnostic, Result};
 use dem_laboratory::Line;
 use dem_scene::Scene;
 
-use dem_engine::statics::newton::{Cause, Equilibrium};
 use super::press::{NotPressed, press};
 use crate::evaluate::{TestResult, elastic_figures};
 use crate::figure::Figure;
 use crate::record::{Loading, Row};
 use crate::setup::Setup;
 use dem_engine::state::State;
+use dem_engine::statics::newton::{Cause, Equilibrium};
 
 /// What a test says without steps: everything but its strength.
 #[derive(Debug, Clone, PartialEq)]

@@ -10,13 +10,13 @@ use super::disc_stress::{self, ACROSS, ALONG};
 use super::figure::{Figure, Source};
 use super::pieces::Pieces;
 use super::record::{Record, Row};
-use dem_physics::bond::failure::Cause;
 use crate::setup::Setup;
 use dem_laboratory::theory::Beam;
 use dem_laboratory::theory::{
     KAPPA, PEAK_AXIAL_STRESS, bar_stress_pa, disc_modulus_pa, disc_stress_pa,
 };
 use dem_laboratory::{Specimen, TestType, area_between};
+use dem_physics::bond::failure::Cause;
 
 /// The first bond that broke.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! What is left of the tested body.
 
-use dem_plan::measure::sizes::{Fragments, SizeSummary};
 use dem_engine::state::State;
+use dem_plan::measure::sizes::{Fragments, SizeSummary};
 
 /// Pieces of the tested body at the end.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,6 +4,11 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
+use super::seat::seat;
+use crate::record::{Loading, Row};
+use crate::setup::Setup;
+use dem_engine::state::State;
+use dem_engine::state::particles::Pose;
 use dem_engine::statics::contacts::{MovingWalls, WallForce, add_contacts, wall_forces};
 use dem_engine::statics::degrees_of_freedom::DegreesOfFreedom;
 use dem_engine::statics::factor::Factor;
@@ -11,12 +16,7 @@ use dem_engine::statics::matrix::Matrix;
 use dem_engine::statics::newton::{
     Cause, Equilibrium, Step, cause, largest_bond_force_n, largest_net_n, set_bond_wrenches, six,
 };
-use super::seat::seat;
-use crate::record::{Loading, Row};
 use dem_physics::rigid::turn;
-use crate::setup::Setup;
-use dem_engine::state::State;
-use dem_engine::state::particles::Pose;
 
 /// Loads at which the equilibrium is found, as fractions of the largest: the range in which the
 /// stiffness of a test is measured.

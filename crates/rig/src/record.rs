@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::arrange::support_of;
 use super::disc_stress::DiscStress;
-use dem_physics::bond::failure::Cause;
 use crate::setup::{Setup, Side};
 use dem_engine::stages::supports::velocity_at_kick;
 use dem_engine::state::State;
 use dem_engine::state::loads::factor_at;
+use dem_physics::bond::failure::Cause;
 
 /// Number of intervals of a test's full stroke over which forces are averaged.
 const INTERVALS: f64 = 1000.0;

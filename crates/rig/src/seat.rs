@@ -3,10 +3,10 @@
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-use dem_engine::statics::contacts::{MovingWalls, wall_forces};
-use dem_physics::rigid::turn;
 use dem_engine::state::State;
 use dem_engine::state::particles::Pose;
+use dem_engine::statics::contacts::{MovingWalls, wall_forces};
+use dem_physics::rigid::turn;
 
 /// Advance of the walls in a step of the approach, in mean radii.
 const ADVANCE: f64 = 0.01;

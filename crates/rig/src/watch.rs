@@ -12,9 +12,9 @@ use super::evaluate::{TestInput, TestResult, evaluate};
 use super::files::{TestFiles, write_test};
 use super::pieces::Pieces;
 use super::record::{Loading, Record};
-use dem_plan::Plan;
 use crate::setup::Setup;
 use dem_engine::state::State;
+use dem_plan::Plan;
 
 /// Settings of a test in a run.
 #[derive(Debug, Clone, PartialEq)]

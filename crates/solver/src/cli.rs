@@ -45,7 +45,7 @@ use self::pool::in_pool;
 use self::report::write_report;
 use self::run_scene::run_scene;
 use crate::interrupt::Interrupt;
-use crate::run::SoFar;
+use dem_runner::SoFar;
 
 pub use self::arguments::Arguments;
 

@@ -27,30 +27,26 @@
 pub(crate) mod calibration;
 pub mod cli;
 pub mod interrupt;
-pub mod lammps;
-pub(crate) mod machine;
-pub mod output;
-pub mod run;
-pub mod stress;
 
 pub use dem_engine::{Balance, State, balance, check, clock, stages, state, step, threads};
 pub use dem_physics as physics;
-pub use dem_plan::{self as plan, Plan, measure, plan};
 pub use dem_physics::{geometry, shape};
+pub use dem_plan::{self as plan, Plan, measure, plan};
 pub use dem_rig as laboratory;
-pub use run::{RunSettings, run};
+pub use dem_runner::{self as run, RunSettings, output, run};
+pub use {dem_lammps as lammps, dem_stress as stress};
 
 /// What only tests of this crate reach.
 #[doc(hidden)]
 pub mod internals {
+    pub use crate::shape::union::{Patch, Solid, patches, solid};
     pub use dem_engine::check::flight::{FreeBody, Meeting};
-    pub use crate::output::pictures::subject::{by_body, of_clusters};
+    pub use dem_engine::stages::bonds::bond_wrenches_one_by_one;
     pub use dem_engine::statics::conjugate::ConjugateGradients;
     pub use dem_engine::statics::degrees_of_freedom::DegreesOfFreedom;
     pub use dem_engine::statics::direct::DirectFactor;
     pub use dem_engine::statics::matrix::Matrix;
-    pub use crate::shape::union::{Patch, Solid, patches, solid};
-    pub use dem_engine::stages::bonds::bond_wrenches_one_by_one;
+    pub use dem_runner::output::pictures::subject::{by_body, of_clusters};
 }
 
 /// The code on the page is compiled and run with the tests.

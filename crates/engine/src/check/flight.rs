@@ -10,12 +10,12 @@ use std::collections::BTreeSet;
 use dem_scene::{Hold, Scene, WallMotion};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use dem_physics::geometry::Shape;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::clumps::Clump;
 use crate::state::events::REMOVED;
 use crate::state::walls::Wall;
+use dem_physics::geometry::Shape;
 
 /// A gap smaller than this fraction of the body's extent counts as closed.
 const CLOSED: f64 = 1e-6;

@@ -7,7 +7,6 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
 use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
-use dem_physics::rigid::turn;
 use crate::stages::bonds::bond_wrenches;
 use crate::stages::damped::damping_wrenches;
 use crate::stages::plasticity::add_elasto_plastic_wrenches;
@@ -15,6 +14,7 @@ use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
 use crate::state::damping_rate::{MORE, largest_coefficients};
 use crate::state::particles::{Motion, Pose, Wrench};
+use dem_physics::rigid::turn;
 
 /// Iterations at least and at most.
 pub(super) const ITERATIONS: [usize; 2] = [20, 200];

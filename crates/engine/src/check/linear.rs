@@ -4,13 +4,6 @@
 use nalgebra::{Matrix6, Vector3, Vector6};
 use rayon::prelude::*;
 
-use dem_physics::contact::Linearised;
-use dem_physics::contact::kinematics::{ContactKinematics, contact_kinematics, torques};
-use dem_physics::contact::law::ContactKind;
-use dem_physics::contact::law::Law;
-use dem_physics::contact::liquid_bridge::LiquidBridge;
-use dem_physics::number::Vec3;
-use dem_physics::rotation::rotation;
 use crate::stages::walls::wall_contact;
 use crate::state::State;
 use crate::state::bridges::Bridges;
@@ -18,6 +11,13 @@ use crate::state::clumps::{Clump, Template};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::{Motion, Particles, Wrench};
 use crate::state::walls::{Wall, WallContact};
+use dem_physics::contact::Linearised;
+use dem_physics::contact::kinematics::{ContactKinematics, contact_kinematics, torques};
+use dem_physics::contact::law::ContactKind;
+use dem_physics::contact::law::Law;
+use dem_physics::contact::liquid_bridge::LiquidBridge;
+use dem_physics::number::Vec3;
+use dem_physics::rotation::rotation;
 
 /// Translation and rotation of an end under a tangential force together: 1/m + R^2/I is this
 /// multiple of 1/m for a sphere.

@@ -3,11 +3,11 @@
 
 use std::ops::Range;
 
-use dem_physics::number::Vec3;
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::Partition;
 use dem_physics::lanes::{Lanes, MOST};
+use dem_physics::number::Vec3;
 
 /// Eight bonds, some of which are wanted.
 pub(super) struct BondGroup {

@@ -6,10 +6,6 @@ use rayon::prelude::*;
 
 use super::chunks::CHUNK;
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::bond::failure::Screen;
-use dem_physics::bond::stiffness::Stiffness;
-use dem_physics::bond::total::{BondResponse, bond_response};
-use dem_physics::number::{Rotation, Vec3};
 use crate::stages::blocks::{
     BondGroup, blocks_of, coming_second_ends, fetch_soon_of, for_each_partition, separations,
 };
@@ -17,7 +13,11 @@ use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds, bending_stiffness};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Computed, Partition};
+use dem_physics::bond::failure::Screen;
+use dem_physics::bond::stiffness::Stiffness;
+use dem_physics::bond::total::{BondResponse, bond_response};
 use dem_physics::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
+use dem_physics::number::{Rotation, Vec3};
 
 use LaneChoice::{AsManyLanes, OneLane};
 

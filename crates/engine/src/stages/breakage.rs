@@ -4,13 +4,13 @@
 use super::bonds::{any_bond, bonds_to_come};
 use super::damage::{Loss, growth_of, is_crushed, softened};
 use super::stage::{NO_SAVING, Need, Saving, Stage};
-use dem_physics::bond::failure::{Cause, Factors, cause, stresses, utilisation};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::events::{Break, Events};
 use crate::state::particles::Particles;
 use crate::state::partitions::Partition;
 use crate::state::partitions::{Idle, STALE, divide_anew};
+use dem_physics::bond::failure::{Cause, Factors, cause, stresses, utilisation};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const FAILURE_NS: f64 = 2.1;

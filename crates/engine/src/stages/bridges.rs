@@ -5,15 +5,15 @@ use rayon::prelude::*;
 
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::SAME_WAY;
-use dem_physics::geometry::Touch;
-use dem_physics::geometry::one_surface::is_one;
-use dem_physics::contact::liquid_bridge::LiquidBridge;
 use crate::stages::chunks::CHUNK;
 use crate::state::State;
 use crate::state::bridges::{BridgeScratch, Bridges, PairBridge, Stepped, WallBridge};
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::{Particles, Wrench};
 use crate::state::walls::{Wall, WallLoad};
+use dem_physics::contact::liquid_bridge::LiquidBridge;
+use dem_physics::geometry::Touch;
+use dem_physics::geometry::one_surface::is_one;
 
 /// Liquid bridges.
 pub(crate) const BRIDGES: Stage = Stage {

@@ -21,9 +21,6 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 
 use super::walls::{chunks, velocity_at};
-use dem_physics::contact::law::ContactKind;
-use dem_physics::contact::relaxation::relaxed;
-use dem_physics::rotation::rotation;
 use crate::state::State;
 use crate::state::clump_touches::ClumpTouch;
 use crate::state::clumps::{Clump, Clumps, Template};
@@ -31,6 +28,9 @@ use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::meetings::Meetings;
 use crate::state::particles::{Motion, Particles, Pose};
 use crate::state::walls::Wall;
+use dem_physics::contact::law::ContactKind;
+use dem_physics::contact::relaxation::relaxed;
+use dem_physics::rotation::rotation;
 
 /// Clumps handled by one task.
 const CHUNK: usize = 32;

@@ -6,15 +6,15 @@ use rayon::prelude::*;
 
 use super::cluster_bytes::{ClusterUser, clusters_bytes};
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::rigid::rotation_vector;
-use dem_physics::rotation;
-use dem_physics::rotation::numbers;
-use dem_physics::rotation::rotation as rotation_of;
 use crate::state::State;
 use crate::state::clumps::Template;
 use crate::state::clumps::{Clump, Clumps};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::search_buffers::NearBuffers;
+use dem_physics::rigid::rotation_vector;
+use dem_physics::rotation;
+use dem_physics::rotation::numbers;
+use dem_physics::rotation::rotation as rotation_of;
 
 /// Clumps handled by one task.
 const CHUNK: usize = 32;

@@ -18,18 +18,18 @@ use self::close::{close_m, look};
 use self::input::StepInput;
 use super::bonds::any_bond;
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::contact::assembly::{StoredContact, assemble};
-use dem_physics::contact::kinematics::{ContactSphere, contact_kinematics};
-use dem_physics::contact::law::{ContactWork, Rolling};
-use dem_physics::contact::rolling::RollingFriction;
-use dem_physics::contact::{ContactSprings, Damped, NormalLaw};
-use dem_physics::number::Vec3;
 use crate::stages::blocks::{fetch_soon_of, rows, vectors};
 use crate::stages::neighbours::near_pairs;
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, ContactPartition, Contacts};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
+use dem_physics::contact::assembly::{StoredContact, assemble};
+use dem_physics::contact::kinematics::{ContactSphere, contact_kinematics};
+use dem_physics::contact::law::{ContactWork, Rolling};
+use dem_physics::contact::rolling::RollingFriction;
+use dem_physics::contact::{ContactSprings, Damped, NormalLaw};
 use dem_physics::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
+use dem_physics::number::Vec3;
 
 /// Contacts between particles.
 pub const CONTACTS: Stage = Stage {

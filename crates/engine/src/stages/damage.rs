@@ -3,12 +3,12 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use dem_physics::bond::damage::{Growth, growth};
-use dem_physics::bond::failure::{Cause, Criteria, Factors, stresses};
-use dem_physics::bond::total::{BondForces, End};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Particles, Pose};
+use dem_physics::bond::damage::{Growth, growth};
+use dem_physics::bond::failure::{Cause, Criteria, Factors, stresses};
+use dem_physics::bond::total::{BondForces, End};
 
 /// What a bond loses that has reached its strength.
 pub(super) struct Loss {

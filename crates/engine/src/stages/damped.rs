@@ -1,7 +1,5 @@
 //! Viscous forces of bonds, several bonds at once.
 
-use dem_physics::bond::damping::{DampingCoefficients, resistance};
-use dem_physics::number::Vec3;
 use crate::stages::blocks::{
     BondGroup, blocks_of, coming_second_ends, fetch_soon_of, for_each_partition, separations,
     vectors,
@@ -9,7 +7,9 @@ use crate::stages::blocks::{
 use crate::state::bonds::{BLOCK, BondBlock, Bonds};
 use crate::state::particles::{Motion, Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Partition};
+use dem_physics::bond::damping::{DampingCoefficients, resistance};
 use dem_physics::lanes::{LaneWork, Lanes, with_most_lanes};
+use dem_physics::number::Vec3;
 
 /// Sets `damping` (one for each particle) to the viscous forces of the bonds, with these
 /// coefficients (one for each bond: see [`Bonds::damping`]), between ends with these motions.

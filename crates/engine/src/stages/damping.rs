@@ -60,10 +60,10 @@ use super::motion::{Forces, for_each_awake};
 use super::rigid_parts::predict_rigid_parts;
 use super::stage::{Need, Saving, Stage};
 use super::supports::predict_held;
-use dem_physics::chebyshev::Chebyshev;
 use crate::state::State;
 use crate::state::bonds::BondRule;
 use crate::state::particles::{Motion, Wrench};
+use dem_physics::chebyshev::Chebyshev;
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const BOND_DAMPING_NS: f64 = 43.3;

@@ -12,14 +12,14 @@ use super::clumps::kick_one;
 use super::contacts::{pair_force_n, touch_point_m};
 use super::population::apply_topology_change;
 use super::walls::{relax_touches, surface_velocity_m_s, touch_force_n};
-use dem_physics::bond::scatter::{body_key, strength_factor};
-use dem_physics::rotation::{numbers, rotation};
-use dem_physics::shape::packing_fit::fit;
 use crate::state::State;
 use crate::state::clumps::{Clump, SubSphere, Template, sphere_volume_m3};
 use crate::state::events::{PopulationEvent, TopologyChange};
 use crate::state::population::FragmentTemplate;
 use crate::state::rules::{DaughterRule, SizeClass};
+use dem_physics::bond::scatter::{body_key, strength_factor};
+use dem_physics::rotation::{numbers, rotation};
+use dem_physics::shape::packing_fit::fit;
 use std::sync::Arc;
 
 /// A particle that daughters replace in this step.

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::bonds::Kind;
 use super::chunks::{add, sums_of_chunks};
-use dem_physics::bond::total::BondEnergy;
 use crate::stages::blocks::{BondGroup, blocks_of, coming_second_ends, fetch_soon_of};
 use crate::state::State;
 use crate::state::bonds::{BLOCK, Bonds};
 use crate::state::particles::Pose;
+use dem_physics::bond::total::BondEnergy;
 use dem_physics::lanes::{LaneWork, Lanes, with_most_lanes};
 
 /// Elastic energy of all bonds by mode.

@@ -5,12 +5,12 @@ use rayon::prelude::*;
 use super::bonds::any_bond;
 use super::damage::{earlier, power_w};
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::bond::flat_joint::{Change, Element, change};
 use crate::stages::chunks::CHUNK;
 use crate::stages::single_bonds::add_single_wrenches;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::Particles;
+use dem_physics::bond::flat_joint::{Change, Element, change};
 
 /// Bonds whose section consists of elements.
 pub(crate) const FLAT_JOINTS: Stage = Stage {

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use super::bonds::any_bond;
 use super::stage::{Need, Saving, Stage};
-use dem_physics::bond::incremental::{Step, advance};
 use crate::stages::single_bonds::add_single_wrenches;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::Particles;
+use dem_physics::bond::incremental::{Step, advance};
 
 /// ns per bond of a body of 25,547 particles: see doc/leave-out.md.
 const HISTORY_NS: f64 = 37.6;

@@ -2,8 +2,6 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use dem_physics::rotation::numbers;
-use dem_physics::rotation::rotation;
 use crate::state::State;
 use crate::state::clumps::{Clump, Template};
 use crate::state::events::PopulationEvent;
@@ -11,6 +9,8 @@ use crate::state::population::{InletProgress, Surroundings};
 use crate::state::rules::{Feed, Inlet};
 use crate::state::walls::Wall;
 use dem_io::random::uniform;
+use dem_physics::rotation::numbers;
+use dem_physics::rotation::rotation;
 
 /// Positions tried for a body in one step.
 const TRIES: u32 = 10;
@@ -189,11 +189,7 @@ fn is_in_wall(clump: &Clump, template: &Template, wall: &Wall) -> bool {
 }
 
 /// Angular momentum of a clump with this orientation and spin, kg m2/s.
-pub fn angular_momentum(
-    template: &Template,
-    turned: [f64; 4],
-    spin_rad_s: [f64; 3],
-) -> [f64; 3] {
+pub fn angular_momentum(template: &Template, turned: [f64; 4], spin_rad_s: [f64; 3]) -> [f64; 3] {
     let turned = rotation(turned);
     let spin = turned.inverse() * Vector3::from(spin_rad_s);
     let own = spin.component_mul(&Vector3::from(template.moments_kg_m2));

@@ -8,7 +8,6 @@ use nalgebra::Vector3;
 
 use super::chunks::{ordered_sum, ordered_sums};
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::contact::law::{ContactKind, Law};
 use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::synchronous;
 use crate::stages::contacts::{elastic_energy_j, lost_j, pairs_adhesion_j};
@@ -25,6 +24,7 @@ use crate::state::ledger::{EnergyLedger, Work, walls_work_j};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::sleep::Sleep;
 use crate::state::walls::{Wall, WallLoad};
+use dem_physics::contact::law::{ContactKind, Law};
 use serde::Serialize;
 use std::f64::consts::PI;
 

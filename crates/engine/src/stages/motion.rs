@@ -7,12 +7,12 @@ use rayon::prelude::*;
 
 use super::clumps::awake;
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::rigid::{room_to_small, turn, turn_a_little};
 use crate::stages::chunks::{CHUNK, ordered_sum};
 use crate::state::State;
 use crate::state::asleep::Asleep;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use dem_physics::lanes::{LaneWork, Lanes, with_lanes};
+use dem_physics::rigid::{room_to_small, turn, turn_a_little};
 
 /// Kick and drift of particles.
 pub const MOTION: Stage = Stage {

@@ -19,14 +19,14 @@ use rayon::prelude::*;
 use self::among_small::{SmallMeetings, in_order};
 use self::meetings::list_with_small;
 use super::chunks::{chunk_of, chunks_of, in_tasks, nth_range};
-use dem_physics::geometry::Bounds;
-use dem_physics::number::Vec3;
 use crate::state::balls::{BLOCK, BOXES, Ball, BoxColumns, NOWHERE};
 use crate::state::groups::{KnownClusters, LargeCluster, Searched};
 use crate::state::particles::Pose;
 use crate::state::rigid_balls::Placement;
 use crate::state::search_buffers::{PairBuffers, PairTask};
+use dem_physics::geometry::Bounds;
 use dem_physics::lanes::{LaneWork, Lanes, next_of, with_most_lanes};
+use dem_physics::number::Vec3;
 
 /// Largest number of tasks that large clusters are divided into.
 pub(super) const MOST_TASKS: usize = 256;

@@ -5,14 +5,14 @@ use rayon::prelude::*;
 use super::bonds::any_bond;
 use super::damage::{earlier, power_w};
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::bond::plasticity::StressFree;
-use dem_physics::bond::total::bond_forces;
 use crate::stages::chunks::CHUNK;
 use crate::stages::single_bonds::add_single_wrenches;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Particles, Pose, Wrench};
 use crate::state::partitions::Partition;
+use dem_physics::bond::plasticity::StressFree;
+use dem_physics::bond::total::bond_forces;
 
 /// Bonds that are elastic up to their yield strength.
 pub(crate) const PLASTICITY: Stage = Stage {

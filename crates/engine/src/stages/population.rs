@@ -7,8 +7,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use dem_physics::bond::scatter::{body_key, strength_factor};
-use dem_physics::rotation::rotation;
 use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{elastic_energy_j, overlap_m};
@@ -24,6 +22,8 @@ use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::population::OutletWatch;
 use crate::state::walls::Wall;
+use dem_physics::bond::scatter::{body_key, strength_factor};
+use dem_physics::rotation::rotation;
 
 /// Makes the changes. New clumps get their numbers among the clusters.
 pub fn apply_topology_change(state: &mut State, changes: TopologyChange) -> Renumbering {

@@ -11,10 +11,6 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use super::population::apply_topology_change;
-use dem_physics::rotation::rotation;
-use dem_physics::shape::fit::best_rotation;
-use dem_physics::shape::inertia::MassProperties;
-use dem_physics::shape::outer_layer::{HIDDEN, outer_layer};
 use crate::stages::totals::synchronous_motions;
 use crate::stages::touching::touching;
 use crate::state::State;
@@ -27,6 +23,10 @@ use crate::state::events::TopologyChange;
 use crate::state::particles::Motion;
 use crate::state::population::FragmentTemplate;
 use crate::state::rigid_parts::as_rigid;
+use dem_physics::rotation::rotation;
+use dem_physics::shape::fit::best_rotation;
+use dem_physics::shape::inertia::MassProperties;
+use dem_physics::shape::outer_layer::{HIDDEN, outer_layer};
 
 /// Interval between checks of the clusters, in steps.
 const EVERY: u64 = 200;

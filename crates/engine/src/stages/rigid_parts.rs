@@ -5,14 +5,14 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::chunks::CHUNK;
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::rigid::rotation_vector;
-use dem_physics::rotation;
-use dem_physics::rotation::numbers;
-use dem_physics::rotation::rotation as rotation_of;
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::rigid_parts::{RigidPart, RigidParts};
+use dem_physics::rigid::rotation_vector;
+use dem_physics::rotation;
+use dem_physics::rotation::numbers;
+use dem_physics::rotation::rotation as rotation_of;
 
 /// Rigid parts of bonded bodies.
 pub(crate) const RIGID_PARTS: Stage = Stage {

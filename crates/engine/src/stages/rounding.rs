@@ -2,10 +2,10 @@
 //! each particle that can touch something.
 
 use super::chunks::ordered_sum;
-use dem_physics::contact::law::ContactKind;
 use crate::state::State;
 use crate::state::contacts::Contacts;
 use crate::state::walls::Wall;
+use dem_physics::contact::law::ContactKind;
 
 /// The types of contacts among particles and with walls.
 pub(super) fn all_kinds<'a>(contacts: &'a Contacts, walls: &'a [Wall]) -> Vec<&'a ContactKind> {

@@ -2,11 +2,11 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use dem_physics::bond::failure::{Factors, stresses, utilisation};
 use crate::stages::blocks::for_each_partition;
 use crate::state::bonds::{BondRule, Bonds};
 use crate::state::particles::{Pose, Wrench};
 use crate::state::partitions::{Batch, BondSelection, Partition};
+use dem_physics::bond::failure::{Factors, stresses, utilisation};
 
 /// Adds the forces of the bonds with these rules to the wrenches, and those that have reached their
 /// strength to the partitions' lists. Returns their number.

@@ -12,11 +12,11 @@ use super::bonds::any_bond;
 use super::chunks::CHUNK;
 use super::damping::predict_as_damped_before;
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::bond::damping::{DampingCoefficients, EndMotion};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::{Motion, Particles};
 use crate::state::rigid_parts::is_within_part;
+use dem_physics::bond::damping::{DampingCoefficients, EndMotion};
 
 /// Structural damping of bonds.
 pub(crate) const STRUCTURAL_DAMPING: Stage = Stage {

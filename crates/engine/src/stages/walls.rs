@@ -13,11 +13,6 @@ use self::joints::join_walls;
 use self::meeting::Place;
 use super::chunks::{chunk_of, chunks_of, in_tasks};
 use super::stage::{NO_SAVING, Need, Stage};
-use dem_physics::geometry::{Frame, Shape, Touch};
-use dem_physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
-use dem_physics::contact::law::ContactKind;
-use dem_physics::number::Vec3;
-use dem_physics::rigid::turn;
 use crate::stages::contacts::{StoredEnergy, StoredForce};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
@@ -25,6 +20,11 @@ use crate::state::loads::factor_at;
 use crate::state::meetings::{Meeting, Meetings, Met};
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Wall, WallContact, WallLoad};
+use dem_physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contact_kinematics};
+use dem_physics::contact::law::ContactKind;
+use dem_physics::geometry::{Frame, Shape, Touch};
+use dem_physics::number::Vec3;
+use dem_physics::rigid::turn;
 
 /// Contacts with walls, and their motion.
 pub const WALLS: Stage = Stage {

@@ -10,9 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::bodies::PlacedBody;
 use super::bonds::Bonds;
 use super::particles::Pose;
-use dem_physics::bond::flat_joint::{
-    Element, FlatJointLaw, elements, elements_from, first_edge,
-};
+use dem_physics::bond::flat_joint::{Element, FlatJointLaw, elements, elements_from, first_edge};
 use dem_physics::bond::incremental::History;
 use dem_physics::bond::plasticity::{PlasticDeformation, StressFree};
 use dem_physics::rigid::rotation_vector;
@@ -47,12 +45,7 @@ fn ends_in_order<T>([a, b]: [T; 2], is_reversed: bool) -> [T; 2] {
 
 /// Plastic deformation of bond `at`, of a scene in which bonds can yield. `is_reversed`: its
 /// particles have the opposite order in the file.
-pub fn plastic_of(
-    bonds: &Bonds,
-    at: usize,
-    poses: &[Pose],
-    is_reversed: bool,
-) -> PlasticBond {
+pub fn plastic_of(bonds: &Bonds, at: usize, poses: &[Pose], is_reversed: bool) -> PlasticBond {
     let plastic = &bonds.plastics[at];
     let frame = bonds.frame_of(at, poses);
     let sign = sign(is_reversed);

@@ -6,8 +6,8 @@ use dem_scene::WallMotion;
 use serde::{Deserialize, Serialize};
 
 use super::contacts::ContactHistory;
-use dem_physics::geometry::{Bounds, Frame, Shape};
 use dem_physics::contact::law::ContactKind;
+use dem_physics::geometry::{Bounds, Frame, Shape};
 
 /// Definition of a wall in the scene.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

@@ -7,13 +7,13 @@ use nalgebra::Vector3;
 
 use super::degrees_of_freedom::DegreesOfFreedom;
 use super::matrix::Matrix;
-use dem_physics::geometry::{Frame, Touch};
 use crate::stages::walls::joints::drop_doubles;
 use crate::stages::walls::{list_near, wall_contact};
 use crate::state::State;
 use crate::state::contacts::Contacts;
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::Wall;
+use dem_physics::geometry::{Frame, Touch};
 
 /// A particle that touches a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,7 +1,7 @@
 //! Displacements and rotations of particles from their present poses.
 
-use dem_physics::rigid::turn;
 use crate::state::particles::Pose;
+use dem_physics::rigid::turn;
 
 use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 

@@ -1,10 +1,10 @@
 //! The tangent stiffness of a scene as a sparse matrix, by columns: derivatives of the bond forces
 //! with respect to small displacements and rotations of the unknowns.
 
-use dem_physics::bond::tangent::{BondTangent, DEGREES_OF_FREEDOM};
 use crate::state::State;
 use crate::state::bonds::Bonds;
 use crate::state::particles::Pose;
+use dem_physics::bond::tangent::{BondTangent, DEGREES_OF_FREEDOM};
 
 use super::degrees_of_freedom::{DegreesOfFreedom, HELD};
 

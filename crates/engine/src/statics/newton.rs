@@ -350,11 +350,7 @@ pub fn set_bond_wrenches(state: &mut State) {
 
 /// The largest of net forces on the unknowns, N, and of net torques over the radii of their
 /// particles.
-pub fn largest_net_n(
-    degrees_of_freedom: &DegreesOfFreedom,
-    poses: &[Pose],
-    net: &[f64],
-) -> f64 {
+pub fn largest_net_n(degrees_of_freedom: &DegreesOfFreedom, poses: &[Pose], net: &[f64]) -> f64 {
     let unknowns = degrees_of_freedom.unknowns().zip(net);
     let sizes = unknowns.map(|((i, k), net)| match k {
         0..3 => net.abs(),

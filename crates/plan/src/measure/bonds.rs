@@ -4,15 +4,15 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use dem_physics::bond::BondLoad;
-use dem_physics::bond::damage::utilisation_of_damaged;
-use dem_physics::bond::failure::{Factors, stresses, utilisation};
 use dem_engine::stages::bonds::NEARLY;
 use dem_engine::stages::chunks::CHUNK;
 use dem_engine::stages::totals::motions_before_kick;
 use dem_engine::stages::utilisation::squared_utilisations;
 use dem_engine::state::State;
 use dem_engine::state::particles::Motion;
+use dem_physics::bond::BondLoad;
+use dem_physics::bond::damage::utilisation_of_damaged;
+use dem_physics::bond::failure::{Factors, stresses, utilisation};
 
 /// Strain rate of a bond, and the utilisation of the strength that it has at that rate. Both are
 /// those of the failure check: an intact bond that can break has a utilisation below 1.

@@ -10,14 +10,14 @@ use std::f64::consts::TAU;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::members::Members;
-use dem_physics::rigid::rotation_vector;
-use dem_physics::rotation::numbers;
-use dem_physics::rotation::rotation;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clumps::Clump;
 use dem_engine::state::events::REMOVED;
 use dem_engine::state::particles::Motion;
+use dem_physics::rigid::rotation_vector;
+use dem_physics::rotation::numbers;
+use dem_physics::rotation::rotation;
 
 /// Initial positions of bodies, by name.
 pub(super) type Starts = BTreeMap<String, Start>;

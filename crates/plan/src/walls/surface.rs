@@ -8,9 +8,9 @@ use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Wall as SceneWall, WallShape};
 
-use dem_physics::geometry::{Bounds, Mesh, Shape};
 use dem_engine::state::State;
 use dem_engine::state::particles::Pose;
+use dem_physics::geometry::{Bounds, Mesh, Shape};
 
 /// A surface larger than all bodies together by this factor raises the question of its unit.
 const TOO_LARGE: f64 = 300.0;

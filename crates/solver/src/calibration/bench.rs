@@ -10,17 +10,17 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Scene, scene_from_text, set_text};
 
 use super::choice::SceneText;
+use dem_plan::Plan;
 use dem_rig::arrange::{arrange, tested_body};
+use dem_rig::elastic_test::elastic_test;
 use dem_rig::evaluate::{
     BY_TRAVEL, EQ_18, FAILURE_FORCE, LARGEST_FORCE, MODULUS, STIFFNESS, STRENGTH, TestResult,
 };
-use dem_rig::watch::TestSettings;
-use crate::output::summary::Summary;
-use dem_plan::Plan;
 use dem_rig::plan_with_test;
 use dem_rig::setup::Setup;
-use dem_rig::elastic_test::elastic_test;
-use crate::run::{RunSettings, SoFar, run};
+use dem_rig::watch::TestSettings;
+use dem_runner::output::summary::Summary;
+use dem_runner::{RunSettings, SoFar, run};
 
 /// First factors beyond this range are left to the tests with steps, which say why.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
@@ -124,7 +124,12 @@ impl Bench<'_> {
             None => scene,
         };
         let (plan, setup) = plan_with_test(&scene, bodies, self.threads, self.force_step)?;
-        Ok((scene, plan, setup, tested.map(|body| body.lowest_frequency_hz)))
+        Ok((
+            scene,
+            plan,
+            setup,
+            tested.map(|body| body.lowest_frequency_hz),
+        ))
     }
 
     /// First factors: that on the modulus of the bonds from the stiffness of `packings` packings

@@ -16,12 +16,12 @@ use super::pool::in_pool;
 use super::scene_arguments::SceneArguments;
 use super::statics;
 use super::trial::Trial;
-use dem_rig::arrange::{arrange, tested_body};
-use crate::output::pictures::View;
+use dem_engine::state::State;
 use dem_plan::masses;
 use dem_plan::{Plan, PlannedStage};
+use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::plan_with_test;
-use dem_engine::state::State;
+use dem_runner::output::pictures::View;
 
 /// Samples that differ by less than this factor are told as one.
 const ALIKE: f64 = 1.2;

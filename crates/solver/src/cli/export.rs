@@ -10,7 +10,7 @@ use dem_io::{Diagnostic, Result};
 use super::export_frames::{FramesArguments, export_frames};
 use super::pool::in_pool;
 use super::scene_arguments::SceneArguments;
-use crate::lammps::{self, refusals::refuse_parts};
+use dem_lammps::refusals::refuse_parts;
 use dem_rig::plan_with_test;
 
 #[derive(Debug, Args)]
@@ -76,7 +76,7 @@ fn export_scene(arguments: &LammpsArguments, threads: usize) -> Result<()> {
     let (scene, bodies) = arguments.scene.read()?;
     refuse_parts(&scene)?;
     let (plan, _) = plan_with_test(&scene, bodies, threads, arguments.scene.force_step)?;
-    let written = lammps::export(&scene, &plan, &arguments.output)?;
+    let written = dem_lammps::export(&scene, &plan, &arguments.output)?;
     if arguments.scene.json {
         return write_standard_json(&written);
     }

@@ -19,7 +19,7 @@ use serde_json::Value;
 
 use super::all_fragments::write_all;
 use super::fragment_body::{fragment_body, name_origin};
-use crate::run::snapshot::Snapshot;
+use dem_runner::snapshot::Snapshot;
 
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("fragment").required(true).args(["id", "largest", "loose", "all"])))]

@@ -12,7 +12,7 @@ use dem_io::text::{counted, visible};
 use dem_results::Existing;
 
 use super::new_folder::WholeFolder;
-use crate::lammps::import::{Came, import as import_run};
+use dem_lammps::import::{Came, import as import_run};
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {

@@ -8,7 +8,7 @@ use std::time::Instant;
 use dem_io::units::significant;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::run::SoFar;
+use dem_runner::SoFar;
 
 /// Runs that take less have no lines, s; others have the first one by then.
 const SHORT_S: f64 = 30.0;

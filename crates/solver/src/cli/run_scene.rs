@@ -21,17 +21,17 @@ use super::as_run;
 use super::progress::ShownProgress;
 use super::scene_arguments::SceneArguments;
 use crate::interrupt::Interrupt;
-use dem_rig::arrange::{arrange, tested_body};
-use dem_rig::watch::TestSettings;
-use crate::output::summary::Unfinished;
+use dem_engine::threads::keep_awake;
 use dem_plan::Plan;
+use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::plan_with_test;
-use crate::run::snapshot::Snapshot;
-use crate::run::{
+use dem_rig::watch::TestSettings;
+use dem_runner::output::summary::Unfinished;
+use dem_runner::snapshot::Snapshot;
+use dem_runner::{
     Finished, INTERRUPTION, Outcome, RunSettings, SoFar, finish, run as run_plan,
     run_as_far_as_it_goes,
 };
-use dem_engine::threads::keep_awake;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::memory::size_text;
 use dem_plan::Plan;
 use dem_plan::masses;
-use crate::run::statics::StaticsEstimate;
+use dem_runner::statics::StaticsEstimate;
 
 /// Keys and tables that have no effect in such a scene.
 const UNUSED: &str = "run.rest_energy_ratio, end_run_above of measures, run.time_step, run.safety_factor, run.adaptive, run.local_damping, damping of bonds, velocities of bodies, output.frames, series, pictures and checkpoint";

@@ -9,9 +9,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::pool::in_pool;
 use crate::interrupt::Interrupt;
-use crate::stress::cases::chosen;
-use crate::stress::text::{HEAD, row};
-use crate::stress::verdict::{CaseResult, run_case};
+use dem_stress::cases::chosen;
+use dem_stress::text::{HEAD, row};
+use dem_stress::verdict::{CaseResult, run_case};
 
 #[derive(Debug, Args)]
 pub(super) struct StressArguments {

@@ -9,10 +9,10 @@ use dem_pictures::png_file::{Compression, to_png};
 use dem_scene::Scene;
 
 use dem_engine::clock::StageClock;
-use crate::output::pictures::View;
-use dem_plan::{Plan, PlannedStage};
 use dem_engine::stages::ledger::CHECKS;
 use dem_engine::step::{number_of, step};
+use dem_plan::{Plan, PlannedStage};
+use dem_runner::output::pictures::View;
 
 /// The run time is predicted from this many samples of the first steps of a copy.
 const SAMPLES: usize = 8;

@@ -1,11 +1,11 @@
 //! The close pairs of the Verlet list: only these are computed, until others may have come close.
 
 use super::input::StepInput;
-use dem_physics::number::Vec3;
 use crate::stages::blocks::fetch_soon_of;
 use crate::state::contacts::{ContactPartition, Contacts};
 use crate::state::particles::Pose;
 use dem_physics::lanes::{Lanes, MOST};
+use dem_physics::number::Vec3;
 
 /// Prefetch distance of second particles, in contacts.
 const AHEAD: usize = 32;

@@ -1,12 +1,12 @@
 //! Elastic energies, forces and losses of contacts.
 
+use crate::stages::chunks::{ordered_sum, ordered_sums};
+use crate::state::contacts::{ContactHistory, Contacts};
+use crate::state::particles::{Particles, Pose};
 use dem_physics::contact::NormalLaw;
 use dem_physics::contact::kinematics::{ContactKinematics, contact_kinematics};
 use dem_physics::contact::law::{ContactKind, ContactWork};
 use dem_physics::contact::rolling::RollingFriction;
-use crate::stages::chunks::{ordered_sum, ordered_sums};
-use crate::state::contacts::{ContactHistory, Contacts};
-use crate::state::particles::{Particles, Pose};
 use nalgebra::Vector3;
 
 /// Overlap of two particles, m; below 0 if they are apart.

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use dem_physics::geometry::Bounds;
 use crate::stages::chunks::{chunk_of, chunks_of, in_tasks};
 use crate::stages::clumps::place_all;
 use crate::stages::contacts::{find_mean_radius, list_within, relist};
@@ -18,6 +17,7 @@ use crate::state::balls::around;
 use crate::state::contacts::{ContactScratch, Contacts};
 use crate::state::particles::Particles;
 use crate::state::search_buffers::{AwakeBuffers, SearchBuffers};
+use dem_physics::geometry::Bounds;
 
 /// Consecutive particles that have a box around those that are awake.
 const PART: usize = 64;

@@ -4,7 +4,6 @@
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use dem_physics::rotation::rotation;
 use crate::stages::chunks::{CHUNK, chunk_of, chunks_of};
 use crate::stages::clumps::{place_of, speed_m_s};
 use crate::state::State;
@@ -16,6 +15,7 @@ use crate::state::particles::{Particles, Pose};
 use crate::state::references::References;
 use crate::state::rigid_balls::ClumpReference;
 use crate::state::search_buffers::SearchBuffers;
+use dem_physics::rotation::rotation;
 
 /// The distance of a free particle is also at least that for this fraction of the speed of the
 /// fastest in its chunk: particles of a chunk are mostly near each other, so that it may be hit.

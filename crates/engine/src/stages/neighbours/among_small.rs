@@ -1,10 +1,10 @@
 //! Pairs of small clusters, and of these with large ones, by grids.
 
-use dem_physics::number::Vec3;
 use crate::state::balls::Ball;
 use crate::state::grids::{Grid, Grids};
 use crate::state::groups::{KnownClusters, Searched};
 use dem_physics::lanes::{LaneWork, Lanes, next_of};
+use dem_physics::number::Vec3;
 
 /// Meetings of some balls with all that are in the grids.
 pub(super) struct SmallMeetings<'a> {

@@ -1,9 +1,9 @@
 //! Where clusters may meet small ones.
 
-use dem_physics::geometry::Bounds;
 use crate::state::balls::{Ball, around, box_of};
 use crate::state::groups::{KnownClusters, Searched};
 use crate::state::search_buffers::PairBuffers;
+use dem_physics::geometry::Bounds;
 
 /// Lists the balls that may be in a pair with one of a small cluster, ascending by number.
 pub(super) fn list_with_small(

@@ -3,11 +3,11 @@
 //! Of the touches that stand for one surface the nearest is kept, with the contact history of the
 //! wall from which the sphere comes.
 
-use dem_physics::geometry::Touch;
-use dem_physics::geometry::one_surface::is_one;
 use crate::state::meetings::{Joint, JointBuffers, Meeting, Meetings, WallTouch};
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::Wall;
+use dem_physics::geometry::Touch;
+use dem_physics::geometry::one_surface::is_one;
 
 /// Touches whose distances differ by less than this fraction of the radius are equally near: walls
 /// in one plane differ by rounding.

@@ -2,19 +2,19 @@
 
 use nalgebra::Vector3;
 
-use dem_physics::contact::NormalLaw;
-use dem_physics::contact::assembly::{StoredContact, assemble};
-use dem_physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
-use dem_physics::contact::law::{ContactKind, ContactWork};
-use dem_physics::contact::rolling::RollingFriction;
-use dem_physics::number::Vec3;
 use crate::stages::blocks::{rows, vectors};
 use crate::stages::contacts::{contact_sphere, stored_contact};
 use crate::state::contacts::ContactHistory;
 use crate::state::meetings::{Meeting, Met};
 use crate::state::particles::Particles;
 use crate::state::walls::{Wall, WallContact};
+use dem_physics::contact::NormalLaw;
+use dem_physics::contact::assembly::{StoredContact, assemble};
+use dem_physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
+use dem_physics::contact::law::{ContactKind, ContactWork};
+use dem_physics::contact::rolling::RollingFriction;
 use dem_physics::lanes::{LaneWork, Lanes, MOST, with_most_lanes};
+use dem_physics::number::Vec3;
 
 /// A wall and the particles at it.
 pub(super) struct Place<'a> {

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::detection::Clusters;
 use super::sieve::{Ball, smallest_opening_m};
-use dem_physics::rotation::rotation;
-use dem_physics::shape::inertia::of_spheres;
 use crate::state::clumps::Clumps;
 use crate::state::particles::Particles;
+use dem_physics::rotation::rotation;
+use dem_physics::shape::inertia::of_spheres;
 
 /// Mass and size of a fragment.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

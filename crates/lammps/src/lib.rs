@@ -1,0 +1,178 @@
+//! Scenes for LAMMPS: a data file, an input script and a page of what is carried over, and the way
+//! back from its dumps to frames.
+//!
+//! Bonds become `bond_style bpm/rotational`, contacts `pair_style granular`, walls `fix
+//! wall/gran/region`, clumps `fix rigid/small`. What LAMMPS has no word for is refused by name.
+//!
+//! Written for LAMMPS of 22 July 2025 with the packages BPM, GRANULAR, RIGID and EXTRA-FIX.
+
+pub mod bonds;
+mod clumps;
+mod contacts;
+mod data;
+pub(crate) mod dump;
+mod duration;
+mod feeds;
+pub(crate) mod files;
+mod forces;
+pub mod import;
+mod input;
+mod molecules;
+mod page;
+pub mod refusals;
+mod surfaces;
+mod walls;
+mod words;
+
+use std::path::Path;
+
+use dem_io::safe_write::write_file;
+use dem_io::standard_output::write_json_text;
+use dem_io::write_target::need_folder_of;
+use dem_io::{Diagnostic, Result};
+use dem_scene::Scene;
+use serde::Serialize;
+
+use self::files::{CLUMPS, DATA, FedBody, INPUT, MANIFEST, Manifest, PAGE, TYPES};
+use dem_plan::Plan;
+
+/// Counts of what has been written.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Written {
+    /// Particles, those of clumps included.
+    pub particles: usize,
+    /// Bonds.
+    pub bonds: usize,
+    /// Bonds with other coefficients are of another type.
+    pub bond_types: usize,
+    /// Rigid clumps.
+    pub clumps: usize,
+    /// Steps of the run.
+    pub steps: u64,
+}
+
+/// Writes a planned scene for LAMMPS into a new or empty folder. All files appear in it, or none.
+///
+/// # Errors
+/// The scene has something that LAMMPS has no word for; the folder is not empty (both exit code 2);
+/// a file cannot be written (exit code 1).
+pub fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Written> {
+    refusals::refuse(scene, plan)?;
+    let types = bonds::bond_types(scene, &plan.state)?;
+    let contacts = contacts::contacts(scene, plan)?;
+    let feeds = feeds::feeds(scene, plan)?;
+    let walls = walls::walls(scene, plan, &feeds)?;
+    let forces = forces::forces(scene, plan)?;
+    let molecules = molecules::molecules(plan);
+    let steps = duration::steps(scene, plan);
+    let input = input::Input {
+        scene,
+        plan,
+        types: &types,
+        contacts: &contacts,
+        walls: &walls,
+        forces: &forces,
+        feeds: &feeds,
+    };
+    let manifest = Manifest {
+        program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+        scene: scene.source.clone(),
+        steps,
+        end_s: scene.run.end_time_s,
+        body_names: plan
+            .state
+            .model
+            .bodies
+            .iter()
+            .map(|b| b.name.clone())
+            .collect(),
+        body_of_molecule: molecules.bodies.clone(),
+        is_clump: molecules.are_clumps.clone(),
+        fed: feeds.iter().map(|feed| fed_body(plan, feed)).collect(),
+        bond_radii_m: types.types.iter().map(|one| one.radius_m).collect(),
+    };
+    let texts = [(INPUT, input.text()), (PAGE, page::page(&input))];
+    in_new_folder(folder, |folder| {
+        write_file(&folder.join(DATA), |out| {
+            data::write(plan, &contacts, &types, &molecules, &feeds, out)
+        })?;
+        for feed in &feeds {
+            let template = &plan.state.clumps.templates[feed.template];
+            write_file(&folder.join(feed.file()), |out| {
+                feeds::write(feed, template, out)
+            })?;
+        }
+        if !types.types.is_empty() {
+            write_file(&folder.join(TYPES), |out| bonds::write(&types, out))?;
+        }
+        if clumps::has_bodies(&plan.state) {
+            write_file(&folder.join(CLUMPS), |out| {
+                clumps::write(&plan.state, &molecules, out)
+            })?;
+        }
+        for (name, text) in &texts {
+            write_file(&folder.join(name), |out| out.write_all(text.as_bytes()))?;
+        }
+        write_file(&folder.join(MANIFEST), |out| {
+            write_json_text(out, &manifest)
+        })
+    })?;
+    Ok(Written {
+        particles: plan.state.particles.len(),
+        bonds: plan.state.bonds.len(),
+        bond_types: types.types.len(),
+        clumps: plan.state.clumps.all.len(),
+        steps,
+    })
+}
+
+fn fed_body(plan: &Plan, feed: &feeds::Feed) -> FedBody {
+    FedBody {
+        atom_type: feed.atom_type as u64,
+        body: plan.state.model.body_number(&feed.body),
+        is_clump: feed.is_clump,
+        density_kg_m3: feeds::density_kg_m3(&plan.state.clumps.templates[feed.template]),
+    }
+}
+
+/// Writes into a folder that must be new or empty. If it fails, nothing is left of it.
+fn in_new_folder(folder: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+    let place = || folder.display().to_string();
+    need_folder_of(folder)?;
+    let is_there = folder.exists();
+    let is_empty = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none());
+    if is_there && !is_empty {
+        return Err(Diagnostic::input(
+            place(),
+            "it exists and is not an empty folder",
+            "name a new folder with --output",
+        ));
+    }
+    let failed = |error: std::io::Error| {
+        Diagnostic::failed(place(), format!("cannot be written: {error}"), "")
+    };
+    let target = std::path::absolute(folder).map_err(failed)?;
+    let parent = target.parent().unwrap_or(Path::new("."));
+    let unfinished = tempfile::Builder::new()
+        .prefix(".lammps-")
+        .tempdir_in(parent)
+        .map_err(failed)?;
+    write(unfinished.path())?;
+    if is_there {
+        std::fs::remove_dir(&target).map_err(failed)?;
+    }
+    make_readable(unfinished.path()).map_err(failed)?;
+    std::fs::rename(unfinished.keep(), &target).map_err(failed)
+}
+
+/// Gives a folder the permissions of one that a user makes: temporary ones are private.
+#[cfg(unix)]
+fn make_readable(folder: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))
+}
+
+#[cfg(not(unix))]
+fn make_readable(_: &Path) -> std::io::Result<()> {
+    Ok(())
+}

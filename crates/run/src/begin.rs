@@ -1,0 +1,205 @@
+//! The beginning of a run, before its first step.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use dem_io::Result;
+use dem_io::body::mass::BodyMass;
+use dem_results::ResultsFolder;
+use dem_scene::Scene;
+
+use super::events::{change_step, new_step};
+use super::files::{Files, open_discharge};
+use super::limits::Limits;
+use super::pictures::{Order, Pictures};
+use super::progress::Progress;
+use super::schedule::OutputSchedule;
+use super::settings::RunSettings;
+use crate::machine::processor_time_s;
+use crate::output::frames::FrameOrder;
+use crate::output::series;
+use crate::output::walls::WallOutput;
+use crate::snapshot::fingerprint;
+use dem_engine::check::watchdog::Watchdog;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_plan::inputs::Inputs;
+use dem_plan::measure::{Probe, place_watches, probes, renumber as renumber_probes};
+use dem_plan::{Plan, PlannedStage};
+use dem_rig::watch::Watch;
+
+/// A run: the plan that is stepped, and its monitors.
+pub(super) struct Run<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) settings: RunSettings<'a>,
+    pub(super) state: State,
+    pub(super) bodies: Vec<PlacedBody>,
+    /// Measures.
+    pub(super) probes: Vec<Probe>,
+    /// The laboratory test. None: the scene has none.
+    pub(super) watch: Option<Watch<'a>>,
+    pub(super) watchdog: Watchdog,
+    pub(super) limits: Limits<'a>,
+    pub(super) progress: Progress,
+    pub(super) schedule: OutputSchedule,
+    /// None: no results are kept.
+    pub(super) files: Option<Files<'a>>,
+    /// Whether a checkpoint is to be written after the step.
+    pub(super) is_checkpoint_due: bool,
+    /// Wall time of the last checkpoint.
+    pub(super) saved: Instant,
+    /// Parts of the plan that the summary repeats.
+    pub(super) planned: Planned,
+    pub(super) first_step: u64,
+    /// Time at which this part of the run began, s.
+    pub(super) first_time_s: f64,
+    pub(super) began: Instant,
+    pub(super) processor_before_s: Option<f64>,
+}
+
+/// Parts of the plan that the summary repeats.
+pub(super) struct Planned {
+    pub(super) stages: Vec<PlannedStage>,
+    pub(super) masses: BTreeMap<String, BodyMass>,
+    pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<String>,
+    pub(super) inputs: Inputs,
+    /// Change of the time step in a resumed run.
+    pub(super) changed_step: Option<String>,
+}
+
+impl<'a> Run<'a> {
+    /// Begins a run, or resumes one.
+    ///
+    /// # Errors
+    /// The checkpoint belongs to another scene, or the run is already over; those of the files.
+    pub(super) fn begin(plan: Plan, scene: &'a Scene, settings: RunSettings<'a>) -> Result<Self> {
+        let mut settings = settings;
+        let mut probes = probes(scene, &plan);
+        let watch = watch_of_test(scene, &plan, &mut settings);
+        let Plan {
+            mut state,
+            mut bodies,
+            step: choice,
+            ..
+        } = plan;
+        place_watches(&probes, &mut state);
+        // Of the bonds at the start, broken since or not.
+        let mut order = FrameOrder::new(&bodies, &state);
+        let walls = settings.folder.map(|_| WallOutput::of(&state));
+        let of_pictures = settings.folder.and(Order::of(scene, &state, &bodies));
+        let size = state.particles.len() + state.bonds.len();
+        let schedule = OutputSchedule::of(scene, choice.step_s, size);
+        let mut progress = Progress::new(schedule, &choice);
+        let limits = Limits::of(scene, &state, &choice);
+        let mut changed_step = None;
+        let fingerprint = (settings.folder.map(|_| fingerprint(&state))).transpose()?;
+        let resumed = settings.resume.take().zip(fingerprint);
+        let is_continued = resumed.is_some();
+        if let Some((snapshot, fingerprint)) = resumed {
+            let place = settings
+                .folder
+                .map(|f| f.checkpoint().display().to_string());
+            snapshot
+                .check_scene(&scene.describe())
+                .and_then(|()| snapshot.restore(fingerprint, &mut state, &mut bodies))
+                .map_err(|error| error.within(&place.unwrap_or_default()))?;
+            progress = snapshot.progress;
+            progress.go_on(&state, schedule, scene)?;
+            for (probe, history) in probes.iter_mut().zip(snapshot.measures) {
+                probe.history = history;
+            }
+            if state.bodies_change() {
+                renumber_probes(&mut probes, &[], &bodies, &mut state);
+                order = FrameOrder::new(&bodies, &state);
+            }
+            changed_step = change_step(&mut state, &choice, scene.run.adaptive);
+        }
+        let mut files = None;
+        if let Some(((folder, fingerprint), walls)) = settings.folder.zip(fingerprint).zip(walls) {
+            let columns = series::columns(scene.walls.keys(), &probes);
+            let continued = is_continued.then_some(&progress);
+            let orders = (order, walls, of_pictures);
+            let mut open = open_files(folder, fingerprint, orders, &columns, &state, continued)?;
+            progress.after_end = Default::default();
+            if let Some(detail) = &changed_step {
+                open.events.append(&[new_step(&state, "resumed", detail)])?;
+            }
+            files = Some(open);
+        }
+        let began = Instant::now();
+        Ok(Self {
+            scene,
+            settings,
+            bodies,
+            probes,
+            watch,
+            watchdog: Watchdog::new(choice.fraction_of_limit()),
+            limits,
+            progress,
+            schedule,
+            files,
+            is_checkpoint_due: false,
+            saved: began,
+            planned: Planned {
+                stages: plan.stages,
+                masses: plan.masses,
+                notes: plan.notes,
+                warnings: plan.warnings,
+                inputs: plan.inputs,
+                changed_step,
+            },
+            first_step: state.steps,
+            first_time_s: state.time_s,
+            state,
+            began,
+            processor_before_s: processor_time_s(),
+        })
+    }
+}
+
+/// The laboratory test of the scene, watched. None: the scene has none.
+fn watch_of_test<'a>(
+    scene: &'a Scene,
+    plan: &Plan,
+    settings: &mut RunSettings<'_>,
+) -> Option<Watch<'a>> {
+    let of_test = settings.test.take()?;
+    let (test, setup) = (scene.test.as_ref()?, settings.setup.take()?);
+    Some(Watch::new(scene, test, setup, of_test, plan))
+}
+
+/// The files of a run, new or at the point where it is `continued` in this state. `orders`: what
+/// frames, walls and pictures show.
+fn open_files<'a>(
+    folder: &'a ResultsFolder,
+    fingerprint: u64,
+    (frames, walls, pictures): (FrameOrder, WallOutput, Option<Order>),
+    columns: &[String],
+    state: &State,
+    continued: Option<&Progress>,
+) -> Result<Files<'a>> {
+    let has_fragments = state.clusters.is_some();
+    let orders = (frames, walls);
+    let mut files = Files::open(
+        folder,
+        fingerprint,
+        orders,
+        columns,
+        has_fragments,
+        continued,
+    )?;
+    files.discharge = open_discharge(folder, state, continued)?;
+    if let Some(before) = continued {
+        let [events, discharge] = &before.after_end;
+        files.events.put_back(events)?;
+        if let Some((file, _)) = &mut files.discharge {
+            file.put_back(discharge)?;
+        }
+    }
+    if let Some(order) = pictures {
+        let continued = continued.map(|at| (state, at.pictures));
+        files.pictures = Some(Pictures::open(folder, order, continued)?);
+    }
+    Ok(files)
+}

@@ -1,0 +1,248 @@
+//! The end of a run: its summary and its last files.
+
+use dem_io::Result;
+use dem_io::units::significant;
+use dem_results::write_json;
+
+use super::begin::Run;
+use super::events::{write_sleep, write_zones};
+use super::finish::End;
+use super::nothing_happened::{empty_measures, parted_without_contacts, zero_measures};
+use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
+use super::outcome::Outcome;
+use super::past_outlets::{past_outlets, past_walls};
+use super::rigid_hits::RigidHits;
+use crate::machine::{machine, processor_time_s};
+use crate::output::flows::body_flows;
+use crate::output::fragments::FragmentSummary;
+use crate::output::summary::{
+    AdaptiveSummary, PartError, PopulationSummary, SleepSummary, Summary, Verdict,
+};
+use dem_engine::state::clusters::fragments as fragments_of;
+use dem_engine::state::clusters::fragments::Fragment;
+use dem_engine::step::{advance, number_of, stages};
+use dem_plan::measure::Probe;
+use dem_plan::measure::sizes::Fragments;
+use dem_rig::evaluate::TestResult;
+
+impl Run<'_> {
+    /// Writes the remaining files and the summary.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn end(mut self, ended: Ended) -> Result<Outcome> {
+        let folder = self.settings.folder;
+        let (state, progress) = (&self.state, &self.progress);
+        let test = self.watch.take();
+        let test = test.map(|watch| watch.finish(&progress.test, state, folder));
+        let clusters = state.clusters.as_ref();
+        let fragments = clusters.map(|c| fragments_of(c, &state.particles, &state.clumps, None));
+        self.progress.seen.look_at_edges(&self.state, &self.bodies);
+        let pieces = fragments.as_deref().unwrap_or_default();
+        let is_stopped = ended.problem.is_some();
+        let seen = &self.progress.seen;
+        let mut warnings = std::mem::take(&mut self.planned.warnings);
+        let flying = seen
+            .flying(&self.state, self.scene, pieces)
+            .filter(|_| !is_stopped);
+        let (flies, bodies) = (flying.as_ref(), &self.bodies);
+        warnings.extend(seen.warnings(&self.state, self.scene, bodies, flies, is_stopped));
+        if !is_stopped {
+            warnings.extend(past_outlets(&self.state, pieces));
+            warnings.extend(self.rigid_hits().warnings(self.scene));
+            warnings.extend(empty_measures(&self.state, self.scene, &self.probes, seen));
+            warnings.extend(self.probes.iter().filter_map(Probe::coarse_cells));
+        }
+        if !is_stopped && self.scene.test.is_none() {
+            let (last_tenth, touched) = (&self.progress.last_tenth, |n| seen.has_touched_wall(n));
+            warnings.extend(last_tenth.short_servos(&self.state, touched));
+            if ended.by == AT_END_TIME {
+                warnings.extend(last_tenth.moving(&self.state, bodies, &self.probes));
+            }
+        }
+        if ended.by == AT_END_TIME && self.progress.exceeded.is_none() {
+            warnings.extend(self.probes.iter().filter_map(Probe::end_not_reached));
+        }
+        if let (0, Some((name, limit))) = (self.state.steps, &self.progress.exceeded) {
+            warnings.push(format!(
+                "measures.{name} ended the run before its first step: it is above its end_run_above of {} from the start; set a larger one",
+                significant(*limit, 4)
+            ));
+        }
+        let mut summary = self.summary(&ended, fragments.as_deref(), test.transpose()?);
+        let note = flying.filter(|flying| !flying.touches);
+        summary.notes.extend(note.map(|flying| flying.text));
+        summary.notes.extend(parted_without_contacts(&self.state));
+        if !is_stopped {
+            summary.notes.extend(zero_measures(&self.probes));
+            let pieces = fragments.as_deref().unwrap_or_default();
+            summary.notes.extend(past_walls(&self.state, pieces));
+        }
+        let pictures = self
+            .files
+            .as_ref()
+            .and_then(|files| files.pictures.as_ref());
+        let note = pictures.and_then(|pictures| pictures.note(&self.state));
+        summary.notes.extend(note);
+        summary.judge(warnings);
+        let Some(folder) = folder else {
+            return Ok(Outcome {
+                summary,
+                problem: ended.problem,
+            });
+        };
+        if ended.by == INTERRUPTION {
+            // Of what has been simulated; its film goes on with the run.
+            let mut end = End::of(&summary)?;
+            let at_end = (&self.state, summary.simulated_s);
+            end.write_tables(folder, self.scene, at_end, &self.probes)?;
+            end.write(folder, &self.probes, None)?;
+        } else if ended.problem.is_some() {
+            let end = End::of(&summary)?;
+            end.write_page(folder)?;
+            end.write_summary(folder)?;
+        } else {
+            self.write_end(&summary)?;
+        }
+        Ok(Outcome {
+            summary,
+            problem: ended.problem,
+        })
+    }
+
+    /// The hits of rigid clumps, those that go on included. A continued run goes on with them.
+    fn rigid_hits(&self) -> RigidHits {
+        let mut hits = self.progress.seen.rigid_hits.clone();
+        let state = &self.state;
+        hits.take(&mut state.clumps.clone(), state.time_s, true);
+        let mut parts = state.rigid_parts.clone();
+        let last = (state.time_s, true);
+        hits.take_of_parts(&mut parts, &state.bonds, &self.bodies, last);
+        hits
+    }
+
+    /// The last checkpoint, from which the run can be continued to a later end time; plots, film
+    /// and summary.
+    fn write_end(&mut self, summary: &Summary) -> Result<()> {
+        let mut end = End::of(summary)?;
+        if let Some(folder) = self.settings.folder {
+            let at_end = (&self.state, summary.simulated_s);
+            end.write_tables(folder, self.scene, at_end, &self.probes)?;
+        }
+        self.finish_last_step()?;
+        if let Some(folder) = self.settings.folder {
+            write_json(&folder.ended(), &end)?;
+        }
+        self.save()?;
+        match &mut self.files {
+            Some(files) => end.write(files.folder, &self.probes, files.pictures.as_mut()),
+            None => Ok(()),
+        }
+    }
+
+    /// The second half of the last step, which a continued run begins with. Bodies that it adds,
+    /// removes or replaces are not in the results.
+    fn finish_last_step(&mut self) -> Result<()> {
+        let Some(files) = &self.files else {
+            return Ok(());
+        };
+        let discharge = files.discharge.as_ref();
+        let lengths = [
+            files.events.length_bytes(),
+            discharge.map_or(0, |(file, _)| file.length_bytes()),
+        ];
+        advance(&mut self.state);
+        self.follow_population()?;
+        if let Some(files) = &mut self.files {
+            write_zones(&self.state, files)?;
+            write_sleep(&self.state, files)?;
+            let events = files.events.take_back(lengths[0])?;
+            let discharge = match &mut files.discharge {
+                Some((file, _)) => file.take_back(lengths[1])?,
+                None => String::new(),
+            };
+            self.progress.after_end = [events, discharge];
+        }
+        Ok(())
+    }
+
+    fn summary(
+        &mut self,
+        ended: &Ended,
+        fragments: Option<&[Fragment]>,
+        test: Option<TestResult>,
+    ) -> Summary {
+        let (state, progress, scene) = (&self.state, &self.progress, self.scene);
+        let wall_s = self.began.elapsed().as_secs_f64();
+        let processor_s = processor_time_s().zip(self.processor_before_s);
+        let [energy_error, momentum_error, angular_momentum_error] =
+            progress.largest_errors(&ended.balance);
+        let steps_per_s = (state.steps - self.first_step) as f64 / wall_s;
+        let bonds = if state.model.rules.are_none() {
+            state.bonds.len() as f64
+        } else {
+            // Mean over the entire run, as the number of bonds changes.
+            state.population.bond_steps[0] as f64 / state.steps.max(1) as f64
+        };
+        let of_state = state.clusters.as_ref().zip(fragments);
+        let left_out = self.planned.stages.iter().filter(|stage| !stage.needed);
+        let fraction = |stage| state.scratch.clock.fraction(number_of(stage));
+        Summary {
+            scene: scene.source.clone(),
+            program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+            ended_by: ended.by.to_owned(),
+            problem: ended.problem.as_ref().map(ToString::to_string),
+            inputs: self.planned.inputs.clone(),
+            simulated_s: state.time_s,
+            resumed_at_s: (self.first_step > 0).then_some(self.first_time_s),
+            wall_s,
+            processor_s: processor_s.map(|(after, before)| after - before),
+            threads: self.settings.threads,
+            machine: machine(),
+            particles: state.particles.len(),
+            bonds: state.bonds.len(),
+            bodies: self.planned.masses.clone(),
+            broken_bonds: state.broken_count,
+            largest_bond_strain: progress.seen.bond_strain.largest,
+            largest_overlap: progress.seen.overlap.largest,
+            broken_by_cause: state.broken_by_cause,
+            damaged_bonds: state.bonds.count_damaged(),
+            yielded_bonds: state.bonds.count_yielded(),
+            sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
+            fragments: of_state.map(|(clusters, all)| {
+                FragmentSummary::new(clusters, all, &state.population.discharged)
+            }),
+            population: PopulationSummary::of(state, &self.bodies),
+            flows: body_flows(state, &self.planned.masses),
+            taken_in: progress.seen.taken.summary(scene),
+            sleep: state.sleep.as_ref().map(SleepSummary::of),
+            steps: state.steps,
+            time_step_s: state.time_step_s,
+            adaptive: scene.run.adaptive.then(|| AdaptiveSummary {
+                smallest_step_s: progress.steps_s[0],
+                largest_step_s: progress.steps_s[1],
+                changes: progress.step_changes,
+            }),
+            limit_s: progress.limit_s,
+            fraction_of_limit: state.time_step_s / progress.limit_s,
+            steps_per_s,
+            bond_steps_per_s: steps_per_s * bonds,
+            energy_error,
+            part_error: PartError::above(energy_error, state),
+            momentum_error,
+            angular_momentum_error,
+            balance: ended.balance,
+            measures: self.probes.iter().map(Probe::result).collect(),
+            time_by_stage: (stages().iter())
+                .map(|stage| (stage.name.to_owned(), fraction(stage)))
+                .collect(),
+            inactive_stages: left_out.map(|stage| stage.stage.name.to_owned()).collect(),
+            notes: self.planned.notes.clone(),
+            verdict: Verdict::default(),
+            results: (self.settings.folder).map(|folder| folder.path().display().to_string()),
+            resumed_with: self.planned.changed_step.clone(),
+            test,
+            equilibrium: None,
+        }
+    }
+}

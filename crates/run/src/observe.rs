@@ -1,0 +1,355 @@
+//! Observation and output of a run: between the two halves of a step, where everything can be
+//! measured, and after the second.
+
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use dem_io::{Diagnostic, Result};
+
+use super::begin::Run;
+use super::events::{
+    write_breaks, write_discharge, write_population, write_sleep, write_splits, write_zones,
+};
+use super::files::{interruption, save, with_checkpoint};
+use super::fragments::write_fragments;
+use super::limits::{CHECK_EVERY_STEPS, tunnelling};
+use super::schedule::{due, next};
+use super::settings::SoFar;
+use crate::output::frames::FrameOrder;
+use crate::output::series;
+use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::ledger::{Balance, CHECKS, balance};
+use dem_engine::stages::stage::Stage;
+use dem_engine::stages::touching::contacts_now;
+use dem_engine::stages::watching::OUTPUT;
+use dem_engine::state::State;
+use dem_engine::state::bodies::renumber;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::step::number_of;
+use dem_plan::measure::{Probe, read_probes, renumber as renumber_probes};
+
+/// Wall time between two checkpoints unless the scene sets an interval.
+const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
+
+/// Why a run ended that went on to its end time.
+pub(super) const AT_END_TIME: &str = "end time";
+/// By which a run has ended that was asked to end.
+pub const INTERRUPTION: &str = "interruption";
+
+/// Interval between checks of bending and twisting of bonds, in steps: each check costs about five
+/// times as much as the bonds of a step.
+const EDGES_EVERY: u64 = 1024;
+
+/// Contacts are looked at in each step if they are no more than this, otherwise in every eighth:
+/// once something has touched every body, and before.
+const FEW_CONTACTS: usize = 64;
+const FEW_BEFORE_ALL_TOUCHED: usize = 1024;
+
+/// The reason why the loop over steps ends.
+pub(super) struct Ended {
+    pub(super) by: &'static str,
+    pub(super) balance: Balance,
+    pub(super) problem: Option<Diagnostic>,
+}
+
+/// Output that is due at a step.
+#[derive(Debug, Clone, Copy)]
+struct Due {
+    /// The run ends with this step.
+    end: bool,
+    row: bool,
+    frame: bool,
+    checkpoint: bool,
+    picture: bool,
+    watchdog: bool,
+}
+
+impl Due {
+    fn any(self) -> bool {
+        self.row || self.frame || self.checkpoint || self.picture || self.watchdog
+    }
+
+    /// A checkpoint of a run that has gone unstable would be worthless.
+    fn needs_balance(self) -> bool {
+        self.row || self.checkpoint || self.watchdog
+    }
+}
+
+impl Run<'_> {
+    /// Evaluates the step where everything can be measured, and writes the output that is due.
+    /// Returns how the run has ended, if it has.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn observe(&mut self, tell: &dyn Fn(&SoFar)) -> Result<Option<Ended>> {
+        if let Some(problem) = tunnelling(&self.state, self.scene, &self.bodies) {
+            return Ok(Some(self.ended_early("instability", problem)));
+        }
+        self.note_step()?;
+        let test = self.watch.as_ref();
+        let over = test.is_some_and(|watch| watch.note(&mut self.progress.test, &self.state));
+        let due = self.due(over);
+        let since = due.any().then(Instant::now);
+        if due.any() {
+            place_all(&self.state.clumps, &mut self.state.particles);
+        }
+        let (mut rests, mut exceeded) = (false, false);
+        let mut balanced = None;
+        if due.needs_balance() {
+            let balance = balance(&mut self.state);
+            if let Err(problem) = self.watchdog.look(&self.state, &balance, &self.bodies) {
+                let problem = Some(with_checkpoint(problem, self.files.as_ref()));
+                let by = "instability";
+                return Ok(Some(Ended {
+                    by,
+                    balance,
+                    problem,
+                }));
+            }
+            self.progress
+                .note(&self.state, &balance, self.schedule.rest);
+            rests = self.progress.has_rested(&self.state);
+            if due.row || rests {
+                self.write_row(&balance, tell)?;
+                exceeded = self.progress.exceeded.is_some() && !due.end && !rests;
+            }
+            balanced = Some(balance);
+        }
+        let ends_early = rests || exceeded;
+        self.write_frame(due, ends_early)?;
+        self.plan_checkpoint(due);
+        if let (true, Some(balance)) = (due.end || ends_early, balanced) {
+            self.progress.rested = rests && !due.end;
+            self.progress.test_ended = over;
+            let by = match (due.end, &self.watch) {
+                (true, Some(watch)) => watch.ended_by(over),
+                (true, None) => AT_END_TIME,
+                (false, _) if rests => "rest",
+                (false, _) => "measure",
+            };
+            let problem = None;
+            return Ok(Some(Ended {
+                by,
+                balance,
+                problem,
+            }));
+        }
+        book(&mut self.state, &OUTPUT, since);
+        Ok(None)
+    }
+
+    /// Handles the changes of bodies in the second half of the step, and the limit of the time
+    /// step; writes a checkpoint if one is due. Returns how the run has ended, if it has.
+    ///
+    /// # Errors
+    /// Those of the files.
+    pub(super) fn follow(&mut self) -> Result<Option<Ended>> {
+        let replaced = self.follow_population()?;
+        if let Some(files) = &mut self.files {
+            write_zones(&self.state, files)?;
+            write_sleep(&self.state, files)?;
+        }
+        let since = self
+            .state
+            .steps
+            .is_multiple_of(CHECK_EVERY_STEPS)
+            .then(Instant::now);
+        let (bodies, files) = (&self.bodies, self.files.as_mut());
+        let followed =
+            (self.limits).follow(&mut self.state, replaced, &mut self.progress, bodies, files);
+        book(&mut self.state, &CHECKS, since);
+        if let Err(problem) = followed {
+            return Ok(Some(self.ended_early("instability", problem)));
+        }
+        let interrupted = self.settings.interrupted.load(Ordering::Relaxed);
+        if interrupted || self.is_checkpoint_due {
+            self.saved = Instant::now();
+            self.save()?;
+        }
+        if interrupted {
+            let problem = interruption(&self.state, self.files.as_ref());
+            let by = INTERRUPTION;
+            let balance = balance(&mut self.state);
+            let problem = Some(problem);
+            return Ok(Some(Ended {
+                by,
+                balance,
+                problem,
+            }));
+        }
+        Ok(None)
+    }
+
+    /// Records the events of the first half of the step.
+    fn note_step(&mut self) -> Result<()> {
+        let (state, bodies, seen) = (&self.state, &self.bodies, &mut self.progress.seen);
+        seen.note_breaks(state, bodies);
+        if state.steps.is_multiple_of(EDGES_EVERY) {
+            seen.look_at_edges(state, bodies);
+        }
+        // A bounce may last for a few steps only. Few contacts cost nothing; many last longer.
+        let few = 1..=if seen.misses_one(self.scene) {
+            FEW_BEFORE_ALL_TOUCHED
+        } else {
+            FEW_CONTACTS
+        };
+        let is_turn = state.steps.is_multiple_of(CHECK_EVERY_STEPS);
+        if is_turn || few.contains(&contacts_now(state)) {
+            seen.look_at_contacts(state, self.scene, bodies);
+            seen.taken.look(state);
+            let time_s = state.time_s;
+            let hits = &mut seen.rigid_hits;
+            hits.take(&mut self.state.clumps, time_s, false);
+            let State {
+                rigid_parts, bonds, ..
+            } = &mut self.state;
+            hits.take_of_parts(rigid_parts, bonds, bodies, (time_s, false));
+        }
+        let state = &self.state;
+        if let Some(files) = &mut self.files {
+            write_breaks(state, bodies, files)?;
+            write_splits(state, files)?;
+        }
+        Ok(())
+    }
+
+    /// Output that is due at this step. `over`: the test has ended.
+    fn due(&self, over: bool) -> Due {
+        let (state, schedule, progress) = (&self.state, &self.schedule, &self.progress);
+        let end_s = self.scene.run.end_time_s;
+        let end = over || state.time_s + 0.5 * state.time_step_s >= end_s;
+        let first = state.steps == 0;
+        let frame = (schedule.frame_s).map_or(first, |s| due(state, s, progress.next_frame));
+        let checkpoint = schedule.checkpoint_s;
+        let pictures = self
+            .files
+            .as_ref()
+            .and_then(|files| files.pictures.as_ref());
+        Due {
+            end,
+            row: end || due(state, schedule.row_s, progress.next_row),
+            frame: end || frame,
+            checkpoint: checkpoint.is_some_and(|s| due(state, s, progress.next_checkpoint)),
+            picture: pictures.is_some_and(|pictures| pictures.are_due(state)),
+            watchdog: self.watchdog.is_due(state),
+        }
+    }
+
+    fn write_row(&mut self, balance: &Balance, tell: &dyn Fn(&SoFar)) -> Result<()> {
+        let state = &self.state;
+        self.progress.next_row = next(state, self.schedule.row_s);
+        let values = read_probes(&mut self.probes, state, balance);
+        self.progress.exceeded = exceeded(&self.probes, &values);
+        let end_s = self.scene.run.end_time_s;
+        self.progress.last_tenth.note(state, end_s, &values);
+        if let Some(files) = &mut self.files {
+            let row = series::row(state, balance, &values);
+            files.series.append(state.time_s, &row)?;
+        }
+        tell(&SoFar {
+            fraction: (state.time_s / self.scene.run.end_time_s).min(1.0),
+            time_s: state.time_s,
+            broken_bonds: state.broken_count,
+        });
+        Ok(())
+    }
+
+    /// Writes frame, picture and fragments if they are due, or if the run ends early.
+    fn write_frame(&mut self, due: Due, ends_early: bool) -> Result<()> {
+        let (state, progress) = (&self.state, &mut self.progress);
+        let Some(files) = &mut self.files else {
+            return Ok(());
+        };
+        if due.frame || ends_early {
+            progress.next_frame = self.schedule.frame_s.map_or(0, |s| next(state, s));
+            files.order.write(state, &files.walls, &mut files.frames)?;
+        }
+        if let Some(pictures) = &mut files.pictures
+            && (due.end || ends_early || due.picture)
+        {
+            pictures.take(state, &self.bodies)?;
+        }
+        if due.frame || ends_early || (due.row && progress.has_new_fragments(state)) {
+            write_fragments(state, progress, files)?;
+        }
+        Ok(())
+    }
+
+    /// Decides whether the state after this step is saved. The ledger of this step has been
+    /// checked, so only a valid state is saved. Checking it only in order to save would change its
+    /// later values.
+    fn plan_checkpoint(&mut self, due: Due) {
+        let every_s = self.schedule.checkpoint_s;
+        let is_late = every_s.is_none() && self.saved.elapsed() >= CHECKPOINT_EVERY;
+        self.is_checkpoint_due = due.checkpoint || (due.row && is_late);
+        if self.is_checkpoint_due {
+            self.progress.next_checkpoint = every_s.map_or(0, |s| next(&self.state, s));
+        }
+    }
+
+    /// Applies new numbers of particles after bodies have been added, removed or replaced. Returns
+    /// whether clumps have become clusters.
+    pub(super) fn follow_population(&mut self) -> Result<bool> {
+        let events = &self.state.scratch.events;
+        if events.population.is_empty() && events.renumberings.is_empty() {
+            return Ok(false);
+        }
+        let is_swap = |one: &PopulationEvent| matches!(one, PopulationEvent::Replaced { .. });
+        let replaced = events.population.iter().any(is_swap);
+        self.progress.seen.note_population(&events.population);
+        for by in &events.renumberings {
+            renumber(&mut self.bodies, by);
+        }
+        let renumberings = std::mem::take(&mut self.state.scratch.events.renumberings);
+        renumber_probes(
+            &mut self.probes,
+            &renumberings,
+            &self.bodies,
+            &mut self.state,
+        );
+        if let Some(files) = &mut self.files {
+            write_population(&self.state, files)?;
+            write_discharge(&self.state, files)?;
+            files.order = FrameOrder::new(&self.bodies, &self.state);
+        }
+        Ok(replaced)
+    }
+
+    /// Writes a checkpoint, if results are kept.
+    pub(super) fn save(&mut self) -> Result<()> {
+        let Some(files) = &mut self.files else {
+            return Ok(());
+        };
+        self.state.forget_what_is_near();
+        let (state, bodies, probes) = (&self.state, &self.bodies, &self.probes);
+        save(state, bodies, self.scene, probes, &mut self.progress, files)
+    }
+
+    /// The end of a run that does not reach its end time.
+    fn ended_early(&mut self, by: &'static str, problem: Diagnostic) -> Ended {
+        let problem = Some(with_checkpoint(problem, self.files.as_ref()));
+        let balance = balance(&mut self.state);
+        Ended {
+            by,
+            balance,
+            problem,
+        }
+    }
+}
+
+/// The first measure with a value above that at which it ends the run, and that value.
+fn exceeded(probes: &[Probe], values: &[f64]) -> Option<(String, f64)> {
+    probes.iter().zip(values).find_map(|(probe, &value)| {
+        let limit = probe.measure.end_run_above?;
+        (value > limit).then(|| (probe.name.clone(), limit))
+    })
+}
+
+/// Adds the time since then, if any, to the stage of work that few steps need.
+fn book(state: &mut State, stage: &Stage, since: Option<Instant>) {
+    if let Some(since) = since {
+        let clock = &mut state.scratch.clock;
+        clock.book_since(number_of(stage), since);
+        clock.did(number_of(stage), 1);
+    }
+}

@@ -1,0 +1,275 @@
+//! Output on the fragments of bodies: tables, plots, and a line of the summary.
+
+use std::collections::BTreeSet;
+
+use dem_io::Result;
+use dem_io::units::significant;
+use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
+use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
+use dem_scene::Quantity;
+use serde::Serialize;
+
+use dem_engine::state::State;
+use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
+use dem_engine::state::clusters::sizes::Discharged;
+use dem_engine::state::clusters::{Cluster, Clusters, Fragment, Split};
+use dem_engine::state::model::Model;
+use dem_plan::measure::Probe;
+use dem_plan::measure::sizes::Fragments;
+
+/// Names of the plots of fragments.
+pub(super) const COUNT: &str = "fragments";
+pub(super) const SIZES: &str = "fragment_sizes";
+pub(super) const DISCHARGE: &str = "discharged_mass";
+/// The plots of [`write_fragment_plots`].
+pub(crate) const FRAGMENT_PLOTS: [&str; 3] = [COUNT, SIZES, DISCHARGE];
+
+/// Largest number of fragments named in the text of a split.
+const NAMED: usize = 8;
+
+/// Fragmentation of the bodies in a run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FragmentSummary {
+    /// Number of fragments, of those inside at the end and of those discharged; an intact body is
+    /// one.
+    pub count: usize,
+    /// Number of those inside at the end.
+    pub inside: usize,
+    /// Mass fraction of the heaviest of all.
+    pub mass_fraction_of_largest: f64,
+    /// Fragments that were found in pieces.
+    pub splits: usize,
+}
+
+impl FragmentSummary {
+    /// From the `fragments` of the clusters, and what outlets have removed.
+    pub fn new(clusters: &Clusters, fragments: &[Fragment], discharged: &[Discharged]) -> Self {
+        let ended = clusters.history.iter().filter(|c| c.ended_s.is_some());
+        let gone = discharged.iter().map(|gone| gone.size.mass_kg);
+        let masses_kg = fragments
+            .iter()
+            .map(|fragment| fragment.mass_kg)
+            .chain(gone);
+        Self {
+            count: fragments.len() + discharged.len(),
+            inside: fragments.len(),
+            mass_fraction_of_largest: mass_fraction_of_largest(masses_kg),
+            // What has left has ended, but not in pieces.
+            splits: ended.count().saturating_sub(discharged.len()),
+        }
+    }
+}
+
+/// Fragments as rows of the table of fragments.
+pub fn rows<'a>(fragments: &[Fragment], model: &'a Model) -> Vec<FragmentRow<'a>> {
+    let row = |fragment: &Fragment| FragmentRow {
+        fragment_id: fragment.fragment_id,
+        parent_id: fragment.parent_id,
+        particles: fragment.particles,
+        mass_kg: fragment.mass_kg,
+        centre_m: fragment.centre_m,
+        velocity_m_s: fragment.velocity_m_s,
+        angular_velocity_rad_s: fragment.angular_velocity_rad_s,
+        force_n: fragment.force_n,
+        equivalent_diameter_m: fragment.equivalent_diameter_m,
+        box_diagonal_m: fragment.box_diagonal_m,
+        body: model.body_name(fragment.body),
+        material: model.material_name(fragment.body),
+    };
+    fragments.iter().map(row).collect()
+}
+
+/// Writes the parent of each fragment.
+///
+/// # Errors
+/// Those of the files.
+pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
+    let row = |(id, cluster): (u32, &Cluster)| TreeRow {
+        fragment_id: id,
+        parent_id: cluster.parent,
+        created_s: cluster.created_s,
+        ended_s: cluster.ended_s,
+        particles: cluster.particles,
+    };
+    let rows = (0..).zip(&clusters.history).map(row);
+    write_fragment_tree(&folder.fragment_tree(), rows)
+}
+
+/// Human-readable fragments of one present or former cluster:
+/// `fragment 3 -> 7, 8 (1204 + 38 particles)`. The largest are first, and only some of many are
+/// named.
+pub fn split_text(split: &Split, history: &[Cluster]) -> String {
+    let particles = |id: u32| history[id as usize].particles;
+    let mut children = split.children.clone();
+    // The sort is stable.
+    children.sort_by_key(|id| std::cmp::Reverse(particles(*id)));
+    let (named, others) = children.split_at(children.len().min(NAMED));
+    let ids: Vec<String> = named.iter().map(u32::to_string).collect();
+    let counts: Vec<String> = named.iter().map(|id| particles(*id).to_string()).collect();
+    let mut text = format!(
+        "fragment {} -> {} ({} particles)",
+        split.parent,
+        ids.join(", "),
+        counts.join(" + ")
+    );
+    if !others.is_empty() {
+        let count: u64 = others.iter().map(|id| u64::from(particles(*id))).sum();
+        let s = if count == 1 { "" } else { "s" };
+        text += &format!(" and {} more ({count} particle{s})", others.len());
+    }
+    text
+}
+
+/// Plots the discharged mass over time, if there is any; the number of fragments over time, if it
+/// changes and no measure has it; and the sizes of those at the end and those discharged, if there
+/// is more than one.
+///
+/// # Errors
+/// Those of the files.
+pub(crate) fn write_fragment_plots(
+    folder: &ResultsFolder,
+    state: &State,
+    fragments: &Fragments,
+    end_s: f64,
+    probes: &[Probe],
+) -> Result<()> {
+    if !state.population.discharged.is_empty() {
+        let plot = discharge_plot(state, end_s);
+        folder.write_plot(DISCHARGE, &plot.svg().file())?;
+    }
+    let Some(clusters) = &state.clusters else {
+        return Ok(());
+    };
+    let counts = counts_over_time(&clusters.history, end_s);
+    let counts_fragments = |probe: &Probe| probe.measure.quantity == Quantity::Count;
+    let is_measured = probes.iter().any(counts_fragments);
+    if !is_measured && counts.iter().any(|[_, count]| *count != counts[0][1]) {
+        let mut plot = plot("Fragments", "time (s)", "fragments", counts);
+        plot.y.whole = true;
+        folder.write_plot(COUNT, &plot.svg().file())?;
+    }
+    if fragments.count() > 1 {
+        folder.write_plot(SIZES, &size_plot(fragments, &state.model).svg().file())?;
+    }
+    Ok(())
+}
+
+/// Mass that has left through outlets, over time: a line for each outlet and body, the slope of
+/// which is its mass flow.
+fn discharge_plot(state: &State, end_s: f64) -> Plot {
+    let discharged = &state.population.discharged;
+    let outlets = &state.model.rules.outlets;
+    let flow = |one: &Discharged| (one.outlet, one.size.body);
+    let flows: BTreeSet<(u32, u32)> = discharged.iter().map(flow).collect();
+    let name = |(outlet, body): (u32, u32)| {
+        let body = state.model.body_name(body);
+        match outlets.get(outlet as usize) {
+            Some(outlet) if outlets.len() > 1 => format!("{}: {body}", outlet.name),
+            _ => body.to_owned(),
+        }
+    };
+    let line = |of: (u32, u32)| {
+        let own = discharged.iter().filter(|one| flow(one) == of);
+        let mut points = vec![[0.0, 0.0]];
+        let mut mass_kg = 0.0;
+        for one in own {
+            points.push([one.time_s, mass_kg]);
+            mass_kg += one.size.mass_kg;
+            points.push([one.time_s, mass_kg]);
+        }
+        points.push([end_s, mass_kg]);
+        Line {
+            name: name(of),
+            points,
+            dashed: false,
+        }
+    };
+    Plot {
+        title: "Discharged mass".to_owned(),
+        x: Axis::of("time (s)"),
+        y: Axis::of("mass (kg)"),
+        lines: flows.into_iter().take(MOST_LINES).map(line).collect(),
+        ..Plot::default()
+    }
+}
+
+/// Cumulative mass over sieve size: a line for each body, and for all if there are several; d50 is
+/// marked.
+fn size_plot(fragments: &Fragments, model: &Model) -> Plot {
+    let mut curves = fragments.curves(model);
+    if curves.len() == 2 {
+        // The first is all together.
+        curves.remove(0);
+    }
+    curves.truncate(MOST_LINES - 1);
+    let millimetres = |[size_m, fraction]: [f64; 2]| [1e3 * size_m, fraction];
+    // As many kinds of marks as lines, so that each has the colour of its line.
+    let d50 = |(name, _, d50_m): &(&str, Vec<[f64; 2]>, f64)| Marks {
+        points: vec![Point {
+            at: [1e3 * d50_m, 0.5],
+            filled: true,
+            title: format!("{name}: d50 = {} mm", significant(1e3 * d50_m, 3)),
+            ..Point::default()
+        }],
+        ..Marks::default()
+    };
+    let lines = curves.iter().map(|(name, points, _)| Line {
+        name: (*name).to_owned(),
+        points: points.iter().copied().map(millimetres).collect(),
+        dashed: false,
+    });
+    let mut lines: Vec<Line> = lines.collect();
+    let resolved_mm = 1e3 * fragments.all_resolved_from_m(model);
+    if resolved_mm > 0.0 {
+        lines.push(Line {
+            name: "unresolved below".to_owned(),
+            points: vec![[resolved_mm, 0.0], [resolved_mm, 1.0]],
+            dashed: true,
+        });
+    }
+    let mut x = Axis::of("sieve size, the width of a fragment (mm)");
+    x.log = true;
+    Plot {
+        title: "Fragment sizes, with marks at d50".to_owned(),
+        x,
+        y: Axis::of("cumulative mass fraction"),
+        lines,
+        marks: curves.iter().map(d50).collect(),
+        ..Plot::default()
+    }
+}
+
+/// Time, s, and number of fragments, with a step at every change, of all present and former
+/// clusters.
+pub fn counts_over_time(history: &[Cluster], end_s: f64) -> Vec<[f64; 2]> {
+    let created = history.iter().map(|c| (c.created_s, 1.0));
+    let ended = history.iter().filter_map(|c| c.ended_s);
+    let mut changes: Vec<(f64, f64)> = created.chain(ended.map(|time_s| (time_s, -1.0))).collect();
+    changes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut points: Vec<[f64; 2]> = Vec::new();
+    let mut count = 0.0;
+    for same in changes.chunk_by(|a, b| a.0 == b.0) {
+        let time_s = same[0].0;
+        if !points.is_empty() {
+            points.push([time_s, count]);
+        }
+        count += same.iter().map(|(_, change)| change).sum::<f64>();
+        points.push([time_s, count]);
+    }
+    points.push([end_s, count]);
+    points
+}
+
+fn plot(title: &str, x: &str, y: &str, points: Vec<[f64; 2]>) -> Plot {
+    Plot {
+        title: title.to_owned(),
+        x: Axis::of(x),
+        y: Axis::of(y),
+        lines: vec![Line {
+            name: title.to_lowercase(),
+            points,
+            dashed: false,
+        }],
+        ..Plot::default()
+    }
+}

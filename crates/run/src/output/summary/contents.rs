@@ -1,0 +1,288 @@
+//! The contents of the summary, and the verdict on them.
+
+use std::collections::BTreeMap;
+
+use dem_io::Diagnostic;
+use dem_io::body::mass::BodyMass;
+use dem_io::units::significant;
+use serde::{Serialize, Serializer};
+
+use super::parts::{AdaptiveSummary, PartError, PopulationSummary, SleepSummary, TakenIn};
+use crate::output::equilibrium::EquilibriumSummary;
+use crate::output::flows::BodyFlow;
+use crate::output::fragments::FragmentSummary;
+use dem_engine::stages::ledger::Balance;
+use dem_physics::bond::failure::CauseCounts;
+use dem_plan::inputs::Inputs;
+use dem_plan::measure::Measured;
+use dem_plan::measure::sizes::Sizes;
+use dem_rig::evaluate::TestResult;
+
+/// Program and version.
+const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
+
+/// Smallest energy error that is reported.
+const LARGE_ENERGY_ERROR: f64 = 0.01;
+
+/// Summary of a run. SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// The scene's file.
+    pub scene: String,
+    /// Program and version.
+    pub program: String,
+    /// Reason for its end: "end time", "rest", "measure" (one with `end_run_above`), or for a
+    /// laboratory test "breakage", "end of the stroke" or, if it is dynamic, "end of the test".
+    pub ended_by: String,
+    /// The problem, if it did not reach its end: `ended_by` is "instability" or "interruption".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+    /// Inputs of the run.
+    pub inputs: Inputs,
+    /// Simulated time, s.
+    pub simulated_s: f64,
+    /// Time at which the run was resumed, s: wall time, processor time and the times of stages are
+    /// those of what follows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resumed_at_s: Option<f64>,
+    /// Wall time, s.
+    pub wall_s: f64,
+    /// Processor time of the same, s, all threads together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub processor_s: Option<f64>,
+    /// Number of threads.
+    pub threads: usize,
+    /// Processor and number of cores.
+    pub machine: String,
+    /// Number of particles.
+    pub particles: usize,
+    /// Number of bonds, including broken ones; if bodies are added or removed, of those that exist
+    /// at the end.
+    pub bonds: usize,
+    /// Mass of each body at the start, by name.
+    pub bodies: BTreeMap<String, BodyMass>,
+    /// Bonds that broke.
+    pub broken_bonds: u64,
+    /// Unbroken bonds that are damaged. None: no bond softens beyond its strength.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damaged_bonds: Option<usize>,
+    /// Unbroken bonds that have yielded. None: no bond has a yield strength.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yielded_bonds: Option<usize>,
+    /// Largest strain at the edge of a bond, by elongation and bending or by shear and torsion.
+    pub largest_bond_strain: f64,
+    /// Largest ratio of contact overlap to the radius of the smaller sphere.
+    pub largest_overlap: f64,
+    /// Broken bonds by cause of failure.
+    #[serde(serialize_with = "CauseCounts::serialize_by_name")]
+    pub broken_by_cause: CauseCounts,
+    /// Fragmentation of the bodies, if they can break.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fragments: Option<FragmentSummary>,
+    /// Sizes of the fragments, if bodies can break.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sizes: Option<Sizes>,
+    /// Bodies added, removed and replaced, if any can be.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub population: Option<PopulationSummary>,
+    /// Masses of each body fed, discharged and inside, by name, if any are fed or discharged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub flows: Option<BTreeMap<String, BodyFlow>>,
+    /// Energies that the particles of bodies with daughters took in, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub taken_in: BTreeMap<String, TakenIn>,
+    /// Sleeping bodies, if any can sleep.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sleep: Option<SleepSummary>,
+    /// Steps from the start.
+    pub steps: u64,
+    /// Last step, s.
+    pub time_step_s: f64,
+    /// Range of an adaptive step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adaptive: Option<AdaptiveSummary>,
+    /// Largest stable step, s.
+    pub limit_s: f64,
+    /// Ratio of the step to the limit.
+    pub fraction_of_limit: f64,
+    /// Steps per second of wall time.
+    pub steps_per_s: f64,
+    /// Bond updates per second of wall time.
+    pub bond_steps_per_s: f64,
+    /// Largest relative energy error of the run.
+    pub energy_error: f64,
+    /// That of bodies apart from all others, by themselves, if it is larger.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub part_error: Option<PartError>,
+    /// Largest relative momentum error of the run.
+    pub momentum_error: f64,
+    /// Largest relative angular momentum error of the run.
+    pub angular_momentum_error: f64,
+    /// Energies, works and momenta at the end.
+    pub balance: Balance,
+    /// Results of the measures; by name in JSON.
+    #[serde(serialize_with = "by_name")]
+    pub measures: Vec<Measured>,
+    /// Fraction of each stage in the time of a step; by name in JSON.
+    #[serde(serialize_with = "pairs_by_name")]
+    pub time_by_stage: Vec<(String, f64)>,
+    /// Stages that the scene does not need.
+    pub inactive_stages: Vec<String>,
+    /// Harmless peculiarities of the scene.
+    pub notes: Vec<String>,
+    /// Reliability of the result.
+    pub verdict: Verdict,
+    /// Folder of the results.
+    pub results: Option<String>,
+    /// The change of the time step, if the run was resumed with another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resumed_with: Option<String>,
+    /// Result of the scene's laboratory test.
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        serialize_with = "with_sentences"
+    )]
+    pub test: Option<TestResult>,
+    /// Data on the equilibrium of a static run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equilibrium: Option<EquilibriumSummary>,
+}
+
+/// Summary of a run that ended before there were any results.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unfinished {
+    /// The scene's file.
+    pub scene: String,
+    /// Program and version.
+    pub program: String,
+    /// Always "failure".
+    pub ended_by: String,
+    /// The problem.
+    pub problem: String,
+    /// Inputs of the run.
+    pub inputs: Inputs,
+    /// Empty.
+    pub measures: BTreeMap<String, f64>,
+    /// Not sound, because of the problem.
+    pub verdict: Verdict,
+}
+
+impl Unfinished {
+    /// For a scene that failed with this problem.
+    pub fn new(scene: &str, inputs: Inputs, problem: &Diagnostic) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            program: PROGRAM.to_owned(),
+            ended_by: "failure".to_owned(),
+            problem: problem.to_string(),
+            inputs,
+            measures: BTreeMap::new(),
+            verdict: Verdict {
+                sound: false,
+                warnings: vec![problem.to_string()],
+                unresolved: Vec::new(),
+            },
+        }
+    }
+}
+
+/// Reliability of the result of a run.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Verdict {
+    /// There are no reasons to doubt it.
+    pub sound: bool,
+    /// Reasons to doubt it, a sentence each.
+    pub warnings: Vec<String>,
+    /// Names of figures of the fragments that the size of the spheres decides, not the material.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unresolved: Vec<String>,
+}
+
+impl Summary {
+    /// Sets the verdict: `warnings` from the run, and those from the summary itself.
+    pub(crate) fn judge(&mut self, warnings: Vec<String>) {
+        let warnings: Vec<String> = (self.problem.iter().cloned())
+            .chain(warnings)
+            .chain(self.doubts())
+            .collect();
+        self.verdict = Verdict {
+            sound: warnings.is_empty(),
+            warnings,
+            unresolved: self.unresolved(),
+        };
+    }
+
+    /// Names of figures of all fragments that are below the size that the spheres resolve.
+    fn unresolved(&self) -> Vec<String> {
+        let has_split = self.fragments.is_some_and(|fragments| fragments.splits > 0);
+        let all = self.sizes.as_ref().filter(|_| has_split);
+        let all = all.and_then(|sizes| sizes.all.get("both"));
+        let names = all.map_or(Vec::new(), |all| all.unresolved.names());
+        names.into_iter().map(str::to_owned).collect()
+    }
+
+    /// Reasons in the summary to doubt the result.
+    fn doubts(&self) -> Vec<String> {
+        let mut doubts = Vec::new();
+        if self.energy_error > LARGE_ENERGY_ERROR {
+            doubts.push(format!(
+                "the energy is off by {} of the largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: take a smaller step (run.safety_factor)",
+                significant(self.energy_error, 2),
+                significant(self.balance.energy_scale_j, 3)
+            ));
+        }
+        let part = self.part_error.as_ref();
+        if let Some(part) = part.filter(|part| part.energy_error > LARGE_ENERGY_ERROR) {
+            doubts.push(format!(
+                "the energy of {} by itself is off by {} of its largest energy, {} J, where {LARGE_ENERGY_ERROR} is allowed: take a smaller step (run.safety_factor)",
+                part.named(),
+                significant(part.energy_error, 2),
+                significant(part.energy_scale_j, 3)
+            ));
+        }
+        if self.fraction_of_limit > 1.0 {
+            doubts.push("the time step is above the largest stable one".to_owned());
+        }
+        if let Some(population) = self.population.as_ref().filter(|p| p.waiting > 0) {
+            let waiting = match population.waiting {
+                1 => "1 body still waits".to_owned(),
+                many => format!("{many} bodies still wait"),
+            };
+            doubts.push(format!(
+                "{waiting} for a place at an inlet: make its region larger or put it farther from walls, its bodies faster, or its rate smaller"
+            ));
+        }
+        doubts.extend(self.measures.iter().filter_map(|m| m.missing.clone()));
+        let off = |m: &&Measured| m.missing.is_none() && !m.is_good();
+        for measure in self.measures.iter().filter(off) {
+            doubts.push(format!("{} is outside its tolerance", measure.name));
+        }
+        doubts.extend(self.test.iter().flat_map(TestResult::doubts));
+        let is_test = self.test.is_some();
+        doubts.extend((self.equilibrium.iter()).flat_map(|found| found.doubts(is_test)));
+        doubts
+    }
+}
+
+/// A test with its sentences, each after its name.
+fn with_sentences<S: Serializer>(test: &Option<TestResult>, to: S) -> Result<S::Ok, S::Error> {
+    #[derive(Serialize)]
+    struct Said<'a> {
+        #[serde(flatten)]
+        test: &'a TestResult,
+        sentences: Vec<(String, String)>,
+    }
+    let said = test.as_ref().map(|test| Said {
+        test,
+        sentences: test.sentences(),
+    });
+    said.serialize(to)
+}
+
+fn by_name<S: Serializer>(measures: &[Measured], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(measures.iter().map(|measure| (&measure.name, measure)))
+}
+
+fn pairs_by_name<S: Serializer>(pairs: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
+}
