@@ -11,7 +11,7 @@ mod work;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use dem_io::program::set_own_command;
+use dem_io::own_command::set_own_command;
 use dem_io::units::{TIME, quantity};
 use dem_run::cli::Arguments;
 use dem_run::interrupt::Interrupt;

@@ -7,17 +7,15 @@
 pub mod body;
 mod bounds;
 pub mod boxes;
-pub mod colour;
 pub mod diagnostic;
 pub mod disjoint;
 pub mod hash;
 mod input_file;
 pub mod interpolation;
 pub mod lines;
-pub mod program;
+pub mod own_command;
 pub mod random;
 pub mod safe_write;
-pub mod standard_output;
 pub mod stl;
 pub mod surface;
 pub mod text;

@@ -11,9 +11,11 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use serde::Serialize;
 use tempfile::NamedTempFile;
 
 use crate::diagnostic::{Diagnostic, Result};
+use crate::text::visible_json;
 use crate::write_target::{folder_of, no_folder_of};
 
 const BUFFER_BYTES: usize = 1 << 16;
@@ -296,6 +298,34 @@ pub fn explain(path: &Path, error: &io::Error) -> Diagnostic {
         _ => (format!("cannot be written: {error}"), "write elsewhere"),
     };
     Diagnostic::failed(path.display().to_string(), problem, remedy)
+}
+
+/// Writes `value` as indented JSON for a terminal, without characters that control it. Numbers that
+/// are not finite become `null`.
+///
+/// # Errors
+/// Those of `out`; `value` cannot be represented as JSON.
+pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    let json = serde_json::to_string_pretty(value)?;
+    write_visible_json(out, &json)?;
+    out.write_all(b"\n")
+}
+
+/// Writes a JSON text for a terminal, without characters that control it; its meaning is unchanged.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_visible_json(out: &mut dyn Write, json: &str) -> io::Result<()> {
+    out.write_all(visible_json(json).as_bytes())
+}
+
+/// Writes bytes that are not text unchanged to standard output.
+///
+/// # Errors
+/// Standard output cannot be written to, such as a full disk behind it (exit code 1).
+pub fn write_standard_bytes(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    quiet_when_closed(write_buffered(io::stdout().lock(), write))
+        .map_err(|error| explain(Path::new("standard output"), &error))
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
 }
 
 /// The same for several lines, which stay lines, with tabs in them.
-pub(crate) fn visible_lines(text: &str) -> Cow<'_, str> {
+pub fn visible_lines(text: &str) -> Cow<'_, str> {
     escape(text, |letter| {
         !matches!(letter, '\n' | '\t') && is_obeyed(letter)
     })

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use dem_io::safe_write::write_file;
-use dem_io::standard_output::write_json_text;
+use dem_io::safe_write::write_json_text;
 use dem_io::{Diagnostic, Result, read_input};
 
 use crate::material::{FORMAT_VERSION, MeasuredMaterial};

@@ -27,7 +27,7 @@ mod words;
 use std::path::Path;
 
 use dem_io::safe_write::write_file;
-use dem_io::standard_output::write_json_text;
+use dem_io::safe_write::write_json_text;
 use dem_io::write_target::need_folder_of;
 use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;

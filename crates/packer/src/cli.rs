@@ -16,11 +16,13 @@ use crate::body::{BodySettings, make_body, make_body_only};
 use crate::sizes::Sizes;
 use clap::CommandFactory;
 use dem_io::body::{body_summary, files::body_files, read_body, write_body};
-use dem_io::program::{print_completions, print_man_page, take_size_limits_as_errors};
 use dem_io::safe_write::remove_unfinished;
-use dem_io::standard_output::{write_standard_error, write_standard_json, write_standard_output};
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Diagnostic, Result};
+use dem_terminal::program::{print_completions, print_man_page, take_size_limits_as_errors};
+use dem_terminal::standard_output::{
+    write_standard_error, write_standard_json, write_standard_output,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};

@@ -34,10 +34,10 @@ use std::ffi::OsString;
 use std::sync::Arc;
 
 use clap::CommandFactory;
-use dem_io::program::{print_completions, print_man_page, take_size_limits_as_errors};
 use dem_io::safe_write::remove_unfinished;
-use dem_io::standard_output::write_standard_error;
 use dem_io::{Diagnostic, Result};
+use dem_terminal::program::{print_completions, print_man_page, take_size_limits_as_errors};
+use dem_terminal::standard_output::write_standard_error;
 
 use self::arguments::Command;
 use self::body::body_information;

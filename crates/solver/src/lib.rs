@@ -36,19 +36,6 @@ pub use dem_rig as laboratory;
 pub use dem_runner::{self as run, RunSettings, output, run};
 pub use {dem_lammps as lammps, dem_stress as stress};
 
-/// What only tests of this crate reach.
-#[doc(hidden)]
-pub mod internals {
-    pub use crate::shape::union::{Patch, Solid, patches, solid};
-    pub use dem_engine::check::flight::{FreeBody, Meeting};
-    pub use dem_engine::stages::bonds::bond_wrenches_one_by_one;
-    pub use dem_engine::statics::conjugate::ConjugateGradients;
-    pub use dem_engine::statics::degrees_of_freedom::DegreesOfFreedom;
-    pub use dem_engine::statics::direct::DirectFactor;
-    pub use dem_engine::statics::matrix::Matrix;
-    pub use dem_runner::output::pictures::subject::{by_body, of_clusters};
-}
-
 /// The code on the page is compiled and run with the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../doc/adding-a-model.md")]

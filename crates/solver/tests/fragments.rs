@@ -94,6 +94,7 @@ pub(crate) fn run_into(
         folder: Some(folder),
         resume,
         test: None,
+        setup: None,
         threads: 1,
         interrupted: &interrupted,
     };

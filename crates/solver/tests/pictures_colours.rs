@@ -1,7 +1,7 @@
 //! Colours of fragments and bodies in pictures.
 
 use dem_pictures::colours::{SINGLE, of_fragment};
-use dem_run::internals::{by_body, of_clusters};
+use dem_run::output::pictures::subject::{by_body, of_clusters};
 use dem_run::state::bodies::PlacedBody;
 use dem_run::state::clusters::Cluster;
 

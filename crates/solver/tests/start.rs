@@ -57,6 +57,7 @@ fn run_of(
         folder,
         resume,
         test: None,
+        setup: None,
         threads: 1,
         interrupted: &interrupted,
     };

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::sleep;
 use std::time::Duration;
 
-use dem_io::program::own_command;
+use dem_io::own_command::own_command;
 use dem_io::{Diagnostic, Result};
 use dem_results::folder::{is_locked, is_written_to};
 use dem_scene::study::{BODY, Keep, Study, override_text};

@@ -12,8 +12,7 @@ use super::stored_particles::StoredParticles;
 use super::stored_walls::{FIXED_WALLS_FILE, StoredWalls};
 use super::{csv, lammps, txt, vtp};
 use crate::diagnostic::{Diagnostic, Result};
-use crate::safe_write::{PendingFile, write_file};
-use crate::standard_output::write_standard_bytes;
+use crate::safe_write::{PendingFile, write_file, write_standard_bytes};
 
 const BUFFER_BYTES: usize = 1 << 16;
 

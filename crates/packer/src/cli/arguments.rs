@@ -8,9 +8,9 @@ use crate::pack::shrink::SHRINK_RANGE;
 use crate::sizes::{Basis, Sizes};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use dem_io::body::About;
-use dem_io::program::{Shell, parsed};
 use dem_io::units::{VOLUME, density_kg_m3, length_m, quantity, significant};
 use dem_io::{Diagnostic, Result};
+use dem_terminal::program::{Shell, parsed};
 use std::ffi::OsString;
 use std::path::PathBuf;
 

@@ -5,10 +5,10 @@ use crate::bond_spheres::bond_spheres;
 use dem_io::body::{
     NO_FRAME, body_summary, files::body_files, read_particles, read_spheres, write_body,
 };
-use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Body, Diagnostic, Result};
+use dem_terminal::standard_output::write_standard_output;
 use std::path::Path;
 
 /// Bonds the spheres of the file, writes the body and describes it.

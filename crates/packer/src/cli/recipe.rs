@@ -6,8 +6,8 @@ use crate::body::{BodyReport, BodySettings, make_body};
 use crate::pack::Progress;
 use crate::sizes::Sizes;
 use clap::Parser;
-use dem_io::program::on_one_line;
 use dem_io::{Body, Diagnostic, Result, Surface};
+use dem_terminal::program::on_one_line;
 use std::path::PathBuf;
 
 /// A shape and the settings with which it is packed.

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use dem_io::body::{StoredFrame, vtp};
 use dem_io::safe_write::PendingFile;
-use dem_io::standard_output::write_standard_output;
 use dem_io::stl::write_stl;
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
+use dem_terminal::standard_output::write_standard_output;
 
 use super::fragment_body::fragment_body;
 use super::new_folder::NewFolder;

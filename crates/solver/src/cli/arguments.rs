@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory, Parser, Subcommand};
-use dem_io::program::{Shell, parsed};
 use dem_io::{Diagnostic, Result};
+use dem_terminal::program::{Shell, parsed};
 
 use super::calibrate::CalibrateArguments;
 use super::export::ExportArguments;

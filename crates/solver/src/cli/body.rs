@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use dem_io::body::{body_summary, read_body};
-use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::{Diagnostic, Result};
+use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 
 use super::scene_arguments::SceneArguments;
 

@@ -15,15 +15,15 @@ use dem_calibration::{
 };
 use dem_io::diagnostic::Kind;
 use dem_io::hash::{file_hash, fnv1a_of_parts};
-use dem_io::program::today;
 use dem_io::safe_write::{explain, write_file};
-use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::visible;
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
 use dem_io::{Body, Diagnostic, Result};
 use dem_pack::cli::Recipe;
 use dem_results::folder::lock_file;
 use dem_scene::{Scene, material_text, scene_from_text, text_of};
+use dem_terminal::program::today;
+use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::packings::{Packings, spheres_across};

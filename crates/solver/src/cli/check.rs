@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use dem_io::safe_write::write_file;
-use dem_io::standard_output::{write_json_text, write_standard_output};
+use dem_io::safe_write::write_json_text;
 use dem_io::units::significant;
 use dem_io::write_target::need_folder_of;
 use dem_io::{Diagnostic, Result};
 use dem_pictures::png_file::{Compression, to_png};
 use dem_scene::{Integrator, Scene};
+use dem_terminal::standard_output::write_standard_output;
 use serde_json::{Value, json};
 
 use super::memory::{memory_bytes, size_text};

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::{counted, visible};
 use dem_io::{Diagnostic, Result};
+use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 
 use super::export_frames::{FramesArguments, export_frames};
 use super::pool::in_pool;

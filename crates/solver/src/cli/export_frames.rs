@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use dem_io::body::{StoredParticles, read_particles};
 use dem_io::safe_write::PendingFile;
-use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::vtk::exact;
 use dem_io::write_target::need_folder_of;
 use dem_io::{Bounds, Diagnostic, Result};
 use dem_results::folder::{frame_in, frames_in};
+use dem_terminal::standard_output::write_standard_output;
 
 use super::export_walls::pending_walls;
 use super::fragment::refuse_overwriting_files;

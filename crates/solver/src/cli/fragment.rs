@@ -7,7 +7,6 @@ use dem_io::body::files::body_files;
 use dem_io::body::mass::of_named_density;
 use dem_io::body::write_body;
 use dem_io::body::{StoredFragment, read_frame, read_particles};
-use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::write_target::{need_folder_of, refuse_input};
@@ -15,6 +14,7 @@ use dem_io::{Diagnostic, Result};
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::folder::{frame_in, frames_in, result_among};
 use dem_scene::read_scene;
+use dem_terminal::standard_output::write_standard_output;
 use serde_json::Value;
 
 use super::all_fragments::write_all;

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use dem_io::Result;
-use dem_io::colour::{Colour, on_standard_error};
 use dem_io::safe_write::explain;
-use dem_io::standard_output::write_standard_output;
 use dem_io::text::{counted, visible};
 use dem_results::Existing;
+use dem_terminal::colour::{Colour, on_standard_error};
+use dem_terminal::standard_output::write_standard_output;
 
 use super::new_folder::WholeFolder;
 use dem_lammps::import::{Came, import as import_run};

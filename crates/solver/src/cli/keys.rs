@@ -1,9 +1,9 @@
 //! `dem-run keys`: the reference of the keys of scenes and studies.
 
 use clap::Args;
-use dem_io::standard_output::write_standard_output;
 use dem_io::{Diagnostic, Result};
 use dem_scene::reference;
+use dem_terminal::standard_output::write_standard_output;
 
 use super::keys_text::plain;
 

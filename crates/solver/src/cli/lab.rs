@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use dem_io::safe_write::write_file;
-use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::visible;
 use dem_io::units::{AREA, LENGTH, quantity, show_quantity};
 use dem_io::write_target::{need_folder_of, refuse_to_replace};
@@ -14,6 +13,7 @@ use dem_laboratory::{
     MeasuredSpecimen, Specimen, Table, TestType, evaluate, material, page, read_list, read_text,
     statistics, write_material,
 };
+use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 use serde_json::json;
 
 #[derive(Debug, Args)]

@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use dem_io::body::files::write_body;
 use dem_io::safe_write::{explain, write_file};
-use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::{Diagnostic, Result};
 use dem_pack::cli::Recipe;
 use dem_scene::reference;
+use dem_terminal::standard_output::write_standard_output;
 
 use self::shape::{cuboid, cylinder, stl};
 use super::new_folder::WholeFolder;

@@ -4,14 +4,14 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use dem_io::colour::{Colour, on_standard_error};
 use dem_io::safe_write::write_file;
-use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::units::{NUMBER, TIME, length_m, quantity};
 use dem_io::write_target::need_folder_of;
 use dem_io::{Diagnostic, Result};
 use dem_report::picture::{ColourBy, PictureKind, PictureOrder, Which, picture};
+use dem_terminal::colour::{Colour, on_standard_error};
+use dem_terminal::standard_output::write_standard_output;
 
 /// Largest width and height, px, and largest magnification.
 const MOST_PX: u32 = 8192;

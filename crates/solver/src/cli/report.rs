@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use dem_io::safe_write::write_file;
-use dem_io::standard_output::write_standard_output;
 use dem_io::text::visible;
 use dem_io::{Result, read_input};
 use dem_report::report;
+use dem_terminal::standard_output::write_standard_output;
 
 /// Writes `report.html` of a finished run.
 pub(super) fn write_report(folder: &Path) -> Result<()> {

@@ -5,17 +5,18 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use dem_io::colour::{Colour, on_standard_error};
 use dem_io::diagnostic::Kind;
-use dem_io::standard_output::{
-    write_standard_json, write_standard_lines, write_standard_output, write_visible_json,
-};
+use dem_io::safe_write::write_visible_json;
 use dem_io::text::visible;
 use dem_io::{Body, Diagnostic, Result};
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::folder::refuse_inputs_among_results;
 use dem_results::{Existing, ResultsFolder, write_json};
 use dem_scene::{Integrator, Scene};
+use dem_terminal::colour::{Colour, on_standard_error};
+use dem_terminal::standard_output::{
+    write_standard_json, write_standard_lines, write_standard_output,
+};
 
 use super::as_run;
 use super::progress::ShownProgress;

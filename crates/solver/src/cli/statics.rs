@@ -1,8 +1,9 @@
 //! `dem-run check` of a static scene.
 
 use dem_io::Result;
-use dem_io::standard_output::{write_json_text, write_standard_output};
+use dem_io::safe_write::write_json_text;
 use dem_scene::Scene;
+use dem_terminal::standard_output::write_standard_output;
 use serde_json::json;
 
 use super::memory::size_text;

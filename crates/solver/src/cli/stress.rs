@@ -3,8 +3,8 @@
 use std::io::IsTerminal;
 
 use clap::Args;
-use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::{Diagnostic, Result};
+use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::pool::in_pool;

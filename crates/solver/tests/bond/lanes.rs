@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use dem_run::internals::bond_wrenches_one_by_one;
 use dem_run::physics::bond::failure::{Criteria, EquivalentStress, Factors, stresses, utilisation};
 use dem_run::physics::bond::stiffness::Stiffness;
 use dem_run::stages::bonds::bond_wrenches;
+use dem_run::stages::bonds::bond_wrenches_one_by_one;
 use dem_run::state::bonds::BondRule;
 use dem_run::state::bonds::Bonds;
 use dem_run::state::particles::Particles;

@@ -2,8 +2,8 @@
 
 use std::fs;
 
+use dem_run::measure::sizes::steps;
 use dem_run::output::fragments::counts_over_time;
-use dem_run::output::sizes::steps;
 use dem_run::state::clusters::Cluster;
 use dem_run::state::clusters::sizes::FragmentSize;
 

@@ -1,6 +1,6 @@
 //! Sizes of fragments: boxes, sieves, distributions and their numbers.
 
-use dem_run::output::sizes::{Fragments, sieves_m};
+use dem_run::measure::sizes::{Fragments, sieves_m};
 use dem_run::state::clusters::sizes::{FragmentSize, Sphere, box_lengths_m, sieve_m};
 use dem_run::state::model::{Model, NamedBody};
 use nalgebra::{UnitQuaternion, Vector3};

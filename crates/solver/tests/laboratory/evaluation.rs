@@ -8,8 +8,8 @@ use dem_laboratory::theory::{Beam, KAPPA};
 use dem_run::laboratory::dynamic::evaluate_dynamic;
 use dem_run::laboratory::evaluate::{TestInput, TestResult, evaluate};
 use dem_run::laboratory::record::{BrokenBond, Record, Row};
+use dem_run::laboratory::setup::Setup;
 use dem_run::physics::bond::failure::Cause;
-use dem_run::plan::test_setup::Setup;
 use dem_scene::{Bars, BondKind, Test};
 
 const BEAM: Beam = Beam {

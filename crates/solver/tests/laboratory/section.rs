@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use dem_run::plan::plan;
+use dem_run::laboratory::plan_with_test;
 use dem_scene::read_bodies;
 
 use crate::helpers::scene;
@@ -68,8 +68,9 @@ striker = { length = "200 mm", velocity = "5 m/s" }
 fn looked(text: &str) -> (f64, Option<f64>, Vec<String>) {
     let scene = scene(text);
     let bodies = read_bodies(&scene).unwrap_or_else(|_| BTreeMap::new());
-    let planned = plan(&scene, bodies, 1, true).unwrap_or_else(|error| panic!("{error}"));
-    let setup = planned.test.unwrap();
+    let (planned, setup) =
+        plan_with_test(&scene, bodies, 1, true).unwrap_or_else(|error| panic!("{error}"));
+    let setup = setup.unwrap();
     for warning in &setup.warnings {
         assert!(planned.warnings.contains(warning), "{warning}");
     }
@@ -171,8 +172,8 @@ fn dimensions_of_the_measured_specimen_are_taken() {
         );
         let scene = scene(&block(PLANE, 0.0, "compression", &more));
         let bodies = read_bodies(&scene).unwrap();
-        let planned = plan(&scene, bodies, 1, true).unwrap();
-        let setup = planned.test.unwrap();
+        let (planned, setup) = plan_with_test(&scene, bodies, 1, true).unwrap();
+        let setup = setup.unwrap();
         let dem_laboratory::Specimen::Bar { length_m, area_m2 } = setup.specimen else {
             panic!("no bar");
         };

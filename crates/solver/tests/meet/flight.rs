@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use dem_run::check::flight::{FreeBody, Meeting};
 use dem_run::geometry::{Frame, Mesh, Plane, Shape, SolidBox};
-use dem_run::internals::{FreeBody, Meeting};
 use dem_run::state::walls::Wall;
 use nalgebra::Vector3;
 

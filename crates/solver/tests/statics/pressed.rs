@@ -1,10 +1,13 @@
 //! Laboratory tests without steps: walls that press a body, grips that pull it, and linear systems
 //! without factors.
 
+use dem_engine::statics::conjugate::ConjugateGradients;
+use dem_engine::statics::degrees_of_freedom::DegreesOfFreedom;
+use dem_engine::statics::direct::DirectFactor;
+use dem_engine::statics::matrix::Matrix;
 use dem_laboratory::Line;
-use dem_run::internals::{ConjugateGradients, DegreesOfFreedom, DirectFactor, Matrix};
-use dem_run::plan::plan;
-use dem_run::run::statics::elastic_test::{ElasticTest, elastic_test};
+use dem_run::laboratory::elastic_test::{ElasticTest, elastic_test};
+use dem_run::laboratory::plan_with_test;
 use dem_scene::{read_bodies, scene_from_text};
 
 use serde_json::Value;
@@ -51,9 +54,9 @@ const AREA_M2: f64 = std::f64::consts::PI * 4e-6;
 
 fn tested(text: &str, threads: usize) -> ElasticTest {
     let scene = scene_from_text(text, "row.toml", &[]).unwrap();
-    let mut plan = plan(&scene, read_bodies(&scene).unwrap(), threads, false).unwrap();
-    let setup = plan.test.take().unwrap();
-    elastic_test(&mut plan.state, &scene, &setup, &|_| true).unwrap()
+    let bodies = read_bodies(&scene).unwrap();
+    let (mut plan, setup) = plan_with_test(&scene, bodies, threads, false).unwrap();
+    elastic_test(&mut plan.state, &scene, &setup.unwrap(), &|_| true).unwrap()
 }
 
 fn pressed_row() -> String {

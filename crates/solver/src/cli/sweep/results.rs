@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use dem_io::program::own_command;
+use dem_io::own_command::own_command;
 use dem_io::safe_write::write_file;
-use dem_io::standard_output::{write_standard_json, write_standard_output};
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
 use dem_results::{write_json, write_plot_file};
 use dem_scene::study::Study;
+use dem_terminal::standard_output::{write_standard_json, write_standard_output};
 use serde_json::json;
 
 use dem_study::cluster::{ListedRun, write_cluster_files};

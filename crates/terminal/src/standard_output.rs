@@ -2,17 +2,16 @@
 //! bytes.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use serde::Serialize;
 
 use crate::colour::{Colour, on_standard_error, on_standard_output};
-use crate::diagnostic::{Diagnostic, Result};
-use crate::safe_write::{explain, quiet_when_closed, write_buffered};
-use crate::text::{visible_json, visible_lines};
+use dem_io::safe_write::{write_json_text, write_standard_bytes};
+use dem_io::text::visible_lines;
+use dem_io::{Diagnostic, Result};
 
 /// Writes lines of text to standard output, without characters that control a terminal
-/// ([`crate::text`]). A reader that closes the pipe early is not an error.
+/// ([`dem_io::text`]). A reader that closes the pipe early is not an error.
 ///
 /// # Errors
 /// Standard output cannot be written to, such as a full disk behind it (exit code 1).
@@ -78,36 +77,6 @@ impl Write for VisibleLines<'_> {
 /// As [`write_standard_output`]; `value` cannot be represented as JSON (exit code 1).
 pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
     write_standard_output(|out| write_json_text(out, value))
-}
-
-/// Writes `value` as indented JSON for a terminal, without characters that control it. Numbers that
-/// are not finite become `null`.
-///
-/// # Errors
-/// Those of `out`; `value` cannot be represented as JSON.
-pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
-    let json = serde_json::to_string_pretty(value)?;
-    write_visible_json(out, &json)?;
-    out.write_all(b"\n")
-}
-
-/// Writes a JSON text for a terminal, without characters that control it; its meaning is unchanged.
-///
-/// # Errors
-/// Those of `out`.
-pub fn write_visible_json(out: &mut dyn Write, json: &str) -> io::Result<()> {
-    out.write_all(visible_json(json).as_bytes())
-}
-
-/// Writes bytes that are not text unchanged to standard output.
-///
-/// # Errors
-/// As [`write_standard_output`].
-pub(crate) fn write_standard_bytes(
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<()> {
-    quiet_when_closed(write_buffered(io::stdout().lock(), write))
-        .map_err(|error| explain(Path::new("standard output"), &error))
 }
 
 /// Prints an error on standard error. If that is full or closed, there is nowhere to report it.

@@ -2,15 +2,15 @@
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
-use std::path::PathBuf;
-use std::sync::OnceLock;
 
 use clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 use clap::{Command, Parser};
 pub use clap_complete::Shell;
 
-use super::standard_output::{write_standard_bytes, write_standard_output};
-use crate::diagnostic::{Diagnostic, Result};
+use dem_io::safe_write::write_standard_bytes;
+use dem_io::{Diagnostic, Result};
+
+use crate::standard_output::write_standard_output;
 
 /// Turns a file size limit of the shell (`ulimit -f`) into a write error, like a full disk, instead
 /// of the end of the program.
@@ -21,26 +21,6 @@ pub fn take_size_limits_as_errors() {
         // would be ended and leave an unfinished file, nothing worse.
         let caught = std::sync::Arc::default();
         let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, caught);
-    }
-}
-
-static OWN_COMMAND: OnceLock<(PathBuf, Vec<String>)> = OnceLock::new();
-
-/// Says how this program is started where the file of the process is an interpreter: that file and
-/// its first arguments. Only the first call counts.
-pub fn set_own_command(file: PathBuf, first_arguments: Vec<String>) {
-    OWN_COMMAND.get_or_init(|| (file, first_arguments));
-}
-
-/// The file that starts this program once more, and the arguments before its own: the file of the
-/// process without any, unless [`set_own_command`] says others.
-///
-/// # Errors
-/// The system does not tell the file of the process.
-pub fn own_command() -> std::io::Result<(PathBuf, Vec<String>)> {
-    match OWN_COMMAND.get() {
-        Some(command) => Ok(command.clone()),
-        None => Ok((std::env::current_exe()?, Vec::new())),
     }
 }
 
