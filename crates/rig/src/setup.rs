@@ -1,24 +1,29 @@
 //! Geometry of a test: the dimensions for its formulas, and the particles whose displacement is
 //! measured.
 
+mod bending;
+mod directions;
 mod given;
+mod measured;
 mod section;
+mod sides;
 mod walls;
 
 use dem_io::units::{show_length, show_quantity, significant};
 use dem_io::{Diagnostic, Result};
-use dem_scene::{Scene, Test, Wall, WallShape};
+use dem_scene::{Scene, Test};
 use nalgebra::Vector3;
 
-use self::given::{Said, compare_with_body, compare_with_pins, dimension};
+use self::bending::beam;
+use self::directions::{all_come_nearer, pulls_apart};
+use self::given::{Said, compare_with_body, dimension};
+use self::measured::{choose_measured, choose_strip};
 use self::section::look_at_bar;
-use self::walls::{middle_of, placed};
+pub(crate) use self::sides::side_m2;
+use self::sides::sides;
 use dem_engine::state::State;
-use dem_laboratory::theory::Beam;
 use dem_laboratory::{Specimen, TestType};
 
-/// Half the size of the part of a body whose displacement is measured, as a fraction of its height.
-const SPOT: f64 = 0.125;
 /// Gauge length of a bar as a fraction of its length.
 const GAUGE: f64 = 0.5;
 /// Largest ratio of the larger to the smaller size of a disc across its axis.
@@ -26,12 +31,8 @@ const ROUND: f64 = 1.25;
 /// A disc has split in two if the mean distance of the crack from the loaded diameter is at most
 /// this fraction of the diameter.
 const NEAR_DIAMETER: f64 = 0.1;
-/// Largest number of slabs along the loaded diameter.
-const MOST_SLABS: usize = 20;
 /// Largest length or section of a test over that of the box around its body.
 const ABOUT: f64 = 1.1;
-/// Largest sine of the angle between the direction of a test and the normal of a plane that moves.
-const OBLIQUE: f64 = 1e-3;
 
 /// A wall that keeps a pressure on a side of a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -316,218 +317,6 @@ fn forwards(along: Vector3<f64>) -> Vector3<f64> {
 
 type Refusal = (String, &'static str);
 
-/// A point of the axis of a pin, m, and the unit vector along it.
-type Pin = (Vector3<f64>, Vector3<f64>);
-
-/// The pins of a bending test that load it, and those that support it.
-fn bending_pins(scene: &Scene, test: &Test) -> std::result::Result<[Vec<Pin>; 2], Refusal> {
-    let (loads, supports): (Vec<_>, Vec<_>) = scene
-        .walls
-        .iter()
-        .partition(|(name, _)| test.crosshead.contains(name));
-    let wanted = if test.kind == TestType::FourPointBending {
-        2
-    } else {
-        1
-    };
-    if loads.len() != wanted || supports.len() != 2 {
-        return Err((
-            format!(
-                "a {} test has {wanted} moving and 2 fixed pins, but here are {} and {}",
-                test.kind.name(),
-                loads.len(),
-                supports.len()
-            ),
-            "add or remove walls, and name those that load in moves",
-        ));
-    }
-    let pins = |walls: &[(&String, &Wall)]| -> std::result::Result<Vec<Pin>, Refusal> {
-        walls.iter().map(|(name, wall)| pin(name, wall)).collect()
-    };
-    Ok([pins(&loads)?, pins(&supports)?])
-}
-
-/// A beam between pins.
-fn beam(
-    scene: &Scene,
-    test: &Test,
-    extent: impl Fn(&Vector3<f64>) -> [f64; 2],
-) -> std::result::Result<Setup, Refusal> {
-    let [loads, supports] = bending_pins(scene, test)?;
-    let direction = Vector3::from(test.direction);
-    let across = loads[0].1;
-    let along = across.cross(&direction);
-    if along.norm() < 0.999
-        || [&loads, &supports]
-            .into_iter()
-            .flatten()
-            .any(|(_, axis)| axis.dot(&across).abs() < 0.999)
-    {
-        let remedy = "turn them: all have one axis, and direction is square to it";
-        return Err((
-            "the pins stand askew to each other or to direction".to_owned(),
-            remedy,
-        ));
-    }
-    let along = forwards(along.normalize());
-    let place = |pins: &[Pin]| -> Vec<f64> {
-        let mut places: Vec<f64> = pins.iter().map(|(place, _)| place.dot(&along)).collect();
-        places.sort_by(f64::total_cmp);
-        places
-    };
-    let (loaded, held) = (place(&loads), place(&supports));
-    let mut said = Said::default();
-    let [wide_m, high_m] = [across, direction].map(|way| size(extent(&way)));
-    compare_with_pins(
-        "support_span",
-        test.support_span_m,
-        held[1] - held[0],
-        &mut said,
-    );
-    compare_with_body(test, "width", test.width_m, wide_m, &mut said);
-    compare_with_body(test, "height", test.height_m, high_m, &mut said);
-    let beam = Beam {
-        span_m: test.support_span_m.unwrap_or(held[1] - held[0]),
-        loading_span_m: match loaded[..] {
-            [left, right] => {
-                compare_with_pins("loading_span", test.loading_span_m, right - left, &mut said);
-                test.loading_span_m.unwrap_or(right - left)
-            }
-            _ => 0.0,
-        },
-        width_m: dimension(test, "width", test.width_m, wide_m, &mut said),
-        height_m: dimension(test, "height", test.height_m, high_m, &mut said),
-    };
-    let [low, high] = extent(&along);
-    if !(low < held[1] && high > held[0]) || beam.span_m <= beam.loading_span_m {
-        let remedy =
-            "the supports are further apart than the loading pins, and the body lies on them";
-        return Err((
-            "the body or the loading pins are not between the supports".to_owned(),
-            remedy,
-        ));
-    }
-    let centre = middle([held[0], held[1]]) * along
-        + middle(extent(&across)) * across
-        + middle(extent(&direction)) * direction;
-    // A crack in three-point bending starts under the pin: it may deviate by half the height.
-    let crack_within_m = if loaded.len() == 2 {
-        0.5 * beam.loading_span_m
-    } else {
-        0.5 * beam.height_m
-    };
-    Ok(Setup::of(
-        Specimen::Beam(beam),
-        test.direction,
-        along.into(),
-        centre.into(),
-        crack_within_m,
-    )
-    .saying(said))
-}
-
-/// Middle of a pin and unit vector along it.
-fn pin(name: &str, wall: &Wall) -> std::result::Result<Pin, Refusal> {
-    let WallShape::Cylinder { from_m, to_m, .. } = &wall.shape else {
-        let problem = format!("the wall '{name}' is no cylinder, which pins are");
-        return Err((
-            problem,
-            "write cylinder = { from, to, radius }, or remove the wall",
-        ));
-    };
-    let [from, to] = [*from_m, *to_m].map(|end| placed(wall, end));
-    Ok((0.5 * (from + to), (to - from).normalize()))
-}
-
-/// Normal of a plane at the start. None: it is another shape.
-fn normal_of(wall: &Wall) -> Option<Vector3<f64>> {
-    let WallShape::Plane { point_m, normal } = wall.shape else {
-        return None;
-    };
-    let tip_m = [0, 1, 2].map(|k| point_m[k] + normal[k]);
-    Some(placed(wall, tip_m) - placed(wall, point_m))
-}
-
-/// Refuses planes that load obliquely, walls that load by moving away from the body, and a
-/// transmission bar that is not behind it.
-fn all_come_nearer(scene: &Scene, test: &Test, middle: Vector3<f64>) -> Result<()> {
-    let direction = Vector3::from(test.direction);
-    for name in &test.crosshead {
-        let normal = scene.walls.get(name).and_then(normal_of);
-        if normal.is_some_and(|normal| normal.cross(&direction).norm() > OBLIQUE) {
-            return Err(Diagnostic::input(
-                format!("{}: test.direction", scene.source),
-                format!("the wall '{name}' is not square to the direction in which it moves"),
-                "write a direction along the normal of the wall",
-            ));
-        }
-    }
-    let behind_m = |name: &String| {
-        let place = middle_of(scene.walls.get(name)?)?;
-        Some((place - middle).dot(&Vector3::from(test.direction)))
-    };
-    for name in &test.crosshead {
-        if let Some(behind_m) = behind_m(name).filter(|behind_m| *behind_m >= 0.0) {
-            return Err(Diagnostic::input(
-                format!("{}: [test]", scene.source),
-                format!(
-                    "the wall '{name}' moves away from the body '{}', whose middle lies {} mm behind it",
-                    test.body,
-                    significant(1e3 * behind_m, 3)
-                ),
-                "turn direction round, or name the walls that press in moves",
-            ));
-        }
-    }
-    let Some(bars) = &test.bars else {
-        return Ok(());
-    };
-    match behind_m(&bars.transmission) {
-        Some(behind_m) if behind_m <= 0.0 => Err(Diagnostic::input(
-            format!("{}: test.transmission_bar", scene.source),
-            format!(
-                "the wall '{}' is not behind the body '{}', but {} mm before its middle along direction",
-                bars.transmission,
-                test.body,
-                significant(-1e3 * behind_m, 3)
-            ),
-            "name the wall on the far side of the body",
-        )),
-        _ => Ok(()),
-    }
-}
-
-/// Refuses a group that is pulled towards the one that is held, or that ends in the other bar.
-fn pulls_apart(scene: &Scene, test: &Test, state: &State, halves: &[Vec<u32>; 2]) -> Result<()> {
-    let direction = Vector3::from(test.direction);
-    let [pulled_m, held_m] =
-        (halves.each_ref()).map(|half| middle(extent(state, half, &direction)));
-    if halves[1].is_empty() || pulled_m > held_m {
-        return Ok(());
-    }
-    let (problem, remedy) = match &test.bars {
-        Some(bars) => (
-            format!(
-                "the incident bar pulls '{}' towards '{}', the end of the transmission bar, {} before it",
-                test.crosshead.join(", "),
-                bars.transmission,
-                show_length(held_m - pulled_m)
-            ),
-            "exchange crosshead and transmission_bar, or turn direction round",
-        ),
-        None => (
-            format!(
-                "the test pulls '{}' towards what is held, {} before it",
-                test.crosshead.join(", "),
-                show_length(held_m - pulled_m)
-            ),
-            "turn direction round, or name the group at the other end as the crosshead",
-        ),
-    };
-    let place = format!("{}: [test]", scene.source);
-    Err(Diagnostic::input(place, problem, remedy))
-}
-
 /// A disc: its axis is the one of x, y and z, perpendicular to the load, along which it is
 /// shortest.
 fn disc(
@@ -632,81 +421,6 @@ fn dog_bone(bar: Setup) -> Setup {
     }
 }
 
-/// The walls on the sides of a triaxial test.
-fn sides(scene: &Scene, test: &Test, state: &State, particles: &[u32]) -> Vec<Side> {
-    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-    let extent_m = axes.map(|axis| extent(state, particles, &axis));
-    let confining = |name: &String| {
-        let confinement = test.confinement.as_ref();
-        confinement.is_some_and(|confinement| confinement.walls.contains(name))
-    };
-    let walls = scene.walls.iter().enumerate();
-    let side = |(wall, (_, of)): (usize, (&String, &Wall))| match of.shape {
-        WallShape::Plane { normal, .. } => Some(Side {
-            wall,
-            inwards: normal,
-            area_m2: side_m2(&extent_m, normal),
-            near: near_side(
-                state,
-                particles,
-                [test.direction, normal].map(Vector3::from),
-            ),
-            gauge_m: 0.0,
-        }),
-        _ => None,
-    };
-    let walls = walls.filter(|(_, (name, _))| confining(name));
-    let mut sides: Vec<Side> = walls.filter_map(side).collect();
-    let places: Vec<[f64; 3]> = (sides.iter())
-        .map(|side| side.inwards.map(|c| c * side.place_m(state)))
-        .collect();
-    for at in 0..sides.len() {
-        let inwards = sides[at].inwards;
-        let is_opposite = |other: &&Side| (0..3).all(|k| other.inwards[k] == -inwards[k]);
-        let measured = |side: &Side| !side.near.is_empty();
-        let other = sides
-            .iter()
-            .position(|other| is_opposite(&other) && measured(other));
-        if let Some(other) = other.filter(|_| measured(&sides[at])) {
-            let apart = Vector3::from(places[other]) - Vector3::from(places[at]);
-            sides[at].gauge_m = apart.norm();
-        }
-    }
-    sides
-}
-
-/// The particles of a body in its middle half along `direction` that are halfway between its middle
-/// and the side from which `inwards` points.
-fn near_side(
-    state: &State,
-    particles: &[u32],
-    [direction, inwards]: [Vector3<f64>; 2],
-) -> Vec<u32> {
-    let of = |axis: &Vector3<f64>| {
-        let ends = extent(state, particles, axis);
-        (middle(ends), size(ends))
-    };
-    let ((middle_m, height_m), (centre_m, width_m)) = (of(&direction), of(&inwards));
-    let radii = particles
-        .iter()
-        .map(|&i| state.particles.poses[i as usize].radius_m());
-    let largest_m = radii.fold(0.0, f64::max);
-    let spot_m = (0.05 * width_m).max(2.0 * largest_m);
-    let is_near = |i: &u32| {
-        let place = state.particles.poses[*i as usize].place();
-        let from_side_m = place.dot(&inwards) - centre_m + 0.5 * GAUGE * width_m;
-        let from_middle_m = place.dot(&direction) - middle_m;
-        from_side_m.abs() < spot_m && from_middle_m.abs() < 0.5 * GAUGE * height_m
-    };
-    particles.iter().copied().filter(is_near).collect()
-}
-
-/// Area of the box around a body, square to one of its axes, m2.
-pub(crate) fn side_m2(extent_m: &[[f64; 2]; 3], normal: [f64; 3]) -> f64 {
-    let sides = (0..3).filter(|k| normal[*k].abs() < 0.5);
-    sides.map(|k| size(extent_m[k])).product()
-}
-
 /// A body whose driven half slides along the held one. The crack belongs between the two.
 fn sheared(
     test: &Test,
@@ -738,84 +452,4 @@ fn sheared(
         centre.into(),
         0.5 * (held_m - driven_m).max(0.0),
     ))
-}
-
-/// Chooses the particles within a twentieth of the diameter of a disc, or a mean diameter of the
-/// particles, on both sides of the loaded diameter, and divides it into slabs of at least that mean
-/// diameter.
-fn choose_strip(setup: &mut Setup, state: &State, particles: &[u32]) {
-    let Specimen::Disc {
-        diameter_m,
-        thickness_m,
-    } = setup.specimen
-    else {
-        return;
-    };
-    let fits = (diameter_m / (2.0 * setup.mean_radius_m)) as usize;
-    setup.slabs = fits.clamp(1, MOST_SLABS);
-    let half_m = (0.05 * diameter_m).max(2.0 * setup.mean_radius_m);
-    let cubed = |i: u32| state.particles.poses[i as usize].radius_m().powi(3);
-    let volume_m3 = 0.25 * std::f64::consts::PI * diameter_m * diameter_m * thickness_m;
-    let share = volume_m3 / particles.iter().map(|&i| cubed(i)).sum::<f64>();
-    let [along, direction] = [setup.along, setup.direction].map(Vector3::from);
-    for &i in particles {
-        let offset = state.particles.poses[i as usize].place() - Vector3::from(setup.middle_m);
-        let at = (offset.dot(&direction) / diameter_m + 0.5) * setup.slabs as f64;
-        if offset.dot(&along).abs() < half_m && at >= 0.0 {
-            setup.strip.push(InSlab {
-                particle: i,
-                slab: (at as usize).min(setup.slabs - 1),
-                volume_m3: share * cubed(i),
-            });
-        }
-    }
-}
-
-/// Chooses the particles whose displacement is measured: for a beam those at half its height at the
-/// loading points and the supports, for a bar two slices at the ends of its middle half, for a disc
-/// two spots at the ends of the middle half of its loaded diameter.
-fn choose_measured(setup: &mut Setup, state: &State, particles: &[u32]) {
-    let middle = Vector3::from(setup.middle_m);
-    let [along, direction] = [setup.along, setup.direction].map(Vector3::from);
-    let offset = |i: u32| state.particles.poses[i as usize].place() - middle;
-    let pick = |is_in: &dyn Fn(f64, f64) -> bool| -> Vec<u32> {
-        let all = particles.iter().copied();
-        all.filter(|&i| is_in(offset(i).dot(&along), offset(i).dot(&direction)))
-            .collect()
-    };
-    match setup.specimen {
-        Specimen::Beam(beam) => {
-            let spot = (SPOT * beam.height_m).max(2.0 * setup.mean_radius_m);
-            let at = |place: f64| pick(&|x, z| (x.abs() - place).abs() < spot && z.abs() < spot);
-            setup.moving = at(0.5 * beam.loading_span_m);
-            setup.resting = at(0.5 * beam.span_m);
-        }
-        Specimen::Bar { length_m, .. } => {
-            let half = 0.5 * GAUGE * length_m;
-            let spot = (0.05 * length_m).max(2.0 * setup.mean_radius_m);
-            setup.moving = pick(&|x, _| (x - half).abs() < spot);
-            setup.resting = pick(&|x, _| (x + half).abs() < spot);
-            let mean = |of: &[u32]| {
-                of.iter().map(|&i| offset(i).dot(&along)).sum::<f64>() / of.len() as f64
-            };
-            setup.gauge_m = mean(&setup.moving) - mean(&setup.resting);
-        }
-        Specimen::Disc { diameter_m, .. } => {
-            let half = 0.5 * GAUGE * diameter_m;
-            let spot = (0.05 * diameter_m).max(2.0 * setup.mean_radius_m);
-            let at = |place: f64| pick(&|x, z| x.abs() < spot && (z - place).abs() < spot);
-            // The load moves forwards: what lies behind the centre moves further.
-            setup.moving = at(-half);
-            setup.resting = at(half);
-            let mean = |of: &[u32]| {
-                of.iter().map(|&i| offset(i).dot(&direction)).sum::<f64>() / of.len() as f64
-            };
-            setup.gauge_m = mean(&setup.resting) - mean(&setup.moving);
-        }
-    }
-    if setup.moving.is_empty() || setup.resting.is_empty() {
-        setup.moving.clear();
-        setup.resting.clear();
-        setup.gauge_m = 0.0;
-    }
 }
