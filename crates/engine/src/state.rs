@@ -25,6 +25,7 @@ pub mod partitions;
 pub mod population;
 pub mod references;
 pub mod regions;
+pub(crate) mod renumbered;
 pub mod rigid_balls;
 pub mod rigid_parts;
 pub mod rules;

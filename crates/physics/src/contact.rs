@@ -193,6 +193,25 @@ fn of_lagging_velocity<T: Number>(damping_n_s_m: T, mass_kg: T, dt: f64) -> T {
     mass.if_positive(damping_n_s_m * mass / (mass + damping_n_s_m.scale(dt)))
 }
 
+/// The normal force of a contact without what attracts it and, for friction, the force that presses
+/// its surfaces on each other, N. `damped`: the elastic force less that of the dashpot, N.
+#[inline(always)]
+fn normal_forces_n<T: Number, L: NormalLaw<T>>(
+    law: &L,
+    touch: &ContactKinematics<T>,
+    damped: T,
+) -> [T; 2] {
+    let least_n = law.parameters().least_n;
+    if L::ATTRACTS {
+        let attraction = law.attraction_n(touch);
+        let held = (damped + attraction).maximum(least_n);
+        let normal = touch.overlap_m.if_positive(held - attraction);
+        return [normal, touch.overlap_m.if_positive(held.if_positive(held))];
+    }
+    let normal = touch.overlap_m.if_positive(damped.maximum(least_n));
+    [normal, normal.if_positive(normal)]
+}
+
 /// Forces and energies of a contact after a step of `dt` (s), from its kinematics and its history.
 ///
 /// Meant for the inside of a loop over contacts: it has no branches, and results that the caller
@@ -216,17 +235,7 @@ pub fn response<T: Number, L: NormalLaw<T>>(
         dt,
     );
     let damped = normal_response.elastic_n - damping * apart;
-    let [normal, pressed] = if L::ATTRACTS {
-        let attraction = law.attraction_n(touch);
-        let held = (damped + attraction).maximum(parameters.least_n);
-        let normal = touch.overlap_m.if_positive(held - attraction);
-        [normal, touch.overlap_m.if_positive(held.if_positive(held))]
-    } else {
-        let held = damped.maximum(parameters.least_n);
-        let normal = touch.overlap_m.if_positive(held);
-        [normal, normal.if_positive(normal)]
-    };
-
+    let [normal, pressed] = normal_forces_n(law, touch, damped);
     let force = touch.normal * normal;
     let none = normal.zero();
     let [pushed, jump_n] = if L::ATTRACTS {

@@ -40,28 +40,9 @@ pub(super) fn rules(
         regions.push(region(entry).map_err(|error| error.within(&place))?);
     }
     let number = |name: &String| scene.regions.keys().position(|known| known == name);
-    let triggers = templates.iter().map(|template| {
-        let rule = scene.replacement.get(&template.body)?;
-        let becomes_cluster = rule.daughters.is_none();
-        becomes_cluster.then(|| Trigger {
-            enters: rule.enters.as_ref().and_then(number),
-            force_n: rule.force_n,
-            contact_force_n: rule.contact_force_n,
-            principal_stress: rule.principal_stress_pa.map(|limit_pa| {
-                let of_shape = about
-                    .get(&template.body)
-                    .and_then(|about| about.shape_volume_m3);
-                let volume_m3 = of_shape.unwrap_or_else(|| union_m3(template));
-                PrincipalStress {
-                    limit_pa,
-                    volume_m3_kg: volume_m3 / template.mass_kg,
-                }
-            }),
-            impact_energy_j: rule.impact_energy_j,
-            time_s: rule.time_s,
-            needs_all: rule.requires_all,
-        })
-    });
+    let triggers = templates
+        .iter()
+        .map(|template| trigger(scene, about.get(&template.body), template, number));
     let restores = templates.iter().map(|template| {
         let back = scene.replacement.get(&template.body)?.restore.as_ref()?;
         Some(Restore {
@@ -114,6 +95,35 @@ pub(super) fn rules(
         zones: Vec::new(),
         seed: scene.run.seed,
         regions,
+    })
+}
+
+/// What turns a clump into its cluster. None: nothing does. `number`: of a region.
+fn trigger(
+    scene: &Scene,
+    about: Option<&About>,
+    template: &Template,
+    number: impl Fn(&String) -> Option<usize>,
+) -> Option<Trigger> {
+    let rule = scene.replacement.get(&template.body)?;
+    if rule.daughters.is_some() {
+        return None;
+    }
+    Some(Trigger {
+        enters: rule.enters.as_ref().and_then(number),
+        force_n: rule.force_n,
+        contact_force_n: rule.contact_force_n,
+        principal_stress: rule.principal_stress_pa.map(|limit_pa| {
+            let of_shape = about.and_then(|about| about.shape_volume_m3);
+            let volume_m3 = of_shape.unwrap_or_else(|| union_m3(template));
+            PrincipalStress {
+                limit_pa,
+                volume_m3_kg: volume_m3 / template.mass_kg,
+            }
+        }),
+        impact_energy_j: rule.impact_energy_j,
+        time_s: rule.time_s,
+        needs_all: rule.requires_all,
     })
 }
 

@@ -23,6 +23,36 @@ const HOUR: f64 = 3600.0;
 /// where they came to rest, step by step.
 const REST_STEP_S: f64 = 0.05;
 
+/// Radius of each sphere of the spinning pair, m.
+const RADIUS_M: f64 = 1e-3;
+/// Their density, kg/m3.
+const DENSITY_KG_M3: f64 = 2500.0;
+/// Young's modulus of their bond, Pa.
+const YOUNG_PA: f64 = 1e9;
+/// How fast the pair spins at the start, rad/s.
+const SPIN_RAD_S: f64 = 1e4;
+
+/// Two bonded spheres that spin about each other, damped by this ratio, for [`STEPS`] steps.
+fn spinning_pair(damping_ratio: f64, step_s: f64) -> String {
+    format!(
+        "version = 1
+run = {{ end_time = {:e}, time_step = {step_s:e} }}
+materials.rock.density = {DENSITY_KG_M3}
+bonds.rock = {{ young_modulus = {YOUNG_PA:e}, poisson_ratio = 0.25, damping = {{ damping_ratio = {damping_ratio} }} }}
+measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"{}\" }}
+[bodies.pair]
+particles = [[0, 0, 0, {RADIUS_M:e}], [{:e}, 0, 0, {RADIUS_M:e}]]
+bond_list = [[0, 1]]
+material = \"rock\"
+bonds = \"rock\"
+angular_velocity = [0, 0, {SPIN_RAD_S:e}]
+",
+        STEPS * step_s,
+        if damping_ratio > 0.0 { "end" } else { "largest" },
+        2.0 * RADIUS_M,
+    )
+}
+
 /// Two bonded spheres of 1 mm rotate about the point midway between them. Without damping, they
 /// oscillate about the elongation at which the bond holds them on their circle, up to twice that.
 /// With damping, they reach it, and the dashpot along the bond carries nothing. That state is known
@@ -36,8 +66,8 @@ const REST_STEP_S: f64 = 0.05;
 /// # Errors
 /// None.
 pub(crate) fn spin() -> Result<Vec<Member>> {
-    let (radius_m, density, young_pa, spin_rad_s) = (1e-3_f64, 2500.0, 1e9, 1e4_f64);
-    let mass_kg = density * 4.0 / 3.0 * PI * radius_m.powi(3);
+    let (radius_m, young_pa, spin_rad_s) = (RADIUS_M, YOUNG_PA, SPIN_RAD_S);
+    let mass_kg = DENSITY_KG_M3 * 4.0 / 3.0 * PI * radius_m.powi(3);
     let own_kg_m2 = 0.4 * mass_kg * radius_m.powi(2);
     let length_m = 2.0 * radius_m;
     let shape = BondShape {
@@ -67,22 +97,7 @@ pub(crate) fn spin() -> Result<Vec<Member>> {
     // A rotation of w dt in a step: stepping along a circle has errors of the order of its square.
     let turn = spin_rad_s * step_s;
     let member = |eta: f64| {
-        let scene = format!(
-            "version = 1
-run = {{ end_time = {:e}, time_step = {step_s:e} }}
-materials.rock.density = {density}
-bonds.rock = {{ young_modulus = {young_pa:e}, poisson_ratio = 0.25, damping = {{ damping_ratio = {eta} }} }}
-measures.elastic_energy = {{ quantity = \"elastic_energy\", statistic = \"{}\" }}
-[bodies.pair]
-particles = [[0, 0, 0, {radius_m:e}], [{length_m:e}, 0, 0, {radius_m:e}]]
-bond_list = [[0, 1]]
-material = \"rock\"
-bonds = \"rock\"
-angular_velocity = [0, 0, {spin_rad_s:e}]
-",
-            STEPS * step_s,
-            if eta > 0.0 { "end" } else { "largest" },
-        );
+        let scene = spinning_pair(eta, step_s);
         let dashpots = Chen { damping_ratio: eta }.coefficients(&answer, &reduced);
         let shear_n_s_m = dashpots.shear;
         let turned_n = shear_n_s_m * slip_m_s * theta.sin();

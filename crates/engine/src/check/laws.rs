@@ -6,7 +6,7 @@ use dem_scene::Factor;
 use nalgebra::Vector3;
 use std::ops::Range;
 
-use crate::check::linear::overlap_at_impact;
+use crate::check::linear::impact::overlap_at_impact;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bonds::Bonds;

@@ -1,5 +1,7 @@
 //! The energy of each island of pieces, found when the ledger of the whole is looked at.
 
+use std::ops::Range;
+
 use super::bridges::bridge_energies_j;
 use super::contacts::{contact_energy_j, pairs_adhesion_j};
 use super::elastic::elastic_energy_of;
@@ -10,6 +12,10 @@ use crate::state::clumps::Clump;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::islands::{IslandSums, Islands};
 use crate::state::particles::Motion;
+
+/// An energy found by subtraction is at least this part of what it is subtracted from; below that
+/// rounding would show.
+const LEAST_REST: f64 = 1e-6;
 
 /// Joins what is near a wall that moves, or whose surface does, with that wall.
 pub(super) fn join_at_moving_walls(contacts: &mut Contacts, state: &State) {
@@ -22,8 +28,13 @@ pub(super) fn join_at_moving_walls(contacts: &mut Contacts, state: &State) {
 }
 
 /// Looks at the energies of all islands, if there are several. `motions` of the free particles and
-/// `clumps` are those at the time of the poses.
-pub(super) fn look_at_islands(state: &mut State, motions: &[Motion], clumps: &[Clump]) {
+/// `clumps` are those at the time of the poses, `bonds_j` the elastic energy of all bonds.
+pub(super) fn look_at_islands(
+    state: &mut State,
+    motions: &[Motion],
+    clumps: &[Clump],
+    bonds_j: f64,
+) {
     let Some(contacts) = &mut state.contacts else {
         return;
     };
@@ -38,7 +49,7 @@ pub(super) fn look_at_islands(state: &mut State, motions: &[Motion], clumps: &[C
             of_particle: &of_particle,
             all: vec![IslandSums::default(); islands.len()],
         };
-        let sums = sums.found(&mut islands, motions, clumps);
+        let sums = sums.found(&mut islands, motions, clumps, bonds_j);
         islands.look(sums, |islands| floors_j(state, &of_particle, islands.len()));
     }
     if let Some(contacts) = &mut state.contacts {
@@ -88,10 +99,11 @@ impl Sums<'_> {
         islands: &mut Islands,
         motions: &[Motion],
         clumps: &[Clump],
+        bonds_j: f64,
     ) -> Vec<IslandSums> {
         self.add_particles(motions);
         self.add_clumps(clumps);
-        self.add_bonds();
+        self.add_bonds(bonds_j);
         self.add_contacts();
         for (particle, energy_j) in bridge_energies_j(self.state) {
             self.of(particle).attraction_j += energy_j;
@@ -153,21 +165,46 @@ impl Sums<'_> {
         }
     }
 
-    fn add_bonds(&mut self) {
-        let ends = &self.state.bonds.ends;
-        let mut from = 0;
-        while from < ends.len() {
-            let name = self.of_particle[ends[from][0] as usize];
-            let own = ends[from..]
-                .iter()
-                .take_while(|[first, _]| self.of_particle[*first as usize] == name);
-            let until = from + own.count();
-            let energy = elastic_energy_of(self.state, from..until);
-            let of = &mut self.all[name as usize];
-            of.held_j += energy.total();
-            of.loses_more = true;
-            from = until;
+    /// The island with the most bonds has what the others leave of the energy of all: most of a
+    /// broken body is one piece, and its energy is known already.
+    fn add_bonds(&mut self, all_j: f64) {
+        let runs = self.runs_of_bonds();
+        let mut counts = vec![0; self.all.len()];
+        for (island, run) in &runs {
+            counts[*island] += run.len();
+            self.all[*island].loses_more = true;
         }
+        let largest = (0..counts.len()).max_by_key(|island| counts[*island]);
+        let mut rest_j = all_j;
+        let (own, others): (Vec<_>, Vec<_>) =
+            (runs.into_iter()).partition(|(island, _)| Some(*island) == largest);
+        for (island, run) in others {
+            let energy_j = elastic_energy_of(self.state, run).total();
+            self.all[island].held_j += energy_j;
+            rest_j -= energy_j;
+        }
+        if rest_j < LEAST_REST * all_j {
+            rest_j = (own.into_iter())
+                .map(|(_, run)| elastic_energy_of(self.state, run).total())
+                .sum();
+        }
+        if let Some(island) = largest {
+            self.all[island].held_j += rest_j;
+        }
+    }
+
+    /// Bonds that follow each other in one island: the island, and their numbers.
+    fn runs_of_bonds(&self) -> Vec<(usize, Range<usize>)> {
+        let ends = &self.state.bonds.ends;
+        let mut runs: Vec<(usize, Range<usize>)> = Vec::new();
+        for (at, [first, _]) in ends.iter().enumerate() {
+            let island = self.of_particle[*first as usize] as usize;
+            match runs.last_mut() {
+                Some((same, run)) if *same == island => run.end = at + 1,
+                _ => runs.push((island, at..at + 1)),
+            }
+        }
+        runs
     }
 
     fn add_contacts(&mut self) {

@@ -348,40 +348,46 @@ fn adhesion_j(state: &State) -> f64 {
     pairs_adhesion_j(contacts, p, awake.chain(frozen)) + of_walls.sum::<f64>()
 }
 
+/// Energy of contacts before adhesion, and what friction and damping at them have taken, J.
+fn contact_energies_j(state: &State) -> (f64, [f64; 2]) {
+    let (mut elastic, [mut friction, mut damping]) = match &state.contacts {
+        Some(contacts) => {
+            let elastic_j = elastic_energy_j(contacts, &state.particles);
+            (elastic_j, lost_j(contacts))
+        }
+        None => (0.0, [0.0; 2]),
+    };
+    for wall in &state.walls {
+        elastic += wall.scratch.elastic_j;
+        friction += wall.friction_j;
+        damping += wall.damping_j;
+    }
+    elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
+    (elastic, [friction, damping])
+}
+
 /// The ledger between the two halves of a step, `interact` and `advance`. Records the largest
 /// energies and momenta.
 pub fn balance(state: &mut State) -> Balance {
     let motions = synchronous_motions_of_free(state);
     let clumps = synchronous(state);
-    look_at_islands(state, &motions, &clumps);
-    let p = &state.particles;
-    let of_clumps = clumps.iter();
-    let of_clumps: f64 = of_clumps
-        .map(|clump| clump.kinetic_j(state.clumps.template(clump)))
-        .sum();
-    let kinetic = kinetic_energy(p, |i| motions[i]) + of_clumps;
     let elastic = elastic_energy(state);
+    look_at_islands(state, &motions, &clumps, elastic.total());
+    let of_clumps = clumps.iter();
+    let of_clumps = of_clumps.map(|clump| clump.kinetic_j(state.clumps.template(clump)));
+    let kinetic = kinetic_energy(&state.particles, |i| motions[i]) + of_clumps.sum::<f64>();
     let wall_work = walls_work_j(&state.walls);
-    let (mut contact_elastic, [mut friction, mut contact_damping]) = match &state.contacts {
-        Some(contacts) => (elastic_energy_j(contacts, p), lost_j(contacts)),
-        None => (0.0, [0.0; 2]),
-    };
-    for wall in &state.walls {
-        contact_elastic += wall.scratch.elastic_j;
-        friction += wall.friction_j;
-        contact_damping += wall.damping_j;
-    }
-    contact_elastic += state.sleep.as_ref().map_or(0.0, Sleep::elastic_j);
+    let (contact_elastic, [friction, contact_damping]) = contact_energies_j(state);
     let adhesion = adhesion_j(state);
-    friction += state.ledger.joint_friction_j;
+    let friction = friction + state.ledger.joint_friction_j;
     let bridges_j = bridges_energy_j(state);
     let bridges_lost_j = state.bridges.as_ref().map_or(0.0, |bridges| bridges.lost_j);
-    let (present, scales) = momenta(p, &state.clumps, state.ledger.about_m);
+    let (present, scales) = momenta(&state.particles, &state.clumps, state.ledger.about_m);
     let g = state.model.gravity_m_s2;
     let ledger = &mut state.ledger;
     let gravity: f64 = 0.0 - (0..3).map(|k| g[k] * ledger.first_moment[k]).sum::<f64>();
 
-    let work = &ledger.work;
+    let work = ledger.work;
     let gone = (work.bond_damping + work.structural_damping)
         + work.particle_damping
         + contact_damping
@@ -404,11 +410,7 @@ pub fn balance(state: &mut State) -> Balance {
         work.supports.abs(),
         wall_work.abs(),
     ];
-    ledger.scale_j = largest.into_iter().fold(ledger.scale_j, f64::max);
-    let attraction_j = adhesion.abs() + bridges_j.abs();
-    ledger.attraction_j = ledger.attraction_j.max(attraction_j);
-    ledger.momentum_scale = ledger.momentum_scale.max(scales[0]);
-    ledger.angular_momentum_scale = ledger.angular_momentum_scale.max(scales[1]);
+    ledger.note(largest, adhesion.abs() + bridges_j.abs(), scales);
     Balance {
         kinetic_j: kinetic,
         elastic_normal_j: elastic.normal,

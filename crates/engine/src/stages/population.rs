@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::stages::bridges::bridges_energy_j;
 use crate::stages::clumps::place_all;
-use crate::stages::contacts::{elastic_energy_j, overlap_m};
+use crate::stages::contacts::elastic_energy_j;
 use crate::stages::feeding::arrived;
 use crate::stages::listing::renumber_lists;
 use crate::stages::sleep::{count_sleepers, prepare_change};
@@ -17,10 +17,10 @@ use crate::stages::walls::touch_energy_j;
 use crate::state::State;
 use crate::state::clumps::{Clump, Clumps, Template};
 use crate::state::clusters::{Cluster, Clusters};
-use crate::state::contacts::ContactHistory;
 use crate::state::events::{NewCluster, REMOVED, Renumbering, TopologyChange};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use crate::state::population::OutletWatch;
+use crate::state::renumbered::{NewNumbers, Renumbered};
 use crate::state::walls::Wall;
 use dem_physics::bond::scatter::{body_key, strength_factor};
 use dem_physics::rotation::rotation;
@@ -369,86 +369,32 @@ fn change_bonds(
 }
 
 /// Renumbers everything else that is indexed by particles and bonds. `old_radii_m`: of the old
-/// particles; `is_new`: the material of new ones.
-fn count_anew(state: &mut State, particles: &[u32], old_radii_m: &[f64], is_new: &[Option<u8>]) {
-    let count = state.particles.len();
-    for support in &mut state.supports {
-        support.held.retain_mut(|held| {
-            held.particle = particles[held.particle as usize];
-            held.particle != REMOVED
-        });
+/// particles; `materials_of_new`: see [`NewNumbers`].
+fn count_anew(
+    state: &mut State,
+    now: &[u32],
+    old_radii_m: &[f64],
+    materials_of_new: &[Option<u8>],
+) {
+    let by = NewNumbers {
+        now,
+        old_radii_m,
+        poses: &state.particles.poses,
+        materials_of_new,
+        threads: state.scratch.threads,
+    };
+    let parts: [&mut dyn Renumbered; 6] = [
+        &mut state.supports,
+        &mut state.loads,
+        &mut state.rigid_parts,
+        &mut state.walls,
+        &mut state.bridges,
+        &mut state.contacts,
+    ];
+    for part in parts {
+        part.renumber(&by);
     }
-    for load in &mut state.loads {
-        renumber(&mut load.particles, particles);
-    }
-    state.rigid_parts.renumber(particles, REMOVED);
     let free = state.particles.free;
     state.rigid_parts.number(free, &state.bonds);
-    divide_anew(state, particles);
-    for wall in &mut state.walls {
-        wall.touching.retain_mut(|touch| {
-            let before = touch.particle as usize;
-            touch.particle = particles[before];
-            let Some(pose) = state.particles.poses.get(touch.particle as usize) else {
-                return false;
-            };
-            // Contact spheres of clumps may be larger than those of clusters.
-            let less_m = old_radii_m[before] - pose.radius_m();
-            if less_m > 0.0 {
-                touch.history.tangential[3] = (touch.history.overlap_m() - less_m).max(0.0);
-            }
-            true
-        });
-        wall.touching.sort_by_key(|touch| touch.particle);
-    }
-    if let Some(bridges) = &mut state.bridges {
-        let poses = &state.particles.poses;
-        bridges.renumber(particles, |old| {
-            let now = &poses[particles[old as usize] as usize];
-            old_radii_m[old as usize] - now.radius_m()
-        });
-    }
-    let Some(contacts) = &mut state.contacts else {
-        return;
-    };
-    let old_materials = std::mem::take(&mut contacts.materials);
-    let old_lost_j = std::mem::take(&mut contacts.lost_j);
-    contacts.materials = is_new
-        .iter()
-        .map(|material| material.unwrap_or(0))
-        .collect();
-    contacts.lost_j = vec![[0.0; 2]; count];
-    for (i, &now) in particles.iter().enumerate() {
-        let booked = match contacts.lost_j.get_mut(now as usize) {
-            Some(place) => {
-                contacts.materials[now as usize] = old_materials[i];
-                place
-            }
-            None => &mut contacts.lost_by_removed_j,
-        };
-        for k in 0..2 {
-            booked[k] += old_lost_j[i][k];
-        }
-    }
-    let mut remembered: Vec<([u32; 2], ContactHistory)> =
-        (contacts.pairs.iter().zip(&contacts.histories))
-            .filter_map(|(pair, history)| {
-                let [a, b] = pair.map(|end| particles[end as usize]);
-                if a == REMOVED || b == REMOVED {
-                    return None;
-                }
-                let mut history = if a < b { *history } else { history.reversed() };
-                let changed = [a, b].iter().any(|&i| is_new[i as usize].is_some());
-                if changed && history.overlap_m() > 0.0 {
-                    // Contact spheres of clumps may be larger than those of clusters.
-                    let pair = [a.min(b), a.max(b)];
-                    let now = overlap_m(&state.particles.poses, pair) - history.origin_m();
-                    history.tangential[3] = now.max(0.0).min(history.tangential[3]);
-                }
-                Some(([a.min(b), a.max(b)], history))
-            })
-            .collect();
-    remembered.sort_unstable_by_key(|(pair, _)| *pair);
-    (contacts.pairs, contacts.histories) = remembered.into_iter().unzip();
-    contacts.divide(count, state.scratch.threads);
+    divide_anew(state, now);
 }

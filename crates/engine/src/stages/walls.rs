@@ -3,20 +3,22 @@
 mod driven;
 pub mod joints;
 mod meeting;
+mod motion;
 
-use dem_scene::WallMotion;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use self::driven::{bar_velocity_m_s, weight_velocity_m_s};
 use self::joints::join_walls;
 use self::meeting::Place;
+pub use self::motion::fastest_point_m_s;
+pub(crate) use self::motion::{
+    drift_walls, has_moved, plan_wall_motions, surface_velocity_m_s, will_move,
+};
 use super::chunks::{chunk_of, chunks_of, in_tasks};
 use super::stage::{NO_SAVING, Need, Stage};
 use crate::stages::contacts::{StoredEnergy, StoredForce};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
-use crate::state::loads::factor_at;
 use crate::state::meetings::{Meeting, Meetings, Met};
 use crate::state::particles::{Particles, Pose};
 use crate::state::walls::{Wall, WallContact, WallLoad};
@@ -24,7 +26,6 @@ use dem_physics::contact::kinematics::{ContactKinematics, WallPoint, wall_contac
 use dem_physics::contact::law::ContactKind;
 use dem_physics::geometry::{Frame, Shape, Touch};
 use dem_physics::number::Vec3;
-use dem_physics::rigid::turn;
 
 /// Contacts with walls, and their motion.
 pub const WALLS: Stage = Stage {
@@ -96,13 +97,6 @@ pub(super) fn velocity_at(wall: &Wall, point: &Vector3<f64>) -> Vector3<f64> {
     velocity + spin.cross(&(point - Vector3::from(wall.frame.position_m)))
 }
 
-/// Determines the motion of the walls in the coming drift.
-pub(crate) fn plan_wall_motions(state: &mut State) -> usize {
-    let steps_s = state.steps_s();
-    plan_motions(&mut state.walls, state.time_s, steps_s);
-    0
-}
-
 /// Particles handled by one task.
 const CHUNK: usize = 256;
 /// Fewer particles near walls than this are left to one thread, which has them in its cache.
@@ -110,8 +104,6 @@ const FEW: usize = 4 * CHUNK;
 /// A contact that moves to another flat part of a wall keeps its history if the cosine of the angle
 /// between the normals exceeds this.
 pub(super) const SAME_WAY: f64 = 0.9;
-/// Fraction of the deviation that a servo corrects in a step.
-const SERVO: f64 = 0.1;
 
 /// Lists the particles whose surface is less than `skin_m` from a wall, without sleeping ones.
 /// `of_tasks`: kept for their memory.
@@ -480,25 +472,6 @@ pub fn touch_force_n(
     kind.with(|number| number, StoredForce { touch, history })
 }
 
-/// Velocity of the surface of a wall where a particle touches it, half the overlap below the
-/// particle's surface, in the step just made (0) or in the next (1), m/s.
-pub(crate) fn surface_velocity_m_s(
-    wall: &Wall,
-    particles: &Particles,
-    touch: &WallContact,
-    step: usize,
-) -> Vector3<f64> {
-    let pose = &particles.poses[touch.particle as usize];
-    let normal = Vector3::from(touch.normal);
-    let overlap_m = touch.history.overlap_m() + touch.history.origin_m();
-    let point = pose.place() - (pose.radius_m() - 0.5 * overlap_m) * normal;
-    let arm = point - Vector3::from(wall.frame.position_m);
-    let belt = Vector3::from(wall.model.surface_velocity_m_s);
-    let [velocity, spin] =
-        [&wall.velocities_m_s, &wall.spins_rad_s].map(|of| Vector3::from(of[step]));
-    velocity + spin.cross(&arm) + belt - normal * belt.dot(&normal)
-}
-
 /// Makes the overlaps of some particles, ascending, with a wall the origins of their laws.
 pub(crate) fn relax_touches(wall: &mut Wall, particles: &Particles, some: &[u32]) {
     let is_near = nearness(wall, 0.0);
@@ -539,148 +512,4 @@ pub(crate) fn gap_m(wall: &Wall, pose: &Pose) -> f64 {
         .iter()
         .map(|touch| touch.distance_m - pose.radius_m());
     gaps.fold(f64::INFINITY, f64::min)
-}
-
-/// Determines the motion of the walls in the second of two steps, `steps_s`, which begins at
-/// `time_s`.
-pub(crate) fn plan_motions(walls: &mut [Wall], time_s: f64, steps_s: [f64; 2]) {
-    for wall in walls {
-        let [velocity, spin] = planned(wall, time_s, steps_s);
-        wall.velocities_m_s[1] = velocity;
-        wall.spins_rad_s[1] = spin;
-    }
-}
-
-/// Velocity, m/s, and spin, rad/s, of a wall in the second of two steps, `steps_s`, which begins at
-/// `time_s`.
-pub(crate) fn planned(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> [[f64; 3]; 2] {
-    let dt = steps_s[1];
-    match &wall.model.motion {
-        WallMotion::Fixed => [[0.0; 3]; 2],
-        WallMotion::Velocity {
-            velocity_m_s,
-            spin_rad_s,
-            factor,
-        } => {
-            let factor = factor_at(factor, time_s + 0.5 * dt);
-            [
-                velocity_m_s.map(|v| factor * v),
-                spin_rad_s.map(|w| factor * w),
-            ]
-        }
-        WallMotion::Displacement {
-            displacement_m,
-            angular_displacement_rad: turn_rad,
-            factor,
-        } => {
-            let gain = factor_at(factor, time_s + dt) - factor_at(factor, time_s);
-            [
-                displacement_m.map(|d| gain * d / dt),
-                turn_rad.map(|t| gain * t / dt),
-            ]
-        }
-        WallMotion::Servo {
-            force_n,
-            direction,
-            max_velocity_m_s: largest_velocity_m_s,
-            factor,
-        } => {
-            // Without damping, which depends on the wall's own velocity: the two would drive each
-            // other.
-            let elastic = |k: usize| wall.push.force_n[k] - wall.scratch.damping.force_n[k];
-            let pushed: f64 = (0..3).map(|k| elastic(k) * direction[k]).sum();
-            let missing = factor_at(factor, time_s) * force_n - pushed;
-            // Without contact there is no stiffness to work with: the servo moves at its largest
-            // speed.
-            let wanted = if wall.stiffness_n_m > 0.0 {
-                SERVO * missing / (wall.stiffness_n_m * dt)
-            } else {
-                f64::INFINITY.copysign(missing)
-            };
-            let speed = wanted.clamp(-largest_velocity_m_s, *largest_velocity_m_s);
-            [direction.map(|d| speed * d), [0.0; 3]]
-        }
-        WallMotion::Bar {
-            direction,
-            impedance_n_s_m,
-            incident_m_s,
-            factor,
-        } => {
-            let wave_m_s = factor_at(factor, time_s + 0.5 * dt) * incident_m_s;
-            let speed = bar_velocity_m_s(wall, direction, *impedance_n_s_m, wave_m_s, dt);
-            [direction.map(|d| speed * d), [0.0; 3]]
-        }
-        WallMotion::Weight {
-            direction,
-            mass_kg,
-            gravity_m_s2,
-            ..
-        } => {
-            let kick_s = 0.5 * (steps_s[0] + dt);
-            let speed = weight_velocity_m_s(wall, direction, *mass_kg, *gravity_m_s2, kick_s);
-            [direction.map(|d| speed * d), [0.0; 3]]
-        }
-    }
-}
-
-/// Whether a wall moved in the previous step, or its surface moves while it is at rest.
-pub(crate) fn has_moved(wall: &Wall) -> bool {
-    let moving = [
-        wall.velocities_m_s[0],
-        wall.spins_rad_s[0],
-        wall.model.surface_velocity_m_s,
-    ];
-    matches!(
-        wall.model.motion,
-        WallMotion::Servo { .. } | WallMotion::Bar { .. } | WallMotion::Weight { .. }
-    ) || moving != [[0.0; 3]; 3]
-}
-
-/// Whether a wall moves in the second of two steps, `steps_s`, which begins at `time_s`.
-pub(crate) fn will_move(wall: &Wall, time_s: f64, steps_s: [f64; 2]) -> bool {
-    planned(wall, time_s, steps_s) != [[0.0; 3]; 2]
-}
-
-/// Largest speed of a wall's point near particles, m/s, from the speed of its pivot, m/s, and its
-/// spin, rad/s.
-pub fn fastest_point_m_s(
-    wall: &Wall,
-    particles: &Particles,
-    [speed_m_s, spin_rad_s]: [f64; 2],
-) -> f64 {
-    if spin_rad_s == 0.0 {
-        return speed_m_s;
-    }
-    let pivot = Vector3::from(wall.frame.position_m);
-    let poses = particles.poses.iter();
-    let far_m = poses.map(|pose| (pose.place() - pivot).norm());
-    speed_m_s + spin_rad_s * far_m.fold(0.0, f64::max)
-}
-
-/// Moves the walls. Returns the largest speed of a wall's point near particles, m/s.
-pub(crate) fn move_walls(walls: &mut [Wall], particles: &Particles, dt: f64) -> f64 {
-    let mut fastest = 0.0_f64;
-    for wall in walls {
-        let ([_, velocity], [_, spin]) = (wall.velocities_m_s, wall.spins_rad_s);
-        let norms = [velocity, spin].map(|of| Vector3::from(of).norm());
-        let speed_m_s = fastest_point_m_s(wall, particles, norms);
-        fastest = fastest.max(speed_m_s);
-        wall.moved_m = dt * speed_m_s;
-        wall.skin_left_m -= wall.moved_m;
-        for (place, velocity) in wall.frame.position_m.iter_mut().zip(velocity) {
-            *place += dt * velocity;
-        }
-        wall.frame.turned = turn(wall.frame.turned, spin.map(|w| w * dt));
-        wall.velocities_m_s[0] = velocity;
-        wall.spins_rad_s[0] = spin;
-    }
-    fastest
-}
-
-/// Moves the walls.
-pub(crate) fn drift_walls(state: &mut State) -> usize {
-    if state.contacts.is_some() {
-        state.fastest_m_s += move_walls(&mut state.walls, &state.particles, state.time_step_s);
-    }
-    0
 }

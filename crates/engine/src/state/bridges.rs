@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::events::REMOVED;
+use super::renumbered::{NewNumbers, Renumbered};
 use super::walls::WallLoad;
 use dem_physics::geometry::Touch;
 
@@ -26,27 +26,26 @@ impl Bridges {
         let of_pairs = self.pairs.iter().flat_map(|bridge| bridge.pair);
         of_pairs.chain(self.walls.iter().map(|bridge| bridge.particle))
     }
+}
 
-    /// Renumbers the particles and leaves out the bridges of those that are [`REMOVED`].
-    /// `less_m`: by how much the radius of an old particle has decreased, m.
-    pub(crate) fn renumber(&mut self, numbers: &[u32], less_m: impl Fn(u32) -> f64) {
+impl Renumbered for Bridges {
+    fn renumber(&mut self, by: &NewNumbers<'_>) {
         self.pairs.retain_mut(|bridge| {
-            let [a, b] = bridge.pair.map(|end| numbers[end as usize]);
-            if a == REMOVED || b == REMOVED {
+            let [Some(a), Some(b)] = bridge.pair.map(|end| by.of(end)) else {
                 return false;
-            }
-            bridge.gap_m += bridge.pair.map(&less_m).iter().sum::<f64>();
+            };
+            bridge.gap_m += bridge.pair.map(|end| by.less_m(end)).iter().sum::<f64>();
             bridge.pair = [a.min(b), a.max(b)];
             true
         });
         self.pairs.sort_unstable_by_key(|bridge| bridge.pair);
         self.walls.retain_mut(|bridge| {
-            let now = numbers[bridge.particle as usize];
-            if now != REMOVED {
-                bridge.gap_m += less_m(bridge.particle);
-                bridge.particle = now;
-            }
-            now != REMOVED
+            let Some(now) = by.of(bridge.particle) else {
+                return false;
+            };
+            bridge.gap_m += by.less_m(bridge.particle);
+            bridge.particle = now;
+            true
         });
         self.walls.sort_unstable_by_key(WallBridge::key);
     }

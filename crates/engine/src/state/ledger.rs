@@ -71,6 +71,14 @@ impl EnergyLedger {
         self.mass_kg
     }
 
+    /// Raises the largest energies (J), energy of attraction (J), and momentum and angular momentum.
+    pub(crate) fn note(&mut self, energies_j: [f64; 8], attraction_j: f64, momenta: [f64; 2]) {
+        self.scale_j = energies_j.into_iter().fold(self.scale_j, f64::max);
+        self.attraction_j = self.attraction_j.max(attraction_j);
+        self.momentum_scale = self.momentum_scale.max(momenta[0]);
+        self.angular_momentum_scale = self.angular_momentum_scale.max(momenta[1]);
+    }
+
     /// Upper bound of the energy of a run: that at the start plus that supplied by loads, supports,
     /// walls, gravity, attraction and added bodies, J.
     pub(crate) fn energy_supplied_j(&self, gravity_m_s2: [f64; 3], walls: &[Wall]) -> f64 {

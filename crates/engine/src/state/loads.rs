@@ -4,6 +4,8 @@ use dem_io::interpolation::interpolated;
 use dem_scene::Factor;
 use serde::{Deserialize, Serialize};
 
+use super::renumbered::{NewNumbers, Renumbered};
+
 /// A load on some particles, the same on each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GroupLoad {
@@ -39,5 +41,11 @@ pub fn factor_at(factor: &Factor, time_s: f64) -> f64 {
         Factor::One => 1.0,
         Factor::Ramp { until_s } => (time_s / until_s).clamp(0.0, 1.0),
         Factor::Table(points) => interpolated(points, time_s).unwrap_or(1.0),
+    }
+}
+
+impl Renumbered for GroupLoad {
+    fn renumber(&mut self, by: &NewNumbers<'_>) {
+        by.renumber(&mut self.particles);
     }
 }

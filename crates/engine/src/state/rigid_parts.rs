@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::bonds::Bonds;
 use super::clumps::{SubSphere, sphere_volume_m3, sub_spheres};
 use super::particles::{Motion, Pose};
+use super::renumbered::{NewNumbers, Renumbered};
 use super::squeeze::Hits;
 use dem_physics::bond::failure::smallest_strength_pa;
 use dem_physics::rotation::{kinetic_j, rotation, spin_rad_s};
@@ -206,22 +207,22 @@ impl RigidParts {
         self.bonds = (0..bonds.len()).filter(is_within).count() as u64;
     }
 
-    /// New numbers of particles; a part leaves as a whole.
-    pub(crate) fn renumber(&mut self, now: &[u32], removed: u32) {
-        self.all.retain_mut(|part| {
-            for member in &mut part.members {
-                *member = now[*member as usize];
-            }
-            part.members.first().is_some_and(|first| *first != removed)
-        });
-    }
-
     /// Bytes of the arrays.
     pub(crate) fn bytes(&self) -> usize {
         let parts = self.all.iter();
         let parts =
             parts.map(|part| size_of_val(&part.members[..]) + size_of_val(&part.spheres[..]));
         size_of_val(&self.all[..]) + size_of_val(&self.of_particle[..]) + parts.sum::<usize>()
+    }
+}
+
+/// A part leaves as a whole.
+impl Renumbered for RigidParts {
+    fn renumber(&mut self, by: &NewNumbers<'_>) {
+        self.all.retain_mut(|part| {
+            by.renumber(&mut part.members);
+            !part.members.is_empty()
+        });
     }
 }
 

@@ -3,6 +3,8 @@
 use dem_scene::{Factor, Hold};
 use serde::{Deserialize, Serialize};
 
+use super::renumbered::{NewNumbers, Renumbered};
+
 /// A support on some particles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GroupSupport {
@@ -52,4 +54,14 @@ pub struct HeldParticle {
     /// is that at the time of the poses; they differ if a bond of the particle has just broken.
     /// Length 6 each.
     pub reactions: [[f64; 6]; 2],
+}
+
+impl Renumbered for GroupSupport {
+    fn renumber(&mut self, by: &NewNumbers<'_>) {
+        self.held.retain_mut(|held| {
+            let now = by.of(held.particle);
+            held.particle = now.unwrap_or(held.particle);
+            now.is_some()
+        });
+    }
 }

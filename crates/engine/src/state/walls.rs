@@ -5,6 +5,8 @@ use std::sync::Arc;
 use dem_scene::WallMotion;
 use serde::{Deserialize, Serialize};
 
+use super::renumbered::{NewNumbers, Renumbered};
+
 use super::contacts::ContactHistory;
 use dem_physics::contact::law::ContactKind;
 use dem_physics::geometry::{Bounds, Frame, Shape};
@@ -181,5 +183,22 @@ impl WallLoad {
             .map(|k| self.force_n[k] * velocity_m_s[k] + self.torque_n_m[k] * spin_rad_s[k])
             .sum();
         moving + self.belt_w
+    }
+}
+
+impl Renumbered for Wall {
+    fn renumber(&mut self, by: &NewNumbers<'_>) {
+        self.touching.retain_mut(|touch| {
+            let Some(now) = by.of(touch.particle) else {
+                return false;
+            };
+            let less_m = by.less_m(touch.particle);
+            if less_m > 0.0 {
+                touch.history.tangential[3] = (touch.history.overlap_m() - less_m).max(0.0);
+            }
+            touch.particle = now;
+            true
+        });
+        self.touching.sort_by_key(|touch| touch.particle);
     }
 }

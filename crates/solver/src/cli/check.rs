@@ -277,7 +277,7 @@ fn contents(plan: &Plan) -> String {
 
 /// The time step and the reason for it.
 fn time_step(plan: &Plan) -> String {
-    let (state, choice) = (&plan.state, &plan.step);
+    let choice = &plan.step;
     let mut text = String::new();
     let mut line = |name: &str, what: String| text += &format!("{name:14} {what}\n");
     let why = if choice.given { "given" } else { "chosen" };
@@ -331,22 +331,7 @@ fn time_step(plan: &Plan) -> String {
             ),
         );
     }
-    let estimate = |name: &str, step_s: f64| {
-        if step_s.is_finite() {
-            let share = significant(step_s / choice.limit.step_s, 3);
-            let of_limit = if choice.limit.step_s.is_finite() {
-                format!(", {share} of the limit")
-            } else {
-                String::new()
-            };
-            format!("{name} {} s{of_limit}", significant(step_s, 5))
-        } else {
-            match state.smallest_radius_m().is_finite() {
-                true => format!("{name} unknown: no material has an elastic modulus"),
-                false => format!("{name} unknown: there are no particles and none will be fed"),
-            }
-        }
-    };
+    let estimate = |name: &str, step_s: f64| estimate(name, step_s, plan);
     line("", estimate("Rayleigh's estimate", choice.rayleigh_s));
     line("", estimate("20 % of it", 0.2 * choice.rayleigh_s));
     if choice.platzer_eq_15_s.is_finite() {
@@ -359,6 +344,23 @@ fn time_step(plan: &Plan) -> String {
         );
     }
     text
+}
+
+/// An estimate of the largest stable step, s, beside the limit.
+fn estimate(name: &str, step_s: f64, plan: &Plan) -> String {
+    let limit_s = plan.step.limit.step_s;
+    if !step_s.is_finite() {
+        return match plan.state.smallest_radius_m().is_finite() {
+            true => format!("{name} unknown: no material has an elastic modulus"),
+            false => format!("{name} unknown: there are no particles and none will be fed"),
+        };
+    }
+    let of_limit = if limit_s.is_finite() {
+        format!(", {} of the limit", significant(step_s / limit_s, 3))
+    } else {
+        String::new()
+    };
+    format!("{name} {} s{of_limit}", significant(step_s, 5))
 }
 
 /// A stage: the reason why it is active or not, its cost, or the saving from skipping it.

@@ -1,7 +1,8 @@
 //! The time step of scenes with clumps.
 
 use dem_run::check::limit::{limit, safe_step};
-use dem_run::check::linear::{at_impact, contact_rates};
+use dem_run::check::linear::contact_rates;
+use dem_run::check::linear::impact::at_impact;
 use dem_run::plan::Plan;
 use dem_run::step::{interact, step};
 

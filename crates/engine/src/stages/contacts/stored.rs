@@ -1,8 +1,9 @@
 //! Elastic energies, forces and losses of contacts.
 
-use crate::stages::chunks::{ordered_sum, ordered_sums};
+use crate::stages::chunks::{add, ordered_sum, ordered_sums};
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::particles::{Particles, Pose};
+use crate::state::renumbered::{NewNumbers, Renumbered};
 use dem_physics::contact::NormalLaw;
 use dem_physics::contact::kinematics::{ContactKinematics, contact_kinematics};
 use dem_physics::contact::law::{ContactKind, ContactWork};
@@ -143,4 +144,50 @@ pub fn lost_j(contacts: &Contacts) -> [f64; 2] {
     let [friction, damping] = ordered_sums(contacts.lost_j.len(), |i| contacts.lost_j[i]);
     let [gone_friction, gone_damping] = contacts.lost_by_removed_j;
     [friction + gone_friction, damping + gone_damping]
+}
+
+impl Renumbered for Contacts {
+    fn renumber(&mut self, by: &NewNumbers<'_>) {
+        let old_materials = std::mem::take(&mut self.materials);
+        let old_lost_j = std::mem::take(&mut self.lost_j);
+        let materials = by.materials_of_new.iter();
+        self.materials = materials.map(|material| material.unwrap_or(0)).collect();
+        self.lost_j = vec![[0.0; 2]; by.poses.len()];
+        for ((&now, material), lost_j) in by.now.iter().zip(old_materials).zip(old_lost_j) {
+            let booked = match self.lost_j.get_mut(now as usize) {
+                Some(place) => {
+                    self.materials[now as usize] = material;
+                    place
+                }
+                None => &mut self.lost_by_removed_j,
+            };
+            *booked = add(*booked, lost_j);
+        }
+        let pairs = self.pairs.iter().zip(&self.histories);
+        let mut remembered: Vec<([u32; 2], ContactHistory)> = pairs
+            .filter_map(|(pair, history)| renumbered_pair(by, *pair, history))
+            .collect();
+        remembered.sort_unstable_by_key(|(pair, _)| *pair);
+        (self.pairs, self.histories) = remembered.into_iter().unzip();
+        self.divide(by.poses.len(), by.threads);
+    }
+}
+
+/// A pair with its history under new numbers. None: one of its particles is gone.
+fn renumbered_pair(
+    by: &NewNumbers<'_>,
+    pair: [u32; 2],
+    history: &ContactHistory,
+) -> Option<([u32; 2], ContactHistory)> {
+    let [Some(a), Some(b)] = pair.map(|end| by.of(end)) else {
+        return None;
+    };
+    let pair = [a.min(b), a.max(b)];
+    let mut history = if a < b { *history } else { history.reversed() };
+    if pair.iter().any(|i| by.is_new(*i)) && history.overlap_m() > 0.0 {
+        // Contact spheres of clumps may be larger than those of clusters.
+        let now_m = overlap_m(by.poses, pair) - history.origin_m();
+        history.tangential[3] = now_m.max(0.0).min(history.tangential[3]);
+    }
+    Some((pair, history))
 }
