@@ -7,6 +7,7 @@
 )]
 
 mod allocations;
+mod notation;
 mod pipe;
 #[cfg(unix)]
 mod readme;

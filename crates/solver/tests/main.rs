@@ -23,7 +23,6 @@ mod laboratory;
 mod leave_out;
 mod measures;
 mod meet;
-mod notation;
 mod pictures;
 mod pictures_colours;
 mod pictures_scale;
