@@ -322,7 +322,10 @@ fn crates_use_only_those_below_them() {
             let below = rank(&other).unwrap_or_else(|| panic!("{other} is not listed"));
             assert!(below < own, "{name} uses {other}");
             // The packer and the solver know each other by body files; its commands call the packer.
-            assert!(other != "packer" || name == "solver" || name == "pages", "{name}");
+            assert!(
+                other != "packer" || name == "solver" || name == "pages",
+                "{name}"
+            );
             arrows += 1;
         }
     }

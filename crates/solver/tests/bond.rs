@@ -1,34 +1,13 @@
-//! Bond laws compared with closed forms, reference values and their own energy.
+//! Bonds of a state compared with closed forms, and their energy.
 
-mod damping;
 mod damping_order;
-mod failure;
 mod flat_joint;
-mod incremental;
 mod lanes;
-mod pair;
 mod plasticity;
-mod scatter;
-mod stiffness;
-mod strain_rate;
 mod structural;
-mod tangent;
-mod total;
 
-use dem_run::physics::bond::stiffness::BondModel;
 use nalgebra::Vector3;
 use proptest::prelude::*;
-
-/// Every bond model.
-pub(crate) const MODELS: [BondModel; 7] = [
-    BondModel::Parallel { kappa: None },
-    BondModel::Pin { kappa: None },
-    BondModel::Rojek { kappa: None },
-    BondModel::EulerBernoulli,
-    BondModel::Timoshenko,
-    BondModel::ElasticSolid,
-    BondModel::ShearCoefficient { alpha: 0.9 },
-];
 
 /// Vectors in a cube of twice this edge.
 pub(crate) fn vector(size: f64) -> impl Strategy<Value = Vector3<f64>> {

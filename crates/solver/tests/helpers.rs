@@ -1,56 +1,12 @@
-//! Helpers for several subjects: scenes from texts, their bodies, and random numbers.
+//! Helpers for several subjects: scenes from texts, their bodies.
 
 use dem_io::Body;
 use dem_scene::Scene;
 use dem_scene::scene_from_text;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// The scene of a valid text.
 pub(crate) fn scene(text: &str) -> Scene {
     scene_from_text(text, "test.toml", &[]).unwrap_or_else(|error| panic!("{error}: {text}"))
-}
-
-/// Pseudo-random numbers (SplitMix64).
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    pub(crate) fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Between two bounds.
-    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// In a cube around the origin.
-    pub(crate) fn point(&mut self, half: f64) -> [f64; 3] {
-        [0; 3].map(|_| self.within(-half, half))
-    }
-
-    /// On the unit sphere.
-    pub(crate) fn direction(&mut self) -> Vector3<f64> {
-        loop {
-            let v = Vector3::from(self.point(1.0));
-            if v.norm() > 0.1 && v.norm() < 1.0 {
-                return v.normalize();
-            }
-        }
-    }
-
-    pub(crate) fn rotation(&mut self) -> UnitQuaternion<f64> {
-        loop {
-            let q = [0; 4].map(|_| self.within(-1.0, 1.0));
-            let q = Quaternion::new(q[0], q[1], q[2], q[3]);
-            if q.norm() > 0.1 && q.norm() < 1.0 {
-                return UnitQuaternion::new_normalize(q);
-            }
-        }
-    }
 }
 
 /// Mass of the parts of the spheres of a body in a box, given by its corners, kg: counted by cubes

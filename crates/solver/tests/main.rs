@@ -27,7 +27,6 @@ mod pictures;
 mod pictures_colours;
 mod pictures_scale;
 mod program;
-mod shape;
 mod sleep;
 mod start;
 mod statics;

@@ -8,8 +8,10 @@
 
 pub mod made_test;
 mod messages;
+mod random;
 
 pub use messages::hold_messages;
+pub use random::Random;
 
 use std::io::Write;
 use std::path::Path;

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 
 use super::{RADIUS_M, WATER, ball, bridges, head, planned, step_and_balance};
-use crate::helpers::Random;
+use dem_testing::Random;
 
 /// Number of spheres along an edge of the cloud.
 const EDGE: i32 = 4;

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 
 use super::{planned, try_plan};
-use crate::helpers::Random;
+use dem_testing::Random;
 
 const RADIUS_M: f64 = 5e-3;
 const DENSITY_KG_M3: f64 = 2500.0;

@@ -5,7 +5,7 @@ use dem_run::state::regions::Region;
 use nalgebra::Vector3;
 
 use super::{HEAD, planned};
-use crate::helpers::Random;
+use dem_testing::Random;
 
 /// The regions of a scene, by name.
 fn regions(text: &str) -> Vec<Region> {

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 
 use super::{HEAD, MEETS, Whole, go, lump, planned};
-use crate::helpers::Random;
+use dem_testing::Random;
 
 /// A lump that becomes a cluster at this time.
 fn one(time_s: f64) -> Plan {

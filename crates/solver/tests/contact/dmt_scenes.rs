@@ -10,7 +10,8 @@ use dem_run::state::State;
 use dem_run::step::{advance, interact, step};
 use dem_scene::read_bodies;
 
-use crate::helpers::{Random, scene};
+use crate::helpers::scene;
+use dem_testing::Random;
 
 /// Radius of all spheres, m.
 const RADIUS_M: f64 = 1e-4;

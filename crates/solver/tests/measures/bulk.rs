@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 
 use super::{Measured, assert_near};
-use crate::helpers::Random;
+use dem_testing::Random;
 
 const DENSITY: f64 = 2000.0;
 

@@ -8,7 +8,7 @@ use std::fmt::Write;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{Measured, assert_near};
-use crate::helpers::Random;
+use dem_testing::Random;
 
 /// A sphere: centre and radius.
 type Sphere = (Vector3<f64>, f64);

@@ -11,7 +11,8 @@ use dem_scene::read_bodies;
 use nalgebra::Vector3;
 use tempfile::TempDir;
 
-use crate::helpers::{Random, scene};
+use crate::helpers::scene;
+use dem_testing::Random;
 
 const HEAD: &str = "version = 1
 run = { end_time = 1, time_step = \"1 us\" }

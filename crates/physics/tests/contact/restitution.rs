@@ -3,16 +3,16 @@
 use super::hertz::central_impact;
 use super::world::{Body, RIGID, World, material};
 use super::{assert_near, reference};
-use dem_run::physics::contact::ImpactLaw;
-use dem_run::physics::contact::NormalLaw;
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::pair_parameters::{AttractiveDamping, PairInput};
-use dem_run::physics::contact::restitution::{
+use dem_physics::contact::ImpactLaw;
+use dem_physics::contact::NormalLaw;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::linear::Linear;
+use dem_physics::contact::pair_parameters::{AttractiveDamping, PairInput};
+use dem_physics::contact::restitution::{
     damping_ratio, damping_ratio_with_attraction, restitution,
 };
-use dem_run::physics::contact::rolling::NoRolling;
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::rolling::NoRolling;
+use dem_physics::number::Vec3;
 use std::f64::consts::PI;
 
 const RADIUS: f64 = 0.0025;

@@ -2,11 +2,11 @@
 
 use super::keeping::{DT, SPRING, hertz, linear, triple, vectors};
 use super::world::{Body, Z, ZERO};
-use dem_run::physics::contact::kinematics::{
+use dem_physics::contact::kinematics::{
     ContactSphere, WallPoint, contact_kinematics, wall_contact_kinematics,
 };
-use dem_run::physics::contact::{ContactSprings, NormalLaw, response};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::{ContactSprings, NormalLaw, response};
+use dem_physics::number::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::TAU;
 

@@ -2,13 +2,13 @@
 
 use super::world::{Body, RIGID, World, Z, frictionless, material};
 use super::{assert_near, reference};
-use dem_run::physics::contact::ImpactLaw;
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
-use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::rolling::{ElasticPlastic, NoRolling};
-use dem_run::physics::contact::{ContactSprings, NormalLaw, linearised, response};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::ImpactLaw;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::kinematics::{WallPoint, wall_contact_kinematics};
+use dem_physics::contact::linear::Linear;
+use dem_physics::contact::rolling::{ElasticPlastic, NoRolling};
+use dem_physics::contact::{ContactSprings, NormalLaw, linearised, response};
+use dem_physics::number::Vec3;
 use std::f64::consts::PI;
 
 /// Results of a central impact.
@@ -127,7 +127,7 @@ fn stiffnesses_are_derivatives() {
     let touch = world.touch();
     let found = linearised(&law, &rolling, &touch);
     let force = |change: f64| {
-        let touch = dem_run::physics::contact::kinematics::ContactKinematics {
+        let touch = dem_physics::contact::kinematics::ContactKinematics {
             overlap_m: touch.overlap_m + change,
             ..touch
         };

@@ -1,13 +1,13 @@
 //! No closed loop creates energy.
 
 use super::world::{Vector, Z, ZERO, material};
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::kinematics::ContactKinematics;
-use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::pair_parameters::{PairInput, TangentialUnloading};
-use dem_run::physics::contact::rolling::ElasticPlastic;
-use dem_run::physics::contact::{ContactEnergy, ContactSprings, NormalLaw, Response, response};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::kinematics::ContactKinematics;
+use dem_physics::contact::linear::Linear;
+use dem_physics::contact::pair_parameters::{PairInput, TangentialUnloading};
+use dem_physics::contact::rolling::ElasticPlastic;
+use dem_physics::contact::{ContactEnergy, ContactSprings, NormalLaw, Response, response};
+use dem_physics::number::Vec3;
 use proptest::prelude::*;
 
 /// A state of a prescribed contact: overlap over 1e-5 m, tangential displacement over 1e-6 m,

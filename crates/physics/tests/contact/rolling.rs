@@ -2,13 +2,11 @@
 
 use super::world::{Body, RIGID, World, material};
 use super::{assert_near, reference};
-use dem_run::physics::contact::Response;
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::pair_parameters::PairInput;
-use dem_run::physics::contact::rolling::{
-    ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
-};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::Response;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::pair_parameters::PairInput;
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
+use dem_physics::number::Vec3;
 
 const DT: f64 = 1e-5;
 const DENSITY: f64 = 2500.0;

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use super::{reference, turned, unit};
-use crate::helpers::Random;
-use dem_run::shape::inertia::{MassProperties, of_spheres, of_union};
+use dem_physics::shape::inertia::{MassProperties, of_spheres, of_union};
+use dem_testing::Random;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 fn tensor(p: &MassProperties) -> Matrix3<f64> {

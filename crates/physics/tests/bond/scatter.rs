@@ -1,6 +1,6 @@
 //! Scattered strengths: their distribution, and the quantities on which they depend.
 
-use dem_run::physics::bond::scatter::strength_factor;
+use dem_physics::bond::scatter::strength_factor;
 
 const BONDS: u64 = 100_000;
 

@@ -2,12 +2,12 @@
 
 use super::assert_near;
 use super::world::{Body, RIGID, World, material};
-use dem_run::physics::contact::ImpactLaw;
-use dem_run::physics::contact::dmt::DerjaguinMullerToporov;
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::pair_parameters::PairInput;
-use dem_run::physics::contact::rolling::NoRolling;
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::ImpactLaw;
+use dem_physics::contact::dmt::DerjaguinMullerToporov;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::pair_parameters::PairInput;
+use dem_physics::contact::rolling::NoRolling;
+use dem_physics::number::Vec3;
 use std::f64::consts::PI;
 
 const RADIUS_M: f64 = 1e-4;

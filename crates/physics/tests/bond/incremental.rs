@@ -2,9 +2,9 @@
 //! implementation for a bent cantilever, and energy-conserving.
 
 use super::{MODELS, vector};
-use dem_run::physics::bond::incremental::{History, Step, advance, bond_forces};
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
-use dem_run::physics::bond::total::{self, BondForces, End};
+use dem_physics::bond::incremental::{History, Step, advance, bond_forces};
+use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
+use dem_physics::bond::total::{self, BondForces, End};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::PI;

@@ -1,17 +1,15 @@
 //! Invariants of every contact law.
 
 use super::world::{Body, Vector, World, ZERO, material};
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::kinematics::{
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::kinematics::{
     ContactKinematics, ContactSphere, contact_kinematics, torques,
 };
-use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::pair_parameters::PairInput;
-use dem_run::physics::contact::rolling::{
-    ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
-};
-use dem_run::physics::contact::{ContactSprings, NormalLaw, Response, response};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::linear::Linear;
+use dem_physics::contact::pair_parameters::PairInput;
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
+use dem_physics::contact::{ContactSprings, NormalLaw, Response, response};
+use dem_physics::number::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 

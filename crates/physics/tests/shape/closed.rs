@@ -1,6 +1,6 @@
 //! The surface of a union of balls is closed.
 
-use dem_run::shape::union::{patches, solid};
+use dem_physics::shape::union::{patches, solid};
 use nalgebra::{Matrix3, Vector3};
 
 /// The integral of the normal over a closed surface is zero, and that of x n^T the volume times

@@ -1,17 +1,15 @@
 //! The formulas of doc/contacts.md, computed here from the page, compared with the program.
 
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::kinematics::{
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::kinematics::{
     ContactKinematics, ContactSphere, WallPoint, contact_kinematics, relative_velocity, torques,
     wall_contact_kinematics,
 };
-use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
-use dem_run::physics::contact::rolling::{
-    ConstantMoment, ElasticPlastic, NoRolling, RollingFriction,
-};
-use dem_run::physics::contact::{ContactSprings, NormalLaw, response};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::linear::Linear;
+use dem_physics::contact::pair_parameters::{Elastic, PairInput};
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic, NoRolling, RollingFriction};
+use dem_physics::contact::{ContactSprings, NormalLaw, response};
+use dem_physics::number::Vec3;
 use nalgebra::Vector3;
 
 use super::assert_near;

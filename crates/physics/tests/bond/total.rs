@@ -2,8 +2,8 @@
 //! force.
 
 use super::{MODELS, vector};
-use dem_run::physics::bond::stiffness::{BondShape, Stiffness, stiffness};
-use dem_run::physics::bond::total::{BondForces, End, bond_forces};
+use dem_physics::bond::stiffness::{BondShape, Stiffness, stiffness};
+use dem_physics::bond::total::{BondForces, End, bond_forces};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 

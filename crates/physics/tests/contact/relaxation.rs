@@ -1,12 +1,12 @@
 //! Overlaps of pairs that separate by breakage.
 
 use super::world::{Body, RIGID, World, frictionless, material};
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::kinematics::ContactKinematics;
-use dem_run::physics::contact::relaxation::{Relaxed, relaxed};
-use dem_run::physics::contact::rolling::NoRolling;
-use dem_run::physics::contact::{ContactSprings, response};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::kinematics::ContactKinematics;
+use dem_physics::contact::relaxation::{Relaxed, relaxed};
+use dem_physics::contact::rolling::NoRolling;
+use dem_physics::contact::{ContactSprings, response};
+use dem_physics::number::Vec3;
 use proptest::prelude::*;
 
 fn origins(path: &[f64], origin: f64, least: f64) -> Vec<Relaxed> {

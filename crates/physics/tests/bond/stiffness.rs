@@ -3,9 +3,9 @@
 
 use std::f64::consts::PI;
 
-use dem_run::physics::bond::incremental::{self, History, Step, advance};
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
-use dem_run::physics::bond::total::{End, bond_forces};
+use dem_physics::bond::incremental::{self, History, Step, advance};
+use dem_physics::bond::stiffness::{BondModel, BondShape, stiffness};
+use dem_physics::bond::total::{End, bond_forces};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const STEEL_PA: f64 = 200e9;

@@ -1,8 +1,8 @@
 //! The best-fit rotation compared with known ones.
 
 use super::{turned, unit};
-use crate::helpers::Random;
-use dem_run::shape::fit::best_rotation;
+use dem_physics::shape::fit::best_rotation;
+use dem_testing::Random;
 use nalgebra::{UnitQuaternion, Vector3};
 
 fn centred(mut points: Vec<[f64; 3]>) -> Vec<[f64; 3]> {

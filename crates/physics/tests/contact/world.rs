@@ -1,13 +1,13 @@
 //! Two touching bodies, integrated by leapfrog, with their energy balance.
 
-use dem_run::physics::contact::kinematics::{
+use dem_physics::contact::kinematics::{
     ContactKinematics, ContactSphere, WallPoint, contact_kinematics, relative_velocity, torques,
     wall_contact_kinematics,
 };
-use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
-use dem_run::physics::contact::rolling::RollingFriction;
-use dem_run::physics::contact::{ContactSprings, Damping, NormalLaw, Response, response};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::pair_parameters::{Elastic, PairInput};
+use dem_physics::contact::rolling::RollingFriction;
+use dem_physics::contact::{ContactSprings, Damping, NormalLaw, Response, response};
+use dem_physics::number::Vec3;
 use std::f64::consts::PI;
 
 pub(crate) type Vector = Vec3<f64>;

@@ -1,8 +1,8 @@
 //! Frequencies of two bonded spheres compared with an independent implementation and with
 //! analytical limits.
 
-use dem_run::physics::bond::pair::{Frequencies, frequencies};
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
+use dem_physics::bond::pair::{Frequencies, frequencies};
+use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use std::f64::consts::PI;
 
 struct Case {

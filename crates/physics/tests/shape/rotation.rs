@@ -1,8 +1,8 @@
 //! Free rotation compared with closed-form solutions.
 
 use super::{reference, unit};
-use crate::helpers::Random;
-use dem_run::physics::rotation::{drift, kinetic_j, spin_rad_s};
+use dem_physics::rotation::{drift, kinetic_j, spin_rad_s};
+use dem_testing::Random;
 use nalgebra::Vector3;
 use serde_json::Value;
 

@@ -2,14 +2,14 @@
 //! independent implementation.
 
 use super::vector;
-use dem_run::physics::bond::damping::{
+use dem_physics::bond::damping::{
     DampingCoefficients, DampingForces, DampingModel, EndMotion, ReducedInertia, damping_forces,
     reduced,
 };
-use dem_run::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
-use dem_run::physics::bond::total::{End, bond_forces};
-use dem_run::physics::chebyshev::Chebyshev;
+use dem_physics::bond::damping_models::{Chen, ChenByMode, Platzer};
+use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
+use dem_physics::bond::total::{End, bond_forces};
+use dem_physics::chebyshev::Chebyshev;
 use nalgebra::{DMatrix, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use std::f64::consts::TAU;

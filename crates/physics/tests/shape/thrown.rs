@@ -3,10 +3,10 @@
 
 use std::path::Path;
 
-use dem_run::shape::outer_layer::{HIDDEN, outer_layer};
+use dem_physics::shape::outer_layer::{HIDDEN, outer_layer};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use crate::helpers::Random;
+use dem_testing::Random;
 
 /// Radius of the ball as a fraction of the smallest radius.
 const BALL: f64 = 0.7;

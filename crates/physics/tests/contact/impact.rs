@@ -2,13 +2,11 @@
 
 use super::reference;
 use super::world::{Body, RIGID, World, material};
-use dem_run::physics::contact::ImpactLaw;
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::pair_parameters::{
-    AttractiveDamping, PairInput, TangentialUnloading,
-};
-use dem_run::physics::contact::rolling::NoRolling;
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::ImpactLaw;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::pair_parameters::{AttractiveDamping, PairInput, TangentialUnloading};
+use dem_physics::contact::rolling::NoRolling;
+use dem_physics::number::Vec3;
 
 const RADIUS: f64 = 0.0025;
 const SPEED: f64 = 3.9;

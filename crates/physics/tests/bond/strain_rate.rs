@@ -1,6 +1,6 @@
 //! The dynamic increase factor at rates with an integer logarithm, and where its branches meet.
 
-use dem_run::physics::bond::strain_rate::{
+use dem_physics::bond::strain_rate::{
     PLATZER_LOWEST_RATE_1_S, dynamic_increase_factor, elongation_rate,
 };
 use nalgebra::Vector3;

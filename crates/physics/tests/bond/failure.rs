@@ -1,7 +1,7 @@
 //! Breaking of bonds: failure loads of a round bar of known strength.
 
-use dem_run::physics::bond::BondLoad;
-use dem_run::physics::bond::failure::{
+use dem_physics::bond::BondLoad;
+use dem_physics::bond::failure::{
     Cause, CauseCounts, Criteria, EquivalentStress, Factors, Screen, Stresses, cause, stresses,
     utilisation,
 };

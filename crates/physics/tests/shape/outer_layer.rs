@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::time::Instant;
 
 use super::turned;
-use crate::helpers::Random;
-use dem_run::shape::outer_layer::outer_layer;
+use dem_physics::shape::outer_layer::outer_layer;
+use dem_testing::Random;
 use nalgebra::Vector3;
 
 const NONE: [u32; 0] = [];

@@ -1,10 +1,10 @@
 //! The tangent of a bond compared with differences of its forces, and its asymmetry.
 
 use super::total::{bond, largest};
-use dem_run::physics::bond::tangent::{DEGREES_OF_FREEDOM, bond_tangent};
-use dem_run::physics::bond::total::{End, bond_forces};
-use dem_run::physics::dual::Dual;
-use dem_run::physics::number::Number;
+use dem_physics::bond::tangent::{DEGREES_OF_FREEDOM, bond_tangent};
+use dem_physics::bond::total::{End, bond_forces};
+use dem_physics::dual::Dual;
+use dem_physics::number::Number;
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 

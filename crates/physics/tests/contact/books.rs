@@ -2,12 +2,12 @@
 //! rounding.
 
 use super::world::{Body, World, ZERO, material};
-use dem_run::physics::contact::NormalLaw;
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::pair_parameters::PairInput;
-use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic, RollingFriction};
-use dem_run::physics::number::Vec3;
+use dem_physics::contact::NormalLaw;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::linear::Linear;
+use dem_physics::contact::pair_parameters::PairInput;
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic, RollingFriction};
+use dem_physics::number::Vec3;
 
 /// An oblique impact of two unequal spinning spheres. Returns the missing energy and each loss,
 /// over the initial energy.
