@@ -6,7 +6,7 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use dem_run::laboratory::evaluate::TestResult;
+use dem_laboratory::test_result::TestResult;
 use serde_json::Value;
 
 pub(crate) type Failed = Box<dyn Error>;

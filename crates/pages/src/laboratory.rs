@@ -1,7 +1,8 @@
 //! doc/laboratory.md: packings of a sample bent at four points, and of a disc and a bar.
 
-use dem_run::laboratory::evaluate::{EQ_18, TestResult};
-use dem_run::laboratory::figure::Figure;
+use dem_laboratory::figure::Figure;
+use dem_laboratory::test_result::TestResult;
+use dem_run::laboratory::evaluate::EQ_18;
 
 use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
 use crate::cells::{change, scattered, thousands};

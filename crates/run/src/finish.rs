@@ -18,11 +18,11 @@ use super::snapshot::fingerprint;
 use crate::output::flows::flow_rows;
 use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use crate::output::plots::{plots_of_every_run, write_plots};
-use crate::output::summary::Summary;
 use dem_engine::state::State;
 use dem_plan::Plan;
 use dem_plan::measure::sizes::Fragments;
 use dem_plan::measure::{Probe, probes};
+use dem_results::Summary;
 use dem_rig::watch::Watch;
 
 /// Data that a finished run leaves next to its last checkpoint, before it writes plots, film, page

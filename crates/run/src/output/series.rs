@@ -1,9 +1,9 @@
 //! Columns of the time series: energies, errors, numbers of bonds and particles, every measure.
 
-use dem_engine::stages::ledger::Balance;
 use dem_engine::state::State;
 use dem_engine::state::bonds::Bonds;
 use dem_plan::measure::Probe;
+use dem_results::Balance;
 
 /// Names of the first columns after the time: energies and works, J.
 pub(super) const ENERGIES: [&str; 20] = [

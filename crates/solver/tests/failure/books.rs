@@ -3,8 +3,9 @@
 
 use std::f64::consts::PI;
 
+use dem_run::Balance;
 use dem_run::physics::bond::failure::Criteria;
-use dem_run::stages::ledger::{Balance, balance, opened};
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::loads::GroupLoad;
 use dem_run::step::{advance, interact};
