@@ -14,7 +14,7 @@ use dem_io::{Bounds, Diagnostic, Result, read_input};
 use dem_pictures::label::{colour_bar, label, scale_bar, time_text};
 use dem_pictures::png_file::{Compression, to_png};
 use dem_pictures::{Camera, Image, Surface, render};
-use serde_json::Value;
+use dem_results::{Summary, from_json};
 
 use crate::folder::{Folder, is_solid, view_from};
 use crate::home::Home;
@@ -92,7 +92,7 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
     }
     // A run that has not finished has none, but the viewer may say from where to look.
     let summary = match (summary(path), order.from) {
-        (Err(_), Some(_)) => Value::Null,
+        (Err(_), Some(_)) => Summary::default(),
         (summary, _) => summary?,
     };
     let from = order.from.or_else(|| view_from(&summary));
@@ -178,10 +178,11 @@ fn refuse_beyond(time_s: f64, frames: &[(PathBuf, f64)]) -> Result<()> {
 }
 
 /// The summary of the run.
-fn summary(path: &Path) -> Result<Value> {
+fn summary(path: &Path) -> Result<Summary> {
     let summary = path.join("summary.json");
     let text = read_input(&summary, "the summary of a run")?;
-    serde_json::from_slice(&text).map_err(|error| {
+    let read = serde_json::from_slice(&text).and_then(from_json);
+    read.map_err(|error| {
         let problem = format!("this is not the summary of a run: {error}");
         Diagnostic::input(
             summary.display().to_string(),

@@ -189,6 +189,7 @@ impl Run<'_> {
         Summary {
             scene: scene.source.clone(),
             program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+            engine: None,
             ended_by: ended.by.to_owned(),
             problem: ended.problem.as_ref().map(ToString::to_string),
             inputs: self.planned.inputs.clone(),

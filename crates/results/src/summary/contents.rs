@@ -33,6 +33,9 @@ pub struct Summary {
     pub scene: String,
     /// Program and version.
     pub program: String,
+    /// The program that has computed the results, if it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub engine: Option<String>,
     /// Reason for its end: "end time", "rest", "measure" (one with `end_run_above`), or for a
     /// laboratory test "breakage", "end of the stroke" or, if it is dynamic, "end of the test".
     pub ended_by: String,
@@ -208,6 +211,12 @@ pub struct Verdict {
 }
 
 impl Summary {
+    /// Whether the run has come so far as to have results: one that failed at its start has none,
+    /// and another program gives only frames.
+    pub fn has_results(&self) -> bool {
+        !matches!(self.ended_by.as_str(), "" | "failure")
+    }
+
     /// Sets the verdict: `warnings` from the run, and those from the summary itself.
     pub fn judge(&mut self, warnings: Vec<String>) {
         let warnings: Vec<String> = (self.problem.iter().cloned())

@@ -68,6 +68,7 @@ impl AtRest<'_> {
         Summary {
             scene: self.scene.source.clone(),
             program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+            engine: None,
             ended_by: "equilibrium".to_owned(),
             problem: None,
             inputs,
