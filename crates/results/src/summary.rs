@@ -10,7 +10,7 @@ mod parts;
 mod sizes;
 mod text;
 
-pub use balance::Balance;
+pub use balance::{Balance, ENERGIES, Energy, EnergyKind};
 pub use contents::{Summary, Unfinished, Verdict};
 pub use equilibrium::EquilibriumSummary;
 pub use inputs::{InputBody, InputFile, Inputs};

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use EnergyKind::{Brought, Lost, Stored, Work};
+
 /// The ledger at a moment.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -82,4 +84,76 @@ impl Balance {
             + self.elastic_bending_j
             + self.contact_elastic_j
     }
+}
+
+/// How an energy enters the balance: what is stored and lost, less work and what was brought, stays
+/// what it was at the start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EnergyKind {
+    /// Energy at a moment.
+    Stored,
+    /// Energy lost since the start.
+    Lost,
+    /// Work done on the bodies since the start.
+    Work,
+    /// Energy of bodies that were added, less that of those removed.
+    Brought,
+}
+
+impl EnergyKind {
+    /// 1 for what is stored or lost, -1 for what is supplied.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Stored | Self::Lost => 1.0,
+            Self::Work | Self::Brought => -1.0,
+        }
+    }
+}
+
+/// A term of the balance.
+#[derive(Debug, Clone, Copy)]
+pub struct Energy {
+    /// Its column in the time series.
+    pub name: &'static str,
+    /// How it enters the balance.
+    pub kind: EnergyKind,
+    /// Its value, J.
+    pub of: fn(&Balance) -> f64,
+}
+
+/// All terms, in the order of the columns of the time series: their signed sum changes by the
+/// energy error alone.
+pub const ENERGIES: [Energy; 20] = [
+    energy("kinetic_energy_j", Stored, |balance| balance.kinetic_j),
+    energy("elastic_energy_j", Stored, |balance| balance.elastic_j()),
+    energy("gravity_energy_j", Stored, |balance| balance.gravity_j),
+    energy("load_work_j", Work, |balance| balance.load_work_j),
+    energy("support_work_j", Work, |balance| balance.support_work_j),
+    energy("wall_work_j", Work, |balance| balance.wall_work_j),
+    energy("bond_damping_j", Lost, |balance| balance.bond_damping_j),
+    energy("structural_damping_j", Lost, |balance| {
+        balance.structural_damping_j
+    }),
+    energy("local_damping_j", Lost, |balance| balance.local_damping_j),
+    energy("adhesion_j", Stored, |balance| balance.adhesion_j),
+    energy("contact_damping_j", Lost, |balance| {
+        balance.contact_damping_j
+    }),
+    energy("friction_j", Lost, |balance| balance.friction_j),
+    energy("bond_breakage_j", Lost, |balance| balance.bond_breakage_j),
+    energy("bond_damage_j", Lost, |balance| balance.bond_damage_j),
+    energy("particle_breakage_j", Lost, |balance| {
+        balance.particle_breakage_j
+    }),
+    energy("bond_plastic_j", Lost, |balance| balance.bond_plastic_j),
+    energy("liquid_bridge_j", Stored, |balance| balance.liquid_bridge_j),
+    energy("liquid_bridge_loss_j", Lost, |balance| {
+        balance.liquid_bridge_loss_j
+    }),
+    energy("rejoining_loss_j", Lost, |balance| balance.rejoining_loss_j),
+    energy("flow_energy_j", Brought, |balance| balance.flow_energy_j),
+];
+
+const fn energy(name: &'static str, kind: EnergyKind, of: fn(&Balance) -> f64) -> Energy {
+    Energy { name, kind, of }
 }

@@ -2,12 +2,11 @@
 
 use dem_io::Result;
 use dem_plots::{Axis, Line, Plot};
-use dem_results::summary::Measured;
+use dem_results::summary::{ENERGIES, Energy, EnergyKind, Measured};
 use dem_results::{ResultsFolder, Series, read_series};
 use dem_scene::Statistic;
 
 use super::fragments::{COUNT, DISCHARGE, SIZES};
-use super::series::ENERGIES;
 use dem_plan::measure::Probe;
 
 /// Names of plots that any run may have, which no measure may overwrite.
@@ -26,14 +25,13 @@ pub(crate) fn write_plots(
     results: &[Measured],
 ) -> Result<()> {
     let series = read_series(&folder.series())?;
-    let changing: Vec<&str> = ENERGIES
-        .into_iter()
-        .filter(|name| column(&series, name).iter().any(|v| *v != 0.0))
-        .collect();
-    let mut energy = plot(&series, "Energy", "energy (J)", &changing, "_j");
-    for line in &mut energy.lines {
+    let changes = |energy: &Energy| column(&series, energy.name).iter().any(|v| *v != 0.0);
+    let changing: Vec<Energy> = ENERGIES.into_iter().filter(changes).collect();
+    let names: Vec<&str> = changing.iter().map(|energy| energy.name).collect();
+    let mut energy = plot(&series, "Energy", "energy (J)", &names, "_j");
+    for (line, of) in energy.lines.iter_mut().zip(&changing) {
         // Energy supplied is dashed, as the total often hides it.
-        line.dashed = line.name.ends_with("work");
+        line.dashed = of.kind == EnergyKind::Work;
     }
     folder.write_plot(ENERGY, &energy.svg().file())?;
     let mut errors = plot(
