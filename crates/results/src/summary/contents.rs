@@ -1,6 +1,7 @@
 //! The contents of the summary, and the verdict on them.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use dem_io::Diagnostic;
 use dem_io::body::mass::BodyMass;
@@ -18,6 +19,7 @@ use super::parts::{
     AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary, TakenIn,
 };
 use super::sizes::Sizes;
+use crate::json::from_json;
 
 /// Program and version.
 const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
@@ -215,6 +217,12 @@ impl Summary {
     /// and another program gives only frames.
     pub fn has_results(&self) -> bool {
         !matches!(self.ended_by.as_str(), "" | "failure")
+    }
+
+    /// Reads that of a run from its file. None: there is none.
+    pub fn read(file: &Path) -> Option<Self> {
+        let json = serde_json::from_slice(&std::fs::read(file).ok()?).ok()?;
+        from_json(json).ok()
     }
 
     /// Sets the verdict: `warnings` from the run, and those from the summary itself.
