@@ -6,7 +6,7 @@ use std::path::Path;
 use dem_io::Body;
 use dem_io::hash::file_hash;
 use dem_results::summary::{InputBody, InputFile, Inputs};
-use dem_scene::{BodySource, Region, Scene, WallShape};
+use dem_scene::{BodySource, Region, Scene, Wall, WallShape};
 
 /// Inputs of a run of a scene with these bodies, as they were read.
 pub(crate) fn inputs(scene: &Scene, read: &BTreeMap<String, Body>) -> Inputs {
@@ -35,6 +35,8 @@ pub(crate) fn inputs(scene: &Scene, read: &BTreeMap<String, Body>) -> Inputs {
         };
         Some((name.clone(), input_file(file)))
     });
+    let is_solid = |wall: &Wall| !matches!(wall.shape, WallShape::Stl { .. });
+    let solid_walls = scene.walls.iter().filter(|(_, wall)| is_solid(wall));
     let measured = scene.test.as_ref().and_then(|test| test.measured.as_ref());
     Inputs {
         scene: scene.values(),
@@ -45,6 +47,8 @@ pub(crate) fn inputs(scene: &Scene, read: &BTreeMap<String, Body>) -> Inputs {
         regions: regions.collect(),
         included: scene.included.iter().map(|path| input_file(path)).collect(),
         measured: measured.map(|measured| input_file(&measured.file)),
+        view_from: scene.output.as_ref().and_then(|output| output.view_from),
+        solid_walls: solid_walls.map(|(name, _)| name.clone()).collect(),
         program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
     }
 }

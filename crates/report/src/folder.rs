@@ -60,7 +60,7 @@ impl Folder {
         Subject {
             folder: &self.path,
             frames: &self.frames,
-            from: view_from(summary).unwrap_or(FROM),
+            from: summary.inputs.view_from.unwrap_or(FROM),
         }
     }
 
@@ -95,23 +95,6 @@ impl Folder {
         };
         paths.iter().map(read).collect()
     }
-}
-
-/// The direction of the viewer, of any length. None: the scene gives none.
-pub(crate) fn view_from(summary: &Summary) -> Option<[f64; 3]> {
-    let scene = &summary.inputs.scene;
-    let (_, text) = scene.iter().find(|(key, _)| key == "output.view.from")?;
-    let numbers = text.trim_matches(['[', ']']).split(',');
-    let numbers = numbers.filter_map(|number| number.trim().parse().ok());
-    numbers.collect::<Vec<f64>>().try_into().ok()
-}
-
-/// Whether a wall of the scene is solid and seen from outside only: a plane, a box or a cylinder.
-/// Surfaces from STL files have two sides.
-pub(crate) fn is_solid(summary: &Summary, wall: &str) -> bool {
-    let shapes = ["plane.point", "box.min", "cylinder.from"];
-    let keys = shapes.map(|shape| format!("walls.{wall}.{shape}"));
-    (summary.inputs.scene.iter()).any(|(key, _)| keys.contains(key))
 }
 
 fn attribute<'a>(element: &'a str, name: &str) -> Option<&'a str> {

@@ -16,7 +16,7 @@ use dem_pictures::png_file::{Compression, to_png};
 use dem_pictures::{Camera, Image, Surface, render};
 use dem_results::{Summary, from_json};
 
-use crate::folder::{Folder, is_solid, view_from};
+use crate::folder::Folder;
 use crate::home::Home;
 use crate::view::{ChosenFrame, home};
 use gif_film::film;
@@ -95,7 +95,7 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
         (Err(_), Some(_)) => Summary::default(),
         (summary, _) => summary?,
     };
-    let from = order.from.or_else(|| view_from(&summary));
+    let from = order.from.or(summary.inputs.view_from);
     let frames = folder.frames();
     let chosen = chosen(frames, order, kind)?;
     let colours = Colours::of(order.colour_by, path, &chosen)?;
@@ -111,7 +111,7 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
         if seen.is_within(&camera, order.size_px) {
             is_empty.set(false);
         }
-        let walls = seen.walls(&|name| is_solid(&summary, name));
+        let walls = seen.walls(&summary.inputs.solid_walls);
         Ok(drawn(&seen, &walls, frame.1, &camera, &colours, every_s))
     };
     let bytes = match kind {

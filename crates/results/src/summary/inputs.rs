@@ -28,6 +28,12 @@ pub struct Inputs {
     /// The measured material of a laboratory test.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub measured: Option<InputFile>,
+    /// Direction from the bodies to the camera that the scene gives, of length 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub view_from: Option<[f64; 3]>,
+    /// Walls that are solid and seen from outside only: surfaces from STL files have two sides.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub solid_walls: Vec<String>,
     /// Program and version.
     pub program: String,
 }
