@@ -1,8 +1,8 @@
 //! The engine: the [`State`] of a simulation, the stages that a [`step()`] consists of, the limit
 //! of its length, and equilibrium without steps.
 //!
-//! It reads and writes no files: `dem-plan` makes a state from a scene, and `dem-runner` steps it to
-//! its end.
+//! It reads and writes no files: `dem-plan` makes a state from a scene, and `dem-runner` steps it
+//! to its end.
 
 pub mod check;
 pub mod clock;

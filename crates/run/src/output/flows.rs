@@ -10,7 +10,8 @@ use dem_engine::state::State;
 use dem_engine::state::clusters::sizes::mass_kg_of;
 use dem_engine::state::clusters::{Cluster, Clusters};
 
-/// Masses of all bodies, by name. `masses`: of the bodies of the scene. None: nothing comes or goes.
+/// Masses of all bodies, by name. `masses`: of the bodies of the scene. None: nothing comes or
+/// goes.
 pub(crate) fn body_flows(
     state: &State,
     masses: &BTreeMap<String, BodyMass>,
