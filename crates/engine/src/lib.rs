@@ -1,8 +1,8 @@
 //! The engine: the [`State`] of a simulation, the stages that a [`step()`] consists of, the limit
 //! of its length, and equilibrium without steps.
 //!
-//! It knows neither bodies in files nor results: `dem-plan` makes a state from a scene, and
-//! `dem-runner` steps it to its end.
+//! It reads and writes no files: `dem-plan` makes a state from a scene, and `dem-runner` steps it
+//! to its end.
 
 pub mod check;
 pub mod clock;
@@ -12,6 +12,7 @@ pub mod statics;
 pub mod step;
 pub mod threads;
 
-pub use stages::ledger::{Balance, balance};
+pub use dem_results::Balance;
+pub use stages::ledger::balance;
 pub use state::State;
 pub use step::step;

@@ -8,6 +8,7 @@ mod area;
 mod curve;
 mod elastic;
 mod evaluation;
+pub mod figure;
 mod fit;
 mod head;
 mod largest;
@@ -22,6 +23,7 @@ mod specimen;
 mod statistic;
 mod table;
 mod target;
+pub mod test_result;
 pub mod theory;
 mod units;
 

@@ -6,7 +6,9 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use dem_run::laboratory::evaluate::TestResult;
+use dem_laboratory::test_result::TestResult;
+use dem_results::Summary;
+use dem_results::summary::FragmentSummary;
 use serde_json::Value;
 
 pub(crate) type Failed = Box<dyn Error>;
@@ -28,7 +30,7 @@ pub(crate) struct Run {
     /// The words for its value on each axis of its study.
     pub(crate) settings: Vec<String>,
     /// Its `summary.json`.
-    pub(crate) summary: Value,
+    pub(crate) summary: Summary,
 }
 
 /// The folder of the clone.
@@ -193,8 +195,8 @@ fn of_study(row: &Value, folder: &Path) -> Result<Run, Failed> {
 
 /// The run with its results in this folder, if it came to its end.
 pub(crate) fn finished(folder: &Path) -> Option<Run> {
-    let summary = read(&folder.join("summary.json"))?;
-    summary.get("problem").is_none().then(|| Run {
+    let summary = Summary::read(&folder.join("summary.json"))?;
+    summary.problem.is_none().then(|| Run {
         folder: folder.to_owned(),
         settings: Vec::new(),
         summary,
@@ -206,20 +208,27 @@ pub(crate) fn number(value: &Value) -> f64 {
 }
 
 impl Run {
-    /// A number of its summary, by its JSON pointer.
-    pub(crate) fn number(&self, pointer: &str) -> f64 {
-        self.summary.pointer(pointer).map_or(f64::NAN, number)
+    /// Its processor time, s.
+    pub(crate) fn processor_s(&self) -> f64 {
+        self.summary.processor_s.unwrap_or(f64::NAN)
+    }
+
+    /// Its fragments; none if nothing could break.
+    pub(crate) fn fragments(&self) -> FragmentSummary {
+        self.summary.fragments.unwrap_or_default()
     }
 
     /// The value of a measure.
     pub(crate) fn measured(&self, measure: &str) -> Result<f64, Failed> {
-        let value = self.summary["measures"][measure]["value"].as_f64();
+        let mut measures = self.summary.measures.iter();
+        let found = measures.find(|one| one.name == measure && !one.value.is_nan());
+        let value = found.map(|one| one.value);
         Ok(value.ok_or_else(|| format!("the run has not measured {measure}"))?)
     }
 
     /// The results of its test.
     pub(crate) fn test(&self) -> Result<TestResult, Failed> {
-        Ok(serde_json::from_value(self.summary["test"].clone())?)
+        Ok(self.summary.test.clone().ok_or("the run has no test")?)
     }
 
     /// Columns of one of its tables of numbers, row by row.

@@ -109,14 +109,7 @@ pub(crate) fn scatter(bench: &Bench) -> Result<(), Failed> {
         };
         let tests = (1..=packings).map(test);
         let tests: Vec<Run> = tests.collect::<Result<_, Failed>>()?;
-        let of = |pointer| {
-            mean(
-                &tests
-                    .iter()
-                    .map(|run| run.number(pointer))
-                    .collect::<Vec<_>>(),
-            )
-        };
+        let of = |read: fn(&Run) -> f64| mean(&tests.iter().map(read).collect::<Vec<_>>());
         let figure = |name: &str| -> Result<Statistic, Failed> {
             let values = tests.iter().map(|run| {
                 let value = run.test()?.figure(name);
@@ -128,13 +121,13 @@ pub(crate) fn scatter(bench: &Bench) -> Result<(), Failed> {
         table.row([
             diameters.to_owned(),
             packings.to_string(),
-            format!("{:.0}", of("/particles")),
-            format!("{:.0}", of("/bonds")),
+            format!("{:.0}", of(|run| run.summary.particles as f64)),
+            format!("{:.0}", of(|run| run.summary.bonds as f64)),
             format!("{:.2}", 1e-6 * modulus.mean),
             variation(&modulus),
             format!("{:.4}", 1e-6 * strength.mean),
             variation(&strength),
-            format!("{} s", significant(of("/processor_s"), 3)),
+            format!("{} s", significant(of(Run::processor_s), 3)),
         ]);
     }
     write(&[table])

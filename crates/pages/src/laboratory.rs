@@ -1,7 +1,8 @@
 //! doc/laboratory.md: packings of a sample bent at four points, and of a disc and a bar.
 
-use dem_run::laboratory::evaluate::{EQ_18, TestResult};
-use dem_run::laboratory::figure::Figure;
+use dem_laboratory::figure::Figure;
+use dem_laboratory::test_result::TestResult;
+use dem_run::laboratory::evaluate::EQ_18;
 
 use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
 use crate::cells::{change, scattered, thousands};
@@ -107,7 +108,7 @@ fn bending_cells(run: &Run, test: &TestResult) -> Vec<String> {
     };
     let crack = test.crack.as_ref();
     vec![
-        thousands(run.number("/bonds")),
+        thousands(run.summary.bonds as f64),
         with_error(EQ_18, 1e-6, 2, "MPa"),
         format!("{:.2}", value(&test.calibration, RATIO)),
         with_error(FAILURE_FORCE, 1.0, 1, "N"),
@@ -141,7 +142,7 @@ pub(crate) fn disc_and_bar(bench: &Bench) -> Result<(), Failed> {
         let crack_mm = |test: &TestResult| test.crack.as_ref().map(|crack| 1e3 * crack.offset_m);
         let changes = |test: &TestResult| value(&test.half_the_rate_changes, FAILURE_FORCE);
         table.row([
-            over(&|(run, _)| run.number("/bonds"), 0, ""),
+            over(&|(run, _)| run.summary.bonds as f64, 0, ""),
             figure(FAILURE_FORCE, 1.0, 1, "N"),
             figure("strength", 1e-6, 4, "MPa"),
             figure("specimen modulus", 1e-6, 2, "MPa"),

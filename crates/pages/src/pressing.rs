@@ -110,7 +110,7 @@ fn pressed(bench: &Bench, coarser: f64) -> Result<Made, Failed> {
     }
     let scene = "data/scenes/press-mould.toml";
     let run = bench.run(&coarser.to_string(), scene, &options)?;
-    if run.summary["ended_by"] != "measure" {
+    if run.summary.ended_by != "measure" {
         return Err("the density was not met".into());
     }
     let last = *frames_in(&run.folder)?.last().ok_or("no frame")?;
@@ -118,7 +118,7 @@ fn pressed(bench: &Bench, coarser: f64) -> Result<Made, Failed> {
     let spheres = read_particles(&frame_in(&run.folder, last))?.loose_spheres()?;
     let (body, _) = bond_spheres(&spheres, &touching())?;
     Ok(Made {
-        processor_s: run.number("/processor_s") + processor_time_s() - began_s,
+        processor_s: run.processor_s() + processor_time_s() - began_s,
         height_m: 130e-3 + run.measured("plunger")?,
         body,
     })

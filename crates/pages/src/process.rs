@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use dem_io::body::read_body;
 
-use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, number, sets};
+use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
 use crate::cells::mean;
 use crate::table::{Table, write};
 
@@ -125,16 +125,13 @@ pub(crate) fn process(bench: &Bench) -> Result<(), Failed> {
         let found = run(bench, &format!("way-{way}-{has_dif}"), &files, &set)?;
         of_ways.row([
             if has_dif { "yes" } else { "no" }.to_owned(),
-            format!("{:.0} s", found.number("/processor_s")),
+            format!("{:.0} s", found.processor_s()),
             broken(&found, &files)?,
-            format!("{:.0}", found.number("/fragments/count")),
+            found.fragments().count.to_string(),
             sizes(&found, "cake"),
             sizes(&found, "lump"),
-            format!(
-                "{:.1} kg",
-                found.number("/population/outlets/product/mass_kg")
-            ),
-            format!("{:.1e}", found.number("/energy_error")),
+            format!("{:.1} kg", product_kg(&found)),
+            format!("{:.1e}", found.summary.energy_error),
         ]);
     }
     let files = packed(bench, OF_MINUTE)?;
@@ -161,41 +158,56 @@ fn broken(run: &Run, files: &[PathBuf; 2]) -> Result<String, Failed> {
     let mut bonds = 0.0;
     for ((body, _), file) in BREAKABLE.iter().zip(files) {
         let own = read_body(file)?.bonds.len() as f64;
-        bonds += own * run.number(&format!("/flows/{body}/fed"));
+        let flow = run
+            .summary
+            .flows
+            .as_ref()
+            .and_then(|flows| flows.get(*body));
+        bonds += own * flow.map_or(f64::NAN, |flow| f64::from(flow.fed));
     }
-    let broken = run.number("/broken_bonds");
+    let broken = run.summary.broken_bonds as f64;
     Ok(format!("{broken:.0} ({:.0} %)", 100.0 * broken / bonds))
+}
+
+/// Mass that has left through the outlet of the product, kg.
+fn product_kg(run: &Run) -> f64 {
+    let population = run.summary.population.as_ref();
+    let outlet = population.and_then(|all| all.outlets.get("product"));
+    outlet.map_or(f64::NAN, |outlet| outlet.mass_kg)
 }
 
 /// d10, d50 and d80 of all its pieces of a body, mm.
 fn sizes(run: &Run, body: &str) -> String {
-    let size = |d: &str| {
-        let size_m = run.number(&format!("/sizes/bodies/{body}/both/{d}_m"));
-        format!("{:.0}", 1e3 * size_m)
-    };
-    ["d10", "d50", "d80"].map(size).join(", ")
+    let all = run.summary.sizes.as_ref();
+    let all = all.and_then(|sizes| sizes.bodies.get(body)?.get("both"));
+    let all = all.copied().unwrap_or_default();
+    let sizes_m = [all.d10_m, all.d50_m, all.d80_m];
+    sizes_m
+        .map(|size_m| format!("{:.0}", 1e3 * size_m))
+        .join(", ")
 }
 
 /// The column of a run with 300 bodies.
 fn minute(run: &Run) -> [String; 13] {
-    let count = |pointer: &str| format!("{:.0}", run.number(pointer));
-    let flows = || run.summary["flows"].as_object().into_iter().flatten();
-    let inside_kg: f64 = flows().map(|(_, flow)| number(&flow["inside_kg"])).sum();
-    let missing_kg = flows().map(|(_, flow)| number(&flow["missing_kg"]).abs());
-    let mean_kg = run.number("/population/fed_kg") / run.number("/population/fed");
+    let summary = &run.summary;
+    let population = summary.population.clone().unwrap_or_default();
+    let flows = || summary.flows.iter().flat_map(|flows| flows.values());
+    let inside_kg: f64 = flows().map(|flow| flow.inside_kg).sum();
+    let missing_kg = flows().map(|flow| flow.missing_kg.unwrap_or(f64::NAN).abs());
+    let mean_kg = population.fed_kg / f64::from(population.fed);
     [
-        format!("{:.1} min", run.number("/processor_s") / 60.0),
-        count("/steps"),
-        count("/population/fed"),
-        count("/fragments/inside"),
+        format!("{:.1} min", run.processor_s() / 60.0),
+        summary.steps.to_string(),
+        population.fed.to_string(),
+        run.fragments().inside.to_string(),
         format!("{:.0}", inside_kg / mean_kg),
-        count("/population/discharged"),
-        count("/broken_bonds"),
+        population.discharged.to_string(),
+        summary.broken_bonds.to_string(),
         format!("{} mm", sizes(run, "cake")),
         format!("{} mm", sizes(run, "lump")),
-        format!("{:.2}", run.number("/measures/mixing/value")),
-        format!("{:.2}", run.number("/largest_overlap")),
-        format!("{:.1e}", run.number("/energy_error")),
+        format!("{:.2}", run.measured("mixing").unwrap_or(f64::NAN)),
+        format!("{:.2}", summary.largest_overlap),
+        format!("{:.1e}", summary.energy_error),
         format!("{:.1e} kg", missing_kg.sum::<f64>()),
     ]
 }
@@ -203,8 +215,14 @@ fn minute(run: &Run) -> [String; 13] {
 /// Mass flows of the steady part of a run, kg/s, in the order of their rows.
 fn flows_kg_s(run: &Run) -> Result<Vec<f64>, Failed> {
     let [from_s, to_s] = STEADY_S;
-    let [cake, lump, rock] =
-        FED.map(|(body, rate_1_s)| rate_1_s * run.number(&format!("/bodies/{body}/mass_kg")));
+    let [cake, lump, rock] = FED.map(|(body, rate_1_s)| {
+        rate_1_s
+            * run
+                .summary
+                .bodies
+                .get(body)
+                .map_or(f64::NAN, |mass| mass.mass_kg)
+    });
     let mut flows = vec![cake + lump, rock];
     for (measure, speed_m_s, length_m) in BELTS {
         let rows = run.columns("series.csv", ["time_s", &format!("{measure}_kg")])?;

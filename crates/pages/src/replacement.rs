@@ -106,10 +106,11 @@ fn run(bench: &Bench, name: &str, seed: usize) -> Result<Run, Failed> {
     options.push(ONE_THREAD.to_owned());
     let scene = format!("data/scenes/{name}.toml");
     let run = bench.run(&format!("{name}-{seed}"), &scene, &options)?;
+    let population = run.summary.population.as_ref();
     Ok(Run {
-        processor_s: run.number("/processor_s"),
-        energy_error: run.number("/energy_error"),
-        left_out: run.number("/population/bond_updates_skipped"),
+        processor_s: run.processor_s(),
+        energy_error: run.summary.energy_error,
+        left_out: population.map_or(f64::NAN, |all| all.bond_updates_skipped),
         masses_kg: masses_kg(Pieces::Left, &run.folder)?,
     })
 }

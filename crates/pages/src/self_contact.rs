@@ -20,9 +20,9 @@ const RADIUS_M: f64 = 1e-3;
 /// What is read from a run, and what it is called in the table.
 type Reading = (&'static str, fn(&Run) -> f64);
 
-const TIME: Reading = ("processor time, s", |run| run.number("/processor_s"));
+const TIME: Reading = ("processor time, s", Run::processor_s);
 const LARGEST: Reading = ("largest piece, of the mass", |run| {
-    run.number("/fragments/mass_fraction_of_largest")
+    run.fragments().mass_fraction_of_largest
 });
 const BROKEN: Reading = ("bonds broken", broken);
 
@@ -53,7 +53,7 @@ const SCENES: [(&str, &[&str], &[Reading]); 3] = [
         &[
             BROKEN,
             LARGEST,
-            ("pieces", |run| run.number("/fragments/count")),
+            ("pieces", |run| run.fragments().count as f64),
             TIME,
         ],
     ),
@@ -65,7 +65,7 @@ fn figure(run: &Run, name: &str) -> f64 {
 }
 
 fn broken(run: &Run) -> f64 {
-    run.number("/broken_bonds")
+    run.summary.broken_bonds as f64
 }
 
 pub(crate) fn tables() -> [Table; 1] {

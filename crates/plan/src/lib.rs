@@ -12,7 +12,7 @@ mod forecast;
 pub mod groups;
 pub(crate) mod held;
 mod initial;
-pub mod inputs;
+mod inputs;
 pub mod masses;
 pub mod measure;
 pub(crate) mod measures;
@@ -67,7 +67,7 @@ pub use self::forecast::{Forecast, InletForecast};
 use self::groups::{held_degrees_of_freedom, particles_of, resolve_groups};
 use self::held::refuse_loose;
 use self::initial::start;
-use self::inputs::Inputs;
+use self::inputs::inputs;
 use self::measures::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::placement::placed;
@@ -77,6 +77,7 @@ use self::stages::{leave_out, planned_stages};
 use self::time_step::{StepChoice, arriving_as_clusters, choose_step, rayleigh_s};
 use self::zones::place_zones;
 use dem_engine::state::bodies::PlacedBody;
+use dem_results::summary::Inputs;
 
 /// Number of particles and bonds that justify a thread of their own.
 const WORTH_A_THREAD: usize = 5000;
@@ -125,7 +126,7 @@ pub fn plan(
     threads: usize,
     allow_any_step: bool,
 ) -> Result<Plan> {
-    let inputs = Inputs::of(scene, &read);
+    let inputs = inputs(scene, &read);
     let scene = &fitted(placed(scene, &read)?, &mut read)?;
     let about: BTreeMap<String, About> = (read.iter())
         .map(|(name, body)| (name.clone(), body.about.clone()))

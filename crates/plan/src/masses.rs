@@ -25,8 +25,6 @@ const WORTH_A_NOTE: f64 = 5.0;
 const LIGHTEST_KG_M3: f64 = 20.0;
 /// No solid is heavier, kg/m3.
 const HEAVIEST_KG_M3: f64 = 23_000.0;
-/// Largest number of bodies that are listed.
-const LISTED: usize = 8;
 
 /// Mass of each body of a scene, by name: in its initial state, or as in its file if it comes
 /// through an inlet. `about`: information on the bodies.
@@ -201,19 +199,4 @@ pub(crate) fn sphere_density_kg_m3(
             .particles
             .density_kg_m3(*body.particles.first()? as usize),
     )
-}
-
-/// Human-readable lines, the first preceded by a label: two for each body.
-pub fn lines(masses: &BTreeMap<String, BodyMass>) -> Vec<(&'static str, String)> {
-    let mut lines = Vec::new();
-    for (name, mass) in masses.iter().take(LISTED) {
-        let head = if lines.is_empty() { "mass" } else { "" };
-        let [mass, centre] = mass.lines();
-        lines.push((head, format!("{name} {mass}")));
-        lines.push(("", format!("  {centre}")));
-    }
-    if masses.len() > LISTED {
-        lines.push(("", format!("... ({} bodies in all)", masses.len())));
-    }
-    lines
 }

@@ -15,20 +15,20 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dem_io::units::significant;
+use dem_results::summary::Measured;
 use dem_scene::{ALL, Measure, Quantity, Statistic};
 use nalgebra::{UnitQuaternion, Vector3};
-use serde::Serialize;
 
 use crate::Plan;
 use crate::measures::{FEWEST_IN_HEAP, FEWEST_MIXED_CELLS};
 use dem_engine::stages::clumps::synchronous;
-use dem_engine::stages::ledger::Balance;
 use dem_engine::stages::totals::synchronous_motions;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::fragments;
 use dem_engine::state::events::Renumbering;
 use dem_engine::state::watches::{Seen, Watch, WatchTarget};
+use dem_results::Balance;
 
 use self::members::{Members, wall_number};
 use self::spheres::spheres;
@@ -73,40 +73,6 @@ struct Common {
     masses_kg: Vec<f64>,
     /// All bonds; broken ones are none.
     bonds: Vec<Option<DynamicUtilisation>>,
-}
-
-/// Result of a measure.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measured {
-    /// Its name in the scene.
-    #[serde(skip_serializing)]
-    pub name: String,
-    /// Value in `unit`.
-    pub value: f64,
-    /// SI unit, or degrees for an angle of repose; empty for plain numbers.
-    pub unit: String,
-    /// Expected value.
-    pub reference: Option<f64>,
-    /// (value - reference) / |reference|; the plain difference if the reference is 0.
-    pub error: Option<f64>,
-    /// Largest relative error for the run to pass.
-    pub tolerance: Option<f64>,
-    /// Largest difference from the reference for the run to pass, in `unit`.
-    pub absolute_tolerance: Option<f64>,
-    /// Reason for a missing value. None: there is a value.
-    pub missing: Option<String>,
-}
-
-impl Measured {
-    /// Whether the error is within each tolerance; true without tolerances, false if it is NaN.
-    pub fn is_good(&self) -> bool {
-        let off = self.reference.map(|reference| self.value - reference);
-        let within = |error: Option<f64>, tolerance: Option<f64>| match (error, tolerance) {
-            (Some(error), Some(tolerance)) => error.abs() <= tolerance,
-            _ => true,
-        };
-        within(self.error, self.tolerance) && within(off, self.absolute_tolerance)
-    }
 }
 
 /// The probes of a plan that has not been stepped.

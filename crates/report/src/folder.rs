@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use dem_io::{Diagnostic, Result};
-use serde_json::Value;
+use dem_results::Summary;
 
 use crate::view::Subject;
 
@@ -55,12 +55,12 @@ impl Folder {
     }
 
     /// What the view shows.
-    pub(crate) fn subject(&self, summary: &Value) -> Subject<'_> {
+    pub(crate) fn subject(&self, summary: &Summary) -> Subject<'_> {
         const FROM: [f64; 3] = [0.5, -0.8, 0.4];
         Subject {
             folder: &self.path,
             frames: &self.frames,
-            from: view_from(summary).unwrap_or(FROM),
+            from: summary.inputs.view_from.unwrap_or(FROM),
         }
     }
 
@@ -95,25 +95,6 @@ impl Folder {
         };
         paths.iter().map(read).collect()
     }
-}
-
-/// The direction of the viewer, of any length. None: the scene gives none.
-pub(crate) fn view_from(summary: &Value) -> Option<[f64; 3]> {
-    let text = summary["inputs"]["scene"]["output.view.from"].as_str()?;
-    let numbers = text.trim_matches(['[', ']']).split(',');
-    let numbers = numbers.filter_map(|number| number.trim().parse().ok());
-    numbers.collect::<Vec<f64>>().try_into().ok()
-}
-
-/// Whether a wall of the scene is solid and seen from outside only: a plane, a box or a cylinder.
-/// Surfaces from STL files have two sides.
-pub(crate) fn is_solid(summary: &Value, wall: &str) -> bool {
-    let scene = &summary["inputs"]["scene"];
-    let shapes = ["plane.point", "box.min", "cylinder.from"];
-    let mut keys = shapes
-        .map(|shape| format!("walls.{wall}.{shape}"))
-        .into_iter();
-    keys.any(|key| scene.get(&key).is_some())
 }
 
 fn attribute<'a>(element: &'a str, name: &str) -> Option<&'a str> {

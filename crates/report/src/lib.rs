@@ -16,6 +16,7 @@ use std::path::Path;
 
 use dem_io::{Diagnostic, Result};
 use dem_plots::Page;
+use dem_results::{Summary, from_json};
 use serde_json::Value;
 
 use folder::Folder;
@@ -26,14 +27,13 @@ use sections::{add_curves, add_inputs, add_results, add_test, add_time, add_verd
 /// # Errors
 /// The summary is not that of a run; a frame is missing or damaged (both exit code 2).
 pub fn report(folder: &Path, summary: &str) -> Result<String> {
-    let summary: Value = serde_json::from_str(summary).map_err(|error| {
+    let summary = read_summary(summary).map_err(|error| {
         Diagnostic::input(
             folder.join("summary.json").display().to_string(),
             format!("this is not the summary of a run: {error}"),
             "name the folder of a run that has ended",
         )
     })?;
-    let summary = without_folders(summary);
     let folder = Folder::read(folder)?;
     let mut page = Page::new(&title(&summary));
     add_verdict(&mut page, &summary);
@@ -41,15 +41,13 @@ pub fn report(folder: &Path, summary: &str) -> Result<String> {
         page.heading("View");
         page.part(view);
     }
-    // A run that failed at its start has no results.
-    let has_results = summary["steps"].is_number();
-    if has_results {
+    if summary.has_results() {
         add_test(&mut page, &summary);
         add_results(&mut page, &summary, &folder);
         add_curves(&mut page, &folder)?;
     }
     add_inputs(&mut page, &summary, &folder);
-    if has_results {
+    if summary.has_results() {
         add_time(&mut page, &summary);
     }
     Ok(page.html())
@@ -57,17 +55,19 @@ pub fn report(folder: &Path, summary: &str) -> Result<String> {
 
 /// The summary with the names of files in place of their paths: a page that is shared does not name
 /// the folders of a machine.
-fn without_folders(mut summary: Value) -> Value {
-    let mut paths: Vec<String> = [&summary["inputs"]["bodies"], &summary["inputs"]["walls"]]
-        .into_iter()
-        .filter_map(Value::as_object)
-        .flat_map(|all| all.values())
-        .filter_map(|input| input["file"].as_str().map(str::to_owned))
+fn read_summary(text: &str) -> serde_json::Result<Summary> {
+    let mut json: Value = serde_json::from_str(text)?;
+    let summary: Summary = from_json(json.clone())?;
+    let bodies = summary.inputs.bodies.into_values();
+    let walls = summary.inputs.walls.into_values();
+    let mut paths: Vec<String> = (bodies.filter_map(|body| body.file))
+        .chain(walls.map(|wall| wall.file))
         .collect();
-    paths.extend(summary["scene"].as_str().map(str::to_owned));
+    paths.push(summary.scene);
+    paths.retain(|path| !path.is_empty());
     paths.sort_by_key(|path| std::cmp::Reverse(path.len()));
-    shorten(&mut summary, &paths);
-    summary
+    shorten(&mut json, &paths);
+    from_json(json)
 }
 
 /// Replaces these paths by their last parts in all texts.
@@ -88,11 +88,11 @@ fn shorten(value: &mut Value, paths: &[String]) {
 }
 
 /// The name of the scene without folder and ending.
-fn title(summary: &Value) -> String {
-    let scene = summary["scene"].as_str().unwrap_or_default();
-    let stem = Path::new(scene).file_stem().unwrap_or_default();
-    match &summary["test"]["type"] {
-        Value::String(test) => format!("{}: {}", stem.to_string_lossy(), test.replace('-', " ")),
-        _ => stem.to_string_lossy().into_owned(),
+fn title(summary: &Summary) -> String {
+    let stem = Path::new(&summary.scene).file_stem().unwrap_or_default();
+    let stem = stem.to_string_lossy();
+    match &summary.test {
+        Some(test) => format!("{stem}: {}", test.kind.name().replace('-', " ")),
+        None => stem.into_owned(),
     }
 }

@@ -14,9 +14,9 @@ use dem_io::{Bounds, Diagnostic, Result, read_input};
 use dem_pictures::label::{colour_bar, label, scale_bar, time_text};
 use dem_pictures::png_file::{Compression, to_png};
 use dem_pictures::{Camera, Image, Surface, render};
-use serde_json::Value;
+use dem_results::{Summary, from_json};
 
-use crate::folder::{Folder, is_solid, view_from};
+use crate::folder::Folder;
 use crate::home::Home;
 use crate::view::{ChosenFrame, home};
 use gif_film::film;
@@ -92,10 +92,10 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
     }
     // A run that has not finished has none, but the viewer may say from where to look.
     let summary = match (summary(path), order.from) {
-        (Err(_), Some(_)) => Value::Null,
+        (Err(_), Some(_)) => Summary::default(),
         (summary, _) => summary?,
     };
-    let from = order.from.or_else(|| view_from(&summary));
+    let from = order.from.or(summary.inputs.view_from);
     let frames = folder.frames();
     let chosen = chosen(frames, order, kind)?;
     let colours = Colours::of(order.colour_by, path, &chosen)?;
@@ -111,7 +111,7 @@ pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<D
         if seen.is_within(&camera, order.size_px) {
             is_empty.set(false);
         }
-        let walls = seen.walls(&|name| is_solid(&summary, name));
+        let walls = seen.walls(&summary.inputs.solid_walls);
         Ok(drawn(&seen, &walls, frame.1, &camera, &colours, every_s))
     };
     let bytes = match kind {
@@ -178,10 +178,11 @@ fn refuse_beyond(time_s: f64, frames: &[(PathBuf, f64)]) -> Result<()> {
 }
 
 /// The summary of the run.
-fn summary(path: &Path) -> Result<Value> {
+fn summary(path: &Path) -> Result<Summary> {
     let summary = path.join("summary.json");
     let text = read_input(&summary, "the summary of a run")?;
-    serde_json::from_slice(&text).map_err(|error| {
+    let read = serde_json::from_slice(&text).and_then(from_json);
+    read.map_err(|error| {
         let problem = format!("this is not the summary of a run: {error}");
         Diagnostic::input(
             summary.display().to_string(),

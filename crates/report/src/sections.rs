@@ -3,21 +3,18 @@
 mod inputs;
 mod results;
 mod time;
-mod values;
 
 use dem_io::Result;
 use dem_io::text::counted;
-use dem_io::units::show_quantity;
+use dem_io::units::{show_quantity, significant};
 use dem_plots::Page;
-use serde_json::Value;
+use dem_results::Summary;
 
 use crate::folder::Folder;
 
 pub(crate) use inputs::add_inputs;
 pub(crate) use results::{add_results, add_test};
 pub(crate) use time::add_time;
-
-use values::{number, text, texts};
 
 /// Plots that come first, in this order.
 const FIRST_PLOTS: [&str; 12] = [
@@ -36,42 +33,45 @@ const FIRST_PLOTS: [&str; 12] = [
 ];
 
 /// Whether the result can be trusted, and how the run ended.
-pub(crate) fn add_verdict(page: &mut Page, summary: &Value) {
-    let mut warnings = texts(&summary["verdict"]["warnings"]);
-    if let (true, Some(problem)) = (warnings.is_empty(), summary["problem"].as_str()) {
+pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
+    let mut warnings = summary.verdict.warnings.clone();
+    if let (true, Some(problem)) = (warnings.is_empty(), &summary.problem) {
         // A run that failed at its start has no verdict.
-        warnings.push(problem.to_owned());
+        warnings.push(problem.clone());
     }
-    let is_sound = summary["verdict"]["sound"] == true;
+    let is_sound = summary.verdict.sound;
     let headline = if is_sound {
         "Checks passed, no warnings.".to_owned()
     } else {
         format!("Doubtful: {}.", counted(warnings.len(), "warning"))
     };
     page.verdict(&headline, is_sound, &warnings);
-    if !summary["steps"].is_number() {
+    if !summary.has_results() {
         return;
     }
-    let quantity = |name: &str, unit: &str| show_quantity(number(&summary[name]), unit);
-    let part = match summary["resumed_at_s"].as_f64() {
+    let part = match summary.resumed_at_s {
         Some(at_s) => {
-            let last_s = number(&summary["simulated_s"]) - at_s;
+            let last_s = summary.simulated_s - at_s;
             format!(", the last {} of it", show_quantity(last_s, "s"))
         }
         None => String::new(),
     };
     let mut ended = format!(
         "{} simulated{part} in {} on {}, ended by {}; {}.",
-        quantity("simulated_s", "s"),
-        quantity("wall_s", "s"),
-        counted(number(&summary["threads"]) as usize, "thread"),
-        text(&summary["ended_by"]),
-        text(&summary["program"]),
+        show_quantity(summary.simulated_s, "s"),
+        show_quantity(summary.wall_s, "s"),
+        counted(summary.threads, "thread"),
+        summary.ended_by,
+        summary.program,
     );
-    if let Some(notes) = Some(texts(&summary["notes"])).filter(|notes| !notes.is_empty()) {
-        ended += &format!(" {}.", notes.join(". "));
+    if !summary.notes.is_empty() {
+        ended += &format!(" {}.", summary.notes.join(". "));
     }
     page.paragraph(&ended);
+}
+
+fn percent(fraction: f64) -> String {
+    format!("{} %", significant(100.0 * fraction, 3))
 }
 
 /// The plots of the folder.

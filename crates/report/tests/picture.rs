@@ -100,18 +100,16 @@ fn every_part_of_the_order_changes_the_picture() {
 #[test]
 fn walls_are_drawn_as_during_the_run() {
     let folder = made();
-    let drawn_as = |shape: &str, from: [f64; 3]| {
+    let drawn_as = |solid_walls: &[&str], from: [f64; 3]| {
         let mut summary = summary();
-        summary["inputs"]["scene"][format!("walls.floor.{shape}")] = "".into();
+        summary["inputs"]["solid_walls"] = serde_json::json!(solid_walls);
         std::fs::write(out(&folder).join("summary.json"), summary.to_string()).unwrap();
         let from = Some(from);
         drawn(&folder, &PictureOrder { from, ..order() })
     };
     let [above, below] = [[0.2, -1.0, 0.4], [0.2, -1.0, -0.4]];
-    assert_eq!(drawn_as("plane.point", above), drawn_as("stl", above));
-    let behind = drawn_as("plane.point", below);
-    assert_ne!(behind, drawn_as("stl", below));
-    assert_eq!(behind, drawn_as("box.min", below));
+    assert_eq!(drawn_as(&["floor"], above), drawn_as(&[], above));
+    assert_ne!(drawn_as(&["floor"], below), drawn_as(&[], below));
 
     // Without a direction: that of pictures made during a run. The floor is 2 m long both ways.
     let usual = drawn(
@@ -121,7 +119,7 @@ fn walls_are_drawn_as_during_the_run() {
             ..order()
         },
     );
-    assert_eq!(usual, drawn_as("box.min", USUAL));
+    assert_eq!(usual, drawn_as(&["floor"], USUAL));
 }
 
 /// From the front, the right and above.

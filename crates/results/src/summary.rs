@@ -1,20 +1,22 @@
-//! Summaries as JSON.
+//! The summary of a run: its results, their reliability, and the time spent in each stage.
 
-use std::path::Path;
+mod balance;
+mod by_name;
+mod contents;
+mod equilibrium;
+mod inputs;
+mod measured;
+mod parts;
+mod sizes;
+mod text;
 
-use serde::Serialize;
-
-use dem_io::diagnostic::Result;
-use dem_io::safe_write::write_file;
-
-/// Writes `value` to the file `path` as indented JSON, completely or not at all. Numbers that are
-/// not finite become `null`.
-///
-/// # Errors
-/// As [`write_file`]; `value` cannot be represented as JSON (exit code 1).
-pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
-    write_file(path, |out| {
-        serde_json::to_writer_pretty(&mut *out, value)?;
-        out.write_all(b"\n")
-    })
-}
+pub use balance::{Balance, ENERGIES, Energy, EnergyKind};
+pub use contents::{Summary, Unfinished, Verdict};
+pub use equilibrium::EquilibriumSummary;
+pub use inputs::{InputBody, InputFile, Inputs};
+pub use measured::Measured;
+pub use parts::{
+    AdaptiveSummary, BodyFlow, FragmentSummary, OutletSummary, PartError, PopulationSummary,
+    SleepSummary, TakenIn,
+};
+pub use sizes::{RESOLVED_DIAMETERS, SizeSummary, Sizes, Unresolved};

@@ -5,16 +5,15 @@ use dem_laboratory::theory::PEAK_AXIAL_STRESS;
 use dem_scene::Test;
 
 use super::curve::{elastic_range, largest_n, peak};
-use super::figure::Figure;
 use super::record::Row;
 use crate::setup::Setup;
+use dem_laboratory::figure::Figure;
+use dem_laboratory::test_result::PRESSURE_OFF;
 
 /// Ratio of the lateral strain to the axial one, with the sign reversed.
 pub const POISSON_RATIO: &str = "Poisson's ratio";
 /// Stress that is left at the end of the stroke, Pa.
 pub const RESIDUAL: &str = "residual strength";
-/// Largest deviation of a lateral pressure from the one wanted, up to the largest load.
-pub const PRESSURE_OFF: &str = "deviation of the lateral pressure";
 /// Ratio of the residual strength to the normal stress.
 pub const RESIDUAL_FRICTION: &str = "residual friction coefficient";
 

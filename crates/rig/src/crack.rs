@@ -3,9 +3,9 @@
 use dem_plots::{Circle, Dot, Guide, Map};
 use nalgebra::Vector3;
 
-use crate::evaluate::Crack;
 use crate::setup::Setup;
 use dem_laboratory::Specimen;
+use dem_laboratory::test_result::Crack;
 
 /// Largest number of particles drawn, those nearest to the viewer.
 const MOST_PARTICLES: usize = 4000;

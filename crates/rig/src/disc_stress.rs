@@ -8,11 +8,11 @@ use dem_plots::{Axis, Line, Plot};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::figure::{Figure, Source};
 use crate::setup::Setup;
 use dem_engine::stages::contacts::{self, pair_force_n};
 use dem_engine::stages::walls::{self, touch_force_n};
 use dem_engine::state::State;
+use dem_laboratory::figure::{Figure, Source};
 
 /// Stress across the loaded diameter, the mean of its middle half, Pa.
 pub const ACROSS: &str = "stress across the loaded diameter";

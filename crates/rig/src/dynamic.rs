@@ -14,11 +14,12 @@ use dem_scene::{Bars, Gauges, Weight};
 
 use super::curve::rows_of;
 use super::evaluate::{
-    FAILURE_FORCE, LARGEST_FORCE, STRENGTH, TestInput, TestResult, first_broken, without_figures,
+    FAILURE_FORCE, LARGEST_FORCE, STRENGTH, TestInput, first_broken, without_figures,
 };
-use super::figure::{Figure, Source};
 use super::record::{Record, Row};
 use dem_engine::state::loads::factor_at;
+use dem_laboratory::figure::{Figure, Source};
+use dem_laboratory::test_result::{EQUILIBRIUM, LARGEST_T10, T10, TestResult, UNBOOKED};
 use dem_physics::bond::strain_rate::{HIGHEST_1_S, dynamic_increase_factor};
 
 /// Fraction of the largest load from which on the body counts as loaded.
@@ -44,15 +45,6 @@ pub const LARGEST_STRESS: &str = "largest stress";
 pub const STRAIN_RATE: &str = "strain rate";
 /// Strength over the static one.
 pub const INCREASE_FACTOR: &str = "dynamic increase factor";
-/// Largest difference of the forces on both ends between half of the largest load and all of it,
-/// over the largest load.
-pub const EQUILIBRIUM: &str = "force equilibrium";
-/// Share of the incident energy that the pulses and the work of the bars disagree by.
-pub const UNBOOKED: &str = "energy unaccounted for";
-/// Share of the mass finer than a tenth of the body's size.
-pub const T10: &str = "t10";
-/// Share of the mass of the spheres that are smaller than that: t10 cannot be larger.
-pub const LARGEST_T10: &str = "largest possible t10";
 
 /// Evaluates a dynamic test: its figures are those of its bars or its weight, and its travel has no
 /// play.

@@ -2,11 +2,12 @@
 
 use dem_io::{Diagnostic, Result};
 use dem_laboratory::Line;
+use dem_laboratory::figure::Figure;
+use dem_laboratory::test_result::TestResult;
 use dem_scene::Scene;
 
 use super::press::{NotPressed, press};
-use crate::evaluate::{TestResult, elastic_figures};
-use crate::figure::Figure;
+use crate::evaluate::elastic_figures;
 use crate::record::{Loading, Row};
 use crate::setup::Setup;
 use dem_engine::state::State;
@@ -36,7 +37,7 @@ impl ElasticTest {
     pub fn result(&self, scene: &Scene) -> Option<TestResult> {
         let test = scene.test.as_ref()?;
         Some(TestResult {
-            kind: test.kind.name().to_owned(),
+            kind: test.kind,
             broken: false,
             broken_bonds: [0, 0],
             broken_at_peak: 0,

@@ -2,128 +2,20 @@
 //! crack.
 
 use dem_scene::{BondKind, Test};
-use serde::{Deserialize, Serialize};
 
-use super::confined::{self, POISSON_RATIO, PRESSURE_OFF, RESIDUAL, RESIDUAL_FRICTION};
+use super::confined::{self, POISSON_RATIO, RESIDUAL, RESIDUAL_FRICTION};
 use super::curve::{largest_n, peak, play_m, rows_of, slope};
 use super::disc_stress::{self, ACROSS, ALONG};
-use super::figure::{Figure, Source};
 use super::pieces::Pieces;
 use super::record::{Record, Row};
 use crate::setup::Setup;
+use dem_laboratory::figure::{Figure, Source};
+use dem_laboratory::test_result::{Crack, FirstBroken, PRESSURE_OFF, STIFFNESS, TestResult};
 use dem_laboratory::theory::Beam;
 use dem_laboratory::theory::{
     KAPPA, PEAK_AXIAL_STRESS, bar_stress_pa, disc_modulus_pa, disc_stress_pa,
 };
 use dem_laboratory::{Specimen, TestType, area_between};
-use dem_physics::bond::failure::Cause;
-
-/// The first bond that broke.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FirstBroken {
-    /// Time, s.
-    pub time_s: f64,
-    /// Load at that time, N.
-    pub force_n: f64,
-    /// Crosshead travel at that time, from the point where the fitted line has no load, m.
-    pub travel_m: f64,
-    /// Initial position in the body, m. Length 3.
-    pub place_m: [f64; 3],
-    /// Cause of failure.
-    pub cause: Cause,
-}
-
-/// Position of the broken bonds in the initial body.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Crack {
-    /// Number of broken bonds.
-    pub bonds: usize,
-    /// Mean distance from the middle of the span, of a bar's length or of the loaded diameter, m.
-    pub offset_m: f64,
-    /// Standard deviation of that, m.
-    pub spread_m: f64,
-    /// The crack is in the expected place if `offset_m` does not exceed this, m: half the loading
-    /// span of a four-point test.
-    pub within_m: f64,
-    /// Whether the crack is in the expected place.
-    pub is_within: bool,
-    /// Fraction of the broken bonds that are individually in the expected place.
-    #[serde(rename = "fraction_within")]
-    pub fraction_within: f64,
-}
-
-/// Result of a test.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TestResult {
-    /// Its type, as in the scene.
-    #[serde(rename = "type")]
-    pub kind: String,
-    /// Whether the body broke: the load fell below half of its maximum.
-    pub broken: bool,
-    /// Number of broken bonds, and of all bonds.
-    pub broken_bonds: [usize; 2],
-    /// Number of bonds that broke before the largest load.
-    pub broken_at_peak: usize,
-    /// Strength given in the scene, Pa.
-    pub target_strength_pa: Option<f64>,
-    /// Lowest frequency of the body in the test, estimated, Hz.
-    pub lowest_frequency_hz: f64,
-    /// Crosshead velocity, that of the striker, or that of the weight at the impact, m/s.
-    pub rate_m_s: f64,
-    /// Dimensions used in the evaluation.
-    pub dimensions: Vec<Figure>,
-    /// Results.
-    #[serde(rename = "results")]
-    pub figures: Vec<Figure>,
-    /// Bond parameters with which the body would have the modulus and the strength given in the
-    /// scene.
-    pub calibration: Vec<Figure>,
-    /// None: no bond broke.
-    pub first_broken: Option<FirstBroken>,
-    /// None: no bond broke.
-    pub crack: Option<Crack>,
-    /// Displacement, m, from where the fitted line has no load, and load, N.
-    #[serde(skip)]
-    pub curve: Vec<[f64; 2]>,
-    /// Reasons to doubt a dynamic test that its figures do not show.
-    #[serde(skip)]
-    pub reasons: Vec<String>,
-    /// Relative changes of the figures at half the rate: (slow - fast)/fast. Empty: not checked.
-    #[serde(rename = "changes_at_half_the_rate")]
-    pub half_the_rate_changes: Vec<Figure>,
-}
-
-impl TestResult {
-    /// Whether the test was dynamic.
-    pub fn is_dynamic(&self) -> bool {
-        self.test_type().is_some_and(TestType::is_dynamic)
-    }
-
-    /// Its type.
-    pub(super) fn test_type(&self) -> Option<TestType> {
-        let found = TestType::NAMES.iter().find(|(name, _)| *name == self.kind);
-        found.map(|(_, kind)| *kind)
-    }
-
-    /// The value of a figure.
-    pub fn figure(&self, name: &str) -> Option<f64> {
-        let found = self.figures.iter().find(|figure| figure.name == name);
-        found.map(|figure| figure.value)
-    }
-
-    /// Records the relative differences of its figures from those of the same test at twice the
-    /// rate.
-    pub fn compare(&mut self, fast: &Self) {
-        let compared = |figure: &Figure| {
-            let before = fast.figure(&figure.name)?;
-            let change = (figure.value - before) / before.abs();
-            change
-                .is_finite()
-                .then(|| Figure::new(&figure.name, change, "", None))
-        };
-        self.half_the_rate_changes = self.figures.iter().filter_map(compared).collect();
-    }
-}
 
 /// Input of the evaluation.
 #[derive(Debug, Clone, Copy)]
@@ -205,7 +97,7 @@ pub fn evaluate(evidence: &TestInput<'_>) -> TestResult {
 /// What all tests have in common.
 pub(super) fn without_figures(evidence: &TestInput<'_>, rows: &[Row]) -> TestResult {
     TestResult {
-        kind: evidence.test.kind.name().to_owned(),
+        kind: evidence.test.kind,
         broken: evidence.broken,
         broken_bonds: [evidence.record.broken.len(), evidence.all_bonds],
         broken_at_peak: broken_at_peak(evidence.record, rows),
@@ -435,8 +327,6 @@ impl Measured {
 
 /// The smaller part of the two ends of a body that plates press.
 const PRESSED: &str = "pressed part of its ends";
-/// Names of figures that are looked up: ratio of load to travel.
-pub const STIFFNESS: &str = "stiffness";
 /// Modulus of a beam from the travel, without shear: Platzer 2022, eq. 18.
 pub const EQ_18: &str = "modulus without shear";
 /// Ratio of load to the specimen's own deflection or elongation.

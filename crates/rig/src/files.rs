@@ -4,6 +4,8 @@ use std::fmt::Write;
 
 use dem_io::Result;
 use dem_laboratory::Specimen;
+use dem_laboratory::figure::Figure;
+use dem_laboratory::test_result::TestResult;
 use dem_plots::{Axis, Line, Plot};
 use dem_results::ResultsFolder;
 use dem_scene::{Bars, Test};
@@ -12,8 +14,7 @@ use super::crack::{CrackPicture, crack_map};
 use super::curve::{peak, play_m, rows_of, slope};
 use super::disc_stress::{self, slabs};
 use super::dynamic::{BarSignal, GaugeSignal, bar_signals, gauge_signals, stress_strain};
-use super::evaluate::{FAILURE_FORCE, TestResult, measured_curve};
-use super::figure::Figure;
+use super::evaluate::{FAILURE_FORCE, measured_curve};
 use super::record::{Record, Row};
 
 /// Content of the files of a test.
@@ -197,7 +198,7 @@ fn force_over_time(rows: &[Row], result: &TestResult) -> Plot {
         rows.iter().map(|row| [row.time_s, of(row)]).collect()
     };
     Plot {
-        title: result.kind.replace('-', " "),
+        title: result.kind.name().replace('-', " "),
         x: Axis::of("time (s)"),
         y: Axis::of("force (N)"),
         lines: vec![
@@ -286,7 +287,7 @@ pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
     }
     let failure = named(result, FAILURE_FORCE).and_then(|figure| figure.theory);
     Plot {
-        title: result.kind.replace('-', " "),
+        title: result.kind.name().replace('-', " "),
         x: Axis::of("displacement (m)"),
         y: Axis::of("load (N)"),
         lines,
@@ -297,9 +298,4 @@ pub fn curve(rows: &[Row], result: &TestResult, measured: &[[f64; 2]]) -> Plot {
 
 fn named<'a>(result: &'a TestResult, name: &str) -> Option<&'a Figure> {
     result.figures.iter().find(|figure| figure.name == name)
-}
-
-/// A fraction as a percentage with its sign.
-pub fn percent(fraction: f64) -> String {
-    format!("{:+.1} %", 100.0 * fraction)
 }

@@ -11,7 +11,6 @@ pub mod disc_stress;
 pub mod dynamic;
 pub mod elastic_test;
 pub mod evaluate;
-pub mod figure;
 pub mod files;
 pub mod pieces;
 mod planned;
@@ -19,7 +18,6 @@ pub mod press;
 pub mod record;
 mod seat;
 pub mod setup;
-mod text;
 pub mod watch;
 
 pub use planned::plan_with_test;

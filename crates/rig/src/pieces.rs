@@ -1,7 +1,8 @@
 //! What is left of the tested body.
 
 use dem_engine::state::State;
-use dem_plan::measure::sizes::{Fragments, SizeSummary};
+use dem_plan::measure::sizes::Fragments;
+use dem_results::summary::SizeSummary;
 
 /// Pieces of the tested body at the end.
 #[derive(Debug, Clone, Copy, PartialEq)]

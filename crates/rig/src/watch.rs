@@ -8,12 +8,13 @@ use super::confined::has_passed_its_peak;
 use super::crack::{CrackPicture, Sphere};
 use super::curve::rows_of;
 use super::dynamic::evaluate_dynamic;
-use super::evaluate::{TestInput, TestResult, evaluate};
+use super::evaluate::{TestInput, evaluate};
 use super::files::{TestFiles, write_test};
 use super::pieces::Pieces;
 use super::record::{Loading, Record};
 use crate::setup::Setup;
 use dem_engine::state::State;
+use dem_laboratory::test_result::TestResult;
 use dem_plan::Plan;
 
 /// Settings of a test in a run.

@@ -23,9 +23,9 @@ use crate::snapshot::fingerprint;
 use dem_engine::check::watchdog::Watchdog;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
-use dem_plan::inputs::Inputs;
 use dem_plan::measure::{Probe, place_watches, probes, renumber as renumber_probes};
 use dem_plan::{Plan, PlannedStage};
+use dem_results::summary::Inputs;
 use dem_rig::watch::Watch;
 
 /// A run: the plan that is stepped, and its monitors.

@@ -2,6 +2,7 @@
 
 use dem_io::Result;
 use dem_io::units::significant;
+use dem_results::summary::{AdaptiveSummary, Summary, Verdict};
 use dem_results::write_json;
 
 use super::begin::Run;
@@ -14,16 +15,14 @@ use super::past_outlets::{past_outlets, past_walls};
 use super::rigid_hits::RigidHits;
 use crate::machine::{machine, processor_time_s};
 use crate::output::flows::body_flows;
-use crate::output::fragments::FragmentSummary;
-use crate::output::summary::{
-    AdaptiveSummary, PartError, PopulationSummary, SleepSummary, Summary, Verdict,
-};
+use crate::output::fragments::fragment_summary;
+use crate::output::summary::{part_error_above, population_summary, sleep_summary};
 use dem_engine::state::clusters::fragments as fragments_of;
 use dem_engine::state::clusters::fragments::Fragment;
 use dem_engine::step::{advance, number_of, stages};
+use dem_laboratory::test_result::TestResult;
 use dem_plan::measure::Probe;
 use dem_plan::measure::sizes::Fragments;
-use dem_rig::evaluate::TestResult;
 
 impl Run<'_> {
     /// Writes the remaining files and the summary.
@@ -190,6 +189,7 @@ impl Run<'_> {
         Summary {
             scene: scene.source.clone(),
             program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+            engine: None,
             ended_by: ended.by.to_owned(),
             problem: ended.problem.as_ref().map(ToString::to_string),
             inputs: self.planned.inputs.clone(),
@@ -210,12 +210,12 @@ impl Run<'_> {
             yielded_bonds: state.bonds.count_yielded(),
             sizes: Fragments::of(state).map(|fragments| fragments.sizes(&state.model)),
             fragments: of_state.map(|(clusters, all)| {
-                FragmentSummary::new(clusters, all, &state.population.discharged)
+                fragment_summary(clusters, all, &state.population.discharged)
             }),
-            population: PopulationSummary::of(state, &self.bodies),
+            population: population_summary(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
             taken_in: progress.seen.taken.summary(scene),
-            sleep: state.sleep.as_ref().map(SleepSummary::of),
+            sleep: state.sleep.as_ref().map(sleep_summary),
             steps: state.steps,
             time_step_s: state.time_step_s,
             adaptive: scene.run.adaptive.then(|| AdaptiveSummary {
@@ -228,7 +228,7 @@ impl Run<'_> {
             steps_per_s,
             bond_steps_per_s: steps_per_s * bonds,
             energy_error,
-            part_error: PartError::above(energy_error, state),
+            part_error: part_error_above(energy_error, state),
             momentum_error,
             angular_momentum_error,
             balance: ended.balance,

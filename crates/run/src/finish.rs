@@ -6,10 +6,11 @@ use std::path::PathBuf;
 use dem_io::safe_write::{explain, write_file};
 use dem_io::{Diagnostic, Result, read_input};
 use dem_report::report;
-use dem_results::{MixingRow, ResultsFolder, write_distribution, write_flows, write_mixing};
+use dem_results::{
+    MixingRow, ResultsFolder, Summary, from_json, write_distribution, write_flows, write_mixing,
+};
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::pictures::{Order, Pictures};
 use super::schedule::OutputSchedule;
@@ -18,7 +19,6 @@ use super::snapshot::fingerprint;
 use crate::output::flows::flow_rows;
 use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use crate::output::plots::{plots_of_every_run, write_plots};
-use crate::output::summary::Summary;
 use dem_engine::state::State;
 use dem_plan::Plan;
 use dem_plan::measure::sizes::Fragments;
@@ -115,8 +115,11 @@ impl End {
         probes: &[Probe],
         pictures: Option<&mut Pictures>,
     ) -> Result<()> {
-        let summary: Value = serde_json::from_str(&self.summary).unwrap_or_default();
-        write_plots(folder, probes, &summary["measures"])?;
+        let summary: Option<Summary> = (serde_json::from_str(&self.summary))
+            .and_then(from_json)
+            .ok();
+        let measures = summary.map_or_else(Vec::new, |summary| summary.measures);
+        write_plots(folder, probes, &measures)?;
         if let Some(pictures) = pictures {
             pictures.finish()?;
         }

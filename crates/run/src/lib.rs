@@ -30,9 +30,9 @@ mod taken_in;
 use dem_io::Result;
 use dem_scene::{Integrator, Scene};
 
-use crate::output::summary::Summary;
 use dem_engine::step::{advance, interact};
 use dem_plan::Plan;
+use dem_results::Summary;
 
 use self::begin::Run;
 pub use self::finish::{Finished, finish};

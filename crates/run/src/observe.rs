@@ -18,7 +18,7 @@ use super::settings::SoFar;
 use crate::output::frames::FrameOrder;
 use crate::output::series;
 use dem_engine::stages::clumps::place_all;
-use dem_engine::stages::ledger::{Balance, CHECKS, balance};
+use dem_engine::stages::ledger::{CHECKS, balance};
 use dem_engine::stages::stage::Stage;
 use dem_engine::stages::touching::contacts_now;
 use dem_engine::stages::watching::OUTPUT;
@@ -27,6 +27,7 @@ use dem_engine::state::bodies::renumber;
 use dem_engine::state::events::PopulationEvent;
 use dem_engine::step::number_of;
 use dem_plan::measure::{Probe, read_probes, renumber as renumber_probes};
+use dem_results::Balance;
 
 /// Wall time between two checkpoints unless the scene sets an interval.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);

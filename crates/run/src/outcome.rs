@@ -2,7 +2,7 @@
 
 use dem_io::Diagnostic;
 
-use crate::output::summary::Summary;
+use dem_results::Summary;
 
 /// Outcome of a run.
 #[derive(Debug, Clone)]

@@ -11,9 +11,10 @@ use super::schedule::{OutputSchedule, first_after};
 use super::seen::Seen;
 use super::sums::Sums;
 use dem_engine::check::limit::Bound;
-use dem_engine::stages::ledger::{Balance, over};
+use dem_engine::stages::ledger::over;
 use dem_engine::state::State;
 use dem_plan::time_step::{StepBasis, StepChoice};
+use dem_results::Balance;
 use dem_rig::record::Record;
 
 /// Progress of the output of a run, and of its monitors.

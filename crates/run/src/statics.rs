@@ -23,14 +23,14 @@ use dem_scene::Scene;
 
 use crate::machine::processor_time_s;
 use crate::output::frames::FrameOrder;
-use crate::output::summary::Summary;
 use crate::settings::{RunSettings, SoFar};
 use dem_engine::stages::elastic::elastic_energy;
-use dem_engine::stages::ledger::Balance;
 use dem_engine::state::State;
 use dem_engine::state::particles::Motion;
 use dem_plan::Plan;
 use dem_plan::measure::{bond_utilisation, probes, read_probes};
+use dem_results::Balance;
+use dem_results::Summary;
 
 use dem_engine::check::laws::strain_warning;
 

@@ -6,8 +6,8 @@ use dem_io::units::significant;
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
-use crate::output::summary::TakenIn;
 use dem_engine::state::State;
+use dem_results::summary::TakenIn;
 
 /// Largest energies that particles took in, by body: for daughters in one impact, or all if they
 /// are summed, J/kg; for a trigger by impact energy, J.

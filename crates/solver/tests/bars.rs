@@ -1,10 +1,11 @@
 //! Bodies for the tests, and operations on them.
 
+use dem_run::Balance;
 use dem_run::physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia, reduced};
 use dem_run::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::bond::total::direction;
-use dem_run::stages::ledger::{Balance, balance, opened};
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
 use dem_run::state::particles::{Particles, Wrench};

@@ -7,9 +7,10 @@ mod pairs;
 mod swapped;
 mod walls;
 
+use dem_run::Balance;
 use dem_run::physics::contact::liquid_bridge::LiquidBridge;
 use dem_run::plan::plan;
-use dem_run::stages::ledger::{Balance, balance};
+use dem_run::stages::ledger::balance;
 use dem_run::state::State;
 use dem_run::state::bridges::Bridges;
 use dem_run::step::{advance, interact};

@@ -14,8 +14,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::Result;
+use dem_results::Summary;
 use dem_results::{Existing, ResultsFolder};
-use dem_run::output::summary::Summary;
 use dem_run::plan::{Plan, plan};
 use dem_run::run::snapshot::Snapshot;
 use dem_run::run::{RunSettings, run};

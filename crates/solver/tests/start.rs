@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_io::Result;
 use dem_results::ResultsFolder;
-use dem_run::output::summary::Summary;
+use dem_results::Summary;
 use dem_run::plan::{Plan, plan};
 use dem_run::run::snapshot::Snapshot;
 use dem_run::run::{RunSettings, run};

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::trial::Trial;
-use dem_runner::output::summary::Summary;
+use dem_results::Summary;
 
 /// A scene of a case and its prediction.
 #[derive(Debug, Clone)]

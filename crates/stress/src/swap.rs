@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
 use super::trial::{Outcome, Trial};
-use dem_runner::output::summary::Summary;
+use dem_results::Summary;
 
 /// Radius of the spheres of the block, m.
 const RADIUS_M: f64 = 1e-3;

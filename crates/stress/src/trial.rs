@@ -11,9 +11,9 @@ use dem_scene::{Scene, read_bodies};
 use tempfile::TempDir;
 
 use dem_plan::Plan;
+use dem_results::Summary;
 use dem_rig::arrange::{TestedBody, arrange};
 use dem_rig::plan_with_test;
-use dem_runner::output::summary::Summary;
 use dem_runner::{RunSettings, run};
 
 /// A scene and its files.

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
+use dem_results::Summary;
 use dem_scene::study::{MeasureOf, Reference, RunTime, Study};
-use serde_json::Value;
 
 use super::curves::{curve, largest_n};
 use super::jobs::Job;
@@ -13,12 +13,8 @@ use super::outcome::{Done, Outcome, Reading};
 
 /// Reads the results of a job.
 pub fn outcome(study: &Study, job: Job, runs: &Path) -> Outcome {
-    let summary = fs::read(job.folder(runs).join("summary.json"));
-    let summary = summary
-        .ok()
-        .and_then(|bytes| serde_json::from_slice(&bytes).ok())
-        .filter(|summary: &Value| summary["problem"].is_null());
-    let Some(summary) = summary else {
+    let summary = Summary::read(&job.folder(runs).join("summary.json"));
+    let Some(summary) = summary.filter(|summary| summary.problem.is_none()) else {
         let said = fs::read_to_string(job.complaint(runs)).unwrap_or_default();
         let last = said.lines().rev().find(|line| !line.trim().is_empty());
         return last.map_or(Outcome::Missing, |line| {
@@ -41,11 +37,7 @@ fn report(job: Job, runs: &Path) -> Option<String> {
     page.is_file().then(|| parts.join("/"))
 }
 
-fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> {
-    let number = |key: &str| {
-        let value = summary[key].as_f64();
-        value.ok_or_else(|| format!("its summary has no {key}"))
-    };
+fn done(study: &Study, summary: &Summary, results: &Path) -> Result<Done, String> {
     let mut readings = Vec::new();
     for measure in &study.measures {
         let mut read = reading(summary, results, &measure.of)?;
@@ -65,28 +57,20 @@ fn done(study: &Study, summary: &Value, results: &Path) -> Result<Done, String> 
         readings.push(read);
     }
     Ok(Done {
-        time_s: number(match study.time {
-            RunTime::Wall => "wall_s",
-            RunTime::Processor => "processor_s",
-        })?,
-        steps: number("steps")? as u64,
-        time_step_s: number("time_step_s")?,
-        machine: summary["machine"].as_str().unwrap_or_default().to_owned(),
-        doubts: doubts(summary),
+        time_s: match study.time {
+            RunTime::Wall => summary.wall_s,
+            RunTime::Processor => (summary.processor_s).ok_or("its summary has no processor_s")?,
+        },
+        steps: summary.steps,
+        time_step_s: summary.time_step_s,
+        machine: summary.machine.clone(),
+        doubts: summary.verdict.warnings.clone(),
         report: None,
         readings,
     })
 }
 
-/// The warnings of a doubtful run.
-fn doubts(summary: &Value) -> Vec<String> {
-    let warnings = summary["verdict"]["warnings"].as_array();
-    let warnings = warnings.into_iter().flatten().filter_map(Value::as_str);
-    warnings.map(str::to_owned).collect()
-}
-
-/// A value that is not a number is null in JSON.
-fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, String> {
+fn reading(summary: &Summary, results: &Path, of: &MeasureOf) -> Result<Reading, String> {
     let plain = |value: f64| Reading {
         value,
         unit: String::new(),
@@ -94,10 +78,13 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
         masses_kg: Vec::new(),
         curve: Vec::new(),
     };
-    let (entry, name, reference) = match of {
+    let found = match of {
         MeasureOf::Balance(key) => {
-            let value = summary[*key].as_f64().unwrap_or(f64::NAN);
-            return Ok(plain(value));
+            return Ok(plain(match *key {
+                "energy_error" => summary.energy_error,
+                "momentum_error" => summary.momentum_error,
+                _ => summary.angular_momentum_error,
+            }));
         }
         MeasureOf::Masses(pieces) => {
             let masses_kg = masses_kg(*pieces, results)?;
@@ -116,18 +103,23 @@ fn reading(summary: &Value, results: &Path, of: &MeasureOf) -> Result<Reading, S
                 ..plain(largest_n)
             });
         }
-        MeasureOf::Measure(name) => (summary["measures"].get(name), name, "reference"),
+        MeasureOf::Measure(name) => {
+            let found = summary.measures.iter().find(|one| one.name == *name);
+            let found = found.map(|one| (one.value, &one.unit, one.reference));
+            found.ok_or(name)
+        }
         MeasureOf::Figure(name) => {
-            let figures = summary["test"]["results"].as_array();
-            let mut figures = figures.into_iter().flatten();
-            let found = figures.find(|entry| entry["name"].as_str() == Some(name));
-            (found, name, "theory")
+            let mut figures = summary.test.iter().flat_map(|test| &test.figures);
+            let found = figures.find(|one| one.name == *name);
+            let found = found.map(|one| (one.value, &one.unit, one.theory));
+            found.ok_or(name)
         }
     };
-    let entry = entry.ok_or_else(|| format!("nothing in its summary is called '{name}'"))?;
+    let (value, unit, closed_form) =
+        found.map_err(|name| format!("nothing in its summary is called '{name}'"))?;
     Ok(Reading {
-        unit: entry["unit"].as_str().unwrap_or_default().to_owned(),
-        closed_form: entry[reference].as_f64(),
-        ..plain(entry["value"].as_f64().unwrap_or(f64::NAN))
+        unit: unit.clone(),
+        closed_form,
+        ..plain(value)
     })
 }

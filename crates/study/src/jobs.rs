@@ -10,9 +10,9 @@ use std::time::Duration;
 
 use dem_io::own_command::own_command;
 use dem_io::{Diagnostic, Result};
+use dem_results::Summary;
 use dem_results::folder::{is_locked, is_written_to};
 use dem_scene::study::{BODY, Keep, Study, override_text};
-use serde_json::Value;
 
 use super::expand::Run;
 use super::outcome::Outcome;
@@ -70,12 +70,9 @@ impl Job {
 
     /// True if it has finished.
     pub fn is_done(&self, runs: &Path) -> bool {
-        let summary = fs::read(self.folder(runs).join("summary.json"));
-        let summary = summary
-            .ok()
-            .and_then(|bytes| serde_json::from_slice::<Value>(&bytes).ok());
+        let summary = Summary::read(&self.folder(runs).join("summary.json"));
         // A failed run also leaves a summary, which contains the reason.
-        summary.is_some_and(|summary| summary["problem"].is_null())
+        summary.is_some_and(|summary| summary.problem.is_none())
     }
 }
 

@@ -4,13 +4,13 @@ use dem_io::{Diagnostic, Result};
 
 use crate::stages::contacts::contact_energy_j;
 use crate::stages::elastic::elastic_energy;
-use crate::stages::ledger::Balance;
 use crate::stages::loads::loads_power_w;
 use crate::stages::totals::kinetic_energy;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::bond_of_file;
 use dem_physics::bond::pair::frequencies;
+use dem_results::Balance;
 
 /// Largest spurious energy for a step above the limit, relative to the energy supplied: there it
 /// comes from a local mode that grows until it saturates, small compared with a large body.

@@ -1,7 +1,9 @@
 //! The mass of a body of spheres, compared with that of its shape: spheres overlap, and leave
 //! voids.
 
-use serde::Serialize;
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
 
 use super::inertia::{MassProperties, of_spheres};
 use super::parts::{About, Body};
@@ -9,9 +11,12 @@ use crate::units::{show_length, significant};
 
 /// Coordinates of a centre below this fraction of the radius of gyration are rounding errors.
 const ROUNDING: f64 = 1e-9;
+/// Largest number of bodies that are listed.
+const LISTED: usize = 8;
 
 /// The mass of a body, and that of its shape filled with one density. SI units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct BodyMass {
     /// Mass of its spheres, kg. Overlaps count twice, except for a clump whose mass is that of the
     /// union of its spheres.
@@ -129,4 +134,19 @@ pub fn of_named_density(body: &Body) -> Option<BodyMass> {
 /// Volume of a sphere of this radius, m3.
 pub fn volume_m3(radius_m: f64) -> f64 {
     4.0 / 3.0 * std::f64::consts::PI * radius_m * radius_m * radius_m
+}
+
+/// Human-readable lines for bodies by name, the first preceded by a label: two for each body.
+pub fn mass_lines(masses: &BTreeMap<String, BodyMass>) -> Vec<(&'static str, String)> {
+    let mut lines = Vec::new();
+    for (name, mass) in masses.iter().take(LISTED) {
+        let head = if lines.is_empty() { "mass" } else { "" };
+        let [mass, centre] = mass.lines();
+        lines.push((head, format!("{name} {mass}")));
+        lines.push(("", format!("  {centre}")));
+    }
+    if masses.len() > LISTED {
+        lines.push(("", format!("... ({} bodies in all)", masses.len())));
+    }
+    lines
 }

@@ -187,7 +187,7 @@ fn bent_cells(runs: &[Run]) -> Vec<String> {
     let within = tests
         .iter()
         .filter_map(|test| Some(test.crack.as_ref()?.fraction_within));
-    let times: Vec<f64> = runs.iter().map(|run| run.number("/processor_s")).collect();
+    let times: Vec<f64> = runs.iter().map(|run| run.processor_s()).collect();
     vec![
         runs.len().to_string(),
         figure("stiffness", 1e-3, 2),
@@ -227,7 +227,7 @@ const BENDING_HEAD: &str = "sample | reading of eq. 13 | packings | stiffness, N
 fn speed(results: &Path) -> Table {
     let mut rows = vec![cells("Platzer 2022, 4.5.3.3 | 36 | ")];
     for reading in READINGS {
-        let of = |table: Spheres, name: &str| {
+        let of = |table: Spheres, read: fn(&Run) -> f64| {
             let mut all = bending::rows();
             all.retain(|row| {
                 row.sample.table == table
@@ -236,13 +236,13 @@ fn speed(results: &Path) -> Table {
                     && row.reading == reading
             });
             let runs = all.iter().flat_map(|row| bent(results, row));
-            mean(&runs.map(|run| run.number(name)).collect::<Vec<_>>())
+            mean(&runs.map(|run| read(&run)).collect::<Vec<_>>())
         };
-        let ratio = |name: &str| of(Spheres::One, name) / of(Spheres::Two, name);
+        let ratio = |read| of(Spheres::One, read) / of(Spheres::Two, read);
         rows.push(vec![
             format!("`{reading}`"),
-            rounded(ratio("/processor_s"), 0),
-            rounded(ratio("/steps"), 1),
+            rounded(ratio(Run::processor_s), 0),
+            rounded(ratio(|run| run.summary.steps as f64), 1),
         ]);
     }
     let head = "table 1 over table 2 | processor time | steps";

@@ -1,8 +1,9 @@
 //! How many bonds failed by each criterion.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::criteria::{COUNT, Cause};
 
@@ -26,7 +27,22 @@ impl CauseCounts {
     /// # Errors
     /// Those of the serializer.
     pub fn serialize_by_name<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(Cause::ALL.map(|cause| (cause.name(), self.of(cause))))
+        serializer.collect_map(self.named())
+    }
+
+    /// Reads counts by the names of their causes; those that are missing are 0.
+    ///
+    /// # Errors
+    /// Those of the deserializer.
+    pub fn deserialize_by_name<'de, D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let named = BTreeMap::<String, u64>::deserialize(from)?;
+        let of = |cause: Cause| named.get(cause.name()).copied().unwrap_or(0);
+        Ok(Self(Cause::ALL.map(of)))
+    }
+
+    /// The counts with the names of their causes.
+    pub fn named(&self) -> [(&'static str, u64); COUNT] {
+        Cause::ALL.map(|cause| (cause.name(), self.of(cause)))
     }
 }
 

@@ -2,11 +2,9 @@
 //!
 //! Size is the opening of the smallest sieve that a fragment passes.
 
-use std::collections::BTreeMap;
-
 use dem_results::DistributionRow;
+use dem_results::summary::{RESOLVED_DIAMETERS, SizeSummary, Sizes, Unresolved};
 use rayon::prelude::*;
-use serde::Serialize;
 
 use dem_engine::state::State;
 use dem_engine::state::clusters::sizes::{FragmentSize, size_of};
@@ -28,68 +26,8 @@ const LOCATIONS: [(&str, bool, bool); 3] = [
 /// Name of all bodies together in the table.
 const ALL: &str = "all";
 
-/// Smallest fragments of which the material decides and not the size of the spheres, in mean
-/// diameters of the spheres.
-pub const RESOLVED_DIAMETERS: f64 = 3.0;
 /// Size of a fragment over that of its body above which it is the body itself.
 const WHOLE: f64 = 0.999;
-
-/// Which figures lie below the size that the spheres resolve.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Unresolved {
-    /// `d10_m`
-    pub d10: bool,
-    /// `d50_m`
-    pub d50: bool,
-    /// `d80_m`
-    pub d80: bool,
-    /// `t10`
-    pub t10: bool,
-}
-
-impl Unresolved {
-    /// Their names.
-    pub fn names(self) -> Vec<&'static str> {
-        let all = [
-            ("d10", self.d10),
-            ("d50", self.d50),
-            ("d80", self.d80),
-            ("t10", self.t10),
-        ];
-        let own = all.into_iter().filter(|(_, is_unresolved)| *is_unresolved);
-        own.map(|(name, _)| name).collect()
-    }
-}
-
-/// Mass, sizes and fines of some fragments.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct SizeSummary {
-    /// Mass of the fragments, kg.
-    pub mass_kg: f64,
-    /// Size up to which a tenth of the mass is, m: that of the first fragment, from the smallest,
-    /// with which the sum reaches a tenth.
-    pub d10_m: f64,
-    /// The same for half of the mass, m.
-    pub d50_m: f64,
-    /// The same for 80 % of the mass, m.
-    pub d80_m: f64,
-    /// Mass fraction smaller than a tenth of the mean size of the bodies before they broke. None:
-    /// no sphere is as small, so that it could only be 0.
-    pub t10: Option<f64>,
-    /// Three mean diameters of the spheres, m: below, the spheres decide and not the material.
-    pub resolved_from_m: f64,
-    /// Those of these figures that lie below that size.
-    pub unresolved: Unresolved,
-}
-
-/// Size distributions at the end of a run.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Sizes {
-    /// Of all bodies together: fragments `inside`, `discharged` ones, and `both`.
-    pub all: BTreeMap<String, SizeSummary>,
-    /// The same for each body.
-    pub bodies: BTreeMap<String, BTreeMap<String, SizeSummary>>,
-}
 
 /// The fragments of a run, inside and discharged.
 #[derive(Debug, Clone, Default)]
@@ -183,7 +121,8 @@ impl Fragments {
                 .iter()
                 .filter_map(|(location, discharged, inside)| {
                     let chosen = self.chosen(body, *discharged, *inside);
-                    let summary = summary(&chosen, tenth_m)?.marked(
+                    let summary = marked(
+                        summary(&chosen, tenth_m)?,
                         &chosen,
                         self.resolved_from_m(body, model),
                         tenth_m,
@@ -305,34 +244,32 @@ fn summary(sorted: &[FragmentSize], tenth_m: Option<f64>) -> Option<SizeSummary>
     })
 }
 
-impl SizeSummary {
-    /// With marks at the figures of these fragments that are below the size that the spheres
-    /// resolve, m. A body that has not broken is no matter of its spheres.
-    fn marked(
-        self,
-        sorted: &[FragmentSize],
-        resolved_from_m: f64,
-        tenth_m: Option<f64>,
-        model: &Model,
-    ) -> Self {
-        let is_fragment = |size_m: f64| {
-            let mut own = sorted.iter().filter(|one| one.sieve_m == size_m);
-            own.any(|one| {
-                let body = model.bodies.get(one.body as usize);
-                body.is_some_and(|body| size_m < WHOLE * body.sieve_m)
-            })
-        };
-        let is_small = |size_m: f64| size_m < resolved_from_m && is_fragment(size_m);
-        Self {
-            resolved_from_m,
-            unresolved: Unresolved {
-                d10: is_small(self.d10_m),
-                d50: is_small(self.d50_m),
-                d80: is_small(self.d80_m),
-                t10: tenth_m.is_some_and(|tenth_m| tenth_m < resolved_from_m),
-            },
-            ..self
-        }
+/// A summary with marks at the figures of these fragments that are below the size that the spheres
+/// resolve, m. A body that has not broken is no matter of its spheres.
+fn marked(
+    summary: SizeSummary,
+    sorted: &[FragmentSize],
+    resolved_from_m: f64,
+    tenth_m: Option<f64>,
+    model: &Model,
+) -> SizeSummary {
+    let is_fragment = |size_m: f64| {
+        let mut own = sorted.iter().filter(|one| one.sieve_m == size_m);
+        own.any(|one| {
+            let body = model.bodies.get(one.body as usize);
+            body.is_some_and(|body| size_m < WHOLE * body.sieve_m)
+        })
+    };
+    let is_small = |size_m: f64| size_m < resolved_from_m && is_fragment(size_m);
+    SizeSummary {
+        resolved_from_m,
+        unresolved: Unresolved {
+            d10: is_small(summary.d10_m),
+            d50: is_small(summary.d50_m),
+            d80: is_small(summary.d80_m),
+            t10: tenth_m.is_some_and(|tenth_m| tenth_m < resolved_from_m),
+        },
+        ..summary
     }
 }
 

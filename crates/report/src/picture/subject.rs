@@ -71,8 +71,8 @@ impl Seen {
         (0..spheres.centres_m.len()).map(ball).collect()
     }
 
-    /// Each wall as a surface; those for whose names `is_solid` holds are seen from outside only.
-    pub(super) fn walls(&self, is_solid: &dyn Fn(&str) -> bool) -> Vec<Surface> {
+    /// Each wall as a surface; those that are `solid` are seen from outside only.
+    pub(super) fn walls(&self, solid: &[String]) -> Vec<Surface> {
         let Some(walls) = &self.walls else {
             return Vec::new();
         };
@@ -81,7 +81,7 @@ impl Seen {
             let own = numbers.filter(|(_, of)| **of as usize == wall);
             let triangles: Vec<[u32; 3]> = own.map(|(triangle, _)| *triangle).collect();
             Surface {
-                solid: is_solid(&walls.names[wall]),
+                solid: solid.contains(&walls.names[wall]),
                 ..Surface::mesh(&walls.points_m, &triangles)
             }
         };

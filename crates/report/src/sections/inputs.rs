@@ -3,56 +3,52 @@
 use dem_io::text::counted;
 use dem_io::units::show_quantity;
 use dem_plots::{Column, Page, Table};
-use serde_json::Value;
+use dem_results::Summary;
+use dem_results::summary::InputBody;
 
-use super::values::{number, text, texts};
 use crate::folder::Folder;
 
 /// Scene, bodies, settings and files.
-pub(crate) fn add_inputs(page: &mut Page, summary: &Value, folder: &Folder) {
-    let inputs = &summary["inputs"];
+pub(crate) fn add_inputs(page: &mut Page, summary: &Summary, folder: &Folder) {
+    let inputs = &summary.inputs;
     page.heading("Input");
-    let mut said = text(&summary["scene"]).to_owned();
+    let mut said = summary.scene.clone();
     // What another program computed has none.
-    if !inputs["seed"].is_null() {
-        said += &format!(", seed {}", inputs["seed"]);
+    if summary.engine.is_none() {
+        said += &format!(", seed {}", inputs.seed);
     }
-    said += &match text(&summary["machine"]) {
+    said += &match summary.machine.as_str() {
         "" => ".".to_owned(),
         machine => format!(", on {machine}."),
     };
-    let set = texts(&inputs["set"]);
-    if !set.is_empty() {
-        said += &format!(" Set: {}.", set.join(", "));
+    if !inputs.set.is_empty() {
+        said += &format!(" Set: {}.", inputs.set.join(", "));
     }
     page.paragraph(&said);
     add_bodies(page, summary);
     if let Some(scene) = folder.text("scene.toml") {
         page.details("The scene as it was run (scene.toml)", &scene);
     }
-    let values = inputs["scene"].as_object().into_iter().flatten();
-    let values = values.map(|(key, value)| format!("{key} = {}\n", text(value)));
+    let values = inputs.scene.iter();
+    let values = values.map(|(key, value)| format!("{key} = {value}\n"));
     page.details("All values, defaults included", &values.collect::<String>());
 }
 
-fn add_bodies(page: &mut Page, summary: &Value) {
-    let bodies = summary["inputs"]["bodies"].as_object();
-    let Some(bodies) = bodies.filter(|bodies| !bodies.is_empty()) else {
+fn add_bodies(page: &mut Page, summary: &Summary) {
+    let bodies = &summary.inputs.bodies;
+    if bodies.is_empty() {
         return;
-    };
-    let row = |(name, body): (&String, &Value)| {
-        let mass = number(&summary["bodies"][name]["mass_kg"]);
+    }
+    let row = |(name, body): (&String, &InputBody)| {
+        let mass_kg = summary.bodies.get(name).map(|mass| mass.mass_kg);
+        let mass_kg = mass_kg.filter(|mass_kg| mass_kg.is_finite());
         vec![
             name.clone(),
-            text(&body["file"]).to_owned(),
-            body["particles"].to_string(),
-            body["bonds"].to_string(),
-            if mass.is_finite() {
-                show_quantity(mass, "kg")
-            } else {
-                String::new()
-            },
-            text(&body["hash"]).to_owned(),
+            body.file.clone().unwrap_or_default(),
+            body.particles.to_string(),
+            body.bonds.to_string(),
+            mass_kg.map_or(String::new(), |mass_kg| show_quantity(mass_kg, "kg")),
+            body.hash.clone(),
         ]
         .into()
     };
@@ -68,9 +64,7 @@ fn add_bodies(page: &mut Page, summary: &Value) {
         columns: columns.to_vec(),
         rows: bodies.iter().map(row).collect(),
     });
-    let walls = summary["inputs"]["walls"]
-        .as_object()
-        .map_or(0, |walls| walls.len());
+    let walls = summary.inputs.walls.len();
     if walls > 0 {
         page.small(&format!("{} from STL files.", counted(walls, "wall")));
     }

@@ -1,37 +1,36 @@
 //! What the run answers: measures, the laboratory test, breakage, bodies that came and went.
 
 use dem_io::units::{show_quantity, significant};
+use dem_laboratory::figure::{Figure, Source};
 use dem_plots::{Column, Page, Table};
-use serde_json::Value;
+use dem_results::Summary;
+use dem_results::summary::{Measured, PopulationSummary, SizeSummary, Sizes};
 
-use super::values::{number, percent, text};
+use super::percent;
 use crate::folder::Folder;
 
 /// Results of a laboratory test.
-pub(crate) fn add_test(page: &mut Page, summary: &Value) {
-    let test = &summary["test"];
-    if !test.is_object() {
-        return;
-    }
-    add_figures(page, "Results of the test", &test["results"]);
-    let sentences = test["sentences"].as_array().into_iter().flatten();
-    let sentence = |said: &Value| format!("{}: {}", text(&said[0]), text(&said[1]));
-    page.list(&sentences.map(sentence).collect::<Vec<String>>());
-    add_figures(page, "Calibration", &test["calibration"]);
-    add_figures(page, "Dimensions", &test["dimensions"]);
-    add_figures(
-        page,
-        "Changes at half the rate",
-        &test["changes_at_half_the_rate"],
-    );
-}
-
-/// Named values with their targets, as `[{name, value, unit, theory, error, theory_is}]`.
-fn add_figures(page: &mut Page, title: &str, figures: &Value) {
-    let Some(figures) = figures.as_array().filter(|figures| !figures.is_empty()) else {
+pub(crate) fn add_test(page: &mut Page, summary: &Summary) {
+    let Some(test) = &summary.test else {
         return;
     };
-    let compared = figures.iter().filter(|figure| figure["theory"].is_number());
+    add_figures(page, "Results of the test", &test.figures);
+    let sentences = test.sentences().into_iter();
+    let sentences = sentences.map(|(name, text)| format!("{name}: {text}"));
+    page.list(&sentences.collect::<Vec<String>>());
+    add_figures(page, "Calibration", &test.calibration);
+    add_figures(page, "Dimensions", &test.dimensions);
+    let changes = &test.half_the_rate_changes;
+    add_figures(page, "Changes at half the rate", changes);
+}
+
+/// Named values with their targets.
+fn add_figures(page: &mut Page, title: &str, figures: &[Figure]) {
+    if figures.is_empty() {
+        return;
+    }
+    let source = |figure: &Figure| figure.theory_is.unwrap_or(Source::Target).name();
+    let compared = figures.iter().filter(|figure| figure.theory.is_some());
     let mut sources: Vec<&str> = compared.map(source).collect();
     sources.sort_unstable();
     sources.dedup();
@@ -45,24 +44,19 @@ fn add_figures(page: &mut Page, title: &str, figures: &Value) {
             Column::number("deviation"),
         ];
     }
-    let cells = |figure: &Value| {
-        let unit = text(&figure["unit"]);
-        let shown = |value: &Value| {
-            let value = value.as_f64();
-            value.map_or(String::new(), |value| show_quantity(value, unit))
-        };
-        let mut cells = vec![text(&figure["name"]).to_owned(), shown(&figure["value"])];
+    let cells = |figure: &Figure| {
+        let mut cells = vec![figure.name.clone(), shown(figure.value, &figure.unit)];
         if !sources.is_empty() {
-            let mut target = shown(&figure["theory"]);
+            let mut target = (figure.theory).map_or(String::new(), |at| shown(at, &figure.unit));
             if sources.len() > 1 && !target.is_empty() {
-                target += match source(figure) {
-                    MEASURED => " (measured)",
-                    CLOSED_FORM => " (closed form)",
+                target += match figure.theory_is {
+                    Some(Source::Measured) => " (measured)",
+                    Some(Source::ClosedForm) => " (closed form)",
                     _ => "",
                 };
             }
             cells.push(target);
-            cells.push(figure["error"].as_f64().map_or(String::new(), percent));
+            cells.push(figure.error.map_or(String::new(), percent));
         }
         cells.into()
     };
@@ -73,20 +67,16 @@ fn add_figures(page: &mut Page, title: &str, figures: &Value) {
     });
 }
 
-const MEASURED: &str = "target (measured)";
-const CLOSED_FORM: &str = "closed form";
-
-/// Where the expected value of a figure comes from.
-fn source(figure: &Value) -> &'static str {
-    match text(&figure["theory_is"]) {
-        "measured" => MEASURED,
-        "closed-form" => CLOSED_FORM,
-        _ => "target",
+/// A value with its unit; empty if there is none.
+fn shown(value: f64, unit: &str) -> String {
+    match value.is_nan() {
+        true => String::new(),
+        false => show_quantity(value, unit),
     }
 }
 
 /// Measures, breakage, and bodies that came and went.
-pub(crate) fn add_results(page: &mut Page, summary: &Value, folder: &Folder) {
+pub(crate) fn add_results(page: &mut Page, summary: &Summary, folder: &Folder) {
     page.heading("Results");
     add_measures(page, summary);
     page.table(&Table {
@@ -96,7 +86,9 @@ pub(crate) fn add_results(page: &mut Page, summary: &Value, folder: &Folder) {
             .map(|fact| fact.to_vec().into())
             .collect(),
     });
-    add_sizes(page, &summary["sizes"]);
+    if let Some(sizes) = &summary.sizes {
+        add_sizes(page, sizes);
+    }
     let distribution = folder.text("distribution.csv");
     if let Some(table) = distribution.as_deref().and_then(passing) {
         page.paragraph("Mass that passes a sieve, inside and discharged (distribution.csv):");
@@ -105,37 +97,20 @@ pub(crate) fn add_results(page: &mut Page, summary: &Value, folder: &Folder) {
 }
 
 /// Sizes of the fragments: a row for each body and place.
-fn add_sizes(page: &mut Page, sizes: &Value) {
-    let bodies: Vec<(&String, &Value)> =
-        sizes["bodies"].as_object().into_iter().flatten().collect();
-    let is_one = bodies.len() == 1;
-    let all = (!is_one).then_some(("all", &sizes["all"]));
-    let named = bodies.iter().map(|(name, places)| (name.as_str(), *places));
+fn add_sizes(page: &mut Page, sizes: &Sizes) {
+    let all = (sizes.bodies.len() != 1).then_some(("all", &sizes.all));
+    let named = sizes.bodies.iter();
+    let named = named.map(|(name, places)| (name.as_str(), places));
     let mut rows = Vec::new();
     for (name, places) in named.chain(all) {
-        let places = places.as_object().into_iter().flatten();
-        let gone = places.clone().any(|(place, _)| place == "discharged");
-        for (place, found) in places.filter(|(place, _)| gone || *place == "both") {
+        let gone = places.contains_key("discharged");
+        for (place, found) in places.iter().filter(|(place, _)| gone || *place == "both") {
             let name = if gone {
                 format!("{name}, {place}")
             } else {
                 name.to_owned()
             };
-            let length = |name: &str| show_quantity(number(&found[name]), "m");
-            let t10 = found["t10"]
-                .as_f64()
-                .map_or("not resolved".to_owned(), percent);
-            // Below some diameters of the spheres they decide, and not the material.
-            let marked = |name: &str, cell: String| match found["unresolved"][name].as_bool() {
-                Some(true) => format!("{cell} (unresolved)"),
-                _ => cell,
-            };
-            let mut cells = vec![name, show_quantity(number(&found["mass_kg"]), "kg")];
-            for name in ["d10", "d50", "d80"] {
-                cells.push(marked(name, length(&format!("{name}_m"))));
-            }
-            cells.push(marked("t10", t10));
-            rows.push(cells.into());
+            rows.push(size_cells(name, found).into());
         }
     }
     if rows.is_empty() {
@@ -144,6 +119,25 @@ fn add_sizes(page: &mut Page, sizes: &Value) {
     let mut columns = vec![Column::text("fragments")];
     columns.extend(["mass", "d10", "d50", "d80", "t10"].map(Column::number));
     page.table(&Table { columns, rows });
+}
+
+fn size_cells(name: String, found: &SizeSummary) -> Vec<String> {
+    // Below some diameters of the spheres they decide, and not the material.
+    let marked = |cell: String, is_unresolved: bool| match is_unresolved {
+        true => format!("{cell} (unresolved)"),
+        false => cell,
+    };
+    let length = |size_m: f64| show_quantity(size_m, "m");
+    let is = found.unresolved;
+    let t10 = found.t10.map_or("not resolved".to_owned(), percent);
+    vec![
+        name,
+        show_quantity(found.mass_kg, "kg"),
+        marked(length(found.d10_m), is.d10),
+        marked(length(found.d50_m), is.d50),
+        marked(length(found.d80_m), is.d80),
+        marked(t10, is.t10),
+    ]
 }
 
 /// The table of `distribution.csv`: a row for each sieve, a column for each body. None: the file
@@ -195,29 +189,26 @@ fn passing(csv: &str) -> Option<Table> {
     Some(Table { columns, rows })
 }
 
-fn add_measures(page: &mut Page, summary: &Value) {
-    let Some(measures) = summary["measures"]
-        .as_object()
-        .filter(|all| !all.is_empty())
-    else {
+fn add_measures(page: &mut Page, summary: &Summary) {
+    let measures = &summary.measures;
+    if measures.is_empty() {
         return;
-    };
-    let is_compared = measures
-        .values()
-        .any(|measure| measure["reference"].is_number());
+    }
+    let is_compared = measures.iter().any(|measure| measure.reference.is_some());
     let mut columns = vec![Column::text("measure"), Column::number("value")];
     if is_compared {
         columns.extend(["reference", "error"].map(Column::number));
     }
-    let row = |(name, measure): (&String, &Value)| {
-        let unit = text(&measure["unit"]);
-        let shown = |value: &Value| value.as_f64().map(|value| show_quantity(value, unit));
-        let value = shown(&measure["value"]);
-        let missing = || text(&measure["missing"]).to_owned();
-        let mut cells = vec![name.replace('_', " "), value.unwrap_or_else(missing)];
+    let row = |measure: &Measured| {
+        let value = match (measure.value.is_nan(), &measure.missing) {
+            (true, Some(missing)) => missing.clone(),
+            _ => shown(measure.value, &measure.unit),
+        };
+        let mut cells = vec![measure.name.replace('_', " "), value];
         if is_compared {
-            cells.push(shown(&measure["reference"]).unwrap_or_default());
-            let error = measure["error"].as_f64();
+            let reference = measure.reference;
+            cells.push(reference.map_or(String::new(), |at| shown(at, &measure.unit)));
+            let error = measure.error;
             cells.push(error.map_or(String::new(), |error| significant(error, 2)));
         }
         cells.into()
@@ -227,79 +218,63 @@ fn add_measures(page: &mut Page, summary: &Value) {
 }
 
 /// Counts and masses with their names.
-fn facts(summary: &Value) -> Vec<[String; 2]> {
-    let mut facts = Vec::new();
+fn facts(summary: &Summary) -> Vec<[String; 2]> {
+    let mut facts = vec![["broken bonds".to_owned(), summary.broken_bonds.to_string()]];
     let mut add = |name: &str, value: String| facts.push([name.to_owned(), value]);
-    let count = |value: &Value| value.as_u64().unwrap_or(0).to_string();
-    let kilograms = |value: &Value| show_quantity(number(value), "kg");
-    let broken = summary["broken_bonds"].as_u64().unwrap_or(0);
-    add("broken bonds", broken.to_string());
-    for (cause, number) in summary["broken_by_cause"].as_object().into_iter().flatten() {
-        if number.as_u64().is_some_and(|number| number > 0) {
-            let name = format!("broken by {}", cause.replace('_', " "));
-            add(&name, count(number));
-        }
+    let mut causes = summary.broken_by_cause.named();
+    causes.sort_unstable();
+    for (cause, count) in causes.into_iter().filter(|(_, count)| *count > 0) {
+        let name = format!("broken by {}", cause.replace('_', " "));
+        add(&name, count.to_string());
     }
-    let fragments = &summary["fragments"];
-    if fragments.is_object() {
-        let discharged = summary["population"]["discharged"].as_u64().unwrap_or(0);
-        let [fragments_left, of_all] = match discharged {
+    let population = summary.population.as_ref();
+    if let Some(fragments) = &summary.fragments {
+        let [fragments_left, of_all] = match population.map_or(0, |all| all.discharged) {
             0 => ["fragments", "mass of the largest over that of all"],
             _ => [
                 "fragments left inside",
                 "mass of the largest of them over theirs",
             ],
         };
-        add(fragments_left, count(&fragments["count"]));
-        let largest = number(&fragments["mass_fraction_of_largest"]);
-        add(of_all, percent(largest));
+        add(fragments_left, fragments.count.to_string());
+        add(of_all, percent(fragments.mass_fraction_of_largest));
     }
-    let population = &summary["population"];
-    if population.is_object() {
-        let bodies = |name: &str| {
-            let mass = kilograms(&population[format!("{name}_kg")]);
-            format!("{} ({mass})", count(&population[name]))
-        };
-        let some = |name: &str| population[name].as_u64().is_some_and(|count| count > 0);
-        if some("fed") {
-            add("bodies fed", bodies("fed"));
-        }
-        if some("replaced_by_daughters") {
-            add(
-                "particles replaced by daughters",
-                count(&population["replaced_by_daughters"]),
-            );
-        } else if some("replaced") || !some("released") {
-            add(
-                "clumps replaced by clusters",
-                count(&population["replaced"]),
-            );
-        }
-        if some("released") {
-            add(
-                "spheres released from rigid parts",
-                count(&population["released"]),
-            );
-        }
-        if some("restored") {
-            add("restored to clumps", count(&population["restored"]));
-        }
-        if some("discharged") {
-            add("bodies and fragments discharged", bodies("discharged"));
-        }
-        let outlets = population["outlets"].as_object().into_iter().flatten();
-        let outlets: Vec<(&String, &Value)> = outlets.collect();
-        if outlets.len() > 1 {
-            for (name, outlet) in outlets {
-                let mass = kilograms(&outlet["mass_kg"]);
-                add(
-                    &format!("of them through {name}"),
-                    format!("{} ({mass})", count(&outlet["bodies"])),
-                );
-            }
-        }
-        let skipped = number(&population["bond_updates_skipped"]);
-        add("bond updates skipped", percent(skipped));
+    if let Some(population) = population {
+        add_population(population, &mut add);
     }
     facts
+}
+
+/// Bodies that came and went.
+fn add_population(population: &PopulationSummary, add: &mut dyn FnMut(&str, String)) {
+    let bodies = |count: u32, mass_kg: f64| format!("{count} ({})", show_quantity(mass_kg, "kg"));
+    if population.fed > 0 {
+        add("bodies fed", bodies(population.fed, population.fed_kg));
+    }
+    if population.replaced_by_daughters > 0 {
+        let count = population.replaced_by_daughters;
+        add("particles replaced by daughters", count.to_string());
+    } else if population.replaced > 0 || population.released == 0 {
+        let count = population.replaced;
+        add("clumps replaced by clusters", count.to_string());
+    }
+    if population.released > 0 {
+        let count = population.released;
+        add("spheres released from rigid parts", count.to_string());
+    }
+    if population.restored > 0 {
+        add("restored to clumps", population.restored.to_string());
+    }
+    if population.discharged > 0 {
+        let discharged = bodies(population.discharged, population.discharged_kg);
+        add("bodies and fragments discharged", discharged);
+    }
+    if population.outlets.len() > 1 {
+        for (name, outlet) in &population.outlets {
+            let gone = bodies(outlet.bodies, outlet.mass_kg);
+            add(&format!("of them through {name}"), gone);
+        }
+    }
+    let skipped = percent(population.bond_updates_skipped);
+    add("bond updates skipped", skipped);
 }

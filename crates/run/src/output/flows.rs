@@ -4,31 +4,14 @@ use std::collections::BTreeMap;
 
 use dem_io::body::mass::BodyMass;
 use dem_results::FlowRow;
-use serde::Serialize;
+use dem_results::summary::BodyFlow;
 
 use dem_engine::state::State;
 use dem_engine::state::clusters::sizes::mass_kg_of;
 use dem_engine::state::clusters::{Cluster, Clusters};
 
-/// Where the mass of a body is at the end of a run.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct BodyFlow {
-    /// Mass at the start, kg.
-    pub start_kg: f64,
-    /// Bodies fed by inlets.
-    pub fed: u32,
-    /// Their mass, kg.
-    pub fed_kg: f64,
-    /// Bodies and fragments discharged through each outlet, by its name, kg.
-    pub discharged_kg: BTreeMap<String, f64>,
-    /// Mass of the bodies and fragments inside, kg.
-    pub inside_kg: f64,
-    /// At the start and fed, less discharged and inside, kg: 0, to rounding. None: daughters of
-    /// other bodies have replaced bodies, and their mass counts as that of their own body.
-    pub missing_kg: Option<f64>,
-}
-
-/// Those of all bodies, by name. `masses`: of the bodies of the scene. None: nothing comes or goes.
+/// Masses of all bodies, by name. `masses`: of the bodies of the scene. None: nothing comes or
+/// goes.
 pub(crate) fn body_flows(
     state: &State,
     masses: &BTreeMap<String, BodyMass>,

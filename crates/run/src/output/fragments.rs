@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use dem_io::Result;
 use dem_io::units::significant;
 use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
+use dem_results::summary::FragmentSummary;
 use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
 use dem_scene::Quantity;
-use serde::Serialize;
 
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
@@ -27,36 +27,24 @@ pub(crate) const FRAGMENT_PLOTS: [&str; 3] = [COUNT, SIZES, DISCHARGE];
 /// Largest number of fragments named in the text of a split.
 const NAMED: usize = 8;
 
-/// Fragmentation of the bodies in a run.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct FragmentSummary {
-    /// Number of fragments, of those inside at the end and of those discharged; an intact body is
-    /// one.
-    pub count: usize,
-    /// Number of those inside at the end.
-    pub inside: usize,
-    /// Mass fraction of the heaviest of all.
-    pub mass_fraction_of_largest: f64,
-    /// Fragments that were found in pieces.
-    pub splits: usize,
-}
-
-impl FragmentSummary {
-    /// From the `fragments` of the clusters, and what outlets have removed.
-    pub fn new(clusters: &Clusters, fragments: &[Fragment], discharged: &[Discharged]) -> Self {
-        let ended = clusters.history.iter().filter(|c| c.ended_s.is_some());
-        let gone = discharged.iter().map(|gone| gone.size.mass_kg);
-        let masses_kg = fragments
-            .iter()
-            .map(|fragment| fragment.mass_kg)
-            .chain(gone);
-        Self {
-            count: fragments.len() + discharged.len(),
-            inside: fragments.len(),
-            mass_fraction_of_largest: mass_fraction_of_largest(masses_kg),
-            // What has left has ended, but not in pieces.
-            splits: ended.count().saturating_sub(discharged.len()),
-        }
+/// Fragmentation of the bodies: `fragments` of the clusters, and what outlets have removed.
+pub(crate) fn fragment_summary(
+    clusters: &Clusters,
+    fragments: &[Fragment],
+    discharged: &[Discharged],
+) -> FragmentSummary {
+    let ended = clusters.history.iter().filter(|c| c.ended_s.is_some());
+    let gone = discharged.iter().map(|gone| gone.size.mass_kg);
+    let masses_kg = fragments
+        .iter()
+        .map(|fragment| fragment.mass_kg)
+        .chain(gone);
+    FragmentSummary {
+        count: fragments.len() + discharged.len(),
+        inside: fragments.len(),
+        mass_fraction_of_largest: mass_fraction_of_largest(masses_kg),
+        // What has left has ended, but not in pieces.
+        splits: ended.count().saturating_sub(discharged.len()),
     }
 }
 

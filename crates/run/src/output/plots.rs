@@ -2,12 +2,11 @@
 
 use dem_io::Result;
 use dem_plots::{Axis, Line, Plot};
+use dem_results::summary::{ENERGIES, Energy, EnergyKind, Measured};
 use dem_results::{ResultsFolder, Series, read_series};
 use dem_scene::Statistic;
-use serde_json::Value;
 
 use super::fragments::{COUNT, DISCHARGE, SIZES};
-use super::series::ENERGIES;
 use dem_plan::measure::Probe;
 
 /// Names of plots that any run may have, which no measure may overwrite.
@@ -16,21 +15,23 @@ const ENERGY: &str = "energy";
 const ERRORS: &str = "errors";
 const BROKEN: &str = "broken_bonds";
 
-/// Draws the time series of a finished run into its folder. `results`: those of its measures, as in
-/// `summary.json`.
+/// Draws the time series of a finished run into its folder. `results`: those of its measures.
 ///
 /// # Errors
 /// Those of the files.
-pub(crate) fn write_plots(folder: &ResultsFolder, probes: &[Probe], results: &Value) -> Result<()> {
+pub(crate) fn write_plots(
+    folder: &ResultsFolder,
+    probes: &[Probe],
+    results: &[Measured],
+) -> Result<()> {
     let series = read_series(&folder.series())?;
-    let changing: Vec<&str> = ENERGIES
-        .into_iter()
-        .filter(|name| column(&series, name).iter().any(|v| *v != 0.0))
-        .collect();
-    let mut energy = plot(&series, "Energy", "energy (J)", &changing, "_j");
-    for line in &mut energy.lines {
+    let changes = |energy: &Energy| column(&series, energy.name).iter().any(|v| *v != 0.0);
+    let changing: Vec<Energy> = ENERGIES.into_iter().filter(changes).collect();
+    let names: Vec<&str> = changing.iter().map(|energy| energy.name).collect();
+    let mut energy = plot(&series, "Energy", "energy (J)", &names, "_j");
+    for (line, of) in energy.lines.iter_mut().zip(&changing) {
         // Energy supplied is dashed, as the total often hides it.
-        line.dashed = line.name.ends_with("work");
+        line.dashed = of.kind == EnergyKind::Work;
     }
     folder.write_plot(ENERGY, &energy.svg().file())?;
     let mut errors = plot(
@@ -70,8 +71,9 @@ pub(crate) fn write_plots(folder: &ResultsFolder, probes: &[Probe], results: &Va
 
 /// The horizontal line in the plot of a measure: its reference, or else its result, if that is of
 /// every step and not only of the rows of the series.
-fn level(probe: &Probe, results: &Value) -> Option<(f64, String)> {
+fn level(probe: &Probe, results: &[Measured]) -> Option<(f64, String)> {
     let reference = probe.measure.reference;
+    let of_probe = results.iter().find(|result| result.name == probe.name);
     let result = match probe.measure.statistic {
         Statistic::End => None,
         Statistic::Largest => Some("largest of all steps"),
@@ -79,8 +81,8 @@ fn level(probe: &Probe, results: &Value) -> Option<(f64, String)> {
         Statistic::Mean => Some("mean"),
     };
     let result = result
-        .zip(results[&probe.name]["value"].as_f64())
-        .map(|(name, value)| (value, name.to_owned()));
+        .zip(of_probe.filter(|result| !result.value.is_nan()))
+        .map(|(name, result)| (result.value, name.to_owned()));
     let reference = reference.map(|value| (value, "reference".to_owned()));
     reference.or(result)
 }

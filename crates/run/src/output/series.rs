@@ -1,43 +1,27 @@
 //! Columns of the time series: energies, errors, numbers of bonds and particles, every measure.
 
-use dem_engine::stages::ledger::Balance;
 use dem_engine::state::State;
 use dem_engine::state::bonds::Bonds;
 use dem_plan::measure::Probe;
+use dem_results::summary::{Balance, ENERGIES};
 
-/// Names of the first columns after the time: energies and works, J.
-pub(super) const ENERGIES: [&str; 20] = [
-    "kinetic_energy_j",
-    "elastic_energy_j",
-    "gravity_energy_j",
-    "load_work_j",
-    "support_work_j",
-    "wall_work_j",
-    "bond_damping_j",
-    "structural_damping_j",
-    "local_damping_j",
-    "adhesion_j",
-    "contact_damping_j",
-    "friction_j",
-    "bond_breakage_j",
-    "bond_damage_j",
-    "particle_breakage_j",
-    "bond_plastic_j",
-    "liquid_bridge_j",
-    "liquid_bridge_loss_j",
-    "rejoining_loss_j",
-    "flow_energy_j",
-];
-/// Names of the columns after those.
-const OTHERS: [&str; 8] = [
-    "energy_error",
-    "momentum_error",
-    "angular_momentum_error",
-    "broken_bonds",
-    "intact_bonds",
-    "particles",
-    "clumps",
-    "time_step_s",
+/// A column: its name, and how it is read.
+type Column = (&'static str, fn(&State, &Balance) -> f64);
+
+/// The columns after those of [`ENERGIES`].
+const OTHERS: [Column; 8] = [
+    ("energy_error", |_, balance| balance.energy_error),
+    ("momentum_error", |_, balance| balance.momentum_error),
+    ("angular_momentum_error", |_, balance| {
+        balance.angular_momentum_error
+    }),
+    ("broken_bonds", |state, _| state.broken_count as f64),
+    ("intact_bonds", |state, _| intact_bonds(&state.bonds) as f64),
+    ("particles", |state, _| state.particles.len() as f64),
+    ("clumps", |state, _| {
+        state.clumps.of_several_spheres() as f64
+    }),
+    ("time_step_s", |state, _| state.time_step_s),
 ];
 
 /// Names of all columns after the time, with units, all different: energies and errors, force on
@@ -46,10 +30,10 @@ pub(crate) fn columns<'a>(
     walls: impl Iterator<Item = &'a String>,
     probes: &[Probe],
 ) -> Vec<String> {
-    let mut columns: Vec<String> = ENERGIES
-        .iter()
-        .chain(&OTHERS)
-        .map(|&name| name.to_owned())
+    let energies = ENERGIES.iter().map(|energy| energy.name);
+    let mut columns: Vec<String> = energies
+        .chain(OTHERS.map(|(name, _)| name))
+        .map(str::to_owned)
         .collect();
     for wall in walls {
         let of_wall = ["force_x_n", "force_y_n", "force_z_n", "work_j"];
@@ -74,43 +58,15 @@ pub(crate) fn columns<'a>(
 
 /// A row in the order of [`columns`].
 pub(crate) fn row(state: &State, balance: &Balance, measured: &[f64]) -> Vec<f64> {
-    let always = [
-        balance.kinetic_j,
-        balance.elastic_j(),
-        balance.gravity_j,
-        balance.load_work_j,
-        balance.support_work_j,
-        balance.wall_work_j,
-        balance.bond_damping_j,
-        balance.structural_damping_j,
-        balance.local_damping_j,
-        balance.adhesion_j,
-        balance.contact_damping_j,
-        balance.friction_j,
-        balance.bond_breakage_j,
-        balance.bond_damage_j,
-        balance.particle_breakage_j,
-        balance.bond_plastic_j,
-        balance.liquid_bridge_j,
-        balance.liquid_bridge_loss_j,
-        balance.rejoining_loss_j,
-        balance.flow_energy_j,
-        balance.energy_error,
-        balance.momentum_error,
-        balance.angular_momentum_error,
-        state.broken_count as f64,
-        intact_bonds(&state.bonds) as f64,
-        state.particles.len() as f64,
-        state.clumps.of_several_spheres() as f64,
-        state.time_step_s,
-    ];
+    let energies = ENERGIES.iter().map(|energy| (energy.of)(balance));
+    let others = OTHERS.iter().map(|(_, of)| of(state, balance));
     let of_walls = state.walls.iter().flat_map(|wall| {
         let [x, y, z] = wall.total_load()[0].map(|f| -f);
         [x, y, z, wall.work_j]
     });
     // Adding 0 removes the sign of a zero.
-    let values = always
-        .into_iter()
+    let values = energies
+        .chain(others)
         .chain(of_walls)
         .chain(measured.iter().copied());
     values.map(|value| value + 0.0).collect()

@@ -1,8 +1,90 @@
-//! The summary of a run: its results, their reliability, and the time spent in each stage.
+//! Parts of the summary, from the state at the end of a run.
 
-mod contents;
-mod parts;
-mod text;
+use std::collections::BTreeSet;
 
-pub use contents::{Summary, Unfinished, Verdict};
-pub use parts::{AdaptiveSummary, PartError, PopulationSummary, SleepSummary, TakenIn};
+use dem_engine::stages::ledger::over;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::sleep::Sleep;
+use dem_results::summary::{OutletSummary, PartError, PopulationSummary, SleepSummary};
+
+/// The largest energy error of bodies apart from all others, if it is more than this relative error
+/// of the whole.
+pub(crate) fn part_error_above(energy_error: f64, state: &State) -> Option<PartError> {
+    let largest = state.contacts.as_ref()?.islands.largest()?;
+    (largest.ratio() > energy_error).then(|| PartError {
+        bodies: (largest.bodies.iter())
+            .map(|body| state.model.body_name(*body).to_owned())
+            .collect(),
+        fragment_id: largest.piece,
+        energy_error_j: largest.error_j,
+        energy_scale_j: largest.scale_j,
+        energy_error: largest.ratio(),
+    })
+}
+
+/// Bodies added, removed and replaced by the end of a run. None: no body can be added, removed or
+/// replaced, or is rigid in part.
+pub(crate) fn population_summary(
+    state: &State,
+    bodies: &[PlacedBody],
+) -> Option<PopulationSummary> {
+    let (rules, clumps) = (&state.model.rules, &state.clumps);
+    let population = &state.population;
+    if !state.bodies_change() && rules.zones.is_empty() {
+        return None;
+    }
+    let several = clumps.of_several_spheres();
+    let [done, left_out] = population.bond_steps.map(|count| count as f64);
+    let inner = clumps.templates.iter();
+    let inner: f64 = inner
+        .map(|t| 1.0 - t.outer.len() as f64 / t.spheres.len() as f64)
+        .sum();
+    Some(PopulationSummary {
+        clumps: several,
+        single_sphere_bodies: clumps.all.len() - several + single_spheres(state, bodies),
+        replaced: population.replaced,
+        replaced_by_daughters: population.by_daughters.iter().sum(),
+        restored: population.restored,
+        fed: population.inlets.iter().map(|come| come.bodies).sum(),
+        fed_kg: (population.inlets.iter()).fold(0.0, |sum, come| sum + come.mass_kg),
+        delayed: population.inlets.iter().map(|come| come.delayed).sum(),
+        waiting: (rules.inlets.iter().zip(&population.inlets))
+            // Bodies that are due at the very end have not been tried.
+            .map(|(inlet, come)| inlet.owed(come, state.time_s - state.time_step_s))
+            .sum(),
+        discharged: population.outlets.iter().map(|left| left.bodies).sum(),
+        discharged_kg: (population.outlets.iter()).fold(0.0, |sum, left| sum + left.mass_kg),
+        outlets: (rules.outlets.iter().zip(&population.outlets))
+            .map(|(outlet, left)| {
+                let (bodies, mass_kg) = (left.bodies, left.mass_kg);
+                (outlet.name.clone(), OutletSummary { bodies, mass_kg })
+            })
+            .collect(),
+        rigid_parts: state.rigid_parts.all.len(),
+        released: state.rigid_parts.released,
+        rejoined: state.rigid_parts.rejoined,
+        bond_updates_skipped: over(left_out, done + left_out),
+        inner_sphere_fraction: over(inner, clumps.templates.len() as f64),
+    })
+}
+
+/// Bodies of one sphere that are particles and come from inlets or clumps.
+fn single_spheres(state: &State, bodies: &[PlacedBody]) -> usize {
+    let templates = state.clumps.templates.iter().zip(&state.model.rules.starts);
+    let names: BTreeSet<&str> = templates
+        .filter(|(_, start)| start.sphere)
+        .map(|(template, _)| &template.body[..])
+        .collect();
+    let is_one = |body: &&PlacedBody| names.contains(&body.name[..]);
+    bodies.iter().filter(is_one).count()
+}
+
+/// Sleeping bodies at the end.
+pub(crate) fn sleep_summary(sleep: &Sleep) -> SleepSummary {
+    let [done, left_out] = sleep.particle_steps.map(|count| count as f64);
+    SleepSummary {
+        bodies: sleep.bodies,
+        particle_updates_skipped: over(left_out, done + left_out),
+    }
+}

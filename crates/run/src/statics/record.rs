@@ -4,25 +4,23 @@ use std::collections::BTreeMap;
 
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
+use dem_results::summary::{EquilibriumSummary, Inputs, Summary, Verdict};
 use dem_results::{EventFile, FrameFiles, ResultsFolder, SeriesFile};
 use dem_scene::Scene;
 
 use crate::finish::End;
 use crate::machine::machine;
-use crate::output::equilibrium::EquilibriumSummary;
-use crate::output::fragments::FragmentSummary;
+use crate::output::fragments::fragment_summary;
 use crate::output::frames::FrameOrder;
 use crate::output::series;
-use crate::output::summary::{Summary, Verdict};
 use crate::output::walls::WallOutput;
 use crate::settings::RunSettings;
+use dem_engine::Balance;
 use dem_engine::stages::bonds::most_strained_edge;
-use dem_engine::stages::ledger::Balance;
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments as fragments_of;
 use dem_engine::statics::newton::Equilibrium;
 use dem_physics::bond::failure::CauseCounts;
-use dem_plan::inputs::Inputs;
 use dem_plan::measure::Probe;
 
 /// Summary of an equilibrium with this number of bonds beyond their strength.
@@ -64,12 +62,13 @@ impl AtRest<'_> {
         let state = self.state;
         let fragments = state.clusters.as_ref().map(|clusters| {
             let all = fragments_of(clusters, &state.particles, &state.clumps, None);
-            FragmentSummary::new(clusters, &all, &[])
+            fragment_summary(clusters, &all, &[])
         });
         let steps_per_s = found.newton_steps as f64 / wall_s;
         Summary {
             scene: self.scene.source.clone(),
             program: concat!("dem-run ", env!("CARGO_PKG_VERSION")).to_owned(),
+            engine: None,
             ended_by: "equilibrium".to_owned(),
             problem: None,
             inputs,

@@ -10,16 +10,15 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Scene, scene_from_text, set_text};
 
 use super::choice::SceneText;
+use dem_laboratory::test_result::{STIFFNESS, TestResult};
 use dem_plan::Plan;
+use dem_results::Summary;
 use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::elastic_test::elastic_test;
-use dem_rig::evaluate::{
-    BY_TRAVEL, EQ_18, FAILURE_FORCE, LARGEST_FORCE, MODULUS, STIFFNESS, STRENGTH, TestResult,
-};
+use dem_rig::evaluate::{BY_TRAVEL, EQ_18, FAILURE_FORCE, LARGEST_FORCE, MODULUS, STRENGTH};
 use dem_rig::plan_with_test;
 use dem_rig::setup::Setup;
 use dem_rig::watch::TestSettings;
-use dem_runner::output::summary::Summary;
 use dem_runner::{RunSettings, SoFar, run};
 
 /// First factors beyond this range are left to the tests with steps, which say why.

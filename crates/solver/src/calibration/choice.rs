@@ -6,7 +6,8 @@ use dem_io::{Diagnostic, Result};
 use dem_laboratory::TestType;
 use dem_scene::{Scene, Test, written_value};
 
-use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STIFFNESS, STRENGTH};
+use dem_laboratory::test_result::STIFFNESS;
+use dem_rig::evaluate::{BY_TRAVEL, EQ_18, MODULUS, RESULTS, STRENGTH};
 
 /// Largest deviation of the mean modulus from its target.
 const MODULUS_TOLERANCE: f64 = 0.01;

@@ -8,10 +8,9 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_laboratory::Specimen;
 use dem_scene::Scene;
 
+use dem_laboratory::test_result::STIFFNESS;
 use dem_rig::arrange::{arrange, tested_body};
-use dem_rig::evaluate::{
-    BY_TRAVEL, EQ_18, STIFFNESS, STRENGTH, measured_curve, stiffness_of_curve,
-};
+use dem_rig::evaluate::{BY_TRAVEL, EQ_18, STRENGTH, measured_curve, stiffness_of_curve};
 use dem_rig::plan_with_test;
 
 /// Smallest ratio of the stroke to the travel at failure of a body that meets its targets: until

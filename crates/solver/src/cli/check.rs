@@ -18,7 +18,7 @@ use super::scene_arguments::SceneArguments;
 use super::statics;
 use super::trial::Trial;
 use dem_engine::state::State;
-use dem_plan::masses;
+use dem_io::body::mass::mass_lines;
 use dem_plan::{Plan, PlannedStage};
 use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::plan_with_test;
@@ -269,7 +269,7 @@ fn contents(plan: &Plan) -> String {
     for first in &plan.forecast.first_contacts {
         line("first contact", first.clone());
     }
-    for (name, mass) in masses::lines(&plan.masses) {
+    for (name, mass) in mass_lines(&plan.masses) {
         line(name, mass);
     }
     text

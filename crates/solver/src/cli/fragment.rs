@@ -11,11 +11,11 @@ use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::write_target::{need_folder_of, refuse_input};
 use dem_io::{Diagnostic, Result};
+use dem_results::Summary;
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::folder::{frame_in, frames_in, result_among};
 use dem_scene::read_scene;
 use dem_terminal::standard_output::write_standard_output;
-use serde_json::Value;
 
 use super::all_fragments::write_all;
 use super::fragment_body::{fragment_body, name_origin};
@@ -163,10 +163,8 @@ fn inputs_of(results: &Path) -> Vec<PathBuf> {
     if let Ok(snapshot) = checkpoint.and_then(|bytes| Snapshot::from_bytes(&bytes)) {
         inputs.extend(snapshot.files_of_scene());
     }
-    let summary = std::fs::read(results.join("summary.json")).unwrap_or_default();
-    let summary: Value = serde_json::from_slice(&summary).unwrap_or_default();
-    if let Some(scene) = summary["scene"].as_str() {
-        let scene = PathBuf::from(scene);
+    if let Some(summary) = Summary::read(&results.join("summary.json")) {
+        let scene = PathBuf::from(summary.scene);
         inputs.extend(
             read_scene(&scene, &[]).map_or_else(|_| vec![scene], |read| read.input_files()),
         );

@@ -24,10 +24,10 @@ use super::scene_arguments::SceneArguments;
 use crate::interrupt::Interrupt;
 use dem_engine::threads::keep_awake;
 use dem_plan::Plan;
+use dem_results::summary::Unfinished;
 use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::plan_with_test;
 use dem_rig::watch::TestSettings;
-use dem_runner::output::summary::Unfinished;
 use dem_runner::snapshot::Snapshot;
 use dem_runner::{
     Finished, INTERRUPTION, Outcome, RunSettings, SoFar, finish, run as run_plan,

@@ -7,8 +7,8 @@ use dem_terminal::standard_output::write_standard_output;
 use serde_json::json;
 
 use super::memory::size_text;
+use dem_io::body::mass::mass_lines;
 use dem_plan::Plan;
-use dem_plan::masses;
 use dem_runner::statics::StaticsEstimate;
 
 /// Keys and tables that have no effect in such a scene.
@@ -45,7 +45,7 @@ pub(super) fn check(scene: &Scene, plan: &Plan, state_bytes: usize, as_json: boo
                 state.bonds.len()
             ),
         )?;
-        for (name, mass) in masses::lines(&plan.masses) {
+        for (name, mass) in mass_lines(&plan.masses) {
             line(name, &mass)?;
         }
         line(

@@ -22,7 +22,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use self::results::{list, say, write_files};
 use super::progress::Log;
 use crate::interrupt::Interrupt;
-use dem_rig::dynamic::T10;
+use dem_laboratory::test_result::T10;
 use dem_study::collect::outcome;
 use dem_study::expand::{MOST_UNASKED, Run, runs};
 use dem_study::folder::{Earlier, SweepFolder};

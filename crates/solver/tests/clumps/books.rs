@@ -1,7 +1,8 @@
 //! The balances of scenes in which bodies are fed, replaced and removed.
 
+use dem_run::Balance;
 use dem_run::plan::Plan;
-use dem_run::stages::ledger::{Balance, balance};
+use dem_run::stages::ledger::balance;
 use dem_run::state::State;
 use dem_run::state::events::PopulationEvent;
 use dem_run::step::{advance, interact};

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use dem_run::Balance;
 use dem_run::plan::Plan;
-use dem_run::stages::ledger::{Balance, balance};
+use dem_run::stages::ledger::balance;
 use dem_run::state::State;
 use dem_run::state::clumps::Clump;
 use dem_run::state::events::PopulationEvent;

@@ -3,8 +3,10 @@
 
 use std::f64::consts::PI;
 
+use dem_results::summary::ENERGIES;
+use dem_run::Balance;
 use dem_run::physics::bond::failure::Criteria;
-use dem_run::stages::ledger::{Balance, balance, opened};
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::loads::GroupLoad;
 use dem_run::step::{advance, interact};
@@ -114,6 +116,29 @@ fn books_stay_closed_through_breaks() {
                 let falls = found[0].0 / found[2].0;
                 assert!((14.0..20.0).contains(&falls), "{what}: falls by {falls}");
             }
+        }
+    });
+}
+
+#[test]
+fn the_listed_energies_add_up_to_the_error() {
+    on_one_thread(|| {
+        for besides in [Besides::Load, Besides::Support, Besides::Damping] {
+            let mut state = shaken(false, besides);
+            let mut at_start_j = None;
+            for _ in 0..400 {
+                interact(&mut state);
+                let now = balance(&mut state);
+                let terms = ENERGIES.iter().map(|one| one.kind.sign() * (one.of)(&now));
+                let left_j = terms.sum::<f64>() - now.energy_error_j;
+                let off_j = left_j - *at_start_j.get_or_insert(left_j);
+                assert!(
+                    off_j.abs() < 1e-12 * now.energy_scale_j,
+                    "{besides:?}: {off_j}"
+                );
+                advance(&mut state);
+            }
+            assert!(state.broken_count > 0, "{besides:?}");
         }
     });
 }

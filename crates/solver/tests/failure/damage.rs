@@ -2,11 +2,12 @@
 
 use std::f64::consts::PI;
 
+use dem_run::Balance;
 use dem_run::check::limit::limit;
 use dem_run::physics::bond::damage::{Damage, damage_at};
 use dem_run::physics::bond::failure::Criteria;
 use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::stages::ledger::{Balance, balance, opened};
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::state::bonds::BondRule;
 use dem_run::state::particles::Particles;

@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 
 use dem_laboratory::Specimen;
 use dem_laboratory::TestType;
+use dem_laboratory::test_result::TestResult;
 use dem_laboratory::theory::{Beam, KAPPA};
 use dem_run::laboratory::dynamic::evaluate_dynamic;
-use dem_run::laboratory::evaluate::{TestInput, TestResult, evaluate};
+use dem_run::laboratory::evaluate::{TestInput, evaluate};
 use dem_run::laboratory::record::{BrokenBond, Record, Row};
 use dem_run::laboratory::setup::Setup;
 use dem_run::physics::bond::failure::Cause;

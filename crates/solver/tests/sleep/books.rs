@@ -1,6 +1,7 @@
 //! The balances of energy and momentum stay closed during sleep.
 
-use dem_run::stages::ledger::{Balance, balance, opened};
+use dem_run::Balance;
+use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
 use dem_run::step::{advance, interact};
 

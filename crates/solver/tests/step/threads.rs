@@ -4,12 +4,12 @@ use crate::bars::{
     BondDamping, add_bonds, damp, damp_particles, random_spheres, reopen, soft, step_and_balance,
     with_threads,
 };
+use dem_run::Balance;
 use dem_run::check::limit::{Limit, limit};
 use dem_run::physics::bond::damage::Damage;
 use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::stages::elastic::elastic_energy;
-use dem_run::stages::ledger::Balance;
 use dem_run::state::State;
 use dem_run::state::bonds::{BondRule, Bonds};
 use dem_run::state::events::Break;

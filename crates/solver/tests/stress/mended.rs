@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use dem_run::output::summary::Summary;
+use dem_results::Summary;
 use dem_run::stress::impact::{Impact, Target};
 use dem_run::stress::trial::{Outcome, Trial};
 

@@ -1,22 +1,25 @@
 //! The contents of the summary, and the verdict on them.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use dem_io::Diagnostic;
 use dem_io::body::mass::BodyMass;
 use dem_io::units::significant;
-use serde::{Serialize, Serializer};
-
-use super::parts::{AdaptiveSummary, PartError, PopulationSummary, SleepSummary, TakenIn};
-use crate::output::equilibrium::EquilibriumSummary;
-use crate::output::flows::BodyFlow;
-use crate::output::fragments::FragmentSummary;
-use dem_engine::stages::ledger::Balance;
+use dem_laboratory::test_result::TestResult;
 use dem_physics::bond::failure::CauseCounts;
-use dem_plan::inputs::Inputs;
-use dem_plan::measure::Measured;
-use dem_plan::measure::sizes::Sizes;
-use dem_rig::evaluate::TestResult;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::balance::Balance;
+use super::by_name;
+use super::equilibrium::EquilibriumSummary;
+use super::inputs::Inputs;
+use super::measured::Measured;
+use super::parts::{
+    AdaptiveSummary, BodyFlow, FragmentSummary, PartError, PopulationSummary, SleepSummary, TakenIn,
+};
+use super::sizes::Sizes;
+use crate::json::from_json;
 
 /// Program and version.
 const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
@@ -25,12 +28,16 @@ const PROGRAM: &str = concat!("dem-run ", env!("CARGO_PKG_VERSION"));
 const LARGE_ENERGY_ERROR: f64 = 0.01;
 
 /// Summary of a run. SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Summary {
     /// The scene's file.
     pub scene: String,
     /// Program and version.
     pub program: String,
+    /// The program that has computed the results, if it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub engine: Option<String>,
     /// Reason for its end: "end time", "rest", "measure" (one with `end_run_above`), or for a
     /// laboratory test "breakage", "end of the stroke" or, if it is dynamic, "end of the test".
     pub ended_by: String,
@@ -74,7 +81,10 @@ pub struct Summary {
     /// Largest ratio of contact overlap to the radius of the smaller sphere.
     pub largest_overlap: f64,
     /// Broken bonds by cause of failure.
-    #[serde(serialize_with = "CauseCounts::serialize_by_name")]
+    #[serde(
+        serialize_with = "CauseCounts::serialize_by_name",
+        deserialize_with = "CauseCounts::deserialize_by_name"
+    )]
     pub broken_by_cause: CauseCounts,
     /// Fragmentation of the bodies, if they can break.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -121,10 +131,13 @@ pub struct Summary {
     /// Energies, works and momenta at the end.
     pub balance: Balance,
     /// Results of the measures; by name in JSON.
-    #[serde(serialize_with = "by_name")]
+    #[serde(
+        serialize_with = "measures_by_name",
+        deserialize_with = "measures_from_names"
+    )]
     pub measures: Vec<Measured>,
     /// Fraction of each stage in the time of a step; by name in JSON.
-    #[serde(serialize_with = "pairs_by_name")]
+    #[serde(with = "by_name")]
     pub time_by_stage: Vec<(String, f64)>,
     /// Stages that the scene does not need.
     pub inactive_stages: Vec<String>,
@@ -187,7 +200,8 @@ impl Unfinished {
 }
 
 /// Reliability of the result of a run.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Verdict {
     /// There are no reasons to doubt it.
     pub sound: bool,
@@ -199,8 +213,20 @@ pub struct Verdict {
 }
 
 impl Summary {
+    /// Whether the run has come so far as to have results: one that failed at its start has none,
+    /// and another program gives only frames.
+    pub fn has_results(&self) -> bool {
+        !matches!(self.ended_by.as_str(), "" | "failure")
+    }
+
+    /// Reads that of a run from its file. None: there is none.
+    pub fn read(file: &Path) -> Option<Self> {
+        let json = serde_json::from_slice(&std::fs::read(file).ok()?).ok()?;
+        from_json(json).ok()
+    }
+
     /// Sets the verdict: `warnings` from the run, and those from the summary itself.
-    pub(crate) fn judge(&mut self, warnings: Vec<String>) {
+    pub fn judge(&mut self, warnings: Vec<String>) {
         let warnings: Vec<String> = (self.problem.iter().cloned())
             .chain(warnings)
             .chain(self.doubts())
@@ -279,10 +305,12 @@ fn with_sentences<S: Serializer>(test: &Option<TestResult>, to: S) -> Result<S::
     said.serialize(to)
 }
 
-fn by_name<S: Serializer>(measures: &[Measured], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(measures.iter().map(|measure| (&measure.name, measure)))
+fn measures_by_name<S: Serializer>(measures: &[Measured], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(measures.iter().map(|measure| (&measure.name, measure)))
 }
 
-fn pairs_by_name<S: Serializer>(pairs: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
+fn measures_from_names<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Measured>, D::Error> {
+    let named = BTreeMap::<String, Measured>::deserialize(from)?.into_iter();
+    let named = named.map(|(name, measure)| Measured { name, ..measure });
+    Ok(named.collect())
 }

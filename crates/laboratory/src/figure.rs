@@ -44,7 +44,8 @@ pub struct Figure {
 }
 
 impl Figure {
-    pub(super) fn new(name: &str, value: f64, unit: &str, theory: Option<f64>) -> Self {
+    /// Without an expected value (`theory`), or with that of the scene.
+    pub fn new(name: &str, value: f64, unit: &str, theory: Option<f64>) -> Self {
         Self {
             name: name.to_owned(),
             value,
@@ -56,7 +57,7 @@ impl Figure {
     }
 
     /// The same with another source of its expected value, if it has one.
-    pub(super) fn by(self, source: Source) -> Self {
+    pub fn by(self, source: Source) -> Self {
         let theory_is = self.theory_is.map(|_| source);
         Self { theory_is, ..self }
     }

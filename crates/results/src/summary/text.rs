@@ -2,14 +2,14 @@
 
 use std::fmt;
 
+use dem_io::body::mass::mass_lines;
 use dem_io::text::visible;
 use dem_io::units::significant;
 
 use super::contents::Summary;
-use crate::output::equilibrium::EquilibriumSummary;
-use dem_plan::masses;
-use dem_plan::measure::Measured;
-use dem_plan::measure::sizes::{RESOLVED_DIAMETERS, SizeSummary};
+use super::equilibrium::EquilibriumSummary;
+use super::measured::Measured;
+use super::sizes::{RESOLVED_DIAMETERS, SizeSummary};
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -312,7 +312,7 @@ impl Summary {
     /// # Errors
     /// Those of the formatter.
     fn write_masses(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (name, line) in masses::lines(&self.bodies) {
+        for (name, line) in mass_lines(&self.bodies) {
             writeln!(f, "{name:12} {line}")?;
         }
         Ok(())

@@ -1,14 +1,15 @@
-//! Data on an equilibrium for the summary.
+//! Data on an equilibrium.
 
 use dem_io::units::significant;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Smallest ratio of residual to the largest bond force that is reported; and for a laboratory
 /// test, whose walls can open and whose equilibria are found for its stiffness.
 const LARGE_RESIDUALS: [f64; 2] = [1e-6, 1e-3];
 
 /// Data on an equilibrium.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct EquilibriumSummary {
     /// Number of unknown degrees of freedom.
     pub unknowns: usize,
@@ -32,7 +33,7 @@ pub struct EquilibriumSummary {
 
 impl EquilibriumSummary {
     /// Reasons to doubt the result. Empty: none. `is_test`: of a laboratory test.
-    pub fn doubts(&self, is_test: bool) -> Vec<String> {
+    pub(super) fn doubts(&self, is_test: bool) -> Vec<String> {
         let mut doubts = Vec::new();
         if self.bonds_beyond_strength > 0 {
             doubts.push(format!(

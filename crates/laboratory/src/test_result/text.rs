@@ -3,13 +3,10 @@
 use std::fmt;
 
 use dem_io::units::{show_quantity, significant};
-use dem_laboratory::TestType;
 
-use super::confined::PRESSURE_OFF;
-use super::dynamic::{EQUILIBRIUM, LARGEST_T10, T10, UNBOOKED};
-use super::evaluate::{STIFFNESS, TestResult};
-use super::figure::{Figure, Source};
-use super::files::percent;
+use super::{EQUILIBRIUM, LARGEST_T10, PRESSURE_OFF, STIFFNESS, T10, TestResult, UNBOOKED};
+use crate::figure::{Figure, Source};
+use crate::specimen::TestType;
 
 /// Smallest change at half the rate that is reported.
 const MUCH: f64 = 0.02;
@@ -23,8 +20,6 @@ const UNSTEADY: f64 = 0.01;
 /// Share of the broken bonds outside the neck of a dog bone, or the middle half of a bar between
 /// two grips, above which it failed there.
 const MOSTLY: f64 = 0.5;
-/// The test without a strength.
-const DROP: &str = "drop-weight";
 
 impl TestResult {
     /// Reasons to doubt the test. Empty: none.
@@ -68,7 +63,7 @@ impl TestResult {
     /// A crack elsewhere than where the test requires it.
     fn misplaced_crack(&self) -> Option<String> {
         let crack = self.crack.as_ref()?;
-        if self.test_type() != Some(TestType::DogBone) {
+        if self.kind != TestType::DogBone {
             let said = "the crack is outside the region that the test requires";
             return (!crack.is_within).then(|| said.to_owned());
         }
@@ -84,7 +79,7 @@ impl TestResult {
     /// A test under pressure without a peak, and a pressure that was not kept.
     fn doubts_of_pressure(&self) -> Vec<String> {
         let mut doubts = Vec::new();
-        let has_residual = self.test_type().is_some_and(TestType::has_residual);
+        let has_residual = self.kind.has_residual();
         if has_residual && !self.broken && self.target_strength_pa.is_none() {
             doubts.push(
                 "the stress did not fall below 95 % of its largest by the end of the stroke, so there is no strength: take a longer stroke (test.stroke)"
@@ -130,7 +125,7 @@ impl TestResult {
                 significant(most, 3)
             ));
         }
-        if self.test_type() == Some(TestType::HopkinsonTension)
+        if self.kind == TestType::HopkinsonTension
             && let Some(crack) = &self.crack
             && 1.0 - crack.fraction_within > MOSTLY
         {
@@ -139,7 +134,7 @@ impl TestResult {
                 100.0 * (1.0 - crack.fraction_within)
             ));
         }
-        let needs_strength = self.target_strength_pa.is_some() && self.kind != DROP;
+        let needs_strength = self.target_strength_pa.is_some() && self.kind != TestType::DropWeight;
         if needs_strength && !self.broken {
             doubts.push(
                 "the load did not fall to half of its largest before the pulse ended, so there is no strength: take a faster or a longer striker (test.striker)"
@@ -224,7 +219,7 @@ impl TestResult {
 
 impl fmt::Display for TestResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "test         {}", self.kind)?;
+        writeln!(f, "test         {}", self.kind.name())?;
         let tables = [&self.dimensions, &self.figures, &self.calibration];
         let names = tables.into_iter().flatten().map(|figure| figure.name.len());
         let width = names.max().unwrap_or_default();
@@ -253,4 +248,9 @@ fn line(figure: &Figure, width: usize) -> String {
         );
     }
     text
+}
+
+/// A fraction as a percentage with its sign.
+fn percent(fraction: f64) -> String {
+    format!("{:+.1} %", 100.0 * fraction)
 }
