@@ -16,7 +16,7 @@ use dem_scene::{
 use nalgebra::{UnitQuaternion, Vector3};
 
 use dem_engine::state::bodies::PlacedBody;
-use dem_engine::state::bonds::{BondRule, Bonds, moment_ratios, share_moment_ratios};
+use dem_engine::state::bonds::{BondLaw, BondRule, Bonds, moment_ratios, share_moment_ratios};
 use dem_engine::state::order::spatial_order;
 use dem_engine::state::particles::{Particles, Pose};
 use dem_engine::state::stored_bonds::{restore, turn_particles};
@@ -311,9 +311,12 @@ fn place_bonds(
     placed.bonds.reserve_exact(body.bonds.len());
     let first = bonds.len();
     let damped = bonds.rules.iter().any(|rule| rule.damped);
-    let incremental = bonds.rules.iter().any(|rule| rule.incremental);
+    let incremental = bonds
+        .rules
+        .iter()
+        .any(|rule| rule.law == BondLaw::Incremental);
     let mut rules = bonds.rules.iter();
-    let any_softens = rules.any(|rule| rule.fracture_energy_j_m2.is_some());
+    let any_softens = rules.any(|rule| rule.law.fracture_energy_j_m2().is_some());
     let mut ratios = bonds.moment_ratios_of(rule);
     for (ends, original) in sorted {
         placed.bonds.push(original);
@@ -376,7 +379,11 @@ fn place_bonds(
         bonds.histories.resize(bonds.len(), History::default());
     }
     add_joints(bonds, first, rule);
-    if bonds.rules.iter().any(|rule| rule.plasticity.is_some()) {
+    if bonds
+        .rules
+        .iter()
+        .any(|rule| rule.law.plasticity().is_some())
+    {
         bonds.plastics.resize(bonds.len(), PlasticDeformation::NONE);
     }
     Ok(())
@@ -384,7 +391,7 @@ fn place_bonds(
 
 /// Gives the last bond, with this number in its file, the damage that it has there.
 fn damage_last(number: usize, bonds: &mut Bonds, rule: usize, damage: f64) -> Result<()> {
-    if bonds.rules[rule].fracture_energy_j_m2.is_some() {
+    if bonds.rules[rule].law.fracture_energy_j_m2().is_some() {
         check_fracture_energy(number, bonds, &bonds.rules[rule])?;
     } else if damage > 0.0 {
         return Err(Diagnostic::input(
@@ -402,11 +409,15 @@ fn damage_last(number: usize, bonds: &mut Bonds, rule: usize, damage: f64) -> Re
 /// Adds the elements of the bonds from `first` on, which follow this rule, if there are flat
 /// joints.
 fn add_joints(bonds: &mut Bonds, first: usize, rule: usize) {
-    if bonds.rules.iter().all(|rule| rule.flat_joint.is_none()) {
+    if bonds
+        .rules
+        .iter()
+        .all(|rule| rule.law.flat_joint().is_none())
+    {
         return;
     }
     bonds.joints.resize(bonds.len(), FlatJoint::default());
-    if let Some(law) = bonds.rules[rule].flat_joint {
+    if let Some(law) = bonds.rules[rule].law.flat_joint() {
         for at in first..bonds.len() {
             let elements = elements(&law, bonds.radius_m(at), &bonds.direction(at));
             bonds.joints[at].elements = elements;
@@ -418,7 +429,7 @@ fn add_joints(bonds: &mut Bonds, first: usize, rule: usize) {
 /// it reaches a strength, apart from scatter.
 fn check_fracture_energy(number: usize, bonds: &Bonds, rule: &BondRule) -> Result<()> {
     let at = bonds.len() - 1;
-    let energy_j_m2 = rule.fracture_energy_j_m2.unwrap_or_default();
+    let energy_j_m2 = rule.law.fracture_energy_j_m2().unwrap_or_default();
     let factor = bonds.undamaged_strength_factor(at);
     let ratios = bonds.opening_ratios(at).into_iter().flatten();
     let least = ratios.fold(f64::INFINITY, f64::min) * factor * factor;
@@ -526,6 +537,33 @@ fn joint_law(elements: JointElements) -> FlatJointLaw {
     }
 }
 
+/// The law of a kind of bonds, of which the scene allows one.
+fn law(kind: &BondKind) -> BondLaw {
+    let strength_pa = |strength: Option<f64>| strength.unwrap_or(f64::INFINITY);
+    if let SceneModel::FlatJoint { elements, .. } = kind.model {
+        BondLaw::FlatJoint(joint_law(elements))
+    } else if kind.formulation == Formulation::Incremental {
+        BondLaw::Incremental
+    } else if let Some(plasticity) = kind.plasticity {
+        BondLaw::ElastoPlastic(Plasticity {
+            yield_strengths_pa: [
+                plasticity.normal_yield_strength_pa,
+                plasticity.shear_yield_strength_pa,
+                plasticity.torsion_yield_strength_pa,
+                plasticity.bending_yield_strength_pa,
+            ]
+            .map(strength_pa),
+            hardening_ratio: plasticity.hardening_ratio,
+        })
+    } else if let Some(fracture_energy_j_m2) = kind.failure.fracture_energy_j_m2 {
+        BondLaw::Softening {
+            fracture_energy_j_m2,
+        }
+    } else {
+        BondLaw::Elastic
+    }
+}
+
 fn rule(kind: &BondKind) -> BondRule {
     let failure = &kind.failure;
     let strength_pa = |strength: Option<f64>| strength.unwrap_or(f64::INFINITY);
@@ -544,24 +582,9 @@ fn rule(kind: &BondKind) -> BondRule {
         ..BondDamping::default()
     };
     BondRule {
-        incremental: kind.formulation == Formulation::Incremental,
+        law: law(kind),
         damped: kind.damping != undamped,
         structural_damping: kind.damping.structural_damping,
-        fracture_energy_j_m2: failure.fracture_energy_j_m2,
-        flat_joint: match kind.model {
-            SceneModel::FlatJoint { elements, .. } => Some(joint_law(elements)),
-            _ => None,
-        },
-        plasticity: kind.plasticity.map(|plasticity| Plasticity {
-            yield_strengths_pa: [
-                plasticity.normal_yield_strength_pa,
-                plasticity.shear_yield_strength_pa,
-                plasticity.torsion_yield_strength_pa,
-                plasticity.bending_yield_strength_pa,
-            ]
-            .map(strength_pa),
-            hardening_ratio: plasticity.hardening_ratio,
-        }),
         criteria: has_strength(&criteria).then_some(criteria),
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,

@@ -11,7 +11,7 @@ use crate::stages::bonds::bond_wrenches;
 use crate::stages::damped::damping_wrenches;
 use crate::stages::plasticity::add_elasto_plastic_wrenches;
 use crate::state::State;
-use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
+use crate::state::bonds::{BLOCK, BondBlock, BondLaw, BondRule, Bonds};
 use crate::state::damping_rate::{MORE, largest_coefficients};
 use crate::state::particles::{Motion, Pose, Wrench};
 use dem_physics::rigid::turn;
@@ -540,8 +540,10 @@ pub(super) fn add_stiffness_times(
 /// looking for failing ones.
 fn bonds_as_total(state: &mut State, poses: &[Pose]) {
     let as_total = |rule: &BondRule| BondRule {
-        incremental: false,
-        flat_joint: None,
+        law: match rule.law {
+            BondLaw::Incremental | BondLaw::FlatJoint(_) => BondLaw::Elastic,
+            law => law,
+        },
         criteria: None,
         ..*rule
     };

@@ -249,7 +249,7 @@ impl PartitionWork<'_> {
             let frictional = rule
                 .criteria
                 .is_some_and(|criteria| criteria.is_frictional());
-            match (rule.is_single(), frictional) {
+            match (rule.law.is_single(), frictional) {
                 (true, _) => {}
                 (false, false) => self.batch::<false>(batch, lanes),
                 (false, true) => self.batch::<true>(batch, lanes),

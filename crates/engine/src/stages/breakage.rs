@@ -52,7 +52,7 @@ pub(crate) const DAMAGE: Stage = Stage {
     within: Some(FAILURE.name),
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.fracture_energy_j_m2.is_some()),
+            any_bond(state, |rule| rule.law.fracture_energy_j_m2().is_some()),
             || "bonds have a fracture energy".to_owned(),
             "no bond has a fracture energy",
         )
@@ -244,13 +244,17 @@ fn loss(bonds: &Bonds, at: usize, particles: &Particles, drift_s: f64) -> Option
         released_j: forces.energy.total(),
         spent_j: 0.0,
     };
-    if let Some(joint) = bonds.joints.get(at).filter(|_| rule.flat_joint.is_some()) {
+    if let Some(joint) = bonds
+        .joints
+        .get(at)
+        .filter(|_| rule.law.flat_joint().is_some())
+    {
         return joint
             .last_failure
             .filter(|_| joint.has_failed())
             .map(at_once);
     }
-    if rule.fracture_energy_j_m2.is_some() {
+    if rule.law.fracture_energy_j_m2().is_some() {
         if is_crushed(bonds, at, &particles.poses) {
             return Some(at_once(Cause::Compression));
         }

@@ -18,7 +18,7 @@ pub(crate) const FLAT_JOINTS: Stage = Stage {
     within: None,
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.flat_joint.is_some()),
+            any_bond(state, |rule| rule.law.flat_joint().is_some()),
             || "bonds are flat joints".to_owned(),
             "no bond is a flat joint",
         )
@@ -39,7 +39,7 @@ pub(crate) fn compute_flat_joints(state: &mut State) -> usize {
         &state.particles.poses,
         &mut state.scratch.partitions,
         &mut state.particles.wrenches,
-        |rule| rule.flat_joint.is_some(),
+        |rule| rule.law.flat_joint().is_some(),
     )
 }
 
@@ -79,7 +79,7 @@ fn changed(
     at: usize,
     drift_s: f64,
 ) -> Option<(usize, Change, f64)> {
-    let law = bonds.rules[bonds.rule_of(at)].flat_joint?;
+    let law = bonds.rules[bonds.rule_of(at)].law.flat_joint()?;
     let ends = bonds.ends[at].map(|end| end as usize);
     if bonds.is_broken(at) || particles.sleeps(ends[0]) {
         return None;

@@ -7,7 +7,7 @@ use super::bonds::any_bond;
 use super::stage::{Need, Saving, Stage};
 use crate::stages::single_bonds::add_single_wrenches;
 use crate::state::State;
-use crate::state::bonds::Bonds;
+use crate::state::bonds::{BondLaw, Bonds};
 use crate::state::particles::Particles;
 use dem_physics::bond::incremental::{Step, advance};
 
@@ -20,7 +20,7 @@ pub const HISTORIES: Stage = Stage {
     within: None,
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.incremental),
+            any_bond(state, |rule| rule.law == BondLaw::Incremental),
             || "bonds of the incremental formulation".to_owned(),
             "every bond has the total formulation",
         )
@@ -48,7 +48,7 @@ pub(crate) fn compute_incremental_bonds(state: &mut State) -> usize {
             &p.poses,
             &mut state.scratch.partitions,
             &mut p.wrenches,
-            |rule| rule.incremental,
+            |rule| rule.law == BondLaw::Incremental,
         );
     }
     0
@@ -67,7 +67,7 @@ pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_s
         .for_each(|(at, history)| {
             let [a, b] = known.ends[at].map(|end| end as usize);
             let rests = known.is_broken(at) || particles.sleeps(a);
-            if rests || !known.rules[known.rule_of(at)].incremental {
+            if rests || known.rules[known.rule_of(at)].law != BondLaw::Incremental {
                 return;
             }
             let after = poses[b].place() - poses[a].place();

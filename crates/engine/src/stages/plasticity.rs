@@ -20,7 +20,7 @@ pub(crate) const PLASTICITY: Stage = Stage {
     within: None,
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.plasticity.is_some()),
+            any_bond(state, |rule| rule.law.plasticity().is_some()),
             || "bonds have a yield strength".to_owned(),
             "no bond has a yield strength",
         )
@@ -55,7 +55,7 @@ pub(crate) fn add_elasto_plastic_wrenches(
     wrenches: &mut [Wrench],
 ) -> usize {
     add_single_wrenches(bonds, poses, partitions, wrenches, |rule| {
-        rule.plasticity.is_some()
+        rule.law.plasticity().is_some()
     })
 }
 
@@ -79,7 +79,7 @@ fn flow(bonds: &mut Bonds, particles: &Particles, drift_s: f64) -> f64 {
 /// Its plastic work is that of the ends in the drift, with the force before it and the new one
 /// after it, minus what the bond stores more: the same work as in the balance of energy.
 fn yielded(bonds: &Bonds, particles: &Particles, at: usize, drift_s: f64) -> Option<StressFree> {
-    let law = bonds.rules[bonds.rule_of(at)].plasticity?;
+    let law = bonds.rules[bonds.rule_of(at)].law.plasticity()?;
     let ends = bonds.ends[at].map(|end| end as usize);
     if bonds.is_broken(at) || particles.sleeps(ends[0]) {
         return None;

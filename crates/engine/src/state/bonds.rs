@@ -13,12 +13,9 @@ use dem_physics::bond::criteria::COUNT;
 use dem_physics::bond::damage::{Damage, opening_ratios, screened_factor};
 use dem_physics::bond::damping::DampingCoefficients;
 use dem_physics::bond::damping_models::StructuralDamping;
-use dem_physics::bond::failure::Criteria;
-use dem_physics::bond::flat_joint::{
-    self, ElementStrengths, FlatJoint, FlatJointLaw, JointStiffness,
-};
+use dem_physics::bond::flat_joint::{self, ElementStrengths, FlatJoint, JointStiffness};
 use dem_physics::bond::incremental::History;
-use dem_physics::bond::plasticity::{PlasticDeformation, Plasticity, StressFree};
+use dem_physics::bond::plasticity::{PlasticDeformation, StressFree};
 use dem_physics::bond::stiffness::Stiffness;
 use dem_physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use dem_physics::bond::tangent::{BondTangent, bond_tangent};
@@ -28,43 +25,9 @@ use dem_physics::number::Number;
 
 use super::particles::{Motion, Pose};
 
-/// Properties that the bonds of a rule share.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct BondRule {
-    /// Forces are summed step by step instead of computed from the present positions.
-    pub incremental: bool,
-    /// Bonds have damping coefficients.
-    pub damped: bool,
-    /// Fraction of the load of a bond that resists its relative motion: gamma. 0: none.
-    pub structural_damping: f64,
-    /// Strengths. None: the bonds never break.
-    pub criteria: Option<Criteria>,
-    /// Energy per area that it takes to pull a bond apart, J/m2: beyond their strength bonds
-    /// soften. None: they break at their strength.
-    pub fracture_energy_j_m2: Option<f64>,
-    /// Yield strengths and hardening. None: the bonds are elastic.
-    pub plasticity: Option<Plasticity>,
-    /// Elements of flat joints. None: the bonds are of another model.
-    pub flat_joint: Option<FlatJointLaw>,
-    /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
-    pub strengthening_from_1_s: Option<f64>,
-    /// The strain whose rate is used.
-    pub strain_rate_measure: StrainRateMeasure,
-    /// The contact law of the two ends acts beside the bond.
-    pub contact_beside: bool,
-}
+mod law;
 
-impl BondRule {
-    /// Whether bonds resist relative motion, by coefficients or by structural damping.
-    pub(crate) fn is_damped(&self) -> bool {
-        self.damped || self.structural_damping > 0.0
-    }
-
-    /// Whether bonds have a history and are computed one at a time.
-    pub fn is_single(&self) -> bool {
-        self.incremental || self.plasticity.is_some() || self.flat_joint.is_some()
-    }
-}
+pub use law::{BondLaw, BondRule};
 
 /// Bonds in a block.
 pub const BLOCK: usize = 8;
@@ -350,7 +313,7 @@ impl Bonds {
     /// [`opening_ratios`]. None of any criterion without a fracture energy.
     pub fn opening_ratios(&self, at: usize) -> [Option<f64>; COUNT] {
         let rule = &self.rules[self.rule_of(at)];
-        let (Some(criteria), Some(energy_j_m2)) = (&rule.criteria, rule.fracture_energy_j_m2)
+        let (Some(criteria), Some(energy_j_m2)) = (&rule.criteria, rule.law.fracture_energy_j_m2())
         else {
             return [None; COUNT];
         };
@@ -618,7 +581,7 @@ impl Bonds {
         {
             return self.joint_forces(at, &joint.elements, &self.ends_of(at, poses));
         }
-        if self.rules[self.rule_of(at)].incremental {
+        if self.rules[self.rule_of(at)].law == BondLaw::Incremental {
             let [a, b] = self.ends[at].map(|end| poses[end as usize].place());
             let apart = b - a;
             return incremental::bond_forces(&stiffness, &self.histories[at], &apart);

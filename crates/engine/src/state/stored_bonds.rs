@@ -8,7 +8,7 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::PlacedBody;
-use super::bonds::Bonds;
+use super::bonds::{BondLaw, Bonds};
 use super::particles::Pose;
 use dem_physics::bond::flat_joint::{Element, FlatJointLaw, elements, elements_from, first_edge};
 use dem_physics::bond::incremental::History;
@@ -63,7 +63,7 @@ pub fn plastic_of(bonds: &Bonds, at: usize, poses: &[Pose], is_reversed: bool) -
 /// Elements of bond `at`, of a scene with flat joints, by their order in the file; those of a bond
 /// of another model are none.
 pub fn joint_of(bonds: &Bonds, at: usize, poses: &[Pose], is_reversed: bool) -> JointBond {
-    let Some(law) = bonds.rules[bonds.rule_of(at)].flat_joint else {
+    let Some(law) = bonds.rules[bonds.rule_of(at)].law.flat_joint() else {
         return JointBond::default();
     };
     let own = &bonds.joints[at].elements;
@@ -128,7 +128,7 @@ pub fn restore(
         if let Some(direction) = body.bond_directions.get(original) {
             let direction = sign(is_reversed) * Vector3::from(*direction).normalize();
             bonds.set_direction(at, &direction);
-            if let Some(law) = bonds.rules[bonds.rule_of(at)].flat_joint {
+            if let Some(law) = bonds.rules[bonds.rule_of(at)].law.flat_joint() {
                 // Those of the line of centres lie across another direction.
                 bonds.joints[at].elements = elements(&law, bonds.radius_m(at), &direction);
             }
@@ -157,7 +157,7 @@ fn load(
     if *stored == SummedBond::default() {
         return Ok(());
     }
-    if !bonds.rules[bonds.rule_of(at)].incremental {
+    if bonds.rules[bonds.rule_of(at)].law != BondLaw::Incremental {
         return Err(Diagnostic::input(
             "",
             "its load was summed step by step, and its kind of bonds computes loads from positions",
@@ -183,7 +183,7 @@ fn deform(
     if *stored == PlasticBond::default() {
         return Ok(());
     }
-    if bonds.rules[bonds.rule_of(at)].plasticity.is_none() {
+    if bonds.rules[bonds.rule_of(at)].law.plasticity().is_none() {
         return Err(Diagnostic::input(
             "",
             "it has yielded, and its kind of bonds has no plasticity",
@@ -223,7 +223,7 @@ fn fail(
     if !stored.failed.contains(&true) {
         return Ok(());
     }
-    let law = bonds.rules[bonds.rule_of(at)].flat_joint;
+    let law = bonds.rules[bonds.rule_of(at)].law.flat_joint();
     let count = law.map_or(0, |law| law.count());
     // Bonds with more elements in the same file lengthen the list of each.
     let (own, surplus) = stored.failed.split_at(count.min(stored.failed.len()));

@@ -8,7 +8,7 @@ use dem_run::physics::bond::failure::Criteria;
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::stages::ledger::{Balance, balance, opened};
 use dem_run::state::State;
-use dem_run::state::bonds::BondRule;
+use dem_run::state::bonds::{BondLaw, BondRule};
 use dem_run::state::particles::Particles;
 use dem_run::step::{advance, interact, step};
 use dem_scene::{Factor, Hold};
@@ -38,7 +38,9 @@ fn row(bonds: usize, length_m: f64, criteria: Criteria, fracture_energy_j_m2: f6
         young_modulus_pa: YOUNG_PA,
         rule: BondRule {
             criteria: Some(criteria),
-            fracture_energy_j_m2: Some(fracture_energy_j_m2),
+            law: BondLaw::Softening {
+                fracture_energy_j_m2,
+            },
             ..ELASTIC
         },
     };
@@ -268,7 +270,9 @@ fn weak_bar(across: usize, energy_j_m2: f64) -> (State, Vec<usize>) {
         young_modulus_pa: YOUNG_PA,
         rule: BondRule {
             criteria: Some(TENSION),
-            fracture_energy_j_m2: Some(energy_j_m2),
+            law: BondLaw::Softening {
+                fracture_energy_j_m2: energy_j_m2,
+            },
             ..ELASTIC
         },
     };

@@ -11,7 +11,7 @@ use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::stages::elastic::elastic_energy;
 use dem_run::stages::ledger::Balance;
 use dem_run::state::State;
-use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::bonds::{BondLaw, BondRule, Bonds};
 use dem_run::state::events::Break;
 use dem_run::state::loads::GroupLoad;
 use dem_run::state::particles::{Motion, Pose};
@@ -20,12 +20,9 @@ use dem_run::state::supports::HeldParticle;
 use dem_scene::{Factor, Hold};
 
 const BREAKING: BondRule = BondRule {
-    incremental: false,
+    law: BondLaw::Elastic,
     damped: false,
     structural_damping: 0.1,
-    fracture_energy_j_m2: None,
-    plasticity: None,
-    flat_joint: None,
     criteria: Some(Criteria {
         tensile_strength_pa: 0.1e6,
         compressive_strength_pa: 0.1e6,
@@ -58,8 +55,13 @@ fn scene(partitions: usize) -> State {
             .map(|pair| pair.map(|end| end + first))
             .collect();
         let rule = BondRule {
-            incremental,
-            fracture_energy_j_m2: (!incremental).then_some(5.0),
+            law: if incremental {
+                BondLaw::Incremental
+            } else {
+                BondLaw::Softening {
+                    fracture_energy_j_m2: 5.0,
+                }
+            },
             ..BREAKING
         };
         add_bonds(
