@@ -107,9 +107,6 @@ pub(crate) fn add_bonds(
             rule,
         );
     }
-    if of.rule.law == BondLaw::Incremental {
-        bonds.histories.resize(bonds.len(), Default::default());
-    }
 }
 
 /// Particles with bonds of one type.

@@ -552,7 +552,7 @@ fn bonds_as_total(state: &mut State, poses: &[Pose]) {
     let wrenches = &mut state.particles.wrenches;
     let partitions = &mut state.scratch.partitions;
     bond_wrenches(&state.bonds, poses, partitions, wrenches);
-    if !state.bonds.plastics.is_empty() {
+    if !state.bonds.histories.plastics.is_empty() {
         add_elasto_plastic_wrenches(&state.bonds, poses, partitions, wrenches);
     }
     state.bonds.rules = rules;

@@ -9,6 +9,7 @@ use crate::stages::chunks::CHUNK;
 use crate::stages::single_bonds::add_single_wrenches;
 use crate::state::State;
 use crate::state::bonds::Bonds;
+use crate::state::bonds::histories::column_bytes;
 use crate::state::particles::Particles;
 use dem_physics::bond::flat_joint::{Change, Element, change};
 
@@ -23,14 +24,14 @@ pub(crate) const FLAT_JOINTS: Stage = Stage {
             "no bond is a flat joint",
         )
     },
-    bytes: |state| state.bonds.joint_bytes(),
+    bytes: |state| column_bytes(&state.bonds.histories.joints),
     saving: NO_SAVING,
 };
 
 /// Lets elements fail and slide, and adds the forces of all flat joints to the wrenches. Returns
 /// the number of joints computed.
 pub(crate) fn compute_flat_joints(state: &mut State) -> usize {
-    if state.bonds.joints.is_empty() {
+    if state.bonds.histories.joints.is_empty() {
         return 0;
     }
     change_elements(state);
@@ -61,7 +62,7 @@ fn change_elements(state: &mut State) {
         } else {
             state.ledger.joint_friction_j += spent_j;
         }
-        let joint = &mut bonds.joints[at];
+        let joint = &mut bonds.histories.joints[at];
         joint.elements = change.elements;
         joint.last_failure = change.failed.or(joint.last_failure);
     }
@@ -84,7 +85,7 @@ fn changed(
     if bonds.is_broken(at) || particles.sleeps(ends[0]) {
         return None;
     }
-    let before = &bonds.joints[at].elements;
+    let before = &bonds.histories.joints[at].elements;
     let now = ends.map(|end| particles.poses[end].end());
     let change = change(
         before,

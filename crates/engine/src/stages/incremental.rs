@@ -25,7 +25,7 @@ pub const HISTORIES: Stage = Stage {
             "every bond has the total formulation",
         )
     },
-    bytes: |state| size_of_val(&state.bonds.histories[..]),
+    bytes: |state| size_of_val(&state.bonds.histories.sums[..]),
     saving: |state| {
         Saving::of(
             state.bonds.len(),
@@ -39,7 +39,7 @@ pub const HISTORIES: Stage = Stage {
 /// computed.
 pub(crate) fn compute_incremental_bonds(state: &mut State) -> usize {
     let (before_s, p) = (state.previous_time_step_s, &mut state.particles);
-    if !state.bonds.histories.is_empty() {
+    if !state.bonds.histories.sums.is_empty() {
         if before_s > 0.0 {
             advance_histories(&mut state.bonds, p, before_s);
         }
@@ -58,10 +58,9 @@ pub(crate) fn compute_incremental_bonds(state: &mut State) -> usize {
 /// motions.
 pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {
     let (poses, motions) = (&particles.poses, &particles.motions);
-    let mut histories = std::mem::take(&mut bonds.histories);
+    let mut sums = std::mem::take(&mut bonds.histories.sums);
     let known = &*bonds;
-    histories
-        .par_iter_mut()
+    sums.par_iter_mut()
         .with_min_len(1024)
         .enumerate()
         .for_each(|(at, history)| {
@@ -79,5 +78,5 @@ pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_s
             };
             *history = advance(&known.stiffness(at), history, &step);
         });
-    bonds.histories = histories;
+    bonds.histories.sums = sums;
 }

@@ -25,14 +25,14 @@ pub(crate) const PLASTICITY: Stage = Stage {
             "no bond has a yield strength",
         )
     },
-    bytes: |state| size_of_val(&state.bonds.plastics[..]),
+    bytes: |state| size_of_val(&state.bonds.histories.plastics[..]),
     saving: NO_SAVING,
 };
 
 /// Lets the bonds flow that have reached their yield strength, and adds the forces of all bonds
 /// that can yield to the wrenches. Returns the number of bonds computed.
 pub(crate) fn compute_plastic_bonds(state: &mut State) -> usize {
-    if state.bonds.plastics.is_empty() {
+    if state.bonds.histories.plastics.is_empty() {
         return 0;
     }
     let drift_s = state.previous_time_step_s;
@@ -68,7 +68,7 @@ fn flow(bonds: &mut Bonds, particles: &Particles, drift_s: f64) -> f64 {
         .collect();
     let mut work_j = 0.0;
     for (at, bond) in yielding {
-        work_j += bond.plastic.work_j - bonds.plastics[at].work_j;
+        work_j += bond.plastic.work_j - bonds.histories.plastics[at].work_j;
         bonds.set_stress_free(at, &bond);
     }
     work_j

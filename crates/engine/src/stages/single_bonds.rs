@@ -61,7 +61,7 @@ fn of_partition(
             if own.contains(&a) {
                 wrenches[a - own.start].add(&-forces.force_on_b, &forces.torques[0]);
                 if rule.law.flat_joint().is_some() {
-                    if bonds.joints[at].has_failed() {
+                    if bonds.histories.joints[at].has_failed() {
                         failing.push(at as u32);
                     }
                 } else if let Some(criteria) = &rule.criteria {

@@ -121,9 +121,6 @@ pub(crate) fn bonded(
         let stiffness = stiffness(BondModel::Timoshenko, &shape, YOUNG_PA, 0.3);
         bonds.push([a, b], direction(&apart).into(), RADIUS_M, &stiffness, 0);
     }
-    if incremental {
-        bonds.histories = vec![Default::default(); pairs.len()];
-    }
     let mut state = State::new(particles, bonds, 1e-9, 1);
     state.time_step_s = 0.5 * limit(&mut state).step_s;
     state

@@ -45,7 +45,7 @@ fn row(bonds: usize, length_m: f64, criteria: Criteria, fracture_energy_j_m2: f6
         },
     };
     let mut state = body(particles, &pairs, &bonding, 1e-9);
-    state.bonds.damages = (0..bonds)
+    state.bonds.histories.damages = (0..bonds)
         .map(|at| Damage::none(&state.bonds.stiffness(at), 1.0))
         .collect();
     state.time_step_s = 0.5 * limit(&mut state).step_s;
@@ -184,7 +184,7 @@ fn a_bar_takes_the_same_energy_at_any_resolution() {
         let energy_j_m2 = 40.0;
         for bonds in [2, 4, 8] {
             let mut state = row(bonds, 16e-3 / bonds as f64, TENSION, energy_j_m2);
-            state.bonds.damages[bonds / 2].strength_factor = 0.95;
+            state.bonds.histories.damages[bonds / 2].strength_factor = 0.95;
             state.bonds.strength_factors = vec![1.0; bonds];
             state.bonds.strength_factors[bonds / 2] = 0.95;
             let speed = 0.004;
@@ -285,7 +285,7 @@ fn weak_bar(across: usize, energy_j_m2: f64) -> (State, Vec<usize>) {
     for &at in &weakest {
         state.bonds.strength_factors[at] = 0.95;
     }
-    state.bonds.damages = (0..pairs.len())
+    state.bonds.histories.damages = (0..pairs.len())
         .map(|at| Damage::none(&state.bonds.stiffness(at), state.bonds.strength_factors[at]))
         .collect();
     state.time_step_s = 0.5 * limit(&mut state).step_s;

@@ -71,11 +71,10 @@ fn scene(partitions: usize) -> State {
             &soft(BondModel::Timoshenko, rule),
         );
     }
-    bonds.histories.resize(bonds.len(), Default::default());
     bonds.strength_factors = (0..bonds.len())
         .map(|at| 0.8 + 0.01 * (at % 50) as f64)
         .collect();
-    bonds.damages = (0..bonds.len())
+    bonds.histories.damages = (0..bonds.len())
         .map(|at| Damage::none(&bonds.stiffness(at), bonds.strength_factor(at)))
         .collect();
     let mut state = State::new(particles, bonds, 5e-7, partitions);
@@ -185,7 +184,7 @@ fn the_elastic_energy_is_the_sum_over_bonds_one_by_one() {
         |is_so: fn(&Bonds, usize) -> bool| (0..bonds.len()).filter(|&at| is_so(bonds, at)).count();
     // Broken ones, damaged ones, and two kinds.
     assert!(count(Bonds::is_broken) > 30);
-    assert!(count(|bonds, at| bonds.damages[at].damage > 0.0) > 30);
+    assert!(count(|bonds, at| bonds.histories.damages[at].damage > 0.0) > 30);
     let energy = |at: usize| match bonds.is_broken(at) {
         true => [0.0; 4],
         false => {

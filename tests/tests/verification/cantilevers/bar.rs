@@ -129,9 +129,6 @@ impl Bar {
                 0,
             );
         }
-        if self.incremental {
-            bonds.histories = vec![Default::default(); self.bonds()];
-        }
         let mut state = State::new(particles, bonds, 1e-9, 1);
         state.loads.push(GroupLoad {
             end_s: f64::INFINITY,
