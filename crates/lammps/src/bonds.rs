@@ -20,7 +20,7 @@ use dem_scene::Scene;
 
 use super::words::refused;
 use dem_engine::state::State;
-use dem_engine::state::bonds::BondRule;
+use dem_engine::state::bonds::{BondLaw, BondRule};
 use dem_physics::bond::failure::Criteria;
 
 /// Relative width of a class: the largest ratio of two values in it is 1 + this.
@@ -194,7 +194,7 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
     let refuse = |key: &str, why: &str, remedy: &str| {
         Err(refused(scene, format!("bonds.{name}.{key}"), why, remedy))
     };
-    if rule.incremental {
+    if rule.law == BondLaw::Incremental {
         return refuse(
             "formulation",
             "bpm/rotational computes forces from the present positions, not step by step",
@@ -208,21 +208,21 @@ fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
             "use damping_ratio, or run the scene with dem-run",
         );
     }
-    if rule.flat_joint.is_some() {
+    if rule.law.flat_joint().is_some() {
         return refuse(
             "model",
             "bonds of bpm/rotational break as a whole",
             "use another model, such as \"timoshenko\"",
         );
     }
-    if rule.plasticity.is_some() {
+    if rule.law.plasticity().is_some() {
         return refuse(
             "plasticity",
             "bonds of bpm/rotational are elastic until they break",
             "leave it out, or run the scene with dem-run",
         );
     }
-    if rule.fracture_energy_j_m2.is_some() {
+    if rule.law.fracture_energy_j_m2().is_some() {
         return refuse(
             "failure.fracture_energy",
             "bonds of bpm/rotational break at their strength and do not soften",

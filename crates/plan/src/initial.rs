@@ -61,7 +61,7 @@ fn displace(
     if by_m == Vector3::zeros() {
         return Ok(());
     }
-    if !state.bonds.histories.is_empty() {
+    if !state.bonds.histories.sums.is_empty() {
         return Err(Diagnostic::input(
             place,
             "displacement would not strain bonds of the formulation \"incremental\", which know \

@@ -3,6 +3,8 @@
 
 pub mod alike;
 pub mod bodies;
+mod bond_kinds;
+mod bonds;
 pub mod bounces;
 mod clumps;
 pub(crate) mod contacts;

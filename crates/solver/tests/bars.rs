@@ -7,24 +7,30 @@ use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffne
 use dem_run::physics::bond::total::direction;
 use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
-use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::bonds::{BondLaw, BondRule, Bonds};
 use dem_run::state::particles::{Particles, Wrench};
 use dem_run::step::{advance, interact, step};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// A rule without damping and failure.
 pub(crate) const ELASTIC: BondRule = BondRule {
-    incremental: false,
+    law: BondLaw::Elastic,
     damped: false,
     structural_damping: 0.0,
-    fracture_energy_j_m2: None,
-    plasticity: None,
-    flat_joint: None,
     criteria: None,
     strengthening_from_1_s: None,
     strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
     contact_beside: false,
 };
+
+/// The elastic law, by this formulation.
+pub(crate) fn law(incremental: bool) -> BondLaw {
+    if incremental {
+        BondLaw::Incremental
+    } else {
+        BondLaw::Elastic
+    }
+}
 
 /// All bond models, with the names in the reference values, which have no elastic solid bond.
 pub(crate) const MODELS: [(BondModel, &str); 5] = [
@@ -101,9 +107,6 @@ pub(crate) fn add_bonds(
             &stiffness,
             rule,
         );
-    }
-    if of.rule.incremental {
-        bonds.histories.resize(bonds.len(), Default::default());
     }
 }
 

@@ -6,7 +6,7 @@ mod fragments;
 use std::sync::Arc;
 
 use dem_run::physics::bond::stiffness::Stiffness;
-use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::bonds::{BondLaw, BondRule, Bonds};
 
 /// Bonds between these particles.
 pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
@@ -19,12 +19,9 @@ pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {
     sorted.dedup();
     let mut bonds = Bonds {
         rules: Arc::new([BondRule {
-            incremental: false,
+            law: BondLaw::Elastic,
             damped: false,
             structural_damping: 0.0,
-            fracture_energy_j_m2: None,
-            plasticity: None,
-            flat_joint: None,
             criteria: None,
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

@@ -704,7 +704,7 @@ fn of_a_block(across: usize, energy_j_m2: f64) -> f64 {
         if let (Some(k), true) = (middle.iter().position(|i| *i == a), b == a + 1) {
             let factor = 0.9 + 0.01 * (3 * k % 5) as f64;
             state.bonds.strength_factors[at] = factor;
-            state.bonds.damages[at].strength_factor = factor;
+            state.bonds.histories.damages[at].strength_factor = factor;
         }
     }
     while state.broken_count < (across * across) as u64 {

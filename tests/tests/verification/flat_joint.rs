@@ -205,7 +205,7 @@ fn bent(strength_pa: f64, rings: u32, sectors: u32) -> Case {
         rotated("left", others, "rz", -0.5 * end) + &rotated("right", others, "rz", 0.5 * end);
     let mut state = pair(rings, sectors, &keys, &more);
     until(&mut state, |state| {
-        state.bonds.joints[0].failed_fraction() > 0.0
+        state.bonds.histories.joints[0].failed_fraction() > 0.0
     });
     assert_eq!(state.broken_count, 0);
     let found = end * state.time_s / RAMP_S;
@@ -234,7 +234,7 @@ fn twisted(pressure_pa: f64, friction: f64) -> Vec<Case> {
     let keys = keys + ", damping = { normal_damping_ratio = 1 }";
     let mut state = pair(2, 8, &keys, &more);
     until(&mut state, |state| state.time_s > RAMP_S - 1.5e-6);
-    let failed = state.bonds.joints[0].failed_fraction();
+    let failed = state.bonds.histories.joints[0].failed_fraction();
     assert!((failed - 0.75).abs() < 1e-12, "{failed}");
     let area_m2 = PI * RADIUS_M * RADIUS_M;
     let shear_pa_m = YOUNG_PA / LENGTH_M / (2.0 * (1.0 + POISSON));

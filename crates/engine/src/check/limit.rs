@@ -11,7 +11,7 @@ use crate::stages::bonds::bond_wrenches;
 use crate::stages::damped::damping_wrenches;
 use crate::stages::plasticity::add_elasto_plastic_wrenches;
 use crate::state::State;
-use crate::state::bonds::{BLOCK, BondBlock, BondRule, Bonds};
+use crate::state::bonds::{BLOCK, BondBlock, BondLaw, BondRule, Bonds};
 use crate::state::damping_rate::{MORE, largest_coefficients};
 use crate::state::particles::{Motion, Pose, Wrench};
 use dem_physics::rigid::turn;
@@ -540,8 +540,10 @@ pub(super) fn add_stiffness_times(
 /// looking for failing ones.
 fn bonds_as_total(state: &mut State, poses: &[Pose]) {
     let as_total = |rule: &BondRule| BondRule {
-        incremental: false,
-        flat_joint: None,
+        law: match rule.law {
+            BondLaw::Incremental | BondLaw::FlatJoint(_) => BondLaw::Elastic,
+            law => law,
+        },
         criteria: None,
         ..*rule
     };
@@ -550,7 +552,7 @@ fn bonds_as_total(state: &mut State, poses: &[Pose]) {
     let wrenches = &mut state.particles.wrenches;
     let partitions = &mut state.scratch.partitions;
     bond_wrenches(&state.bonds, poses, partitions, wrenches);
-    if !state.bonds.plastics.is_empty() {
+    if !state.bonds.histories.plastics.is_empty() {
         add_elasto_plastic_wrenches(&state.bonds, poses, partitions, wrenches);
     }
     state.bonds.rules = rules;

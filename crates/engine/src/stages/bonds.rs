@@ -200,12 +200,12 @@ pub fn most_strained_edge(bonds: &Bonds, poses: &[Pose]) -> Option<(f64, usize)>
 pub fn most_yielded(bonds: &Bonds) -> Option<(f64, usize)> {
     let norm = |[x, y, z]: [f64; 3]| (x * x + y * y + z * z).sqrt();
     let strain = |at: usize| {
-        let (plastic, radius_m) = (&bonds.plastics[at], bonds.radius_m(at));
+        let (plastic, radius_m) = (&bonds.histories.plastics[at], bonds.radius_m(at));
         let normal_m = plastic.elongation_m.abs() + radius_m * norm(plastic.bend_rad);
         let shear_m = norm(plastic.slip_m) + radius_m * plastic.twist_rad.abs();
         normal_m.max(shear_m) / bonds.initial_length_m(at)
     };
-    let whole = (0..bonds.plastics.len()).filter(|&at| !bonds.is_broken(at));
+    let whole = (0..bonds.histories.plastics.len()).filter(|&at| !bonds.is_broken(at));
     let strains = whole.map(|at| (strain(at), at));
     strains.reduce(|one, other| if other.0 > one.0 { other } else { one })
 }
@@ -249,7 +249,7 @@ impl PartitionWork<'_> {
             let frictional = rule
                 .criteria
                 .is_some_and(|criteria| criteria.is_frictional());
-            match (rule.is_single(), frictional) {
+            match (rule.law.is_single(), frictional) {
                 (true, _) => {}
                 (false, false) => self.batch::<false>(batch, lanes),
                 (false, true) => self.batch::<true>(batch, lanes),

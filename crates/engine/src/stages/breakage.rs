@@ -52,12 +52,14 @@ pub(crate) const DAMAGE: Stage = Stage {
     within: Some(FAILURE.name),
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.fracture_energy_j_m2.is_some()),
+            any_bond(state, |rule| rule.law.fracture_energy_j_m2().is_some()),
             || "bonds have a fracture energy".to_owned(),
             "no bond has a fracture energy",
         )
     },
-    bytes: |state| size_of_val(&state.bonds.damages[..]) + size_of_val(&state.bonds.damaged[..]),
+    bytes: |state| {
+        size_of_val(&state.bonds.histories.damages[..]) + size_of_val(&state.bonds.damaged[..])
+    },
     saving: NO_SAVING,
 };
 
@@ -244,13 +246,12 @@ fn loss(bonds: &Bonds, at: usize, particles: &Particles, drift_s: f64) -> Option
         released_j: forces.energy.total(),
         spent_j: 0.0,
     };
-    if let Some(joint) = bonds.joints.get(at).filter(|_| rule.flat_joint.is_some()) {
-        return joint
-            .last_failure
-            .filter(|_| joint.has_failed())
-            .map(at_once);
+    if rule.law.flat_joint().is_some() {
+        let joint = bonds.histories.joints.get(at);
+        let failed = joint.filter(|joint| joint.has_failed());
+        return failed.and_then(|joint| joint.last_failure).map(at_once);
     }
-    if rule.fracture_energy_j_m2.is_some() {
+    if rule.law.fracture_energy_j_m2().is_some() {
         if is_crushed(bonds, at, &particles.poses) {
             return Some(at_once(Cause::Compression));
         }

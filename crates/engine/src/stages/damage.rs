@@ -52,7 +52,7 @@ pub(crate) fn press(bonds: &Bonds, particles: &mut Particles, crushed: &mut Vec<
         if stretch_m >= 0.0 {
             continue;
         }
-        let more = bonds.damages[at].normal - bonds.normal(at);
+        let more = bonds.histories.damages[at].normal - bonds.normal(at);
         let [a, b] = ends.map(|end| particles.poses[end].place());
         let on_b = -more * stretch_m * (b - a).normalize();
         particles.wrenches[ends[0]].add(&-on_b, &Default::default());

@@ -23,7 +23,7 @@ pub(crate) fn elastic_energy_of(state: &State, some: Range<usize>) -> BondEnergy
     let [normal, shear, torsion, bending] = sums_of_chunks(some.len(), |range| {
         let mut sums = [0.0; 4];
         for (rule, run) in bonds.runs(first + range.start..first + range.end) {
-            if bonds.rules[rule].is_single() {
+            if bonds.rules[rule].law.is_single() {
                 sums = run.fold(sums, |sums, at| add(sums, energy(bonds, poses, at)));
             } else {
                 with_most_lanes(Energies {

@@ -9,6 +9,7 @@ use crate::stages::chunks::CHUNK;
 use crate::stages::single_bonds::add_single_wrenches;
 use crate::state::State;
 use crate::state::bonds::Bonds;
+use crate::state::bonds::histories::column_bytes;
 use crate::state::particles::Particles;
 use dem_physics::bond::flat_joint::{Change, Element, change};
 
@@ -18,19 +19,19 @@ pub(crate) const FLAT_JOINTS: Stage = Stage {
     within: None,
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.flat_joint.is_some()),
+            any_bond(state, |rule| rule.law.flat_joint().is_some()),
             || "bonds are flat joints".to_owned(),
             "no bond is a flat joint",
         )
     },
-    bytes: |state| state.bonds.joint_bytes(),
+    bytes: |state| column_bytes(&state.bonds.histories.joints),
     saving: NO_SAVING,
 };
 
 /// Lets elements fail and slide, and adds the forces of all flat joints to the wrenches. Returns
 /// the number of joints computed.
 pub(crate) fn compute_flat_joints(state: &mut State) -> usize {
-    if state.bonds.joints.is_empty() {
+    if state.bonds.histories.joints.is_empty() {
         return 0;
     }
     change_elements(state);
@@ -39,7 +40,7 @@ pub(crate) fn compute_flat_joints(state: &mut State) -> usize {
         &state.particles.poses,
         &mut state.scratch.partitions,
         &mut state.particles.wrenches,
-        |rule| rule.flat_joint.is_some(),
+        |rule| rule.law.flat_joint().is_some(),
     )
 }
 
@@ -61,7 +62,7 @@ fn change_elements(state: &mut State) {
         } else {
             state.ledger.joint_friction_j += spent_j;
         }
-        let joint = &mut bonds.joints[at];
+        let joint = &mut bonds.histories.joints[at];
         joint.elements = change.elements;
         joint.last_failure = change.failed.or(joint.last_failure);
     }
@@ -79,12 +80,12 @@ fn changed(
     at: usize,
     drift_s: f64,
 ) -> Option<(usize, Change, f64)> {
-    let law = bonds.rules[bonds.rule_of(at)].flat_joint?;
+    let law = bonds.rules[bonds.rule_of(at)].law.flat_joint()?;
     let ends = bonds.ends[at].map(|end| end as usize);
     if bonds.is_broken(at) || particles.sleeps(ends[0]) {
         return None;
     }
-    let before = &bonds.joints[at].elements;
+    let before = &bonds.histories.joints[at].elements;
     let now = ends.map(|end| particles.poses[end].end());
     let change = change(
         before,

@@ -7,7 +7,7 @@ use super::bonds::any_bond;
 use super::stage::{Need, Saving, Stage};
 use crate::stages::single_bonds::add_single_wrenches;
 use crate::state::State;
-use crate::state::bonds::Bonds;
+use crate::state::bonds::{BondLaw, Bonds};
 use crate::state::particles::Particles;
 use dem_physics::bond::incremental::{Step, advance};
 
@@ -20,12 +20,12 @@ pub const HISTORIES: Stage = Stage {
     within: None,
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.incremental),
+            any_bond(state, |rule| rule.law == BondLaw::Incremental),
             || "bonds of the incremental formulation".to_owned(),
             "every bond has the total formulation",
         )
     },
-    bytes: |state| size_of_val(&state.bonds.histories[..]),
+    bytes: |state| size_of_val(&state.bonds.histories.sums[..]),
     saving: |state| {
         Saving::of(
             state.bonds.len(),
@@ -39,7 +39,7 @@ pub const HISTORIES: Stage = Stage {
 /// computed.
 pub(crate) fn compute_incremental_bonds(state: &mut State) -> usize {
     let (before_s, p) = (state.previous_time_step_s, &mut state.particles);
-    if !state.bonds.histories.is_empty() {
+    if !state.bonds.histories.sums.is_empty() {
         if before_s > 0.0 {
             advance_histories(&mut state.bonds, p, before_s);
         }
@@ -48,7 +48,7 @@ pub(crate) fn compute_incremental_bonds(state: &mut State) -> usize {
             &p.poses,
             &mut state.scratch.partitions,
             &mut p.wrenches,
-            |rule| rule.incremental,
+            |rule| rule.law == BondLaw::Incremental,
         );
     }
     0
@@ -58,16 +58,15 @@ pub(crate) fn compute_incremental_bonds(state: &mut State) -> usize {
 /// motions.
 pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_step_s: f64) {
     let (poses, motions) = (&particles.poses, &particles.motions);
-    let mut histories = std::mem::take(&mut bonds.histories);
+    let mut sums = std::mem::take(&mut bonds.histories.sums);
     let known = &*bonds;
-    histories
-        .par_iter_mut()
+    sums.par_iter_mut()
         .with_min_len(1024)
         .enumerate()
         .for_each(|(at, history)| {
             let [a, b] = known.ends[at].map(|end| end as usize);
             let rests = known.is_broken(at) || particles.sleeps(a);
-            if rests || !known.rules[known.rule_of(at)].incremental {
+            if rests || known.rules[known.rule_of(at)].law != BondLaw::Incremental {
                 return;
             }
             let after = poses[b].place() - poses[a].place();
@@ -79,5 +78,5 @@ pub(crate) fn advance_histories(bonds: &mut Bonds, particles: &Particles, time_s
             };
             *history = advance(&known.stiffness(at), history, &step);
         });
-    bonds.histories = histories;
+    bonds.histories.sums = sums;
 }

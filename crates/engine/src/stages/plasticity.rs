@@ -20,19 +20,19 @@ pub(crate) const PLASTICITY: Stage = Stage {
     within: None,
     need: |state, _| {
         Need::of(
-            any_bond(state, |rule| rule.plasticity.is_some()),
+            any_bond(state, |rule| rule.law.plasticity().is_some()),
             || "bonds have a yield strength".to_owned(),
             "no bond has a yield strength",
         )
     },
-    bytes: |state| size_of_val(&state.bonds.plastics[..]),
+    bytes: |state| size_of_val(&state.bonds.histories.plastics[..]),
     saving: NO_SAVING,
 };
 
 /// Lets the bonds flow that have reached their yield strength, and adds the forces of all bonds
 /// that can yield to the wrenches. Returns the number of bonds computed.
 pub(crate) fn compute_plastic_bonds(state: &mut State) -> usize {
-    if state.bonds.plastics.is_empty() {
+    if state.bonds.histories.plastics.is_empty() {
         return 0;
     }
     let drift_s = state.previous_time_step_s;
@@ -55,7 +55,7 @@ pub(crate) fn add_elasto_plastic_wrenches(
     wrenches: &mut [Wrench],
 ) -> usize {
     add_single_wrenches(bonds, poses, partitions, wrenches, |rule| {
-        rule.plasticity.is_some()
+        rule.law.plasticity().is_some()
     })
 }
 
@@ -68,7 +68,7 @@ fn flow(bonds: &mut Bonds, particles: &Particles, drift_s: f64) -> f64 {
         .collect();
     let mut work_j = 0.0;
     for (at, bond) in yielding {
-        work_j += bond.plastic.work_j - bonds.plastics[at].work_j;
+        work_j += bond.plastic.work_j - bonds.histories.plastics[at].work_j;
         bonds.set_stress_free(at, &bond);
     }
     work_j
@@ -79,7 +79,7 @@ fn flow(bonds: &mut Bonds, particles: &Particles, drift_s: f64) -> f64 {
 /// Its plastic work is that of the ends in the drift, with the force before it and the new one
 /// after it, minus what the bond stores more: the same work as in the balance of energy.
 fn yielded(bonds: &Bonds, particles: &Particles, at: usize, drift_s: f64) -> Option<StressFree> {
-    let law = bonds.rules[bonds.rule_of(at)].plasticity?;
+    let law = bonds.rules[bonds.rule_of(at)].law.plasticity()?;
     let ends = bonds.ends[at].map(|end| end as usize);
     if bonds.is_broken(at) || particles.sleeps(ends[0]) {
         return None;

@@ -60,8 +60,8 @@ fn of_partition(
             let forces = bonds.forces(at, poses);
             if own.contains(&a) {
                 wrenches[a - own.start].add(&-forces.force_on_b, &forces.torques[0]);
-                if rule.flat_joint.is_some() {
-                    if bonds.joints[at].has_failed() {
+                if rule.law.flat_joint().is_some() {
+                    if bonds.histories.joints[at].has_failed() {
                         failing.push(at as u32);
                     }
                 } else if let Some(criteria) = &rule.criteria {

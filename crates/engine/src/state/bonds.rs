@@ -1,6 +1,5 @@
 //! Bonds: one entry per bond in every array; the data for the force loop are stored in blocks.
 
-use std::f64::consts::PI;
 use std::ops::Range;
 
 use dem_scene::StrainRateMeasure;
@@ -9,16 +8,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use dem_physics::bond::criteria::COUNT;
-use dem_physics::bond::damage::{Damage, opening_ratios, screened_factor};
 use dem_physics::bond::damping::DampingCoefficients;
 use dem_physics::bond::damping_models::StructuralDamping;
-use dem_physics::bond::failure::Criteria;
-use dem_physics::bond::flat_joint::{
-    self, ElementStrengths, FlatJoint, FlatJointLaw, JointStiffness,
-};
-use dem_physics::bond::incremental::History;
-use dem_physics::bond::plasticity::{PlasticDeformation, Plasticity, StressFree};
 use dem_physics::bond::stiffness::Stiffness;
 use dem_physics::bond::strain_rate::{dynamic_increase_factor, elongation_rate};
 use dem_physics::bond::tangent::{BondTangent, bond_tangent};
@@ -28,80 +19,19 @@ use dem_physics::number::Number;
 
 use super::particles::{Motion, Pose};
 
-/// Properties that the bonds of a rule share.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct BondRule {
-    /// Forces are summed step by step instead of computed from the present positions.
-    pub incremental: bool,
-    /// Bonds have damping coefficients.
-    pub damped: bool,
-    /// Fraction of the load of a bond that resists its relative motion: gamma. 0: none.
-    pub structural_damping: f64,
-    /// Strengths. None: the bonds never break.
-    pub criteria: Option<Criteria>,
-    /// Energy per area that it takes to pull a bond apart, J/m2: beyond their strength bonds
-    /// soften. None: they break at their strength.
-    pub fracture_energy_j_m2: Option<f64>,
-    /// Yield strengths and hardening. None: the bonds are elastic.
-    pub plasticity: Option<Plasticity>,
-    /// Elements of flat joints. None: the bonds are of another model.
-    pub flat_joint: Option<FlatJointLaw>,
-    /// Strain rate above which strengths rise with the rate, 1/s. None: they do not.
-    pub strengthening_from_1_s: Option<f64>,
-    /// The strain whose rate is used.
-    pub strain_rate_measure: StrainRateMeasure,
-    /// The contact law of the two ends acts beside the bond.
-    pub contact_beside: bool,
-}
+mod block;
+mod elements;
+pub(crate) mod histories;
+mod law;
+mod softening;
+mod yielding;
 
-impl BondRule {
-    /// Whether bonds resist relative motion, by coefficients or by structural damping.
-    pub(crate) fn is_damped(&self) -> bool {
-        self.damped || self.structural_damping > 0.0
-    }
-
-    /// Whether bonds have a history and are computed one at a time.
-    pub fn is_single(&self) -> bool {
-        self.incremental || self.plasticity.is_some() || self.flat_joint.is_some()
-    }
-}
-
-/// Bonds in a block.
-pub const BLOCK: usize = 8;
-
-/// One number for each bond of a block.
-pub type Column = [f64; BLOCK];
-
-/// Consecutive bonds: the data that their forces depend on, number by number, so that the loop over
-/// bonds reads complete vectors.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[repr(align(64))]
-pub struct BondBlock {
-    /// Unit vectors from the first to the second end at the start, x, y, z; of a bond that has
-    /// yielded, its stress-free direction.
-    pub direction: [Column; 3],
-    /// Stress-free distances of the contact point from the two ends, m: the initial ones until a
-    /// bond yields.
-    pub levers_m: [Column; 2],
-    /// Along the bond, N/m. A broken bond has no stiffness.
-    pub normal: Column,
-    /// Across the bond, N/m.
-    pub shear: Column,
-    /// Bond radii, m. They give the bending stiffness, which is the normal stiffness times r^2/4 in
-    /// every model that has one.
-    pub radii_m: Column,
-}
+pub use block::{BLOCK, BondBlock, Column};
+pub use histories::Histories;
+use histories::NewBond;
+pub use law::{BondLaw, BondRule};
 
 impl BondBlock {
-    /// A block without bonds.
-    pub const EMPTY: Self = Self {
-        direction: [[0.0; BLOCK]; 3],
-        levers_m: [[0.0; BLOCK]; 2],
-        normal: [0.0; BLOCK],
-        shear: [0.0; BLOCK],
-        radii_m: [1.0; BLOCK],
-    };
-
     /// Copies of these bonds.
     #[inline(always)]
     pub fn of(bonds: &Bonds, some: [usize; BLOCK]) -> Self {
@@ -171,17 +101,10 @@ pub struct Bonds {
     /// Damping coefficients of normal, shear, torsion and bending: N s/m, N s/m, N m s/rad, N m
     /// s/rad. Empty: no bond is damped.
     pub damping: Vec<[f64; 4]>,
-    /// Histories of incremental bonds. Empty: no bond is incremental.
-    #[serde(with = "histories")]
-    pub histories: Vec<History>,
-    /// Damage of each bond. Empty: no bond softens beyond its strength.
-    pub damages: Vec<Damage>,
+    /// What bonds of laws with a history have been through.
+    pub histories: Histories,
     /// The damaged bonds, in order; broken ones may be among them.
     pub damaged: Vec<u32>,
-    /// Plastic deformation of each bond. Empty: no bond yields.
-    pub plastics: Vec<PlasticDeformation>,
-    /// Elements of flat joints, none for bonds of other models. Empty: there are no flat joints.
-    pub joints: Vec<FlatJoint>,
     /// Rules of the model.
     #[serde(skip)]
     pub rules: Arc<[BondRule]>,
@@ -224,9 +147,31 @@ impl Bonds {
         })
     }
 
-    /// Adds a bond that follows the rule with this number, and has its moment ratios. Bonds
-    /// must be added in the order given at [`Bonds`].
+    /// Adds a bond that follows the rule with this number, and has its moment ratios, without damping
+    /// and scatter of its strengths. Bonds must be added in the order given at [`Bonds`].
     pub fn push(
+        &mut self,
+        ends: [u32; 2],
+        direction: [f64; 3],
+        radius_m: f64,
+        stiffness: &Stiffness,
+        rule: usize,
+    ) {
+        let bond = NewBond {
+            law: self
+                .rules
+                .get(rule)
+                .map_or(BondLaw::Elastic, |rule| rule.law),
+            direction: direction.into(),
+            radius_m,
+            stiffness,
+        };
+        self.histories.push(self.len(), &self.rules, &bond);
+        self.push_elastic(ends, direction, radius_m, stiffness, rule);
+    }
+
+    /// Adds a bond without its history.
+    fn push_elastic(
         &mut self,
         ends: [u32; 2],
         direction: [f64; 3],
@@ -265,6 +210,12 @@ impl Bonds {
             Some((last, of)) if *of == rule => *last = end,
             _ => self.rule_runs.push((end, rule)),
         }
+        if !self.damping.is_empty() {
+            self.damping.resize(end, [0.0; 4]);
+        }
+        if !self.strength_factors.is_empty() {
+            self.strength_factors.resize(end, 1.0);
+        }
     }
 
     /// Adds a copy of bond `at` of another set with the same rules, between these ends, with its
@@ -274,202 +225,40 @@ impl Bonds {
         let (from, k) = (&other.blocks[at / BLOCK], at % BLOCK);
         let direction = [0, 1, 2].map(|axis| from.direction[axis][k]);
         let stiffness = other.undamaged_stiffness(at);
-        self.push(ends, direction, from.radii_m[k], &stiffness, rule);
+        self.push_elastic(ends, direction, from.radii_m[k], &stiffness, rule);
         self.torsion_per_bending[rule] = other.torsion_per_bending[rule];
         self.bending_per_normal[rule] = other.bending_per_normal[rule];
-        let factor = factor * other.undamaged_strength_factor(at);
-        if factor != 1.0 || !self.strength_factors.is_empty() {
-            self.strength_factors.resize(self.len() - 1, 1.0);
-            self.strength_factors.push(factor);
+        let (copy, factor) = (self.len() - 1, factor * other.undamaged_strength_factor(at));
+        if factor != 1.0 {
+            self.set_strength_factor(copy, factor);
         }
         if let Some(&damping) = other.damping.get(at) {
-            self.damping.resize(self.len() - 1, [0.0; 4]);
-            self.damping.push(damping);
-        } else if !self.damping.is_empty() {
-            self.damping.push([0.0; 4]);
+            self.set_damping(copy, damping);
         }
-        if let Some(&history) = other.histories.get(at) {
-            self.histories.resize(self.len() - 1, History::default());
-            self.histories.push(history);
-        } else if !self.histories.is_empty() {
-            self.histories.push(History::default());
+        self.histories.push_copy(copy, &other.histories, at, factor);
+        if other.was_softened(at) && !other.is_broken(at) {
+            self.set_damage(copy, other.damage(at));
         }
-        if let Some(&plastic) = other.plastics.get(at) {
-            self.plastics
-                .resize(self.len() - 1, PlasticDeformation::NONE);
-            self.plastics.push(plastic);
-        } else if !self.plastics.is_empty() {
-            self.plastics.push(PlasticDeformation::NONE);
+    }
+
+    /// Gives bond `at` this factor on its strengths.
+    pub fn set_strength_factor(&mut self, at: usize, factor: f64) {
+        self.strength_factors.resize(self.len(), 1.0);
+        self.strength_factors[at] = factor;
+        if let Some(known) = self.histories.damages.get_mut(at) {
+            known.strength_factor = factor;
         }
-        if let Some(joint) = other.joints.get(at) {
-            self.joints.resize(self.len() - 1, FlatJoint::default());
-            self.joints.push(joint.clone());
-        } else if !self.joints.is_empty() {
-            self.joints.push(FlatJoint::default());
-        }
-        if let Some(&damage) = other.damages.get(at) {
-            self.damages.push(Damage {
-                damage: 0.0,
-                strength_factor: factor,
-                ..damage
-            });
-            if damage.damage > 0.0 && !other.is_broken(at) {
-                self.set_damage(self.len() - 1, damage.damage);
-            }
-        }
+    }
+
+    /// Gives bond `at` these coefficients of damping, mode by mode.
+    pub fn set_damping(&mut self, at: usize, coefficients: [f64; 4]) {
+        self.damping.resize(self.len(), [0.0; 4]);
+        self.damping[at] = coefficients;
     }
 
     /// Turns the histories of the bonds from `first` on, which are in the axes of space.
     pub(crate) fn turn_histories(&mut self, first: usize, by: &UnitQuaternion<f64>) {
-        for history in self.histories.iter_mut().skip(first) {
-            history.shear_force = by * history.shear_force;
-            history.moment = by * history.moment;
-        }
-    }
-
-    /// Softens bond `at`, whose rule has a fracture energy, to this damage, below 1.
-    pub fn set_damage(&mut self, at: usize, damage: f64) {
-        let known = &mut self.damages[at];
-        if known.damage == 0.0 {
-            self.damaged.insert(
-                self.damaged.partition_point(|other| *other < at as u32),
-                at as u32,
-            );
-        }
-        known.damage = damage;
-        let (known, i) = (*known, at % BLOCK);
-        let block = &mut self.blocks[at / BLOCK];
-        block.normal[i] = (1.0 - damage) * known.normal;
-        block.shear[i] = (1.0 - damage) * known.shear;
-        let ratios = self.opening_ratios(at);
-        self.strength_factors.resize(self.len(), 1.0);
-        self.strength_factors[at] = known.strength_factor * screened_factor(damage, &ratios);
-    }
-
-    /// Ratios of the opening at which bond `at` breaks to that at its strength: see
-    /// [`opening_ratios`]. None of any criterion without a fracture energy.
-    pub fn opening_ratios(&self, at: usize) -> [Option<f64>; COUNT] {
-        let rule = &self.rules[self.rule_of(at)];
-        let (Some(criteria), Some(energy_j_m2)) = (&rule.criteria, rule.fracture_energy_j_m2)
-        else {
-            return [None; COUNT];
-        };
-        let stiffness = self.undamaged_stiffness(at);
-        let factor = self.undamaged_strength_factor(at);
-        opening_ratios(criteria, energy_j_m2, &stiffness, self.radius_m(at), factor)
-    }
-
-    /// Damage of bond `at`: 0 intact, 1 broken.
-    pub fn damage(&self, at: usize) -> f64 {
-        match self.damages.get(at) {
-            _ if self.is_broken(at) => 1.0,
-            Some(damage) => damage.damage,
-            None => 0.0,
-        }
-    }
-
-    /// Whether bond `at`, broken or not, softened or failed in part before: its opening is no
-    /// strain.
-    pub fn was_damaged(&self, at: usize) -> bool {
-        let softened = self.damages.get(at).is_some_and(|known| known.damage > 0.0);
-        softened || self.failed_fraction(at) > 0.0
-    }
-
-    /// Whether bond `at`, broken or not, has yielded.
-    pub fn has_yielded(&self, at: usize) -> bool {
-        let plastic = self.plastics.get(at);
-        plastic.is_some_and(|plastic| *plastic != PlasticDeformation::NONE)
-    }
-
-    /// Bytes of the elements of all flat joints.
-    pub(crate) fn joint_bytes(&self) -> usize {
-        let of_elements = self
-            .joints
-            .iter()
-            .map(|joint| size_of_val(&joint.elements[..]));
-        size_of_val(&self.joints[..]) + of_elements.sum::<usize>()
-    }
-
-    /// Failed part of the area of bond `at`, unless it is broken: 0 if it is no flat joint.
-    pub fn failed_fraction(&self, at: usize) -> f64 {
-        let joint = self.joints.get(at);
-        joint.map_or(0.0, FlatJoint::failed_fraction)
-    }
-
-    /// Stiffness per area of bond `at`.
-    pub(crate) fn joint_stiffness(&self, at: usize) -> JointStiffness {
-        let (stiffness, radius_m) = (self.stiffness(at), self.radius_m(at));
-        let per_area = 1.0 / (PI * radius_m * radius_m);
-        JointStiffness {
-            normal_pa_m: per_area * stiffness.normal,
-            shear_pa_m: per_area * stiffness.shear,
-        }
-    }
-
-    /// Strengths of the elements of flat joint `at`. None: they do not fail.
-    pub(crate) fn element_strengths(&self, at: usize) -> Option<ElementStrengths> {
-        let criteria = self.rules[self.rule_of(at)].criteria?;
-        let factor = self.strength_factor(at);
-        Some(ElementStrengths {
-            tensile_pa: factor * criteria.tensile_strength_pa,
-            cohesion_pa: factor * criteria.cohesion_pa,
-            friction_tangent: criteria.friction_tangent,
-        })
-    }
-
-    /// Largest utilisation of the bonded elements of flat joint `at`, which must not be broken.
-    pub fn element_utilisation(&self, at: usize, poses: &[Pose]) -> f64 {
-        let Some(strengths) = self.element_strengths(at) else {
-            return 0.0;
-        };
-        flat_joint::utilisation(
-            &self.joints[at].elements,
-            &self.joint_stiffness(at),
-            &strengths,
-            &self.direction(at),
-            self.initial_length_m(at),
-            &self.ends_of(at, poses),
-        )
-    }
-
-    /// Forces of flat joint `at` with these elements between these ends.
-    pub(crate) fn joint_forces(
-        &self,
-        at: usize,
-        elements: &[flat_joint::Element],
-        ends: &[End; 2],
-    ) -> BondForces {
-        let stiffness = self.joint_stiffness(at);
-        let length_m = self.initial_length_m(at);
-        flat_joint::forces(elements, &stiffness, &self.direction(at), length_m, ends)
-    }
-
-    /// Number of unbroken bonds that have yielded. None: no bond yields.
-    pub fn count_yielded(&self) -> Option<usize> {
-        let is_one = |at: &usize| self.has_yielded(*at) && !self.is_broken(*at);
-        let count = || (0..self.len()).filter(is_one).count();
-        (!self.plastics.is_empty()).then(count)
-    }
-
-    /// Bond `at`, whose rule has a plasticity, without load.
-    pub(crate) fn stress_free(&self, at: usize) -> StressFree {
-        StressFree {
-            levers_m: self.levers_m(at),
-            direction: self.direction(at),
-            plastic: self.plastics[at],
-        }
-    }
-
-    /// Gives bond `at`, whose rule has a plasticity, this form without load.
-    pub(crate) fn set_stress_free(&mut self, at: usize, bond: &StressFree) {
-        let (block, i) = (&mut self.blocks[at / BLOCK], at % BLOCK);
-        for axis in 0..3 {
-            block.direction[axis][i] = bond.direction[axis];
-        }
-        for end in 0..2 {
-            block.levers_m[end][i] = bond.levers_m[end];
-        }
-        self.plastics[at] = bond.plastic;
+        self.histories.turn(first, by);
     }
 
     /// Gives bond `at`, which has not yielded, this direction without load, a unit vector.
@@ -483,7 +272,7 @@ impl Bonds {
     /// The ends of bond `at`: those of its particles, which plastic deformation has turned.
     fn ends_of(&self, at: usize, poses: &[Pose]) -> [End; 2] {
         let ends = self.ends[at].map(|end| poses[end as usize].end());
-        match self.plastics.get(at) {
+        match self.histories.plastics.get(at) {
             Some(plastic) => plastic.ends(&ends),
             None => ends,
         }
@@ -494,55 +283,6 @@ impl Bonds {
         let [a, b] = self.ends_of(at, poses).map(|end| end.turned.into_inner());
         let sign = a.dot(&b).signum();
         UnitQuaternion::new_normalize(a + b * sign)
-    }
-
-    /// Number of unbroken bonds that are damaged. None: no bond softens beyond its strength.
-    pub fn count_damaged(&self) -> Option<usize> {
-        let unbroken = |at: &&u32| !self.is_broken(**at as usize);
-        let count = || self.damaged.iter().filter(unbroken).count();
-        (!self.damages.is_empty()).then(count)
-    }
-
-    /// Stiffnesses of bond `at` before it was damaged.
-    pub(crate) fn undamaged_stiffness(&self, at: usize) -> Stiffness {
-        match self.damages.get(at) {
-            Some(known) if known.damage > 0.0 && !self.is_broken(at) => {
-                self.stiffness_from(at, known.normal, known.shear)
-            }
-            _ => self.stiffness(at),
-        }
-    }
-
-    /// Factor on the strengths of bond `at` before it was damaged.
-    pub fn undamaged_strength_factor(&self, at: usize) -> f64 {
-        match self.damages.get(at) {
-            Some(known) => known.strength_factor,
-            None => self.strength_factor(at),
-        }
-    }
-
-    /// Whether strengths vary from bond to bond, apart from damage.
-    pub(crate) fn strengths_scatter(&self) -> bool {
-        if self.damages.is_empty() {
-            !self.strength_factors.is_empty()
-        } else {
-            self.damages
-                .iter()
-                .any(|known| known.strength_factor != 1.0)
-        }
-    }
-
-    /// Gives all bonds the strength of their rule, damaged ones as far as they still have it.
-    pub fn forget_scatter(&mut self) {
-        self.strength_factors.clear();
-        for known in &mut self.damages {
-            known.strength_factor = 1.0;
-        }
-        for at in std::mem::take(&mut self.damaged) {
-            let known = &mut self.damages[at as usize];
-            let damage = std::mem::replace(&mut known.damage, 0.0);
-            self.set_damage(at as usize, damage);
-        }
     }
 
     /// Normal stiffness of bond `at`, N/m; 0 if it is broken.
@@ -611,40 +351,19 @@ impl Bonds {
     /// Forces of bond `at`, which must not be broken, on its ends.
     pub fn forces(&self, at: usize, poses: &[Pose]) -> BondForces {
         let stiffness = self.stiffness(at);
-        if let Some(joint) = self
-            .joints
-            .get(at)
-            .filter(|joint| !joint.elements.is_empty())
-        {
-            return self.joint_forces(at, &joint.elements, &self.ends_of(at, poses));
-        }
-        if self.rules[self.rule_of(at)].incremental {
-            let [a, b] = self.ends[at].map(|end| poses[end as usize].place());
-            let apart = b - a;
-            return incremental::bond_forces(&stiffness, &self.histories[at], &apart);
+        match self.rules[self.rule_of(at)].law {
+            BondLaw::FlatJoint(_) => {
+                let elements = &self.histories.joints[at].elements;
+                return self.joint_forces(at, elements, &self.ends_of(at, poses));
+            }
+            BondLaw::Incremental => {
+                let [a, b] = self.ends[at].map(|end| poses[end as usize].place());
+                return incremental::bond_forces(&stiffness, &self.histories.sums[at], &(b - a));
+            }
+            BondLaw::Elastic | BondLaw::ElastoPlastic(_) | BondLaw::Softening { .. } => {}
         }
         let stiffness = self.stiffness_now(at, poses);
         total::bond_forces(&stiffness, &self.direction(at), &self.ends_of(at, poses))
-    }
-
-    /// Forces that bond `at`, which must not be broken and has the total formulation, would have
-    /// between these ends with this damage.
-    pub fn forces_if_damaged(&self, at: usize, ends: &[End; 2], damage: f64) -> BondForces {
-        let intact = self.undamaged_stiffness(at);
-        let apart_m = (ends[1].position_m - ends[0].position_m).norm();
-        let left = 1.0 - damage;
-        let stiffness = Stiffness {
-            normal: if apart_m < self.initial_length_m(at) {
-                intact.normal
-            } else {
-                left * intact.normal
-            },
-            shear: left * intact.shear,
-            torsion: left * intact.torsion,
-            bending: left * intact.bending,
-            ..intact
-        };
-        total::bond_forces(&stiffness, &self.direction(at), ends)
     }
 
     /// Deformation of bond `at`, broken or not, in place of its load: change of length and sliding,
@@ -661,23 +380,6 @@ impl Bonds {
             levers_m: self.levers_m(at),
         };
         total::bond_forces(&unit, &self.direction(at), &ends).load
-    }
-
-    /// Normal stiffness of bond `at` at these poses, N/m: of a damaged bond that is pressed, that
-    /// which it had before.
-    fn axial_stiffness(&self, at: usize, poses: &[Pose]) -> f64 {
-        match self.damages.get(at) {
-            Some(known) if known.damage > 0.0 && self.stretch_m(at, poses) < 0.0 => known.normal,
-            _ => self.normal(at),
-        }
-    }
-
-    /// Stiffnesses of bond `at` at these poses: see [`Self::axial_stiffness`].
-    pub(crate) fn stiffness_now(&self, at: usize, poses: &[Pose]) -> Stiffness {
-        Stiffness {
-            normal: self.axial_stiffness(at, poses),
-            ..self.stiffness(at)
-        }
     }
 
     /// Length of bond `at` beyond that without load, m.
@@ -705,7 +407,7 @@ impl Bonds {
 
     /// Initial length of bond `at`, m.
     pub fn initial_length_m(&self, at: usize) -> f64 {
-        let plastic = self.plastics.get(at);
+        let plastic = self.histories.plastics.get(at);
         self.stress_free_length_m(at) - plastic.map_or(0.0, |plastic| plastic.elongation_m)
     }
 
@@ -762,9 +464,7 @@ impl Bonds {
         if let Some(damping) = self.damping.get_mut(at) {
             *damping = [0.0; 4];
         }
-        if let Some(history) = self.histories.get_mut(at) {
-            *history = History::default();
-        }
+        self.histories.end(at);
     }
 
     /// Number of the rule of bond `at`.
@@ -780,34 +480,5 @@ impl Bonds {
             .zip(&self.rule_runs)
             .map(move |(start, &(end, rule))| (rule, start.max(range.start)..end.min(range.end)))
             .filter(|(_, run)| run.start < run.end)
-    }
-}
-
-/// Histories as plain numbers in a file: shear force x, y, z and moment x, y, z.
-mod histories {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    use crate::state::bonds::History;
-
-    pub(super) fn serialize<S: Serializer>(
-        histories: &[History],
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        let numbers: Vec<[[f64; 3]; 2]> = histories
-            .iter()
-            .map(|h| [h.shear_force.into(), h.moment.into()])
-            .collect();
-        numbers.serialize(serializer)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<Vec<History>, D::Error> {
-        let numbers = Vec::<[[f64; 3]; 2]>::deserialize(deserializer)?;
-        let history = |[force, moment]: [[f64; 3]; 2]| History {
-            shear_force: force.into(),
-            moment: moment.into(),
-        };
-        Ok(numbers.into_iter().map(history).collect())
     }
 }

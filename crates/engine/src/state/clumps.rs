@@ -445,10 +445,7 @@ impl Template {
         let of_bonds = size_of_val(&bonds.ends[..])
             + size_of_val(&bonds.blocks[..])
             + size_of_val(&bonds.damping[..])
-            + size_of_val(&bonds.histories[..])
-            + size_of_val(&bonds.damages[..])
-            + size_of_val(&bonds.plastics[..])
-            + bonds.joint_bytes();
+            + bonds.histories.bytes();
         [
             array(&self.spheres),
             array(&self.outer),

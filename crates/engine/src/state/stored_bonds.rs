@@ -8,7 +8,7 @@ use dem_io::{Diagnostic, Result};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::PlacedBody;
-use super::bonds::Bonds;
+use super::bonds::{BondLaw, Bonds};
 use super::particles::Pose;
 use dem_physics::bond::flat_joint::{Element, FlatJointLaw, elements, elements_from, first_edge};
 use dem_physics::bond::incremental::History;
@@ -27,7 +27,7 @@ pub fn sum_of(bonds: &Bonds, at: usize, is_reversed: bool) -> SummedBond {
     let History {
         shear_force,
         moment,
-    } = bonds.histories[at];
+    } = bonds.histories.sums[at];
     SummedBond {
         shear_n: (sign(is_reversed) * shear_force).into(),
         moment_n_m: (sign(is_reversed) * moment).into(),
@@ -46,7 +46,7 @@ fn ends_in_order<T>([a, b]: [T; 2], is_reversed: bool) -> [T; 2] {
 /// Plastic deformation of bond `at`, of a scene in which bonds can yield. `is_reversed`: its
 /// particles have the opposite order in the file.
 pub fn plastic_of(bonds: &Bonds, at: usize, poses: &[Pose], is_reversed: bool) -> PlasticBond {
-    let plastic = &bonds.plastics[at];
+    let plastic = &bonds.histories.plastics[at];
     let frame = bonds.frame_of(at, poses);
     let sign = sign(is_reversed);
     let stored = |own: [f64; 3]| (sign * (frame * Vector3::from(own))).into();
@@ -63,10 +63,10 @@ pub fn plastic_of(bonds: &Bonds, at: usize, poses: &[Pose], is_reversed: bool) -
 /// Elements of bond `at`, of a scene with flat joints, by their order in the file; those of a bond
 /// of another model are none.
 pub fn joint_of(bonds: &Bonds, at: usize, poses: &[Pose], is_reversed: bool) -> JointBond {
-    let Some(law) = bonds.rules[bonds.rule_of(at)].flat_joint else {
+    let Some(law) = bonds.rules[bonds.rule_of(at)].law.flat_joint() else {
         return JointBond::default();
     };
-    let own = &bonds.joints[at].elements;
+    let own = &bonds.histories.joints[at].elements;
     let edge = first_edge(&law, own, &bonds.direction(at));
     let is_broken = bonds.is_broken(at);
     let failed = own.iter().map(|element| is_broken || !element.is_bonded);
@@ -128,9 +128,10 @@ pub fn restore(
         if let Some(direction) = body.bond_directions.get(original) {
             let direction = sign(is_reversed) * Vector3::from(*direction).normalize();
             bonds.set_direction(at, &direction);
-            if let Some(law) = bonds.rules[bonds.rule_of(at)].flat_joint {
+            if let Some(law) = bonds.rules[bonds.rule_of(at)].law.flat_joint() {
                 // Those of the line of centres lie across another direction.
-                bonds.joints[at].elements = elements(&law, bonds.radius_m(at), &direction);
+                bonds.histories.joints[at].elements =
+                    elements(&law, bonds.radius_m(at), &direction);
             }
         }
         if let Some(sum) = body.bond_sums.get(original) {
@@ -157,7 +158,7 @@ fn load(
     if *stored == SummedBond::default() {
         return Ok(());
     }
-    if !bonds.rules[bonds.rule_of(at)].incremental {
+    if bonds.rules[bonds.rule_of(at)].law != BondLaw::Incremental {
         return Err(Diagnostic::input(
             "",
             "its load was summed step by step, and its kind of bonds computes loads from positions",
@@ -165,7 +166,7 @@ fn load(
         ));
     }
     let own = |stored: [f64; 3]| sign(is_reversed) * (rotation * Vector3::from(stored));
-    bonds.histories[at] = History {
+    bonds.histories.sums[at] = History {
         shear_force: own(stored.shear_n),
         moment: own(stored.moment_n_m),
     };
@@ -183,7 +184,7 @@ fn deform(
     if *stored == PlasticBond::default() {
         return Ok(());
     }
-    if bonds.rules[bonds.rule_of(at)].plasticity.is_none() {
+    if bonds.rules[bonds.rule_of(at)].law.plasticity().is_none() {
         return Err(Diagnostic::input(
             "",
             "it has yielded, and its kind of bonds has no plasticity",
@@ -192,7 +193,7 @@ fn deform(
     }
     let turns = ends_in_order(stored.turns_rad, is_reversed);
     let turns = turns.map(|turn| UnitQuaternion::from_scaled_axis(Vector3::from(turn)));
-    bonds.plastics[at].turned = turns.map(|turn| numbers(&turn));
+    bonds.histories.plastics[at].turned = turns.map(|turn| numbers(&turn));
     let to_frame = bonds.frame_of(at, poses).inverse() * rotation;
     let own = |stored: [f64; 3]| (sign(is_reversed) * (to_frame * Vector3::from(stored))).into();
     let longer = 1.0 + stored.elongation_m / bonds.stress_free_length_m(at);
@@ -205,7 +206,7 @@ fn deform(
             twist_rad: stored.twist_rad,
             bend_rad: own(stored.bend_rad),
             work_j: stored.work_j,
-            turned: bonds.plastics[at].turned,
+            turned: bonds.histories.plastics[at].turned,
         },
     };
     bonds.set_stress_free(at, &bond);
@@ -223,7 +224,7 @@ fn fail(
     if !stored.failed.contains(&true) {
         return Ok(());
     }
-    let law = bonds.rules[bonds.rule_of(at)].flat_joint;
+    let law = bonds.rules[bonds.rule_of(at)].law.flat_joint();
     let count = law.map_or(0, |law| law.count());
     // Bonds with more elements in the same file lengthen the list of each.
     let (own, surplus) = stored.failed.split_at(count.min(stored.failed.len()));
@@ -258,6 +259,6 @@ fn fail(
     for (element, slip) in elements.iter_mut().zip(in_order(slips, &law, is_reversed)) {
         element.slip_m = (sign(is_reversed) * (to_frame * Vector3::from(slip))).into();
     }
-    bonds.joints[at].elements = elements;
+    bonds.histories.joints[at].elements = elements;
     Ok(())
 }

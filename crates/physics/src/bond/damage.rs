@@ -37,6 +37,17 @@ pub struct Damage {
     pub strength_factor: f64,
 }
 
+impl Default for Damage {
+    fn default() -> Self {
+        Self {
+            damage: 0.0,
+            normal: 0.0,
+            shear: 0.0,
+            strength_factor: 1.0,
+        }
+    }
+}
+
 impl Damage {
     /// An intact bond of this stiffness whose strengths have this factor.
     pub fn none(stiffness: &Stiffness, strength_factor: f64) -> Self {

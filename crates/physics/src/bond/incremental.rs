@@ -20,9 +20,10 @@ use super::BondLoad;
 use super::stiffness::Stiffness;
 use super::total::{BondEnergy, BondForces};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 /// History of a bond. Both values are 0 when it is created.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct History {
     /// Shear force on the second end, across the bond, N.
     pub shear_force: Vector3<f64>,

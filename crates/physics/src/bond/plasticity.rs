@@ -52,6 +52,12 @@ pub struct PlasticDeformation {
     pub work_j: f64,
 }
 
+impl Default for PlasticDeformation {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
 impl PlasticDeformation {
     /// Of a bond that has not yielded.
     pub const NONE: Self = Self {

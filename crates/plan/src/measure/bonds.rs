@@ -98,7 +98,7 @@ fn largest_of_rule(state: &State, is_in: &[bool], rule: usize, run: Range<usize>
     let is_counted = |at: usize| bonds.ends[at].iter().any(|&end| is_in[end as usize]);
     let mut squares = [f64::INFINITY; CHUNK];
     let squares = &mut squares[..run.len()];
-    if !bonds.rules[rule].is_single() {
+    if !bonds.rules[rule].law.is_single() {
         squared_utilisations(bonds, &state.particles.poses, rule, run.clone(), squares);
     }
     let mut most = 0.0_f64;
@@ -126,7 +126,7 @@ pub fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
 /// The same with this factor on the strengths that rise with the strain rate.
 fn utilisation_at(state: &State, at: usize, load: &BondLoad, rate: f64) -> f64 {
     let bonds = &state.bonds;
-    if bonds.rules[bonds.rule_of(at)].flat_joint.is_some() && !bonds.is_broken(at) {
+    if bonds.rules[bonds.rule_of(at)].law.flat_joint().is_some() && !bonds.is_broken(at) {
         return bonds.element_utilisation(at, &state.particles.poses);
     }
     match &bonds.rules[bonds.rule_of(at)].criteria {

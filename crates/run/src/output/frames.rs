@@ -182,14 +182,14 @@ impl FrameOrder {
             counts(BROKEN, &broken),
         ];
         let damage = |i: usize| bonds.damage(bond(i));
-        if !bonds.damages.is_empty() {
+        if !bonds.histories.damages.is_empty() {
             bond_arrays.push(scalars(DAMAGE, &damage));
         }
         let failed = |i: usize| match bonds.is_broken(bond(i)) {
             true => 1.0,
             false => bonds.failed_fraction(bond(i)),
         };
-        if !bonds.joints.is_empty() {
+        if !bonds.histories.joints.is_empty() {
             bond_arrays.push(scalars(FAILED, &failed));
         }
         if strengthen {
@@ -237,13 +237,13 @@ impl FrameOrder {
             directions: (each.iter())
                 .map(|&(at, is_reversed)| direction_of(bonds, at, is_reversed))
                 .collect(),
-            sums: (known(!bonds.histories.is_empty()).iter())
+            sums: (known(!bonds.histories.sums.is_empty()).iter())
                 .map(|&(at, is_reversed)| sum_of(bonds, at, is_reversed))
                 .collect(),
-            plastics: (known(!bonds.plastics.is_empty()).iter())
+            plastics: (known(!bonds.histories.plastics.is_empty()).iter())
                 .map(|&(at, is_reversed)| plastic_of(bonds, at, poses, is_reversed))
                 .collect(),
-            joints: (known(!bonds.joints.is_empty()).iter())
+            joints: (known(!bonds.histories.joints.is_empty()).iter())
                 .map(|&(at, is_reversed)| joint_of(bonds, at, poses, is_reversed))
                 .collect(),
         }

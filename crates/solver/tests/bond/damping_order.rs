@@ -1,7 +1,7 @@
 //! Damping of bonds is of second order in the step, in a network and in a body that spins.
 
 use crate::bars::{
-    BondDamping, ELASTIC, bar, body, damp, random_spheres, shake, soft, spheres, steel, tumble,
+    BondDamping, ELASTIC, bar, body, damp, law, random_spheres, shake, soft, spheres, steel, tumble,
 };
 use crate::clumps::{HEAD, block, planned};
 use dem_run::check::limit::limit as step_limit;
@@ -84,7 +84,7 @@ fn a_damped_network_is_of_second_order() {
     }
     for incremental in [false, true] {
         let rule = BondRule {
-            incremental,
+            law: law(incremental),
             ..ELASTIC
         };
         let mut state = bar(BondModel::Timoshenko, rule, 1e-9);

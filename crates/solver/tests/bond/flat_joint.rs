@@ -362,7 +362,7 @@ fn a_ring_that_has_failed_rubs_under_pressure() {
     }
     interact(&mut state);
     assert_eq!(state.broken_count, 0);
-    let failed = state.bonds.joints[0].failed_fraction();
+    let failed = state.bonds.histories.joints[0].failed_fraction();
     assert!((failed - 0.75).abs() < 1e-12, "{failed}");
     let now = balance(&mut state);
     // The friction rises with the pressure, which rises with the twist.
@@ -404,7 +404,7 @@ fn a_bent_joint_fails_from_its_edge() {
         ),
         &(bend("left", -0.5 * angle) + &bend("right", 0.5 * angle)),
     );
-    let farthest = state.bonds.joints[0]
+    let farthest = state.bonds.histories.joints[0]
         .elements
         .iter()
         .map(|element| element.place_m[1].abs())
@@ -413,7 +413,7 @@ fn a_bent_joint_fails_from_its_edge() {
     let (mut failed_at, mut fractions) = (None, vec![]);
     while state.time_s < ramp_s && state.broken_count == 0 {
         interact(&mut state);
-        let fraction = state.bonds.joints[0].failed_fraction();
+        let fraction = state.bonds.histories.joints[0].failed_fraction();
         if fraction > 0.0 && failed_at.is_none() {
             failed_at = Some(state.time_s / ramp_s * angle);
         }
@@ -470,7 +470,12 @@ fn books_stay_closed_while_elements_fail_and_slide() {
             error = error.max(now.energy_error.abs());
             assert!(now.momentum_error < 1e-12, "{now:?}");
             assert!(now.angular_momentum_error < 1e-12, "{now:?}");
-            let failed = state.bonds.joints.iter().map(FlatJoint::failed_fraction);
+            let failed = state
+                .bonds
+                .histories
+                .joints
+                .iter()
+                .map(FlatJoint::failed_fraction);
             partly = partly.max(failed.filter(|part| (0.01..0.99).contains(part)).count());
             advance(&mut state);
         }

@@ -6,8 +6,8 @@ use dem_run::physics::bond::failure::{Criteria, EquivalentStress, Factors, stres
 use dem_run::physics::bond::stiffness::Stiffness;
 use dem_run::stages::bonds::bond_wrenches;
 use dem_run::stages::bonds::bond_wrenches_one_by_one;
-use dem_run::state::bonds::BondRule;
 use dem_run::state::bonds::Bonds;
+use dem_run::state::bonds::{BondLaw, BondRule};
 use dem_run::state::particles::Particles;
 use dem_run::state::partitions::divide;
 
@@ -34,12 +34,9 @@ fn chain(criteria: Criteria, is_scattered: bool) -> (Particles, Bonds) {
     }
     let mut bonds = Bonds {
         rules: Arc::new([BondRule {
-            incremental: false,
+            law: BondLaw::Elastic,
             damped: false,
             structural_damping: 0.0,
-            fracture_energy_j_m2: None,
-            plasticity: None,
-            flat_joint: None,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,

@@ -190,7 +190,7 @@ fn every_mode_follows_its_curve_and_dissipates_its_loop() {
         assert!((last - left).abs() < 1e-2, "{what}: {last} {left}");
         let found = balance(&mut state);
         assert!(found.energy_error.abs() < 1e-5, "{what}: {found:?}");
-        let plastic = state.bonds.plastics[0];
+        let plastic = state.bonds.histories.plastics[0];
         let parts = [
             plastic.elongation_m,
             Vector3::from(plastic.slip_m).norm(),
@@ -256,7 +256,7 @@ fn time_does_not_enter() {
             while state.time_s < 5.5 * slower * QUARTER_S {
                 step(&mut state);
             }
-            let plastic = state.bonds.plastics[0];
+            let plastic = state.bonds.histories.plastics[0];
             let [x, y, z] = plastic.slip_m;
             let [rx, ry, rz] = plastic.bend_rad;
             [plastic.elongation_m, x, y, z, plastic.twist_rad, rx, ry, rz]
@@ -310,7 +310,12 @@ fn books_stay_closed_through_plastic_flow() {
         interact(&mut state);
         let now = balance(&mut state);
         assert!(now.bond_plastic_j > 0.3 * now.energy_scale_j, "{now:?}");
-        let works = state.bonds.plastics.iter().map(|plastic| plastic.work_j);
+        let works = state
+            .bonds
+            .histories
+            .plastics
+            .iter()
+            .map(|plastic| plastic.work_j);
         let of_bonds: f64 = works.clone().sum();
         assert!((of_bonds / now.bond_plastic_j - 1.0).abs() < 1e-12);
         assert!(works.filter(|work_j| *work_j > 0.0).count() >= 4);

@@ -192,12 +192,12 @@ fn a_fragment_of_incremental_bonds_turns_their_loads() {
     );
     let mut state = flying_with(&head);
     state.bonds.set_broken(0);
-    for (n, history) in (1..).zip(state.bonds.histories.iter_mut().skip(1)) {
+    for (n, history) in (1..).zip(state.bonds.histories.sums.iter_mut().skip(1)) {
         let n = f64::from(n);
         history.shear_force = 1e-4 * Vector3::new(n, -2.0, 0.5 * n);
         history.moment = 1e-7 * Vector3::new(0.3, n, -n);
     }
-    let before = state.bonds.histories.clone();
+    let before = state.bonds.histories.sums.clone();
     restore_clumps(&mut state);
     assert_eq!((state.bonds.len(), state.clumps.all.len()), (0, 1));
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -1.1, 0.7));
@@ -211,8 +211,8 @@ fn a_fragment_of_incremental_bonds_turns_their_loads() {
             ..TopologyChange::default()
         },
     );
-    assert_eq!(state.bonds.histories.len(), before.len() - 1);
-    for (after, before) in state.bonds.histories.iter().zip(&before[1..]) {
+    assert_eq!(state.bonds.histories.sums.len(), before.len() - 1);
+    for (after, before) in state.bonds.histories.sums.iter().zip(&before[1..]) {
         let pairs = [
             (after.shear_force, before.shear_force),
             (after.moment, before.moment),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use std::f64::consts::PI;
 
+use crate::bars::law;
 use dem_run::check::limit::limit;
 use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
@@ -100,12 +101,9 @@ pub(crate) fn bonded(
 ) -> State {
     let mut bonds = Bonds {
         rules: Arc::new([BondRule {
-            incremental,
+            law: law(incremental),
             damped: false,
             structural_damping: 0.0,
-            fracture_energy_j_m2: None,
-            plasticity: None,
-            flat_joint: None,
             criteria: Some(criteria),
             strengthening_from_1_s: None,
             strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
@@ -122,9 +120,6 @@ pub(crate) fn bonded(
         };
         let stiffness = stiffness(BondModel::Timoshenko, &shape, YOUNG_PA, 0.3);
         bonds.push([a, b], direction(&apart).into(), RADIUS_M, &stiffness, 0);
-    }
-    if incremental {
-        bonds.histories = vec![Default::default(); pairs.len()];
     }
     let mut state = State::new(particles, bonds, 1e-9, 1);
     state.time_step_s = 0.5 * limit(&mut state).step_s;

@@ -9,7 +9,7 @@ use dem_run::physics::bond::failure::Criteria;
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::stages::ledger::{balance, opened};
 use dem_run::state::State;
-use dem_run::state::bonds::BondRule;
+use dem_run::state::bonds::{BondLaw, BondRule};
 use dem_run::state::particles::Particles;
 use dem_run::step::{advance, interact, step};
 use dem_scene::{Factor, Hold};
@@ -39,12 +39,14 @@ fn row(bonds: usize, length_m: f64, criteria: Criteria, fracture_energy_j_m2: f6
         young_modulus_pa: YOUNG_PA,
         rule: BondRule {
             criteria: Some(criteria),
-            fracture_energy_j_m2: Some(fracture_energy_j_m2),
+            law: BondLaw::Softening {
+                fracture_energy_j_m2,
+            },
             ..ELASTIC
         },
     };
     let mut state = body(particles, &pairs, &bonding, 1e-9);
-    state.bonds.damages = (0..bonds)
+    state.bonds.histories.damages = (0..bonds)
         .map(|at| Damage::none(&state.bonds.stiffness(at), 1.0))
         .collect();
     state.time_step_s = 0.5 * limit(&mut state).step_s;
@@ -183,7 +185,7 @@ fn a_bar_takes_the_same_energy_at_any_resolution() {
         let energy_j_m2 = 40.0;
         for bonds in [2, 4, 8] {
             let mut state = row(bonds, 16e-3 / bonds as f64, TENSION, energy_j_m2);
-            state.bonds.damages[bonds / 2].strength_factor = 0.95;
+            state.bonds.histories.damages[bonds / 2].strength_factor = 0.95;
             state.bonds.strength_factors = vec![1.0; bonds];
             state.bonds.strength_factors[bonds / 2] = 0.95;
             let speed = 0.004;
@@ -269,7 +271,9 @@ fn weak_bar(across: usize, energy_j_m2: f64) -> (State, Vec<usize>) {
         young_modulus_pa: YOUNG_PA,
         rule: BondRule {
             criteria: Some(TENSION),
-            fracture_energy_j_m2: Some(energy_j_m2),
+            law: BondLaw::Softening {
+                fracture_energy_j_m2: energy_j_m2,
+            },
             ..ELASTIC
         },
     };
@@ -282,7 +286,7 @@ fn weak_bar(across: usize, energy_j_m2: f64) -> (State, Vec<usize>) {
     for &at in &weakest {
         state.bonds.strength_factors[at] = 0.95;
     }
-    state.bonds.damages = (0..pairs.len())
+    state.bonds.histories.damages = (0..pairs.len())
         .map(|at| Damage::none(&state.bonds.stiffness(at), state.bonds.strength_factors[at]))
         .collect();
     state.time_step_s = 0.5 * limit(&mut state).step_s;

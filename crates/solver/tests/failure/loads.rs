@@ -81,7 +81,7 @@ fn first_break(state: &mut State) -> Option<(f64, usize, Cause)> {
             let at = first.bond as usize;
             let bonds = std::mem::replace(&mut state.bonds, whole);
             // The increments are those of this step, before the bonds broke.
-            if bonds.histories.is_empty() {
+            if bonds.histories.sums.is_empty() {
                 assert!(fraction(state, at) >= 1.0, "{at} broke before its strength");
             }
             assert!(before[at] < 1.0, "{at} broke after its strength");

@@ -141,13 +141,21 @@ fn every_bond_keeps_its_forces_and_what_it_has_been_through() {
         });
         let is_good = |plan: &Plan| {
             let bonds = &plan.state.bonds;
-            let mut elements = bonds.joints.iter().flat_map(|joint| &joint.elements);
+            let mut elements = bonds
+                .histories
+                .joints
+                .iter()
+                .flat_map(|joint| &joint.elements);
             // At most one of the bonds between the first three, which hold each other twice.
             let broken = (0..bonds.len()).filter(|at| bonds.is_broken(*at));
             let number = |end: u32| plan.bodies[0].number_of(end).unwrap();
             let broken: Vec<[u32; 2]> = broken.map(|at| bonds.ends[at].map(number)).collect();
             // A joint of which nothing holds breaks later in the step.
-            let holds = bonds.joints.iter().all(|joint| !joint.has_failed());
+            let holds = bonds
+                .histories
+                .joints
+                .iter()
+                .all(|joint| !joint.has_failed());
             let inner = broken.as_flattened().iter().all(|end| *end < 3);
             let whole = holds && broken.len() < 2 && inner;
             whole
@@ -165,7 +173,13 @@ fn every_bond_keeps_its_forces_and_what_it_has_been_through() {
         assert!(before.1 > 1e-7, "{name}: {} J", before.1);
         let bonds = &plan_of_first.state.bonds;
         if name == "plastic" {
-            assert!(bonds.plastics.iter().any(|p| p.bend_rad != [0.0; 3]));
+            assert!(
+                bonds
+                    .histories
+                    .plastics
+                    .iter()
+                    .any(|p| p.bend_rad != [0.0; 3])
+            );
         }
         let body = taken(folder.path(), &first, &plan_of_first);
         // As a body that starts bonded, and as a clump that becomes bonded at once.

@@ -149,7 +149,7 @@ const TURNS: [(&str, f64); 4] = [
 
 /// The rotation of the frame of the first bond: halfway between those of its ends.
 fn frame(state: &State) -> nalgebra::UnitQuaternion<f64> {
-    let plastic = state.bonds.plastics.first();
+    let plastic = state.bonds.histories.plastics.first();
     let ends = [0, 1].map(|k| {
         let of_particle = state.particles.poses[state.bonds.ends[0][k] as usize].rotation();
         let turned = plastic.map_or([0.0, 0.0, 0.0, 1.0], |plastic| plastic.turned[k]);
@@ -180,7 +180,7 @@ fn plastic_bending_turns_with_the_body() {
             &bench,
             &pair(&turned(axis, degrees), ELASTIC_PLASTIC, fixed),
         );
-        let plastic = state.bonds.plastics[0];
+        let plastic = state.bonds.histories.plastics[0];
         let rotation = rotation(axis, degrees);
         // The particle that is first in the file may be the second of the bond.
         let along = Vector3::from(state.bonds.blocks[0].direction.map(|column| column[0]));
@@ -250,7 +250,7 @@ fn failed_elements_turn_with_the_body() {
     let mut first: Option<(Vector3<f64>, f64)> = None;
     for (axis, degrees) in TURNS {
         let state = state(&bench, &pair(&turned(axis, degrees), JOINT, "fixed = true"));
-        let joint = &state.bonds.joints[0];
+        let joint = &state.bonds.histories.joints[0];
         let rotation = rotation(axis, degrees);
         let gone = joint.elements.iter().filter(|element| !element.is_bonded);
         let middle: Vector3<f64> = gone.map(|element| Vector3::from(element.place_m)).sum();

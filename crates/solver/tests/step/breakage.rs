@@ -2,7 +2,7 @@
 //! with the step.
 
 use crate::bars::{
-    BondDamping, ELASTIC, bar, damp, random_body, reopen, step_and_balance, with_threads,
+    BondDamping, ELASTIC, bar, damp, law, random_body, reopen, step_and_balance, with_threads,
 };
 use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::BondModel;
@@ -11,7 +11,7 @@ use dem_run::state::bonds::BondRule;
 
 fn breaking(tensile_strength_pa: f64, incremental: bool) -> BondRule {
     BondRule {
-        incremental,
+        law: law(incremental),
         criteria: Some(Criteria {
             tensile_strength_pa,
             compressive_strength_pa: f64::INFINITY,

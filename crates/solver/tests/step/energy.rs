@@ -6,13 +6,13 @@ use crate::bars::{
 };
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
-use dem_run::state::bonds::BondRule;
+use dem_run::state::bonds::{BondLaw, BondRule};
 use dem_run::state::particles::Particles;
 use dem_run::step::step;
 use nalgebra::{UnitQuaternion, Vector3};
 
 const INCREMENTAL: BondRule = BondRule {
-    incremental: true,
+    law: BondLaw::Incremental,
     ..ELASTIC
 };
 
@@ -35,7 +35,7 @@ fn energy_error_falls_with_the_square_of_the_step() {
                 .map(|finer| run(&mut tumbling(rule, finer), 1000 * u64::from(finer), 1).energy)
                 .into();
             let orders = orders(&errors);
-            eprintln!("{}: {errors:?} {orders:.4?}", rule.incremental);
+            eprintln!("{:?}: {errors:?} {orders:.4?}", rule.law);
             assert!(orders.iter().all(|o| (o - 2.0).abs() < 0.05), "{orders:?}");
         }
     });
@@ -60,7 +60,7 @@ fn places_are_of_second_order() {
         for rule in [ELASTIC, INCREMENTAL] {
             let ends = [10, 20, 40, 80].map(|finer| end(tumbling(rule, finer), finer));
             let orders = orders(&distances(&ends));
-            eprintln!("{}: {orders:.4?}", rule.incremental);
+            eprintln!("{:?}: {orders:.4?}", rule.law);
             assert!(orders.iter().all(|o| (o - 2.0).abs() < 0.1), "{orders:?}");
         }
     });
@@ -87,7 +87,7 @@ fn a_step_that_changes_in_mid_run_keeps_the_order() {
             });
             let of_energy = orders(&runs.map(|(energy, _)| energy));
             let of_place = orders(&distances(&runs.map(|(_, place)| place)));
-            eprintln!("{}: {of_energy:.4?} {of_place:.4?}", rule.incremental);
+            eprintln!("{:?}: {of_energy:.4?} {of_place:.4?}", rule.law);
             assert!(
                 of_energy
                     .iter()

@@ -1,11 +1,12 @@
 //! The ledger: all energy and momentum exchanged is recorded.
 
 use crate::bars::{
-    BAR_LIMIT_S, BondDamping, ELASTIC, Errors, bar, damp, damp_particles, orders, reopen, run,
+    BAR_LIMIT_S, BondDamping, ELASTIC, Errors, bar, damp, damp_particles, law, orders, reopen, run,
     with_threads,
 };
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::state::State;
+use dem_run::state::bonds::BondRule;
 use dem_run::state::loads::GroupLoad;
 use dem_run::state::supports::GroupSupport;
 use dem_run::state::supports::HeldParticle;
@@ -153,8 +154,8 @@ fn smooth() -> Vec<(&'static str, Change)> {
 }
 
 fn errors(change: Change, incremental: bool, finer: u32) -> Errors {
-    let rule = dem_run::state::bonds::BondRule {
-        incremental,
+    let rule = BondRule {
+        law: law(incremental),
         ..ELASTIC
     };
     let mut state = bar(BondModel::Timoshenko, rule, BAR_LIMIT_S / f64::from(finer));

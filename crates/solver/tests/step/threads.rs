@@ -11,7 +11,7 @@ use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
 use dem_run::physics::bond::stiffness::BondModel;
 use dem_run::stages::elastic::elastic_energy;
 use dem_run::state::State;
-use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::bonds::{BondLaw, BondRule, Bonds};
 use dem_run::state::events::Break;
 use dem_run::state::loads::GroupLoad;
 use dem_run::state::particles::{Motion, Pose};
@@ -20,12 +20,9 @@ use dem_run::state::supports::HeldParticle;
 use dem_scene::{Factor, Hold};
 
 const BREAKING: BondRule = BondRule {
-    incremental: false,
+    law: BondLaw::Elastic,
     damped: false,
     structural_damping: 0.1,
-    fracture_energy_j_m2: None,
-    plasticity: None,
-    flat_joint: None,
     criteria: Some(Criteria {
         tensile_strength_pa: 0.1e6,
         compressive_strength_pa: 0.1e6,
@@ -58,8 +55,13 @@ fn scene(partitions: usize) -> State {
             .map(|pair| pair.map(|end| end + first))
             .collect();
         let rule = BondRule {
-            incremental,
-            fracture_energy_j_m2: (!incremental).then_some(5.0),
+            law: if incremental {
+                BondLaw::Incremental
+            } else {
+                BondLaw::Softening {
+                    fracture_energy_j_m2: 5.0,
+                }
+            },
             ..BREAKING
         };
         add_bonds(
@@ -69,11 +71,10 @@ fn scene(partitions: usize) -> State {
             &soft(BondModel::Timoshenko, rule),
         );
     }
-    bonds.histories.resize(bonds.len(), Default::default());
     bonds.strength_factors = (0..bonds.len())
         .map(|at| 0.8 + 0.01 * (at % 50) as f64)
         .collect();
-    bonds.damages = (0..bonds.len())
+    bonds.histories.damages = (0..bonds.len())
         .map(|at| Damage::none(&bonds.stiffness(at), bonds.strength_factor(at)))
         .collect();
     let mut state = State::new(particles, bonds, 5e-7, partitions);
@@ -183,7 +184,7 @@ fn the_elastic_energy_is_the_sum_over_bonds_one_by_one() {
         |is_so: fn(&Bonds, usize) -> bool| (0..bonds.len()).filter(|&at| is_so(bonds, at)).count();
     // Broken ones, damaged ones, and two kinds.
     assert!(count(Bonds::is_broken) > 30);
-    assert!(count(|bonds, at| bonds.damages[at].damage > 0.0) > 30);
+    assert!(count(|bonds, at| bonds.histories.damages[at].damage > 0.0) > 30);
     let energy = |at: usize| match bonds.is_broken(at) {
         true => [0.0; 4],
         false => {

@@ -8,7 +8,7 @@ use dem_run::check::limit::limit;
 use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_run::physics::rigid::rotation_vector;
 use dem_run::state::State;
-use dem_run::state::bonds::{BondRule, Bonds};
+use dem_run::state::bonds::{BondLaw, BondRule, Bonds};
 use dem_run::state::loads::GroupLoad;
 use dem_run::state::particles::{Particles, Wrench};
 use dem_run::state::supports::GroupSupport;
@@ -105,12 +105,13 @@ impl Bar {
         }
         let mut bonds = Bonds {
             rules: Arc::new([BondRule {
-                incremental: self.incremental,
+                law: if self.incremental {
+                    BondLaw::Incremental
+                } else {
+                    BondLaw::Elastic
+                },
                 damped: false,
                 structural_damping: 0.0,
-                fracture_energy_j_m2: None,
-                plasticity: None,
-                flat_joint: None,
                 criteria: None,
                 strengthening_from_1_s: None,
                 strain_rate_measure: dem_scene::StrainRateMeasure::Elongation,
@@ -127,9 +128,6 @@ impl Bar {
                 &self.stiffness(i),
                 0,
             );
-        }
-        if self.incremental {
-            bonds.histories = vec![Default::default(); self.bonds()];
         }
         let mut state = State::new(particles, bonds, 1e-9, 1);
         state.loads.push(GroupLoad {
