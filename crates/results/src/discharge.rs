@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::growing::{GrowingTable, field};
+use super::growing::{Table, field};
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
 use dem_io::text::exact;
@@ -43,7 +43,8 @@ pub struct DischargeRow<'a> {
 /// The file of what leaves.
 #[derive(Debug)]
 pub struct DischargeFile {
-    table: GrowingTable,
+    /// The table.
+    pub table: Table,
 }
 
 impl DischargeFile {
@@ -53,7 +54,7 @@ impl DischargeFile {
     /// Missing folder, no permission, full disk (all exit code 1).
     pub fn create(path: &Path) -> Result<Self> {
         Ok(Self {
-            table: GrowingTable::create(path, COLUMNS)?,
+            table: Table::create(path, COLUMNS)?,
         })
     }
 
@@ -64,7 +65,7 @@ impl DischargeFile {
     /// be opened or written to (exit code 1).
     pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
         Ok(Self {
-            table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
+            table: Table::continue_at(path, COLUMNS, length_bytes)?,
         })
     }
 
@@ -78,36 +79,6 @@ impl DischargeFile {
             return Ok(());
         }
         self.table.append(&text)
-    }
-
-    /// Removes the rows after the first `length_bytes` bytes and returns their lines.
-    ///
-    /// # Errors
-    /// The file cannot be read or written to (exit code 1).
-    pub fn take_back(&mut self, length_bytes: u64) -> Result<String> {
-        self.table.take_back(length_bytes)
-    }
-
-    /// Appends lines that [`DischargeFile::take_back`] has returned.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier rows are kept.
-    pub fn put_back(&mut self, lines: &str) -> Result<()> {
-        self.table.append(lines)
-    }
-
-    /// Length of the file, stored in a checkpoint for [`DischargeFile::continue_at`].
-    pub fn length_bytes(&self) -> u64 {
-        self.table.length_bytes()
-    }
-
-    /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
-    /// a checkpoint that relies on them.
-    ///
-    /// # Errors
-    /// Full or broken disk (exit code 1).
-    pub fn sync(&self) -> Result<()> {
-        self.table.sync()
     }
 }
 

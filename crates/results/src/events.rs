@@ -7,7 +7,7 @@
 use std::fmt::{Display, Write};
 use std::path::Path;
 
-use super::growing::{GrowingTable, field};
+use super::growing::{Table, field};
 use dem_io::diagnostic::Result;
 
 /// The first line of the file.
@@ -42,7 +42,8 @@ pub struct Event<'a> {
 /// The file of the events.
 #[derive(Debug)]
 pub struct EventFile {
-    table: GrowingTable,
+    /// The table.
+    pub table: Table,
 }
 
 impl EventFile {
@@ -52,7 +53,7 @@ impl EventFile {
     /// Missing folder, no permission, full disk (all exit code 1).
     pub fn create(path: &Path) -> Result<Self> {
         Ok(Self {
-            table: GrowingTable::create(path, COLUMNS)?,
+            table: Table::create(path, COLUMNS)?,
         })
     }
 
@@ -63,7 +64,7 @@ impl EventFile {
     /// be opened or written to (exit code 1).
     pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
         Ok(Self {
-            table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
+            table: Table::continue_at(path, COLUMNS, length_bytes)?,
         })
     }
 
@@ -77,36 +78,6 @@ impl EventFile {
         }
         self.table
             .append(&events.iter().map(row).collect::<String>())
-    }
-
-    /// Removes the events after the first `length_bytes` bytes and returns their lines.
-    ///
-    /// # Errors
-    /// The file cannot be read or written to (exit code 1).
-    pub fn take_back(&mut self, length_bytes: u64) -> Result<String> {
-        self.table.take_back(length_bytes)
-    }
-
-    /// Appends lines that [`EventFile::take_back`] has returned.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier events are kept.
-    pub fn put_back(&mut self, lines: &str) -> Result<()> {
-        self.table.append(lines)
-    }
-
-    /// Length of the file, stored in a checkpoint for [`EventFile::continue_at`].
-    pub fn length_bytes(&self) -> u64 {
-        self.table.length_bytes()
-    }
-
-    /// Waits until all events are on the disk, safe from a power failure. To be called before
-    /// writing a checkpoint that relies on them.
-    ///
-    /// # Errors
-    /// Full or broken disk (exit code 1).
-    pub fn sync(&self) -> Result<()> {
-        self.table.sync()
     }
 }
 

@@ -7,7 +7,7 @@
 use std::fmt::{Display, Write};
 use std::path::Path;
 
-use super::growing::{GrowingTable, field};
+use super::growing::{Table, field};
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
 use dem_io::text::exact;
@@ -54,7 +54,8 @@ pub struct FragmentRow<'a> {
 /// The file of the fragments at chosen moments.
 #[derive(Debug)]
 pub struct FragmentFile {
-    table: GrowingTable,
+    /// The table.
+    pub table: Table,
 }
 
 impl FragmentFile {
@@ -64,7 +65,7 @@ impl FragmentFile {
     /// Missing folder, no permission, full disk (all exit code 1).
     pub fn create(path: &Path) -> Result<Self> {
         Ok(Self {
-            table: GrowingTable::create(path, COLUMNS)?,
+            table: Table::create(path, COLUMNS)?,
         })
     }
 
@@ -75,7 +76,7 @@ impl FragmentFile {
     /// be opened or written to (exit code 1).
     pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
         Ok(Self {
-            table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
+            table: Table::continue_at(path, COLUMNS, length_bytes)?,
         })
     }
 
@@ -90,20 +91,6 @@ impl FragmentFile {
             self.table.append(&rows)?;
         }
         Ok(())
-    }
-
-    /// Length of the file, stored in a checkpoint for [`FragmentFile::continue_at`].
-    pub fn length_bytes(&self) -> u64 {
-        self.table.length_bytes()
-    }
-
-    /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
-    /// a checkpoint that relies on them.
-    ///
-    /// # Errors
-    /// Full or broken disk (exit code 1).
-    pub fn sync(&self) -> Result<()> {
-        self.table.sync()
     }
 }
 

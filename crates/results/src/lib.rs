@@ -26,6 +26,7 @@ pub use flows::{FlowRow, MixingRow, write_flows, write_mixing};
 pub use folder::{Existing, ResultsFolder};
 pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
 pub use frames::{Frame, FrameFiles, NamedArray, Values, WallFiles, write_frame};
+pub use growing::Table;
 pub use pictures::PictureFiles;
 pub use plot_file::{is_plot_file, write_plot_file};
 pub use series::{Series, SeriesFile, read_series};

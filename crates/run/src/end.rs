@@ -2,14 +2,14 @@
 
 use dem_io::Result;
 use dem_io::units::significant;
-use dem_results::write_json;
+use dem_results::{ResultsFolder, write_json};
 
 use super::begin::Run;
-use super::events::{write_sleep, write_zones};
-use super::finish::End;
+use super::last_files::{Drawing, End, LastState};
 use super::nothing_happened::{empty_measures, parted_without_contacts, zero_measures};
 use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
+use super::outputs::pictures::taken_until;
 use super::past_outlets::{past_outlets, past_walls};
 use super::rigid_hits::RigidHits;
 use crate::machine::{machine, processor_time_s};
@@ -78,12 +78,8 @@ impl Run<'_> {
             let pieces = fragments.as_deref().unwrap_or_default();
             summary.notes.extend(past_walls(&self.state, pieces));
         }
-        let pictures = self
-            .files
-            .as_ref()
-            .and_then(|files| files.pictures.as_ref());
-        let note = pictures.and_then(|pictures| pictures.note(&self.state));
-        summary.notes.extend(note);
+        let outputs = self.outputs.iter();
+        (summary.notes).extend(outputs.filter_map(|output| output.note(&self.state)));
         summary.judge(warnings);
         let Some(folder) = folder else {
             return Ok(Outcome {
@@ -93,16 +89,19 @@ impl Run<'_> {
         };
         if ended.by == INTERRUPTION {
             // Of what has been simulated; its film goes on with the run.
-            let mut end = End::of(&summary)?;
-            let at_end = (&self.state, summary.simulated_s);
-            end.write_tables(folder, self.scene, at_end, &self.probes)?;
-            end.write(folder, &self.probes, None)?;
+            let end = self.end_with_tables(&summary, folder)?;
+            let (probes, pictures) = (&self.probes[..], None);
+            end.write(&Drawing {
+                folder,
+                probes,
+                pictures,
+            })?;
         } else if ended.problem.is_some() {
             let end = End::of(&summary)?;
             end.write_page(folder)?;
             end.write_summary(folder)?;
         } else {
-            self.write_end(&summary)?;
+            self.write_end(&summary, folder)?;
         }
         Ok(Outcome {
             summary,
@@ -123,47 +122,35 @@ impl Run<'_> {
 
     /// The last checkpoint, from which the run can be continued to a later end time; plots, film
     /// and summary.
-    fn write_end(&mut self, summary: &Summary) -> Result<()> {
-        let mut end = End::of(summary)?;
-        if let Some(folder) = self.settings.folder {
-            let at_end = (&self.state, summary.simulated_s);
-            end.write_tables(folder, self.scene, at_end, &self.probes)?;
-        }
-        self.finish_last_step()?;
-        if let Some(folder) = self.settings.folder {
-            write_json(&folder.ended(), &end)?;
-        }
+    fn write_end(&mut self, summary: &Summary, folder: &ResultsFolder) -> Result<()> {
+        let end = self.end_with_tables(summary, folder)?;
+        // The second half of the last step, which a continued run begins with. Bodies that it adds,
+        // removes or replaces are not in the results.
+        advance(&mut self.state);
+        let changed = self.follow_population();
+        self.note_changes(changed.is_some(), true)?;
+        write_json(&folder.ended(), &end)?;
         self.save()?;
-        match &mut self.files {
-            Some(files) => end.write(files.folder, &self.probes, files.pictures.as_mut()),
-            None => Ok(()),
-        }
+        end.write(&Drawing {
+            folder,
+            probes: &self.probes,
+            pictures: taken_until(self.scene, &self.progress)?,
+        })
     }
 
-    /// The second half of the last step, which a continued run begins with. Bodies that it adds,
-    /// removes or replaces are not in the results.
-    fn finish_last_step(&mut self) -> Result<()> {
-        let Some(files) = &self.files else {
-            return Ok(());
-        };
-        let discharge = files.discharge.as_ref();
-        let lengths = [
-            files.events.length_bytes(),
-            discharge.map_or(0, |(file, _)| file.length_bytes()),
-        ];
-        advance(&mut self.state);
-        self.follow_population()?;
-        if let Some(files) = &mut self.files {
-            write_zones(&self.state, files)?;
-            write_sleep(&self.state, files)?;
-            let events = files.events.take_back(lengths[0])?;
-            let discharge = match &mut files.discharge {
-                Some((file, _)) => file.take_back(lengths[1])?,
-                None => String::new(),
-            };
-            self.progress.after_end = [events, discharge];
-        }
-        Ok(())
+    /// Writes the tables of this state, the last of the run.
+    fn end_with_tables(&self, summary: &Summary, folder: &ResultsFolder) -> Result<End> {
+        End::with_tables(
+            summary,
+            &LastState {
+                folder,
+                scene: self.scene,
+                state: &self.state,
+                fragments: Fragments::of(&self.state),
+                end_s: summary.simulated_s,
+                probes: &self.probes,
+            },
+        )
     }
 
     fn summary(

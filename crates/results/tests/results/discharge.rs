@@ -30,7 +30,7 @@ fn discharge_looks_as_documented_and_goes_on_after_an_interruption() {
     let path = folder.path().join("discharge.csv");
     let mut file = DischargeFile::create(&path).unwrap();
     file.append([row(7, 0.5)].into_iter()).unwrap();
-    let checkpoint = file.length_bytes();
+    let checkpoint = file.table.length_bytes();
     file.append([row(8, 1.0), row(2, 1.0)].into_iter()).unwrap();
     file.append(std::iter::empty()).unwrap();
     let whole = fs::read_to_string(&path).unwrap();
@@ -41,7 +41,7 @@ fn discharge_looks_as_documented_and_goes_on_after_an_interruption() {
     let mut file = DischargeFile::continue_at(&path, checkpoint).unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 2);
     file.append([row(8, 1.0), row(2, 1.0)].into_iter()).unwrap();
-    file.sync().unwrap();
+    file.table.sync().unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), whole);
 }
 

@@ -45,8 +45,8 @@ fn fragments_look_as_documented() {
          0.0025,2,1,20{third},\"cake, \"\"old\"\"\",stone\n"
     );
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
-    assert_eq!(file.length_bytes(), text.len() as u64);
-    file.sync().unwrap();
+    assert_eq!(file.table.length_bytes(), text.len() as u64);
+    file.table.sync().unwrap();
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
     let path = folder.path().join("fragments.csv");
     let mut file = FragmentFile::create(&path).unwrap();
     file.append(0.0, &[fragment(0, [1.0; 15])]).unwrap();
-    let length = file.length_bytes();
+    let length = file.table.length_bytes();
     let before = fs::read(&path).unwrap();
     for (length, said) in [
         (length + 1, "bytes, but had"),
@@ -122,7 +122,7 @@ proptest! {
             let mut file = FragmentFile::create(&path).unwrap();
             for (number, count) in moments.iter().enumerate() {
                 if interrupted && number == at {
-                    let length = file.length_bytes();
+                    let length = file.table.length_bytes();
                     file.append(9.0, &rows(3)).unwrap();
                     drop(file);
                     // A possible state of a row that was being written.
@@ -167,5 +167,5 @@ fn thousands_of_fragments_of_one_moment_are_all_there() {
         .map(|line| line.split(',').nth(1).unwrap().parse().unwrap())
         .collect();
     assert_eq!(ids, (0..2500).collect::<Vec<u32>>());
-    assert_eq!(file.length_bytes(), text.len() as u64);
+    assert_eq!(file.table.length_bytes(), text.len() as u64);
 }

@@ -7,7 +7,7 @@ use dem_io::body::mass::BodyMass;
 use dem_results::{EventFile, FrameFiles, ResultsFolder, SeriesFile};
 use dem_scene::Scene;
 
-use crate::finish::End;
+use crate::last_files::End;
 use crate::machine::machine;
 use crate::output::equilibrium::EquilibriumSummary;
 use crate::output::fragments::FragmentSummary;
