@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::growing::{Table, field};
+use super::growing::field;
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
 use dem_io::text::exact;
@@ -40,46 +40,9 @@ pub struct DischargeRow<'a> {
     pub sieve_m: f64,
 }
 
-/// The file of what leaves.
-#[derive(Debug)]
-pub struct DischargeFile {
-    /// The table.
-    pub table: Table,
-}
-
-impl DischargeFile {
-    /// A new file without rows. Replaces an existing one.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk (all exit code 1).
-    pub fn create(path: &Path) -> Result<Self> {
-        Ok(Self {
-            table: Table::create(path, COLUMNS)?,
-        })
-    }
-
-    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
-    ///
-    /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
-    /// be opened or written to (exit code 1).
-    pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
-        Ok(Self {
-            table: Table::continue_at(path, COLUMNS, length_bytes)?,
-        })
-    }
-
-    /// Appends rows. They are in the file when this returns.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier rows are kept.
-    pub fn append<'a>(&mut self, rows: impl Iterator<Item = DischargeRow<'a>>) -> Result<()> {
-        let text: String = rows.map(|row| line(&row)).collect();
-        if text.is_empty() {
-            return Ok(());
-        }
-        self.table.append(&text)
-    }
+/// Lines of the table of what leaves.
+pub fn discharge_lines<'a>(rows: impl Iterator<Item = DischargeRow<'a>>) -> String {
+    rows.map(|row| line(&row)).collect()
 }
 
 fn line(row: &DischargeRow<'_>) -> String {

@@ -5,13 +5,11 @@
 //! back as the same bits.
 
 use std::fmt::{Display, Write};
-use std::path::Path;
 
-use super::growing::{Table, field};
-use dem_io::diagnostic::Result;
+use super::growing::field;
 
 /// The first line of the file.
-pub(crate) const COLUMNS: &str =
+pub const COLUMNS: &str =
     "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail";
 
 /// One event.
@@ -39,46 +37,9 @@ pub struct Event<'a> {
     pub detail: &'a str,
 }
 
-/// The file of the events.
-#[derive(Debug)]
-pub struct EventFile {
-    /// The table.
-    pub table: Table,
-}
-
-impl EventFile {
-    /// A new file without events. Replaces an existing one.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk (all exit code 1).
-    pub fn create(path: &Path) -> Result<Self> {
-        Ok(Self {
-            table: Table::create(path, COLUMNS)?,
-        })
-    }
-
-    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
-    ///
-    /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
-    /// be opened or written to (exit code 1).
-    pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
-        Ok(Self {
-            table: Table::continue_at(path, COLUMNS, length_bytes)?,
-        })
-    }
-
-    /// Appends events, such as all of one step. They are in the file when this returns.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier events are kept.
-    pub fn append(&mut self, events: &[Event<'_>]) -> Result<()> {
-        if events.is_empty() {
-            return Ok(());
-        }
-        self.table
-            .append(&events.iter().map(row).collect::<String>())
-    }
+/// Lines of the table of events.
+pub fn event_lines(events: &[Event<'_>]) -> String {
+    events.iter().map(row).collect()
 }
 
 fn row(event: &Event<'_>) -> String {

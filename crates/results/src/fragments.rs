@@ -51,47 +51,20 @@ pub struct FragmentRow<'a> {
     pub material: &'a str,
 }
 
-/// The file of the fragments at chosen moments.
-#[derive(Debug)]
-pub struct FragmentFile {
-    /// The table.
-    pub table: Table,
-}
-
-impl FragmentFile {
-    /// A new file without fragments. Replaces an existing one.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk (all exit code 1).
-    pub fn create(path: &Path) -> Result<Self> {
-        Ok(Self {
-            table: Table::create(path, COLUMNS)?,
-        })
+/// Appends the fragments of one moment to their table. They are in the file when this returns.
+///
+/// # Errors
+/// Full disk (exit code 1): earlier moments are kept, and possibly some complete rows of this one.
+pub fn append_fragments(
+    table: &mut Table,
+    time_s: f64,
+    fragments: &[FragmentRow<'_>],
+) -> Result<()> {
+    for some in fragments.chunks(AT_ONCE) {
+        let rows: String = some.iter().map(|fragment| row(time_s, fragment)).collect();
+        table.append(&rows)?;
     }
-
-    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
-    ///
-    /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
-    /// be opened or written to (exit code 1).
-    pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
-        Ok(Self {
-            table: Table::continue_at(path, COLUMNS, length_bytes)?,
-        })
-    }
-
-    /// Appends the fragments of one moment. They are in the file when this returns.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier moments are kept, and possibly some complete rows of this
-    /// one.
-    pub fn append(&mut self, time_s: f64, fragments: &[FragmentRow<'_>]) -> Result<()> {
-        for some in fragments.chunks(AT_ONCE) {
-            let rows: String = some.iter().map(|fragment| row(time_s, fragment)).collect();
-            self.table.append(&rows)?;
-        }
-        Ok(())
-    }
+    Ok(())
 }
 
 fn row(time_s: f64, fragment: &FragmentRow<'_>) -> String {

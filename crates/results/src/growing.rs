@@ -22,13 +22,20 @@ pub struct Table {
 
 impl Table {
     /// A table with only its `header`, a line without its line break. Replaces an existing one.
-    pub(super) fn create(path: &Path, header: &str) -> Result<Self> {
+    ///
+    /// # Errors
+    /// Missing folder, no permission, full disk (all exit code 1).
+    pub fn create(path: &Path, header: &str) -> Result<Self> {
         write_file(path, |out| writeln!(out, "{header}"))?;
         Self::continue_at(path, header, header.len() as u64 + 1)
     }
 
-    /// A table of which the first `length_bytes` bytes are kept and the others removed.
-    pub(super) fn continue_at(path: &Path, header: &str, length_bytes: u64) -> Result<Self> {
+    /// The table of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
+    ///
+    /// # Errors
+    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
+    /// be opened or written to (exit code 1).
+    pub fn continue_at(path: &Path, header: &str, length_bytes: u64) -> Result<Self> {
         let file = OpenOptions::new().read(true).write(true).open(path);
         let file = file.map_err(|error| match error.kind() {
             ErrorKind::NotFound => Diagnostic::input(

@@ -8,8 +8,8 @@ use dem_io::body::mass::BodyMass;
 use dem_scene::Scene;
 
 use super::limits::Limits;
-use super::new_step::{NewStep, change_step};
-use super::outputs::{Opening, Output, Start, open_outputs};
+use super::new_step::change_step;
+use super::outputs::{Opening, Outputs, Start, open_outputs};
 use super::progress::Progress;
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
@@ -38,7 +38,7 @@ pub(super) struct Run<'a> {
     pub(super) progress: Progress,
     pub(super) schedule: OutputSchedule,
     /// Empty: no results are kept.
-    pub(super) outputs: Vec<Box<dyn Output>>,
+    pub(super) outputs: Outputs,
     /// See [`super::snapshot::fingerprint`]. None: no results are kept.
     pub(super) fingerprint: Option<u64>,
     /// Whether a checkpoint is to be written after the step.
@@ -108,15 +108,11 @@ impl<'a> Run<'a> {
             }
             changed_step = change_step(&mut state, &choice, scene.run.adaptive);
         }
-        let detail = changed_step.clone();
-        let resumed = detail.map(|detail| NewStep {
-            cause: "resumed",
-            detail,
-        });
-        limits.new_steps.extend(resumed);
+        limits.new_steps.extend(changed_step.clone());
         let mut outputs = Vec::new();
         if let Some((folder, start)) = &start {
             outputs = open_outputs(&Opening {
+                name: "",
                 folder,
                 scene,
                 state: &state,
@@ -147,7 +143,7 @@ impl<'a> Run<'a> {
                 notes: plan.notes,
                 warnings: plan.warnings,
                 inputs: plan.inputs,
-                changed_step,
+                changed_step: changed_step.map(|new| new.detail),
             },
             first_step: state.steps,
             first_time_s: state.time_s,
@@ -155,7 +151,7 @@ impl<'a> Run<'a> {
             began,
             processor_before_s: processor_time_s(),
         };
-        if run.planned.changed_step.is_some() {
+        if !run.limits.new_steps.is_empty() {
             run.note_changes(false, false)?;
         }
         Ok(run)

@@ -79,7 +79,7 @@ impl Run<'_> {
             summary.notes.extend(past_walls(&self.state, pieces));
         }
         let outputs = self.outputs.iter();
-        (summary.notes).extend(outputs.filter_map(|output| output.note(&self.state)));
+        (summary.notes).extend(outputs.filter_map(|(_, output)| output.note(&self.state)));
         summary.judge(warnings);
         let Some(folder) = folder else {
             return Ok(Outcome {

@@ -43,13 +43,7 @@ type WriteTable = fn(&LastState<'_>) -> Result<Vec<PathBuf>>;
 
 /// All tables and plots of the last state: that of the checkpoint, half a step later, would change
 /// them.
-const TABLES: [WriteTable; 5] = [
-    tables::tree,
-    tables::fragment_plots,
-    tables::distribution,
-    tables::flow,
-    tables::mixing,
-];
+const TABLES: [WriteTable; 3] = [tables::fragments, tables::flow, tables::mixing];
 
 /// A run whose tables are written.
 pub(super) struct Drawing<'a> {
@@ -58,35 +52,6 @@ pub(super) struct Drawing<'a> {
     /// Number of pictures. None: no film is made of them.
     pub(super) pictures: Option<usize>,
 }
-
-/// Files that are drawn from the others, and can be drawn again.
-struct Drawn {
-    /// Paths of those that are always there.
-    paths: fn(&Drawing<'_>) -> Vec<PathBuf>,
-    write: fn(&Drawing<'_>, &End) -> Result<()>,
-}
-
-/// All files that are drawn, in this order: the page shows the others.
-const DRAWN: [Drawn; 3] = [
-    Drawn {
-        paths: |run| {
-            let names = plots_of_every_run(run.probes);
-            names.iter().map(|name| run.folder.plot(name)).collect()
-        },
-        write: |run, end| {
-            let summary: Value = serde_json::from_str(&end.summary).unwrap_or_default();
-            write_plots(run.folder, run.probes, &summary["measures"])
-        },
-    },
-    Drawn {
-        paths: film::paths,
-        write: film::write,
-    },
-    Drawn {
-        paths: |run| vec![run.folder.report()],
-        write: |run, end| end.write_page(run.folder),
-    },
-];
 
 /// Data that a finished run leaves next to its last checkpoint, before it writes plots, film, page
 /// and summary.
@@ -139,14 +104,16 @@ impl End {
         Ok(())
     }
 
-    /// Writes all files that are drawn, and the summary last: if it exists, all files do.
+    /// Writes plots, film and page of a run whose tables are written, and its summary last: if the
+    /// summary exists, all files do.
     ///
     /// # Errors
     /// Those of the files.
     pub(super) fn write(&self, run: &Drawing<'_>) -> Result<()> {
-        DRAWN
-            .iter()
-            .try_for_each(|drawn| (drawn.write)(run, self))?;
+        let summary: Value = serde_json::from_str(&self.summary).unwrap_or_default();
+        write_plots(run.folder, run.probes, &summary["measures"])?;
+        film::write(run)?;
+        self.write_page(run.folder)?;
         self.write_summary(run.folder)
     }
 
@@ -173,9 +140,12 @@ impl End {
     fn missing(&self, run: &Drawing<'_>, has_test: bool) -> Vec<String> {
         let folder = run.folder;
         let kept = self.tables.iter().map(|(name, _)| folder.path().join(name));
-        let drawn = DRAWN.iter().rev().flat_map(|drawn| (drawn.paths)(run));
-        let test = has_test.then(|| folder.test_curve());
-        let mut wanted: Vec<PathBuf> = drawn.chain(kept).chain(test).collect();
+        let plots = plots_of_every_run(run.probes);
+        let mut wanted = vec![folder.report()];
+        wanted.extend(film::paths(run));
+        wanted.extend(kept);
+        wanted.extend(has_test.then(|| folder.test_curve()));
+        wanted.extend(plots.iter().map(|name| folder.plot(name)));
         wanted.retain(|path| !path.is_file());
         let summary = std::fs::read(folder.summary()).unwrap_or_default();
         if summary != self.summary.as_bytes() {

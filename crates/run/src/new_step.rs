@@ -11,12 +11,12 @@ pub(super) struct NewStep {
 }
 
 /// Takes the time step of the scene in a resumed run: a given step, or one smaller than before; an
-/// adaptive step stays as it was. Returns a description of the change.
+/// adaptive step stays as it was. None: it is the same as before.
 pub(super) fn change_step(
     state: &mut State,
     choice: &StepChoice,
     adaptive: bool,
-) -> Option<String> {
+) -> Option<NewStep> {
     let before_s = state.time_step_s;
     let step_s = match (choice.given, adaptive) {
         (true, _) => choice.step_s,
@@ -27,7 +27,10 @@ pub(super) fn change_step(
         look_anew_for_near(state);
     }
     state.time_step_s = step_s;
-    (step_s != before_s).then(|| change(before_s, step_s))
+    (step_s != before_s).then(|| NewStep {
+        cause: "resumed",
+        detail: change(before_s, step_s),
+    })
 }
 
 /// Requests a new neighbour search before the next step: the present lists are valid for steps of

@@ -128,7 +128,9 @@ impl Run<'_> {
                 is_frame,
                 is_last: due.end || ends_early,
             };
-            self.outputs.iter_mut().try_for_each(|o| o.write(&now))?;
+            for (_, output) in &mut self.outputs {
+                output.write(&now)?;
+            }
         }
         self.plan_checkpoint(due);
         if let (true, Some(balance)) = (due.end || ends_early, balanced) {
@@ -215,7 +217,10 @@ impl Run<'_> {
             hits.take_of_parts(rigid_parts, bonds, bodies, (time_s, false));
         }
         let (state, bodies) = (&self.state, &self.bodies);
-        (self.outputs.iter_mut()).try_for_each(|output| output.note_breakage(state, bodies))
+        for (_, output) in &mut self.outputs {
+            output.note_breakage(state, bodies)?;
+        }
+        Ok(())
     }
 
     /// Records the changes in the second half of the step. `has_other_bodies`: some have been added,
@@ -232,7 +237,10 @@ impl Run<'_> {
             new_steps: &std::mem::take(&mut self.limits.new_steps),
             is_after_end,
         };
-        (self.outputs.iter_mut()).try_for_each(|output| output.note_changes(&changes))
+        for (_, output) in &mut self.outputs {
+            output.note_changes(&changes)?;
+        }
+        Ok(())
     }
 
     /// Output that is due at this step. `over`: the test has ended.
@@ -248,7 +256,7 @@ impl Run<'_> {
             row: end || due(state, schedule.row_s, progress.next_row),
             frame: end || frame,
             checkpoint: checkpoint.is_some_and(|s| due(state, s, progress.next_checkpoint)),
-            output: self.outputs.iter().any(|output| output.is_due(state)),
+            output: self.outputs.iter().any(|(_, output)| output.is_due(state)),
             watchdog: self.watchdog.is_due(state),
         }
     }

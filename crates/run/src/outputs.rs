@@ -27,9 +27,6 @@ use dem_plan::measure::Probe;
 
 /// A file of results that grows during a run, or several of one kind.
 pub(super) trait Output {
-    /// Its name in the checkpoint.
-    fn name(&self) -> &'static str;
-
     /// Records what has broken in the first half of a step.
     fn note_breakage(&mut self, _state: &State, _bodies: &[PlacedBody]) -> Result<()> {
         Ok(())
@@ -59,28 +56,38 @@ pub(super) trait Output {
     }
 }
 
-/// All that a run may have, in the order in which they are written. None: the run has no use for
-/// it.
-const OUTPUTS: [fn(&Opening<'_>) -> Result<Option<Box<dyn Output>>>; 6] = [
-    series::open,
-    event_table::open,
-    frames::open,
-    pictures::open,
-    fragments::open,
-    discharge::open,
+/// Opens an output. None: the run has no use for it.
+type Open = fn(&Opening<'_>) -> Result<Option<Box<dyn Output>>>;
+
+/// All outputs that a run may have, by their names in the checkpoint, in the order in which they
+/// are written.
+const OUTPUTS: [(&str, Open); 6] = [
+    ("series", series::open),
+    ("events", event_table::open),
+    ("frames", frames::open),
+    (pictures::NAME, pictures::open),
+    ("fragments", fragments::open),
+    ("discharge", discharge::open),
 ];
+
+/// The outputs of a run, with their names.
+pub(super) type Outputs = Vec<(&'static str, Box<dyn Output>)>;
 
 /// Opens the files of a run, new or where it is continued.
 ///
 /// # Errors
 /// Files that are not those of the checkpoint (exit code 2), before any is changed; those of the
 /// files.
-pub(super) fn open_outputs(opening: &Opening<'_>) -> Result<Vec<Box<dyn Output>>> {
+pub(super) fn open_outputs(opening: &Opening<'_>) -> Result<Outputs> {
     if let Some(progress) = opening.continued {
         progress.sums.check(opening.folder.path())?;
     }
-    let opened = OUTPUTS.iter().map(|open| open(opening));
-    opened.filter_map(Result::transpose).collect()
+    let mut outputs = Vec::new();
+    for (name, open) in OUTPUTS {
+        let output = open(&Opening { name, ..*opening })?;
+        outputs.extend(output.map(|output| (name, output)));
+    }
+    Ok(outputs)
 }
 
 /// Flushes all files to the disk, and records where they stand and their check sums.
@@ -88,13 +95,13 @@ pub(super) fn open_outputs(opening: &Opening<'_>) -> Result<Vec<Box<dyn Output>>
 /// # Errors
 /// Those of the files.
 pub(super) fn save_outputs(
-    outputs: &[Box<dyn Output>],
+    outputs: &Outputs,
     folder: &Path,
     progress: &mut Progress,
 ) -> Result<()> {
-    for output in outputs {
+    for (name, output) in outputs {
         let saved = output.save()?;
-        let name = output.name().to_owned();
+        let name = (*name).to_owned();
         progress.positions.insert(name, saved.position);
         for (file, bytes) in &saved.files {
             if bytes.is_some() || !progress.sums.has(file) {
@@ -107,6 +114,8 @@ pub(super) fn save_outputs(
 
 /// A run whose files are opened.
 pub(super) struct Opening<'a> {
+    /// The output to be opened.
+    pub(super) name: &'static str,
     pub(super) folder: &'a ResultsFolder,
     pub(super) scene: &'a Scene,
     pub(super) state: &'a State,
@@ -136,10 +145,20 @@ impl Start {
 }
 
 impl Opening<'_> {
-    /// Where the output of this name stood. None: a new run.
-    fn position<T: Default + DeserializeOwned>(&self, name: &str) -> Result<Option<T>> {
-        let read = |progress| position(progress, name);
+    /// Where the output stood. None: a new run.
+    fn position<T: Default + DeserializeOwned>(&self) -> Result<Option<T>> {
+        let read = |progress| position(progress, self.name);
         self.continued.map(read).transpose()
+    }
+
+    /// The table in this file with this first line.
+    fn table(&self, path: &Path, columns: &str) -> Result<Table> {
+        let Some(end) = self.position::<TableEnd>()? else {
+            return Table::create(path, columns);
+        };
+        let mut table = Table::continue_at(path, columns, end.bytes)?;
+        table.append(&end.held)?;
+        Ok(table)
     }
 }
 

@@ -13,7 +13,7 @@ use dem_pictures::film::{
 use dem_pictures::png_file::{Compression, read_png, to_png};
 use dem_results::{PictureFiles, ResultsFolder};
 
-use super::{Drawing, End};
+use super::Drawing;
 
 /// Largest memory for pictures, which the film needs twice: about 80 of the usual size.
 const MOST_KEPT_BYTES: usize = 128 << 20;
@@ -23,7 +23,7 @@ pub(super) fn paths(run: &Drawing<'_>) -> Vec<PathBuf> {
     run.pictures.map_or(Vec::new(), |_| paths.to_vec())
 }
 
-pub(super) fn write(run: &Drawing<'_>, _: &End) -> Result<()> {
+pub(super) fn write(run: &Drawing<'_>) -> Result<()> {
     let Some(count) = run.pictures else {
         return Ok(());
     };

@@ -10,36 +10,21 @@ use crate::output::flows::flow_rows;
 use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use dem_plan::measure::Probe;
 
-/// The origin of each fragment.
-pub(super) fn tree(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
-    let Some(clusters) = &last.state.clusters else {
-        return Ok(Vec::new());
-    };
-    write_tree(last.folder, clusters)?;
-    Ok(vec![last.folder.fragment_tree()])
-}
-
-/// Plots of the fragments.
-pub(super) fn fragment_plots(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
+/// Origin, plots and size distribution of the fragments.
+pub(super) fn fragments(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
     let (folder, state) = (last.folder, last.state);
-    let Some(fragments) = &last.fragments else {
+    let Some((clusters, fragments)) = state.clusters.as_ref().zip(last.fragments.as_ref()) else {
         return Ok(Vec::new());
     };
+    write_tree(folder, clusters)?;
     write_fragment_plots(folder, state, fragments, last.end_s, last.probes)?;
-    let paths = FRAGMENT_PLOTS.map(|name| folder.plot(name));
-    Ok(paths.into_iter().filter(|path| path.is_file()).collect())
-}
-
-/// The size distribution of the fragments.
-pub(super) fn distribution(last: &LastState<'_>) -> Result<Vec<PathBuf>> {
-    let Some(fragments) = &last.fragments else {
-        return Ok(Vec::new());
-    };
     let output = last.scene.output.as_ref();
     let sieves_m = output.map_or(&[][..], |output| &output.sieves_m);
-    let path = last.folder.distribution();
-    write_distribution(&path, &fragments.rows(&last.state.model, sieves_m))?;
-    Ok(vec![path])
+    let rows = fragments.rows(&state.model, sieves_m);
+    write_distribution(&folder.distribution(), &rows)?;
+    let plots = FRAGMENT_PLOTS.iter().map(|name| folder.plot(name));
+    let tables = [folder.fragment_tree(), folder.distribution()];
+    Ok(plots.filter(|path| path.is_file()).chain(tables).collect())
 }
 
 /// Mass flows over time.

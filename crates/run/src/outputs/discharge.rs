@@ -1,15 +1,14 @@
 //! What leaves through outlets, `discharge.csv`.
 
 use dem_io::Result;
-use dem_results::{DischargeFile, DischargeRow};
+use dem_results::discharge::COLUMNS;
+use dem_results::{DischargeRow, Table, discharge_lines};
 
-use super::{Changes, Opening, Output, Saved, TableEnd};
+use super::{Changes, Opening, Output, Saved};
 use dem_engine::state::clusters::sizes::Discharged;
 
-const NAME: &str = "discharge";
-
 struct Discharge {
-    file: DischargeFile,
+    table: Table,
     /// Number of its rows.
     written: usize,
 }
@@ -19,27 +18,15 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     if state.model.rules.outlets.is_empty() {
         return Ok(None);
     }
-    let path = opening.folder.discharge();
-    let file = match opening.position::<(TableEnd, ())>(NAME)? {
-        None => DischargeFile::create(&path)?,
-        Some((end, ())) => {
-            let mut file = DischargeFile::continue_at(&path, end.bytes)?;
-            file.table.append(&end.held)?;
-            file
-        }
-    };
+    let table = opening.table(&opening.folder.discharge(), COLUMNS)?;
     let written = state.population.discharged.len();
-    Ok(Some(Box::new(Discharge { file, written })))
+    Ok(Some(Box::new(Discharge { table, written })))
 }
 
 impl Output for Discharge {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
     fn note_changes(&mut self, changes: &Changes<'_>) -> Result<()> {
         if changes.is_after_end {
-            self.file.table.hold();
+            self.table.hold();
         }
         let state = changes.state;
         let all = &state.population.discharged;
@@ -55,12 +42,13 @@ impl Output for Discharge {
             box_lengths_m: one.size.box_lengths_m,
             sieve_m: one.size.sieve_m,
         };
-        self.file.append(all[self.written..].iter().map(row))?;
+        let rows = all[self.written..].iter().map(row);
+        self.table.append(&discharge_lines(rows))?;
         self.written = all.len();
         Ok(())
     }
 
     fn save(&self) -> Result<Saved> {
-        Saved::of_table(&self.file.table, &())
+        Saved::of_table(&self.table, &())
     }
 }

@@ -2,9 +2,9 @@
 
 use dem_io::Result;
 use dem_io::text::exact;
-use dem_results::{Event, EventFile};
+use dem_results::{EVENT_COLUMNS, Event, Table, event_lines};
 
-use super::{Changes, Opening, Output, Saved, TableEnd};
+use super::{Changes, Opening, Output, Saved};
 use crate::new_step::NewStep;
 use crate::output::fragments::split_text;
 use dem_engine::state::State;
@@ -13,54 +13,40 @@ use dem_engine::state::bodies::bond_of_file;
 use dem_engine::state::events::PopulationEvent;
 use dem_engine::state::events::STARTS_BONDED;
 
-const NAME: &str = "events";
-
-struct EventTable(EventFile);
+struct EventTable(Table);
 
 pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
-    let path = opening.folder.events();
-    let file = match opening.position::<(TableEnd, ())>(NAME)? {
-        None => EventFile::create(&path)?,
-        Some((end, ())) => {
-            let mut file = EventFile::continue_at(&path, end.bytes)?;
-            file.table.append(&end.held)?;
-            file
-        }
-    };
-    Ok(Some(Box::new(EventTable(file))))
+    let table = opening.table(&opening.folder.events(), EVENT_COLUMNS)?;
+    Ok(Some(Box::new(EventTable(table))))
 }
 
 impl Output for EventTable {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
     fn note_breakage(&mut self, state: &State, bodies: &[PlacedBody]) -> Result<()> {
         write_breaks(state, bodies, &mut self.0)?;
         write_splits(state, &mut self.0)
     }
 
     fn note_changes(&mut self, changes: &Changes<'_>) -> Result<()> {
-        let (state, file) = (changes.state, &mut self.0);
+        let (state, table) = (changes.state, &mut self.0);
         if changes.is_after_end {
-            file.table.hold();
+            table.hold();
         }
-        write_population(state, file)?;
-        write_zones(state, file)?;
-        write_sleep(state, file)?;
+        write_population(state, table)?;
+        write_zones(state, table)?;
+        write_sleep(state, table)?;
         for NewStep { cause, detail } in changes.new_steps {
-            file.append(&[of_all(state, "time_step", cause, detail)])?;
+            table.append(&event_lines(&[of_all(state, "time_step", cause, detail)]))?;
         }
         Ok(())
     }
 
     fn save(&self) -> Result<Saved> {
-        Saved::of_table(&self.0.table, &())
+        Saved::of_table(&self.0, &())
     }
 }
 
 /// The bonds that broke in this step, by the numbers of the body's file.
-fn write_breaks(state: &State, bodies: &[PlacedBody], file: &mut EventFile) -> Result<()> {
+fn write_breaks(state: &State, bodies: &[PlacedBody], table: &mut Table) -> Result<()> {
     for broken in &state.scratch.events.broken {
         let ends = state.bonds.ends[broken.bond as usize];
         let found = bond_of_file(bodies, broken.bond as usize);
@@ -82,13 +68,13 @@ fn write_breaks(state: &State, bodies: &[PlacedBody], file: &mut EventFile) -> R
             energy_j: Some(broken.released_j),
             detail: found.map_or("", |(body, _)| &body.name),
         };
-        file.append(&[event])?;
+        table.append(&event_lines(&[event]))?;
     }
     Ok(())
 }
 
 /// The clusters that were found in pieces in this step.
-fn write_splits(state: &State, file: &mut EventFile) -> Result<()> {
+fn write_splits(state: &State, table: &mut Table) -> Result<()> {
     let Some(clusters) = &state.clusters else {
         return Ok(());
     };
@@ -103,7 +89,7 @@ fn write_splits(state: &State, file: &mut EventFile) -> Result<()> {
         .iter()
         .map(|detail| of_all(state, "split", "", detail))
         .collect();
-    file.append(&events)
+    table.append(&event_lines(&events))
 }
 
 /// Mass, kg, momentum, N s, and kinetic energy, J, before and after an event.
@@ -118,7 +104,7 @@ fn kept(mass_kg: &[f64; 2], momentum_n_s: &[f64; 2], kinetic_j: &[f64; 2]) -> St
 }
 
 /// Events of bodies in this step.
-fn write_population(state: &State, file: &mut EventFile) -> Result<()> {
+fn write_population(state: &State, table: &mut Table) -> Result<()> {
     let (step, time_s) = (state.scratch.events.step, state.scratch.events.time_s);
     for one in &state.scratch.events.population {
         let (kind, cause, place_m, energy_j, detail) = match one {
@@ -205,22 +191,22 @@ fn write_population(state: &State, file: &mut EventFile) -> Result<()> {
                 format!("fragment {cluster} ({body}): {mass_kg:e} kg"),
             ),
         };
-        file.append(&[Event {
+        table.append(&event_lines(&[Event {
             step,
             time_s,
             position_m: Some(*place_m),
             energy_j,
             ..of_all(state, kind, cause, &detail)
-        }])?;
+        }]))?;
     }
     Ok(())
 }
 
 /// The spheres of bodies bonded in part that were released or joined a rigid part in this step.
-fn write_zones(state: &State, file: &mut EventFile) -> Result<()> {
+fn write_zones(state: &State, table: &mut Table) -> Result<()> {
     for news in &state.scratch.events.zones {
         let plural = if news.particles == 1 { "" } else { "s" };
-        file.append(&[Event {
+        table.append(&event_lines(&[Event {
             step: news.step,
             time_s: news.time_s,
             energy_j: Some(news.lost_j),
@@ -230,16 +216,16 @@ fn write_zones(state: &State, file: &mut EventFile) -> Result<()> {
                 "region",
                 &format!("{}: {} particle{plural}", news.body, news.particles),
             )
-        }])?;
+        }]))?;
     }
     Ok(())
 }
 
 /// The bodies that fell asleep or woke in this step.
-fn write_sleep(state: &State, file: &mut EventFile) -> Result<()> {
+fn write_sleep(state: &State, table: &mut Table) -> Result<()> {
     for news in &state.scratch.events.sleep {
         let plural = if news.bodies == 1 { "body" } else { "bodies" };
-        file.append(&[Event {
+        table.append(&event_lines(&[Event {
             step: news.step,
             time_s: news.time_s,
             ..of_all(
@@ -248,7 +234,7 @@ fn write_sleep(state: &State, file: &mut EventFile) -> Result<()> {
                 news.cause,
                 &format!("{} {plural}", news.bodies),
             )
-        }])?;
+        }]))?;
     }
     Ok(())
 }

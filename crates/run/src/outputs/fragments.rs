@@ -1,7 +1,8 @@
 //! The fragments at chosen moments, `fragments.csv`.
 
 use dem_io::Result;
-use dem_results::FragmentFile;
+use dem_results::fragments::COLUMNS;
+use dem_results::{Table, append_fragments};
 
 use super::{Moment, Opening, Output, Saved, TableEnd};
 use crate::output::fragments::rows;
@@ -14,10 +15,8 @@ use dem_engine::state::clusters::fragments;
 /// together is at most one more than this times the number of fragments at the end.
 const GROWTH: u64 = 20;
 
-const NAME: &str = "fragments";
-
 struct Fragments {
-    file: FragmentFile,
+    table: Table,
     /// Number of fragments when they were written last.
     written: u64,
 }
@@ -26,19 +25,14 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     if opening.state.clusters.is_none() {
         return Ok(None);
     }
-    let path = opening.folder.fragments();
-    let (file, written) = match opening.position::<(TableEnd, u64)>(NAME)? {
-        None => (FragmentFile::create(&path)?, 0),
-        Some((end, written)) => (FragmentFile::continue_at(&path, end.bytes)?, written),
-    };
-    Ok(Some(Box::new(Fragments { file, written })))
+    let position = opening.position::<(TableEnd, u64)>()?;
+    Ok(Some(Box::new(Fragments {
+        table: opening.table(&opening.folder.fragments(), COLUMNS)?,
+        written: position.map_or(0, |(_, written)| written),
+    })))
 }
 
 impl Output for Fragments {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
     fn write(&mut self, now: &Moment<'_>) -> Result<()> {
         let state = now.state;
         let Some(clusters) = &state.clusters else {
@@ -53,11 +47,11 @@ impl Output for Fragments {
         let moving = Some((&motions[..], &moving[..]));
         let fragments = fragments(clusters, &state.particles, &state.clumps, moving);
         self.written = fragments.len() as u64;
-        self.file
-            .append(state.time_s, &rows(&fragments, &state.model))
+        let rows = rows(&fragments, &state.model);
+        append_fragments(&mut self.table, state.time_s, &rows)
     }
 
     fn save(&self) -> Result<Saved> {
-        Saved::of_table(&self.file.table, &self.written)
+        Saved::of_table(&self.table, &self.written)
     }
 }

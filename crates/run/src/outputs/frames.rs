@@ -7,8 +7,6 @@ use super::{Changes, Moment, Opening, Output, Saved};
 use crate::output::frames::FrameOrder;
 use crate::output::walls::WallOutput;
 
-const NAME: &str = "frames";
-
 struct Frames {
     files: FrameFiles,
     order: FrameOrder,
@@ -18,7 +16,7 @@ struct Frames {
 pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     let (folder, state) = (opening.folder, opening.state);
     let walls = opening.start.walls.clone();
-    let files = match opening.position(NAME)? {
+    let files = match opening.position()? {
         None => FrameFiles::create(folder, walls.files()),
         Some(times_s) => FrameFiles::continue_at(folder, walls.files(), times_s)?,
     };
@@ -35,10 +33,6 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
 }
 
 impl Output for Frames {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
     fn write(&mut self, now: &Moment<'_>) -> Result<()> {
         if now.is_frame {
             self.order.write(now.state, &self.walls, &mut self.files)?;

@@ -14,7 +14,8 @@ use crate::schedule::{due, first_after, next};
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 
-const NAME: &str = "pictures";
+/// Their name in the list of outputs.
+pub(super) const NAME: &str = "pictures";
 
 /// Data of the pictures in a checkpoint.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -60,7 +61,7 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
         return Ok(None);
     };
     let every_s = order.every_s;
-    let (files, next) = match opening.position::<Taken>(NAME)? {
+    let (files, next) = match opening.position::<Taken>()? {
         None => (PictureFiles::create(folder), 0),
         Some(before) => {
             let files = PictureFiles::continue_at(folder, before.count)?;
@@ -96,10 +97,6 @@ pub(crate) fn taken_until(scene: &Scene, progress: &Progress) -> Result<Option<u
 }
 
 impl Output for Pictures {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
     fn is_due(&self, state: &State) -> bool {
         due(state, self.order.every_s, self.taken.next)
     }

@@ -6,25 +6,19 @@ use dem_results::SeriesFile;
 use super::{Moment, Opening, Output, Saved, TableEnd};
 use crate::output::series::{columns, row};
 
-const NAME: &str = "series";
-
 struct Series(SeriesFile);
 
 pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
     let path = opening.folder.series();
     let columns = columns(opening.scene.walls.keys(), opening.probes);
-    let file = match opening.position::<(TableEnd, ())>(NAME)? {
+    let file = match opening.position::<TableEnd>()? {
         None => SeriesFile::create(&path, &columns)?,
-        Some((end, ())) => SeriesFile::continue_at(&path, &columns, end.bytes)?,
+        Some(end) => SeriesFile::continue_at(&path, &columns, end.bytes)?,
     };
     Ok(Some(Box::new(Series(file))))
 }
 
 impl Output for Series {
-    fn name(&self) -> &'static str {
-        NAME
-    }
-
     fn write(&mut self, now: &Moment<'_>) -> Result<()> {
         let Some((balance, values)) = now.row else {
             return Ok(());
