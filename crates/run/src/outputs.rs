@@ -6,7 +6,6 @@ mod fragments;
 mod frames;
 pub(super) mod pictures;
 mod series;
-mod steps;
 
 use std::path::Path;
 
@@ -62,14 +61,13 @@ type Open = fn(&Opening<'_>) -> Result<Option<Box<dyn Output>>>;
 
 /// All outputs that a run may have, by their names in the checkpoint, in the order in which they
 /// are written.
-const OUTPUTS: [(&str, Open); 7] = [
+const OUTPUTS: [(&str, Open); 6] = [
     ("series", series::open),
     ("events", event_table::open),
     ("frames", frames::open),
     (pictures::NAME, pictures::open),
     ("fragments", fragments::open),
     ("discharge", discharge::open),
-    ("steps", steps::open),
 ];
 
 /// The outputs of a run, with their names.

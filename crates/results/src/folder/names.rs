@@ -28,7 +28,7 @@ pub(super) const DISC_STRESS: &str = "disc-stress.csv";
 pub(super) const CHECKPOINT: &str = "checkpoint.dem";
 pub(super) const ENDED: &str = ".ended.json";
 /// Files of which a run writes one each.
-pub(super) const SINGLE_FILES: [&str; 20] = [
+pub(super) const SINGLE_FILES: [&str; 19] = [
     INDEX,
     SERIES,
     EVENTS,
@@ -48,7 +48,6 @@ pub(super) const SINGLE_FILES: [&str; 20] = [
     FILM,
     CHECKPOINT,
     ENDED,
-    "steps.csv",
 ];
 
 /// Frame `number` of the results folder `path`.
