@@ -5,12 +5,12 @@ use dem_io::units::significant;
 use dem_results::{ResultsFolder, write_json};
 
 use super::begin::Run;
+use super::doubts::past_outlets::{past_outlets, past_walls};
 use super::last_files::{Drawing, End, LastState};
 use super::nothing_happened::{empty_measures, parted_without_contacts, zero_measures};
 use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
 use super::outputs::pictures::taken_until;
-use super::past_outlets::{past_outlets, past_walls};
 use super::rigid_hits::RigidHits;
 use crate::machine::{machine, processor_time_s};
 use crate::output::flows::body_flows;
@@ -37,24 +37,32 @@ impl Run<'_> {
         let test = test.map(|watch| watch.finish(&progress.test, state, folder));
         let clusters = state.clusters.as_ref();
         let fragments = clusters.map(|c| fragments_of(c, &state.particles, &state.clumps, None));
-        self.progress.seen.look_at_edges(&self.state, &self.bodies);
+        self.progress
+            .monitors
+            .look_at_edges(&self.state, &self.bodies);
         let pieces = fragments.as_deref().unwrap_or_default();
         let is_stopped = ended.problem.is_some();
-        let seen = &self.progress.seen;
+        let monitors = &self.progress.monitors;
         let mut warnings = std::mem::take(&mut self.planned.warnings);
-        let flying = seen
+        let flying = monitors
             .flying(&self.state, self.scene, pieces)
             .filter(|_| !is_stopped);
         let (flies, bodies) = (flying.as_ref(), &self.bodies);
-        warnings.extend(seen.warnings(&self.state, self.scene, bodies, flies, is_stopped));
+        warnings.extend(monitors.warnings(&self.state, self.scene, bodies, flies, is_stopped));
         if !is_stopped {
             warnings.extend(past_outlets(&self.state, pieces));
             warnings.extend(self.rigid_hits().warnings(self.scene));
-            warnings.extend(empty_measures(&self.state, self.scene, &self.probes, seen));
+            warnings.extend(empty_measures(
+                &self.state,
+                self.scene,
+                &self.probes,
+                monitors,
+            ));
             warnings.extend(self.probes.iter().filter_map(Probe::coarse_cells));
         }
         if !is_stopped && self.scene.test.is_none() {
-            let (last_tenth, touched) = (&self.progress.last_tenth, |n| seen.has_touched_wall(n));
+            let (last_tenth, touched) =
+                (&self.progress.last_tenth, |n| monitors.has_touched_wall(n));
             warnings.extend(last_tenth.short_servos(&self.state, touched));
             if ended.by == AT_END_TIME {
                 warnings.extend(last_tenth.moving(&self.state, bodies, &self.probes));
@@ -111,7 +119,7 @@ impl Run<'_> {
 
     /// The hits of rigid clumps, those that go on included. A continued run goes on with them.
     fn rigid_hits(&self) -> RigidHits {
-        let mut hits = self.progress.seen.rigid_hits.clone();
+        let mut hits = self.progress.monitors.rigid_hits.clone();
         let state = &self.state;
         hits.take(&mut state.clumps.clone(), state.time_s, true);
         let mut parts = state.rigid_parts.clone();
@@ -190,8 +198,8 @@ impl Run<'_> {
             bonds: state.bonds.len(),
             bodies: self.planned.masses.clone(),
             broken_bonds: state.broken_count,
-            largest_bond_strain: progress.seen.bond_strain.largest,
-            largest_overlap: progress.seen.overlap.largest,
+            largest_bond_strain: progress.monitors.bond_strain.largest,
+            largest_overlap: progress.monitors.overlap.largest,
             broken_by_cause: state.broken_by_cause,
             damaged_bonds: state.bonds.count_damaged(),
             yielded_bonds: state.bonds.count_yielded(),
@@ -201,7 +209,7 @@ impl Run<'_> {
             }),
             population: PopulationSummary::of(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
-            taken_in: progress.seen.taken.summary(scene),
+            taken_in: progress.monitors.taken.summary(scene),
             sleep: state.sleep.as_ref().map(SleepSummary::of),
             steps: state.steps,
             time_step_s: state.time_step_s,

@@ -2,23 +2,22 @@
 
 mod begin;
 mod changes;
+mod doubts;
 mod end;
-mod flying;
 mod last_files;
 mod last_tenth;
 mod limits;
 pub(crate) mod machine;
+mod monitors;
 mod new_step;
 mod nothing_happened;
 mod observe;
 mod outcome;
 pub mod output;
 mod outputs;
-mod past_outlets;
 mod progress;
 mod rigid_hits;
 mod schedule;
-mod seen;
 mod settings;
 pub mod snapshot;
 pub mod statics;

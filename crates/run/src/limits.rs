@@ -117,7 +117,7 @@ impl<'a> Limits<'a> {
         self.follow_adaptive(state, replaced, progress);
         let mut may_be_less = false;
         if state.steps.is_multiple_of(STRAIN_EVERY) {
-            let strain = progress.seen.look_at_bonds(state, bodies);
+            let strain = progress.monitors.look_at_bonds(state, bodies);
             if strain > progress.strain + MORE_STRAIN {
                 progress.strain = strain;
                 renew_damping(state);

@@ -193,23 +193,23 @@ impl Run<'_> {
 
     /// Records the events of the first half of the step.
     fn note_step(&mut self) -> Result<()> {
-        let (state, bodies, seen) = (&self.state, &self.bodies, &mut self.progress.seen);
-        seen.note_breaks(state, bodies);
+        let (state, bodies, monitors) = (&self.state, &self.bodies, &mut self.progress.monitors);
+        monitors.note_breaks(state, bodies);
         if state.steps.is_multiple_of(EDGES_EVERY) {
-            seen.look_at_edges(state, bodies);
+            monitors.look_at_edges(state, bodies);
         }
         // A bounce may last for a few steps only. Few contacts cost nothing; many last longer.
-        let few = 1..=if seen.misses_one(self.scene) {
+        let few = 1..=if monitors.misses_one(self.scene) {
             FEW_BEFORE_ALL_TOUCHED
         } else {
             FEW_CONTACTS
         };
         let is_turn = state.steps.is_multiple_of(CHECK_EVERY_STEPS);
         if is_turn || few.contains(&contacts_now(state)) {
-            seen.look_at_contacts(state, self.scene, bodies);
-            seen.taken.look(state);
+            monitors.look_at_contacts(state, self.scene, bodies);
+            monitors.taken.look(state);
             let time_s = state.time_s;
-            let hits = &mut seen.rigid_hits;
+            let hits = &mut monitors.rigid_hits;
             hits.take(&mut self.state.clumps, time_s, false);
             let State {
                 rigid_parts, bonds, ..
@@ -298,7 +298,7 @@ impl Run<'_> {
         }
         let is_swap = |one: &PopulationEvent| matches!(one, PopulationEvent::Replaced { .. });
         let replaced = events.population.iter().any(is_swap);
-        self.progress.seen.note_population(&events.population);
+        self.progress.monitors.note_population(&events.population);
         for by in &events.renumberings {
             renumber(&mut self.bodies, by);
         }

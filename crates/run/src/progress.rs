@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::changes::last_change_s;
 use super::last_tenth::LastTenth;
+use super::monitors::Monitors;
 use super::schedule::{OutputSchedule, first_after};
-use super::seen::Seen;
 use super::sums::Sums;
 use dem_engine::check::limit::Bound;
 use dem_engine::stages::ledger::{Balance, over};
@@ -63,7 +63,7 @@ pub struct Progress {
     /// Whether it has ended before its end time: the body broke, or the weight came to its end.
     pub(super) test_ended: bool,
     /// Quantities monitored besides the measures.
-    pub(super) seen: Seen,
+    pub(super) monitors: Monitors,
     /// What measures and servos did in the last tenth of the run.
     pub(super) last_tenth: LastTenth,
 }
@@ -199,7 +199,7 @@ impl Progress {
             momentum * balance.momentum_error,
             angular_momentum * balance.angular_momentum_error,
         ];
-        self.seen.note_kinetic(balance.kinetic_j);
+        self.monitors.note_kinetic(balance.kinetic_j);
         for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
             *largest = largest.max(error.abs());
         }
