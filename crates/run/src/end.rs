@@ -6,7 +6,7 @@ use dem_results::{ResultsFolder, write_json};
 
 use super::begin::Run;
 use super::doubts::past_outlets::{past_outlets, past_walls};
-use super::last_files::{Drawing, End, LastState};
+use super::last_files::{End, LastState};
 use super::nothing_happened::{empty_measures, parted_without_contacts, zero_measures};
 use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
@@ -89,27 +89,19 @@ impl Run<'_> {
         let outputs = self.outputs.iter();
         (summary.notes).extend(outputs.filter_map(|(_, output)| output.note(&self.state)));
         summary.judge(warnings);
-        let Some(folder) = folder else {
-            return Ok(Outcome {
-                summary,
-                problem: ended.problem,
-            });
-        };
-        if ended.by == INTERRUPTION {
+        match folder {
+            None => {}
             // Of what has been simulated; its film goes on with the run.
-            let end = self.end_with_tables(&summary, folder)?;
-            let (probes, pictures) = (&self.probes[..], None);
-            end.write(&Drawing {
-                folder,
-                probes,
-                pictures,
-            })?;
-        } else if ended.problem.is_some() {
-            let end = End::of(&summary)?;
-            end.write_page(folder)?;
-            end.write_summary(folder)?;
-        } else {
-            self.write_end(&summary, folder)?;
+            Some(folder) if ended.by == INTERRUPTION => {
+                let end = self.end_with_tables(&summary, folder)?;
+                end.write(folder, &self.probes, None)?;
+            }
+            Some(folder) if is_stopped => {
+                let end = End::of(&summary)?;
+                end.write_page(folder)?;
+                end.write_summary(folder)?;
+            }
+            Some(folder) => self.write_end(&summary, folder)?,
         }
         Ok(Outcome {
             summary,
@@ -139,11 +131,8 @@ impl Run<'_> {
         self.note_changes(changed.is_some(), true)?;
         write_json(&folder.ended(), &end)?;
         self.save()?;
-        end.write(&Drawing {
-            folder,
-            probes: &self.probes,
-            pictures: taken_until(self.scene, &self.progress)?,
-        })
+        let pictures = taken_until(self.scene, &self.progress)?;
+        end.write(folder, &self.probes, pictures)
     }
 
     /// Writes the tables of this state, the last of the run.

@@ -45,14 +45,6 @@ type WriteTable = fn(&LastState<'_>) -> Result<Vec<PathBuf>>;
 /// them.
 const TABLES: [WriteTable; 3] = [tables::fragments, tables::flow, tables::mixing];
 
-/// A run whose tables are written.
-pub(super) struct Drawing<'a> {
-    pub(super) folder: &'a ResultsFolder,
-    pub(super) probes: &'a [Probe],
-    /// Number of pictures. None: no film is made of them.
-    pub(super) pictures: Option<usize>,
-}
-
 /// Data that a finished run leaves next to its last checkpoint, before it writes plots, film, page
 /// and summary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -104,17 +96,24 @@ impl End {
         Ok(())
     }
 
-    /// Writes plots, film and page of a run whose tables are written, and its summary last: if the
-    /// summary exists, all files do.
+    /// Writes plots, page and the film of these pictures, if any, of a run whose tables are written,
+    /// and its summary last: if the summary exists, all files do.
     ///
     /// # Errors
     /// Those of the files.
-    pub(super) fn write(&self, run: &Drawing<'_>) -> Result<()> {
+    pub(super) fn write(
+        &self,
+        folder: &ResultsFolder,
+        probes: &[Probe],
+        pictures: Option<usize>,
+    ) -> Result<()> {
         let summary: Value = serde_json::from_str(&self.summary).unwrap_or_default();
-        write_plots(run.folder, run.probes, &summary["measures"])?;
-        film::write(run)?;
-        self.write_page(run.folder)?;
-        self.write_summary(run.folder)
+        write_plots(folder, probes, &summary["measures"])?;
+        if let Some(count) = pictures {
+            film::write(folder, count)?;
+        }
+        self.write_page(folder)?;
+        self.write_summary(folder)
     }
 
     /// Writes `report.html` from the other files of the run.
@@ -137,12 +136,19 @@ impl End {
     }
 
     /// Names of the missing files at the end of a run. A summary of another run does not count.
-    fn missing(&self, run: &Drawing<'_>, has_test: bool) -> Vec<String> {
-        let folder = run.folder;
+    fn missing(
+        &self,
+        folder: &ResultsFolder,
+        probes: &[Probe],
+        has_pictures: bool,
+        has_test: bool,
+    ) -> Vec<String> {
         let kept = self.tables.iter().map(|(name, _)| folder.path().join(name));
-        let plots = plots_of_every_run(run.probes);
+        let plots = plots_of_every_run(probes);
         let mut wanted = vec![folder.report()];
-        wanted.extend(film::paths(run));
+        if has_pictures {
+            wanted.extend([folder.film(), folder.film_strip()]);
+        }
         wanted.extend(kept);
         wanted.extend(has_test.then(|| folder.test_curve()));
         wanted.extend(plots.iter().map(|name| folder.plot(name)));
@@ -200,12 +206,8 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         return Ok(None);
     }
     let probes = probes(scene, plan);
-    let run = Drawing {
-        folder,
-        probes: &probes,
-        pictures: taken_until(scene, progress)?,
-    };
-    let missing = end.missing(&run, scene.test.is_some());
+    let pictures = taken_until(scene, progress)?;
+    let missing = end.missing(folder, &probes, pictures.is_some(), scene.test.is_some());
     if missing.is_empty() {
         return Ok(None);
     }
@@ -218,7 +220,7 @@ pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<
         )?;
     }
     end.write_kept(folder)?;
-    end.write(&run)?;
+    end.write(folder, &probes, pictures)?;
     let summary = end.summary.clone();
     Ok(Some(Finished { missing, summary }))
 }

@@ -50,6 +50,16 @@ pub(super) struct Ended {
     pub(super) problem: Option<Diagnostic>,
 }
 
+impl Ended {
+    fn new(by: &'static str, balance: Balance, problem: Option<Diagnostic>) -> Self {
+        Self {
+            by,
+            balance,
+            problem,
+        }
+    }
+}
+
 /// Output that is due at a step.
 #[derive(Debug, Clone, Copy)]
 struct Due {
@@ -98,12 +108,7 @@ impl Run<'_> {
             let balance = balance(&mut self.state);
             if let Err(problem) = self.watchdog.look(&self.state, &balance, &self.bodies) {
                 let problem = Some(self.with_checkpoint(problem));
-                let by = "instability";
-                return Ok(Some(Ended {
-                    by,
-                    balance,
-                    problem,
-                }));
+                return Ok(Some(Ended::new("instability", balance, problem)));
             }
             self.progress
                 .note(&self.state, &balance, self.schedule.rest);
@@ -142,12 +147,7 @@ impl Run<'_> {
                 (false, _) if rests => "rest",
                 (false, _) => "measure",
             };
-            let problem = None;
-            return Ok(Some(Ended {
-                by,
-                balance,
-                problem,
-            }));
+            return Ok(Some(Ended::new(by, balance, None)));
         }
         book(&mut self.state, &OUTPUT, since);
         Ok(None)
@@ -180,13 +180,8 @@ impl Run<'_> {
         }
         if interrupted {
             let problem = Some(self.interruption());
-            let by = INTERRUPTION;
             let balance = balance(&mut self.state);
-            return Ok(Some(Ended {
-                by,
-                balance,
-                problem,
-            }));
+            return Ok(Some(Ended::new(INTERRUPTION, balance, problem)));
         }
         Ok(None)
     }
@@ -333,12 +328,7 @@ impl Run<'_> {
     /// The end of a run that does not reach its end time.
     fn ended_early(&mut self, by: &'static str, problem: Diagnostic) -> Ended {
         let problem = Some(self.with_checkpoint(problem));
-        let balance = balance(&mut self.state);
-        Ended {
-            by,
-            balance,
-            problem,
-        }
+        Ended::new(by, balance(&mut self.state), problem)
     }
 
     /// Adds to a message that the run can be resumed from its checkpoint, if there is one.
