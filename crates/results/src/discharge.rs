@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::growing::{GrowingTable, field};
+use super::growing::field;
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
 use dem_io::text::exact;
@@ -40,75 +40,9 @@ pub struct DischargeRow<'a> {
     pub sieve_m: f64,
 }
 
-/// The file of what leaves.
-#[derive(Debug)]
-pub struct DischargeFile {
-    table: GrowingTable,
-}
-
-impl DischargeFile {
-    /// A new file without rows. Replaces an existing one.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk (all exit code 1).
-    pub fn create(path: &Path) -> Result<Self> {
-        Ok(Self {
-            table: GrowingTable::create(path, COLUMNS)?,
-        })
-    }
-
-    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
-    ///
-    /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
-    /// be opened or written to (exit code 1).
-    pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
-        Ok(Self {
-            table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
-        })
-    }
-
-    /// Appends rows. They are in the file when this returns.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier rows are kept.
-    pub fn append<'a>(&mut self, rows: impl Iterator<Item = DischargeRow<'a>>) -> Result<()> {
-        let text: String = rows.map(|row| line(&row)).collect();
-        if text.is_empty() {
-            return Ok(());
-        }
-        self.table.append(&text)
-    }
-
-    /// Removes the rows after the first `length_bytes` bytes and returns their lines.
-    ///
-    /// # Errors
-    /// The file cannot be read or written to (exit code 1).
-    pub fn take_back(&mut self, length_bytes: u64) -> Result<String> {
-        self.table.take_back(length_bytes)
-    }
-
-    /// Appends lines that [`DischargeFile::take_back`] has returned.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier rows are kept.
-    pub fn put_back(&mut self, lines: &str) -> Result<()> {
-        self.table.append(lines)
-    }
-
-    /// Length of the file, stored in a checkpoint for [`DischargeFile::continue_at`].
-    pub fn length_bytes(&self) -> u64 {
-        self.table.length_bytes()
-    }
-
-    /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
-    /// a checkpoint that relies on them.
-    ///
-    /// # Errors
-    /// Full or broken disk (exit code 1).
-    pub fn sync(&self) -> Result<()> {
-        self.table.sync()
-    }
+/// Lines of the table of what leaves.
+pub fn discharge_lines<'a>(rows: impl Iterator<Item = DischargeRow<'a>>) -> String {
+    rows.map(|row| line(&row)).collect()
 }
 
 fn line(row: &DischargeRow<'_>) -> String {

@@ -5,13 +5,11 @@
 //! back as the same bits.
 
 use std::fmt::{Display, Write};
-use std::path::Path;
 
-use super::growing::{GrowingTable, field};
-use dem_io::diagnostic::Result;
+use super::growing::field;
 
 /// The first line of the file.
-pub(crate) const COLUMNS: &str =
+pub const COLUMNS: &str =
     "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail";
 
 /// One event.
@@ -39,75 +37,9 @@ pub struct Event<'a> {
     pub detail: &'a str,
 }
 
-/// The file of the events.
-#[derive(Debug)]
-pub struct EventFile {
-    table: GrowingTable,
-}
-
-impl EventFile {
-    /// A new file without events. Replaces an existing one.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk (all exit code 1).
-    pub fn create(path: &Path) -> Result<Self> {
-        Ok(Self {
-            table: GrowingTable::create(path, COLUMNS)?,
-        })
-    }
-
-    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
-    ///
-    /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
-    /// be opened or written to (exit code 1).
-    pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
-        Ok(Self {
-            table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
-        })
-    }
-
-    /// Appends events, such as all of one step. They are in the file when this returns.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier events are kept.
-    pub fn append(&mut self, events: &[Event<'_>]) -> Result<()> {
-        if events.is_empty() {
-            return Ok(());
-        }
-        self.table
-            .append(&events.iter().map(row).collect::<String>())
-    }
-
-    /// Removes the events after the first `length_bytes` bytes and returns their lines.
-    ///
-    /// # Errors
-    /// The file cannot be read or written to (exit code 1).
-    pub fn take_back(&mut self, length_bytes: u64) -> Result<String> {
-        self.table.take_back(length_bytes)
-    }
-
-    /// Appends lines that [`EventFile::take_back`] has returned.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier events are kept.
-    pub fn put_back(&mut self, lines: &str) -> Result<()> {
-        self.table.append(lines)
-    }
-
-    /// Length of the file, stored in a checkpoint for [`EventFile::continue_at`].
-    pub fn length_bytes(&self) -> u64 {
-        self.table.length_bytes()
-    }
-
-    /// Waits until all events are on the disk, safe from a power failure. To be called before
-    /// writing a checkpoint that relies on them.
-    ///
-    /// # Errors
-    /// Full or broken disk (exit code 1).
-    pub fn sync(&self) -> Result<()> {
-        self.table.sync()
-    }
+/// Lines of the table of events.
+pub fn event_lines(events: &[Event<'_>]) -> String {
+    events.iter().map(row).collect()
 }
 
 fn row(event: &Event<'_>) -> String {

@@ -7,7 +7,7 @@
 use std::fmt::{Display, Write};
 use std::path::Path;
 
-use super::growing::{GrowingTable, field};
+use super::growing::{Table, field};
 use dem_io::diagnostic::Result;
 use dem_io::safe_write::write_file;
 use dem_io::text::exact;
@@ -51,60 +51,20 @@ pub struct FragmentRow<'a> {
     pub material: &'a str,
 }
 
-/// The file of the fragments at chosen moments.
-#[derive(Debug)]
-pub struct FragmentFile {
-    table: GrowingTable,
-}
-
-impl FragmentFile {
-    /// A new file without fragments. Replaces an existing one.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk (all exit code 1).
-    pub fn create(path: &Path) -> Result<Self> {
-        Ok(Self {
-            table: GrowingTable::create(path, COLUMNS)?,
-        })
+/// Appends the fragments of one moment to their table. They are in the file when this returns.
+///
+/// # Errors
+/// Full disk (exit code 1): earlier moments are kept, and possibly some complete rows of this one.
+pub fn append_fragments(
+    table: &mut Table,
+    time_s: f64,
+    fragments: &[FragmentRow<'_>],
+) -> Result<()> {
+    for some in fragments.chunks(AT_ONCE) {
+        let rows: String = some.iter().map(|fragment| row(time_s, fragment)).collect();
+        table.append(&rows)?;
     }
-
-    /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
-    ///
-    /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
-    /// be opened or written to (exit code 1).
-    pub fn continue_at(path: &Path, length_bytes: u64) -> Result<Self> {
-        Ok(Self {
-            table: GrowingTable::continue_at(path, COLUMNS, length_bytes)?,
-        })
-    }
-
-    /// Appends the fragments of one moment. They are in the file when this returns.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier moments are kept, and possibly some complete rows of this
-    /// one.
-    pub fn append(&mut self, time_s: f64, fragments: &[FragmentRow<'_>]) -> Result<()> {
-        for some in fragments.chunks(AT_ONCE) {
-            let rows: String = some.iter().map(|fragment| row(time_s, fragment)).collect();
-            self.table.append(&rows)?;
-        }
-        Ok(())
-    }
-
-    /// Length of the file, stored in a checkpoint for [`FragmentFile::continue_at`].
-    pub fn length_bytes(&self) -> u64 {
-        self.table.length_bytes()
-    }
-
-    /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
-    /// a checkpoint that relies on them.
-    ///
-    /// # Errors
-    /// Full or broken disk (exit code 1).
-    pub fn sync(&self) -> Result<()> {
-        self.table.sync()
-    }
+    Ok(())
 }
 
 fn row(time_s: f64, fragment: &FragmentRow<'_>) -> String {

@@ -13,21 +13,29 @@ const PUT_BACK: &str =
 /// The file of a table. Every row is passed to the system as soon as it is appended, so that a
 /// crash of the program loses none.
 #[derive(Debug)]
-pub(super) struct GrowingTable {
+pub struct Table {
     path: PathBuf,
     file: File,
     length_bytes: u64,
+    held: Option<String>,
 }
 
-impl GrowingTable {
+impl Table {
     /// A table with only its `header`, a line without its line break. Replaces an existing one.
-    pub(super) fn create(path: &Path, header: &str) -> Result<Self> {
+    ///
+    /// # Errors
+    /// Missing folder, no permission, full disk (all exit code 1).
+    pub fn create(path: &Path, header: &str) -> Result<Self> {
         write_file(path, |out| writeln!(out, "{header}"))?;
         Self::continue_at(path, header, header.len() as u64 + 1)
     }
 
-    /// A table of which the first `length_bytes` bytes are kept and the others removed.
-    pub(super) fn continue_at(path: &Path, header: &str, length_bytes: u64) -> Result<Self> {
+    /// The table of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
+    ///
+    /// # Errors
+    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
+    /// be opened or written to (exit code 1).
+    pub fn continue_at(path: &Path, header: &str, length_bytes: u64) -> Result<Self> {
         let file = OpenOptions::new().read(true).write(true).open(path);
         let file = file.map_err(|error| match error.kind() {
             ErrorKind::NotFound => Diagnostic::input(
@@ -41,6 +49,7 @@ impl GrowingTable {
             path: path.to_owned(),
             file,
             length_bytes,
+            held: None,
         };
         table.check(header)?;
         let cut = table.file.set_len(length_bytes);
@@ -84,9 +93,16 @@ impl GrowingTable {
         Ok(())
     }
 
-    /// Appends complete rows, each with its line break. If that fails, the file keeps its previous
-    /// rows.
-    pub(super) fn append(&mut self, rows: &str) -> Result<()> {
+    /// Appends complete rows, each with its line break, unless they are [held](Table::hold). If that
+    /// fails, the file keeps its previous rows.
+    ///
+    /// # Errors
+    /// Full disk (exit code 1).
+    pub fn append(&mut self, rows: &str) -> Result<()> {
+        if let Some(held) = &mut self.held {
+            held.push_str(rows);
+            return Ok(());
+        }
         match self.file.write_all(rows.as_bytes()) {
             Ok(()) => {
                 self.length_bytes += rows.len() as u64;
@@ -102,25 +118,33 @@ impl GrowingTable {
         }
     }
 
-    /// Removes the rows after the first `length_bytes` bytes and returns them.
-    pub(super) fn take_back(&mut self, length_bytes: u64) -> Result<String> {
-        let mut rows = String::new();
-        let read = self.file.seek(SeekFrom::Start(length_bytes));
-        let read = read.and_then(|_| self.file.read_to_string(&mut rows));
-        let cut = read.and_then(|_| self.file.set_len(length_bytes));
-        cut.and_then(|()| self.file.seek(SeekFrom::End(0)))
-            .map_err(|error| explain(&self.path, &error))?;
-        self.length_bytes = length_bytes;
-        Ok(rows)
+    /// Keeps the rows from now on out of the file: only a run that is continued shows them.
+    pub fn hold(&mut self) {
+        self.held.get_or_insert_default();
     }
 
-    /// Length of the file, at which to continue.
-    pub(super) fn length_bytes(&self) -> u64 {
+    /// The rows that have been held.
+    pub fn held(&self) -> &str {
+        self.held.as_deref().unwrap_or_default()
+    }
+
+    /// Name of the file in its folder.
+    pub fn name(&self) -> String {
+        let name = self.path.file_name().unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
+    /// Length of the file, stored in a checkpoint, at which it is continued.
+    pub fn length_bytes(&self) -> u64 {
         self.length_bytes
     }
 
-    /// Waits until all rows are on the disk, safe from a power failure.
-    pub(super) fn sync(&self) -> Result<()> {
+    /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
+    /// a checkpoint that relies on them.
+    ///
+    /// # Errors
+    /// Full or broken disk (exit code 1).
+    pub fn sync(&self) -> Result<()> {
         self.file
             .sync_data()
             .map_err(|error| explain(&self.path, &error))

@@ -21,13 +21,14 @@ pub mod summary;
 pub(crate) mod walls;
 
 pub use arrays::{Array, Arrays, read_all_arrays, read_arrays};
-pub use discharge::{DischargeFile, DischargeRow, DistributionRow, write_distribution};
-pub use events::{Event, EventFile};
+pub use discharge::{DischargeRow, DistributionRow, discharge_lines, write_distribution};
+pub use events::{COLUMNS as EVENT_COLUMNS, Event, event_lines};
 pub use flows::{FlowRow, MixingRow, write_flows, write_mixing};
 pub use folder::{Existing, ResultsFolder};
-pub use fragments::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
+pub use fragments::{FragmentRow, TreeRow, append_fragments, write_fragment_tree};
 pub use frames::{Frame, FrameFiles, NamedArray, Values, WallFiles, write_frame};
 pub use json::{from_json, write_json};
+pub use growing::Table;
 pub use pictures::PictureFiles;
 pub use plot_file::{is_plot_file, write_plot_file};
 pub use series::{Series, SeriesFile, read_series};

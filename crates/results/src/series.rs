@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind};
 use std::path::Path;
 
-use super::growing::{GrowingTable, field, fields};
+use super::growing::{Table, field, fields};
 use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::lines::{Lines, float, on_line};
 use dem_io::text::exact;
@@ -15,7 +15,8 @@ use dem_io::text::exact;
 /// The file of the time series.
 #[derive(Debug)]
 pub struct SeriesFile {
-    table: GrowingTable,
+    /// The table.
+    pub table: Table,
     columns: usize,
 }
 
@@ -27,7 +28,7 @@ impl SeriesFile {
     /// Missing folder, no permission, full disk (all exit code 1).
     pub fn create(path: &Path, columns: &[String]) -> Result<Self> {
         Ok(Self {
-            table: GrowingTable::create(path, &header(columns))?,
+            table: Table::create(path, &header(columns))?,
             columns: columns.len(),
         })
     }
@@ -39,7 +40,7 @@ impl SeriesFile {
     /// be opened or written to (exit code 1).
     pub fn continue_at(path: &Path, columns: &[String], length_bytes: u64) -> Result<Self> {
         Ok(Self {
-            table: GrowingTable::continue_at(path, &header(columns), length_bytes)?,
+            table: Table::continue_at(path, &header(columns), length_bytes)?,
             columns: columns.len(),
         })
     }
@@ -65,20 +66,6 @@ impl SeriesFile {
         }
         row.push('\n');
         self.table.append(&row)
-    }
-
-    /// Length of the file, stored in a checkpoint for [`SeriesFile::continue_at`].
-    pub fn length_bytes(&self) -> u64 {
-        self.table.length_bytes()
-    }
-
-    /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
-    /// a checkpoint that relies on them.
-    ///
-    /// # Errors
-    /// Full or broken disk (exit code 1).
-    pub fn sync(&self) -> Result<()> {
-        self.table.sync()
     }
 }
 

@@ -5,20 +5,15 @@ use std::time::Instant;
 
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
-use dem_results::ResultsFolder;
 use dem_scene::Scene;
 
-use super::events::{change_step, new_step};
-use super::files::{Files, open_discharge};
 use super::limits::Limits;
-use super::pictures::{Order, Pictures};
+use super::new_step::change_step;
+use super::outputs::{Opening, Outputs, Start, open_outputs};
 use super::progress::Progress;
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
 use crate::machine::processor_time_s;
-use crate::output::frames::FrameOrder;
-use crate::output::series;
-use crate::output::walls::WallOutput;
 use crate::snapshot::fingerprint;
 use dem_engine::check::watchdog::Watchdog;
 use dem_engine::state::State;
@@ -42,8 +37,10 @@ pub(super) struct Run<'a> {
     pub(super) limits: Limits<'a>,
     pub(super) progress: Progress,
     pub(super) schedule: OutputSchedule,
-    /// None: no results are kept.
-    pub(super) files: Option<Files<'a>>,
+    /// Empty: no results are kept.
+    pub(super) outputs: Outputs,
+    /// See [`super::snapshot::fingerprint`]. None: no results are kept.
+    pub(super) fingerprint: Option<u64>,
     /// Whether a checkpoint is to be written after the step.
     pub(super) is_checkpoint_due: bool,
     /// Wall time of the last checkpoint.
@@ -84,14 +81,11 @@ impl<'a> Run<'a> {
             ..
         } = plan;
         place_watches(&probes, &mut state);
-        // Of the bonds at the start, broken since or not.
-        let mut order = FrameOrder::new(&bodies, &state);
-        let walls = settings.folder.map(|_| WallOutput::of(&state));
-        let of_pictures = settings.folder.and(Order::of(scene, &state, &bodies));
+        let start = (settings.folder).map(|folder| (folder, Start::of(scene, &state, &bodies)));
         let size = state.particles.len() + state.bonds.len();
         let schedule = OutputSchedule::of(scene, choice.step_s, size);
         let mut progress = Progress::new(schedule, &choice);
-        let limits = Limits::of(scene, &state, &choice);
+        let mut limits = Limits::of(scene, &state, &choice);
         let mut changed_step = None;
         let fingerprint = (settings.folder.map(|_| fingerprint(&state))).transpose()?;
         let resumed = settings.resume.take().zip(fingerprint);
@@ -111,24 +105,25 @@ impl<'a> Run<'a> {
             }
             if state.bodies_change() {
                 renumber_probes(&mut probes, &[], &bodies, &mut state);
-                order = FrameOrder::new(&bodies, &state);
             }
             changed_step = change_step(&mut state, &choice, scene.run.adaptive);
         }
-        let mut files = None;
-        if let Some(((folder, fingerprint), walls)) = settings.folder.zip(fingerprint).zip(walls) {
-            let columns = series::columns(scene.walls.keys(), &probes);
-            let continued = is_continued.then_some(&progress);
-            let orders = (order, walls, of_pictures);
-            let mut open = open_files(folder, fingerprint, orders, &columns, &state, continued)?;
-            progress.after_end = Default::default();
-            if let Some(detail) = &changed_step {
-                open.events.append(&[new_step(&state, "resumed", detail)])?;
-            }
-            files = Some(open);
+        limits.new_steps.extend(changed_step.clone());
+        let mut outputs = Vec::new();
+        if let Some((folder, start)) = &start {
+            outputs = open_outputs(&Opening {
+                name: "",
+                folder,
+                scene,
+                state: &state,
+                bodies: &bodies,
+                probes: &probes,
+                start,
+                continued: is_continued.then_some(&progress),
+            })?;
         }
         let began = Instant::now();
-        Ok(Self {
+        let mut run = Self {
             scene,
             settings,
             bodies,
@@ -138,7 +133,8 @@ impl<'a> Run<'a> {
             limits,
             progress,
             schedule,
-            files,
+            outputs,
+            fingerprint,
             is_checkpoint_due: false,
             saved: began,
             planned: Planned {
@@ -147,14 +143,18 @@ impl<'a> Run<'a> {
                 notes: plan.notes,
                 warnings: plan.warnings,
                 inputs: plan.inputs,
-                changed_step,
+                changed_step: changed_step.map(|new| new.detail),
             },
             first_step: state.steps,
             first_time_s: state.time_s,
             state,
             began,
             processor_before_s: processor_time_s(),
-        })
+        };
+        if !run.limits.new_steps.is_empty() {
+            run.note_changes(false, false)?;
+        }
+        Ok(run)
     }
 }
 
@@ -167,39 +167,4 @@ fn watch_of_test<'a>(
     let of_test = settings.test.take()?;
     let (test, setup) = (scene.test.as_ref()?, settings.setup.take()?);
     Some(Watch::new(scene, test, setup, of_test, plan))
-}
-
-/// The files of a run, new or at the point where it is `continued` in this state. `orders`: what
-/// frames, walls and pictures show.
-fn open_files<'a>(
-    folder: &'a ResultsFolder,
-    fingerprint: u64,
-    (frames, walls, pictures): (FrameOrder, WallOutput, Option<Order>),
-    columns: &[String],
-    state: &State,
-    continued: Option<&Progress>,
-) -> Result<Files<'a>> {
-    let has_fragments = state.clusters.is_some();
-    let orders = (frames, walls);
-    let mut files = Files::open(
-        folder,
-        fingerprint,
-        orders,
-        columns,
-        has_fragments,
-        continued,
-    )?;
-    files.discharge = open_discharge(folder, state, continued)?;
-    if let Some(before) = continued {
-        let [events, discharge] = &before.after_end;
-        files.events.put_back(events)?;
-        if let Some((file, _)) = &mut files.discharge {
-            file.put_back(discharge)?;
-        }
-    }
-    if let Some(order) = pictures {
-        let continued = continued.map(|at| (state, at.pictures));
-        files.pictures = Some(Pictures::open(folder, order, continued)?);
-    }
-    Ok(files)
 }

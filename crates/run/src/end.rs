@@ -3,15 +3,15 @@
 use dem_io::Result;
 use dem_io::units::significant;
 use dem_results::summary::{AdaptiveSummary, Summary, Verdict};
-use dem_results::write_json;
+use dem_results::{ResultsFolder, write_json};
 
 use super::begin::Run;
-use super::events::{write_sleep, write_zones};
-use super::finish::End;
+use super::doubts::past_outlets::{past_outlets, past_walls};
+use super::last_files::{End, LastState};
 use super::nothing_happened::{empty_measures, parted_without_contacts, zero_measures};
 use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
-use super::past_outlets::{past_outlets, past_walls};
+use super::outputs::pictures::taken_until;
 use super::rigid_hits::RigidHits;
 use crate::machine::{machine, processor_time_s};
 use crate::output::flows::body_flows;
@@ -36,24 +36,32 @@ impl Run<'_> {
         let test = test.map(|watch| watch.finish(&progress.test, state, folder));
         let clusters = state.clusters.as_ref();
         let fragments = clusters.map(|c| fragments_of(c, &state.particles, &state.clumps, None));
-        self.progress.seen.look_at_edges(&self.state, &self.bodies);
+        self.progress
+            .monitors
+            .look_at_edges(&self.state, &self.bodies);
         let pieces = fragments.as_deref().unwrap_or_default();
         let is_stopped = ended.problem.is_some();
-        let seen = &self.progress.seen;
+        let monitors = &self.progress.monitors;
         let mut warnings = std::mem::take(&mut self.planned.warnings);
-        let flying = seen
+        let flying = monitors
             .flying(&self.state, self.scene, pieces)
             .filter(|_| !is_stopped);
         let (flies, bodies) = (flying.as_ref(), &self.bodies);
-        warnings.extend(seen.warnings(&self.state, self.scene, bodies, flies, is_stopped));
+        warnings.extend(monitors.warnings(&self.state, self.scene, bodies, flies, is_stopped));
         if !is_stopped {
             warnings.extend(past_outlets(&self.state, pieces));
             warnings.extend(self.rigid_hits().warnings(self.scene));
-            warnings.extend(empty_measures(&self.state, self.scene, &self.probes, seen));
+            warnings.extend(empty_measures(
+                &self.state,
+                self.scene,
+                &self.probes,
+                monitors,
+            ));
             warnings.extend(self.probes.iter().filter_map(Probe::coarse_cells));
         }
         if !is_stopped && self.scene.test.is_none() {
-            let (last_tenth, touched) = (&self.progress.last_tenth, |n| seen.has_touched_wall(n));
+            let (last_tenth, touched) =
+                (&self.progress.last_tenth, |n| monitors.has_touched_wall(n));
             warnings.extend(last_tenth.short_servos(&self.state, touched));
             if ended.by == AT_END_TIME {
                 warnings.extend(last_tenth.moving(&self.state, bodies, &self.probes));
@@ -77,31 +85,22 @@ impl Run<'_> {
             let pieces = fragments.as_deref().unwrap_or_default();
             summary.notes.extend(past_walls(&self.state, pieces));
         }
-        let pictures = self
-            .files
-            .as_ref()
-            .and_then(|files| files.pictures.as_ref());
-        let note = pictures.and_then(|pictures| pictures.note(&self.state));
-        summary.notes.extend(note);
+        let outputs = self.outputs.iter();
+        (summary.notes).extend(outputs.filter_map(|(_, output)| output.note(&self.state)));
         summary.judge(warnings);
-        let Some(folder) = folder else {
-            return Ok(Outcome {
-                summary,
-                problem: ended.problem,
-            });
-        };
-        if ended.by == INTERRUPTION {
+        match folder {
+            None => {}
             // Of what has been simulated; its film goes on with the run.
-            let mut end = End::of(&summary)?;
-            let at_end = (&self.state, summary.simulated_s);
-            end.write_tables(folder, self.scene, at_end, &self.probes)?;
-            end.write(folder, &self.probes, None)?;
-        } else if ended.problem.is_some() {
-            let end = End::of(&summary)?;
-            end.write_page(folder)?;
-            end.write_summary(folder)?;
-        } else {
-            self.write_end(&summary)?;
+            Some(folder) if ended.by == INTERRUPTION => {
+                let end = self.end_with_tables(&summary, folder)?;
+                end.write(folder, &self.probes, None)?;
+            }
+            Some(folder) if is_stopped => {
+                let end = End::of(&summary)?;
+                end.write_page(folder)?;
+                end.write_summary(folder)?;
+            }
+            Some(folder) => self.write_end(&summary, folder)?,
         }
         Ok(Outcome {
             summary,
@@ -111,7 +110,7 @@ impl Run<'_> {
 
     /// The hits of rigid clumps, those that go on included. A continued run goes on with them.
     fn rigid_hits(&self) -> RigidHits {
-        let mut hits = self.progress.seen.rigid_hits.clone();
+        let mut hits = self.progress.monitors.rigid_hits.clone();
         let state = &self.state;
         hits.take(&mut state.clumps.clone(), state.time_s, true);
         let mut parts = state.rigid_parts.clone();
@@ -122,47 +121,32 @@ impl Run<'_> {
 
     /// The last checkpoint, from which the run can be continued to a later end time; plots, film
     /// and summary.
-    fn write_end(&mut self, summary: &Summary) -> Result<()> {
-        let mut end = End::of(summary)?;
-        if let Some(folder) = self.settings.folder {
-            let at_end = (&self.state, summary.simulated_s);
-            end.write_tables(folder, self.scene, at_end, &self.probes)?;
-        }
-        self.finish_last_step()?;
-        if let Some(folder) = self.settings.folder {
-            write_json(&folder.ended(), &end)?;
-        }
+    fn write_end(&mut self, summary: &Summary, folder: &ResultsFolder) -> Result<()> {
+        let end = self.end_with_tables(summary, folder)?;
+        // The second half of the last step, which a continued run begins with. Bodies that it adds,
+        // removes or replaces are not in the results.
+        advance(&mut self.state);
+        let changed = self.follow_population();
+        self.note_changes(changed.is_some(), true)?;
+        write_json(&folder.ended(), &end)?;
         self.save()?;
-        match &mut self.files {
-            Some(files) => end.write(files.folder, &self.probes, files.pictures.as_mut()),
-            None => Ok(()),
-        }
+        let pictures = taken_until(self.scene, &self.progress)?;
+        end.write(folder, &self.probes, pictures)
     }
 
-    /// The second half of the last step, which a continued run begins with. Bodies that it adds,
-    /// removes or replaces are not in the results.
-    fn finish_last_step(&mut self) -> Result<()> {
-        let Some(files) = &self.files else {
-            return Ok(());
-        };
-        let discharge = files.discharge.as_ref();
-        let lengths = [
-            files.events.length_bytes(),
-            discharge.map_or(0, |(file, _)| file.length_bytes()),
-        ];
-        advance(&mut self.state);
-        self.follow_population()?;
-        if let Some(files) = &mut self.files {
-            write_zones(&self.state, files)?;
-            write_sleep(&self.state, files)?;
-            let events = files.events.take_back(lengths[0])?;
-            let discharge = match &mut files.discharge {
-                Some((file, _)) => file.take_back(lengths[1])?,
-                None => String::new(),
-            };
-            self.progress.after_end = [events, discharge];
-        }
-        Ok(())
+    /// Writes the tables of this state, the last of the run.
+    fn end_with_tables(&self, summary: &Summary, folder: &ResultsFolder) -> Result<End> {
+        End::with_tables(
+            summary,
+            &LastState {
+                folder,
+                scene: self.scene,
+                state: &self.state,
+                fragments: Fragments::of(&self.state),
+                end_s: summary.simulated_s,
+                probes: &self.probes,
+            },
+        )
     }
 
     fn summary(
@@ -203,8 +187,8 @@ impl Run<'_> {
             bonds: state.bonds.len(),
             bodies: self.planned.masses.clone(),
             broken_bonds: state.broken_count,
-            largest_bond_strain: progress.seen.bond_strain.largest,
-            largest_overlap: progress.seen.overlap.largest,
+            largest_bond_strain: progress.monitors.bond_strain.largest,
+            largest_overlap: progress.monitors.overlap.largest,
             broken_by_cause: state.broken_by_cause,
             damaged_bonds: state.bonds.count_damaged(),
             yielded_bonds: state.bonds.count_yielded(),
@@ -214,7 +198,7 @@ impl Run<'_> {
             }),
             population: population_summary(state, &self.bodies),
             flows: body_flows(state, &self.planned.masses),
-            taken_in: progress.seen.taken.summary(scene),
+            taken_in: progress.monitors.taken.summary(scene),
             sleep: state.sleep.as_ref().map(sleep_summary),
             steps: state.steps,
             time_step_s: state.time_step_s,

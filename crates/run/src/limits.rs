@@ -4,8 +4,7 @@
 use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 
-use super::events::{change, look_anew_for_near, new_step};
-use super::files::Files;
+use super::new_step::{NewStep, change, look_anew_for_near};
 use super::progress::Progress;
 use dem_engine::check::limit::{Bound, bound_near, damping_bound_1_s, limit};
 use dem_engine::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
@@ -54,6 +53,8 @@ pub(super) struct Limits<'a> {
     end_s: f64,
     /// None: the step only decreases.
     adaptive: Option<Adaptive<'a>>,
+    /// New steps of the last step.
+    pub(super) new_steps: Vec<NewStep>,
 }
 
 /// Basis of an adaptive step.
@@ -97,6 +98,7 @@ impl<'a> Limits<'a> {
                 arriving: arriving(state),
                 replaced: choice.replaced,
             }),
+            new_steps: Vec::new(),
         }
     }
 
@@ -104,20 +106,18 @@ impl<'a> Limits<'a> {
     /// an adaptive step if possible. `replaced`: clumps have just become clusters.
     ///
     /// # Errors
-    /// A particle moves so far in a step that contacts would miss it, and the scene sets the step;
-    /// those of the files.
+    /// A particle moves so far in a step that contacts would miss it, and the scene sets the step.
     pub(super) fn follow(
         &mut self,
         state: &mut State,
         replaced: bool,
         progress: &mut Progress,
         bodies: &[PlacedBody],
-        mut files: Option<&mut Files<'_>>,
     ) -> Result<()> {
-        self.follow_adaptive(state, replaced, progress, files.as_deref_mut())?;
+        self.follow_adaptive(state, replaced, progress);
         let mut may_be_less = false;
         if state.steps.is_multiple_of(STRAIN_EVERY) {
-            let strain = progress.seen.look_at_bonds(state, bodies);
+            let strain = progress.monitors.look_at_bonds(state, bodies);
             if strain > progress.strain + MORE_STRAIN {
                 progress.strain = strain;
                 renew_damping(state);
@@ -155,7 +155,7 @@ impl<'a> Limits<'a> {
             progress.bound_rates = rates;
             if let Some(safety) = self.safety {
                 let largest_s = safety * progress.limit_s;
-                self.take(state, largest_s, "limit", progress, files.as_deref_mut())?;
+                self.take(state, largest_s, "limit", progress);
             }
         }
         if let (true, Some(safety)) = (look_at_contacts, self.safety) {
@@ -167,7 +167,7 @@ impl<'a> Limits<'a> {
             if speed_m_s > FASTER * progress.impact_speed_m_s {
                 progress.impact_speed_m_s = speed_m_s;
                 let largest_s = impact_step_s(state, speed_m_s, safety);
-                self.take(state, largest_s, "speed", progress, files.as_deref_mut())?;
+                self.take(state, largest_s, "speed", progress);
             }
         }
         let farthest_m = FARTHEST * self.smallest_radius_m;
@@ -176,29 +176,23 @@ impl<'a> Limits<'a> {
                 return too_fast(state, bodies);
             };
             let largest_s = safety * farthest_m / state.fastest_m_s;
-            self.take(state, largest_s, "speed", progress, files)?;
+            self.take(state, largest_s, "speed", progress);
         }
         Ok(())
     }
 
     /// Chooses an adaptive step again once clumps have become clusters, at intervals, and once
     /// there are no bonds left.
-    fn follow_adaptive(
-        &mut self,
-        state: &mut State,
-        replaced: bool,
-        progress: &mut Progress,
-        files: Option<&mut Files<'_>>,
-    ) -> Result<()> {
+    fn follow_adaptive(&mut self, state: &mut State, replaced: bool, progress: &mut Progress) {
         let Some(adaptive) = &mut self.adaptive else {
-            return Ok(());
+            return;
         };
         let has_lost_all_bonds = progress.had_bonds && state.bonds.is_empty();
         if replaced {
             let basis = adaptive.replaced;
             progress.allow_as_well_for(&basis);
             progress.had_bonds = true;
-            self.take(state, basis.step_s, "replacement", progress, files)?;
+            self.take(state, basis.step_s, "replacement", progress);
         } else if state.steps >= progress.next_check || has_lost_all_bonds {
             let basis = StepBasis::of(adaptive.scene, state, adaptive.arriving.as_mut());
             let iterations = basis.limit.all_iterations as u64;
@@ -213,36 +207,32 @@ impl<'a> Limits<'a> {
                 state.time_step_s > adaptive.scene.run.safety_factor * basis.foreseen_s;
             if is_larger || is_unstable || state.time_step_s > SMALLER * basis.step_s {
                 let cause = ("adaptive", Some(basis.limited_by));
-                self.set(state, basis.step_s, cause, progress, files)?;
+                self.set(state, basis.step_s, cause, progress);
             }
         }
-        Ok(())
     }
 
     /// Reduces the step to this one, if the present one is larger, and records it.
     fn take(
-        &self,
+        &mut self,
         state: &mut State,
         largest_s: f64,
-        cause: &str,
+        cause: &'static str,
         progress: &mut Progress,
-        files: Option<&mut Files<'_>>,
-    ) -> Result<()> {
-        if state.time_step_s <= largest_s {
-            return Ok(());
+    ) {
+        if state.time_step_s > largest_s {
+            self.set(state, largest_s, (cause, None), progress);
         }
-        self.set(state, largest_s, (cause, None), progress, files)
     }
 
     /// Sets this step, or one slightly smaller, and records it with its cause and what limits it.
     fn set(
-        &self,
+        &mut self,
         state: &mut State,
         largest_s: f64,
-        (cause, limited_by): (&str, Option<&str>),
+        (cause, limited_by): (&'static str, Option<&str>),
         progress: &mut Progress,
-        files: Option<&mut Files<'_>>,
-    ) -> Result<()> {
+    ) {
         // So that the end time is met.
         let left_s = self.end_s - state.time_s;
         let step_s = if left_s > 0.0 {
@@ -259,10 +249,7 @@ impl<'a> Limits<'a> {
         }
         state.time_step_s = step_s;
         progress.note_step(step_s);
-        match files {
-            Some(files) => files.events.append(&[new_step(state, cause, &detail)]),
-            None => Ok(()),
-        }
+        self.new_steps.push(NewStep { cause, detail });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use dem_scene::{Quantity, Scene};
 
-use super::seen::Seen;
+use super::monitors::Monitors;
 use dem_engine::state::State;
 use dem_plan::measure::Probe;
 
@@ -12,7 +12,7 @@ pub(super) fn empty_measures(
     state: &State,
     scene: &Scene,
     probes: &[Probe],
-    seen: &Seen,
+    monitors: &Monitors,
 ) -> Vec<String> {
     let is_zero = |probe: &&Probe| {
         let history = &probe.history;
@@ -20,14 +20,14 @@ pub(super) fn empty_measures(
     };
     let zero = probes.iter().filter(is_zero);
     let said = zero.filter_map(|probe| {
-        let why = untouched(state, scene, probe, seen).or_else(|| empty_region(probe))?;
+        let why = untouched(state, scene, probe, monitors).or_else(|| empty_region(probe))?;
         Some(format!("measures.{} is 0 throughout: {why}", probe.name))
     });
     said.collect()
 }
 
 /// What nothing touched, if a measure is of forces or contacts, and the remedy.
-fn untouched(state: &State, scene: &Scene, probe: &Probe, seen: &Seen) -> Option<String> {
+fn untouched(state: &State, scene: &Scene, probe: &Probe, monitors: &Monitors) -> Option<String> {
     let quantity = probe.measure.quantity;
     let is_force = matches!(
         quantity,
@@ -39,12 +39,14 @@ fn untouched(state: &State, scene: &Scene, probe: &Probe, seen: &Seen) -> Option
     let remedy = "check places and motions, or set run.end_time later";
     let wall_name = |wall: usize| state.walls.get(wall).map(|wall| wall.model.name.clone());
     let walls = probe.walls().into_iter().flatten();
-    let untouched_wall = walls.into_iter().find(|wall| !seen.has_touched_wall(*wall));
+    let untouched_wall = walls
+        .into_iter()
+        .find(|wall| !monitors.has_touched_wall(*wall));
     if let Some(name) = untouched_wall.and_then(wall_name) {
         return Some(format!("nothing touched the wall '{name}'; {remedy}"));
     }
     let of = &probe.measure.of;
-    if probe.walls()[0].is_none() && seen.is_untouched(scene, of) {
+    if probe.walls()[0].is_none() && monitors.is_untouched(scene, of) {
         return Some(format!("nothing touched '{of}'; {remedy}"));
     }
     // A component may be 0 by symmetry, these are not.

@@ -4,19 +4,17 @@
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
+use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
+use dem_results::ResultsFolder;
+use dem_results::checkpoint::write_checkpoint;
 
 use super::begin::Run;
-use super::events::{
-    write_breaks, write_discharge, write_population, write_sleep, write_splits, write_zones,
-};
-use super::files::{interruption, save, with_checkpoint};
-use super::fragments::write_fragments;
 use super::limits::{CHECK_EVERY_STEPS, tunnelling};
+use super::outputs::{Changes, Moment, save_outputs};
 use super::schedule::{due, next};
 use super::settings::SoFar;
-use crate::output::frames::FrameOrder;
-use crate::output::series;
+use super::snapshot::Snapshot;
 use dem_engine::stages::clumps::place_all;
 use dem_engine::stages::ledger::{CHECKS, balance};
 use dem_engine::stages::stage::Stage;
@@ -53,6 +51,16 @@ pub(super) struct Ended {
     pub(super) problem: Option<Diagnostic>,
 }
 
+impl Ended {
+    fn new(by: &'static str, balance: Balance, problem: Option<Diagnostic>) -> Self {
+        Self {
+            by,
+            balance,
+            problem,
+        }
+    }
+}
+
 /// Output that is due at a step.
 #[derive(Debug, Clone, Copy)]
 struct Due {
@@ -61,13 +69,14 @@ struct Due {
     row: bool,
     frame: bool,
     checkpoint: bool,
-    picture: bool,
+    /// An output is due at an interval of its own.
+    output: bool,
     watchdog: bool,
 }
 
 impl Due {
     fn any(self) -> bool {
-        self.row || self.frame || self.checkpoint || self.picture || self.watchdog
+        self.row || self.frame || self.checkpoint || self.output || self.watchdog
     }
 
     /// A checkpoint of a run that has gone unstable would be worthless.
@@ -95,29 +104,40 @@ impl Run<'_> {
             place_all(&self.state.clumps, &mut self.state.particles);
         }
         let (mut rests, mut exceeded) = (false, false);
-        let mut balanced = None;
+        let (mut balanced, mut values) = (None, None);
         if due.needs_balance() {
             let balance = balance(&mut self.state);
             if let Err(problem) = self.watchdog.look(&self.state, &balance, &self.bodies) {
-                let problem = Some(with_checkpoint(problem, self.files.as_ref()));
-                let by = "instability";
-                return Ok(Some(Ended {
-                    by,
-                    balance,
-                    problem,
-                }));
+                let problem = Some(self.with_checkpoint(problem));
+                return Ok(Some(Ended::new("instability", balance, problem)));
             }
             self.progress
                 .note(&self.state, &balance, self.schedule.rest);
             rests = self.progress.has_rested(&self.state);
             if due.row || rests {
-                self.write_row(&balance, tell)?;
+                values = Some(self.measure(&balance, tell));
                 exceeded = self.progress.exceeded.is_some() && !due.end && !rests;
             }
             balanced = Some(balance);
         }
         let ends_early = rests || exceeded;
-        self.write_frame(due, ends_early)?;
+        let is_frame = due.frame || ends_early;
+        if is_frame {
+            let every_s = self.schedule.frame_s;
+            self.progress.next_frame = every_s.map_or(0, |s| next(&self.state, s));
+        }
+        if due.any() {
+            let now = Moment {
+                state: &self.state,
+                bodies: &self.bodies,
+                row: balanced.as_ref().zip(values.as_deref()),
+                is_frame,
+                is_last: due.end || ends_early,
+            };
+            for (_, output) in &mut self.outputs {
+                output.write(&now)?;
+            }
+        }
         self.plan_checkpoint(due);
         if let (true, Some(balance)) = (due.end || ends_early, balanced) {
             self.progress.rested = rests && !due.end;
@@ -128,12 +148,7 @@ impl Run<'_> {
                 (false, _) if rests => "rest",
                 (false, _) => "measure",
             };
-            let problem = None;
-            return Ok(Some(Ended {
-                by,
-                balance,
-                problem,
-            }));
+            return Ok(Some(Ended::new(by, balance, None)));
         }
         book(&mut self.state, &OUTPUT, since);
         Ok(None)
@@ -145,20 +160,17 @@ impl Run<'_> {
     /// # Errors
     /// Those of the files.
     pub(super) fn follow(&mut self) -> Result<Option<Ended>> {
-        let replaced = self.follow_population()?;
-        if let Some(files) = &mut self.files {
-            write_zones(&self.state, files)?;
-            write_sleep(&self.state, files)?;
-        }
+        let changed = self.follow_population();
         let since = self
             .state
             .steps
             .is_multiple_of(CHECK_EVERY_STEPS)
             .then(Instant::now);
-        let (bodies, files) = (&self.bodies, self.files.as_mut());
-        let followed =
-            (self.limits).follow(&mut self.state, replaced, &mut self.progress, bodies, files);
+        let replaced = changed == Some(true);
+        let (bodies, progress) = (&self.bodies, &mut self.progress);
+        let followed = (self.limits).follow(&mut self.state, replaced, progress, bodies);
         book(&mut self.state, &CHECKS, since);
+        self.note_changes(changed.is_some(), false)?;
         if let Err(problem) = followed {
             return Ok(Some(self.ended_early("instability", problem)));
         }
@@ -168,48 +180,61 @@ impl Run<'_> {
             self.save()?;
         }
         if interrupted {
-            let problem = interruption(&self.state, self.files.as_ref());
-            let by = INTERRUPTION;
+            let problem = Some(self.interruption());
             let balance = balance(&mut self.state);
-            let problem = Some(problem);
-            return Ok(Some(Ended {
-                by,
-                balance,
-                problem,
-            }));
+            return Ok(Some(Ended::new(INTERRUPTION, balance, problem)));
         }
         Ok(None)
     }
 
     /// Records the events of the first half of the step.
     fn note_step(&mut self) -> Result<()> {
-        let (state, bodies, seen) = (&self.state, &self.bodies, &mut self.progress.seen);
-        seen.note_breaks(state, bodies);
+        let (state, bodies, monitors) = (&self.state, &self.bodies, &mut self.progress.monitors);
+        monitors.note_breaks(state, bodies);
         if state.steps.is_multiple_of(EDGES_EVERY) {
-            seen.look_at_edges(state, bodies);
+            monitors.look_at_edges(state, bodies);
         }
         // A bounce may last for a few steps only. Few contacts cost nothing; many last longer.
-        let few = 1..=if seen.misses_one(self.scene) {
+        let few = 1..=if monitors.misses_one(self.scene) {
             FEW_BEFORE_ALL_TOUCHED
         } else {
             FEW_CONTACTS
         };
         let is_turn = state.steps.is_multiple_of(CHECK_EVERY_STEPS);
         if is_turn || few.contains(&contacts_now(state)) {
-            seen.look_at_contacts(state, self.scene, bodies);
-            seen.taken.look(state);
+            monitors.look_at_contacts(state, self.scene, bodies);
+            monitors.taken.look(state);
             let time_s = state.time_s;
-            let hits = &mut seen.rigid_hits;
+            let hits = &mut monitors.rigid_hits;
             hits.take(&mut self.state.clumps, time_s, false);
             let State {
                 rigid_parts, bonds, ..
             } = &mut self.state;
             hits.take_of_parts(rigid_parts, bonds, bodies, (time_s, false));
         }
-        let state = &self.state;
-        if let Some(files) = &mut self.files {
-            write_breaks(state, bodies, files)?;
-            write_splits(state, files)?;
+        let (state, bodies) = (&self.state, &self.bodies);
+        for (_, output) in &mut self.outputs {
+            output.note_breakage(state, bodies)?;
+        }
+        Ok(())
+    }
+
+    /// Records the changes in the second half of the step. `has_other_bodies`: some have been added,
+    /// removed or replaced; `is_after_end`: only a continued run shows them.
+    pub(super) fn note_changes(
+        &mut self,
+        has_other_bodies: bool,
+        is_after_end: bool,
+    ) -> Result<()> {
+        let changes = Changes {
+            state: &self.state,
+            bodies: &self.bodies,
+            has_other_bodies,
+            new_steps: &std::mem::take(&mut self.limits.new_steps),
+            is_after_end,
+        };
+        for (_, output) in &mut self.outputs {
+            output.note_changes(&changes)?;
         }
         Ok(())
     }
@@ -222,58 +247,30 @@ impl Run<'_> {
         let first = state.steps == 0;
         let frame = (schedule.frame_s).map_or(first, |s| due(state, s, progress.next_frame));
         let checkpoint = schedule.checkpoint_s;
-        let pictures = self
-            .files
-            .as_ref()
-            .and_then(|files| files.pictures.as_ref());
         Due {
             end,
             row: end || due(state, schedule.row_s, progress.next_row),
             frame: end || frame,
             checkpoint: checkpoint.is_some_and(|s| due(state, s, progress.next_checkpoint)),
-            picture: pictures.is_some_and(|pictures| pictures.are_due(state)),
+            output: self.outputs.iter().any(|(_, output)| output.is_due(state)),
             watchdog: self.watchdog.is_due(state),
         }
     }
 
-    fn write_row(&mut self, balance: &Balance, tell: &dyn Fn(&SoFar)) -> Result<()> {
+    /// The values of all measures, for a row of the time series.
+    fn measure(&mut self, balance: &Balance, tell: &dyn Fn(&SoFar)) -> Vec<f64> {
         let state = &self.state;
         self.progress.next_row = next(state, self.schedule.row_s);
         let values = read_probes(&mut self.probes, state, balance);
         self.progress.exceeded = exceeded(&self.probes, &values);
         let end_s = self.scene.run.end_time_s;
         self.progress.last_tenth.note(state, end_s, &values);
-        if let Some(files) = &mut self.files {
-            let row = series::row(state, balance, &values);
-            files.series.append(state.time_s, &row)?;
-        }
         tell(&SoFar {
-            fraction: (state.time_s / self.scene.run.end_time_s).min(1.0),
+            fraction: (state.time_s / end_s).min(1.0),
             time_s: state.time_s,
             broken_bonds: state.broken_count,
         });
-        Ok(())
-    }
-
-    /// Writes frame, picture and fragments if they are due, or if the run ends early.
-    fn write_frame(&mut self, due: Due, ends_early: bool) -> Result<()> {
-        let (state, progress) = (&self.state, &mut self.progress);
-        let Some(files) = &mut self.files else {
-            return Ok(());
-        };
-        if due.frame || ends_early {
-            progress.next_frame = self.schedule.frame_s.map_or(0, |s| next(state, s));
-            files.order.write(state, &files.walls, &mut files.frames)?;
-        }
-        if let Some(pictures) = &mut files.pictures
-            && (due.end || ends_early || due.picture)
-        {
-            pictures.take(state, &self.bodies)?;
-        }
-        if due.frame || ends_early || (due.row && progress.has_new_fragments(state)) {
-            write_fragments(state, progress, files)?;
-        }
-        Ok(())
+        values
     }
 
     /// Decides whether the state after this step is saved. The ledger of this step has been
@@ -289,15 +286,15 @@ impl Run<'_> {
     }
 
     /// Applies new numbers of particles after bodies have been added, removed or replaced. Returns
-    /// whether clumps have become clusters.
-    pub(super) fn follow_population(&mut self) -> Result<bool> {
+    /// whether clumps have become clusters. None: the bodies are the same.
+    pub(super) fn follow_population(&mut self) -> Option<bool> {
         let events = &self.state.scratch.events;
         if events.population.is_empty() && events.renumberings.is_empty() {
-            return Ok(false);
+            return None;
         }
         let is_swap = |one: &PopulationEvent| matches!(one, PopulationEvent::Replaced { .. });
         let replaced = events.population.iter().any(is_swap);
-        self.progress.seen.note_population(&events.population);
+        self.progress.monitors.note_population(&events.population);
         for by in &events.renumberings {
             renumber(&mut self.bodies, by);
         }
@@ -308,33 +305,56 @@ impl Run<'_> {
             &self.bodies,
             &mut self.state,
         );
-        if let Some(files) = &mut self.files {
-            write_population(&self.state, files)?;
-            write_discharge(&self.state, files)?;
-            files.order = FrameOrder::new(&self.bodies, &self.state);
-        }
-        Ok(replaced)
+        Some(replaced)
     }
 
     /// Writes a checkpoint, if results are kept.
     pub(super) fn save(&mut self) -> Result<()> {
-        let Some(files) = &mut self.files else {
+        let Some((folder, fingerprint)) = self.settings.folder.zip(self.fingerprint) else {
             return Ok(());
         };
         self.state.forget_what_is_near();
-        let (state, bodies, probes) = (&self.state, &self.bodies, &self.probes);
-        save(state, bodies, self.scene, probes, &mut self.progress, files)
+        save_outputs(&self.outputs, folder.path(), &mut self.progress)?;
+        let snapshot = Snapshot::taken(
+            &self.state,
+            &self.bodies,
+            self.scene.describe(),
+            fingerprint,
+            self.probes.iter().map(|probe| probe.history).collect(),
+            self.progress.clone(),
+        );
+        write_checkpoint(&folder.checkpoint(), &snapshot.to_bytes()?)
     }
 
     /// The end of a run that does not reach its end time.
     fn ended_early(&mut self, by: &'static str, problem: Diagnostic) -> Ended {
-        let problem = Some(with_checkpoint(problem, self.files.as_ref()));
-        let balance = balance(&mut self.state);
-        Ended {
-            by,
-            balance,
-            problem,
+        let problem = Some(self.with_checkpoint(problem));
+        Ended::new(by, balance(&mut self.state), problem)
+    }
+
+    /// Adds to a message that the run can be resumed from its checkpoint, if there is one.
+    fn with_checkpoint(&self, mut problem: Diagnostic) -> Diagnostic {
+        let checkpoint = self.settings.folder.map(ResultsFolder::checkpoint);
+        if let Some(path) = checkpoint.filter(|path| path.is_file()) {
+            problem.remedy += &format!(
+                "; --resume takes it up from '{}' with that step",
+                path.display()
+            );
         }
+        problem
+    }
+
+    fn interruption(&self) -> Diagnostic {
+        let remedy = match self.settings.folder {
+            Some(folder) => format!(
+                "go on with the same command and --resume: '{}' holds its state",
+                folder.checkpoint().display()
+            ),
+            None => "with --output FOLDER its state would have been kept".to_owned(),
+        };
+        let time_s = significant(self.state.time_s, 6);
+        let steps = self.state.steps;
+        Diagnostic::interrupted(format!("interrupted at {time_s} s, step {steps}"), remedy)
     }
 }
 

@@ -1,14 +1,15 @@
 //! Progress of a run besides its state: next outputs, and quantities monitored so far.
 
+use std::collections::BTreeMap;
+
 use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
 use super::changes::last_change_s;
 use super::last_tenth::LastTenth;
-use super::pictures::Taken;
+use super::monitors::Monitors;
 use super::schedule::{OutputSchedule, first_after};
-use super::seen::Seen;
 use super::sums::Sums;
 use dem_engine::check::limit::Bound;
 use dem_engine::stages::ledger::over;
@@ -24,16 +25,10 @@ pub struct Progress {
     pub(super) next_row: u64,
     pub(super) next_frame: u64,
     pub(super) next_checkpoint: u64,
-    pub(super) series_bytes: u64,
-    pub(super) events_bytes: u64,
-    pub(super) fragments_bytes: u64,
-    pub(super) discharge_bytes: u64,
-    /// Check sums of these tables and of the frames.
+    /// Where each output stands, by its name.
+    pub(super) positions: BTreeMap<String, Vec<u8>>,
+    /// Check sums of the files of results.
     pub(super) sums: Sums,
-    /// Number of fragments when they were written last.
-    pub(super) fragments_written: u64,
-    pub(super) frame_times_s: Vec<f64>,
-    pub(super) pictures: Taken,
     /// Largest errors of energy, momentum and angular momentum so far: J, N s, N m s.
     largest_errors: [f64; 3],
     /// Largest stable step at its last computation, s.
@@ -68,11 +63,8 @@ pub struct Progress {
     pub(super) test: Record,
     /// Whether it has ended before its end time: the body broke, or the weight came to its end.
     pub(super) test_ended: bool,
-    /// Lines of `events.csv` and `discharge.csv` of what happened between the last output of the
-    /// run and its checkpoint: only a run that is continued shows them.
-    pub(super) after_end: [String; 2],
     /// Quantities monitored besides the measures.
-    pub(super) seen: Seen,
+    pub(super) monitors: Monitors,
     /// What measures and servos did in the last tenth of the run.
     pub(super) last_tenth: LastTenth,
 }
@@ -208,7 +200,7 @@ impl Progress {
             momentum * balance.momentum_error,
             angular_momentum * balance.angular_momentum_error,
         ];
-        self.seen.note_kinetic(balance.kinetic_j);
+        self.monitors.note_kinetic(balance.kinetic_j);
         for (largest, error) in self.largest_errors.iter_mut().zip(errors) {
             *largest = largest.max(error.abs());
         }

@@ -5,7 +5,7 @@ use std::fs;
 use dem_results::discharge::{COLUMNS, DISTRIBUTION_COLUMNS};
 use dem_results::flows::{FLOW_COLUMNS, MIXING_COLUMNS};
 use dem_results::{
-    DischargeFile, DischargeRow, DistributionRow, FlowRow, MixingRow, write_distribution,
+    DischargeRow, DistributionRow, FlowRow, MixingRow, Table, discharge_lines, write_distribution,
     write_flows, write_mixing,
 };
 use tempfile::tempdir;
@@ -28,19 +28,22 @@ fn row(fragment_id: u32, time_s: f64) -> DischargeRow<'static> {
 fn discharge_looks_as_documented_and_goes_on_after_an_interruption() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("discharge.csv");
-    let mut file = DischargeFile::create(&path).unwrap();
-    file.append([row(7, 0.5)].into_iter()).unwrap();
+    let mut file = Table::create(&path, COLUMNS).unwrap();
+    file.append(&discharge_lines([row(7, 0.5)].into_iter()))
+        .unwrap();
     let checkpoint = file.length_bytes();
-    file.append([row(8, 1.0), row(2, 1.0)].into_iter()).unwrap();
-    file.append(std::iter::empty()).unwrap();
+    file.append(&discharge_lines([row(8, 1.0), row(2, 1.0)].into_iter()))
+        .unwrap();
+    file.append(&discharge_lines(std::iter::empty())).unwrap();
     let whole = fs::read_to_string(&path).unwrap();
     assert!(whole.starts_with(&format!(
         "{COLUMNS}\n0.5,7,\"cake, old\",stone,floor,0.05,0.3333333333333333,0.5,0.25,0.125,0.25\n"
     )));
     assert_eq!(whole.lines().count(), 4);
-    let mut file = DischargeFile::continue_at(&path, checkpoint).unwrap();
+    let mut file = Table::continue_at(&path, COLUMNS, checkpoint).unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap().lines().count(), 2);
-    file.append([row(8, 1.0), row(2, 1.0)].into_iter()).unwrap();
+    file.append(&discharge_lines([row(8, 1.0), row(2, 1.0)].into_iter()))
+        .unwrap();
     file.sync().unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), whole);
 }

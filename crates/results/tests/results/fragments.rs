@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 
 use dem_results::fragments::{COLUMNS, TREE_COLUMNS};
-use dem_results::{FragmentFile, FragmentRow, TreeRow, write_fragment_tree};
+use dem_results::{FragmentRow, Table, TreeRow, append_fragments, write_fragment_tree};
 use proptest::prelude::*;
 use tempfile::tempdir;
 
@@ -30,14 +30,13 @@ fn fragment(id: u32, numbers: [f64; 15]) -> FragmentRow<'static> {
 fn fragments_look_as_documented() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = FragmentFile::create(&path).unwrap();
+    let mut file = Table::create(&path, COLUMNS).unwrap();
     let whole = [
         0.25, 1.0, -2.0, 3.0, 0.5, -0.0, 1e-9, 7.0, 8.0, 9.0, -1.0, 0.0, 1e3, 0.125, 0.75,
     ];
-    file.append(0.0, &[fragment(0, whole)]).unwrap();
-    file.append(1.5e-3, &[]).unwrap();
-    file.append(2.5e-3, &[fragment(2, [1.0 / 3.0; 15])])
-        .unwrap();
+    append_fragments(&mut file, 0.0, &[fragment(0, whole)]).unwrap();
+    append_fragments(&mut file, 1.5e-3, &[]).unwrap();
+    append_fragments(&mut file, 2.5e-3, &[fragment(2, [1.0 / 3.0; 15])]).unwrap();
     let third = ",0.3333333333333333".repeat(15);
     let text = format!(
         "time_s,fragment_id,parent_id,particles,mass_kg,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,wx_rad_s,wy_rad_s,wz_rad_s,fx_n,fy_n,fz_n,equivalent_diameter_m,box_diagonal_m,body,material\n\
@@ -83,8 +82,8 @@ fn the_tree_looks_as_documented_and_is_replaced_whole() {
 fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = FragmentFile::create(&path).unwrap();
-    file.append(0.0, &[fragment(0, [1.0; 15])]).unwrap();
+    let mut file = Table::create(&path, COLUMNS).unwrap();
+    append_fragments(&mut file, 0.0, &[fragment(0, [1.0; 15])]).unwrap();
     let length = file.length_bytes();
     let before = fs::read(&path).unwrap();
     for (length, said) in [
@@ -92,7 +91,7 @@ fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
         (length - 1, "no row ends"),
         (0, "no row ends"),
     ] {
-        let error = FragmentFile::continue_at(&path, length).unwrap_err();
+        let error = Table::continue_at(&path, COLUMNS, length).unwrap_err();
         assert_eq!(error.exit_code(), 2);
         assert!(error.problem.contains(said), "{error}");
         assert_eq!(fs::read(&path).unwrap(), before);
@@ -100,7 +99,7 @@ fn a_file_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
     let other = folder.path().join("other.csv");
     fs::write(&other, format!("{TREE_COLUMNS}\n")).unwrap();
     let at = TREE_COLUMNS.len() as u64 + 1;
-    let error = FragmentFile::continue_at(&other, at).unwrap_err();
+    let error = Table::continue_at(&other, COLUMNS, at).unwrap_err();
     assert!(error.problem.contains("first line"), "{error}");
 }
 
@@ -119,17 +118,17 @@ proptest! {
         let rows = |count: u32| (0..count).map(|id| fragment(id, numbers)).collect::<Vec<_>>();
         let write = |name: &str, interrupted: bool| {
             let path = folder.path().join(name);
-            let mut file = FragmentFile::create(&path).unwrap();
+            let mut file = Table::create(&path, COLUMNS).unwrap();
             for (number, count) in moments.iter().enumerate() {
                 if interrupted && number == at {
                     let length = file.length_bytes();
-                    file.append(9.0, &rows(3)).unwrap();
+                    append_fragments(&mut file, 9.0, &rows(3)).unwrap();
                     drop(file);
                     // A possible state of a row that was being written.
                     fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(half.as_bytes()).unwrap();
-                    file = FragmentFile::continue_at(&path, length).unwrap();
+                    file = Table::continue_at(&path, COLUMNS, length).unwrap();
                 }
-                file.append(number as f64, &rows(*count)).unwrap();
+                append_fragments(&mut file, number as f64, &rows(*count)).unwrap();
             }
             fs::read_to_string(&path).unwrap()
         };
@@ -157,9 +156,9 @@ proptest! {
 fn thousands_of_fragments_of_one_moment_are_all_there() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("fragments.csv");
-    let mut file = FragmentFile::create(&path).unwrap();
+    let mut file = Table::create(&path, COLUMNS).unwrap();
     let rows: Vec<FragmentRow> = (0..2500).map(|id| fragment(id, [1.0; 15])).collect();
-    file.append(1.0, &rows).unwrap();
+    append_fragments(&mut file, 1.0, &rows).unwrap();
     let text = fs::read_to_string(&path).unwrap();
     let ids: Vec<u32> = text
         .lines()

@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::Write;
 
-use dem_results::{Event, EventFile, SeriesFile, read_series};
+use dem_results::{EVENT_COLUMNS, Event, SeriesFile, Table, event_lines, read_series};
 use proptest::prelude::*;
 use tempfile::tempdir;
 
@@ -38,9 +38,9 @@ fn a_series_looks_as_documented() {
                 0,0.3333333333333333,-0\n\
                 0.0005,NaN,-inf\n";
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
-    assert_eq!(series.length_bytes(), text.len() as u64);
+    assert_eq!(series.table.length_bytes(), text.len() as u64);
     assert_eq!(series.append(1.0, &[1.0]).unwrap_err().exit_code(), 1);
-    series.sync().unwrap();
+    series.table.sync().unwrap();
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
     let read = read_series(&path).unwrap();
     assert_eq!(read.columns, names);
@@ -75,7 +75,7 @@ fn a_series_that_was_damaged_is_refused_with_the_line() {
 fn events_look_as_documented() {
     let folder = tempdir().unwrap();
     let path = folder.path().join("events.csv");
-    let mut events = EventFile::create(&path).unwrap();
+    let mut events = Table::create(&path, EVENT_COLUMNS).unwrap();
     let planned = Event {
         step: 12,
         time_s: 0.25,
@@ -88,8 +88,8 @@ fn events_look_as_documented() {
         energy_j: None,
         detail: "search begins,\nbodies are near",
     };
-    events.append(&[]).unwrap();
-    events.append(&[event(2), planned]).unwrap();
+    events.append(&event_lines(&[])).unwrap();
+    events.append(&event_lines(&[event(2), planned])).unwrap();
     let text = "step,time_s,event,bond,particle_a,particle_b,x_m,y_m,z_m,cause,energy_j,detail\n\
                 2,2e-6,bond_broken,3,1,2,0.5,-0.001,0,tension,0.1,\n\
                 12,0.25,plan,,,,,,,,,\"search begins, bodies are near\"\n";
@@ -105,7 +105,7 @@ fn a_table_that_does_not_fit_its_checkpoint_is_refused_and_stays_as_it_is() {
     let names = columns(&["a_m"]);
     let mut series = SeriesFile::create(&path, &names).unwrap();
     series.append(0.0, &[1.0]).unwrap();
-    let length = series.length_bytes();
+    let length = series.table.length_bytes();
     let before = fs::read(&path).unwrap();
     let refused = |names: &[&str], length, said: &str| {
         let error = SeriesFile::continue_at(&path, &columns(names), length).unwrap_err();
@@ -160,11 +160,11 @@ proptest! {
         let checkpoint = checkpoint.index(crash + 1);
         let path = folder.path().join("series.csv");
         let mut series = SeriesFile::create(&path, &names).unwrap();
-        let mut kept = series.length_bytes();
+        let mut kept = series.table.length_bytes();
         for (row, [time, a, b]) in rows[..crash].iter().enumerate() {
             series.append(*time, &[*a, *b]).unwrap();
             if row + 1 == checkpoint {
-                kept = series.length_bytes();
+                kept = series.table.length_bytes();
             }
         }
         drop(series);
@@ -192,14 +192,14 @@ proptest! {
         let of_step = |(step, count): (usize, &usize)| vec![event(step as u64); *count];
         let write = |name: &str, interrupted: bool| {
             let path = folder.path().join(name);
-            let mut events = EventFile::create(&path).unwrap();
+            let mut events = Table::create(&path, EVENT_COLUMNS).unwrap();
             for (number, step) in steps.iter().enumerate() {
                 if interrupted && number == at {
                     let length = events.length_bytes();
-                    events.append(&[event(1000)]).unwrap();
-                    events = EventFile::continue_at(&path, length).unwrap();
+                    events.append(&event_lines(&[event(1000)])).unwrap();
+                    events = Table::continue_at(&path, EVENT_COLUMNS, length).unwrap();
                 }
-                events.append(&of_step((number, step))).unwrap();
+                events.append(&event_lines(&of_step((number, step)))).unwrap();
             }
             fs::read(&path).unwrap()
         };

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use dem_io::Result;
 use dem_io::body::mass::BodyMass;
 use dem_results::summary::{EquilibriumSummary, Inputs, Summary, Verdict};
-use dem_results::{EventFile, FrameFiles, ResultsFolder, SeriesFile};
+use dem_results::{EVENT_COLUMNS, FrameFiles, ResultsFolder, SeriesFile, Table};
 use dem_scene::Scene;
 
-use crate::finish::End;
+use crate::last_files::End;
 use crate::machine::machine;
 use crate::output::fragments::fragment_summary;
 use crate::output::frames::FrameOrder;
@@ -138,7 +138,7 @@ impl AtRest<'_> {
             self.state.time_s,
             &series::row(self.state, self.balance, measured),
         )?;
-        EventFile::create(&folder.events())?;
+        Table::create(&folder.events(), EVENT_COLUMNS)?;
         let walls = WallOutput::of(self.state);
         let mut frames = FrameFiles::create(folder, walls.files());
         order.write(self.state, &walls, &mut frames)?;

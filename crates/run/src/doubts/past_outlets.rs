@@ -20,7 +20,7 @@ struct Piece {
 
 /// A warning if pieces below all walls fall past the outlets. None: there are none, or a plane
 /// beneath the scene catches them.
-pub(super) fn past_outlets(state: &State, fragments: &[Fragment]) -> Option<String> {
+pub(crate) fn past_outlets(state: &State, fragments: &[Fragment]) -> Option<String> {
     let rules = &state.model.rules;
     let gravity = Vector3::from(state.model.gravity_m_s2);
     let down = gravity.try_normalize(0.0)?;
@@ -53,7 +53,7 @@ pub(super) fn past_outlets(state: &State, fragments: &[Fragment]) -> Option<Stri
 
 /// A note on pieces that have fallen past all walls of a scene without outlets and floor. None:
 /// there are none.
-pub(super) fn past_walls(state: &State, fragments: &[Fragment]) -> Option<String> {
+pub(crate) fn past_walls(state: &State, fragments: &[Fragment]) -> Option<String> {
     let down = Vector3::from(state.model.gravity_m_s2).try_normalize(0.0)?;
     if state.walls.is_empty() || !state.model.rules.outlets.is_empty() || has_floor(state, down) {
         return None;

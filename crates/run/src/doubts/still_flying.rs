@@ -15,17 +15,17 @@ use dem_engine::state::clusters::fragments::Fragment;
 const FLYING: f64 = 0.05;
 
 /// Fragments that still move apart.
-pub(super) struct Flying {
+pub(crate) struct Flying {
     /// What is said of them.
-    pub(super) text: String,
+    pub(crate) text: String,
     /// Whether something that can break touches something: then breakage may not be over.
     /// Otherwise what has been simulated is complete, and a later impact is another question.
-    pub(super) touches: bool,
+    pub(crate) touches: bool,
 }
 
 /// The fragments that still move apart, if some cluster can break and may meet something.
 /// `largest_kinetic_j`: the largest kinetic energy of the run.
-pub(super) fn still_flying(
+pub(crate) fn still_flying(
     state: &State,
     fragments: &[Fragment],
     largest_kinetic_j: f64,

@@ -1,27 +1,21 @@
-//! Quantities that a run monitors besides its measures, and reasons to doubt its result: bodies
-//! that nothing touched, laws used beyond their range of validity, breakage that is not over.
+//! Reasons to doubt the result of a run: bodies that nothing touched, laws used beyond their range
+//! of validity, breakage that is not over.
+
+pub(super) mod past_outlets;
+mod still_flying;
 
 use std::collections::BTreeSet;
 
 use dem_io::units::{show_length, significant};
 use dem_scene::{Scene, StartAs};
-use serde::{Deserialize, Serialize};
 
-use super::flying::{Flying, still_flying};
-use super::rigid_hits::RigidHits;
-use super::taken_in::Taken;
+use self::still_flying::{Flying, still_flying};
+use super::monitors::{Extreme, Monitors};
 use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
-use dem_engine::check::laws::{
-    LARGEST_OVERLAP, LARGEST_STRAIN, overlap_warning, plastic_strain_warning, strain_warning,
-};
-use dem_engine::stages::bonds::{edge_strain, most_strained, most_strained_edge, most_yielded};
+use dem_engine::check::laws::{overlap_warning, plastic_strain_warning, strain_warning};
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
-use dem_engine::state::bodies::called;
 use dem_engine::state::clusters::fragments::Fragment;
-use dem_engine::state::events::PopulationEvent;
-use dem_engine::state::events::REMOVED;
-use dem_engine::state::events::STARTS_BONDED;
 use dem_engine::state::rules::Outlet;
 
 /// Fraction of the run at its end in which a breaking bond shows that breakage is not over.
@@ -29,214 +23,7 @@ const LATE: f64 = 0.05;
 /// Number of bodies that a warning names; the others are counted.
 const NAMED: usize = 3;
 
-/// The largest value of a quantity, and where it occurred.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Extreme {
-    /// The value.
-    pub(super) largest: f64,
-    /// s.
-    pub(super) time_s: f64,
-    /// m. Length 3.
-    pub(super) place_m: [f64; 3],
-    /// The objects concerned, in words; empty within the range of validity of the laws.
-    pub(super) between: String,
-}
-
-/// Quantities monitored so far.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Seen {
-    /// Names of bodies that something has touched.
-    touched: BTreeSet<String>,
-    /// Numbers of walls that something has touched.
-    touched_walls: BTreeSet<usize>,
-    /// Ratio of overlap to the smaller radius.
-    pub(super) overlap: Extreme,
-    /// Strain at the edge of a bond.
-    pub(super) bond_strain: Extreme,
-    /// Plastic strain at the edge of a bond.
-    pub(super) plastic_strain: Extreme,
-    /// Hits that rigid clumps could not break by.
-    pub(super) rigid_hits: RigidHits,
-    /// Energies that particles took in.
-    pub(super) taken: Taken,
-    /// Names of bodies with a clump that was replaced.
-    replaced: BTreeSet<String>,
-    /// Names of bodies that an inlet has fed.
-    came: BTreeSet<String>,
-    /// Time of the last bond breakage, s.
-    last_break_s: Option<f64>,
-    /// Largest kinetic energy at a row of the time series, J.
-    largest_kinetic_j: f64,
-}
-
-impl Seen {
-    /// Records the bonds that have broken in this step, and the strains of those that broke at
-    /// their strength.
-    pub(super) fn note_breaks(&mut self, state: &State, bodies: &[PlacedBody]) {
-        for broken in &state.scratch.events.broken {
-            self.last_break_s = Some(state.time_s);
-            let at = broken.bond as usize;
-            if state.bonds.was_damaged(at) {
-                continue;
-            }
-            self.note_strain(
-                edge_strain(&state.bonds, at, &state.particles.poses),
-                at,
-                state,
-                bodies,
-            );
-        }
-    }
-
-    /// Records the clumps that have been replaced.
-    pub(super) fn note_population(&mut self, happened: &[PopulationEvent]) {
-        for one in happened {
-            if let PopulationEvent::Replaced { body, cause, .. } = one
-                && *cause != STARTS_BONDED
-            {
-                self.replaced.insert(body.clone());
-            }
-            if let PopulationEvent::Broken {
-                body,
-                specific_j_kg,
-                ..
-            } = one
-            {
-                self.taken.note_broken(body, *specific_j_kg);
-                // Something pressed it, maybe for a few steps only.
-                self.touched.insert(body.clone());
-                self.replaced.insert(body.clone());
-            }
-            if let PopulationEvent::Came { body, .. } = one {
-                self.came.insert(body.clone());
-            }
-        }
-    }
-
-    /// Records the kinetic energy, J.
-    pub(super) fn note_kinetic(&mut self, kinetic_j: f64) {
-        self.largest_kinetic_j = self.largest_kinetic_j.max(kinetic_j);
-    }
-
-    /// Whether nothing has touched some body yet.
-    pub(super) fn misses_one(&self, scene: &Scene) -> bool {
-        self.touched.len() < scene.bodies.len()
-    }
-
-    /// Checks contacts and their overlaps. Cheap enough for every eighth step.
-    pub(super) fn look_at_contacts(&mut self, state: &State, scene: &Scene, bodies: &[PlacedBody]) {
-        let Some(contacts) = &state.contacts else {
-            return;
-        };
-        let p = &state.particles;
-        let radius = |i: u32| p.poses[i as usize].radius_m();
-        let misses_one = self.misses_one(scene);
-        let mut touching = Vec::new();
-        // Particle and wall, or two particles.
-        let mut deepest: Option<(f64, u32, Result<usize, u32>)> = None;
-        let mut take = |ratio: f64, a: u32, other: Result<usize, u32>| {
-            if ratio > deepest.map_or(self.overlap.largest, |(largest, ..)| largest) {
-                deepest = Some((ratio, a, other));
-            }
-        };
-        for (n, wall) in state.walls.iter().enumerate() {
-            for touch in &wall.touching {
-                let overlap_m = touch.history.overlap_m();
-                take(overlap_m / radius(touch.particle), touch.particle, Ok(n));
-                if overlap_m > 0.0 {
-                    self.touched_walls.insert(n);
-                    if misses_one {
-                        touching.push(touch.particle);
-                    }
-                }
-            }
-        }
-        for partition in state
-            .contact_partitions()
-            .iter()
-            .filter(|partition| partition.computed > 0)
-        {
-            for at in partition.close.iter().flat_map(|[_, own]| own) {
-                let overlap_m = contacts.histories[*at as usize].overlap_m();
-                if overlap_m > 0.0 {
-                    let [a, b] = contacts.pairs[*at as usize];
-                    take(overlap_m / radius(a).min(radius(b)), a, Err(b));
-                    if misses_one {
-                        touching.extend([a, b]);
-                    }
-                }
-            }
-        }
-        if let Some((ratio, a, other)) = deepest {
-            let between = if ratio > LARGEST_OVERLAP {
-                let other = match other {
-                    Ok(wall) => format!("the wall '{}'", state.walls[wall].model.name),
-                    Err(b) => called(bodies, &state.clumps, b),
-                };
-                format!("{} and {other}", called(bodies, &state.clumps, a))
-            } else {
-                String::new()
-            };
-            self.overlap = Extreme {
-                largest: ratio,
-                time_s: state.time_s,
-                place_m: p.poses[a as usize].place().into(),
-                between,
-            };
-        }
-        if !touching.is_empty() {
-            self.note_touched(state, bodies, touching);
-        }
-    }
-
-    fn note_touched(&mut self, state: &State, bodies: &[PlacedBody], mut touching: Vec<u32>) {
-        touching.sort_unstable();
-        touching.dedup();
-        let is_touched = |i: &u32| touching.binary_search(i).is_ok();
-        for body in bodies {
-            let mut living = body.particles.iter().filter(|i| **i != REMOVED);
-            if !self.touched.contains(&body.name) && living.any(is_touched) {
-                self.touched.insert(body.name.clone());
-            }
-        }
-        for clump in &state.clumps.all {
-            let name = &state.clumps.template(clump).body;
-            let mut spheres = state.clumps.spheres_of(clump);
-            if !self.touched.contains(name) && spheres.any(|i| is_touched(&(i as u32))) {
-                self.touched.insert(name.clone());
-            }
-        }
-    }
-
-    /// Checks elongation and compression of bonds. Returns the largest present elongation.
-    pub(super) fn look_at_bonds(&mut self, state: &State, bodies: &[PlacedBody]) -> f64 {
-        let Some((strain, at)) = most_strained(&state.bonds, &state.particles.poses) else {
-            return 0.0;
-        };
-        if !state.bonds.was_damaged(at) && !state.bonds.has_yielded(at) {
-            self.note_strain(strain, at, state, bodies);
-        }
-        strain
-    }
-
-    /// Checks strains at the edges of bonds, including bending and torsion.
-    pub(super) fn look_at_edges(&mut self, state: &State, bodies: &[PlacedBody]) {
-        if let Some((strain, at)) = most_strained_edge(&state.bonds, &state.particles.poses) {
-            self.note_strain(strain, at, state, bodies);
-        }
-        if let Some((strain, at)) = most_yielded(&state.bonds)
-            && strain > self.plastic_strain.largest
-        {
-            self.plastic_strain = extreme_of_bond(strain, at, state, bodies);
-        }
-    }
-
-    fn note_strain(&mut self, strain: f64, at: usize, state: &State, bodies: &[PlacedBody]) {
-        if strain > self.bond_strain.largest {
-            self.bond_strain = extreme_of_bond(strain, at, state, bodies);
-        }
-    }
-
+impl Monitors {
     /// Reasons to doubt the result at the end of a run, a sentence each.
     pub(super) fn warnings(
         &self,
@@ -377,17 +164,6 @@ impl Seen {
         warnings
     }
 
-    /// Whether anything has touched the wall of this number.
-    pub(super) fn has_touched_wall(&self, number: usize) -> bool {
-        self.touched_walls.contains(&number)
-    }
-
-    /// Whether this is the name of a body of the scene that nothing has touched, of those that
-    /// are looked at.
-    pub(super) fn is_untouched(&self, scene: &Scene, name: &str) -> bool {
-        scene.bodies.contains_key(name) && !self.touched.contains(name)
-    }
-
     /// Whether inlets could have fed a body but did not.
     fn never_came(&self, state: &State, name: &str) -> bool {
         let is_own = |(t, _): &(u32, f64)| state.clumps.templates[*t as usize].body == name;
@@ -420,24 +196,6 @@ impl Seen {
             return None;
         }
         still_flying(state, fragments, self.largest_kinetic_j)
-    }
-}
-
-/// The strain of a bond at this moment, and what it joins if that is beyond its law.
-fn extreme_of_bond(strain: f64, at: usize, state: &State, bodies: &[PlacedBody]) -> Extreme {
-    let p = &state.particles;
-    let [a, b] = state.bonds.ends[at];
-    let [place_a, place_b] = [a, b].map(|end| p.poses[end as usize].place());
-    Extreme {
-        largest: strain,
-        time_s: state.time_s,
-        place_m: (0.5 * (place_a + place_b)).into(),
-        between: if strain > LARGEST_STRAIN {
-            let [a, b] = [a, b].map(|end| called(bodies, &state.clumps, end));
-            format!("{a} and {b}")
-        } else {
-            String::new()
-        },
     }
 }
 

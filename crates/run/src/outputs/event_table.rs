@@ -1,25 +1,52 @@
-//! Entries of the table of events.
+//! The table of events, `events.csv`.
 
 use dem_io::Result;
 use dem_io::text::exact;
-use dem_results::{DischargeRow, Event};
+use dem_results::{EVENT_COLUMNS, Event, Table, event_lines};
 
-use super::files::Files;
+use super::{Changes, Opening, Output, Saved};
+use crate::new_step::NewStep;
 use crate::output::fragments::split_text;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::bodies::bond_of_file;
-use dem_engine::state::clusters::sizes::Discharged;
 use dem_engine::state::events::PopulationEvent;
 use dem_engine::state::events::STARTS_BONDED;
-use dem_plan::time_step::StepChoice;
+
+struct EventTable(Table);
+
+pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
+    let table = opening.table(&opening.folder.events(), EVENT_COLUMNS)?;
+    Ok(Some(Box::new(EventTable(table))))
+}
+
+impl Output for EventTable {
+    fn note_breakage(&mut self, state: &State, bodies: &[PlacedBody]) -> Result<()> {
+        write_breaks(state, bodies, &mut self.0)?;
+        write_splits(state, &mut self.0)
+    }
+
+    fn note_changes(&mut self, changes: &Changes<'_>) -> Result<()> {
+        let (state, table) = (changes.state, &mut self.0);
+        if changes.is_after_end {
+            table.hold();
+        }
+        write_population(state, table)?;
+        write_zones(state, table)?;
+        write_sleep(state, table)?;
+        for NewStep { cause, detail } in changes.new_steps {
+            table.append(&event_lines(&[of_all(state, "time_step", cause, detail)]))?;
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Result<Saved> {
+        Saved::of_table(&self.0, &())
+    }
+}
 
 /// The bonds that broke in this step, by the numbers of the body's file.
-pub(super) fn write_breaks(
-    state: &State,
-    bodies: &[PlacedBody],
-    files: &mut Files<'_>,
-) -> Result<()> {
+fn write_breaks(state: &State, bodies: &[PlacedBody], table: &mut Table) -> Result<()> {
     for broken in &state.scratch.events.broken {
         let ends = state.bonds.ends[broken.bond as usize];
         let found = bond_of_file(bodies, broken.bond as usize);
@@ -41,13 +68,13 @@ pub(super) fn write_breaks(
             energy_j: Some(broken.released_j),
             detail: found.map_or("", |(body, _)| &body.name),
         };
-        files.events.append(&[event])?;
+        table.append(&event_lines(&[event]))?;
     }
     Ok(())
 }
 
 /// The clusters that were found in pieces in this step.
-pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
+fn write_splits(state: &State, table: &mut Table) -> Result<()> {
     let Some(clusters) = &state.clusters else {
         return Ok(());
     };
@@ -62,7 +89,7 @@ pub(super) fn write_splits(state: &State, files: &mut Files<'_>) -> Result<()> {
         .iter()
         .map(|detail| of_all(state, "split", "", detail))
         .collect();
-    files.events.append(&events)
+    table.append(&event_lines(&events))
 }
 
 /// Mass, kg, momentum, N s, and kinetic energy, J, before and after an event.
@@ -77,7 +104,7 @@ fn kept(mass_kg: &[f64; 2], momentum_n_s: &[f64; 2], kinetic_j: &[f64; 2]) -> St
 }
 
 /// Events of bodies in this step.
-pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<()> {
+fn write_population(state: &State, table: &mut Table) -> Result<()> {
     let (step, time_s) = (state.scratch.events.step, state.scratch.events.time_s);
     for one in &state.scratch.events.population {
         let (kind, cause, place_m, energy_j, detail) = match one {
@@ -164,45 +191,22 @@ pub(super) fn write_population(state: &State, files: &mut Files<'_>) -> Result<(
                 format!("fragment {cluster} ({body}): {mass_kg:e} kg"),
             ),
         };
-        files.events.append(&[Event {
+        table.append(&event_lines(&[Event {
             step,
             time_s,
             position_m: Some(*place_m),
             energy_j,
             ..of_all(state, kind, cause, &detail)
-        }])?;
+        }]))?;
     }
     Ok(())
 }
 
-/// What has left through outlets since the last call.
-pub(super) fn write_discharge(state: &State, files: &mut Files<'_>) -> Result<()> {
-    let Some((file, written)) = &mut files.discharge else {
-        return Ok(());
-    };
-    let all = &state.population.discharged;
-    let (model, outlets) = (&state.model, &state.model.rules.outlets);
-    let row = |one: &Discharged| DischargeRow {
-        time_s: one.time_s,
-        fragment_id: one.fragment_id,
-        body: model.body_name(one.size.body),
-        material: model.material_name(one.size.body),
-        outlet: &outlets[one.outlet as usize].name,
-        mass_kg: one.size.mass_kg,
-        equivalent_diameter_m: one.size.equivalent_diameter_m,
-        box_lengths_m: one.size.box_lengths_m,
-        sieve_m: one.size.sieve_m,
-    };
-    file.append(all[*written..].iter().map(row))?;
-    *written = all.len();
-    Ok(())
-}
-
 /// The spheres of bodies bonded in part that were released or joined a rigid part in this step.
-pub(super) fn write_zones(state: &State, files: &mut Files<'_>) -> Result<()> {
+fn write_zones(state: &State, table: &mut Table) -> Result<()> {
     for news in &state.scratch.events.zones {
         let plural = if news.particles == 1 { "" } else { "s" };
-        files.events.append(&[Event {
+        table.append(&event_lines(&[Event {
             step: news.step,
             time_s: news.time_s,
             energy_j: Some(news.lost_j),
@@ -212,16 +216,16 @@ pub(super) fn write_zones(state: &State, files: &mut Files<'_>) -> Result<()> {
                 "region",
                 &format!("{}: {} particle{plural}", news.body, news.particles),
             )
-        }])?;
+        }]))?;
     }
     Ok(())
 }
 
 /// The bodies that fell asleep or woke in this step.
-pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
+fn write_sleep(state: &State, table: &mut Table) -> Result<()> {
     for news in &state.scratch.events.sleep {
         let plural = if news.bodies == 1 { "body" } else { "bodies" };
-        files.events.append(&[Event {
+        table.append(&event_lines(&[Event {
             step: news.step,
             time_s: news.time_s,
             ..of_all(
@@ -230,46 +234,9 @@ pub(super) fn write_sleep(state: &State, files: &mut Files<'_>) -> Result<()> {
                 news.cause,
                 &format!("{} {plural}", news.bodies),
             )
-        }])?;
+        }]))?;
     }
     Ok(())
-}
-
-/// Takes the time step of the scene in a resumed run: a given step, or one smaller than before; an
-/// adaptive step stays as it was. Returns a description of the change.
-pub(super) fn change_step(
-    state: &mut State,
-    choice: &StepChoice,
-    adaptive: bool,
-) -> Option<String> {
-    let before_s = state.time_step_s;
-    let step_s = match (choice.given, adaptive) {
-        (true, _) => choice.step_s,
-        (false, true) => before_s,
-        (false, false) => choice.step_s.min(before_s),
-    };
-    if step_s > before_s {
-        look_anew_for_near(state);
-    }
-    state.time_step_s = step_s;
-    (step_s != before_s).then(|| change(before_s, step_s))
-}
-
-/// Requests a new neighbour search before the next step: the present lists are valid for steps of
-/// the present size.
-pub(super) fn look_anew_for_near(state: &mut State) {
-    if let Some(contacts) = &mut state.contacts {
-        contacts.search_all();
-    }
-}
-
-pub(super) fn change(before_s: f64, after_s: f64) -> String {
-    format!("time step {before_s:.4e} s -> {after_s:.4e} s")
-}
-
-/// The event of a new time step.
-pub(super) fn new_step<'a>(state: &State, cause: &'a str, detail: &'a str) -> Event<'a> {
-    of_all(state, "time_step", cause, detail)
 }
 
 /// An event without a bond and a position.
