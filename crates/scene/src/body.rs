@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::bond::BondKind;
 use super::clump;
 use super::clump::StartAs;
+use super::conflicts;
 use super::direction::ROTATION;
 use super::fall::{self, Fall};
 use super::field::Field;
@@ -263,13 +264,7 @@ fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass
         let mass: Option<f64> = table.read("mass")?;
         return Ok(mass.map(WholeMass::Mass));
     };
-    if table.get("mass").is_some() {
-        let problem = format!("{} cannot be combined with mass", field.path);
-        return Err(field.refuse(
-            problem,
-            "either says what the body weighs: remove the other",
-        ));
-    }
+    conflicts::BODY.refuse_key("body_density", table)?;
     if matches!(source, BodySource::Inline { .. }) {
         let problem = format!(
             "{} is that of a shape, and particles in the scene have none",
@@ -281,22 +276,17 @@ fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass
 }
 
 fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
-    let particles = table.get("particles");
-    let bonds = table.get("bond_list");
+    conflicts::BODY.refuse_key("particles", table)?;
     if let Some(file) = table.get("file") {
-        if let Some(field) = particles.or(bonds) {
-            let problem = format!("{} cannot be combined with file", field.path);
-            return Err(field.refuse(problem, "a body comes from one of them: remove the other"));
-        }
         return Ok(BodySource::File(named_path(&file, folder)?));
     }
-    let Some(particles) = particles else {
+    let Some(particles) = table.get("particles") else {
         let problem = format!("{} has no particles", table.path);
         let remedy = "add file = \"body.vtp\", or particles = [[x, y, z, radius]]";
         return Err(table.refuse(problem, remedy));
     };
     let particles = read_particles(&particles)?;
-    let bonds = match bonds {
+    let bonds = match table.get("bond_list") {
         Some(field) => read_bonds(&field, &particles)?,
         None => Vec::new(),
     };

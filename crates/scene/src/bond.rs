@@ -1,6 +1,7 @@
 //! `[bonds.NAME]`
 
 use super::bond_failure::{self, BondFailure, FAILURE};
+use super::conflicts;
 use super::field::Field;
 use super::listing::{Listing, one_field_a_key};
 use super::material::poisson_ratio;
@@ -316,30 +317,20 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
         young_modulus_pa: table.read("young_modulus")?,
         poisson_ratio: table.read("poisson_ratio")?,
         radius_factor: table.read("radius_factor")?,
-        damping: damping(&table.table("damping", &DAMPING)?)?,
+        damping: damping(&table)?,
         failure: table
             .read_by("failure", |field| bond_failure::read(&field))?
             .unwrap_or_default(),
         plasticity: table.read_by("plasticity", |field| plasticity(&field))?,
         contact_beside_bond: table.read("contact_beside_bond")?,
     };
-    if let Some(field) = table.get("plasticity") {
-        check_plasticity(&field, &kind)?;
-    }
+    conflicts::BOND.refuse_key("plasticity", &table)?;
     match kind.model {
-        BondModel::FlatJoint { .. } => check_flat_joint(&table, &kind)?,
+        BondModel::FlatJoint { .. } => check_flat_joint(&table, &kind.failure)?,
         BondModel::Pin { .. } => check_pin(&table, &kind.damping)?,
         _ => {}
     }
-    if let (Some(field), Formulation::Incremental) = (table.get("formulation"), kind.formulation)
-        && kind.failure.fracture_energy_j_m2.is_some()
-    {
-        let problem = format!("{} does not go with failure.fracture_energy", field.path);
-        return Err(field.refuse(
-            problem,
-            "write formulation = \"total\", or remove fracture_energy",
-        ));
-    }
+    conflicts::BOND.refuse_key("formulation = incremental", &table)?;
     Ok(kind)
 }
 
@@ -436,12 +427,9 @@ one_field_a_key! {
     }
 }
 
-fn damping(table: &Table<'_>) -> Result<BondDamping> {
-    let damping = fields(table)?;
-    if let (Some(field), None) = (table.get("per_mode"), table.get("damping_ratio")) {
-        let problem = format!("{} has no effect without damping_ratio", field.path);
-        return Err(field.refuse(problem, "add damping_ratio = 0.1, or remove per_mode"));
-    }
+fn damping(bond: &Table<'_>) -> Result<BondDamping> {
+    let damping = fields(&bond.table("damping", &DAMPING)?)?;
+    conflicts::BOND.refuse_key("per_mode", bond)?;
     Ok(damping)
 }
 
@@ -466,34 +454,6 @@ fn plasticity(field: &Field<'_>) -> Result<BondPlasticity> {
     Ok(plasticity)
 }
 
-/// Whether the bonds that are to yield have a formulation, moments and a failure with which they
-/// can.
-fn check_plasticity(field: &Field<'_>, kind: &BondKind) -> Result<()> {
-    let has_moments = !matches!(kind.model, BondModel::Pin { .. });
-    let of_moments = kind.plasticity.is_some_and(|p| {
-        p.torsion_yield_strength_pa.is_some() || p.bending_yield_strength_pa.is_some()
-    });
-    let (problem, remedy) = if kind.formulation == Formulation::Incremental {
-        (
-            "does not go with formulation = \"incremental\"",
-            "write formulation = \"total\", or remove plasticity",
-        )
-    } else if kind.failure.fracture_energy_j_m2.is_some() {
-        (
-            "does not go with failure.fracture_energy: a bond softens or flows",
-            "remove fracture_energy or plasticity",
-        )
-    } else if of_moments && !has_moments {
-        (
-            "has a strength of a moment, and the model \"pin\" has no moments",
-            "remove torsion_yield_strength and bending_yield_strength, or take another model",
-        )
-    } else {
-        return Ok(());
-    };
-    Err(field.refuse(format!("{} {problem}", field.path), remedy))
-}
-
 /// Whether a pin, which has no moments, has no damping of them.
 fn check_pin(table: &Table<'_>, damping: &BondDamping) -> Result<()> {
     let of_moments = [
@@ -514,8 +474,7 @@ fn check_pin(table: &Table<'_>, damping: &BondDamping) -> Result<()> {
 
 /// Whether a flat joint has none of the keys that act on a section as a whole, and friction only
 /// with elements that can fail.
-fn check_flat_joint(table: &Table<'_>, kind: &BondKind) -> Result<()> {
-    let failure = &kind.failure;
+fn check_flat_joint(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
     let unknown = [
         ("shear_strength", failure.shear_strength_pa.is_some()),
         (
@@ -542,27 +501,7 @@ fn check_flat_joint(table: &Table<'_>, kind: &BondKind) -> Result<()> {
             "write tensile_strength, or cohesion with friction_angle (0 for a shear strength)";
         return Err(field.refuse(problem, remedy));
     }
-    let of_whole = if kind.formulation == Formulation::Incremental {
-        ("formulation", "", "write formulation = \"total\"")
-    } else if kind.damping.structural_damping > 0.0 {
-        ("damping", ".structural_damping", "use damping_ratio")
-    } else {
-        ("plasticity", "", "remove it")
-    };
-    let (key, part, remedy) = of_whole;
-    if let Some(field) = table.get(key) {
-        let problem = format!(
-            "{}{part} does not go with the model \"flat-joint\"",
-            field.path
-        );
-        return Err(field.refuse(problem, format!("{remedy}, or take another model")));
-    }
-    if let (Some(field), None) = (table.get("joint_friction"), table.get("failure")) {
-        let problem = format!("{} has no effect without failure", field.path);
-        let remedy = "add failure = { tensile_strength = \"1 MPa\" }, or remove joint_friction";
-        return Err(field.refuse(problem, remedy));
-    }
-    Ok(())
+    conflicts::FLAT_JOINT.refuse(table, table)
 }
 
 pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {

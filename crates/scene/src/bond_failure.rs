@@ -1,5 +1,6 @@
 //! `failure` of `[bonds.NAME]`
 
+use super::conflicts;
 use super::field::Field;
 use super::listing::Listing;
 use super::schema::{Key, Kind, Schema, Word};
@@ -176,8 +177,7 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondFailure> {
         weibull_modulus: table.read("weibull_modulus")?,
     };
     check_strengths(field, &table, &failure)?;
-    check_friction(&table)?;
-    check_effects(&table, &failure)?;
+    conflicts::FAILURE.refuse(&table, &table)?;
     check_fracture_energy(&table, &failure)?;
     Ok(failure)
 }
@@ -212,50 +212,7 @@ fn check_strengths(field: &Field<'_>, table: &Table<'_>, failure: &BondFailure) 
     Ok(())
 }
 
-/// Whether cohesion and friction angle are given together.
-fn check_friction(table: &Table<'_>) -> Result<()> {
-    let (cohesion, angle) = (table.get("cohesion"), table.get("friction_angle"));
-    match (cohesion, angle) {
-        (Some(field), None) => {
-            let problem = format!("{} needs friction_angle", field.path);
-            let remedy = "add friction_angle = \"35 deg\", or write shear_strength instead";
-            Err(field.refuse(problem, remedy))
-        }
-        (None, Some(field)) => {
-            let problem = format!("{} has no effect without cohesion", field.path);
-            Err(field.refuse(
-                problem,
-                "add cohesion = \"1 MPa\", or remove friction_angle",
-            ))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Whether the keys that say how others act have any to act on.
-fn check_effects(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
-    if let (Some(field), None) = (
-        table.get("equivalent_stress"),
-        failure.von_mises_strength_pa,
-    ) {
-        let problem = format!("{} has no effect without von_mises_strength", field.path);
-        let remedy = "add von_mises_strength = \"0.185 MPa\", or remove equivalent_stress";
-        return Err(field.refuse(problem, remedy));
-    }
-    if let (Some(field), None) = (
-        table.get("strain_rate_measure"),
-        table.get("rate_strengthening"),
-    ) {
-        let problem = format!("{} has no effect without rate_strengthening", field.path);
-        return Err(field.refuse(
-            problem,
-            "add rate_strengthening = true, or remove strain_rate_measure",
-        ));
-    }
-    Ok(())
-}
-
-/// Whether a fracture energy has a strength beyond which the bond softens.
+/// Whether no strength beyond which a bond softens is 0.
 fn check_fracture_energy(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
     let Some(field) = table.get("fracture_energy") else {
         return Ok(());
@@ -266,14 +223,6 @@ fn check_fracture_energy(table: &Table<'_>, failure: &BondFailure) -> Result<()>
         ("cohesion", failure.cohesion_pa),
         ("von_mises_strength", failure.von_mises_strength_pa),
     ];
-    if strengths.iter().all(|(_, strength)| strength.is_none()) {
-        let problem = format!(
-            "{} has no effect without tensile_strength, shear_strength, cohesion or von_mises_strength, beyond which a bond softens",
-            field.path
-        );
-        let remedy = "add tensile_strength = \"1 MPa\", or remove fracture_energy";
-        return Err(field.refuse(problem, remedy));
-    }
     if let Some((name, _)) = strengths
         .iter()
         .find(|(_, strength)| *strength == Some(0.0))

@@ -2,6 +2,7 @@
 
 use std::ops::Bound::Included;
 
+use super::conflicts;
 use super::listing::{Listing, one_field_a_key};
 use super::schema::{Key, Kind, Schema, Word, words_of};
 use super::table::Table;
@@ -99,10 +100,7 @@ pub(super) fn read(body: &Table<'_>) -> Result<StartAs> {
     if is_clump {
         return fields(&body.table("clump", &CLUMP)?).map(StartAs::Clump);
     }
-    if let Some(field) = body.get("clump") {
-        let problem = format!("{} has no effect without start_as = \"clump\"", field.path);
-        return Err(field.refuse(problem, "add start_as = \"clump\", or remove it"));
-    }
+    conflicts::BODY.refuse_key("clump", body)?;
     Ok(StartAs::Bonded)
 }
 

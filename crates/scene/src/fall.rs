@@ -1,5 +1,6 @@
 //! `drop` of `[bodies.NAME]`: a body just above a wall, with the speed of a fall.
 
+use super::conflicts;
 use super::listing::Listing;
 use super::schema::{Key, Schema};
 use super::table::Table;
@@ -41,11 +42,7 @@ pub(super) fn read(body: &Table<'_>) -> Result<Option<Fall>> {
         return Ok(None);
     };
     let table = Table::of(&field, &DROP)?;
-    if let Some(velocity) = body.get("velocity") {
-        let problem = format!("{} cannot be combined with drop", velocity.path);
-        let remedy = "either gives the speed at the start: remove the other";
-        return Err(velocity.refuse(problem, remedy));
-    }
+    conflicts::BODY.refuse_key("velocity", body)?;
     Ok(Some(Fall {
         height_m: table.read("height")?,
         onto: table.need("onto")?.text()?.to_owned(),

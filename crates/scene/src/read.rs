@@ -4,19 +4,19 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::blame::guilty;
+use super::conflicts::STATIC;
 use super::include::{INCLUDE, document_of, folder_of};
 use super::paths::text_of;
 use super::presence::Presence;
 use super::root::SCENE;
 use super::root::{SCENE_VERSION, Scene};
-use super::run::Integrator;
 use super::table::Table;
 use super::targets::Targets;
 use super::tree::option_place;
 use super::{
     body, bond, clusters, contact, contact_beside_bond, fall_check, group, initial, inlet, load,
     material, measure, outlet, output, region, relaxation, replacement, run, search, sleep,
-    statics, support, test, wall, zone_check,
+    support, test, wall, zone_check,
 };
 use crate::field::Field;
 use dem_io::diagnostic::Result;
@@ -97,10 +97,8 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         supports: &supports,
     };
     let test = root.read_by("test", |field| test::read(&field, &known))?;
-    contact_beside_bond::refuse_others(&root, &run)?;
-    if run.integrator == Integrator::Static {
-        statics::refuse_what_moves(&root)?;
-    }
+    contact_beside_bond::refuse_others(&root)?;
+    STATIC.refuse(&root, &root)?;
     let mut notes = document.notes.clone();
     if let Some(field) = root.get("test") {
         notes.extend(test::conflicts(&field, test.as_ref())?);

@@ -11,7 +11,10 @@ use super::study::STUDY;
 /// Names of files in `doc/`, and their texts.
 pub fn files() -> [(&'static str, String); 4] {
     [
-        ("scene-keys.md", markdown::page("a scene", &SCENE)),
+        (
+            "scene-keys.md",
+            markdown::page("a scene", &SCENE) + &markdown::conflicts(),
+        ),
         ("study-keys.md", markdown::page("a study", &STUDY)),
         (
             "scene.schema.json",

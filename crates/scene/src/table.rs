@@ -7,6 +7,7 @@ use super::tree::{Document, Node, Origin, Value, shortened};
 use dem_io::diagnostic::{Diagnostic, Result};
 
 /// A table of the scene, with its path for messages.
+#[derive(Clone)]
 pub(super) struct Table<'a> {
     pub(super) document: &'a Document,
     /// As in `bodies.bar`; empty for the entire file.

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use super::body::{BodyEntry, BodySource};
 use super::bond::{BondKind, BondModel, Formulation};
 use super::clump::StartAs;
+use super::conflicts;
 use super::field::Field;
 use super::inlet::Inlet;
 use super::table::Table;
 use super::wall::Wall;
-use super::zone::ZONE;
+use super::zone;
 use dem_io::diagnostic::Result;
 
 /// What the zones of a scene refer to.
@@ -30,31 +31,13 @@ pub(super) fn check(root: &Table<'_>, known: &Known<'_>) -> Result<()> {
         let Some(field) = root.find(&["bodies", name, "bonded_within"]) else {
             continue;
         };
-        let table = Table::of(&field, &ZONE)?;
+        let table = Table::of(&field, &zone::ZONE)?;
         if let (Some(_), Some(field)) = (&zone.moves_with, table.get("moves_with")) {
             field.reference(known.walls.keys(), "walls")?;
         }
         check_body(&field, name, body, known)?;
-        for (key, why) in [
-            ("sleep", "bodies with rigid parts do not sleep"),
-            ("test", "a laboratory test bonds the whole body"),
-        ] {
-            if root.get(key).is_some() {
-                let problem = format!("{} cannot be combined with [{key}]: {why}", field.path);
-                return Err(field.refuse(problem, format!("remove it, or [{key}]")));
-            }
-        }
-        for (replaced, _) in root.named("replacement")? {
-            if root
-                .find(&["replacement", &replaced, "daughters"])
-                .is_some()
-            {
-                let problem = format!(
-                    "{} cannot be combined with [replacement.{replaced}.daughters]: what a particle takes in from a rigid part is not counted",
-                    field.path
-                );
-                return Err(field.refuse(problem, "remove one of the two"));
-            }
+        if let Some(body) = root.find(&["bodies", name]) {
+            conflicts::ZONE.refuse(&Table::any(&body)?, root)?;
         }
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! The reference of keys: a table for each table.
 
+use crate::conflicts::{ALL, Conflict, Conflicts};
 use crate::schema::{Key, Kind, Schema};
 use dem_io::units::{DIMENSIONS, Dimension};
 
@@ -35,6 +36,45 @@ pub(super) fn page(what: &str, root: &'static Schema) -> String {
         );
     }
     text
+}
+
+/// A table of the keys that do not go together, or not without others.
+pub(super) fn conflicts() -> String {
+    let mut text = "\n## What does not go with what\n\n\
+        `*` stands for a name. `no` means that the key needs what follows. \
+        Messages name further pairs, which depend on other values.\n\n\
+        | key | does not go with | instead |\n|---|---|---|\n"
+        .to_owned();
+    for group in ALL {
+        for conflict in group.rows {
+            text += &conflict_row(group, conflict);
+        }
+    }
+    text
+}
+
+fn conflict_row(group: &Conflicts, conflict: &Conflict) -> String {
+    let path = |parts: [&str; 3]| {
+        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        format!("`{}`", parts.join("."))
+    };
+    let keys = conflict.1.iter();
+    let keys: Vec<String> = keys.map(|key| path([group.of, conflict.0, key])).collect();
+    let with = conflict.2.iter().map(|with| {
+        let (no, setting) = match with.strip_prefix("no ") {
+            Some(setting) => ("no ", setting),
+            None => ("", *with),
+        };
+        format!("{no}{}", path([group.with, setting, ""]))
+    });
+    let with: Vec<String> = with.collect();
+    let remedy = conflict.4.replace("{table}", "TABLE");
+    format!(
+        "| {} | {} | {} |\n",
+        keys.join(", "),
+        with.join(" and "),
+        escaped(&remedy)
+    )
 }
 
 /// A table and all tables within it, each once, in the order of their keys.
