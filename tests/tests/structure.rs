@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 
 use super::root;
 
-/// Largest number of lines of a function, of a file and of a crate.
-const MOST_LINES: [usize; 3] = [80, 600, 27_000];
+/// Largest number of lines of a function, of a file without its tests, and of a crate.
+const MOST_LINES: [usize; 3] = [100, 600, 27_000];
 
 /// The crates of the programs; each uses only those before it.
 const UPWARDS: [&str; 20] = [
@@ -253,7 +253,7 @@ fn faults(folders: &[PathBuf]) -> Vec<String> {
         let [of_function, of_file, of_crate] = MOST_LINES;
         let mut total = 0;
         for Source { path, text } in sources.values() {
-            let lines = text.lines().count();
+            let lines = code(text).lines().count();
             total += lines;
             if lines > of_file {
                 faults.push(format!("{path} has {lines} lines, more than {of_file}"));
@@ -383,7 +383,7 @@ fn a_circle_and_a_long_function_are_found() {
     );
     let short = format!(
         "    pub(crate) fn plane() {{\n{}    }}\n",
-        "        one();\n".repeat(78)
+        "        one();\n".repeat(98)
     );
     write(
         "wall/shape.rs",
@@ -399,7 +399,7 @@ fn a_circle_and_a_long_function_are_found() {
     assert_eq!(
         found(),
         "imports in a circle: ball.rs -> wall/shape.rs -> ball.rs\n\
-         wall/shape.rs: plane has 81 lines, more than 80"
+         wall/shape.rs: plane has 101 lines, more than 100"
     );
     write("wall/shape.rs", "");
     write(

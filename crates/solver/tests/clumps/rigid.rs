@@ -95,7 +95,8 @@ fn numbers<const N: usize>(value: &Value) -> [f64; N] {
 /// The largest errors of the spin in body axes, relative to 5 rad/s, and of the orientation, at
 /// eighths of a period; through the complete solver.
 fn flip(steps_per_period: usize) -> (f64, f64) {
-    let all: Value = serde_json::from_str(include_str!("../../../physics/tests/shape/data/clump.json")).unwrap();
+    let all: Value =
+        serde_json::from_str(include_str!("../../../physics/tests/shape/data/clump.json")).unwrap();
     let case = &all["dzhanibekov_I_1_2_3"];
     let mut state = flying("[0, 0, 0, 1e-3], [3e-3, 0, 0, 2e-3], [1e-3, 2e-3, 1e-3, 0.5e-3]");
     let moments = numbers::<3>(&case["I_principal"]);
