@@ -1,12 +1,13 @@
 //! The sections of the page.
 
 mod inputs;
+mod percent;
 mod results;
 mod time;
 
 use dem_io::Result;
 use dem_io::text::counted;
-use dem_io::units::{show_quantity, significant};
+use dem_io::units::show_quantity;
 use dem_plots::Page;
 use dem_results::Summary;
 
@@ -68,10 +69,6 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
         ended += &format!(" {}.", summary.notes.join(". "));
     }
     page.paragraph(&ended);
-}
-
-fn percent(fraction: f64) -> String {
-    format!("{} %", significant(100.0 * fraction, 3))
 }
 
 /// The plots of the folder.

@@ -9,7 +9,8 @@ use dem_scene::Scene;
 
 use super::limits::Limits;
 use super::new_step::change_step;
-use super::outputs::{Opening, Outputs, Start, open_outputs};
+use super::outputs::list::open_outputs;
+use super::outputs::{Opening, Outputs, Start};
 use super::progress::Progress;
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;

@@ -2,6 +2,7 @@
 //! writing them.
 
 mod film;
+mod last_state;
 mod tables;
 
 use std::path::{Path, PathBuf};
@@ -13,28 +14,15 @@ use dem_results::{ResultsFolder, Summary, from_json};
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
+pub(super) use self::last_state::LastState;
 use super::outputs::pictures::taken_until;
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
 use super::snapshot::fingerprint;
 use crate::output::plots::{plots_of_every_run, write_plots};
-use dem_engine::state::State;
 use dem_plan::Plan;
-use dem_plan::measure::sizes::Fragments;
 use dem_plan::measure::{Probe, probes};
 use dem_rig::watch::Watch;
-
-/// The state in which a run has ended.
-pub(super) struct LastState<'a> {
-    pub(super) folder: &'a ResultsFolder,
-    pub(super) scene: &'a Scene,
-    pub(super) state: &'a State,
-    /// None: bodies do not break.
-    pub(super) fragments: Option<Fragments>,
-    /// s.
-    pub(super) end_s: f64,
-    pub(super) probes: &'a [Probe],
-}
 
 /// Writes some tables and plots of the last state, and returns their paths.
 type WriteTable = fn(&LastState<'_>) -> Result<Vec<PathBuf>>;

@@ -4,6 +4,8 @@ mod discharge;
 mod event_table;
 mod fragments;
 mod frames;
+pub(super) mod list;
+mod picture_order;
 pub(super) mod pictures;
 mod series;
 
@@ -15,7 +17,7 @@ use dem_scene::Scene;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use self::pictures::Order;
+use self::picture_order::Order;
 use super::new_step::NewStep;
 use super::progress::Progress;
 use crate::output::frames::FrameOrder;
@@ -56,39 +58,8 @@ pub(super) trait Output {
     }
 }
 
-/// Opens an output. None: the run has no use for it.
-type Open = fn(&Opening<'_>) -> Result<Option<Box<dyn Output>>>;
-
-/// All outputs that a run may have, by their names in the checkpoint, in the order in which they
-/// are written.
-const OUTPUTS: [(&str, Open); 6] = [
-    ("series", series::open),
-    ("events", event_table::open),
-    ("frames", frames::open),
-    (pictures::NAME, pictures::open),
-    ("fragments", fragments::open),
-    ("discharge", discharge::open),
-];
-
 /// The outputs of a run, with their names.
 pub(super) type Outputs = Vec<(&'static str, Box<dyn Output>)>;
-
-/// Opens the files of a run, new or where it is continued.
-///
-/// # Errors
-/// Files that are not those of the checkpoint (exit code 2), before any is changed; those of the
-/// files.
-pub(super) fn open_outputs(opening: &Opening<'_>) -> Result<Outputs> {
-    if let Some(progress) = opening.continued {
-        progress.sums.check(opening.folder.path())?;
-    }
-    let mut outputs = Vec::new();
-    for (name, open) in OUTPUTS {
-        let output = open(&Opening { name, ..*opening })?;
-        outputs.extend(output.map(|output| (name, output)));
-    }
-    Ok(outputs)
-}
 
 /// Flushes all files to the disk, and records where they stand and their check sums.
 ///

@@ -185,8 +185,7 @@ pub struct ZoneEvent {
     pub lost_j: f64,
 }
 
-/// Number of a particle or bond that has been removed.
-pub const REMOVED: u32 = u32::MAX;
+pub use super::renumbered::REMOVED;
 
 /// A clump that has become a bonded cluster.
 #[derive(Debug, Clone, PartialEq)]

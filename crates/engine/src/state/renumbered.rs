@@ -1,7 +1,9 @@
 //! Data that names particles, and follows when their numbers change.
 
-use super::events::REMOVED;
 use super::particles::Pose;
+
+/// Number of a particle or bond that has been removed.
+pub const REMOVED: u32 = u32::MAX;
 
 /// The numbers of particles after bodies have come, gone or changed.
 #[derive(Debug, Clone, Copy)]

@@ -6,7 +6,7 @@ use dem_plots::{Column, Page, Table};
 use dem_results::Summary;
 use dem_results::summary::{Measured, PopulationSummary, SizeSummary, Sizes};
 
-use super::percent;
+use super::percent::percent;
 use crate::folder::Folder;
 
 /// Results of a laboratory test.

@@ -4,7 +4,7 @@ use dem_io::units::{show_quantity, significant};
 use dem_plots::{Column, Page, Table};
 use dem_results::Summary;
 
-use super::percent;
+use super::percent::percent;
 
 /// Stages with a smaller fraction of the time are left out.
 const SMALLEST_FRACTION: f64 = 0.005;

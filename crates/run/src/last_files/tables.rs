@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use dem_io::Result;
 use dem_results::{MixingRow, write_distribution, write_flows, write_mixing};
 
-use super::LastState;
+use super::last_state::LastState;
 use crate::output::flows::flow_rows;
 use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use dem_plan::measure::Probe;

@@ -6,13 +6,11 @@ use dem_results::PictureFiles;
 use dem_scene::Scene;
 use serde::{Deserialize, Serialize};
 
+use super::picture_order::Order;
 use super::{Moment, Opening, Output, Saved, position};
-use crate::output::pictures::View;
-use crate::output::pictures::scale::Scale;
 use crate::progress::Progress;
 use crate::schedule::{due, first_after, next};
 use dem_engine::state::State;
-use dem_engine::state::bodies::PlacedBody;
 
 /// Their name in the list of outputs.
 pub(super) const NAME: &str = "pictures";
@@ -27,26 +25,6 @@ struct Taken {
 
 /// Fraction of the particles outside the pictures of which a note tells.
 const MUCH: f64 = 0.05;
-
-/// View and interval of the pictures of a run.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Order {
-    view: View,
-    every_s: f64,
-}
-
-impl Order {
-    /// From the initial state and bodies. None: no pictures.
-    pub(crate) fn of(scene: &Scene, start: &State, bodies: &[PlacedBody]) -> Option<Self> {
-        let output = scene.output.as_ref()?;
-        let every_s = output.pictures_s?;
-        let scale = Scale::of(output.colour_by, start, bodies);
-        Some(Self {
-            every_s,
-            view: View::of(start, output.view_from, scale),
-        })
-    }
-}
 
 /// The pictures of a run.
 struct Pictures {
