@@ -321,7 +321,7 @@ fn crates_use_only_those_below_them() {
         for other in used(&manifest, "[dependencies]\n") {
             let below = rank(&other).unwrap_or_else(|| panic!("{other} is not listed"));
             assert!(below < own, "{name} uses {other}");
-            // The packer and the solver know each other by body files; its commands call the packer.
+            // The packer and the solver share body files alone; only commands call the packer.
             assert!(
                 other != "packer" || name == "solver" || name == "pages",
                 "{name}"

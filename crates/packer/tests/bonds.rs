@@ -1,10 +1,10 @@
 //! Bonds compared with lattices of known neighbours and with a comparison of all pairs.
 
 use crate::helpers::lattice::cubic;
-use crate::helpers::random::Random;
 use dem_pack::Spheres;
 use dem_pack::internals::{close_pairs, suggested_bond_range};
 use dem_pack::{bond_lengths, bond_radii, bond_range_for, find_bonds};
+use dem_testing::Random;
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -30,7 +30,7 @@ fn all_pairs(spheres: &Spheres, ratio: f64) -> Vec<[u32; 2]> {
 /// Random positions with radii over a wide range.
 fn scattered(count: usize, ratio: f64, seed: u64) -> Spheres {
     let mut generator = Random(seed);
-    let mut random = || generator.next();
+    let mut random = || generator.fraction();
     let positions: Vec<[f64; 3]> = (0..count).map(|_| [random(), random(), random()]).collect();
     let scale = 0.5 / (count as f64).cbrt();
     let radii = (0..count)

@@ -93,8 +93,8 @@ impl Table {
         Ok(())
     }
 
-    /// Appends complete rows, each with its line break, unless they are [held](Table::hold). If that
-    /// fails, the file keeps its previous rows.
+    /// Appends complete rows, each with its line break, unless they are [held](Table::hold). If
+    /// that fails, the file keeps its previous rows.
     ///
     /// # Errors
     /// Full disk (exit code 1).

@@ -82,8 +82,8 @@ impl End {
         Ok(())
     }
 
-    /// Writes plots, page and the film of these pictures, if any, of a run whose tables are written,
-    /// and its summary last: if the summary exists, all files do.
+    /// Writes plots, page and the film of these pictures, if any, of a run whose tables are
+    /// written, and its summary last: if the summary exists, all files do.
     ///
     /// # Errors
     /// Those of the files.

@@ -219,8 +219,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Records the changes in the second half of the step. `has_other_bodies`: some have been added,
-    /// removed or replaced; `is_after_end`: only a continued run shows them.
+    /// Records the changes in the second half of the step. `has_other_bodies`: some have been
+    /// added, removed or replaced; `is_after_end`: only a continued run shows them.
     pub(super) fn note_changes(
         &mut self,
         has_other_bodies: bool,

@@ -15,9 +15,14 @@ impl Random {
         z ^ (z >> 31)
     }
 
+    /// From 0 to 1.
+    pub fn fraction(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
     /// Between two bounds.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+        low + (high - low) * self.fraction()
     }
 
     /// In a cube around the origin.

@@ -15,6 +15,7 @@ use dem_run::state::clusters::Clusters;
 use dem_run::state::contacts::{ContactModel, Contacts};
 use dem_run::state::order::spatial_order;
 use dem_run::state::particles::Particles;
+use dem_testing::Random;
 
 /// Number of cubes of a face-centred lattice along each side: with four sites each, of which some
 /// are empty, about 20,000 spheres.
@@ -34,19 +35,19 @@ pub(crate) fn bed(threads: usize) -> State {
     for cube in 0..CUBES.pow(3) {
         let corner = [cube % CUBES, cube / CUBES % CUBES, cube / CUBES.pow(2)];
         for within in [[0.0; 3], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]] {
-            if random.next() > EMPTY {
+            if random.fraction() > EMPTY {
                 places.push([0, 1, 2].map(|k| side_m * (corner[k] as f64 + within[k])));
             }
         }
     }
     let mut particles = Particles::default();
     for i in spatial_order(&places) {
-        let radius_m = RADIUS_M * (1.0 + 2e-3 * (random.next() - 0.44));
+        let radius_m = RADIUS_M * (1.0 + 2e-3 * (random.fraction() - 0.44));
         particles.push_sphere(places[i as usize], radius_m, 2500.0);
     }
     for motion in &mut particles.motions {
-        motion.velocity_m_s = [0; 3].map(|_| 1e-3 * (random.next() - 0.5));
-        motion.spin_rad_s = [0; 3].map(|_| random.next() - 0.5);
+        motion.velocity_m_s = [0; 3].map(|_| 1e-3 * (random.fraction() - 0.5));
+        motion.spin_rad_s = [0; 3].map(|_| random.fraction() - 0.5);
     }
     let count = particles.len();
     let mut state = State::new(particles, Bonds::default(), 1e-10, threads);
@@ -85,17 +86,4 @@ fn contacts(state: &State, threads: usize) -> Contacts {
     contacts.relist(pairs, poses.len(), |_| 0.0);
     contacts.divide(poses.len(), threads);
     contacts
-}
-
-/// Pseudo-random numbers from 0 to 1 (SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }

@@ -230,7 +230,8 @@ fn joined(first: Vector3<f64>, second: Vector3<f64>) -> Vector6<f64> {
 }
 
 /// The largest stiffness over effective mass, 1/s2, and damping over effective mass, 1/s, of any
-/// one touching contact: as [`impact::at_impact`], at the overlaps that are there. 0 if nothing touches.
+/// one touching contact: as [`impact::at_impact`], at the overlaps that are there. 0 if nothing
+/// touches.
 pub fn stiffest_contact(state: &State) -> [f64; 2] {
     let inverse_kg = |end: u32| match state.clumps.carrier_of(end as usize) {
         Some(at) => {

@@ -147,8 +147,8 @@ impl Bonds {
         })
     }
 
-    /// Adds a bond that follows the rule with this number, and has its moment ratios, without damping
-    /// and scatter of its strengths. Bonds must be added in the order given at [`Bonds`].
+    /// Adds a bond that follows the rule with this number, and has its moment ratios, without
+    /// damping and scatter of its strengths. Bonds must be added in the order given at [`Bonds`].
     pub fn push(
         &mut self,
         ends: [u32; 2],

@@ -71,7 +71,7 @@ impl EnergyLedger {
         self.mass_kg
     }
 
-    /// Raises the largest energies (J), energy of attraction (J), and momentum and angular momentum.
+    /// Raises the largest energy (J), energy of attraction (J), momentum and angular momentum.
     pub(crate) fn note(&mut self, energies_j: [f64; 8], attraction_j: f64, momenta: [f64; 2]) {
         self.scale_j = energies_j.into_iter().fold(self.scale_j, f64::max);
         self.attraction_j = self.attraction_j.max(attraction_j);

@@ -1,9 +1,8 @@
-//! Helpers shared by the tests: solids, random numbers, lattices of spheres, and an independent
-//! check of packings with its own geometry.
+//! Helpers shared by the tests: solids, lattices of spheres, and an independent check of packings with
+//! its own geometry.
 
 pub(crate) mod exact;
 pub(crate) mod facets;
 pub(crate) mod lattice;
 pub(crate) mod packing;
-pub(crate) mod random;
 pub(crate) mod solids;

@@ -2,8 +2,8 @@
 
 use super::{Case, close};
 use crate::helpers::lattice::cubic;
-use crate::helpers::random::Random;
 use dem_pack::Spheres;
+use dem_testing::Random;
 use std::f64::consts::PI;
 
 /// Common volume of two balls of radius `r` at distance `d`.
@@ -197,8 +197,8 @@ fn the_stated_error_is_the_error() {
     for _ in 0..cases {
         let mut spheres = Spheres::default();
         while spheres.radii.len() < 40 {
-            let radius = 0.3 + 0.2 * random.next();
-            let p = [0, 1, 2].map(|_| radius + (4.0 - 2.0 * radius) * random.next());
+            let radius = 0.3 + 0.2 * random.fraction();
+            let p = [0, 1, 2].map(|_| radius + (4.0 - 2.0 * radius) * random.fraction());
             let free = spheres.positions.iter().zip(&spheres.radii).all(|(q, s)| {
                 (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>() > (radius + s).powi(2)
             });

@@ -1,11 +1,20 @@
 //! Structure: fabric, pieces, contacts and the thinnest part.
 
+use std::f64::consts::PI;
+
 use super::Case;
 use crate::helpers::lattice::cubic;
-use crate::helpers::random::Random;
 use dem_pack::Spheres;
 use dem_pack::internals::{BondedPacking, DEFAULT_GAP_LIMIT, assess};
 use dem_pack::{Basis, Sizes};
+use dem_testing::Random;
+
+/// A direction, all equally likely.
+fn direction(random: &mut Random) -> [f64; 3] {
+    let (z, phi) = (2.0 * random.fraction() - 1.0, 2.0 * PI * random.fraction());
+    let rho = (1.0 - z * z).sqrt();
+    [rho * phi.cos(), rho * phi.sin(), z]
+}
 
 #[test]
 fn a_line_has_one_direction() {
@@ -51,7 +60,7 @@ fn chance_of_a_fabric_is_a_chance() {
     for _ in 0..samples {
         let mut spheres = Spheres::default();
         for i in 0..300 {
-            let n = random.direction();
+            let n = direction(&mut random);
             let centre = [
                 3.0 + 4.0 * f64::from(i % 7),
                 3.0 + 4.0 * f64::from(i / 7 % 7),
@@ -196,7 +205,7 @@ fn thickness_is_true_where_no_particle_lies_in_the_middle() {
         let mut spheres = cubic(extent.map(|e| e as usize), 0.4);
         let mut random = Random(5);
         for p in &mut spheres.positions {
-            *p = p.map(|x| x + 0.2 * (random.next() - 0.5));
+            *p = p.map(|x| x + 0.2 * (random.fraction() - 0.5));
         }
         spheres.positions.retain(|p| distance(*p) >= 0.4);
         spheres.radii.truncate(spheres.positions.len());

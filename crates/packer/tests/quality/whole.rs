@@ -3,10 +3,10 @@
 
 use super::{Case, close};
 use crate::helpers::lattice::cubic;
-use crate::helpers::random::Random;
 use dem_pack::Report;
 use dem_pack::Spheres;
 use dem_pack::internals::depth_needed;
+use dem_testing::Random;
 use std::f64::consts::PI;
 
 #[test]
@@ -61,7 +61,7 @@ fn the_same_report_for_any_number_of_threads() {
     {
         *r = 0.35 + 0.1 * (i as f64 * 0.618_033_988_749_894_9).fract();
         p.iter_mut()
-            .for_each(|x| *x += 0.08 * (random.next() - 0.5));
+            .for_each(|x| *x += 0.08 * (random.fraction() - 0.5));
     }
     let mut case = Case::new(spheres, [24.0, 20.0, 22.0]);
     case.sizes = "0.7m..0.9m".to_owned();

@@ -1,13 +1,13 @@
 //! Draws compared with the distribution, and the Kolmogorov-Smirnov distances of the report.
 
 use super::{TextFile, laws};
-use crate::helpers::random::Random;
 use dem_pack::{Basis, Sizes, ks_distance_by_mass, ks_distance_by_number};
+use dem_testing::Random;
 
 fn draws(sizes: &Sizes, count: usize, seed: u64) -> Vec<f64> {
     let mut random = Random(seed);
     (0..count)
-        .map(|_| sizes.quantile_by_number(random.next()))
+        .map(|_| sizes.quantile_by_number(random.fraction()))
         .collect()
 }
 
@@ -99,7 +99,9 @@ fn the_limit_is_passed_by_about_nineteen_samples_of_twenty() {
 fn a_wrong_sample_is_seen() {
     let sizes = Sizes::parse("2mm..3mm", Basis::Number).unwrap();
     let mut random = Random(3);
-    let small: Vec<f64> = (0..2000).map(|_| 2e-3 + 0.9e-3 * random.next()).collect();
+    let small: Vec<f64> = (0..2000)
+        .map(|_| 2e-3 + 0.9e-3 * random.fraction())
+        .collect();
     let fit = ks_distance_by_number(&small, &sizes);
     assert!(
         !fit.passes() && (fit.distance - 0.1).abs() < 0.02,

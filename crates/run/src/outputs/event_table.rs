@@ -8,10 +8,8 @@ use super::{Changes, Opening, Output, Saved};
 use crate::new_step::NewStep;
 use crate::output::fragments::split_text;
 use dem_engine::state::State;
-use dem_engine::state::bodies::PlacedBody;
-use dem_engine::state::bodies::bond_of_file;
-use dem_engine::state::events::PopulationEvent;
-use dem_engine::state::events::STARTS_BONDED;
+use dem_engine::state::bodies::{PlacedBody, bond_of_file};
+use dem_engine::state::events::{PopulationEvent, STARTS_BONDED};
 
 struct EventTable(Table);
 

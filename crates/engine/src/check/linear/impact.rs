@@ -11,10 +11,10 @@ use nalgebra::Vector3;
 
 /// Contribution of the first impact at a speed, m/s, to the largest eigenvalues of stiffness and
 /// damping over mass, 1/s2 and 1/s, if a single particle meets a wall or another of its size, or a
-/// clump does with one sphere or with [all that a plane touches](dem_physics::shape::landing); and its
-/// [rate](super::largest_contact_rate_1_s2), 1/s2. A particle pushed by a body behind it may overlap
-/// more. With contacts beside bonds something presses at any speed, as loads and supports do: the
-/// stiffness of a linear law counts in full, and that of Hertz's law from no overlap on.
+/// clump does with one sphere or with [all that a plane touches](dem_physics::shape::landing); and
+/// its [rate](super::largest_contact_rate_1_s2), 1/s2. A particle pushed by a body behind it may
+/// overlap more. With contacts beside bonds something presses at any speed, as loads and supports
+/// do: the stiffness of a linear law counts in full, and that of Hertz's law from no overlap on.
 pub fn at_impact(state: &State, speed_m_s: f64) -> [f64; 3] {
     at_impacts(state, speed_m_s, first_to_hit(state).into_iter())
 }
