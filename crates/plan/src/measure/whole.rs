@@ -9,7 +9,10 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
+use super::Probe;
+use super::measurement::{IfZero, Measurement, Settles};
 use super::members::Members;
+use super::view::View;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clumps::Clump;
@@ -18,6 +21,49 @@ use dem_engine::state::particles::Motion;
 use dem_physics::rigid::rotation_vector;
 use dem_physics::rotation::numbers;
 use dem_physics::rotation::rotation;
+
+pub(super) const MEASUREMENTS: &[Measurement] = &[
+    of_motion("position_x", |probe, view| {
+        let wall = probe.walls[0].and_then(|wall| view.state.walls.get(wall));
+        match wall {
+            Some(wall) => wall.frame.position_m[probe.measure.part],
+            None => probe.part(&centre(&probe.members, view.state)),
+        }
+    }),
+    Measurement {
+        counts_from_start: true,
+        if_zero: IfZero::Note(|measure| Some(format!("'{}' did not move that way", measure.of))),
+        ..of_motion("displacement_x", |probe, view| {
+            probe.part(&centre_from(&probe.members, view.state, probe.start))
+        })
+    },
+    of_motion("velocity_x", |probe, view| {
+        probe.part(&velocity(&probe.members, view.state, view.motions()))
+    }),
+    Measurement {
+        counts_from_start: true,
+        ..of_motion("rotation_x", |probe, view| {
+            let (starts, before) = (&probe.starts, &probe.turned_before);
+            probe.part(&turn(&probe.members, view.state, starts, before))
+        })
+    },
+    of_motion("angular_velocity_x", |probe, view| {
+        probe.part(&spin(&probe.members, view.state, view.motions()))
+    }),
+    of_motion("kinetic_energy", |probe, view| {
+        if probe.members.are_all {
+            return view.balance.kinetic_j;
+        }
+        kinetic_j(&probe.members, view.state, view.motions())
+    }),
+];
+
+const fn of_motion(name: &'static str, read: fn(&Probe, &View<'_>) -> f64) -> Measurement {
+    Measurement {
+        settles: Settles::IfHeld,
+        ..Measurement::new(name, read)
+    }
+}
 
 /// Initial positions of bodies, by name.
 pub(super) type Starts = BTreeMap<String, Start>;
@@ -123,12 +169,12 @@ fn mean(parts: &[(f64, Vector3<f64>)]) -> Vector3<f64> {
 }
 
 /// Centre of mass, m.
-pub(super) fn centre(members: &Members, state: &State) -> Vector3<f64> {
+fn centre(members: &Members, state: &State) -> Vector3<f64> {
     mean(&places(members, state))
 }
 
 /// Distance of the centre of mass from a position, m.
-pub(super) fn centre_from(members: &Members, state: &State, from: Vector3<f64>) -> Vector3<f64> {
+fn centre_from(members: &Members, state: &State, from: Vector3<f64>) -> Vector3<f64> {
     let mut places = places(members, state);
     for (_, place) in &mut places {
         *place -= from;
@@ -147,7 +193,7 @@ fn places(members: &Members, state: &State) -> Vec<(f64, Vector3<f64>)> {
 }
 
 /// Velocity of the centre of mass, m/s.
-pub(super) fn velocity(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
+fn velocity(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
     let p = &state.particles;
     let free = members.free(state).map(|i| {
         let velocity = Vector3::from(motions.particles[i].velocity_m_s);
@@ -160,7 +206,7 @@ pub(super) fn velocity(members: &Members, state: &State, motions: &Motions) -> V
 }
 
 /// Kinetic energy, J.
-pub(super) fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> f64 {
+fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> f64 {
     let free = members.free(state);
     let free = free.map(|i| state.particles.kinetic_j(i, &motions.particles[i]));
     let clumps = members.clumps(state, &motions.clumps);
@@ -172,7 +218,7 @@ pub(super) fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> 
 
 /// Spin of the rigid body with the same inertia and the same angular momentum about the centre of
 /// mass, rad/s. For a single particle or clump, its own.
-pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
+fn spin(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
     let p = &state.particles;
     let (mut free, mut clumps) = (members.free(state), members.clumps(state, &motions.clumps));
     if let [Some(i), None] = [free.next(), free.next()]
@@ -224,7 +270,7 @@ pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vecto
 
 /// Mass-weighted mean of the rotation vectors since the start, rad, of 180 degrees at most.
 /// `turned_before`: of particles that were rotated at the start.
-pub(super) fn turn(
+fn turn(
     members: &Members,
     state: &State,
     starts: &Starts,

@@ -6,7 +6,6 @@ use dem_io::Result;
 use dem_io::units::significant;
 use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
-use dem_scene::Quantity;
 use serde::Serialize;
 
 use dem_engine::state::State;
@@ -141,7 +140,7 @@ pub(crate) fn write_fragment_plots(
         return Ok(());
     };
     let counts = counts_over_time(&clusters.history, end_s);
-    let counts_fragments = |probe: &Probe| probe.measure.quantity == Quantity::Count;
+    let counts_fragments = |probe: &Probe| probe.measure.quantity_name() == "count";
     let is_measured = probes.iter().any(counts_fragments);
     if !is_measured && counts.iter().any(|[_, count]| *count != counts[0][1]) {
         let mut plot = plot("Fragments", "time (s)", "fragments", counts);
