@@ -67,7 +67,7 @@ use self::groups::{held_degrees_of_freedom, particles_of, resolve_groups};
 use self::held::refuse_loose;
 use self::initial::start;
 use self::inputs::Inputs;
-use self::measure::Measurement;
+use self::measure::measurement::Measurement;
 use self::measure::refused::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::placement::placed;

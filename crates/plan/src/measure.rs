@@ -4,16 +4,19 @@ mod bonds;
 mod bulk;
 mod contacts;
 mod heap;
-mod measurement;
+mod list;
+pub(crate) mod measurement;
 mod members;
 mod mixing;
 mod mixture;
-mod objects;
 mod pieces;
+mod probe;
 pub(crate) mod refused;
 pub mod sizes;
 mod spheres;
+mod starts;
 mod supports;
+mod utilisation;
 mod view;
 mod whole;
 
@@ -22,7 +25,7 @@ use std::sync::Arc;
 
 use dem_io::units::significant;
 use dem_scene::{Measure, Statistic};
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use serde::Serialize;
 
 use crate::Plan;
@@ -30,43 +33,19 @@ use dem_engine::stages::ledger::Balance;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::events::Renumbering;
-use dem_engine::state::watches::{Seen, Watch, WatchTarget, part};
+use dem_engine::state::watches::{Seen, Watch, WatchTarget};
 
 use self::members::{Members, wall_number};
+use self::starts::{Starts, start_centre, starts, turned_before};
 use self::view::View;
-use self::whole::{Starts, start_centre, starts, turned_before};
 
-pub use self::bonds::utilisation_under;
-pub use self::bonds::{DynamicUtilisation, bond_utilisation, dynamic_utilisations, load};
 pub use self::measurement::{IfZero, Measurement, Settles};
 pub use self::mixture::MixedCell;
+pub use self::probe::Probe;
+pub use self::utilisation::{
+    DynamicUtilisation, bond_utilisation, dynamic_utilisations, load, utilisation_under,
+};
 pub use dem_engine::state::watches::{History, IndexError};
-
-/// A measure and its particles.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Probe {
-    /// Its name in the scene.
-    pub name: String,
-    /// Its definition.
-    pub measure: Measure,
-    members: Members,
-    /// The particles of its second object, if that is not a wall.
-    with: Option<Members>,
-    /// The walls among its two objects, by number.
-    walls: [Option<usize>; 2],
-    /// The region to which it is restricted: number in the rules of the state.
-    region: Option<usize>,
-    /// Mass over the volume of the shape of the body that it measures, kg/m3. NaN if not known.
-    solid_density_kg_m3: f64,
-    /// Initial positions of the bodies of the scene. Empty if not needed.
-    starts: Arc<Starts>,
-    /// Initial centre of mass of its particles, m. NaN if not needed.
-    start: Vector3<f64>,
-    /// Initial rotations of those of its particles that were rotated. Empty if not needed.
-    turned_before: BTreeMap<u32, UnitQuaternion<f64>>,
-    /// Its values so far.
-    pub history: History,
-}
 
 /// Result of a measure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -207,22 +186,17 @@ pub fn renumber(
 }
 
 impl Probe {
+    /// How its quantity is measured.
+    pub fn measurement(&self) -> &'static Measurement {
+        Measurement::of(&self.measure)
+    }
+
     /// Updates everything that depends on its particles.
     fn count_anew(&mut self, bodies: &[PlacedBody], state: &State) {
         if self.measurement().counts_from_start {
             self.start = start_centre(&self.members, &self.starts, bodies, state);
             self.turned_before = turned_before(&self.members, &self.starts, bodies);
         }
-    }
-
-    /// How its quantity is measured.
-    pub fn measurement(&self) -> &'static Measurement {
-        Measurement::of(&self.measure)
-    }
-
-    /// The part of a vector that it measures: a component or the magnitude.
-    fn part(&self, vector: &Vector3<f64>) -> f64 {
-        part(vector, self.measure.part)
     }
 
     /// The object whose forces and contacts it records in every step. None: it has none.
@@ -302,10 +276,5 @@ impl Probe {
             tolerance: self.measure.tolerance,
             absolute_tolerance: self.measure.absolute_tolerance,
         }
-    }
-
-    /// Unit of its quantity; empty for plain numbers.
-    pub fn unit(&self) -> &'static str {
-        self.measure.quantity.dimension.si
     }
 }

@@ -6,7 +6,7 @@ use dem_scene::{BondKind, Contact, ContactLaw, Material, Rolling, Scene, Statist
 use nalgebra::Vector3;
 
 use super::masses::sphere_density_kg_m3;
-use super::measure::Measurement;
+use super::measure::measurement::Measurement;
 use super::unfinished::unfinished;
 use dem_engine::check::laws::LARGEST_OVERLAP;
 use dem_engine::state::State;

@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::Probe;
 use super::measurement::{IfZero, Measurement};
+use super::probe::Probe;
 use super::spheres::{Sphere, across, spheres};
 use super::view::View;
 use dem_engine::state::regions::Region;

@@ -9,8 +9,8 @@
 
 use nalgebra::Vector3;
 
-use super::Probe;
 use super::measurement::{Measurement, Planned};
+use super::probe::Probe;
 use super::spheres::{self, spheres};
 use dem_scene::Measure;
 

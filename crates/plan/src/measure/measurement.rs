@@ -1,4 +1,4 @@
-//! How quantities are measured, and the list of them.
+//! How a quantity is measured.
 
 use std::collections::BTreeMap;
 
@@ -7,8 +7,8 @@ use dem_engine::state::watches::Recorded;
 use dem_io::body::mass::BodyMass;
 use dem_scene::{Measure, Scene};
 
+use super::probe::Probe;
 use super::view::View;
-use super::{Probe, bonds, bulk, contacts, heap, mixing, pieces, supports, whole};
 
 /// How a quantity is measured, and what is said of its values.
 #[derive(Debug)]
@@ -69,23 +69,6 @@ pub(super) struct Planned<'a> {
     pub(super) masses: &'a BTreeMap<String, BodyMass>,
 }
 
-/// One that is not in the list.
-static UNKNOWN: Measurement = Measurement::new("", |_, _| f64::NAN);
-
-fn all() -> impl Iterator<Item = &'static Measurement> {
-    let files = [
-        whole::MEASUREMENTS,
-        supports::MEASUREMENTS,
-        bonds::MEASUREMENTS,
-        heap::MEASUREMENTS,
-        bulk::MEASUREMENTS,
-        mixing::MEASUREMENTS,
-        contacts::MEASUREMENTS,
-        pieces::MEASUREMENTS,
-    ];
-    files.into_iter().flatten()
-}
-
 impl Measurement {
     /// That of a quantity of this name.
     pub(super) const fn new(name: &'static str, read: fn(&Probe, &View<'_>) -> f64) -> Self {
@@ -101,27 +84,5 @@ impl Measurement {
             refusal: |_, _| None,
             doubt: |_| None,
         }
-    }
-
-    /// That of a measure.
-    pub fn of(measure: &Measure) -> &'static Self {
-        let names = measure.quantity.names;
-        all()
-            .find(|one| names.contains(&one.name))
-            .unwrap_or(&UNKNOWN)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use dem_scene::QUANTITIES;
-
-    #[test]
-    fn every_quantity_of_scenes_is_measured_once() {
-        let mut measured: Vec<&str> = super::all().map(|one| one.name).collect();
-        let mut known: Vec<&str> = QUANTITIES.iter().map(|one| one.names[0]).collect();
-        measured.sort_unstable();
-        known.sort_unstable();
-        assert_eq!(measured, known);
     }
 }

@@ -3,9 +3,9 @@
 use dem_io::units::significant;
 use dem_scene::Statistic;
 
-use super::Probe;
 use super::measurement::Measurement;
 use super::mixture::{FEWEST_MIXED_CELLS, MixedCell, Mixture};
+use super::probe::Probe;
 use super::spheres::spheres;
 use dem_engine::state::State;
 

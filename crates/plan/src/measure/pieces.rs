@@ -1,10 +1,7 @@
 //! Count and masses of fragments.
 
-use dem_engine::state::State;
-use dem_engine::state::clusters::fragments;
-
-use super::Probe;
 use super::measurement::Measurement;
+use super::probe::Probe;
 use super::view::View;
 
 pub(super) const MEASUREMENTS: &[Measurement] = &[
@@ -28,15 +25,4 @@ const fn of_pieces(name: &'static str, read: fn(&Probe, &View<'_>) -> f64) -> Me
 
 fn largest_kg(view: &View<'_>) -> f64 {
     view.masses_kg().iter().copied().fold(0.0, f64::max)
-}
-
-/// Mass of every cluster, of what is inside and of what has left through outlets, kg.
-pub(super) fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
-    let Some(clusters) = &state.clusters else {
-        return Vec::new();
-    };
-    let all = fragments(clusters, &state.particles, &state.clumps, None);
-    let gone = state.population.discharged.iter();
-    let gone = gone.map(|gone| gone.size.mass_kg);
-    all.iter().map(|one| one.mass_kg).chain(gone).collect()
 }

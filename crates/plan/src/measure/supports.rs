@@ -1,7 +1,7 @@
 //! Forces and torques of supports.
 
-use super::Probe;
 use super::measurement::{IfZero, Measurement, Settles};
+use super::probe::Probe;
 use super::view::View;
 
 pub(super) const MEASUREMENTS: &[Measurement] = &[

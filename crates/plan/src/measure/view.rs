@@ -6,11 +6,18 @@ use dem_engine::stages::clumps::synchronous;
 use dem_engine::stages::ledger::Balance;
 use dem_engine::stages::totals::synchronous_motions;
 use dem_engine::state::State;
+use dem_engine::state::clumps::Clump;
+use dem_engine::state::clusters::fragments;
+use dem_engine::state::particles::Motion;
 use nalgebra::Vector3;
 
-use super::bonds::{DynamicUtilisation, dynamic_utilisations};
-use super::pieces::masses_of_pieces_kg;
-use super::whole::Motions;
+use super::utilisation::{DynamicUtilisation, dynamic_utilisations};
+
+/// Velocities at the time of the positions: one for each particle, and the motion of each clump.
+pub(super) struct Motions {
+    pub(super) particles: Vec<Motion>,
+    pub(super) clumps: Vec<Clump>,
+}
 
 /// A state at one time, and what several measures need of it, computed for the first of them.
 pub(super) struct View<'a> {
@@ -55,4 +62,15 @@ impl<'a> View<'a> {
         let down = Vector3::from(self.state.model.gravity_m_s2);
         (-down).try_normalize(0.0).unwrap_or_else(Vector3::z)
     }
+}
+
+/// Mass of every cluster, of what is inside and of what has left through outlets, kg.
+fn masses_of_pieces_kg(state: &State) -> Vec<f64> {
+    let Some(clusters) = &state.clusters else {
+        return Vec::new();
+    };
+    let all = fragments(clusters, &state.particles, &state.clumps, None);
+    let gone = state.population.discharged.iter();
+    let gone = gone.map(|gone| gone.size.mass_kg);
+    all.iter().map(|one| one.mass_kg).chain(gone).collect()
 }
