@@ -4,7 +4,6 @@ mod bonds;
 mod bulk;
 mod contacts;
 mod heap;
-mod list;
 pub(crate) mod measurement;
 mod members;
 mod mixing;
@@ -46,6 +45,34 @@ pub use self::utilisation::{
     DynamicUtilisation, bond_utilisation, dynamic_utilisations, load, utilisation_under,
 };
 pub use dem_engine::state::watches::{History, IndexError};
+
+/// One that is not in the list.
+static UNKNOWN: Measurement = Measurement::new("", |_, _| f64::NAN);
+
+/// All measurements.
+fn measurements() -> impl Iterator<Item = &'static Measurement> {
+    let files = [
+        whole::MEASUREMENTS,
+        supports::MEASUREMENTS,
+        bonds::MEASUREMENTS,
+        heap::MEASUREMENTS,
+        bulk::MEASUREMENTS,
+        mixing::MEASUREMENTS,
+        contacts::MEASUREMENTS,
+        pieces::MEASUREMENTS,
+    ];
+    files.into_iter().flatten()
+}
+
+impl Measurement {
+    /// That of a measure.
+    pub fn of(measure: &Measure) -> &'static Self {
+        let names = measure.quantity.names;
+        measurements()
+            .find(|one| names.contains(&one.name))
+            .unwrap_or(&UNKNOWN)
+    }
+}
 
 /// Result of a measure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -276,5 +303,19 @@ impl Probe {
             tolerance: self.measure.tolerance,
             absolute_tolerance: self.measure.absolute_tolerance,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use dem_scene::QUANTITIES;
+
+    #[test]
+    fn every_quantity_of_scenes_is_measured_once() {
+        let mut measured: Vec<&str> = super::measurements().map(|one| one.name).collect();
+        let mut known: Vec<&str> = QUANTITIES.iter().map(|one| one.names[0]).collect();
+        measured.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(measured, known);
     }
 }
