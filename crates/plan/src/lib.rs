@@ -17,7 +17,6 @@ mod initial;
 mod inputs;
 pub mod masses;
 pub mod measure;
-pub(crate) mod measures;
 mod outputs;
 mod placement;
 mod quality;
@@ -35,7 +34,7 @@ use std::sync::Arc;
 use dem_io::body::About;
 use dem_io::body::mass::BodyMass;
 use dem_io::{Body, Diagnostic, Result};
-use dem_scene::{Integrator, Quantity, Scene};
+use dem_scene::{Integrator, Scene};
 
 use dem_engine::check::limit::damping_bound_1_s;
 use dem_engine::check::passing::passes_through;
@@ -70,7 +69,8 @@ use self::groups::{held_degrees_of_freedom, particles_of, resolve_groups};
 use self::held::refuse_loose;
 use self::initial::start;
 use self::inputs::inputs;
-use self::measures::refuse_valueless;
+use self::measure::measurement::Measurement;
+use self::measure::refused::refuse_valueless;
 use self::outputs::refuse_endless_output;
 use self::placement::placed;
 use self::rules::{doubts, rules};
@@ -375,15 +375,8 @@ fn place_meetings(
     notes: &mut Vec<String>,
 ) -> Result<()> {
     let breaks = state.bonds.rules.iter().any(|rule| rule.criteria.is_some());
-    let counts_pieces = scene.measures.values().any(|measure| {
-        matches!(
-            measure.quantity,
-            Quantity::Count
-                | Quantity::MassFractionOfLargest
-                | Quantity::MassOfLargest
-                | Quantity::MixingIndex
-        )
-    });
+    let needs_clusters = |measure| Measurement::of(measure).needs_clusters;
+    let counts_pieces = scene.measures.values().any(needs_clusters);
     let has_clumps = !state.clumps.templates.is_empty();
     if !(breaks || counts_pieces || has_clumps || are_needed(scene)) {
         return Ok(());

@@ -2,12 +2,11 @@
 //! without an effect.
 
 use dem_io::units::{show_length, significant};
-use dem_scene::{
-    BondKind, Contact, ContactLaw, Material, Quantity, Rolling, Scene, Statistic, WallMotion,
-};
+use dem_scene::{BondKind, Contact, ContactLaw, Material, Rolling, Scene, Statistic, WallMotion};
 use nalgebra::Vector3;
 
 use super::masses::sphere_density_kg_m3;
+use super::measure::measurement::Measurement;
 use super::unfinished::unfinished;
 use dem_engine::check::laws::LARGEST_OVERLAP;
 use dem_engine::state::State;
@@ -36,15 +35,10 @@ pub(super) fn doubts(scene: &Scene, state: &State, bodies: &[PlacedBody]) -> Vec
     doubts.extend(sunk(state, bodies));
     doubts.extend(too_strong(scene));
     doubts.extend(few_rows(scene));
-    if Vector3::from(scene.run.gravity_m_s2) == Vector3::zeros() {
-        let slopes = scene.measures.iter();
-        let slopes = slopes.filter(|(_, m)| m.quantity == Quantity::AngleOfRepose);
-        doubts.extend(slopes.map(|(name, _)| {
-            format!(
-                "measures.{name}: an angle of repose has no meaning without gravity; set run.gravity, such as [0, 0, -9.81]"
-            )
-        }));
-    }
+    doubts.extend(scene.measures.iter().filter_map(|(name, measure)| {
+        let doubt = (Measurement::of(measure).doubt)(scene)?;
+        Some(format!("measures.{name}: {doubt}"))
+    }));
     doubts
 }
 
@@ -271,10 +265,7 @@ fn few_rows(scene: &Scene) -> Vec<String> {
         return Vec::new();
     }
     let of_rows = scene.measures.iter().filter(|(_, measure)| {
-        let quantity = measure.quantity;
-        let is_force = matches!(quantity, Quantity::Force(_) | Quantity::ForceMagnitude);
-        // Forces and contacts are read in every step.
-        measure.statistic != Statistic::End && !is_force && !quantity.is_of_contact()
+        measure.statistic != Statistic::End && Measurement::of(measure).recorded.is_none()
     });
     let said = of_rows.map(|(name, _)| {
         format!(

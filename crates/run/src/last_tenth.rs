@@ -1,7 +1,7 @@
 //! Values that are not final: measures of the end that still move, servos short of their force.
 
 use dem_io::units::significant;
-use dem_scene::{Quantity, Statistic, WallMotion};
+use dem_scene::{Statistic, WallMotion};
 use serde::{Deserialize, Serialize};
 
 use super::changes::last_change_s;
@@ -10,7 +10,7 @@ use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::events::REMOVED;
 use dem_engine::state::loads::factor_at;
 use dem_engine::state::walls::Wall;
-use dem_plan::measure::Probe;
+use dem_plan::measure::{Probe, Settles};
 
 /// The last part of a run, in which a final value does not change any more.
 const LATE: f64 = 0.1;
@@ -176,26 +176,10 @@ fn settles(probe: &Probe, state: &State, is_held: &[bool]) -> bool {
         let mut own = probe.particles().iter();
         own.any(|i| is_held.get(*i as usize).copied().unwrap_or(false))
     };
-    match probe.measure.quantity {
-        Quantity::Position(_)
-        | Quantity::Displacement(_)
-        | Quantity::DisplacementMagnitude
-        | Quantity::Velocity(_)
-        | Quantity::VelocityMagnitude
-        | Quantity::Rotation(_)
-        | Quantity::AngularVelocity(_)
-        | Quantity::KineticEnergy
-        | Quantity::ElasticEnergy
-        | Quantity::LargestUtilisation => of_servo || of_held(),
-        Quantity::Reaction(_)
-        | Quantity::ReactionTorque(_)
-        | Quantity::Force(_)
-        | Quantity::ForceMagnitude
-        | Quantity::Torque(_)
-        | Quantity::ContactForce(_)
-        | Quantity::ContactForceMagnitude
-        | Quantity::ContactOverlap => true,
-        _ => false,
+    match probe.measurement().settles {
+        Settles::Never => false,
+        Settles::IfHeld => of_servo || of_held(),
+        Settles::Always => true,
     }
 }
 

@@ -1,10 +1,11 @@
 //! Measures of something that never happened: a force of nothing, the density of an empty region.
 
-use dem_scene::{Quantity, Scene};
+use dem_scene::Scene;
 
 use super::monitors::Monitors;
 use dem_engine::state::State;
-use dem_plan::measure::Probe;
+use dem_engine::state::watches::{MAGNITUDE, Recorded};
+use dem_plan::measure::{IfZero, Probe};
 
 /// Measures that are 0 throughout because nothing touched what they measure, or nothing came to
 /// their region, a sentence each.
@@ -14,28 +15,27 @@ pub(super) fn empty_measures(
     probes: &[Probe],
     monitors: &Monitors,
 ) -> Vec<String> {
-    let is_zero = |probe: &&Probe| {
-        let history = &probe.history;
-        history.largest == Some(0.0) && history.smallest == Some(0.0)
-    };
-    let zero = probes.iter().filter(is_zero);
-    let said = zero.filter_map(|probe| {
-        let why = untouched(state, scene, probe, monitors).or_else(|| empty_region(probe))?;
+    let said = zero(probes).filter_map(|probe| {
+        let why = match probe.measurement().if_zero {
+            IfZero::Untouched => untouched(state, scene, probe, monitors),
+            IfZero::Doubt(why) => why(&probe.measure),
+            IfZero::Fine | IfZero::Note(_) => None,
+        }?;
         Some(format!("measures.{} is 0 throughout: {why}", probe.name))
     });
     said.collect()
 }
 
-/// What nothing touched, if a measure is of forces or contacts, and the remedy.
+/// Those that are 0 throughout.
+fn zero(probes: &[Probe]) -> impl Iterator<Item = &Probe> {
+    probes.iter().filter(|probe| {
+        let history = &probe.history;
+        history.largest == Some(0.0) && history.smallest == Some(0.0)
+    })
+}
+
+/// What nothing touched, and the remedy.
 fn untouched(state: &State, scene: &Scene, probe: &Probe, monitors: &Monitors) -> Option<String> {
-    let quantity = probe.measure.quantity;
-    let is_force = matches!(
-        quantity,
-        Quantity::Force(_) | Quantity::ForceMagnitude | Quantity::Torque(_)
-    );
-    if !(is_force || quantity.is_of_contact()) {
-        return None;
-    }
     let remedy = "check places and motions, or set run.end_time later";
     let wall_name = |wall: usize| state.walls.get(wall).map(|wall| wall.model.name.clone());
     let walls = probe.walls().into_iter().flatten();
@@ -50,10 +50,10 @@ fn untouched(state: &State, scene: &Scene, probe: &Probe, monitors: &Monitors) -
         return Some(format!("nothing touched '{of}'; {remedy}"));
     }
     // A component may be 0 by symmetry, these are not.
-    let is_never = matches!(
-        quantity,
-        Quantity::ContactForceMagnitude | Quantity::ContactDuration
-    );
+    let is_never = match probe.measurement().recorded {
+        Some(Recorded::Force) => probe.measure.part == MAGNITUDE,
+        recorded => recorded == Some(Recorded::Duration),
+    };
     let with = probe.measure.with.as_ref().filter(|_| is_never)?;
     Some(format!(
         "'{of}' and '{with}' did not touch each other; {remedy}"
@@ -62,37 +62,14 @@ fn untouched(state: &State, scene: &Scene, probe: &Probe, monitors: &Monitors) -
 
 /// Notes on measures that are 0 throughout, a sentence each: this may be what was asked for.
 pub(super) fn zero_measures(probes: &[Probe]) -> Vec<String> {
-    let is_zero = |probe: &&Probe| {
-        let history = &probe.history;
-        history.largest == Some(0.0) && history.smallest == Some(0.0)
-    };
-    let said = probes.iter().filter(is_zero).filter_map(|probe| {
-        let of = &probe.measure.of;
-        let what = match (probe.measure.quantity, &probe.measure.within) {
-            (Quantity::Displacement(_) | Quantity::DisplacementMagnitude, _) => {
-                format!("'{of}' did not move that way")
-            }
-            (Quantity::Reaction(_) | Quantity::ReactionTorque(_), _) => {
-                format!("the supports of '{of}' carry nothing that way")
-            }
-            (Quantity::Mass, Some(within)) => {
-                format!("nothing of '{of}' ever was in the region '{within}'")
-            }
-            _ => return None,
+    let said = zero(probes).filter_map(|probe| {
+        let IfZero::Note(what) = probe.measurement().if_zero else {
+            return None;
         };
+        let what = what(&probe.measure)?;
         Some(format!("measures.{} is 0 throughout: {what}", probe.name))
     });
     said.collect()
-}
-
-fn empty_region(probe: &Probe) -> Option<String> {
-    let within = probe.measure.within.as_ref()?;
-    (probe.measure.quantity == Quantity::BulkDensity).then(|| {
-        format!(
-            "nothing of '{}' ever was in the region '{within}'; check its place and size",
-            probe.measure.of
-        )
-    })
 }
 
 /// A note on bodies that broke although their pieces cannot touch each other.

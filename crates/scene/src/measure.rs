@@ -6,94 +6,13 @@ use super::field::Field;
 use super::listing::Listing;
 use super::names::ALL;
 use super::numbers::quantity as shown;
+use super::quantity::{Quantity, With, named};
 use super::region::Region;
-use super::schema::{Key, Kind, Schema, Word, words_of};
+use super::schema::{Key, Kind, Schema, Word};
 use super::table::Table;
 use super::targets::{Subject, Targets};
 use dem_io::diagnostic::Result;
-use dem_io::units::{
-    ANGLE, ANGLE_DEG, ANGULAR_VELOCITY, DENSITY, Dimension, ENERGY, FORCE, LENGTH, MASS, NUMBER,
-    RATE, TIME, TORQUE, VELOCITY,
-};
-use serde::{Deserialize, Serialize};
-
-/// The quantity that is measured. For a group, positions and velocities are those of its centre of
-/// mass; energies, forces and counts are sums. Walls have positions, forces and torques; fragments
-/// a count and masses; groups all except torques, count and masses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Quantity {
-    /// "position_x", ... m; for a wall, that of its pivot. Axis 0, 1, 2.
-    Position(u8),
-    /// "displacement_x", ... of the centre of mass since the start, m.
-    Displacement(u8),
-    /// "displacement": its magnitude, m.
-    DisplacementMagnitude,
-    /// "velocity_x", ... of the centre of mass, m/s.
-    Velocity(u8),
-    /// "velocity": its magnitude, m/s.
-    VelocityMagnitude,
-    /// "rotation_x", ... since the start (rotation vector, mean by mass), rad.
-    Rotation(u8),
-    /// "angular_velocity_x", ... of the rigid body with the same inertia and angular momentum,
-    /// rad/s.
-    AngularVelocity(u8),
-    /// "reaction_x", ... force of supports on the group, N.
-    Reaction(u8),
-    /// "reaction_torque_x", ... torque of supports on the group, each about its particle's centre,
-    /// N m.
-    ReactionTorque(u8),
-    /// "kinetic_energy", J.
-    KineticEnergy,
-    /// "elastic_energy" of the bonds, half of each assigned to either end, J.
-    ElasticEnergy,
-    /// "broken_bonds" since the start.
-    BrokenBonds,
-    /// "largest_utilisation": stress over strength of the bond nearest to failure, without rate
-    /// strengthening.
-    LargestUtilisation,
-    /// "largest_strain_rate" of the bonds by their `strain_rate_measure`, 1/s.
-    LargestStrainRate,
-    /// "largest_dynamic_increase_factor" of the strengths of the bonds, 1 without strengthening.
-    LargestDynamicIncreaseFactor,
-    /// "largest_dynamic_utilisation": stress over strength at the bond's strain rate.
-    LargestDynamicUtilisation,
-    /// "fraction_below_dynamic_utilisation": fraction of the intact bonds below `limit`.
-    FractionBelowDynamicUtilisation,
-    /// "angle_of_repose": slope of the heap that the particles form, degrees.
-    AngleOfRepose,
-    /// "mass" of the group, or of its part in the region `within`, kg.
-    Mass,
-    /// "bulk_density": mass of its part in the region `within` over the volume of the region;
-    /// without a region mass over the volume under the surface of the group, kg/m3.
-    BulkDensity,
-    /// "bulking_factor": volume that the body takes as a bulk over that of its shape: its solid
-    /// density (mass over volume of the shape) over its bulk density.
-    BulkingFactor,
-    /// "mixing_index" of Lacey, of the group and that of `with`, in cells of `cell_size` in the
-    /// region `within`.
-    MixingIndex,
-    /// "force_x", ... total contact force: of particles on a wall, of other particles and walls on
-    /// a group, N.
-    Force(u8),
-    /// "force": its magnitude, N.
-    ForceMagnitude,
-    /// "contact_force_x", ... contact force of the object named by `with` on the group, N.
-    ContactForce(u8),
-    /// "contact_force": its magnitude, N.
-    ContactForceMagnitude,
-    /// "contact_overlap": deepest overlap of these contacts; 0 if there is none, m.
-    ContactOverlap,
-    /// "contact_duration": total time of contact between the two since the start, s.
-    ContactDuration,
-    /// "torque_x", ... torque of particles on the wall about its pivot, N m.
-    Torque(u8),
-    /// "count" of fragments.
-    Count,
-    /// "mass_fraction_of_largest": mass of the heaviest fragment over that of all.
-    MassFractionOfLargest,
-    /// "mass_of_largest": mass of the heaviest fragment, kg.
-    MassOfLargest,
-}
+use dem_io::units::LENGTH;
 
 /// The statistic of a measure's history that is its result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,7 +34,9 @@ pub struct Measure {
     /// measured.
     pub of: String,
     /// `quantity`
-    pub quantity: Quantity,
+    pub quantity: &'static Quantity,
+    /// Of a vector, the component along x, y or z: 0, 1 or 2; 3 for its magnitude. Otherwise 0.
+    pub part: usize,
     /// `with`: the body, group or wall that `of` touches, or the body or group that it mixes with.
     /// Required for contacts and mixing, and only allowed there.
     pub with: Option<String>,
@@ -141,71 +62,6 @@ pub struct Measure {
     pub end_run_above: Option<f64>,
 }
 
-/// Every quantity and its name in a scene.
-pub(super) const QUANTITIES: [(&str, Quantity); 52] = [
-    ("position_x", Quantity::Position(0)),
-    ("position_y", Quantity::Position(1)),
-    ("position_z", Quantity::Position(2)),
-    ("displacement_x", Quantity::Displacement(0)),
-    ("displacement_y", Quantity::Displacement(1)),
-    ("displacement_z", Quantity::Displacement(2)),
-    ("displacement", Quantity::DisplacementMagnitude),
-    ("velocity_x", Quantity::Velocity(0)),
-    ("velocity_y", Quantity::Velocity(1)),
-    ("velocity_z", Quantity::Velocity(2)),
-    ("velocity", Quantity::VelocityMagnitude),
-    ("rotation_x", Quantity::Rotation(0)),
-    ("rotation_y", Quantity::Rotation(1)),
-    ("rotation_z", Quantity::Rotation(2)),
-    ("angular_velocity_x", Quantity::AngularVelocity(0)),
-    ("angular_velocity_y", Quantity::AngularVelocity(1)),
-    ("angular_velocity_z", Quantity::AngularVelocity(2)),
-    ("reaction_x", Quantity::Reaction(0)),
-    ("reaction_y", Quantity::Reaction(1)),
-    ("reaction_z", Quantity::Reaction(2)),
-    ("reaction_torque_x", Quantity::ReactionTorque(0)),
-    ("reaction_torque_y", Quantity::ReactionTorque(1)),
-    ("reaction_torque_z", Quantity::ReactionTorque(2)),
-    ("kinetic_energy", Quantity::KineticEnergy),
-    ("elastic_energy", Quantity::ElasticEnergy),
-    ("broken_bonds", Quantity::BrokenBonds),
-    ("largest_utilisation", Quantity::LargestUtilisation),
-    ("largest_strain_rate", Quantity::LargestStrainRate),
-    (
-        "largest_dynamic_increase_factor",
-        Quantity::LargestDynamicIncreaseFactor,
-    ),
-    (
-        "largest_dynamic_utilisation",
-        Quantity::LargestDynamicUtilisation,
-    ),
-    (
-        "fraction_below_dynamic_utilisation",
-        Quantity::FractionBelowDynamicUtilisation,
-    ),
-    ("angle_of_repose", Quantity::AngleOfRepose),
-    ("mass", Quantity::Mass),
-    ("bulk_density", Quantity::BulkDensity),
-    ("bulking_factor", Quantity::BulkingFactor),
-    ("mixing_index", Quantity::MixingIndex),
-    ("force_x", Quantity::Force(0)),
-    ("force_y", Quantity::Force(1)),
-    ("force_z", Quantity::Force(2)),
-    ("force", Quantity::ForceMagnitude),
-    ("contact_force_x", Quantity::ContactForce(0)),
-    ("contact_force_y", Quantity::ContactForce(1)),
-    ("contact_force_z", Quantity::ContactForce(2)),
-    ("contact_force", Quantity::ContactForceMagnitude),
-    ("contact_overlap", Quantity::ContactOverlap),
-    ("contact_duration", Quantity::ContactDuration),
-    ("torque_x", Quantity::Torque(0)),
-    ("torque_y", Quantity::Torque(1)),
-    ("torque_z", Quantity::Torque(2)),
-    ("count", Quantity::Count),
-    ("mass_fraction_of_largest", Quantity::MassFractionOfLargest),
-    ("mass_of_largest", Quantity::MassOfLargest),
-];
-
 impl Word for Statistic {
     const WORDS: &'static [(&'static str, Self)] = &[
         ("end", Self::End),
@@ -215,70 +71,10 @@ impl Word for Statistic {
     ];
 }
 
-impl Quantity {
-    /// Its name in a scene, such as "displacement_x".
-    pub fn name(self) -> &'static str {
-        let found = QUANTITIES.iter().find(|(_, quantity)| *quantity == self);
-        found.map_or("", |(name, _)| *name)
-    }
-
-    /// Its dimension, which gives the unit of its values.
-    pub fn dimension(self) -> &'static Dimension {
-        match self {
-            Self::Position(_)
-            | Self::Displacement(_)
-            | Self::DisplacementMagnitude
-            | Self::ContactOverlap => &LENGTH,
-            Self::Velocity(_) | Self::VelocityMagnitude => &VELOCITY,
-            Self::Rotation(_) => &ANGLE,
-            Self::AngleOfRepose => &ANGLE_DEG,
-            Self::AngularVelocity(_) => &ANGULAR_VELOCITY,
-            Self::Reaction(_)
-            | Self::Force(_)
-            | Self::ForceMagnitude
-            | Self::ContactForce(_)
-            | Self::ContactForceMagnitude => &FORCE,
-            Self::ReactionTorque(_) | Self::Torque(_) => &TORQUE,
-            Self::ContactDuration => &TIME,
-            Self::KineticEnergy | Self::ElasticEnergy => &ENERGY,
-            Self::MassOfLargest | Self::Mass => &MASS,
-            Self::BulkDensity => &DENSITY,
-            Self::LargestStrainRate => &RATE,
-            Self::BrokenBonds
-            | Self::LargestUtilisation
-            | Self::LargestDynamicIncreaseFactor
-            | Self::LargestDynamicUtilisation
-            | Self::FractionBelowDynamicUtilisation
-            | Self::Count
-            | Self::BulkingFactor
-            | Self::MixingIndex
-            | Self::MassFractionOfLargest => &NUMBER,
-        }
-    }
-
-    /// True if it belongs to the contacts between two objects: `of` and `with`.
-    pub fn is_of_contact(self) -> bool {
-        matches!(
-            self,
-            Self::ContactForce(_)
-                | Self::ContactForceMagnitude
-                | Self::ContactOverlap
-                | Self::ContactDuration
-        )
-    }
-
-    /// True if such objects have it.
-    fn is_of(self, subject: Subject) -> bool {
-        match self {
-            Self::Position(_) | Self::Force(_) | Self::ForceMagnitude => {
-                subject != Subject::Fragments
-            }
-            Self::Torque(_) => subject == Subject::Wall,
-            Self::Count | Self::MassFractionOfLargest | Self::MassOfLargest => {
-                subject == Subject::Fragments
-            }
-            _ => subject == Subject::Particles,
-        }
+impl Measure {
+    /// The name of its quantity in the scene, such as "displacement_x".
+    pub fn quantity_name(&self) -> &'static str {
+        self.quantity.names.get(self.part).copied().unwrap_or("")
     }
 }
 
@@ -290,7 +86,7 @@ pub(super) static MEASURE: Schema = Schema {
             .or_word(ALL),
         Key::new(
             "quantity",
-            Kind::Word(|| words_of(&QUANTITIES)),
+            Kind::Word(|| named().map(|(name, _)| name).collect()),
             "For a wall: `force`, `torque` about its pivot, `position` of its pivot; for `fragments`: `count`, \
              `mass_of_largest`, `mass_fraction_of_largest`; for groups: all others, and `position` and `force`.",
         )
@@ -350,27 +146,27 @@ pub(super) fn read(
     let (of, subject) = table
         .read_by("of", |field| targets.measured(&field))?
         .unwrap_or_else(|| (ALL.to_owned(), Subject::Particles));
-    let quantity = quantity(&table, &of, subject)?;
-    if let (Quantity::Displacement(_) | Quantity::DisplacementMagnitude, Some(field)) =
-        (quantity, table.get("quantity"))
-    {
+    let (name, (quantity, part)) = quantity(&table, &of, subject)?;
+    if let (true, Some(field)) = (quantity.since_start, table.get("quantity")) {
         targets.presence.refuse_without_start(&field, &of)?;
     }
-    let with = counterpart(&table, &of, quantity, targets)?;
-    let within = within(&table, quantity, regions)?;
+    let with = counterpart(&table, &of, (name, quantity), targets)?;
+    let within = within(&table, (name, quantity), regions)?;
     let cell_size_m = only_for(
         &table,
         "cell_size",
-        [quantity, Quantity::MixingIndex],
+        (name, quantity.with == Some(With::Mixture)),
+        "mixing_index",
         ["there is no cell_size", "\"10 mm\""],
     )?;
     let limit = only_for(
         &table,
         "limit",
-        [quantity, Quantity::FractionBelowDynamicUtilisation],
+        (name, quantity.limit),
+        "fraction_below_dynamic_utilisation",
         ["nothing says below which utilisation", "0.5"],
     )?;
-    let dimension = quantity.dimension();
+    let dimension = quantity.dimension;
     let reference = table.read_by("reference", |field| field.quantity(dimension))?;
     let tolerance = table.read("tolerance")?;
     let absolute_tolerance =
@@ -396,6 +192,7 @@ pub(super) fn read(
     Ok(Measure {
         of,
         quantity,
+        part,
         with,
         within,
         cell_size_m,
@@ -412,12 +209,11 @@ pub(super) fn read(
 fn counterpart(
     table: &Table<'_>,
     of: &str,
-    quantity: Quantity,
+    (name, quantity): (&str, &Quantity),
     targets: &Targets<'_>,
 ) -> Result<Option<String>> {
-    let name = quantity.name();
-    let mixes = quantity == Quantity::MixingIndex;
-    if !quantity.is_of_contact() && !mixes {
+    let mixes = quantity.with == Some(With::Mixture);
+    if quantity.with.is_none() {
         return match table.get("with") {
             Some(field) => {
                 let problem = format!(
@@ -464,25 +260,18 @@ fn counterpart(
 /// The region to which a measure is restricted.
 fn within(
     table: &Table<'_>,
-    quantity: Quantity,
+    (name, quantity): (&str, &Quantity),
     regions: &BTreeMap<String, Region>,
 ) -> Result<Option<String>> {
-    let bulk = [
-        Quantity::Mass,
-        Quantity::BulkDensity,
-        Quantity::BulkingFactor,
-        Quantity::MixingIndex,
-    ];
-    let name = quantity.name();
     match table.get("within") {
-        None if quantity == Quantity::MixingIndex => {
+        None if quantity.with == Some(With::Mixture) => {
             let problem = format!(
                 "{}.quantity is \"{name}\", but nothing says where",
                 table.path
             );
             Err(table.refuse(problem, "add within = \"NAME\", a name in [regions]"))
         }
-        Some(field) if !bulk.contains(&quantity) => {
+        Some(field) if !quantity.within => {
             let problem = format!(
                 "{} cannot be combined with the quantity \"{name}\"",
                 field.path
@@ -495,30 +284,26 @@ fn within(
     }
 }
 
-/// A number that one quantity requires, and that is refused otherwise. `missing`: what is not known
-/// without it; `example`: a value of it.
+/// A number that some quantities require, such as `example_quantity`, and that is refused for
+/// others. `name`: the quantity; `missing`: what is not known without it; `example`: a value of it.
 fn only_for(
     table: &Table<'_>,
     key: &str,
-    [quantity, one]: [Quantity; 2],
+    (name, is_needed): (&str, bool),
+    example_quantity: &str,
     [missing, example]: [&str; 2],
 ) -> Result<Option<f64>> {
-    match (quantity == one, table.get(key)) {
+    match (is_needed, table.get(key)) {
         (true, None) => {
-            let problem = format!(
-                "{}.quantity is \"{}\", but {missing}",
-                table.path,
-                one.name()
-            );
+            let problem = format!("{}.quantity is \"{name}\", but {missing}", table.path);
             Err(table.refuse(problem, format!("add {key} = {example}")))
         }
         (false, Some(field)) => {
             let problem = format!(
-                "{} cannot be combined with the quantity \"{}\"",
-                field.path,
-                quantity.name()
+                "{} cannot be combined with the quantity \"{name}\"",
+                field.path
             );
-            let remedy = format!("remove it, or ask for \"{}\"", one.name());
+            let remedy = format!("remove it, or ask for \"{example_quantity}\"");
             Err(field.refuse(problem, remedy))
         }
         _ => table.read(key),
@@ -526,9 +311,13 @@ fn only_for(
 }
 
 /// The requested quantity, if `of`, which is a `subject`, has it.
-fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
-    let mut known = QUANTITIES.to_vec();
-    known.retain(|(_, quantity)| quantity.is_of(subject));
+fn quantity(
+    table: &Table<'_>,
+    of: &str,
+    subject: Subject,
+) -> Result<(&'static str, (&'static Quantity, usize))> {
+    let (known, others): (Vec<_>, Vec<_>) =
+        named().partition(|(_, (quantity, _))| quantity.of.contains(&subject));
     let example = match subject {
         Subject::Particles => "\"displacement_x\"",
         Subject::Wall => "\"force_x\"",
@@ -536,21 +325,17 @@ fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
     };
     let field = table.need_such("quantity", example)?;
     let name = field.text()?;
-    let Some((_, elsewhere)) = QUANTITIES
-        .iter()
-        .find(|(other, quantity)| *other == name && !quantity.is_of(subject))
-    else {
+    let Some((_, (elsewhere, _))) = others.iter().find(|(other, _)| *other == name) else {
+        let known: Vec<_> = known.into_iter().map(|found| (found.0, found)).collect();
         return field.choice(&known);
     };
-    let (owner, remedy) = if elsewhere.is_of(Subject::Particles) {
-        (
+    let (owner, remedy) = match elsewhere.of {
+        [Subject::Particles, ..] => (
             "particles",
             "write of = \"NAME\", with the name of a group or a body",
-        )
-    } else if elsewhere.is_of(Subject::Wall) {
-        ("walls", "write of = \"NAME\", with the name of a wall")
-    } else {
-        ("fragments", "write of = \"fragments\"")
+        ),
+        [Subject::Wall, ..] => ("walls", "write of = \"NAME\", with the name of a wall"),
+        _ => ("fragments", "write of = \"fragments\""),
     };
     let is = match subject {
         Subject::Particles => "names particles",
@@ -572,11 +357,11 @@ fn quantity(table: &Table<'_>, of: &str, subject: Subject) -> Result<Quantity> {
 
 pub(super) fn list(measure: &Measure, listing: &mut Listing) {
     let in_unit = |value: Option<f64>| {
-        let unit = measure.quantity.dimension().si;
+        let unit = measure.quantity.dimension.si;
         value.map_or_else(|| "none".to_owned(), |value| shown(value, unit))
     };
     listing.text("of", &measure.of);
-    listing.text("quantity", measure.quantity.name());
+    listing.text("quantity", measure.quantity_name());
     if let Some(with) = &measure.with {
         listing.text("with", with);
     }

@@ -10,8 +10,7 @@ use super::walls::{gap_m, touch_force_n};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::walls::{Wall, WallContact};
-use crate::state::watches::{Seen, Watch, WatchTarget};
-use dem_scene::Quantity;
+use crate::state::watches::{Recorded, Watch, WatchTarget, part};
 
 /// Measures, files and pictures.
 pub const OUTPUT: Stage = Stage {
@@ -39,14 +38,15 @@ pub(crate) fn watch(state: &mut State) -> usize {
     for watch in &mut watches {
         if let Some(contacts) = &state.contacts {
             let met = met(watch, state, contacts);
-            note(&mut watch.seen, watch.quantity, &met, state);
+            note(watch, &met, state);
         }
     }
     state.watches = watches;
     0
 }
 
-fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {
+fn note(watch: &mut Watch, met: &Met, state: &State) {
+    let seen = &mut watch.seen;
     // The lists cover at least this distance, whether rebuilt in this step or in the previous one.
     let longest_s = state.time_step_s.max(state.previous_time_step_s);
     let sure_m = 2.0 * state.fastest_m_s * longest_s;
@@ -55,19 +55,14 @@ fn note(seen: &mut Seen, quantity: Quantity, met: &Met, state: &State) {
         seen.touched_s += state.previous_time_step_s * share_above_0(before_m, now_m);
     }
     seen.overlap_m = Some(now_m);
-    seen.value = value(quantity, met, seen.touched_s);
-    seen.history.note(state.time_s, seen.value);
-}
-
-fn value(quantity: Quantity, met: &Met, touched_s: f64) -> f64 {
-    let value = match quantity {
-        Quantity::Force(k) | Quantity::ContactForce(k) => met.force_n[usize::from(k)],
-        Quantity::ContactOverlap => met.overlap_m.max(0.0),
-        Quantity::ContactDuration => touched_s,
-        _ => met.force_n.norm(),
+    let value = match watch.quantity {
+        Recorded::Force => part(&met.force_n, watch.part),
+        Recorded::Overlap => met.overlap_m.max(0.0),
+        Recorded::Duration => seen.touched_s,
     };
     // Adding 0 removes the sign of a zero.
-    value + 0.0
+    seen.value = value + 0.0;
+    seen.history.note(state.time_s, seen.value);
 }
 
 /// The fraction of a step in which a value that changes linearly is above 0.
@@ -99,7 +94,7 @@ fn met(watch: &Watch, state: &State, contacts: &Contacts) -> Met {
         WatchTarget::WithWall(of, number) => {
             if let Some(wall) = state.walls.get(*number) {
                 met.wall(state, contacts, (*number, wall), of);
-                if watch.quantity == Quantity::ContactDuration && met.overlap_m <= 0.0 {
+                if watch.quantity == Recorded::Duration && met.overlap_m <= 0.0 {
                     let near = wall.near.iter().filter(|&&i| of[i as usize]);
                     let gaps = near.map(|&i| gap_m(wall, &state.particles.poses[i as usize]));
                     met.overlap_m = -gaps.fold(f64::INFINITY, f64::min).max(0.0);

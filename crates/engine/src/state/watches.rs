@@ -1,17 +1,41 @@
 //! Quantities that measures record in every step: forces, and contacts between two objects.
 
-use dem_scene::Quantity;
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// A measure that is evaluated in every step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
     /// The quantity.
-    pub quantity: Quantity,
+    pub quantity: Recorded,
+    /// The part of the force that it records: see [`part`].
+    pub part: usize,
     /// The object whose forces and contacts it records.
     pub of: WatchTarget,
     /// The record.
     pub seen: Seen,
+}
+
+/// Quantities that are recorded in every step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Recorded {
+    /// Force of the contacts, N.
+    Force,
+    /// Deepest overlap of the contacts, m; 0 if there is none.
+    Overlap,
+    /// Total time of contact, s.
+    Duration,
+}
+
+/// Number of the magnitude among the parts of a vector: see [`part`].
+pub const MAGNITUDE: usize = 3;
+
+/// The component of a vector along the axis 0, 1 or 2, or, for [`MAGNITUDE`], its magnitude.
+pub fn part(vector: &Vector3<f64>, number: usize) -> f64 {
+    match vector.get(number) {
+        Some(component) => *component,
+        None => vector.norm(),
+    }
 }
 
 /// Objects whose forces and contacts are recorded.

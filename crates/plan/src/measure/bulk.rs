@@ -9,7 +9,10 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::spheres::{Sphere, across};
+use super::measurement::{IfZero, Measurement};
+use super::probe::Probe;
+use super::spheres::{Sphere, across, spheres};
+use super::view::View;
 use dem_engine::state::regions::Region;
 
 /// Points of a sphere that a border cuts: its part on one side is known to some thousandths.
@@ -20,8 +23,73 @@ const COLUMN: f64 = 0.5;
 /// rounding must not decide for spheres that lie side by side.
 const TOUCHED: f64 = 1e-6;
 
+pub(super) const MEASUREMENTS: &[Measurement] = &[
+    Measurement {
+        if_zero: IfZero::Note(|measure| {
+            let (of, within) = (&measure.of, measure.within.as_ref()?);
+            Some(format!(
+                "nothing of '{of}' ever was in the region '{within}'"
+            ))
+        }),
+        ..Measurement::new("mass", mass_kg)
+    },
+    Measurement {
+        if_zero: IfZero::Doubt(|measure| {
+            let (of, within) = (&measure.of, measure.within.as_ref()?);
+            Some(format!(
+                "nothing of '{of}' ever was in the region '{within}'; check its place and size"
+            ))
+        }),
+        ..Measurement::new("bulk_density", density_kg_m3)
+    },
+    Measurement {
+        missing: |probe| {
+            let within = probe.measure.within.as_deref().unwrap_or_default();
+            let of = &probe.measure.of;
+            Some(format!("the region \"{within}\" has nothing of \"{of}\""))
+        },
+        refusal: |measure, planned| {
+            let mass = planned.masses.get(&measure.of);
+            let has_shape = mass.is_some_and(|mass| mass.solid_density_kg_m3.is_some());
+            (!has_shape).then(|| {
+                (
+                    format!("\"{}\" is no body with a shape of known volume", measure.of),
+                    "name one body in \"of\", whose file says its shape_volume_m3 (a .vtp of dem-pack)",
+                )
+            })
+        },
+        ..Measurement::new("bulking_factor", |probe, view| {
+            match density_kg_m3(probe, view) {
+                0.0 => f64::NAN,
+                density => probe.solid_density_kg_m3 / density,
+            }
+        })
+    },
+];
+
+/// Mass in the region, or of all, kg.
+fn mass_kg(probe: &Probe, view: &View<'_>) -> f64 {
+    let own = spheres(&probe.members, view.state);
+    match probe.region {
+        Some(at) => mass_within_kg(&own, &view.state.model.rules.regions[at]),
+        None => 0.0 + own.iter().map(|sphere| sphere.mass_kg).sum::<f64>(),
+    }
+}
+
+/// Bulk density in the region, or under the surface of all, kg/m3.
+fn density_kg_m3(probe: &Probe, view: &View<'_>) -> f64 {
+    let own = spheres(&probe.members, view.state);
+    match probe.region {
+        Some(at) => {
+            let region = &view.state.model.rules.regions[at];
+            mass_within_kg(&own, region) / region.volume_m3()
+        }
+        None => heap_density_kg_m3(&own, view.up()),
+    }
+}
+
 /// Mass of the part of some spheres that is in a region, kg.
-pub(super) fn mass_within_kg(spheres: &[Sphere], region: &Region) -> f64 {
+fn mass_within_kg(spheres: &[Sphere], region: &Region) -> f64 {
     let points = points_of_ball();
     let mass = |s: &Sphere| s.mass_kg * part_within(s, region, &points);
     let masses: Vec<f64> = spheres.par_iter().map(mass).collect();
@@ -59,7 +127,7 @@ fn points_of_ball() -> Vec<Vector3<f64>> {
 /// Mass of some spheres over the volume under their surface, kg/m3: that of columns along `up`,
 /// from the lowest point of all to the highest point in each column. Columns are half a mean
 /// diameter wide. NaN if there are none.
-pub(super) fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
+fn heap_density_kg_m3(spheres: &[Sphere], up: Vector3<f64>) -> f64 {
     let [aside, across] = across(&up);
     let mean_m = spheres.iter().map(|s| s.radius_m).sum::<f64>() / spheres.len() as f64;
     let width_m = 2.0 * COLUMN * mean_m;

@@ -9,8 +9,13 @@
 
 use nalgebra::Vector3;
 
-use super::spheres;
-use crate::measures::FEWEST_IN_HEAP;
+use super::measurement::{Measurement, Planned};
+use super::probe::Probe;
+use super::spheres::{self, spheres};
+use dem_scene::Measure;
+
+/// Smallest number of particles for which an angle of repose has a meaning.
+const FEWEST_IN_HEAP: usize = 50;
 
 /// Spheres farther from the axis than this multiple of the cone's radius have rolled away.
 const ROLLED_AWAY: f64 = 1.25;
@@ -24,6 +29,53 @@ const ROUND: f64 = 1.6;
 /// Part of the mass that lies within a quarter of the cone's radius from its axis, at least: 0.156
 /// of a cone, 0.104 of a flat disc, 0.03 to 0.07 of heaps in a triangle.
 const IN_MIDDLE: f64 = 0.1;
+
+pub(super) const MEASUREMENTS: &[Measurement] = &[Measurement {
+    missing: |probe| Some(missing(probe)),
+    refusal: |measure, planned| {
+        let (count, of) = (few(measure, planned)?, &measure.of);
+        let problem = format!(
+            "an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{of}\" has {count}"
+        );
+        Some((problem, "name a larger heap, or ask for a position"))
+    },
+    doubt: |scene| {
+        (Vector3::from(scene.run.gravity_m_s2) == Vector3::zeros()).then_some(
+            "an angle of repose has no meaning without gravity; set run.gravity, such as [0, 0, -9.81]",
+        )
+    },
+    ..Measurement::new("angle_of_repose", |probe, view| {
+        angle_of_repose_deg(&spheres(&probe.members, view.state), view.up())
+    })
+}];
+
+fn missing(probe: &Probe) -> String {
+    let (of, left) = (&probe.measure.of, probe.members.particles.len());
+    if left >= FEWEST_IN_HEAP {
+        format!(
+            "\"{of}\" is not one round heap, but several, a ridge or a ring; name the body of one heap in \"of\""
+        )
+    } else {
+        format!(
+            "an angle of repose needs {FEWEST_IN_HEAP} particles or more, and \"{of}\" has {left}"
+        )
+    }
+}
+
+/// Number of particles of the heap, if they are too few and no more can be added.
+fn few(measure: &Measure, planned: &Planned<'_>) -> Option<usize> {
+    let of = &measure.of;
+    let means = |name: &String| of == "all" || name == of;
+    let mut fed = (planned.scene.inlets.values()).flat_map(|inlet| &inlet.bodies);
+    if fed.any(|(name, _)| means(name)) {
+        return None;
+    }
+    let standing = planned.groups.get(of).map_or(0, Vec::len);
+    let clumps = planned.state.clumps.templates.iter();
+    let clumps = clumps.filter(|template| means(&template.body));
+    let count = standing + clumps.map(|template| template.spheres.len()).sum::<usize>();
+    (count < FEWEST_IN_HEAP).then_some(count)
+}
 
 /// A sphere: mass, kg, radius, m, height, and two coordinates across, m.
 struct Sphere {
@@ -48,7 +100,7 @@ struct Moments {
 /// Slope, degrees, of the cone with the same vertical and horizontal spread of mass as the spheres;
 /// 0 if their top is flat. A few that have rolled far away do not change it. NaN for fewer than
 /// [`FEWEST_IN_HEAP`], and if they are not one round heap. `up`: unit vector.
-pub(super) fn angle_of_repose_deg(spheres: &[spheres::Sphere], up: Vector3<f64>) -> f64 {
+fn angle_of_repose_deg(spheres: &[spheres::Sphere], up: Vector3<f64>) -> f64 {
     let mut heap = turned(spheres, &up);
     if heap.len() < FEWEST_IN_HEAP {
         return f64::NAN;

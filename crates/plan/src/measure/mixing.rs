@@ -1,10 +1,11 @@
 //! The mixing index of a probe.
 
 use dem_io::units::significant;
-use dem_scene::{Quantity, Statistic};
+use dem_scene::Statistic;
 
-use super::Probe;
-use super::mixture::{MixedCell, Mixture};
+use super::measurement::Measurement;
+use super::mixture::{FEWEST_MIXED_CELLS, MixedCell, Mixture};
+use super::probe::Probe;
 use super::spheres::spheres;
 use dem_engine::state::State;
 
@@ -12,13 +13,26 @@ use dem_engine::state::State;
 /// twice as much.
 const LARGEST_INDEX_ERROR: f64 = 0.05;
 
+pub(super) const MEASUREMENTS: &[Measurement] = &[Measurement {
+    needs_clusters: true,
+    missing: |probe| {
+        let within = probe.measure.within.as_deref().unwrap_or_default();
+        Some(format!(
+            "the region \"{within}\" has nothing of one of the two, cell_size is so small that no cell has two pieces, or so large that fewer than {FEWEST_MIXED_CELLS} cells hold something"
+        ))
+    },
+    ..Measurement::new("mixing_index", |probe, view| {
+        (probe.mixing(view.state)).map_or(f64::NAN, |mixture| mixture.lacey_index())
+    })
+}];
+
 impl Probe {
     /// What the cells of a mixing index hold of its two sets. None for other quantities.
     pub(super) fn mixing(&self, state: &State) -> Option<Mixture> {
-        let region = self.region.filter(|_| self.mixes())?;
+        let cell_m = self.measure.cell_size_m?;
+        let region = self.region?;
         let own = spheres(&self.members, state);
         let others = self.with.as_ref().map(|with| spheres(with, state));
-        let cell_m = self.measure.cell_size_m.unwrap_or(f64::NAN);
         let region = &state.model.rules.regions[region];
         Some(Mixture::of(
             [&own, &others.unwrap_or_default()],
@@ -29,7 +43,7 @@ impl Probe {
 
     /// Whether it is a mixing index.
     pub fn mixes(&self) -> bool {
-        self.measure.quantity == Quantity::MixingIndex
+        self.measure.cell_size_m.is_some()
     }
 
     /// What the cells of a mixing index hold. Empty for other quantities.

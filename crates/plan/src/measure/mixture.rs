@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::spheres::Sphere;
-use crate::measures::FEWEST_MIXED_CELLS;
 use dem_engine::state::regions::Region;
 use dem_engine::state::watches::IndexError;
 
+/// Smallest number of cells with something in them for which a mixing index has a meaning.
+pub(super) const FEWEST_MIXED_CELLS: usize = 10;
 /// Fewest pieces of a cell from which one can tell whether its two sets lie apart.
 const FEWEST_TOLD_APART: f64 = 3.0;
 

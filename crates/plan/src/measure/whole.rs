@@ -9,126 +9,66 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
+use super::measurement::{IfZero, Measurement, Settles};
 use super::members::Members;
+use super::probe::Probe;
+use super::starts::{Starts, mean};
+use super::view::{Motions, View};
 use dem_engine::state::State;
-use dem_engine::state::bodies::PlacedBody;
-use dem_engine::state::clumps::Clump;
-use dem_engine::state::events::REMOVED;
-use dem_engine::state::particles::Motion;
 use dem_physics::rigid::rotation_vector;
 use dem_physics::rotation::numbers;
 use dem_physics::rotation::rotation;
 
-/// Initial positions of bodies, by name.
-pub(super) type Starts = BTreeMap<String, Start>;
-
-/// Initial position of a body.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Start {
-    /// Its particles, by their numbers in its file, m.
-    places: Vec<Vector3<f64>>,
-    /// Its centre, if it was a clump, m.
-    centre: Option<Vector3<f64>>,
-    /// Rotations of its particles, by their numbers in its file.
-    turned: Vec<UnitQuaternion<f64>>,
-}
-
-/// Velocities at the time of the positions: one for each particle, and the motion of each clump.
-#[derive(Debug, Default)]
-pub(super) struct Motions {
-    pub(super) particles: Vec<Motion>,
-    pub(super) clumps: Vec<Clump>,
-}
-
-/// Positions of the bodies of a state that has not been stepped.
-pub(super) fn starts(bodies: &[PlacedBody], state: &State) -> Starts {
-    let place = |i: &u32| state.particles.poses[*i as usize].place();
-    let turned = |i: &u32| state.particles.poses[*i as usize].rotation();
-    let placed = bodies.iter().map(|body| {
-        let start = Start {
-            places: body.particles.iter().map(place).collect(),
-            centre: None,
-            turned: body.particles.iter().map(turned).collect(),
-        };
-        (body.name.clone(), start)
-    });
-    let clumps = state.clumps.all.iter().map(|clump| {
-        let template = state.clumps.template(clump);
-        let mut places = vec![Vector3::zeros(); template.spheres.len()];
-        let mut turned = vec![UnitQuaternion::identity(); template.spheres.len()];
-        for (sphere, &number) in template.file_number.iter().enumerate() {
-            let pose = template.pose(sphere, clump);
-            places[number as usize] = pose.place();
-            turned[number as usize] = pose.rotation();
+pub(super) const MEASUREMENTS: &[Measurement] = &[
+    of_motion("position_x", |probe, view| {
+        let wall = probe.walls[0].and_then(|wall| view.state.walls.get(wall));
+        match wall {
+            Some(wall) => wall.frame.position_m[probe.measure.part],
+            None => probe.part(&centre(&probe.members, view.state)),
         }
-        let start = Start {
-            places,
-            centre: Some(clump.place_m.into()),
-            turned,
-        };
-        (template.body.clone(), start)
-    });
-    placed.chain(clumps).collect()
-}
-
-/// Centre of mass of the initial positions of the members, m. Members that did not exist then do
-/// not count.
-pub(super) fn start_centre(
-    members: &Members,
-    starts: &Starts,
-    bodies: &[PlacedBody],
-    state: &State,
-) -> Vector3<f64> {
-    let mut parts: Vec<(f64, Vector3<f64>)> = Vec::new();
-    for body in bodies {
-        let Some(start) = starts.get(&body.name) else {
-            continue;
-        };
-        for (place, i) in start.places.iter().zip(&body.particles) {
-            if *i != REMOVED && members.particles.binary_search(i).is_ok() {
-                let motion = &state.particles.motions[*i as usize];
-                parts.push((1.0 / motion.inverse_mass, *place));
-            }
+    }),
+    Measurement {
+        counts_from_start: true,
+        if_zero: IfZero::Note(|measure| Some(format!("'{}' did not move that way", measure.of))),
+        ..of_motion("displacement_x", |probe, view| {
+            probe.part(&centre_from(&probe.members, view.state, probe.start))
+        })
+    },
+    of_motion("velocity_x", |probe, view| {
+        probe.part(&velocity(&probe.members, view.state, view.motions()))
+    }),
+    Measurement {
+        counts_from_start: true,
+        ..of_motion("rotation_x", |probe, view| {
+            let (starts, before) = (&probe.starts, &probe.turned_before);
+            probe.part(&turn(&probe.members, view.state, starts, before))
+        })
+    },
+    of_motion("angular_velocity_x", |probe, view| {
+        probe.part(&spin(&probe.members, view.state, view.motions()))
+    }),
+    of_motion("kinetic_energy", |probe, view| {
+        if probe.members.are_all {
+            return view.balance.kinetic_j;
         }
+        kinetic_j(&probe.members, view.state, view.motions())
+    }),
+];
+
+const fn of_motion(name: &'static str, read: fn(&Probe, &View<'_>) -> f64) -> Measurement {
+    Measurement {
+        settles: Settles::IfHeld,
+        ..Measurement::new(name, read)
     }
-    for (_, template) in members.clumps(state, &state.clumps.all) {
-        match starts.get(&template.body) {
-            Some(Start {
-                centre: Some(centre),
-                places,
-                ..
-            }) if places.len() == template.spheres.len() => {
-                parts.push((template.mass_kg, *centre));
-            }
-            // A fragment.
-            Some(start) => {
-                let spheres = template.spheres.iter().zip(template.file_number.iter());
-                parts.extend(spheres.map(|(s, n)| (s.mass_kg, start.places[*n as usize])));
-            }
-            None => {}
-        }
-    }
-    // In the order of the file or of the state: the same mean, except for rounding.
-    mean(&parts)
-}
-
-/// The mean of vectors, each with a weight.
-fn mean(parts: &[(f64, Vector3<f64>)]) -> Vector3<f64> {
-    let Some(&(_, origin)) = parts.first() else {
-        return Vector3::repeat(f64::NAN);
-    };
-    let weight: f64 = parts.iter().map(|(weight, _)| weight).sum();
-    let sum: Vector3<f64> = parts.iter().map(|(w, x)| *w * (x - origin)).sum();
-    origin + sum / weight
 }
 
 /// Centre of mass, m.
-pub(super) fn centre(members: &Members, state: &State) -> Vector3<f64> {
+fn centre(members: &Members, state: &State) -> Vector3<f64> {
     mean(&places(members, state))
 }
 
 /// Distance of the centre of mass from a position, m.
-pub(super) fn centre_from(members: &Members, state: &State, from: Vector3<f64>) -> Vector3<f64> {
+fn centre_from(members: &Members, state: &State, from: Vector3<f64>) -> Vector3<f64> {
     let mut places = places(members, state);
     for (_, place) in &mut places {
         *place -= from;
@@ -147,7 +87,7 @@ fn places(members: &Members, state: &State) -> Vec<(f64, Vector3<f64>)> {
 }
 
 /// Velocity of the centre of mass, m/s.
-pub(super) fn velocity(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
+fn velocity(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
     let p = &state.particles;
     let free = members.free(state).map(|i| {
         let velocity = Vector3::from(motions.particles[i].velocity_m_s);
@@ -160,7 +100,7 @@ pub(super) fn velocity(members: &Members, state: &State, motions: &Motions) -> V
 }
 
 /// Kinetic energy, J.
-pub(super) fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> f64 {
+fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> f64 {
     let free = members.free(state);
     let free = free.map(|i| state.particles.kinetic_j(i, &motions.particles[i]));
     let clumps = members.clumps(state, &motions.clumps);
@@ -172,7 +112,7 @@ pub(super) fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> 
 
 /// Spin of the rigid body with the same inertia and the same angular momentum about the centre of
 /// mass, rad/s. For a single particle or clump, its own.
-pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
+fn spin(members: &Members, state: &State, motions: &Motions) -> Vector3<f64> {
     let p = &state.particles;
     let (mut free, mut clumps) = (members.free(state), members.clumps(state, &motions.clumps));
     if let [Some(i), None] = [free.next(), free.next()]
@@ -224,7 +164,7 @@ pub(super) fn spin(members: &Members, state: &State, motions: &Motions) -> Vecto
 
 /// Mass-weighted mean of the rotation vectors since the start, rad, of 180 degrees at most.
 /// `turned_before`: of particles that were rotated at the start.
-pub(super) fn turn(
+fn turn(
     members: &Members,
     state: &State,
     starts: &Starts,
@@ -269,22 +209,4 @@ fn nearest(turn: Vector3<f64>, to: &Vector3<f64>) -> Vector3<f64> {
     } else {
         turn
     }
-}
-
-/// Initial rotations of those of the members' particles that were rotated then.
-pub(super) fn turned_before(
-    members: &Members,
-    starts: &Starts,
-    bodies: &[PlacedBody],
-) -> BTreeMap<u32, UnitQuaternion<f64>> {
-    let known = bodies
-        .iter()
-        .filter_map(|body| Some((body, starts.get(&body.name)?)));
-    let particles = known.flat_map(|(body, start)| body.particles.iter().zip(&start.turned));
-    particles
-        .filter(|(i, turned)| {
-            **turned != UnitQuaternion::identity() && members.particles.binary_search(i).is_ok()
-        })
-        .map(|(i, turned)| (*i, *turned))
-        .collect()
 }

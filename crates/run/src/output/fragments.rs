@@ -7,7 +7,6 @@ use dem_io::units::significant;
 use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_results::summary::FragmentSummary;
 use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
-use dem_scene::Quantity;
 
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
@@ -129,7 +128,7 @@ pub(crate) fn write_fragment_plots(
         return Ok(());
     };
     let counts = counts_over_time(&clusters.history, end_s);
-    let counts_fragments = |probe: &Probe| probe.measure.quantity == Quantity::Count;
+    let counts_fragments = |probe: &Probe| probe.measure.quantity_name() == "count";
     let is_measured = probes.iter().any(counts_fragments);
     if !is_measured && counts.iter().any(|[_, count]| *count != counts[0][1]) {
         let mut plot = plot("Fragments", "time (s)", "fragments", counts);

@@ -53,7 +53,7 @@ pub(crate) fn write_plots(
     }
     let first = series.columns.len() - probes.len();
     for (probe, name) in probes.iter().zip(&series.columns[first..]) {
-        let quantity = probe.measure.quantity.name().replace('_', " ");
+        let quantity = probe.measure.quantity_name().replace('_', " ");
         let label = match probe.unit() {
             "" => quantity,
             unit => format!("{quantity} ({unit})"),

@@ -210,7 +210,7 @@ pub fn value_to_find(study: &Study, scene: &Scene) -> Result<Option<f64>> {
 /// A value as written, in the unit of the scene's measure, or in SI for other results.
 fn in_unit_of(text: &str, measure: Option<&Measure>) -> Result<f64> {
     match measure {
-        Some(measure) => quantity(text, measure.quantity.dimension()),
+        Some(measure) => quantity(text, measure.quantity.dimension),
         None => in_si(text).ok_or_else(|| {
             let problem = format!("'{text}' is no number with a unit");
             Diagnostic::input("", problem, "write it in SI, without one")

@@ -6,7 +6,7 @@ use dem_io::units::DIMENSIONS;
 use dem_scene::{
     BodySource, BondDamping, BondFailure, BondModel, BondPlasticity, Clusters, ColourBy, Contact,
     ContactLaw, EquivalentStress, Factor, Formulation, Hold, InitialOverlap, Integrator,
-    JointElements, Pick, Quantity, Relaxation, Rolling, Scene, Search, Statistic,
+    JointElements, Pick, QUANTITIES, Relaxation, Rolling, Scene, Search, Statistic,
     StrainRateMeasure, Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
@@ -503,7 +503,7 @@ fn measures_and_output() {
     let scene = good("every-key.toml");
     let bending = &scene.measures["bending"];
     assert_eq!(bending.of, "left-end");
-    assert_eq!(bending.quantity, Quantity::Displacement(1));
+    assert_eq!(bending.quantity_name(), "displacement_y");
     assert_eq!(bending.statistic, Statistic::Largest);
     assert_near(bending.reference.unwrap(), 0.0015);
     assert_eq!(bending.tolerance, Some(0.02));
@@ -515,40 +515,41 @@ fn measures_and_output() {
     assert_eq!((energy.reference, energy.tolerance), (None, None));
     let push = &scene.measures["push"];
     assert_eq!(
-        (push.of.as_str(), push.quantity),
-        ("punch", Quantity::Force(2))
+        (push.of.as_str(), push.quantity_name()),
+        ("punch", "force_z")
     );
     assert_eq!(push.reference, Some(-1000.0));
     assert_eq!((push.absolute_tolerance, &push.with), (None, &None));
     let hit = &scene.measures["hit"];
-    assert_eq!(hit.quantity, Quantity::ContactOverlap);
+    assert_eq!(hit.quantity_name(), "contact_overlap");
     assert_eq!(hit.with.as_deref(), Some("punch"));
     assert_near(hit.absolute_tolerance.unwrap(), 1e-5);
     let pieces = &scene.measures["pieces"];
     assert_eq!(pieces.of, "fragments");
-    assert_eq!(pieces.quantity, Quantity::MassOfLargest);
     assert_eq!(
-        (pieces.quantity.name(), pieces.reference),
+        (pieces.quantity_name(), pieces.reference),
         ("mass_of_largest", Some(0.02))
     );
     let calm = &scene.measures["calm"];
-    assert_eq!(calm.quantity, Quantity::FractionBelowDynamicUtilisation);
+    assert_eq!(calm.quantity_name(), "fraction_below_dynamic_utilisation");
     assert_eq!((calm.limit, push.limit), (Some(0.5), None));
-    assert_eq!(Quantity::LargestStrainRate.dimension().si, "1/s");
+    let strain_rate = ["largest_strain_rate"];
+    let rate = QUANTITIES.iter().find(|one| one.names == strain_rate);
+    assert_eq!(rate.unwrap().dimension.si, "1/s");
     let others = good("touching.toml").measures;
     for (name, quantity, unit) in [
-        ("hit", Quantity::Force(2), "N"),
-        ("twist", Quantity::Torque(1), "N m"),
-        ("place", Quantity::Position(2), "m"),
-        ("pieces", Quantity::Count, ""),
-        ("largest", Quantity::MassFractionOfLargest, ""),
-        ("all_of_it", Quantity::ForceMagnitude, "N"),
-        ("sideways", Quantity::ContactForce(1), "N"),
-        ("while", Quantity::ContactDuration, "s"),
-        ("slope", Quantity::AngleOfRepose, "deg"),
+        ("hit", "force_z", "N"),
+        ("twist", "torque_y", "N m"),
+        ("place", "position_z", "m"),
+        ("pieces", "count", ""),
+        ("largest", "mass_fraction_of_largest", ""),
+        ("all_of_it", "force", "N"),
+        ("sideways", "contact_force_y", "N"),
+        ("while", "contact_duration", "s"),
+        ("slope", "angle_of_repose", "deg"),
     ] {
-        assert_eq!(others[name].quantity, quantity);
-        assert_eq!(quantity.dimension().si, unit);
+        assert_eq!(others[name].quantity_name(), quantity);
+        assert_eq!(others[name].quantity.dimension.si, unit);
     }
     assert_near(others["slope"].reference.unwrap(), 30.0);
     let output = scene.output.unwrap();

@@ -169,7 +169,7 @@ impl Chooser<'_> {
         let Some(measure) = self.scene.measures.get(result) else {
             return Ok(plain);
         };
-        let dimension = measure.quantity.dimension();
+        let dimension = measure.quantity.dimension;
         match plain {
             Some(number) if dimension.si == "deg" => {
                 let problem = format!("the unit of {result}:{value} is missing");
