@@ -53,9 +53,6 @@ impl Record {
 }
 
 /// Writes a record as JSON, whole or not at all.
-///
-/// # Errors
-/// Missing folder, no permission, full disk (all exit code 1).
 pub fn write_record(path: &Path, record: &Record) -> Result<()> {
     write_file(path, |out| {
         let text = serde_json::to_string(record).map_err(std::io::Error::other)?;
@@ -63,10 +60,8 @@ pub fn write_record(path: &Path, record: &Record) -> Result<()> {
     })
 }
 
-/// Reads what [`write_record`] wrote.
-///
-/// # Errors
-/// No such file; it is not the record of a calibration, or of another version (all exit code 2).
+/// Reads what [`write_record`] wrote; refuses other files, other versions, and rounds without all
+/// of their numbers.
 pub fn read_record(path: &Path) -> Result<Record> {
     let refuse = |problem: String| {
         let remedy = "name the .json file that dem-run calibrate wrote, or leave out --resume";

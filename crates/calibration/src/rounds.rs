@@ -15,10 +15,7 @@ pub type TestFunction<'a> = dyn Fn(&[f64], usize) -> Result<Trial> + Sync + 'a;
 
 /// Does rounds of tests, from the first factors of `case`, until the targets are met or cannot be
 /// met. Rounds that `case` already has are not repeated. `workers` tests run at a time; `save` is
-/// called after every test.
-///
-/// # Errors
-/// Those of the tests and of `save`; the tests that are finished are in `case`.
+/// called after every test, and `case` keeps the finished tests on an error.
 pub fn calibrate(
     unknowns: &[Unknown],
     packings: usize,
