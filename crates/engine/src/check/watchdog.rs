@@ -62,10 +62,7 @@ impl Watchdog {
         !quiet
     }
 
-    /// Checks the ledger.
-    ///
-    /// # Errors
-    /// The energy is NaN, or the spurious energy exceeds that of a stable run.
+    /// Checks the ledger; refuses NaN, and more spurious energy than that of a stable run.
     pub fn look(&self, state: &State, balance: &Balance, bodies: &[PlacedBody]) -> Result<()> {
         // A load that has just begun has moved nothing yet: its work in the next half step counts
         // as well.

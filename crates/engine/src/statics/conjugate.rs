@@ -38,10 +38,7 @@ pub struct ConjugateGradients {
 }
 
 impl ConjugateGradients {
-    /// For a symmetric matrix whose unknowns have these nodes.
-    ///
-    /// # Errors
-    /// A diagonal block or the stiffness between groups is not positive definite; memory.
+    /// For a symmetric positive definite matrix whose unknowns have these nodes.
     pub fn new(matrix: &Matrix, nodes: &[Node]) -> Result<Self, NoFactor> {
         let (groups, rigid) = rigid_motions(nodes);
         let coarse_matrix = coarse(matrix, &rigid, groups);
@@ -58,9 +55,6 @@ impl ConjugateGradients {
 
     /// Replaces the right-hand side by the solution; the norm of the residual, weighted by the
     /// preconditioner, falls by `accuracy`. Returns the number of iterations.
-    ///
-    /// # Errors
-    /// The matrix is not positive definite, or the iteration does not converge.
     pub fn solve(&self, side: &mut [f64], accuracy: f64) -> Result<usize, NoFactor> {
         let mut residual = side.to_vec();
         side.fill(0.0);

@@ -40,9 +40,6 @@ pub enum NoFactor {
 
 impl DirectFactor {
     /// Finds an order for matrices of this pattern, and the pattern of their factors.
-    ///
-    /// # Errors
-    /// Memory.
     pub fn new(matrix: &Matrix) -> Result<Self, NoFactor> {
         let pattern = pattern(matrix);
         if !matrix.symmetric {
@@ -64,9 +61,6 @@ impl DirectFactor {
     }
 
     /// Computes the factors of a matrix of the pattern.
-    ///
-    /// # Errors
-    /// An unsuitable pivot, memory.
     pub fn compute(&mut self, matrix: &Matrix) -> Result<(), NoFactor> {
         let values = SparseColMatRef::new(pattern(matrix), &matrix.values);
         match self {

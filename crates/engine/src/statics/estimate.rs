@@ -28,10 +28,8 @@ pub struct StaticsEstimate {
 }
 
 impl StaticsEstimate {
-    /// For a planned state, with loads and supports until `end_s`.
-    ///
-    /// # Errors
-    /// Even the pattern of the factor does not fit into memory.
+    /// For a planned state, with loads and supports until `end_s`; refused if even the pattern of
+    /// the factor does not fit into memory.
     pub fn of(state: &State, end_s: f64) -> Result<Self> {
         let degrees_of_freedom = DegreesOfFreedom::new(state, end_s);
         let symmetric = !degrees_of_freedom.has_free_torques(state);

@@ -20,9 +20,6 @@ pub enum Factor {
 
 impl Factor {
     /// For matrices of this pattern, whose unknowns have these nodes.
-    ///
-    /// # Errors
-    /// Memory.
     pub fn new(matrix: &Matrix, nodes: Vec<Node>) -> Result<Self, NoFactor> {
         if matrix.symmetric && nodes.len() >= ITERATIVE_FROM {
             return Ok(Self::Iterative(nodes, None));
@@ -39,9 +36,6 @@ impl Factor {
     }
 
     /// Takes a matrix of the pattern.
-    ///
-    /// # Errors
-    /// An unsuitable pivot, memory.
     pub fn compute(&mut self, matrix: &Matrix) -> Result<(), NoFactor> {
         match self {
             Self::Direct(factor) => factor.compute(matrix),
@@ -56,9 +50,7 @@ impl Factor {
 
     /// Replaces the right-hand side by the solution, with the matrix computed last; without one it
     /// stays as it is. `accuracy`: fraction to which conjugate gradients reduce the residual.
-    ///
-    /// # Errors
-    /// Without factors only: the matrix is not positive definite.
+    /// Direct factors do not fail.
     pub(crate) fn solve(&self, side: &mut [f64], accuracy: f64) -> Result<(), NoFactor> {
         match self {
             Self::Direct(factor) => factor.solve(side),

@@ -124,11 +124,8 @@ struct Search<'a> {
 /// changes its poses, and sets its wrenches to those of the bonds. `goes_on` is called before every
 /// step, with the progress in 0..1.
 ///
-/// Supports must hold every piece of the bodies, and all bonds must be of the total formulation.
-///
-/// # Errors
-/// There is no stable one, it is not found, or the search is interrupted. The poses are then those
-/// of the fraction that was reached.
+/// Supports must hold every piece of the bodies, and all bonds must be of the total formulation. On
+/// an error the poses are those of the fraction of the load that was reached.
 pub fn equilibrium(
     state: &mut State,
     end_s: f64,
@@ -306,9 +303,7 @@ pub struct Step<'a> {
 
 impl Step<'_> {
     /// Moves a state from these poses by what the net forces on its unknowns, N and N m, ask for.
-    ///
-    /// # Errors
-    /// There is no solution, or it turns a particle far: the poses stay.
+    /// The poses stay if there is no solution, or if it turns a particle far.
     pub fn take(
         &self,
         state: &mut State,
