@@ -9,11 +9,7 @@ use crate::diagnostic::{Diagnostic, Result};
 /// Largest file of text, bytes: a larger one is something else, or has no end.
 const MOST_BYTES: u64 = 1 << 28;
 
-/// The bytes of a file of text, called `what` in messages ("a scene").
-///
-/// # Errors
-/// There is no such file, it is a folder, it cannot be read, or it is larger than 256 MB (all exit
-/// code 2).
+/// The bytes of a file of text, at most 256 MB, called `what` in messages ("a scene").
 pub fn read_input(path: &Path, what: &str) -> Result<Vec<u8>> {
     let name = path.display().to_string();
     let read = || -> std::io::Result<Vec<u8>> {

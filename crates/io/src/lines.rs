@@ -24,11 +24,8 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// The next line without the white space around it, and its number, counted from 1.
-    ///
-    /// # Errors
-    /// It cannot be read, is not text, or is cut off: the last line of a complete file also ends
-    /// with a line break.
+    /// The next line without the white space around it, and its number, counted from 1. Refuses
+    /// bytes that are not text, and a line without its line break, as the file is cut off.
     pub fn next_line(&mut self) -> Result<Option<(u64, &str)>> {
         if self.read_line()? && !self.bytes.ends_with(b"\n") {
             return Err(on_line(
@@ -44,9 +41,6 @@ impl<'a> Lines<'a> {
     }
 
     /// The same for a file that may still be written: a line within which it ends is no line.
-    ///
-    /// # Errors
-    /// It cannot be read, or is not text.
     pub fn next_whole_line(&mut self) -> Result<Option<(u64, &str)>> {
         if self.read_line()? && !self.bytes.ends_with(b"\n") {
             return Ok(None);
@@ -100,9 +94,6 @@ pub fn on_line(number: u64, error: Diagnostic) -> Diagnostic {
 }
 
 /// The number in `word`; `what` is its name in messages.
-///
-/// # Errors
-/// No word, or not a number (exit code 2).
 pub fn float(word: Option<&str>, what: &str) -> Result<f64> {
     let word = word.ok_or_else(|| missing(what))?;
     word.parse()

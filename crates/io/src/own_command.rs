@@ -13,9 +13,6 @@ pub fn set_own_command(file: PathBuf, first_arguments: Vec<String>) {
 
 /// The file that starts this program once more, and the arguments before its own: the file of the
 /// process without any, unless [`set_own_command`] says others.
-///
-/// # Errors
-/// The system does not tell the file of the process.
 pub fn own_command() -> std::io::Result<(PathBuf, Vec<String>)> {
     match OWN_COMMAND.get() {
         Some(command) => Ok(command.clone()),

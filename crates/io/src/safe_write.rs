@@ -47,14 +47,10 @@ pub struct PendingFile {
 
 impl PendingFile {
     /// Writes the later file `path` under its temporary name, in the same folder. An existing file
-    /// stays unchanged until `publish`.
+    /// stays unchanged until `publish`; an error leaves nothing behind.
     ///
     /// A device or a named pipe is written to directly; a reader that closes it early is not an
     /// error.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk, `path` is a folder (all exit code 1). Nothing is
-    /// left behind.
     pub fn write(
         path: &Path,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -112,10 +108,7 @@ impl PendingFile {
         Ok(())
     }
 
-    /// Renames the file to its final name, replacing an existing file.
-    ///
-    /// # Errors
-    /// The rename failed (exit code 1). An existing file is unchanged.
+    /// Renames the file to its final name, replacing an existing file, which stays on an error.
     pub fn publish(mut self) -> Result<()> {
         let Some(temporary) = self.temporary.take() else {
             return Ok(());
@@ -138,9 +131,6 @@ impl Drop for PendingFile {
 }
 
 /// Writes the file `path`, which appears complete or not at all.
-///
-/// # Errors
-/// As [`PendingFile::write`].
 pub fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     PendingFile::write(path, write)?.publish()
 }
@@ -247,10 +237,8 @@ fn remove_abandoned_files(folder: &Path) {
     }
 }
 
-/// Removes a temporary file unless its writer is still running.
-///
-/// # Errors
-/// Those of removing it. A file that cannot be opened or locked stays, without an error.
+/// Removes a temporary file unless its writer is still running. A file that cannot be opened or
+/// locked stays, without an error.
 pub fn remove_if_abandoned(path: &Path) -> io::Result<()> {
     if !fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file()) {
         return Ok(());
@@ -302,9 +290,6 @@ pub fn explain(path: &Path, error: &io::Error) -> Diagnostic {
 
 /// Writes `value` as indented JSON for a terminal, without characters that control it. Numbers that
 /// are not finite become `null`.
-///
-/// # Errors
-/// Those of `out`; `value` cannot be represented as JSON.
 pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
     let json = serde_json::to_string_pretty(value)?;
     write_visible_json(out, &json)?;
@@ -312,17 +297,11 @@ pub fn write_json_text(out: &mut dyn Write, value: &impl Serialize) -> io::Resul
 }
 
 /// Writes a JSON text for a terminal, without characters that control it; its meaning is unchanged.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_visible_json(out: &mut dyn Write, json: &str) -> io::Result<()> {
     out.write_all(visible_json(json).as_bytes())
 }
 
 /// Writes bytes that are not text unchanged to standard output.
-///
-/// # Errors
-/// Standard output cannot be written to, such as a full disk behind it (exit code 1).
 pub fn write_standard_bytes(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     quiet_when_closed(write_buffered(io::stdout().lock(), write))
         .map_err(|error| explain(Path::new("standard output"), &error))

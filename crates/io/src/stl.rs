@@ -41,10 +41,10 @@ const REMEDY_OTHER: &str = "give an ASCII or binary STL file";
 
 /// Reads an ASCII or binary STL.
 ///
-/// # Errors Not an STL, no facet, missing or too many bytes (bytes after the last facet of a binary
-/// file are accepted if all are zeros or blanks), a coordinate that is not a finite number (with
-/// the facet counted from 1, and the line of an ASCII file), or ASCII that does not follow the
-/// grammar (with the line). The place does not name the file.
+/// # Errors
+/// Not an STL, no facet, missing or too many bytes (zeros and blanks may follow the last facet of a
+/// binary file), a coordinate that is not a finite number, or ASCII that does not follow the
+/// grammar.
 pub(crate) fn read_facets(bytes: &[u8]) -> Result<Facets> {
     if bytes.is_empty() {
         return Err(Diagnostic::input(
@@ -146,10 +146,7 @@ fn refuse_damaged(corners: &[[[f64; 3]; 3]]) -> Result<()> {
 }
 
 /// The bytes of an STL that comes through a pipe or a device, which may have no end: reading stops
-/// where an STL of that beginning would end.
-///
-/// # Errors
-/// Those of `input`; it goes on after the end.
+/// where an STL of that beginning would end, and more bytes are refused.
 pub fn read_stream(input: &mut dyn Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input.take(BINARY_START as u64).read_to_end(&mut bytes)?;
@@ -171,9 +168,6 @@ pub fn read_stream(input: &mut dyn Read) -> io::Result<Vec<u8>> {
 
 /// The bytes of an STL file; one that is no file of the disk, such as a named pipe, is read as by
 /// [`read_stream`].
-///
-/// # Errors
-/// As [`read_stream`].
 pub fn read_stl_file(path: &Path) -> io::Result<Vec<u8>> {
     if std::fs::metadata(path)?.is_file() {
         return std::fs::read(path);

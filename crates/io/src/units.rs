@@ -337,33 +337,22 @@ pub const DIMENSIONS: [Dimension; 22] = [
 ];
 
 /// A length in metres from "2mm", "2 mm" or a plain number of metres.
-///
-/// # Errors
-/// Not a number, not finite, or an unknown unit.
 pub fn length_m(text: &str) -> Result<f64> {
     quantity(text, &LENGTH)
 }
 
 /// A density in kg/m3 from "2.05 g/cm3" or a plain number of kg/m3.
-///
-/// # Errors
-/// Not a number, not finite, or an unknown unit.
 pub fn density_kg_m3(text: &str) -> Result<f64> {
     quantity(text, &DENSITY)
 }
 
 /// Metres in one unit of length, from its name.
-///
-/// # Errors
-/// An unknown unit.
 pub fn length_unit_m(name: &str) -> Result<f64> {
     unit_size(name.trim(), &LENGTH)
 }
 
-/// A value in SI from a number with a unit of `dimension`, or from a plain number in SI.
-///
-/// # Errors
-/// Not a number, not finite, or a unit of another dimension, with the units that fit.
+/// A value in SI from a number with a unit of `dimension`, or from a plain number in SI. Refuses
+/// numbers that are not finite.
 pub fn quantity(text: &str, dimension: &Dimension) -> Result<f64> {
     let text = text.trim();
     let number_end = number_length(text);

@@ -167,9 +167,6 @@ pub struct PolyData<'a> {
 impl PolyData<'_> {
     /// Writes the file. `write_fields` writes the field data, with [`write_number`] and
     /// `write_text`.
-    ///
-    /// # Errors
-    /// Those of `out`.
     pub fn write(
         &self,
         out: &mut dyn Write,
@@ -307,9 +304,6 @@ pub fn write_number(
 }
 
 /// A field of vectors of 3 components, unless there are none.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_vectors(out: &mut dyn Write, name: &str, vectors: &[[f64; 3]]) -> io::Result<()> {
     let count = vectors.len();
     if count == 0 {
@@ -324,17 +318,11 @@ pub fn write_vectors(out: &mut dyn Write, name: &str, vectors: &[[f64; 3]]) -> i
 }
 
 /// A field of text, unless it is unknown: an array of signed bytes with a zero at its end.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_text(out: &mut dyn Write, name: &str, text: Option<&str>) -> io::Result<()> {
     text.map_or(Ok(()), |text| write_texts(out, name, &[text]))
 }
 
 /// A field of texts, unless there are none: each as signed bytes with a zero at its end.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_texts(out: &mut dyn Write, name: &str, texts: &[impl AsRef<str>]) -> io::Result<()> {
     let count = texts.len();
     if count == 0 {

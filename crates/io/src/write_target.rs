@@ -28,10 +28,7 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
 }
 
 /// Refuses to write `target`, called `place` in messages (an option or a file), if it is one of the
-/// files that are read.
-///
-/// # Errors
-/// It is the same file as one of `inputs`, also through a link (exit code 2).
+/// files that are read, also through a link.
 pub fn refuse_input(place: &str, target: &Path, inputs: &[PathBuf]) -> Result<()> {
     match inputs.iter().find(|input| is_same_file(target, input)) {
         None => Ok(()),
@@ -46,10 +43,7 @@ pub fn refuse_input(place: &str, target: &Path, inputs: &[PathBuf]) -> Result<()
     }
 }
 
-/// Checks before the work that the folder for a file exists.
-///
-/// # Errors
-/// It does not exist: bad input, as the name was given so.
+/// Checks before the work that the folder for a file exists; else bad input (exit code 2).
 pub fn need_folder_of(target: &Path) -> Result<()> {
     if folder_of(target).is_dir() {
         return Ok(());
@@ -63,9 +57,6 @@ pub fn need_folder_of(target: &Path) -> Result<()> {
 }
 
 /// Refuses to overwrite files that are read, under whatever name.
-///
-/// # Errors
-/// One of `written` is one of `read` (bad input): the same path, or a link to it.
 pub fn refuse_to_replace(written: &[PathBuf], read: &[PathBuf]) -> Result<()> {
     for target in written {
         if let Some(input) = read.iter().find(|input| is_same_file(target, input)) {

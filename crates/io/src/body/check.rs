@@ -11,10 +11,6 @@ impl Body {
     ///
     /// Takes linear time and at most 8 bytes of memory per particle and 4 per bond, none if the
     /// bonds are sorted.
-    ///
-    /// # Errors
-    /// The first rule broken: number of the particle or bond (counted from 0), value, limit,
-    /// remedy.
     pub fn check(&self) -> Result<()> {
         check_lengths(self)?;
         check_particles(self)?;

@@ -23,9 +23,6 @@ const BOND_COLUMNS: [&str; 4] = [
 ];
 
 /// Writes the file of the particles.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_particles(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}", PARTICLE_COLUMNS.join(","))?;
     for ([x, y, z], radius) in body.positions.iter().zip(&body.radii) {
@@ -35,9 +32,6 @@ pub fn write_particles(body: &Body, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// Writes the file of the bonds.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}", BOND_COLUMNS.join(","))?;
     for (([a, b], radius), length) in body
@@ -56,8 +50,7 @@ pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
 /// `initial_length_m` their distance as its length.
 ///
 /// # Errors
-/// A column is missing, a line is invalid or has no end (the file is cut off), or not a body by
-/// [`Body::check`]. The place begins with "particles" or "bonds" if it is known.
+/// A missing column, an invalid or cut-off line, or not a body by [`Body::check`].
 pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body> {
     let mut parts = Parts::default();
     read_particles(particles, &mut parts).map_err(|error| error.within("particles"))?;

@@ -147,10 +147,7 @@ impl Storage {
 }
 
 /// The files of a body that is written to `path`: one, two (.csv, .txt), or none (`-`, standard
-/// output).
-///
-/// # Errors
-/// An unknown ending, with the list of the known ones.
+/// output). Refuses an unknown ending.
 pub fn body_files(path: &Path) -> Result<Vec<PathBuf>> {
     Ok(match Storage::named(path)? {
         Storage::Pipe => Vec::new(),
@@ -160,11 +157,8 @@ pub fn body_files(path: &Path) -> Result<Vec<PathBuf>> {
 }
 
 /// Reads a body from `path`; `-` is a .vtp on standard input. For .csv and .txt either file of the
-/// pair may be given, or their common name (`cake.csv`).
-///
-/// # Errors
-/// No such file, an unknown ending, damaged, or not a body by [`Body::check`]. The place begins
-/// with the file's name.
+/// pair may be given, or their common name (`cake.csv`). Refuses what is not a body by
+/// [`Body::check`].
 pub fn read_body(path: &Path) -> Result<Body> {
     refuse_shape(path)?;
     let within = |error: Diagnostic| error.within(&path.display().to_string());
@@ -191,9 +185,6 @@ pub fn read_body(path: &Path) -> Result<Body> {
 
 /// As [`read_body`], also of a list of spheres without bonds: a .csv or .txt of particles that has
 /// no file of bonds beside it, under its own name or that of the pair.
-///
-/// # Errors
-/// As [`read_body`].
 pub fn read_spheres(path: &Path) -> Result<Body> {
     refuse_shape(path)?;
     let of_list = |mut pair: Pair| {
@@ -214,19 +205,13 @@ pub fn read_spheres(path: &Path) -> Result<Body> {
     }
 }
 
-/// Reads a frame of a run.
-///
-/// # Errors
-/// No such file, damaged, or without fragments (all exit code 2).
+/// Reads a frame of a run; refuses one without fragments.
 pub fn read_frame(path: &Path) -> Result<StoredFrame> {
     let mut file = open(path)?;
     vtp::read_frame(&mut file).map_err(|error| error.within(&path.display().to_string()))
 }
 
 /// Reads the particles and bonds of a frame of any run.
-///
-/// # Errors
-/// No such file, damaged, or not a frame of this program (all exit code 2).
 pub fn read_particles(path: &Path) -> Result<StoredParticles> {
     let mut file = open(path)?;
     vtp::read_particles(&mut file).map_err(|error| error.within(&path.display().to_string()))
@@ -234,9 +219,6 @@ pub fn read_particles(path: &Path) -> Result<StoredParticles> {
 
 /// Reads the walls of a frame of a run, `frames/walls_000123.vtp`, together with the walls that
 /// never move and are written once, next to it.
-///
-/// # Errors
-/// No such file, or damaged (exit code 2).
 pub fn read_walls(path: &Path) -> Result<StoredWalls> {
     let read = |path: &Path| {
         let mut file = open(path)?;
@@ -255,8 +237,7 @@ pub fn read_walls(path: &Path) -> Result<StoredWalls> {
 /// Files appear complete or not at all; of two files, neither appears before both are written.
 ///
 /// # Errors
-/// Not a body by [`Body::check`], an unknown ending, standard output is a terminal (exit code 2);
-/// missing folder, no permission, full disk (exit code 1).
+/// Not a body by [`Body::check`], or more than such a file holds; an unknown ending; a terminal.
 pub fn write_body(body: &Body, path: &Path) -> Result<()> {
     let storage = Storage::named(path)?;
     body.check()?;

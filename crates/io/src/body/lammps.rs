@@ -25,9 +25,6 @@ const DENSITY_TOLERANCE: f64 = 1e-9;
 
 /// Writes a body as LAMMPS data. The box is larger than the body by the largest diameter on each
 /// side.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     let known = body.about.particle_density_kg_m3;
     let density = known.unwrap_or(DENSITY_IF_UNKNOWN_KG_M3);

@@ -79,10 +79,8 @@ pub(crate) struct Parts {
 
 impl Body {
     /// A body of spheres (x, y, z, radius, m) and the bonds between them, which are at rest and
-    /// have the radius of the smaller of their spheres.
-    ///
-    /// # Errors
-    /// Not a body by [`Body::check`].
+    /// have the radius of the smaller of their spheres. Refuses what is not a body by
+    /// [`Body::check`].
     pub fn from_spheres(spheres: &[[f64; 4]], bonds: &[[u32; 2]]) -> Result<Self> {
         Self::from_parts(Parts {
             positions: spheres.iter().map(|&[x, y, z, _]| [x, y, z]).collect(),
@@ -147,9 +145,7 @@ impl Body {
 
     /// A body from the data of a file. The smaller end of each bond is put first. Unless given, a
     /// bond has the radius of the smaller of its particles and their distance as its length.
-    ///
-    /// # Errors
-    /// Not a body by [`Body::check`].
+    /// Refuses what is not a body by [`Body::check`].
     pub(crate) fn from_parts(parts: Parts) -> Result<Self> {
         let Parts {
             positions,

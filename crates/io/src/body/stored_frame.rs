@@ -137,8 +137,7 @@ impl StoredFrame {
     /// failed. Velocities are lost. The density is that of the particles, unless they differ.
     ///
     /// # Errors
-    /// There is no such fragment; the frame does not hold the form of its bonds without load, or of
-    /// a clump the bonds; the frame contains no valid body of it.
+    /// No such fragment; the frame lacks its bonds or their form without load; no valid body.
     pub fn body(&self, id: u32) -> Result<Body> {
         let members: Vec<usize> = (0..self.clusters.len())
             .filter(|&i| self.clusters[i] == id)

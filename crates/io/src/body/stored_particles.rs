@@ -39,9 +39,7 @@ impl StoredParticles {
     /// All loose spheres as one body without bonds, at their positions, in the order of the frame:
     /// those that are a fragment of their own or, in a run in which nothing can break, those
     /// without a bond. Velocities are lost. The density is that of the spheres, unless they differ.
-    ///
-    /// # Errors
-    /// There are none; they are no valid body.
+    /// Refuses a frame without loose spheres.
     pub fn loose_spheres(&self) -> Result<Body> {
         let loose = self.loose();
         if loose.is_empty() {

@@ -38,9 +38,6 @@ pub struct StoredWalls {
 
 impl StoredWalls {
     /// Checks that the points and walls of all triangles exist.
-    ///
-    /// # Errors
-    /// The first one that does not (exit code 2).
     pub(crate) fn check(&self) -> Result<()> {
         let points = self.points_m.len();
         let corners = self.triangles.as_flattened().iter();

@@ -13,9 +13,6 @@ use crate::diagnostic::{Diagnostic, Result};
 use crate::lines::{Lines, float, on_line};
 
 /// Writes the file of the particles.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_particles(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     for ([x, y, z], radius) in body.positions.iter().zip(&body.radii) {
         writeln!(out, "{x:e} {y:e} {z:e} {radius:e}")?;
@@ -24,9 +21,6 @@ pub fn write_particles(body: &Body, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// Writes the file of the bonds.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     for [a, b] in &body.bonds {
         writeln!(out, "{} {}", u64::from(*a) + 1, u64::from(*b) + 1)?;
@@ -39,8 +33,7 @@ pub fn write_bonds(body: &Body, out: &mut dyn Write) -> io::Result<()> {
 /// its length.
 ///
 /// # Errors
-/// A line is invalid or has no end (the file is cut off), or not a body by [`Body::check`]. The
-/// place begins with "particles" or "bonds" if it is known.
+/// An invalid or cut-off line, or not a body by [`Body::check`].
 pub fn read(particles: &mut dyn BufRead, bonds: &mut dyn BufRead) -> Result<Body> {
     let mut parts = Parts::default();
     each_line(particles, |words| {

@@ -36,9 +36,6 @@ use crate::vtk::{
 };
 
 /// Writes a body as .vtp. It must follow the rules of [`Body::check`].
-///
-/// # Errors
-/// Those of `out`.
 pub fn write(body: &Body, out: &mut dyn Write) -> io::Result<()> {
     let array = |name, value| NamedArray {
         name,

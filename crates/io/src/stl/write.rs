@@ -9,9 +9,6 @@ const HEADER: usize = 80;
 /// Writes triangles as STL: corners of each, counterclockwise as seen from outside. The file is
 /// binary with the first 80 bytes of the `header`, or text if the corners are so far from the
 /// origin that single precision would move them.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_stl(header: &str, facets: &[[[f64; 3]; 3]], out: &mut dyn Write) -> io::Result<()> {
     if !single_precision_keeps(facets.iter().flatten()) {
         return write_text(header, facets, out);

@@ -41,9 +41,8 @@ const FLAT: f64 = 1e-10;
 /// just one facet.
 ///
 /// # Errors
-/// A file that is no whole STL (see `read_facets`), a surface that is not closed, that has edges
-/// with an odd number of facets, that has no two sides, or that encloses nothing. The message names
-/// the number and the place of what is wrong.
+/// No whole STL (see `read_facets`); a surface that is not closed, has edges with an odd number of
+/// facets, has no two sides, or encloses nothing.
 pub fn surface_from_stl(bytes: &[u8], source: &str, settings: ReadSettings) -> Result<Surface> {
     let unit_m = settings.unit_m * settings.scale;
     build(bytes, unit_m, settings.fill_holes)

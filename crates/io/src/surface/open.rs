@@ -54,8 +54,8 @@ pub struct OpenSurface {
 /// Equal corners become one, and near ones where that closes a gap.
 ///
 /// # Errors
-/// A unit that is no positive number, a file that is no whole STL (see `read_facets`), a size
-/// outside all reason, or facets of which none has an area.
+/// A unit that is no positive number, no whole STL (see `read_facets`), a size outside all reason,
+/// or facets of which none has an area.
 pub fn read_open_surface(bytes: &[u8], source: &str, unit_m: f64) -> Result<OpenSurface> {
     read(bytes, unit_m)
         .map(|surface| OpenSurface {

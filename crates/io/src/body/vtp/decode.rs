@@ -72,10 +72,8 @@ pub(super) enum Values<'a> {
 }
 
 impl Values<'_> {
-    /// Passes every value to `take`, in order.
-    ///
-    /// # Errors
-    /// Those of `take`; text that is not a number; bytes that end too early.
+    /// Passes every value to `take`, in order; refuses text that is not a number, and bytes that
+    /// end too early.
     pub(super) fn for_each(
         self,
         scalar: Scalar,

@@ -31,25 +31,16 @@ pub fn read(input: &mut dyn BufRead) -> Result<Body> {
 }
 
 /// Reads the fragments of a frame of a run.
-///
-/// # Errors
-/// Damaged or cut off, compressed, wrong counts, or an array of fragments is missing.
 pub(crate) fn read_frame(input: &mut dyn BufRead) -> Result<StoredFrame> {
     contents(input, Layout::Frame)?.into_frame()
 }
 
 /// Reads the particles and bonds of a frame of any run.
-///
-/// # Errors
-/// Damaged or cut off, compressed, wrong counts, or an array is missing.
 pub(crate) fn read_particles(input: &mut dyn BufRead) -> Result<StoredParticles> {
     contents(input, Layout::Frame)?.into_particles()
 }
 
 /// Reads the walls of a frame of a run.
-///
-/// # Errors
-/// Damaged or cut off, compressed, wrong counts.
 pub(crate) fn read_walls(input: &mut dyn BufRead) -> Result<StoredWalls> {
     contents(input, Layout::Walls)?.into_walls()
 }
