@@ -97,8 +97,7 @@ impl Curve {
     /// The curve in a table.
     ///
     /// # Errors
-    /// No column, or several, could be meant; no unit is known; a cell is not a number; too few
-    /// rows; gaps; travel that goes back (all exit code 2).
+    /// No column, or several, could be meant; no unit; a cell that is no number; as [`Self::new`].
     pub fn of(table: &Table, travel: &ColumnChoice, force: &ColumnChoice) -> Result<Self> {
         let travel = Wanted {
             name: "travel",
@@ -136,10 +135,8 @@ impl Curve {
         Ok(Self { notes, ..curve })
     }
 
-    /// A curve of travel, m, and force, N, whose rows stand on these lines.
-    ///
-    /// # Errors
-    /// Too few rows; gaps; travel that goes back (all exit code 2).
+    /// A curve of travel, m, and force, N, whose rows stand on these lines; refuses too few rows,
+    /// gaps, and travel that goes back.
     pub fn new(travel_m: Vec<f64>, force_n: Vec<f64>, lines: Vec<usize>) -> Result<Self> {
         let mut curve = Self {
             travel_m,

@@ -30,8 +30,7 @@ pub struct ListedSpecimen {
 /// `crack_offset (mm)`; empty cells are left to the options.
 ///
 /// # Errors
-/// No such file; no column `file`; an unknown column; a column without a unit; a cell that is not a
-/// number (all exit code 2).
+/// No column `file`; an unknown column; a column without a unit; a cell that is not a number.
 pub fn read_list(path: &Path) -> Result<Vec<ListedSpecimen>> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let table = TextTable::of(&read_text(path)?).map_err(within)?;

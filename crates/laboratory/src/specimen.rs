@@ -204,8 +204,7 @@ impl Specimen {
     /// A specimen of these dimensions.
     ///
     /// # Errors
-    /// A dimension is missing, does not belong to the test, or is not positive; loading pins at or
-    /// outside the supports (all exit code 2).
+    /// A dimension missing, of another test, or not positive; loading pins not within the supports.
     pub fn new(test: TestType, dimensions: &Dimensions) -> Result<Self> {
         let names = test.dimensions();
         for name in Dimensions::NAMES {

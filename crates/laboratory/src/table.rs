@@ -28,9 +28,6 @@ pub struct Table {
 }
 
 /// The text of a file: UTF-8, UTF-16, or Latin-1.
-///
-/// # Errors
-/// No such file; it cannot be read; it is not text (all exit code 2).
 pub fn read_text(path: &Path) -> Result<String> {
     let bytes = read_input(path, "the curve of a test")?;
     text_of(&bytes).ok_or_else(|| {
@@ -75,10 +72,7 @@ fn has_zeros(bytes: &[u8], place: usize) -> bool {
 type Cells<'a> = (usize, Vec<&'a str>);
 
 impl Table {
-    /// The table in a text.
-    ///
-    /// # Errors
-    /// No rows of numbers (exit code 2).
+    /// The table in a text; refuses one without rows of numbers.
     pub fn of(text: &str) -> Result<Self> {
         let lines = numbered(text);
         let contents: Vec<&str> = lines.iter().map(|(_, line)| *line).collect();
@@ -128,10 +122,7 @@ impl Table {
         })
     }
 
-    /// The numbers of a column, with the lines on which they stand.
-    ///
-    /// # Errors
-    /// A row without a number there (exit code 2).
+    /// The numbers of a column, called `what` in messages; refuses a row without one.
     pub fn numbers(&self, column: usize, what: &str) -> Result<Vec<f64>> {
         let number = |(line, cells): &(usize, Vec<String>)| {
             let width = self.columns.len();
@@ -220,10 +211,7 @@ pub(crate) struct TextTable {
 }
 
 impl TextTable {
-    /// The table in a text.
-    ///
-    /// # Errors
-    /// No lines (exit code 2).
+    /// The table in a text; refuses one without lines.
     pub(crate) fn of(text: &str) -> Result<Self> {
         let lines = numbered(text);
         let Some(((_, head), rest)) = lines.split_first() else {
@@ -272,10 +260,7 @@ impl TextTable {
         self.rows[row].1.get(column).map_or("", String::as_str)
     }
 
-    /// The number in a cell.
-    ///
-    /// # Errors
-    /// It is not a number (exit code 2).
+    /// The number in a cell, called `what` in messages.
     pub(crate) fn number(&self, row: usize, column: usize, what: &str) -> Result<f64> {
         let cell = self.cell(row, column);
         self.notation.number(cell).ok_or_else(|| {

@@ -10,17 +10,12 @@ use crate::material::{FORMAT_VERSION, MeasuredMaterial};
 use crate::specimen::Specimen;
 
 /// Writes a measured material as JSON, whole or not at all.
-///
-/// # Errors
-/// Missing folder, no permission, full disk (all exit code 1).
 pub fn write_material(path: &Path, material: &MeasuredMaterial) -> Result<()> {
     write_file(path, |out| write_json_text(out, material))
 }
 
-/// Reads what [`write_material`] wrote.
-///
-/// # Errors
-/// No such file; it is not a measured material, or one of another version (all exit code 2).
+/// Reads what [`write_material`] wrote; refuses other files, other versions, and a material without
+/// a curve.
 pub fn read_material(path: &Path) -> Result<MeasuredMaterial> {
     let refuse = |problem: String| {
         let remedy = "name the file measured.json that dem-run lab wrote";
