@@ -63,9 +63,6 @@ impl BondTypes {
 }
 
 /// Writes a `bond_coeff` for each type.
-///
-/// # Errors
-/// Those of `out`.
 pub(crate) fn write(types: &BondTypes, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
@@ -81,10 +78,7 @@ pub(crate) fn write(types: &BondTypes, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Sorts the bonds of a state into types.
-///
-/// # Errors
-/// A rule of the bonds that the bond style cannot represent.
+/// Sorts the bonds of a state into types; refuses a rule that the bond style cannot represent.
 pub(crate) fn bond_types(scene: &Scene, state: &State) -> Result<BondTypes> {
     for (name, rule) in scene.bonds.keys().zip(state.bonds.rules.iter()) {
         refuse_rule(scene, name, rule)?;

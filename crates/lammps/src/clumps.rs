@@ -25,9 +25,6 @@ pub(super) fn has_bodies(state: &State) -> bool {
 }
 
 /// Writes the properties of all bodies as `fix rigid/small ... infile` reads them.
-///
-/// # Errors
-/// Those of `out`.
 pub(super) fn write(state: &State, molecules: &Molecules, out: &mut dyn Write) -> io::Result<()> {
     let bodies: Vec<&Clump> = (state.clumps.all.iter())
         .filter(|clump| is_body(state, clump))

@@ -29,10 +29,8 @@ pub(super) struct Contacts {
     pub laws: Vec<([usize; 2], String)>,
 }
 
-/// The contacts of a planned scene.
-///
-/// # Errors
-/// Rolling friction, a liquid bridge, or a restitution that is too small.
+/// The contacts of a planned scene; refuses rolling friction, a liquid bridge, and a restitution
+/// that is too small.
 pub(super) fn contacts(scene: &Scene, plan: &Plan) -> Result<Contacts> {
     let state = &plan.state;
     let materials: Vec<String> = scene.materials.keys().cloned().collect();
@@ -74,9 +72,6 @@ pub(super) fn contacts(scene: &Scene, plan: &Plan) -> Result<Contacts> {
 }
 
 /// A contact law in the words of `pair_coeff` and `fix wall/gran`.
-///
-/// # Errors
-/// Rolling friction, a liquid bridge, or a restitution that is too small.
 pub(super) fn law_in_words(scene: &Scene, names: &str, kind: &ContactKind) -> Result<String> {
     if kind.rolling != Rolling::Free {
         return Err(refused(

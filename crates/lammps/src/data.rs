@@ -42,9 +42,6 @@ pub(super) fn atom(plan: &Plan, i: usize) -> u64 {
 }
 
 /// Writes the data file.
-///
-/// # Errors
-/// Those of `out`.
 pub(super) fn write(
     plan: &Plan,
     contacts: &Contacts,

@@ -25,9 +25,6 @@ pub(crate) struct Section {
 
 impl Section {
     /// The numbers of the columns with these names.
-    ///
-    /// # Errors
-    /// A column is missing.
     pub(crate) fn find<const N: usize>(&self, names: [&str; N]) -> Result<[usize; N]> {
         let mut found = [0; N];
         for (slot, name) in found.iter_mut().zip(names) {
@@ -55,9 +52,6 @@ pub(crate) struct Dump<'a> {
 
 impl<'a> Dump<'a> {
     /// Begins to read.
-    ///
-    /// # Errors
-    /// Those of the file.
     pub(crate) fn new(input: &'a mut dyn BufRead) -> Result<Self> {
         let mut lines = Lines::new(input);
         let next = lines.next_whole_line()?.map(|(_, line)| line.to_owned());
@@ -66,9 +60,6 @@ impl<'a> Dump<'a> {
 
     /// The next section. None: the file ends before one, or within it, as that of an interrupted
     /// run does.
-    ///
-    /// # Errors
-    /// An invalid line.
     pub(crate) fn section(&mut self) -> Result<Option<Section>> {
         let mut section = Section::default();
         let mut count = None;

@@ -189,9 +189,6 @@ fn region(scene: &Scene, part: &str, plan: &Plan, inlet: &Inlet) -> Result<(Stri
 
 /// Writes the molecule of a body: its outer spheres, which can be touched, along its principal
 /// axes, with its mass, centre and inertia.
-///
-/// # Errors
-/// Those of `out`.
 pub(super) fn write(feed: &Feed, template: &Template, out: &mut dyn Write) -> io::Result<()> {
     let spheres = || {
         template

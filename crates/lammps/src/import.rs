@@ -75,10 +75,6 @@ struct Moment<'a> {
 
 /// Reads what LAMMPS left in the folder of an export, and writes it as the results of a run. The
 /// dumps are read twice: what is damaged leaves nothing behind.
-///
-/// # Errors
-/// The folder is not that of an export or has no dump; a file is damaged (exit code 2); results
-/// cannot be written (exit code 1).
 pub fn import(folder: &Path, results: &Path, existing: Existing) -> Result<Came> {
     each_moment(folder, &mut |_| Ok(()))?;
     let target = ResultsFolder::create(results, existing)?;

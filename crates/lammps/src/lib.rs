@@ -52,10 +52,7 @@ pub struct Written {
 }
 
 /// Writes a planned scene for LAMMPS into a new or empty folder. All files appear in it, or none.
-///
-/// # Errors
-/// The scene has something that LAMMPS has no word for; the folder is not empty (both exit code 2);
-/// a file cannot be written (exit code 1).
+/// Refuses a scene with something that LAMMPS has no word for.
 pub fn export(scene: &Scene, plan: &Plan, folder: &Path) -> Result<Written> {
     refusals::refuse(scene, plan)?;
     let types = bonds::bond_types(scene, &plan.state)?;

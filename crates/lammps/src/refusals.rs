@@ -18,9 +18,6 @@ const ROUNDING: f64 = 1e-9;
 
 /// Refuses a planned scene with something that is not exported, apart from bonds, contacts, walls,
 /// loads and supports.
-///
-/// # Errors
-/// The first part that is not exported, by its name (exit code 2).
 pub(super) fn refuse(scene: &Scene, plan: &Plan) -> Result<()> {
     let groups = scene.loads.len() + scene.supports.len() + scene.materials.len();
     if groups > MOST_GROUPS {
@@ -45,9 +42,6 @@ pub(super) fn refuse(scene: &Scene, plan: &Plan) -> Result<()> {
 }
 
 /// Refuses a scene with tables or keys that are not exported, before it is planned.
-///
-/// # Errors
-/// The first of them, by its name (exit code 2).
 pub fn refuse_parts(scene: &Scene) -> Result<()> {
     let first = |names: Option<&String>| names.cloned().unwrap_or_default();
     let run_it = "leave it out, or run the scene with dem-run";
