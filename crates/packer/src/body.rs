@@ -89,10 +89,8 @@ pub struct BodyReport {
     pub seconds: StageSeconds,
 }
 
-/// Packs a shape with spheres, bonds them and assesses the body.
-///
-/// # Errors
-/// As [`crate::pack()`] and [`find_bonds`]; a density that no overlap gives.
+/// Packs a shape with spheres, bonds them and assesses the body. Refuses a density that no overlap
+/// gives.
 pub fn make_body(
     surface: &Surface,
     settings: &BodySettings,
@@ -120,9 +118,6 @@ pub fn make_body(
 
 /// The body of [`make_body`], with the same warnings, but without a report: what only a report
 /// shows is not computed.
-///
-/// # Errors
-/// As [`make_body`].
 pub fn make_body_only(
     surface: &Surface,
     settings: &BodySettings,

@@ -13,8 +13,7 @@ use dem_io::{Body, Diagnostic, Result};
 /// exert no force.
 ///
 /// # Errors
-/// No two spheres are near enough; a bond range that is not above 0 and at most 2, or that does not
-/// reach the wanted number of bonds.
+/// No two spheres are near enough; a bond range refused by [`find_bonds`].
 pub fn bond_spheres(spheres: &Body, settings: &BondSettings) -> Result<(Body, BondQuality)> {
     let packing = Spheres {
         positions: spheres.positions.clone(),

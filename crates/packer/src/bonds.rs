@@ -42,9 +42,6 @@ impl Default for BondSettings {
 
 impl BondSettings {
     /// The bond range that is given, or that gives the wanted number of bonds.
-    ///
-    /// # Errors
-    /// As [`bond_range_for`].
     pub(crate) fn range_for(&self, spheres: &Spheres, crosses: CrossesSurface) -> Result<f64> {
         match self.per_particle {
             Some(wanted) => bond_range_for(spheres, wanted, crosses),
@@ -62,10 +59,7 @@ const CHUNK: usize = 4096;
 
 /// The bonds of a packing, the smaller index first, sorted. `crosses_surface` is only called for
 /// pairs farther apart than the sum of their radii: a closer pair has its line of centres inside
-/// its two balls, which lie in the solid.
-///
-/// # Errors
-/// A bond range that is not above 0 and at most 2; more spheres than 2^32.
+/// its two balls, which lie in the solid. `bond_range`: above 0 and at most 2.
 pub fn find_bonds(
     spheres: &Spheres,
     bond_range: f64,
@@ -85,9 +79,6 @@ pub fn find_bonds(
 }
 
 /// All pairs with centres at most `ratio * (R_a + R_b)` apart, the smaller index first, sorted.
-///
-/// # Errors
-/// More spheres than 2^32.
 pub fn close_pairs(spheres: &Spheres, ratio: f64) -> Result<Vec<[u32; 2]>> {
     let parts = search(spheres, ratio, |a, b, _| Some([a.min(b), a.max(b)]))?;
     Ok(sorted(parts, spheres.radii.len()))
@@ -95,10 +86,7 @@ pub fn close_pairs(spheres: &Spheres, ratio: f64) -> Result<Vec<[u32; 2]>> {
 
 /// The bond range that gives `wanted` bonds per particle (bonds divided by particles) as closely as
 /// a whole number of bonds allows: half-way between the last pair that is joined and the first that
-/// is not.
-///
-/// # Errors
-/// `wanted` not positive, or not reached with a bond range of 2; more spheres than 2^32.
+/// is not. Refuses what a bond range of 2 does not reach.
 pub fn bond_range_for(
     spheres: &Spheres,
     wanted: f64,

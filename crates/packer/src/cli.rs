@@ -48,9 +48,6 @@ pub fn program(given: impl Iterator<Item = OsString>) -> u8 {
 }
 
 /// Runs the command given by the arguments.
-///
-/// # Errors
-/// Bad input, or work that failed; a reader that closes standard output early is not an error.
 pub fn run(arguments: &Arguments) -> Result<()> {
     match &arguments.command {
         Some(Command::Info {
@@ -139,10 +136,7 @@ fn pack_and_write(
     }
 }
 
-/// The requested number of threads, or one per core.
-///
-/// # Errors
-/// The number is 0 or more than 1024 (exit code 2); the threads cannot be started (1).
+/// The requested number of threads, 1 to 1024, or one per core.
 pub fn thread_pool(threads: Option<usize>) -> Result<rayon::ThreadPool> {
     if let Some(threads @ (0 | 1025..)) = threads {
         return Err(Diagnostic::input(

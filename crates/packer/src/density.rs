@@ -183,10 +183,7 @@ impl Search {
 /// in `settings`. Two packings of nearly the same overlap differ by chance, so the search continues
 /// around the root of their median until one is near enough, and keeps the nearest of all. The
 /// front predicts the density well, so most tries end after it. The times in the history of the
-/// packing are the sums over all tries.
-///
-/// # Errors
-/// As [`crate::pack::pack`]; a density that no overlap from 0 to below 1 gives.
+/// packing are the sums over all tries. Refuses a density that no overlap from 0 to below 1 gives.
 pub(crate) fn pack_to_density(
     solid: &Solid,
     settings: &mut PackSettings,

@@ -125,9 +125,6 @@ impl<'a> Front<'a> {
 
     /// Advances the front from the spheres `queue` (indices), until nothing fits next to any of
     /// them or their followers.
-    ///
-    /// # Errors
-    /// Errors of `progress`.
     pub(crate) fn advance(
         &mut self,
         queue: &[u32],

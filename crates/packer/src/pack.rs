@@ -29,10 +29,8 @@ use dem_io::units::show_length;
 use dem_io::{Diagnostic, Result, Surface};
 use std::time::Instant;
 
-/// Fills the solid inside a surface with spheres.
-///
-/// # Errors
-/// Sizes that do not fit the shape; a seed point outside; errors of `progress`.
+/// Fills the solid inside a surface with spheres; refuses sizes that do not fit it, and a seed
+/// point outside.
 pub fn pack(surface: &Surface, settings: &PackSettings, progress: Progress) -> Result<Packing> {
     let started = Instant::now();
     let solid = Solid::new(surface)?;
@@ -43,9 +41,6 @@ pub fn pack(surface: &Surface, settings: &PackSettings, progress: Progress) -> R
 }
 
 /// Fills a solid with spheres.
-///
-/// # Errors
-/// As [`pack`].
 pub(crate) fn pack_solid(
     solid: &Solid,
     settings: &PackSettings,
@@ -58,9 +53,6 @@ pub(crate) fn pack_solid(
 /// Fills a solid with spheres, but stops after the front if the packing is not wanted: `is_wanted`
 /// is called with the sum of the spheres' volumes / volume of the solid before settling and
 /// filling, which take most of the time and change it little. None if the packing was not wanted.
-///
-/// # Errors
-/// As [`pack`].
 pub(crate) fn pack_if(
     solid: &Solid,
     settings: &PackSettings,
@@ -133,9 +125,6 @@ pub(crate) fn pack_if(
 }
 
 /// Scattered spheres, settled, if they then fill more than `least` (reduced radii, local units).
-///
-/// # Errors
-/// As [`settle`].
 fn settle_scattered(
     job: &Job,
     mut spheres: Vec<ReducedSphere>,
@@ -152,10 +141,7 @@ fn settle_scattered(
     Ok((volume > least).then_some((spheres, settled)))
 }
 
-/// The spheres at their true radii.
-///
-/// # Errors
-/// No spheres.
+/// The spheres at their true radii; refuses a packing without any.
 fn full_size(job: &Job, spheres: &[ReducedSphere]) -> Result<Spheres> {
     if spheres.is_empty() {
         let inscribed_m = job.solid.largest_inscribed_diameter_m();

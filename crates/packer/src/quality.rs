@@ -28,9 +28,6 @@ use self::warnings::warnings;
 use dem_io::Result;
 
 /// Assesses a packing. The result is the same to the last bit for any number of threads.
-///
-/// # Errors
-/// More spheres than the search tree can number (2^32).
 pub fn assess(packing: &BondedPacking) -> Result<Report> {
     with_finite_depths(packing, |packing| {
         let depths = depth::of_centres(packing, depth_needed(packing.spheres));
@@ -39,9 +36,6 @@ pub fn assess(packing: &BondedPacking) -> Result<Report> {
 }
 
 /// The warnings of [`assess`] without what no warning needs, of which the densities take longest.
-///
-/// # Errors
-/// As [`assess`].
 pub(crate) fn find_warnings(packing: &BondedPacking) -> Result<Vec<String>> {
     with_finite_depths(packing, |packing| {
         let depths = depth::of_centres(packing, depth_needed(packing.spheres));

@@ -95,10 +95,7 @@ pub(super) struct BondCommand {
 
 impl BondCommand {
     /// What is known of the body: `given` by its file, with the density and the volume of the
-    /// options, if there are any.
-    ///
-    /// # Errors
-    /// A density or a volume that is not positive.
+    /// options, if there are any, which must be positive.
     pub(super) fn about(&self, given: About) -> Result<About> {
         let density = checked_density("--particle-density", &self.particle_density)?;
         let volume = self
@@ -229,9 +226,6 @@ pub(super) struct PackArguments {
 impl Arguments {
     /// The arguments of a command line, the first of which is the name of the program. Help and
     /// version are printed, and the process ends.
-    ///
-    /// # Errors
-    /// Arguments that cannot be parsed, on one line.
     pub fn parsed(given: impl Iterator<Item = OsString>) -> Result<Self> {
         let given: Vec<OsString> = given.collect();
         parsed("dem-pack", &given)

@@ -11,11 +11,8 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_terminal::standard_output::write_standard_output;
 use std::path::Path;
 
-/// Bonds the spheres of the file, writes the body and describes it.
-///
-/// # Errors
-/// A file that holds no spheres, or holds bonds that are not to be replaced; as [`bond_spheres`]; a
-/// body that cannot be written.
+/// Bonds the spheres of the file, writes the body and describes it. Refuses bonded spheres whose
+/// bonds are not to be replaced.
 pub(super) fn bond(command: &BondCommand) -> Result<()> {
     let settings = command.bonds.checked()?;
     let (from, to) = (&command.spheres, &command.output);

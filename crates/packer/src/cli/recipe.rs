@@ -23,8 +23,7 @@ impl Recipe {
     /// The shape and the settings of a command line of dem-pack, without the name of the program.
     ///
     /// # Errors
-    /// Arguments that dem-pack refuses, that only concern its output, or that name no STL file; an
-    /// STL file that bounds no solid (all exit code 2).
+    /// Arguments that dem-pack refuses, that only concern its output, or that name no solid.
     pub fn parse(arguments: &[String]) -> Result<Self> {
         let line = || std::iter::once("dem-pack".to_owned()).chain(arguments.iter().cloned());
         let parsed = Arguments::try_parse_from(line()).map_err(|error| {
@@ -80,9 +79,6 @@ impl Recipe {
     }
 
     /// A packing with this seed.
-    ///
-    /// # Errors
-    /// As [`make_body`].
     pub fn make(&self, seed: u64, progress: Progress) -> Result<(Body, BodyReport)> {
         let mut settings = self.settings.clone();
         settings.packing.seed = seed;

@@ -9,9 +9,6 @@ use dem_io::{Diagnostic, Result, Surface};
 use std::path::Path;
 
 /// The surface of the shape in a file, or in standard input (`-`).
-///
-/// # Errors
-/// A file that cannot be read; a surface that bounds no solid; an invalid scale or unit.
 pub(super) fn read_surface(path: &Path, reading: &Reading) -> Result<Surface> {
     if !(reading.scale > 0.0 && reading.scale.is_finite()) {
         return Err(Diagnostic::input(

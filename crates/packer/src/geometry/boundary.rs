@@ -28,9 +28,6 @@ pub struct Boundary {
 
 impl Boundary {
     /// Builds the tree.
-    ///
-    /// # Errors
-    /// A surface without triangles.
     pub fn new(surface: &Surface) -> Result<Self> {
         let refused = |e: String| {
             Diagnostic::input(

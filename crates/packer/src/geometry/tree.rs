@@ -16,10 +16,7 @@ pub(super) type Corners = [[f64; 3]; 3];
 pub struct TriangleTree(TriMesh);
 
 impl TriangleTree {
-    /// The tree over triangles given by the indices of their vertices.
-    ///
-    /// # Errors
-    /// No triangles, as text.
+    /// The tree over triangles, at least one, given by the indices of their vertices.
     pub(super) fn new(
         vertices: impl Iterator<Item = [f64; 3]>,
         triangles: Vec<[u32; 3]>,

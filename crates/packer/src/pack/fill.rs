@@ -36,9 +36,6 @@ pub(super) struct FillHistory {
 /// Puts spheres into the voids that take at least the smallest one, unless the front has filled
 /// them already (`is_filled`). Each size is drawn among those that fit there. Filling stops before
 /// it distorts the size distribution by more than a tenth of its statistical noise.
-///
-/// # Errors
-/// Errors of `progress`.
 pub(super) fn fill(
     job: &Job,
     is_filled: bool,

@@ -45,10 +45,7 @@ pub(super) struct Grown<'a> {
     fronts: usize,
 }
 
-/// Fills the solid with the spheres of one attempt.
-///
-/// # Errors
-/// Too many spheres; errors of `progress`.
+/// Fills the solid with the spheres of one attempt; refuses too many of them.
 pub(super) fn grow<'a>(job: &'a Job, attempt: &Attempt, progress: Progress) -> Result<Grown<'a>> {
     let scale = 1.0 - attempt.shrink;
     let expected = expected_spheres(job, scale)?;

@@ -28,9 +28,6 @@ pub(super) struct Job<'a> {
 
 impl<'a> Job<'a> {
     /// Checks the settings and makes the job.
-    ///
-    /// # Errors
-    /// Sizes that do not fit the shape; a seed point outside.
     pub(super) fn new(solid: &'a Solid, settings: &'a PackSettings) -> Result<Self> {
         check_sizes_fit(solid, &settings.sizes)?;
         let largest = 0.5 * settings.sizes.max_m() / solid.surface.unit_m;

@@ -27,9 +27,6 @@ const STEPS: [f64; 2] = [0.5, 0.01];
 
 /// Draws sizes until their volume at the reduced radii reaches `volume` (local units), and scatters
 /// the spheres inside the solid. They may overlap; settling moves them apart.
-///
-/// # Errors
-/// Errors of `progress`.
 pub(super) fn scatter(job: &Job, volume: f64, progress: Progress) -> Result<Vec<ReducedSphere>> {
     let mut radii = draw(job, volume);
     radii.sort_by(|a, b| b.total_cmp(a));

@@ -34,9 +34,6 @@ use dem_io::Result;
 
 /// Third step: spheres of a front whose radii were reduced by `shrink` are moved at full size until
 /// none overlaps another or the wall. Those of the bare front (`shrink` 0) stay where they are.
-///
-/// # Errors
-/// As [`minimise_overlaps`].
 pub(super) fn settle(
     job: &Job,
     shrink: f64,
@@ -51,9 +48,6 @@ pub(super) fn settle(
 }
 
 /// Moves spheres at full size until none overlaps another or the wall.
-///
-/// # Errors
-/// As [`minimise_overlaps`].
 pub(super) fn settle_all(
     job: &Job,
     when_jammed: WhenJammed,

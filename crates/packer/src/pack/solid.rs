@@ -18,10 +18,7 @@ pub(crate) struct Solid<'a> {
 }
 
 impl<'a> Solid<'a> {
-    /// The solid inside a surface.
-    ///
-    /// # Errors
-    /// A surface without triangles; no point inside.
+    /// The solid inside a surface; refuses one without a point inside.
     pub(crate) fn new(surface: &'a Surface) -> Result<Self> {
         let boundary = Boundary::new(surface)?;
         let inner = inner_points(&boundary, surface);

@@ -35,8 +35,7 @@ impl Sizes {
     /// # Errors
     /// A text of another form; a size that is zero, negative or not finite; MIN above MAX; a
     /// standard deviation or shape that is not positive; less than 1 % of the distribution between
-    /// MIN and MAX; MAX more than 1000 times MIN; a sieve file that cannot be
-    /// read or is not a cumulative curve.
+    /// MIN and MAX; MAX more than 1000 times MIN; a sieve file that is not a cumulative curve.
     pub fn parse(text: &str, by: Basis) -> Result<Self> {
         let place = format!("--diameter '{text}'");
         parse::law(text)

@@ -31,10 +31,8 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    /// The tables of a law that counts particles or their mass.
-    ///
-    /// # Errors
-    /// A law without limits that reaches down to diameters of zero.
+    /// The tables of a law that counts particles or their mass. Refuses one without limits that
+    /// reaches down to diameters of zero.
     pub(super) fn new(law: &Law, by: Basis) -> Result<Self> {
         match law {
             Law::One(d) => Ok(Self {

@@ -53,9 +53,6 @@ fn at(line: usize, problem: String, remedy: &str) -> Diagnostic {
 }
 
 /// The sieve curve in a text.
-///
-/// # Errors
-/// Not a sieve curve: the line, the value and the limit (exit code 2).
 pub fn parse(text: &str) -> Result<SieveCurve> {
     let lines: Vec<(usize, &str)> = (1..)
         .zip(text.trim_start_matches('\u{feff}').lines())

@@ -101,10 +101,8 @@ struct State<'a> {
 /// jammed, some are taken out on request: of the pairs that overlap most the one with the higher
 /// index, which favours no size, and spheres that overlap the wall as much.
 ///
-/// `progress` is called with the completed fraction of the work.
-///
-/// # Errors
-/// Errors of `progress`; no convergence after very many steps.
+/// `progress` is called with the completed fraction of the work. No convergence after very many
+/// steps is an error.
 pub fn minimise_overlaps(
     boundary: &Boundary,
     balls: &mut Vec<ReducedSphere>,
