@@ -23,17 +23,11 @@ impl CauseCounts {
     }
 
     /// Writes the counts by the names of their causes.
-    ///
-    /// # Errors
-    /// Those of the serializer.
     pub fn serialize_by_name<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.named())
     }
 
     /// Reads counts by the names of their causes; those that are missing are 0.
-    ///
-    /// # Errors
-    /// Those of the deserializer.
     pub fn deserialize_by_name<'de, D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let named = BTreeMap::<String, u64>::deserialize(from)?;
         let of = |cause: Cause| named.get(cause.name()).copied().unwrap_or(0);

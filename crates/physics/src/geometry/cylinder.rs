@@ -23,10 +23,7 @@ const ENDS: [u32; 2] = [1, 2];
 const RIMS: [u32; 2] = [3, 4];
 
 impl Cylinder {
-    /// The cylinder between the middles of its two ends, m.
-    ///
-    /// # Errors
-    /// Numbers that are not finite, or no length or radius.
+    /// The cylinder between the middles of its two ends, m; refuses one without an inside.
     pub fn new(ends_m: [[f64; 3]; 2], radius_m: f64) -> Result<Self> {
         let [start, end] = ends_m.map(Vector3::from);
         let length_m = (end - start).norm();

@@ -84,9 +84,6 @@ pub struct MeshContent {
 
 impl Mesh {
     /// A surface as read from a file.
-    ///
-    /// # Errors
-    /// As [`Mesh::new`].
     pub fn from_surface(surface: &OpenSurface) -> Result<Self> {
         Self::new(&surface.vertices_m, &surface.triangles)
             .map_err(|error| error.within(&surface.source))
@@ -95,8 +92,7 @@ impl Mesh {
     /// The surface of these triangles, each of three of these vertices, m.
     ///
     /// # Errors
-    /// A vertex that is not finite or does not exist, no triangle with an area, or too many to be
-    /// numbered.
+    /// A vertex that is missing or not finite, no triangle with an area, or too many triangles.
     pub fn new(vertices_m: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self> {
         check(vertices_m, triangles)?;
         let corners = |t: &[u32; 3]| t.map(|v| Vector3::from(vertices_m[v as usize]));

@@ -15,10 +15,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane through a point, m, with a normal out of the wall, of any length.
-    ///
-    /// # Errors
-    /// Numbers that are not finite, or a normal without direction.
+    /// The plane through a point, m, with a normal out of the wall, of any length but zero.
     pub fn new(point_m: [f64; 3], normal: [f64; 3]) -> Result<Self> {
         let length = Vector3::from(normal).norm();
         if !(are_finite(&point_m) && length > 0.0 && length.is_finite()) {

@@ -23,10 +23,7 @@ const MIDDLE: u32 = 13;
 const STRIDES: [u32; 3] = [1, 3, 9];
 
 impl SolidBox {
-    /// The box between two corners, m.
-    ///
-    /// # Errors
-    /// Numbers that are not finite, or a side without length.
+    /// The box between its smallest and its largest corner, m; refuses one without an inside.
     pub fn new(low_m: [f64; 3], high_m: [f64; 3]) -> Result<Self> {
         if !are_finite(&low_m) || !are_finite(&high_m) || (0..3).any(|k| low_m[k] >= high_m[k]) {
             return Err(Diagnostic::input(

@@ -19,10 +19,8 @@ pub type Facet = [[f64; 3]; 3];
 /// Triangles of the convex hull of some spheres, m: centres, m, shape n x 3, and radii, m, length
 /// n.
 ///
-/// It lies within the hull of the spheres: see [`SMALLER_BY`].
-///
-/// # Errors
-/// No sphere, or centres so far from each other that no hull is found.
+/// It lies within the hull of the spheres: see [`SMALLER_BY`]. There must be a sphere, and the
+/// centres must be so near each other that a hull is found.
 pub fn convex_hull(centres_m: &[[f64; 3]], radii_m: &[f64]) -> Result<Vec<Facet>> {
     let directions = directions();
     let Some(origin) = centres_m.first().copied().map(Vector3::from) else {
