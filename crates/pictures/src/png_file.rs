@@ -10,10 +10,7 @@ use png::{BitDepth, ColorType, Decoder, Encoder, EncodingError, Filter};
 
 use super::image::Image;
 
-/// A picture as the bytes of a PNG file, RGB.
-///
-/// # Errors
-/// A picture without pixels.
+/// A picture, which must have pixels, as the bytes of a PNG file, RGB.
 pub fn to_png(image: &Image, compression: Compression) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let written = encoder(&mut bytes, image, compression)
@@ -26,10 +23,7 @@ pub fn to_png(image: &Image, compression: Compression) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The picture in a file whose bytes were made by [`to_png`].
-///
-/// # Errors
-/// The file does not exist, or contains something else (exit code 1).
+/// The picture in a file whose bytes were made by [`to_png`]; refuses others (exit code 1).
 pub fn read_png(path: &Path) -> Result<Image> {
     let refuse = |problem: String| {
         Diagnostic::failed(
