@@ -29,8 +29,7 @@ const ROUNDING: f64 = 1e-6;
 /// Particles and bonds of all bodies of a scene, at their initial positions.
 ///
 /// # Errors
-/// Bonds without a rule; no density; a bond without length; masses or stiffnesses that are out of
-/// range.
+/// No rule for bonds; no density; a bond without length; masses or stiffnesses out of range.
 pub fn place_bodies(
     scene: &Scene,
     mut read: BTreeMap<String, Body>,
@@ -53,9 +52,6 @@ pub fn place_bodies(
 }
 
 /// Adds the particles and bonds of one body of a scene.
-///
-/// # Errors
-/// As [`place_bodies`].
 pub(super) fn place_body(
     scene: &Scene,
     name: &str,

@@ -23,9 +23,6 @@ const SAME_LENGTH: f64 = 1e-9;
 
 /// Adds the bonds of a body, of the kind `kind` with the number `rule`, whose strengths scatter by
 /// this seed and key.
-///
-/// # Errors
-/// Bonds that the state cannot hold: see the checks of this file.
 pub(super) fn place_bonds(
     body: &Body,
     kind: &BondKind,

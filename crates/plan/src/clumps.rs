@@ -46,9 +46,6 @@ pub(super) fn unused_bonds(scene: &Scene, read: &BTreeMap<String, Body>) -> Vec<
 
 /// Templates, in the order of their names, from bodies that have been read. `ball_m`: see
 /// [`ball_m`].
-///
-/// # Errors
-/// The same as for bodies that exist at the start.
 pub(super) fn templates(
     scene: &Scene,
     names: &BTreeSet<String>,
@@ -226,9 +223,6 @@ pub(super) fn standing(scene: &Scene, templates: &[Arc<Template>]) -> Vec<Clump>
 
 /// Checks that the scene defines contacts between all clumps and their fragments, and with the
 /// other bodies.
-///
-/// # Errors
-/// Names the materials without a contact law.
 pub(super) fn need_pairs(
     scene: &Scene,
     kinds: &Kinds<'_>,
@@ -261,9 +255,6 @@ pub(super) fn need_pairs(
 }
 
 /// Refuses replacement of bodies without bonds.
-///
-/// # Errors
-/// Names the body.
 pub(super) fn refuse_unbreakable(scene: &Scene, templates: &[Arc<Template>]) -> Result<()> {
     for template in templates {
         let rule = scene.replacement.get(&template.body);

@@ -47,8 +47,7 @@ pub(super) struct Kinds<'a> {
 }
 
 impl<'a> Kinds<'a> {
-    /// # Errors
-    /// More materials or pairs than fit into a byte.
+    /// Refuses more materials or pairs than fit into a byte.
     pub(super) fn new(scene: &'a Scene) -> Result<Self> {
         let names: Vec<&str> = scene.materials.keys().map(String::as_str).collect();
         let count = names.len();
@@ -165,8 +164,7 @@ pub(super) fn are_needed(scene: &Scene) -> bool {
 /// Puts contacts into a state whose clusters are known.
 ///
 /// # Errors
-/// A pair of materials that may meet without a contact law; particles of different clusters that
-/// overlap, unless that is allowed.
+/// A pair of materials without a contact law that may meet; an overlap that is not allowed.
 pub(super) fn place_contacts(
     scene: &Scene,
     kinds: &Kinds<'_>,

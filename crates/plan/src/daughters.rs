@@ -16,10 +16,8 @@ use dem_engine::state::rules::{DaughterRule, SizeClass};
 use dem_physics::shape::packing_fit::fit;
 
 /// The scene with the mass of each parent for its daughters, whose bodies in `read` become as large
-/// as the parent: see [`fit`]; bodies with bonds keep their proportions.
-///
-/// # Errors
-/// Loose daughters of one sphere; a parent smaller than the smallest one that is replaced.
+/// as the parent: see [`fit`]; bodies with bonds keep their proportions. Refuses loose daughters of
+/// one sphere, and a parent smaller than the smallest that is replaced.
 pub(super) fn fitted(mut scene: Scene, read: &mut BTreeMap<String, Body>) -> Result<Scene> {
     let rules = scene.replacement.clone();
     for (parent, rule) in &rules {

@@ -18,10 +18,7 @@ const REACH: f64 = 4.0;
 type Spheres = Vec<(Vector3<f64>, f64)>;
 
 /// Puts a body just above its wall, with the speed with which it touches it after its fall less
-/// what it gains on the way left.
-///
-/// # Errors
-/// The wall is not below the body, or its file is not a surface.
+/// what it gains on the way left. Refuses a wall that is not below the body.
 pub(super) fn drop_onto(
     scene: &Scene,
     name: &str,

@@ -9,10 +9,8 @@ use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::particles::Particles;
 use dem_engine::state::supports::GroupSupport;
 
-/// Particles (numbers in the state, ascending) of every set, every body and `all`.
-///
-/// # Errors
-/// A set that selects no particles, or a number that the body does not have.
+/// Particles (numbers in the state, ascending) of every set, every body and `all`. Refuses a set
+/// without particles, or with a number that the body does not have.
 pub(crate) fn resolve_groups(
     scene: &Scene,
     bodies: &[PlacedBody],

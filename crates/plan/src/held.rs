@@ -13,9 +13,6 @@ const HELD: f64 = 1e-12;
 
 /// Refuses a state with a piece that can move as a rigid body: a body without bonds, a particle
 /// without any, a body with too few supports.
-///
-/// # Errors
-/// The first such piece, with the number of its six rigid motions that are free.
 pub(crate) fn refuse_loose(state: &State, bodies: &[PlacedBody], scene: &str) -> Result<()> {
     let count = state.particles.len();
     let mut names: Vec<u32> = (0..count as u32).collect();

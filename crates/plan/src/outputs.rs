@@ -14,9 +14,6 @@ const MOST_INTERVALS: f64 = 1e5;
 const MOST_CHECKPOINTS: f64 = 1e6;
 
 /// Refuses intervals of `[output]` with which a run with this step, s, would write too often.
-///
-/// # Errors
-/// More frames, pictures, rows, intervals or checkpoints than a run may write (exit code 2).
 pub(super) fn refuse_endless_output(scene: &Scene, step_s: f64) -> Result<()> {
     let Some(output) = &scene.output else {
         return Ok(());

@@ -11,9 +11,6 @@ use dem_physics::shape::inertia::of_union;
 
 /// The scene with the position of the origin of each body's file, and the velocity of bodies that
 /// fall.
-///
-/// # Errors
-/// A wall is not below the body that is to fall onto it, or its file is not a surface.
 pub(super) fn placed(scene: &Scene, read: &BTreeMap<String, Body>) -> Result<Scene> {
     let mut placed = scene.clone();
     for (name, entry) in &mut placed.bodies {

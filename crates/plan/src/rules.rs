@@ -25,10 +25,7 @@ use dem_physics::rotation::numbers;
 use dem_physics::shape::inertia::of_union;
 
 /// The rules of the scene for adding, removing and replacing bodies. `about`: information on the
-/// bodies.
-///
-/// # Errors
-/// A region's file that is not a closed surface.
+/// bodies. Refuses a region whose file is not a closed surface.
 pub(super) fn rules(
     scene: &Scene,
     templates: &[Arc<Template>],

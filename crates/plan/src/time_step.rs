@@ -171,10 +171,7 @@ impl StepChoice {
 }
 
 /// Chooses the step of a scene: the given one, or `safety` times the limit, slightly reduced so
-/// that the end time is met.
-///
-/// # Errors
-/// A given step above the limit, unless any step is allowed.
+/// that the end time is met. Refuses a given step above the limit, unless any step is allowed.
 pub(crate) fn choose_step(
     scene: &Scene,
     state: &mut State,

@@ -28,8 +28,8 @@ const OFF_PLANE: f64 = 1e-6;
 /// The walls of a scene, in the order of their names. Harmless peculiarities are added to `notes`.
 ///
 /// # Errors
-/// A file that is not a surface; a pair of materials that may meet without a contact law; a belt
-/// that leaves its plane; particles in walls, unless that is allowed.
+/// A file that is not a surface; a pair of materials without a contact law that may meet; a belt
+/// that leaves its plane; an overlap with particles that is not allowed.
 pub(super) fn place_walls(
     scene: &Scene,
     kinds: &Kinds<'_>,
@@ -128,9 +128,6 @@ fn join_touches(walls: &[Wall], state: &State, touches_of: &mut [Vec<(u32, Touch
 }
 
 /// The shape and frame of a wall at the start.
-///
-/// # Errors
-/// Its file is not a surface.
 pub(super) fn standing(entry: &SceneWall, name: &str) -> Result<(Shape, Frame)> {
     // What is odd about it is said when the walls are placed.
     Ok((shape(entry, name, &mut Vec::new())?, frame(entry)))

@@ -8,10 +8,8 @@ use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::rules::{Carrier, Rejoin, Zone};
 
-/// Makes the bodies of a scene that are bonded in a region only rigid elsewhere.
-///
-/// # Errors
-/// Local damping, which does not act on rigid parts; a body without bonds.
+/// Makes the bodies of a scene that are bonded in a region only rigid elsewhere. Refuses local
+/// damping, which does not act on rigid parts, and a body without bonds.
 pub(super) fn place_zones(scene: &Scene, bodies: &[PlacedBody], state: &mut State) -> Result<()> {
     let mut zones = Vec::new();
     for body in bodies {

@@ -11,9 +11,6 @@ use dem_engine::state::State;
 
 /// Refuses a force or a contact if nothing can touch, a contact between two groups with common
 /// particles, and what each measurement refuses.
-///
-/// # Errors
-/// Names the measure.
 pub(crate) fn refuse_valueless(
     scene: &Scene,
     groups: &BTreeMap<String, Vec<u32>>,
