@@ -16,9 +16,6 @@ pub(crate) struct Folder {
 
 impl Folder {
     /// Reads the list of its frames.
-    ///
-    /// # Errors
-    /// The list cannot be read (exit code 2).
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let index = path.join("frames.pvd");
         let text = match fs::read_to_string(&index) {
@@ -70,9 +67,6 @@ impl Folder {
     }
 
     /// The plots, by name: those named in `first` before the others.
-    ///
-    /// # Errors
-    /// One of them cannot be read (exit code 2).
     pub(crate) fn plots(&self, first: &[&str]) -> Result<Vec<String>> {
         let entries = fs::read_dir(self.path.join("plots")).into_iter().flatten();
         let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));

@@ -22,10 +22,8 @@ use serde_json::Value;
 use folder::Folder;
 use sections::{add_curves, add_inputs, add_results, add_test, add_time, add_verdict};
 
-/// The page of a finished run from its folder and its summary (the text of `summary.json`).
-///
-/// # Errors
-/// The summary is not that of a run; a frame is missing or damaged (both exit code 2).
+/// The page of a finished run from its folder and its summary (the text of `summary.json`). Refuses
+/// another summary, and missing or damaged frames.
 pub fn report(folder: &Path, summary: &str) -> Result<String> {
     let summary = read_summary(summary).map_err(|error| {
         Diagnostic::input(

@@ -76,11 +76,7 @@ pub enum PictureKind {
     Gif,
 }
 
-/// The bytes of a picture or film of the run in this folder.
-///
-/// # Errors
-/// The folder is not that of a finished run or has no such frame; a file of it is damaged (all exit
-/// code 2).
+/// The bytes of a picture or film of the run in this folder; refuses a folder without such frames.
 pub fn picture(path: &Path, order: &PictureOrder, kind: PictureKind) -> Result<Drawn> {
     let folder = Folder::read(path)?;
     if folder.frames().is_empty() {

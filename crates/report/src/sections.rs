@@ -72,9 +72,6 @@ pub(crate) fn add_verdict(page: &mut Page, summary: &Summary) {
 }
 
 /// The plots of the folder.
-///
-/// # Errors
-/// One of them cannot be read (exit code 2).
 pub(crate) fn add_curves(page: &mut Page, folder: &Folder) -> Result<()> {
     let plots = folder.plots(&FIRST_PLOTS)?;
     if !plots.is_empty() {

@@ -46,9 +46,6 @@ pub(crate) struct Subject<'a> {
 }
 
 /// The view, as a part of a page. None: there are no frames with particles.
-///
-/// # Errors
-/// A frame is missing or damaged (exit code 2).
 pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
     let Some(chosen) = choose(subject.frames)? else {
         return Ok(None);
@@ -87,9 +84,6 @@ pub(crate) fn view(subject: &Subject<'_>) -> Result<Option<Markup>> {
 }
 
 /// Where a run with this first frame takes place.
-///
-/// # Errors
-/// The frame is missing or damaged (exit code 2).
 pub(crate) fn home(first: &ChosenFrame) -> Result<Home> {
     let walls = walls::read(first)?.unwrap_or_default();
     let spheres = Spheres::read(first, 1, false)?;

@@ -10,10 +10,8 @@ const PICTURE: [usize; 2] = [4, 40];
 /// Thoroughness of the choice of 256 colours, from 1 (best) to 30 (fastest).
 const SPEED: i32 = 10;
 
-/// The bytes of a film of `count` pictures of this size, px, made one after the other.
-///
-/// # Errors
-/// Those of the pictures; a size that GIF cannot hold (exit code 2).
+/// The bytes of a film of `count` pictures of this size, at most 65535 px a side, made one after
+/// the other.
 pub(super) fn film(
     size_px: [u32; 2],
     count: usize,

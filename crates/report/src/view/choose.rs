@@ -68,9 +68,6 @@ impl Chosen {
 }
 
 /// Chooses from all frames and their times, s. None: no frame has particles.
-///
-/// # Errors
-/// A frame is missing or damaged (exit code 2).
 pub(crate) fn choose(frames: &[(PathBuf, f64)]) -> Result<Option<Chosen>> {
     let mut particles = 0;
     let mut bonds = 0;

@@ -29,9 +29,6 @@ impl Pieces {
 
     /// Refuses a frame with a number of a body or a fragment that there is not: one wrong number
     /// would make tables as long as itself.
-    ///
-    /// # Errors
-    /// The particle and its number (exit code 2).
     pub(crate) fn refuse_unknown(&self, spheres: &Spheres, frame: &Path) -> Result<()> {
         let bodies = match spheres.body_names.len() {
             0 => LAST_BODY as usize + 1,

@@ -41,9 +41,6 @@ pub(crate) struct Bond {
 
 impl Spheres {
     /// Reads a frame: of so many spheres one, and the bonds between them if wanted.
-    ///
-    /// # Errors
-    /// It is missing or damaged (exit code 2).
     pub(crate) fn read(frame: &ChosenFrame, every: usize, with_bonds: bool) -> Result<Self> {
         let of_points = |name: &str| format!("PointData/{name}");
         let of_bonds = |name: &str| format!("CellData/{name}");

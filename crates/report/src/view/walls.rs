@@ -7,9 +7,6 @@ use dem_io::body::stored_walls::StoredWalls;
 use super::choose::ChosenFrame;
 
 /// Reads the walls that stand beside a frame. None: the scene has none.
-///
-/// # Errors
-/// Their file is damaged (exit code 2).
 pub(crate) fn read(frame: &ChosenFrame) -> Result<Option<StoredWalls>> {
     let name = frame.path.file_name().unwrap_or_default().to_string_lossy();
     let of_walls = name.replace("frame_", "walls_");
