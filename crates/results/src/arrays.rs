@@ -62,18 +62,13 @@ struct Declared {
     offset: u64,
 }
 
-/// Reads those arrays of a frame or of its walls that are named in `wanted`, as in [`Arrays::get`].
-///
-/// # Errors
-/// No such file, or not one that this program wrote (both exit code 2).
+/// Reads those arrays of a frame or of its walls that are named in `wanted`, as in [`Arrays::get`];
+/// refuses files that this program did not write.
 pub fn read_arrays(path: &Path, wanted: &[&str]) -> Result<Arrays> {
     open_and_read(path, &|name| wanted.contains(&name))
 }
 
 /// Reads all arrays of a frame or of its walls.
-///
-/// # Errors
-/// As [`read_arrays`].
 pub fn read_all_arrays(path: &Path) -> Result<Arrays> {
     open_and_read(path, &|_| true)
 }

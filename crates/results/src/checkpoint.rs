@@ -37,9 +37,6 @@ const MAGIC: &[u8; 16] = b"dem checkpoint\r\n";
 const START_AGAIN: &str = "take an older checkpoint, or start the run again without --resume";
 
 /// Writes the state of a run, `payload`, to the file `path`, which appears complete or not at all.
-///
-/// # Errors
-/// Missing folder, no permission, full disk (all exit code 1). An existing checkpoint is unchanged.
 pub fn write_checkpoint(path: &Path, payload: &[u8]) -> Result<()> {
     let mut head = MAGIC.to_vec();
     head.extend(FORMAT_VERSION.to_le_bytes());
@@ -54,11 +51,8 @@ pub fn write_checkpoint(path: &Path, payload: &[u8]) -> Result<()> {
     })
 }
 
-/// The state that [`write_checkpoint`] wrote to the file `path`.
-///
-/// # Errors
-/// The file does not exist, is not a checkpoint, is of another version, truncated or damaged (all
-/// exit code 2).
+/// The state that [`write_checkpoint`] wrote to the file `path`; refuses other versions, and
+/// truncated or damaged files.
 pub fn read_checkpoint(path: &Path) -> Result<Vec<u8>> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let mut bytes = fs::read(path).map_err(|error| {

@@ -79,9 +79,6 @@ pub struct DistributionRow<'a> {
 }
 
 /// Writes the size distribution to the file `path`, completely or not at all.
-///
-/// # Errors
-/// As [`write_file`].
 pub fn write_distribution(path: &Path, rows: &[DistributionRow<'_>]) -> Result<()> {
     write_file(path, |out| {
         writeln!(out, "{DISTRIBUTION_COLUMNS}")?;

@@ -45,9 +45,6 @@ pub struct MixingRow<'a> {
 }
 
 /// Writes mass flows to the file `path`, completely or not at all.
-///
-/// # Errors
-/// As [`write_file`].
 pub fn write_flows(path: &Path, rows: &[FlowRow<'_>]) -> Result<()> {
     write_file(path, |out| {
         writeln!(out, "{FLOW_COLUMNS}")?;
@@ -68,9 +65,6 @@ pub fn write_flows(path: &Path, rows: &[FlowRow<'_>]) -> Result<()> {
 }
 
 /// Writes the cells of mixtures to the file `path`, completely or not at all.
-///
-/// # Errors
-/// As [`write_file`].
 pub fn write_mixing(path: &Path, rows: &[MixingRow<'_>]) -> Result<()> {
     write_file(path, |out| {
         writeln!(out, "{MIXING_COLUMNS}")?;

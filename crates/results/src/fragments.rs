@@ -51,10 +51,8 @@ pub struct FragmentRow<'a> {
     pub material: &'a str,
 }
 
-/// Appends the fragments of one moment to their table. They are in the file when this returns.
-///
-/// # Errors
-/// Full disk (exit code 1): earlier moments are kept, and possibly some complete rows of this one.
+/// Appends the fragments of one moment to their table. They are in the file when this returns. If
+/// the disk is full, earlier moments are kept, and possibly some complete rows of this one.
 pub fn append_fragments(
     table: &mut Table,
     time_s: f64,
@@ -116,9 +114,6 @@ pub struct TreeRow {
 }
 
 /// Writes the fragment tree to the file `path`, completely or not at all.
-///
-/// # Errors
-/// As [`write_file`].
 pub fn write_fragment_tree(path: &Path, rows: impl Iterator<Item = TreeRow>) -> Result<()> {
     write_file(path, |out| {
         writeln!(out, "{TREE_COLUMNS}")?;

@@ -37,10 +37,8 @@ pub struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Checks that the two particles of every bond exist: otherwise ParaView crashes.
-    ///
-    /// # Errors
-    /// The bond concerned (exit code 1: it is an error of the program).
+    /// Checks that the two particles of every bond exist: otherwise ParaView crashes. A missing one
+    /// is an error of the program (exit code 1).
     pub fn check(&self) -> Result<()> {
         let missing = |end: u32| end as usize >= self.particles;
         match (0..self.bonds).find(|&bond| (self.ends)(bond).into_iter().any(missing)) {
@@ -59,9 +57,6 @@ impl Frame<'_> {
 }
 
 /// Writes a frame, which must pass [`Frame::check`], as .vtp.
-///
-/// # Errors
-/// Those of `out`.
 pub fn write_frame(frame: &Frame<'_>, out: &mut dyn Write) -> io::Result<()> {
     let data = PolyData {
         points: frame.particles,
@@ -107,11 +102,7 @@ impl FrameFiles {
     }
 
     /// The frames of an interrupted run up to its checkpoint, at these times, s. Later ones are
-    /// removed.
-    ///
-    /// # Errors
-    /// A frame or the file of its walls is missing (exit code 2); the index cannot be written or a
-    /// later frame not removed (exit code 1).
+    /// removed; a missing one is refused (exit code 2).
     pub fn continue_at(
         folder: &ResultsFolder,
         walls: WallFiles,
@@ -141,11 +132,7 @@ impl FrameFiles {
     }
 
     /// Writes the next frame and its walls, then the updated index. `fixed`: the large walls that
-    /// never move, written with the first frame.
-    ///
-    /// # Errors
-    /// No permission, full disk (exit code 1): earlier frames and the index are kept. The frame
-    /// fails [`Frame::check`].
+    /// never move, written with the first frame. An error keeps earlier frames and the index.
     pub fn append(
         &mut self,
         frame: &Frame<'_>,

@@ -22,19 +22,13 @@ pub struct Table {
 
 impl Table {
     /// A table with only its `header`, a line without its line break. Replaces an existing one.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk (all exit code 1).
     pub fn create(path: &Path, header: &str) -> Result<Self> {
         write_file(path, |out| writeln!(out, "{header}"))?;
         Self::continue_at(path, header, header.len() as u64 + 1)
     }
 
-    /// The table of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
-    ///
-    /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
-    /// be opened or written to (exit code 1).
+    /// The table of an interrupted run, truncated to its length at the checkpoint, `length_bytes`;
+    /// refuses other columns, a shorter file, and one without a row that ends there (exit code 2).
     pub fn continue_at(path: &Path, header: &str, length_bytes: u64) -> Result<Self> {
         let file = OpenOptions::new().read(true).write(true).open(path);
         let file = file.map_err(|error| match error.kind() {
@@ -95,9 +89,6 @@ impl Table {
 
     /// Appends complete rows, each with its line break, unless they are [held](Table::hold). If
     /// that fails, the file keeps its previous rows.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1).
     pub fn append(&mut self, rows: &str) -> Result<()> {
         if let Some(held) = &mut self.held {
             held.push_str(rows);
@@ -141,9 +132,6 @@ impl Table {
 
     /// Waits until all rows are on the disk, safe from a power failure. To be called before writing
     /// a checkpoint that relies on them.
-    ///
-    /// # Errors
-    /// Full or broken disk (exit code 1).
     pub fn sync(&self) -> Result<()> {
         self.file
             .sync_data()

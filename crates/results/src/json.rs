@@ -12,9 +12,6 @@ use dem_io::safe_write::write_file;
 
 /// Writes `value` to the file `path` as indented JSON, completely or not at all. Numbers that are
 /// not finite become `null`.
-///
-/// # Errors
-/// As [`write_file`]; `value` cannot be represented as JSON (exit code 1).
 pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
     write_file(path, |out| {
         serde_json::to_writer_pretty(&mut *out, value)?;
@@ -23,9 +20,6 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 }
 
 /// Reads what [`write_json`] has written: `null` where there should be a number is NaN.
-///
-/// # Errors
-/// The value does not have the form of `T`.
 pub fn from_json<T: DeserializeOwned>(json: Value) -> std::result::Result<T, Error> {
     T::deserialize(NullIsNan(json))
 }

@@ -24,10 +24,7 @@ impl PictureFiles {
     }
 
     /// The first `count` pictures of an interrupted run, up to its checkpoint. Later ones are
-    /// removed.
-    ///
-    /// # Errors
-    /// A picture is missing (exit code 2); a later one cannot be removed (exit code 1).
+    /// removed; a missing one is refused (exit code 2).
     pub fn continue_at(folder: &ResultsFolder, count: usize) -> Result<Self> {
         let mut paths = (0..count).map(|number| folder.picture(number));
         if let Some(path) = paths.find(|path| !path.is_file()) {
@@ -44,10 +41,7 @@ impl PictureFiles {
         })
     }
 
-    /// Writes the next picture, given as the bytes of a PNG file.
-    ///
-    /// # Errors
-    /// No permission, full disk (exit code 1): earlier pictures are kept.
+    /// Writes the next picture, given as the bytes of a PNG file; an error keeps earlier ones.
     pub fn append(&mut self, png: &[u8]) -> Result<()> {
         self.folder.make_pictures_folder()?;
         write_bytes(&self.folder.picture(self.count), png)?;
@@ -62,9 +56,6 @@ impl PictureFiles {
 
     /// Writes some pictures side by side to `film-strip.png`, and one after the other to
     /// `film.png`: both as the bytes of a PNG file. Replaces earlier ones.
-    ///
-    /// # Errors
-    /// No permission, full disk (exit code 1).
     pub fn write_film(&self, strip: &[u8], film: &[u8]) -> Result<()> {
         write_bytes(&self.folder.film_strip(), strip)?;
         write_bytes(&self.folder.film(), film)

@@ -11,9 +11,6 @@ use dem_io::safe_write::write_file;
 const BEGIN: &str = "<!-- dem-run plot -->\n";
 
 /// Writes a plot, replacing an earlier one. `svg`: the text of an SVG file.
-///
-/// # Errors
-/// No permission, full disk, a folder in the way (all exit code 1).
 pub fn write_plot_file(path: &Path, svg: &str) -> Result<()> {
     write_file(path, |out| out.write_all([BEGIN, svg].concat().as_bytes()))
 }

@@ -23,9 +23,6 @@ pub struct SeriesFile {
 impl SeriesFile {
     /// A new file with these columns after the time, named with their units: `kinetic_energy_j`.
     /// Replaces an existing one.
-    ///
-    /// # Errors
-    /// Missing folder, no permission, full disk (all exit code 1).
     pub fn create(path: &Path, columns: &[String]) -> Result<Self> {
         Ok(Self {
             table: Table::create(path, &header(columns))?,
@@ -34,10 +31,6 @@ impl SeriesFile {
     }
 
     /// The file of an interrupted run, truncated to its length at the checkpoint, `length_bytes`.
-    ///
-    /// # Errors
-    /// It has other columns, is shorter, or has no row that ends there (all exit code 2); it cannot
-    /// be opened or written to (exit code 1).
     pub fn continue_at(path: &Path, columns: &[String], length_bytes: u64) -> Result<Self> {
         Ok(Self {
             table: Table::continue_at(path, &header(columns), length_bytes)?,
@@ -46,11 +39,7 @@ impl SeriesFile {
     }
 
     /// Appends a row: the time and one value for each column, in SI units. It is in the file when
-    /// this returns.
-    ///
-    /// # Errors
-    /// Full disk (exit code 1): earlier rows are kept. The number of values differs from the number
-    /// of columns.
+    /// this returns; an error keeps earlier rows.
     pub fn append(&mut self, time_s: f64, values: &[f64]) -> Result<()> {
         if values.len() != self.columns {
             return Err(Diagnostic::failed(
@@ -80,11 +69,8 @@ pub struct Series {
     pub values: Vec<Vec<f64>>,
 }
 
-/// Reads the file of a [`SeriesFile`].
-///
-/// # Errors
-/// The file does not exist, its first column is not the time, or a row is incomplete or not numeric
-/// (all exit code 2).
+/// Reads the file of a [`SeriesFile`]; refuses other columns than the time first, and rows that are
+/// incomplete or not numeric.
 pub fn read_series(path: &Path) -> Result<Series> {
     let within = |error: Diagnostic| error.within(&path.display().to_string());
     let file = File::open(path).map_err(|error| {

@@ -60,9 +60,6 @@ pub struct WallFrame {
 }
 
 /// Writes the walls of a frame as .vtp. `has_fixed`: others are in `walls_fixed.vtp`.
-///
-/// # Errors
-/// Those of `out`.
 pub(crate) fn write_walls(
     walls: &WallFrame,
     time_s: f64,
@@ -86,9 +83,6 @@ pub(crate) fn write_walls(
 }
 
 /// Writes walls that never move.
-///
-/// # Errors
-/// Those of `out`.
 pub(crate) fn write_fixed_walls(walls: &WallTriangles, out: &mut dyn Write) -> io::Result<()> {
     let wall = |i: usize| walls.wall_of_triangle[i];
     write(

@@ -26,8 +26,7 @@ impl ResultsFolder {
     /// it can be written to.
     ///
     /// # Errors
-    /// It is not empty, by `existing`; there is none to continue; another run is writing into it
-    /// (all exit code 2). A file has its name, no permission to write in it (both exit code 1).
+    /// Not empty, by `existing`; none to continue; in use by another run (all exit code 2).
     pub fn create(path: &Path, existing: Existing) -> Result<Self> {
         if existing != Existing::Continue {
             make_folder(path)?;
@@ -65,17 +64,11 @@ impl ResultsFolder {
     }
 
     /// Makes the folder of the frames, unless it is there.
-    ///
-    /// # Errors
-    /// No permission, a file has its name (exit code 1).
     pub(crate) fn make_frames_folder(&self) -> Result<()> {
         make_folder(&self.path.join(FRAMES))
     }
 
     /// Makes the folder of the pictures, unless it is there.
-    ///
-    /// # Errors
-    /// No permission, a file has its name (exit code 1).
     pub(crate) fn make_pictures_folder(&self) -> Result<()> {
         make_folder(&self.path.join(PICTURES))
     }

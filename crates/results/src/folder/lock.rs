@@ -26,9 +26,6 @@ pub(super) fn lock(folder: &Path) -> Result<File> {
 
 /// Makes a file where there is none, and locks it. None: another program holds its lock. Some
 /// network disks do not support locks; the file is then returned without.
-///
-/// # Errors
-/// The file cannot be made or opened.
 pub fn lock_file(path: &Path) -> io::Result<Option<File>> {
     let mut options = File::options();
     let file = options

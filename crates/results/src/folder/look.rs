@@ -45,9 +45,6 @@ pub fn result_among<'a>(path: &Path, files: &'a [PathBuf]) -> Option<&'a PathBuf
 }
 
 /// Refuses to write results into the folder `path` if they would replace a file that the run reads.
-///
-/// # Errors
-/// One of `inputs` is in it under a name of results (exit code 2).
 pub fn refuse_inputs_among_results(path: &Path, inputs: &[PathBuf]) -> Result<()> {
     match result_among(path, inputs) {
         None => Ok(()),
@@ -64,9 +61,6 @@ pub fn refuse_inputs_among_results(path: &Path, inputs: &[PathBuf]) -> Result<()
 
 /// The numbers of the frames in the results folder `path`, ascending. Nothing is locked: a run may
 /// be writing there.
-///
-/// # Errors
-/// There is no such folder, or it cannot be read.
 pub fn frames_in(path: &Path) -> Result<Vec<usize>> {
     if !path.is_dir() {
         return Err(Diagnostic::input(

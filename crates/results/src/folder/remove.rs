@@ -17,9 +17,6 @@ use dem_io::safe_write::{UNFINISHED_PREFIX, explain, remove_if_abandoned};
 
 impl ResultsFolder {
     /// Removes the files written by a run, and the folder unless it contains something else.
-    ///
-    /// # Errors
-    /// No permission (exit code 1).
     pub fn remove(self) -> Result<()> {
         self.remove_results()?;
         for part in [FRAMES, PICTURES, PLOTS] {
@@ -37,9 +34,6 @@ impl ResultsFolder {
 
     /// Removes what is neither a table nor the summary, the page or the scene of a run that has
     /// ended: frames, pictures, plots and checkpoint.
-    ///
-    /// # Errors
-    /// A file cannot be removed (exit code 1).
     pub fn keep_tables(&self) -> Result<()> {
         // First, so that a partly removed folder is not taken for a run to continue.
         self.remove_files("", |name| name == CHECKPOINT)?;
@@ -54,9 +48,6 @@ impl ResultsFolder {
 
     /// Removes frame `number` and all after it, with their walls; if it is the first, also the
     /// walls that never move.
-    ///
-    /// # Errors
-    /// No permission (exit code 1).
     pub(crate) fn remove_frames_from(&self, number: usize) -> Result<()> {
         self.remove_files(FRAMES, |name| {
             let is_later = |found: Option<usize>| found.is_some_and(|found| found >= number);
@@ -67,9 +58,6 @@ impl ResultsFolder {
     }
 
     /// Removes picture `number` and all after it.
-    ///
-    /// # Errors
-    /// No permission (exit code 1).
     pub(crate) fn remove_pictures_from(&self, number: usize) -> Result<()> {
         self.remove_files(PICTURES, |name| {
             picture_number(name).is_some_and(|found| found >= number)
@@ -77,9 +65,6 @@ impl ResultsFolder {
     }
 
     /// Removes the list of all frames, if there is one.
-    ///
-    /// # Errors
-    /// No permission (exit code 1).
     pub(crate) fn remove_frames_index(&self) -> Result<()> {
         self.remove_files("", |name| name == INDEX)
     }

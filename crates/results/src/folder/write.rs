@@ -16,11 +16,7 @@ const SCENE_BEGIN: &str = "# Written by dem-run";
 
 impl ResultsFolder {
     /// Writes the scene as it is run to `scene.toml`, after a line that says so. Replaces that of
-    /// an earlier run.
-    ///
-    /// # Errors
-    /// A scene that no run has written is there (exit code 2); no permission, full disk (exit code
-    /// 1).
+    /// an earlier run, and refuses to replace any other.
     pub fn write_scene(&self, program: &str, text: &str) -> Result<()> {
         self.refuse_foreign_scene()?;
         write_file(&self.scene(), |out| {
@@ -46,44 +42,29 @@ impl ResultsFolder {
     }
 
     /// Writes the curve of a laboratory test to `force-displacement.csv`, replacing an earlier one.
-    ///
-    /// # Errors
-    /// Those of [`ResultsFolder::write_plot`].
     pub fn write_test_curve(&self, csv: &str) -> Result<()> {
         write_file(&self.test_curve(), |out| out.write_all(csv.as_bytes()))
     }
 
     /// Writes the pulses in the bars of a split-Hopkinson test to `bar-signals.csv`, replacing an
     /// earlier one.
-    ///
-    /// # Errors
-    /// Those of [`ResultsFolder::write_plot`].
     pub fn write_bar_signals(&self, csv: &str) -> Result<()> {
         write_file(&self.bar_signals(), |out| out.write_all(csv.as_bytes()))
     }
 
     /// Writes what the strain gauges of a split-Hopkinson test record to `gauge-signals.csv`,
     /// replacing an earlier one.
-    ///
-    /// # Errors
-    /// Those of [`ResultsFolder::write_plot`].
     pub fn write_gauge_signals(&self, csv: &str) -> Result<()> {
         write_file(&self.gauge_signals(), |out| out.write_all(csv.as_bytes()))
     }
 
     /// Writes the stress over the loaded diameter of a disc to `disc-stress.csv`, replacing an
     /// earlier one.
-    ///
-    /// # Errors
-    /// No permission, full disk, a file or folder in the way (all exit code 1).
     pub fn write_disc_stress(&self, csv: &str) -> Result<()> {
         write_file(&self.disc_stress(), |out| out.write_all(csv.as_bytes()))
     }
 
     /// Writes a plot to `plots/NAME.svg`, replacing an earlier one. `svg`: the text of an SVG file.
-    ///
-    /// # Errors
-    /// No permission, full disk, a file or folder in the way (all exit code 1).
     pub fn write_plot(&self, name: &str, svg: &str) -> Result<()> {
         make_folder(&self.path.join(PLOTS))?;
         write_plot_file(&self.plot(name), svg)

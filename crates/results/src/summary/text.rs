@@ -223,9 +223,6 @@ impl Summary {
     }
 
     /// The text of the summary of a static run.
-    ///
-    /// # Errors
-    /// Those of the formatter.
     fn write_equilibrium(
         &self,
         found: &EquilibriumSummary,
@@ -308,9 +305,6 @@ impl Summary {
     }
 
     /// Two lines for each body: its masses.
-    ///
-    /// # Errors
-    /// Those of the formatter.
     fn write_masses(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (name, line) in mass_lines(&self.bodies) {
             writeln!(f, "{name:12} {line}")?;
@@ -319,9 +313,6 @@ impl Summary {
     }
 
     /// Notes, and the verdict.
-    ///
-    /// # Errors
-    /// Those of the formatter.
     fn write_verdict(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for note in &self.notes {
             writeln!(f, "note         {}", visible(note))?;
@@ -349,9 +340,6 @@ impl Summary {
 }
 
 /// A line for each measure.
-///
-/// # Errors
-/// Those of the formatter.
 fn measure_lines(measures: &[Measured], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let names = measures.iter().map(|m| m.name.chars().count());
     let width = names.max().unwrap_or(0).max(12);
