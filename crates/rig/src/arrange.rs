@@ -41,10 +41,7 @@ pub struct TestedBody {
 /// moving support, the run gets its end. A scene without a test stays as it is. The velocity rises
 /// uniformly during the first period of the body in the test, which leaves the lowest mode at rest.
 /// A confining pressure and a normal stress rise before that, in a quarter of the time of the
-/// stroke.
-///
-/// # Errors
-/// A support or a load with the name of one of the test's.
+/// stroke. Refuses a support or a load with the name of one of the test's.
 pub fn arrange(scene: &Scene, body: &TestedBody, faster: f64) -> Result<Scene> {
     let mut scene = scene.clone();
     let Some(test) = scene.test.clone() else {
@@ -239,10 +236,8 @@ fn pulled(test: &Test, hold_along: impl Fn(f64) -> Hold) -> [Option<Hold>; 6] {
 }
 
 /// The body that a scene tests; its lowest frequency is that of the free body, and for bending its
-/// remaining fraction on two supports at its ends. None: the scene has no test.
-///
-/// # Errors
-/// The body has no bonds.
+/// remaining fraction on two supports at its ends. None: the scene has no test. Refuses a body
+/// without bonds.
 pub fn tested_body(
     scene: &Scene,
     bodies: &BTreeMap<String, Body>,

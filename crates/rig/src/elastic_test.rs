@@ -63,7 +63,7 @@ impl ElasticTest {
 /// `state`: of the scene with its test arranged, before the first step.
 ///
 /// # Errors
-/// The walls do not meet the body; no equilibrium is found (exit code 3); it is interrupted (130).
+/// The walls do not meet the body; no equilibrium is found (exit code 3); interrupted (130).
 pub fn elastic_test(
     state: &mut State,
     scene: &Scene,

@@ -35,9 +35,6 @@ pub struct TestFiles<'a> {
 /// Writes `plots/force-displacement.svg`, `plots/crack.svg` and `force-displacement.csv`; of a test
 /// with bars also `bar-signals.csv` and plots of the pulses, forces and stress; of a weight the
 /// force over time, of a disc between plates the stress over its loaded diameter.
-///
-/// # Errors
-/// Those of the files.
 pub(crate) fn write_test(folder: &ResultsFolder, files: &TestFiles<'_>) -> Result<()> {
     let rows = rows_of(files.record, files.result.lowest_frequency_hz);
     let measured = measured_curve(files.test, &files.picture.setup.specimen);

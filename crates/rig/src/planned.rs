@@ -12,9 +12,6 @@ use crate::setup::{Setup, setup};
 
 /// The plan of a scene as of [`plan`], and its laboratory test in its initial arrangement, whose
 /// notes and warnings are among those of the plan. None: the scene has no test.
-///
-/// # Errors
-/// Those of [`plan`]; a test that is not possible.
 pub fn plan_with_test(
     scene: &Scene,
     read: BTreeMap<String, Body>,

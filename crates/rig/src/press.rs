@@ -62,9 +62,6 @@ pub(crate) enum NotPressed {
 /// The test of a state before its first step. `loading`: its moving and resting sides;
 /// `stroke_m`: largest travel; `largest_n`: load of which fractions are taken, that at the end of
 /// the stroke unless given.
-///
-/// # Errors
-/// The walls do not meet the body; there is no equilibrium.
 pub(crate) fn press(
     state: &mut State,
     setup: &Setup,

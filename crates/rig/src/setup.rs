@@ -41,8 +41,7 @@ const ABOUT: f64 = 1.1;
 /// that supports hold. `volume_m3`: of the body's shape, if known.
 ///
 /// # Errors
-/// Pins that are not cylinders, or not the number that the test needs; skewed pins; a body that is
-/// not between them; a disc that is not round.
+/// Pins not cylindrical, skewed, or too many or few; a body not between them; a disc not round.
 pub fn setup(
     scene: &Scene,
     test: &Test,

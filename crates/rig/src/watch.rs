@@ -86,9 +86,6 @@ impl<'a> Watch<'a> {
     }
 
     /// Its result, written to `folder` if there is one.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub fn finish(
         &self,
         record: &Record,
