@@ -67,10 +67,7 @@ pub(super) struct Planned {
 }
 
 impl<'a> Run<'a> {
-    /// Begins a run, or resumes one.
-    ///
-    /// # Errors
-    /// The checkpoint belongs to another scene, or the run is already over; those of the files.
+    /// Begins a run, or resumes one; refuses a checkpoint of another scene or of a finished run.
     pub(super) fn begin(plan: Plan, scene: &'a Scene, settings: RunSettings<'a>) -> Result<Self> {
         let mut settings = settings;
         let mut probes = probes(scene, &plan);

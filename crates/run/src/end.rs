@@ -26,9 +26,6 @@ use dem_plan::measure::sizes::Fragments;
 
 impl Run<'_> {
     /// Writes the remaining files and the summary.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub(super) fn end(mut self, ended: Ended) -> Result<Outcome> {
         let folder = self.settings.folder;
         let (state, progress) = (&self.state, &self.progress);

@@ -52,9 +52,6 @@ impl End {
     }
 
     /// The same, and writes and keeps the tables of this state.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub(super) fn with_tables(summary: &Summary, last: &LastState<'_>) -> Result<Self> {
         let mut end = Self::of(summary)?;
         for write in TABLES {
@@ -68,9 +65,6 @@ impl End {
     }
 
     /// Writes the tables that [`Self::with_tables`] has kept.
-    ///
-    /// # Errors
-    /// Those of the files.
     fn write_kept(&self, folder: &ResultsFolder) -> Result<()> {
         for (name, text) in &self.tables {
             let path = folder.path().join(name);
@@ -84,9 +78,6 @@ impl End {
 
     /// Writes plots, page and the film of these pictures, if any, of a run whose tables are
     /// written, and its summary last: if the summary exists, all files do.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub(super) fn write(
         &self,
         folder: &ResultsFolder,
@@ -106,18 +97,12 @@ impl End {
     }
 
     /// Writes `report.html` from the other files of the run.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub(super) fn write_page(&self, folder: &ResultsFolder) -> Result<()> {
         let page = report(folder.path(), &self.summary)?;
         write_file(&folder.report(), |out| out.write_all(page.as_bytes()))
     }
 
     /// Writes `summary.json`.
-    ///
-    /// # Errors
-    /// Those of the file.
     pub(super) fn write_summary(&self, folder: &ResultsFolder) -> Result<()> {
         write_file(&folder.summary(), |out| {
             out.write_all(self.summary.as_bytes())
@@ -166,10 +151,8 @@ pub struct Finished {
 }
 
 /// Writes the files that are missing because the run was killed after reaching its end, or that
-/// have been removed since. None: the run has not reached its end, or no file is missing.
-///
-/// # Errors
-/// The scene is not the one of the run; those of the files.
+/// have been removed since. None: the run has not reached its end, or no file is missing. Refuses
+/// another scene than that of the run.
 pub fn finish(plan: &Plan, scene: &Scene, settings: &RunSettings<'_>) -> Result<Option<Finished>> {
     let (Some(folder), Some(snapshot)) = (settings.folder, &settings.resume) else {
         return Ok(None);

@@ -42,7 +42,7 @@ pub use self::settings::{RunSettings, SoFar};
 /// called from time to time with how far it has come.
 ///
 /// # Errors
-/// The run goes unstable (exit code 3), is interrupted (130), or its files cannot be written (1).
+/// The run goes unstable (exit code 3), is interrupted (130), or cannot write its files (1).
 pub fn run(
     plan: Plan,
     scene: &Scene,
@@ -54,9 +54,6 @@ pub fn run(
 }
 
 /// The same, but a run that goes unstable or is interrupted also has a summary, in its folder too.
-///
-/// # Errors
-/// Its files cannot be written, or there is no equilibrium.
 pub fn run_as_far_as_it_goes(
     plan: Plan,
     scene: &Scene,

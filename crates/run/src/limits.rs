@@ -103,10 +103,8 @@ impl<'a> Limits<'a> {
     }
 
     /// Checks after a step whether the limit has fallen, and reduces the step if it has; increases
-    /// an adaptive step if possible. `replaced`: clumps have just become clusters.
-    ///
-    /// # Errors
-    /// A particle moves so far in a step that contacts would miss it, and the scene sets the step.
+    /// an adaptive step if possible. `replaced`: clumps have just become clusters. Refuses a step
+    /// set by the scene in which a particle moves so far that contacts would miss it.
     pub(super) fn follow(
         &mut self,
         state: &mut State,

@@ -88,9 +88,6 @@ impl Due {
 impl Run<'_> {
     /// Evaluates the step where everything can be measured, and writes the output that is due.
     /// Returns how the run has ended, if it has.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub(super) fn observe(&mut self, tell: &dyn Fn(&SoFar)) -> Result<Option<Ended>> {
         if let Some(problem) = tunnelling(&self.state, self.scene, &self.bodies) {
             return Ok(Some(self.ended_early("instability", problem)));
@@ -156,9 +153,6 @@ impl Run<'_> {
 
     /// Handles the changes of bodies in the second half of the step, and the limit of the time
     /// step; writes a checkpoint if one is due. Returns how the run has ended, if it has.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub(super) fn follow(&mut self) -> Result<Option<Ended>> {
         let changed = self.follow_population();
         let since = self

@@ -62,9 +62,6 @@ pub(super) trait Output {
 pub(super) type Outputs = Vec<(&'static str, Box<dyn Output>)>;
 
 /// Flushes all files to the disk, and records where they stand and their check sums.
-///
-/// # Errors
-/// Those of the files.
 pub(super) fn save_outputs(
     outputs: &Outputs,
     folder: &Path,
@@ -134,9 +131,6 @@ impl Opening<'_> {
 }
 
 /// Where the output of this name stood at a checkpoint.
-///
-/// # Errors
-/// The checkpoint holds something else (exit code 2).
 pub(super) fn position<T: Default + DeserializeOwned>(
     progress: &Progress,
     name: &str,

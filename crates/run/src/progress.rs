@@ -161,10 +161,8 @@ impl Progress {
         })
     }
 
-    /// Resumes from a checkpoint of the present state, perhaps with other output intervals.
-    ///
-    /// # Errors
-    /// The run is over.
+    /// Resumes from a checkpoint of the present state, perhaps with other output intervals. Refuses
+    /// a run that is over.
     pub(super) fn go_on(
         &mut self,
         state: &State,

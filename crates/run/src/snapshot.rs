@@ -72,17 +72,11 @@ impl<'a> Snapshot<'a> {
     }
 
     /// As bytes.
-    ///
-    /// # Errors
-    /// None in practice (exit code 1).
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
         postcard::to_stdvec(self).map_err(|error| fault(&error))
     }
 
     /// From the bytes of a checkpoint.
-    ///
-    /// # Errors
-    /// The data are not a checkpoint.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         postcard::from_bytes(bytes).map_err(|error| {
             Diagnostic::input(
@@ -95,9 +89,6 @@ impl<'a> Snapshot<'a> {
 
     /// Checks that a scene is the one of the run, except for settings that may change: end time,
     /// values of measures that end it, time step, output, and paths of the files of its bodies.
-    ///
-    /// # Errors
-    /// Names the differences.
     pub(crate) fn check_scene(&self, scene: &str) -> Result<()> {
         let may_change = |key: &str| {
             const RUN: [&str; 4] = [
@@ -147,10 +138,7 @@ impl<'a> Snapshot<'a> {
     }
 
     /// Restores the progress of the run in a state that has been planned from the same scene and
-    /// has this [`fingerprint`].
-    ///
-    /// # Errors
-    /// The scene's bodies or bonds differ from those of the run.
+    /// has this [`fingerprint`]. Refuses other bodies or bonds than those of the run.
     pub fn restore(
         &self,
         fingerprint: u64,
@@ -188,9 +176,6 @@ fn other_bodies(of_run: &str, here: &str) -> Diagnostic {
 }
 
 /// A hash of the data fixed by the plan, and of the particles and bonds before the first step.
-///
-/// # Errors
-/// None in practice (exit code 1).
 pub fn fingerprint(planned: &State) -> Result<u64> {
     let parts = (&planned.model, &planned.particles, &planned.bonds);
     let hash = postcard::to_io(&parts, Fnv1a::default()).map_err(|error| fault(&error))?;

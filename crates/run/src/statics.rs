@@ -42,8 +42,7 @@ use dem_rig::elastic_test::elastic_test;
 /// to time with the progress, in 0..1.
 ///
 /// # Errors
-/// There is no stable equilibrium, or it is not found (exit code 3); it does not fit into memory,
-/// or its files cannot be written (1); it is interrupted (130).
+/// No stable equilibrium is found (exit code 3); memory or disk are full (1); interrupted (130).
 pub fn run(
     plan: Plan,
     scene: &Scene,

@@ -33,9 +33,6 @@ impl Sums {
 
     /// Sums the first `bytes` of a file, of which those summed before have not changed; all of it
     /// if no number is given.
-    ///
-    /// # Errors
-    /// It cannot be read (exit code 1).
     pub(super) fn update(&mut self, folder: &Path, name: &str, bytes: Option<u64>) -> Result<()> {
         let path = folder.join(name);
         let known = self.files.get(name).copied();
@@ -50,9 +47,6 @@ impl Sums {
     }
 
     /// Refuses files whose first bytes are not those that were summed.
-    ///
-    /// # Errors
-    /// The first such file (exit code 2).
     pub(super) fn check(&self, folder: &Path) -> Result<()> {
         let is_changed = |(name, sum): &(&String, &Sum)| {
             let none = Sum {

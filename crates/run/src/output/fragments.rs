@@ -67,9 +67,6 @@ pub fn rows<'a>(fragments: &[Fragment], model: &'a Model) -> Vec<FragmentRow<'a>
 }
 
 /// Writes the parent of each fragment.
-///
-/// # Errors
-/// Those of the files.
 pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     let row = |(id, cluster): (u32, &Cluster)| TreeRow {
         fragment_id: id,
@@ -110,9 +107,6 @@ pub fn split_text(split: &Split, history: &[Cluster]) -> String {
 /// Plots the discharged mass over time, if there is any; the number of fragments over time, if it
 /// changes and no measure has it; and the sizes of those at the end and those discharged, if there
 /// is more than one.
-///
-/// # Errors
-/// Those of the files.
 pub(crate) fn write_fragment_plots(
     folder: &ResultsFolder,
     state: &State,

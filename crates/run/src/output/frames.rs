@@ -74,9 +74,6 @@ impl FrameOrder {
     }
 
     /// Writes the frame of a state between a kick and the drift after it.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub(crate) fn write(
         &self,
         state: &State,

@@ -16,9 +16,6 @@ const ERRORS: &str = "errors";
 const BROKEN: &str = "broken_bonds";
 
 /// Draws the time series of a finished run into its folder. `results`: those of its measures.
-///
-/// # Errors
-/// Those of the files.
 pub(crate) fn write_plots(
     folder: &ResultsFolder,
     probes: &[Probe],

@@ -20,11 +20,8 @@ const OUTPUTS: [(&str, Open); 6] = [
     ("discharge", discharge::open),
 ];
 
-/// Opens the files of a run, new or where it is continued.
-///
-/// # Errors
-/// Files that are not those of the checkpoint (exit code 2), before any is changed; those of the
-/// files.
+/// Opens the files of a run, new or where it is continued. Files that are not those of the
+/// checkpoint are refused (exit code 2) before any is changed.
 pub(crate) fn open_outputs(opening: &Opening<'_>) -> Result<Outputs> {
     if let Some(progress) = opening.continued {
         progress.sums.check(opening.folder.path())?;

@@ -65,9 +65,6 @@ pub(super) fn open(opening: &Opening<'_>) -> Result<Option<Box<dyn Output>>> {
 }
 
 /// Number of the pictures at a checkpoint. None: the scene asks for none.
-///
-/// # Errors
-/// The checkpoint holds something else (exit code 2).
 pub(crate) fn taken_until(scene: &Scene, progress: &Progress) -> Result<Option<usize>> {
     let every_s = scene.output.as_ref().and_then(|output| output.pictures_s);
     let count = every_s.map(|_| position(progress, NAME).map(|taken: Taken| taken.count));

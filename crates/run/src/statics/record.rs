@@ -122,9 +122,6 @@ impl AtRest<'_> {
 
     /// Writes one frame, one row of the time series with the `measured` values, no events, the page
     /// and the summary.
-    ///
-    /// # Errors
-    /// Those of the files.
     pub(super) fn write(
         &self,
         folder: &ResultsFolder,
