@@ -17,9 +17,6 @@ type Entries = Vec<(String, Node)>;
 /// The text of a scene in the folder `to` that is `scene`, which was read from `text` with
 /// `overrides`; the bodies of `scene` may have other files by now. Read in that folder, it gives
 /// the same scene without the folder of its output. Standard input stays "-".
-///
-/// # Errors
-/// As for reading the scene's text.
 pub fn scene_as_run(text: &str, scene: &Scene, overrides: &[String], to: &Path) -> Result<String> {
     let (mut document, _) = document_of(text, &scene.source, overrides)?;
     let Value::Table(root) = &mut document.root.value else {

@@ -11,9 +11,6 @@ use super::body::BodySource;
 use super::root::Scene;
 
 /// The bodies of a scene by name, from their files or from the scene itself.
-///
-/// # Errors
-/// A file that is missing or wrong; impossible particles or bonds.
 pub fn read_bodies(scene: &Scene) -> Result<BTreeMap<String, Body>> {
     let mut bodies = BTreeMap::new();
     for (name, entry) in &scene.bodies {

@@ -22,9 +22,7 @@ pub(super) static ROTATION: Schema = Schema {
 };
 
 /// A vector of length 1 along the three numbers of `field`, called `what` in messages: "an axis".
-///
-/// # Errors
-/// Not three numbers, or all of them zero.
+/// Not all of them may be zero.
 pub(super) fn direction(field: &Field<'_>, what: &str) -> Result<[f64; 3]> {
     let given = field.vector(&NUMBER)?;
     // Scaled first: squares of very large or small numbers leave the range of f64.

@@ -33,10 +33,7 @@ pub(super) static DROP: Schema = Schema {
     ],
 };
 
-/// `drop` of a body.
-///
-/// # Errors
-/// A key is missing or bad, or the body has a velocity as well.
+/// `drop` of a body; refuses one of a body that has a velocity as well.
 pub(super) fn read(body: &Table<'_>) -> Result<Option<Fall>> {
     let Some(field) = body.get("drop") else {
         return Ok(None);

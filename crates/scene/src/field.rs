@@ -50,9 +50,6 @@ impl<'a> Field<'a> {
     }
 
     /// A finite value in SI.
-    ///
-    /// # Errors
-    /// Not a number, or the unit of another quantity.
     pub(super) fn quantity(&self, dimension: &Dimension) -> Result<f64> {
         match &self.node.value {
             Value::Number(_, value) if value.is_finite() => Ok(*value),
@@ -66,9 +63,6 @@ impl<'a> Field<'a> {
     }
 
     /// A value in SI, within the limits of `key`.
-    ///
-    /// # Errors
-    /// Those of [`Field::quantity`], or a value outside the limits.
     pub(super) fn within_limits(&self, key: &Key) -> Result<f64> {
         let dimension = key.dimension();
         let value = self.quantity(dimension)?;
@@ -101,9 +95,6 @@ impl<'a> Field<'a> {
     }
 
     /// The values of a list of `N`, written in the form `form`.
-    ///
-    /// # Errors
-    /// Not a list, or one of another length.
     pub(super) fn row<const N: usize>(&self, form: &str) -> Result<[Field<'a>; N]> {
         self.listed()
             .and_then(|items| items.try_into().ok())
@@ -111,9 +102,6 @@ impl<'a> Field<'a> {
     }
 
     /// The values of a list that is not empty.
-    ///
-    /// # Errors
-    /// Not a list, or an empty one.
     pub(super) fn items(&self) -> Result<Vec<Field<'a>>> {
         let Some(items) = self.listed() else {
             return Err(self.wrong("a list", "write it in [ ]"));
@@ -206,9 +194,6 @@ impl<'a> Field<'a> {
     }
 
     /// A name of `known`: the names in `[table.NAME]`.
-    ///
-    /// # Errors
-    /// Not a text, or not a known name.
     pub(super) fn reference<'n>(
         &self,
         known: impl Iterator<Item = &'n String>,

@@ -19,9 +19,6 @@ pub(super) const INCLUDE: &str = "include";
 const INCLUDE_TOO: &str = "include+";
 
 /// A scene's text with its included files and its `--set` values, and the paths of these files.
-///
-/// # Errors
-/// Not TOML, a wrong `--set`, an included file that cannot be read or has other tables.
 pub(super) fn document_of(
     text: &str,
     source: &str,
@@ -171,9 +168,6 @@ fn is_turned(table: &str, one: &str, other: &str) -> bool {
 
 /// Materials, contacts and bonds of a scene, with included files and `--set` values, as the text of
 /// a file that other scenes can include.
-///
-/// # Errors
-/// As for reading the scene's text.
 pub fn material_text(text: &str, source: &str, overrides: &[String]) -> Result<String> {
     let (document, _) = document_of(text, source, overrides)?;
     let mut found = String::new();
@@ -202,9 +196,6 @@ pub fn material_text(text: &str, source: &str, overrides: &[String]) -> Result<S
 
 /// A number of a scene with included files and `--set` values: as written, and its unit, empty for
 /// a plain number. `path` as for `--set`. None: the scene does not have it.
-///
-/// # Errors
-/// As for reading the scene's text; it is not a number.
 pub fn written_value(
     text: &str,
     source: &str,

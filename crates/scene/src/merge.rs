@@ -113,10 +113,7 @@ pub(super) struct Conflict {
 }
 
 /// Adds the keys of a table of an included file to a table of the same name. `path`: that of the
-/// table.
-///
-/// # Errors
-/// Both have a key with different values, or keys that stand for one another.
+/// table. Refuses keys with different values in the two, and keys that stand for one another.
 pub(super) fn join(
     own: &mut Node,
     added: Node,

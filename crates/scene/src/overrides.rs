@@ -9,8 +9,7 @@ impl Document {
     /// when they are read.
     ///
     /// # Errors
-    /// No `=`, an empty key, a list or table that is not TOML, or a key inside a value that is not
-    /// a table.
+    /// No `=`, an empty key, a list or table that is not TOML, or a key inside a plain value.
     pub(super) fn set(&mut self, text: &str) -> Result<()> {
         let option = self.options.len();
         self.options.push(text.to_owned());

@@ -8,9 +8,6 @@ use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::read_input;
 
 /// The text of a file, called `what` in messages.
-///
-/// # Errors
-/// The file cannot be read, or is not text.
 pub fn text_of(path: &Path, what: &str) -> Result<String> {
     let bytes = read_input(path, what)?;
     String::from_utf8(bytes).map_err(|error| {

@@ -46,9 +46,6 @@ pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
 }
 
 /// Reads a scene from the text of a file named `source`, as [`read_scene`] does.
-///
-/// # Errors
-/// Those of [`read_scene`], except for reading the file.
 pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result<Scene> {
     let (document, included) = document_of(text, source, overrides)?;
     let root = Table::root(&document, &SCENE)?;

@@ -20,9 +20,6 @@ pub(super) struct Table<'a> {
 /// A type as which the value of a key can be read.
 pub(super) trait Read: Sized {
     /// From the given value.
-    ///
-    /// # Errors
-    /// The value is not as required by `key`.
     fn given(field: &Field<'_>, key: &Key) -> Result<Self>;
 
     /// The value if the key is left out; None if it is required.
@@ -52,9 +49,6 @@ impl<'a> Table<'a> {
     }
 
     /// The table in `field`, if it has no other keys than `schema`.
-    ///
-    /// # Errors
-    /// Not a table, or an unknown key in it.
     pub(super) fn of(field: &Field<'a>, schema: &'static Schema) -> Result<Self> {
         let table = Self {
             schema,
@@ -65,9 +59,6 @@ impl<'a> Table<'a> {
     }
 
     /// The table in `field`, with any keys.
-    ///
-    /// # Errors
-    /// Not a table.
     pub(super) fn any(field: &Field<'a>) -> Result<Self> {
         let Value::Table(entries) = &field.node.value else {
             let remedy = format!("write it as [{}], or in {{ }}", field.path);
@@ -129,9 +120,6 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key, or its default.
-    ///
-    /// # Errors
-    /// The value is not as required by the schema, or is missing although required.
     pub(super) fn read<T: Read>(&self, name: &str) -> Result<T> {
         let key = self.key(name)?;
         if let Some(field) = self.get(name) {
@@ -205,10 +193,8 @@ impl<'a> Table<'a> {
         Diagnostic::input(self.document.place(self.origin), problem, remedy)
     }
 
-    /// The named tables in the table `key`: `[key.NAME]`; none if it is not there.
-    ///
-    /// # Errors
-    /// Not a table, or a name with other characters than letters, digits, - and _.
+    /// The named tables in the table `key`: `[key.NAME]`; none if it is not there. Names have only
+    /// letters, digits, - and _.
     pub(super) fn named(&self, key: &str) -> Result<Vec<(String, Field<'a>)>> {
         let Some(field) = self.get(key) else {
             return Ok(Vec::new());

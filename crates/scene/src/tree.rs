@@ -57,9 +57,6 @@ const SHOWN_OPTION: usize = 60;
 
 impl Document {
     /// Parses `text`.
-    ///
-    /// # Errors
-    /// Not TOML: line, and what was expected there.
     pub(super) fn parse(name: &str, text: &str) -> Result<Self> {
         Ok(Self {
             name: name.to_owned(),
@@ -95,9 +92,6 @@ pub(super) fn option_place(text: &str) -> String {
 }
 
 /// The tables of the text of a file `name`; `origin` is that of a line.
-///
-/// # Errors
-/// Not TOML: line, and what was expected there.
 pub(super) fn parse_tables(
     name: &str,
     text: &str,
@@ -110,9 +104,6 @@ pub(super) fn parse_tables(
 }
 
 /// The value of a `--set`, if it is TOML.
-///
-/// # Errors
-/// The message of the parser.
 pub(super) fn parse_value(text: &str, option: usize) -> std::result::Result<Node, String> {
     let value = DeValue::parse(text).map_err(|error| error.message().to_owned())?;
     let origin = Origin::Option(option);

@@ -10,10 +10,7 @@ use crate::tree::shortened;
 use dem_io::diagnostic::{Diagnostic, Result};
 
 /// The materials of `key`, sorted: it is split at the "-" that has a name of `materials` on both
-/// sides.
-///
-/// # Errors
-/// No such "-", or several that give different pairs.
+/// sides. Refuses a key without such a "-", or with several that give different pairs.
 pub(super) fn named_pair(
     key: &str,
     field: &Field<'_>,

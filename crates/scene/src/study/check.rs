@@ -18,10 +18,6 @@ use dem_io::diagnostic::{Diagnostic, Result};
 use dem_io::units::quantity;
 
 /// The scene of `study`, whose file contains `text`, with these values applied.
-///
-/// # Errors
-/// The scene refuses one of them, or it names something that the scene does not have. The place is
-/// that of the value in the study.
 pub fn scene_with<'a>(
     study: &Study,
     text: &str,
@@ -127,7 +123,7 @@ pub fn settle_references(study: &mut Study, scene: &Scene) {
 /// run.
 ///
 /// # Errors
-/// The scene has no such measure or no test, or a reference is missing or is not of that quantity.
+/// The scene has no such measure or no test; a reference is missing or of another quantity.
 pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>> {
     let mut values = Vec::new();
     for measure in &study.measures {
@@ -190,9 +186,6 @@ pub fn reference_values(study: &Study, scene: &Scene) -> Result<Vec<Option<f64>>
 }
 
 /// The value of `[find]` in the unit of its measure, if the study has that table.
-///
-/// # Errors
-/// It is not of that quantity.
 pub fn value_to_find(study: &Study, scene: &Scene) -> Result<Option<f64>> {
     let Some(find) = &study.find else {
         return Ok(None);

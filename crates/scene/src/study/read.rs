@@ -21,17 +21,11 @@ const MOST_CASES: u64 = 10_000;
 const SEED: &str = "run.seed";
 
 /// Reads a study from a TOML file.
-///
-/// # Errors
-/// The file cannot be read, is not TOML, or is not a study. The place is file and line.
 pub fn read_study(path: &Path) -> Result<Study> {
     study_from_text(&text_of(path, "a study")?, &path.display().to_string())
 }
 
 /// Reads a study from the text of a file named `source`.
-///
-/// # Errors
-/// Those of [`read_study`], except for reading the file.
 pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     let document = Document::parse(source, text)?;
     let root = Table::root(&document, &STUDY)?;

@@ -16,10 +16,8 @@ use crate::tree::{Value, parse_value};
 use dem_io::diagnostic::{Diagnostic, Result};
 
 /// The text of a scene file `target` that is the scene of `study`, whose file contains `text`, with
-/// `settings`. Read back it is the same scene.
-///
-/// # Errors
-/// The scene refuses the settings, or is written in a way that does not allow to insert them.
+/// `settings`. Read back it is the same scene. Refuses a scene written in a way that does not allow
+/// to insert them.
 pub fn rewritten(
     study: &Study,
     text: &str,
