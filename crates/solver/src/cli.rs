@@ -80,10 +80,6 @@ pub fn program(given: impl Iterator<Item = OsString>) -> u8 {
 
 /// Does what was requested. `interrupt` tells a run to stop; `tell` is called from time to time
 /// with how far the run of a scene has come.
-///
-/// # Errors
-/// Bad input, a run that fails or goes unstable, or standard output that cannot be written to. It
-/// is not an error if a reader closes standard output early.
 pub fn run(
     arguments: &Arguments,
     interrupt: &Interrupt,

@@ -47,9 +47,6 @@ pub(crate) struct Bench<'a> {
 impl Bench<'_> {
     /// The test of packing `at` at `faster` times the rate of the scene; `tell` is called with its
     /// progress, in 0..1.
-    ///
-    /// # Errors
-    /// The scene refuses a number; the run goes unstable, or is interrupted.
     pub(crate) fn test(
         &self,
         factors: &[f64],
@@ -134,9 +131,6 @@ impl Bench<'_> {
     /// First factors: that on the modulus of the bonds from the stiffness of `packings` packings
     /// without time steps, by two tests each; 1 on all others. None: nothing stands for the
     /// stiffness, or it cannot be found so.
-    ///
-    /// # Errors
-    /// Those of the plan; interrupted.
     pub(crate) fn start(&self, packings: usize) -> Result<Option<Start>> {
         let names = [STIFFNESS, EQ_18, BY_TRAVEL, MODULUS];
         let is_stiffness =

@@ -40,10 +40,8 @@ pub(crate) struct SceneText<'a> {
 }
 
 /// What is varied: modulus and strengths of the bonds of the tested body, or what `free` names.
-/// `stiffness_n_m`: stiffness of the measured curve for the simulated specimen.
-///
-/// # Errors
-/// Nothing to calibrate; `free` names no number of the scene, or no result with a target.
+/// `stiffness_n_m`: stiffness of the measured curve for the simulated specimen. Refuses a scene
+/// with nothing to calibrate.
 pub(crate) fn unknowns(
     scene: &Scene,
     text: &SceneText<'_>,

@@ -28,9 +28,6 @@ pub(crate) struct Prospect {
 }
 
 /// Plans the test of a packing of `body`.
-///
-/// # Errors
-/// Those of the plan.
 pub(crate) fn prospect(
     scene: &Scene,
     body: &str,
@@ -61,10 +58,8 @@ pub(crate) fn prospect(
 }
 
 impl Prospect {
-    /// Refuses a stroke that is too short for a body that meets its targets.
-    ///
-    /// # Errors
-    /// The stroke is shorter than 1.2 times the travel at failure.
+    /// Refuses a stroke that is too short for a body that meets its targets: shorter than 1.2 times
+    /// the travel at failure.
     pub(crate) fn check(&self, scene: &Scene, unknowns: &[Unknown]) -> Result<()> {
         let (Some(specimen), Some(test)) = (&self.specimen, &scene.test) else {
             return Ok(());

@@ -17,11 +17,8 @@ use crate::shape::hull::{SMALLER_BY, convex_hull};
 /// Millimetres in a metre: STL files are in millimetres, as dem-pack and scenes read them.
 const MM: f64 = 1e3;
 
-/// Writes all fragments of a frame, whose file is `path`, into the folder `output`: their convex
-/// hulls as STL, or their particles and bonds as bodies. All files appear, or none.
-///
-/// # Errors
-/// The folder is not empty, or cannot be made; a file cannot be written.
+/// Writes all fragments of a frame, whose file is `path`, into the empty folder `output`: their
+/// convex hulls as STL, or their particles and bonds as bodies. All files appear, or none.
 pub(super) fn write_all(
     frame: &StoredFrame,
     path: &Path,

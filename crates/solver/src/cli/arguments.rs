@@ -44,9 +44,6 @@ pub struct Arguments {
 impl Arguments {
     /// The arguments of a command line, the first of which is the name of the program. `dem-run run
     /// SCENE` is `dem-run SCENE`.
-    ///
-    /// # Errors
-    /// An unknown command or option (exit code 2).
     pub fn parsed(given: impl Iterator<Item = OsString>) -> Result<Self> {
         let mut given: Vec<OsString> = given.collect();
         if given.len() > 2 && given[1] == "run" {

@@ -10,9 +10,6 @@ use super::scene_arguments::SceneArguments;
 
 /// Writes the scene of a run, with `--set`, `--material`, `include` and `--body` in it, to
 /// `scene.toml` in its folder.
-///
-/// # Errors
-/// The scene cannot be read any more; those of the file.
 pub(super) fn write_scene(
     folder: &ResultsFolder,
     arguments: &SceneArguments,

@@ -77,11 +77,8 @@ pub(super) struct CalibrateArguments {
     pack: Vec<String>,
 }
 
-/// Calibrates, writes material, page and record, and prints a summary.
-///
-/// # Errors
-/// Bad input; a test that goes unstable or is interrupted; targets that are not met, once the page
-/// and the record are written.
+/// Calibrates, writes material, page and record, and prints a summary. Targets that are not met are
+/// an error, once page and record are written.
 pub(super) fn calibrate(options: &CalibrateArguments, interrupt: &Interrupt) -> Result<()> {
     let most_error = options.max_error.as_deref().map(fraction).transpose()?;
     let source = options.scene.place();
@@ -254,9 +251,6 @@ impl OutputFiles {
     }
 
     /// Keeps other calibrations from writing the same files as long as the lock lives.
-    ///
-    /// # Errors
-    /// Another one is writing them (exit code 2); no permission (exit code 1).
     fn lock(&self) -> Result<Lock> {
         let name = self.record.file_name().unwrap_or_default();
         let path = self

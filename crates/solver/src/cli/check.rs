@@ -29,9 +29,6 @@ const ALIKE: f64 = 1.2;
 
 /// Does a dry run of the scene that the arguments name, with a picture of its start if a file for
 /// it is named.
-///
-/// # Errors
-/// No scene is named; bad input; the file of the picture is not a .png, or cannot be written.
 pub(super) fn check_scene(
     arguments: &SceneArguments,
     picture: Option<&Path>,
@@ -63,10 +60,7 @@ pub(super) fn check_scene(
     })
 }
 
-/// Writes a picture of the start of a scene.
-///
-/// # Errors
-/// The file is not a .png, or cannot be written.
+/// Writes a picture of the start of a scene; refuses a file that is not a .png.
 fn write_picture(scene: &Scene, plan: &Plan, file: &Path) -> Result<()> {
     if file.extension().is_none_or(|ending| ending != "png") {
         let name = file.display().to_string();

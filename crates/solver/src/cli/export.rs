@@ -47,9 +47,6 @@ struct LammpsArguments {
 }
 
 /// Writes frames or a scene.
-///
-/// # Errors
-/// Those of the two.
 pub(super) fn export(arguments: &ExportArguments) -> Result<()> {
     match (&arguments.engine, &arguments.frames) {
         (Some(Engine::Lammps(arguments)), _) => in_pool(arguments.scene.threads, |threads| {

@@ -48,9 +48,6 @@ enum Format {
 }
 
 /// Writes all frames, and their bonds and walls if asked for. All files appear, or none.
-///
-/// # Errors
-/// The folder has no frames, or they have no walls; a frame is damaged; a file cannot be written.
 pub(super) fn export_frames(arguments: &FramesArguments) -> Result<()> {
     let Format::LammpsDump = arguments.to;
     let results = &arguments.results;

@@ -10,10 +10,7 @@ use dem_io::{Diagnostic, Result};
 use dem_results::folder::walls_in;
 
 /// Writes the walls of these frames into a folder, in metres, as the dumps are: a file for each
-/// frame, or the first only if they never move.
-///
-/// # Errors
-/// The frames have no walls; they are damaged; a file cannot be written.
+/// frame, or the first only if they never move. Refuses frames without walls.
 pub(super) fn pending_walls(
     results: &Path,
     numbers: &[usize],

@@ -55,9 +55,6 @@ pub(super) struct FragmentArguments {
 }
 
 /// Writes the requested fragment and describes it.
-///
-/// # Errors
-/// The folder, frame or fragment does not exist; the body cannot be written.
 pub(super) fn fragment(arguments: &FragmentArguments) -> Result<()> {
     let output = &arguments.output;
     if arguments.stl && !arguments.all {

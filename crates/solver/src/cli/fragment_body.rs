@@ -6,9 +6,6 @@ use dem_io::body::StoredFrame;
 use dem_io::{Body, Result};
 
 /// The fragment `id` of a frame, whose file is `path`.
-///
-/// # Errors
-/// The frame has no such fragment.
 pub(super) fn fragment_body(frame: &StoredFrame, path: &Path, id: u32) -> Result<Body> {
     let mut body = frame.body(id)?;
     name_origin(&mut body, path, &format!("fragment {id}"));

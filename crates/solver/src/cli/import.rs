@@ -43,9 +43,6 @@ fn import_whole(arguments: &ImportArguments, existing: Existing) -> Result<Came>
 }
 
 /// Reads the dumps and writes frames and page.
-///
-/// # Errors
-/// Bad or missing files, or a folder that cannot be written to.
 pub(super) fn import(arguments: &ImportArguments) -> Result<()> {
     let existing = if arguments.force {
         Existing::Replace

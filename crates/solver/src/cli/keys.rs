@@ -16,9 +16,6 @@ pub(super) struct KeysArguments {
 }
 
 /// Prints the reference, or the sections of one table.
-///
-/// # Errors
-/// There is no such table.
 pub(super) fn keys(arguments: &KeysArguments) -> Result<()> {
     let files = reference::files();
     let page = |name: &str| {

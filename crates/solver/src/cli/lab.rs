@@ -79,10 +79,7 @@ pub(super) struct LabArguments {
 }
 
 /// Reads and evaluates the curves, writes the measured material and its page, and prints a summary.
-///
-/// # Errors
-/// Files or options that cannot be understood; no specimen is valid (the page is still written);
-/// files that cannot be written.
+/// No valid specimen is an error, once the page is written.
 pub(super) fn lab(arguments: &LabArguments) -> Result<()> {
     let test = arguments.test_type()?;
     let dimensions = arguments.dimensions()?;

@@ -73,10 +73,7 @@ impl Template {
 }
 
 /// Makes the folder with `scene.toml`, `shape.stl`, `body.vtp` and the schema for editors, and
-/// prints the next commands.
-///
-/// # Errors
-/// The folder exists, or cannot be written.
+/// prints the next commands. Refuses a folder that exists.
 pub(super) fn new(arguments: &NewArguments) -> Result<()> {
     let folder = &arguments.folder;
     if fs::symlink_metadata(folder).is_ok() {

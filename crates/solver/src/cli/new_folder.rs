@@ -19,9 +19,6 @@ pub(super) struct NewFolder {
 impl NewFolder {
     /// Makes a folder, with those that it is in, or takes an empty one. `option`: the option that
     /// names it.
-    ///
-    /// # Errors
-    /// It is not empty, is no folder, or cannot be made.
     pub(super) fn make(path: &Path, option: &str) -> Result<Self> {
         let refused = |problem: &str| {
             let place = path.display().to_string();
@@ -77,9 +74,6 @@ pub(crate) struct WholeFolder {
 impl WholeFolder {
     /// Makes the temporary folder, and removes those of commands that were killed. `target`: the
     /// later folder, which does not exist yet.
-    ///
-    /// # Errors
-    /// It cannot be made.
     pub(crate) fn beside(target: &Path) -> io::Result<Self> {
         remove_abandoned(target);
         let mut number = 0;
@@ -105,10 +99,8 @@ impl WholeFolder {
         &self.temporary
     }
 
-    /// All its files are there: it gets its name.
-    ///
-    /// # Errors
-    /// There is such a folder meanwhile, which is not empty; it cannot be renamed (exit code 1).
+    /// All its files are there: it gets its name. Refuses a folder that has appeared there
+    /// meanwhile and is not empty.
     pub(crate) fn publish(mut self) -> Result<()> {
         fs::rename(&self.temporary, &self.target).map_err(|error| explain(&self.target, &error))?;
         self.is_there = false;

@@ -119,9 +119,6 @@ impl Packings {
     }
 
     /// All bodies of the scene but that with the packings.
-    ///
-    /// # Errors
-    /// A file that is missing or wrong.
     pub(super) fn other_bodies(&self, scene: &Scene) -> Result<BTreeMap<String, Body>> {
         let mut scene = scene.clone();
         scene.bodies.remove(&self.body);
@@ -133,11 +130,7 @@ impl Packings {
         read_bodies(&scene)
     }
 
-    /// Packing `at` of the size `case`.
-    ///
-    /// # Errors
-    /// The shape cannot be packed, or the file is missing or wrong; `interrupted` is set (exit code
-    /// 130).
+    /// Packing `at` of the size `case`. `interrupted` ends it (exit code 130).
     pub(super) fn make(&self, case: usize, at: usize, interrupted: &AtomicBool) -> Result<Body> {
         let go_on = |_: &str, _: f64| match interrupted.load(Ordering::Relaxed) {
             true => Err(Diagnostic::interrupted("interrupted", "start it again")),

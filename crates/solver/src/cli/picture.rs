@@ -49,9 +49,6 @@ pub(super) struct PictureArguments {
 }
 
 /// Writes the picture.
-///
-/// # Errors
-/// Bad input; the folder is not that of a finished run; files that cannot be written.
 pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
     let target = &arguments.output;
     let name = target.display().to_string();

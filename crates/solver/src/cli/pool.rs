@@ -7,9 +7,6 @@ use dem_io::{Diagnostic, Result};
 const STACK_BYTES: usize = 32 << 20;
 
 /// Does the work on as many threads as wanted, 1 to 1024, or on all cores; it is told their number.
-///
-/// # Errors
-/// Another number (exit code 2); threads that cannot be started (exit code 1); those of the work.
 pub(super) fn in_pool(
     wanted: Option<usize>,
     work: impl FnOnce(usize) -> Result<()> + Send,

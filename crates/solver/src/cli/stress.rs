@@ -29,11 +29,8 @@ pub(super) struct StressArguments {
     quiet: bool,
 }
 
-/// Runs the cases and prints their table.
-///
-/// # Errors
-/// An unknown case; interrupted; cases that differ from their prediction, although the table is
-/// printed.
+/// Runs the cases and prints their table. Cases that differ from their prediction are an error,
+/// once the table is printed.
 pub(super) fn stress(options: &StressArguments, interrupt: &Interrupt) -> Result<()> {
     let cases = chosen(&options.cases)?;
     let bar = if options.quiet || !std::io::stderr().is_terminal() {

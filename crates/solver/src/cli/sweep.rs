@@ -72,11 +72,8 @@ pub(super) struct SweepArguments {
     quiet: bool,
 }
 
-/// Runs the study, lists its runs or collects them, and prints the result.
-///
-/// # Errors
-/// Bad input, interrupted, files that cannot be written; runs that failed or are missing, once the
-/// tables of the others are written.
+/// Runs the study, lists its runs or collects them, and prints the result. Runs that failed or are
+/// missing are an error, once the tables of the others are written.
 pub(super) fn sweep(options: &SweepArguments, interrupt: &Interrupt) -> Result<()> {
     let mut sweep = Sweep::prepared(options)?;
     let Some(mut table) = sweep.table(options, interrupt)? else {

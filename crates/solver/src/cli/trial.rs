@@ -79,9 +79,6 @@ impl Trial {
 
 /// Number of pictures of a run, and the time for them and their film, s: that of the first one for
 /// each.
-///
-/// # Errors
-/// Those of the encoder.
 fn time_of_pictures(scene: &Scene, plan: &Plan) -> Result<(usize, f64)> {
     let Some(every_s) = scene.output.as_ref().and_then(|output| output.pictures_s) else {
         return Ok((0, 0.0));
