@@ -17,9 +17,6 @@ const STRAIN: f64 = 1e-5;
 /// Spinning blocks whose bonds all fail at the start. Each sphere keeps its motion: two spheres
 /// that separate on a circle never approach each other, so with relaxation they never push each
 /// other. Without relaxation they explode, and the run is stopped.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn overlaps() -> Result<Vec<Member>> {
     let member = |overlap: f64| {
         let body = block(4, overlap, STRAIN)?;
@@ -43,9 +40,6 @@ pub(crate) fn overlaps() -> Result<Vec<Member>> {
 }
 
 /// A large block of the same type.
-///
-/// # Errors
-/// None: this is a body.
 pub(crate) fn shatter() -> Result<Vec<Member>> {
     let body = block(24, 0.25, STRAIN)?;
     Ok(vec![breaks(
@@ -122,9 +116,6 @@ fn kinetic_j(body: &Body, spin_rad_s: f64) -> f64 {
 }
 
 /// A sphere without bonds as a cluster and as a clump; a body of three spheres without bonds.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn one_particle() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for start_as in ["bonded", "clump"] {

@@ -23,9 +23,6 @@ pub struct Case {
 impl Case {
     /// Its members with their predictions, from closed forms and from plans; if one run is
     /// predicted from another, that other is run.
-    ///
-    /// # Errors
-    /// A scene that cannot be planned although it should be; interrupted.
     pub fn members(&self, interrupted: &AtomicBool) -> Result<Vec<Member>> {
         (self.members)(interrupted)
     }
@@ -165,10 +162,8 @@ pub const CASES: [Case; 26] = [
     },
 ];
 
-/// The cases with these names, in the order of the suite; all if no names are given.
-///
-/// # Errors
-/// An unknown name.
+/// The cases with these names, in the order of the suite; all if no names are given. Refuses an
+/// unknown name.
 pub fn chosen(names: &[String]) -> Result<Vec<Case>> {
     if let Some(unknown) = names
         .iter()

@@ -13,9 +13,6 @@ const TIMOSHENKO: (BondModel, &str) = (BondModel::Timoshenko, "timoshenko");
 
 /// Three equal spheres, the second bond so much thinner than the first that it is softer by the
 /// ratio.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn stiffness_ratios() -> Result<Vec<Member>> {
     let member = |ratio: f64| {
         let row = Row {
@@ -31,9 +28,6 @@ pub(crate) fn stiffness_ratios() -> Result<Vec<Member>> {
 }
 
 /// A small sphere and a large one, bonded; and the same two in an impact.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn mass_ratios() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for ratio in [10.0, 100.0_f64] {
@@ -55,9 +49,6 @@ pub(crate) fn mass_ratios() -> Result<Vec<Member>> {
 
 /// A pair and an impact of spheres of 0.1 m far from the origin, where a coordinate is rounded to
 /// 1e-10 m; and of 1 um so far away that rounding would exceed the radius.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn coordinates() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for at_m in [0.0, 1e6] {
@@ -88,9 +79,6 @@ pub(crate) fn coordinates() -> Result<Vec<Member>> {
 }
 
 /// Pairs and impacts at one speed: the same numbers in units of the radius.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn sizes() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for radius_m in [1e-6, 1e-3, 1.0, 1e3] {
@@ -111,9 +99,6 @@ pub(crate) fn sizes() -> Result<Vec<Member>> {
 }
 
 /// Pairs, and impacts at a hundredth of the speed of sound.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn moduli() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for young_modulus_pa in [1e3, 1e6, 1e9, 1e12_f64] {
@@ -135,9 +120,6 @@ pub(crate) fn moduli() -> Result<Vec<Member>> {
 
 /// Spheres with nearly the same centre. The limit is the program's, as its linearisation must not
 /// step over such a bond; the oscillation has a closed form.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn short_bonds() -> Result<Vec<Member>> {
     let models = [
         (BondModel::Parallel { kappa: None }, "parallel"),

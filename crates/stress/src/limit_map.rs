@@ -37,9 +37,6 @@ const AGREEMENT: f64 = 0.01;
 
 /// Largest stable step of a scene, s, within `RESOLUTION`, from half the program's limit to twice
 /// that; NaN if all of those steps are stable, or none.
-///
-/// # Errors
-/// Interrupted; a scene that is refused.
 pub fn largest_step_s(trial: &Trial, interrupted: &AtomicBool) -> Result<f64> {
     let (_, plan, _) = trial.planned()?;
     let predicted_s = plan.step.limit.step_s;
@@ -90,9 +87,6 @@ fn grows(state: &State, step_s: f64, interrupted: &AtomicBool) -> Result<bool> {
 
 /// The map: seven models in both formulations, with no, light, critical and very high damping, and
 /// the flat joint, which has only the total one; also other types of damping.
-///
-/// # Errors
-/// Those of [`Trial::planned`].
 pub fn map() -> Result<Vec<Member>> {
     let models = [
         "parallel",
@@ -154,9 +148,6 @@ pub fn map() -> Result<Vec<Member>> {
 }
 
 /// A disturbed block with bonds of this model, formulation and damping.
-///
-/// # Errors
-/// Those of [`Trial::planned`].
 pub fn of(model: &str, formulation: &str, damping: &str, local_damping: &str) -> Result<Member> {
     let scene = format!(
         "version = 1
@@ -182,9 +173,6 @@ bodies.block = {{ file = \"block.vtp\", material = \"rock\", bonds = \"rock\" }}
 }
 
 /// Predicts that the program's limit for a scene equals the observed one.
-///
-/// # Errors
-/// Those of [`Trial::planned`].
 pub fn program_limit(what: String, trial: Trial) -> Result<Member> {
     let (_, plan, _) = trial.planned()?;
     let predicted_s = plan.step.limit.step_s;
@@ -205,9 +193,6 @@ pub fn program_limit(what: String, trial: Trial) -> Result<Member> {
 /// bonded to their neighbours along the edges and the face diagonals of the grid; neighbours
 /// overlap like spheres that touch at r/(1 + overlap). Bonds are stretched by `strain`, every
 /// second one compressed.
-///
-/// # Errors
-/// None, as the body is one.
 pub fn block(side: usize, overlap: f64, strain: f64) -> Result<Body> {
     let pitch_m = 2.0e-3 / (1.0 + overlap);
     let mut spheres = Vec::new();
@@ -243,9 +228,6 @@ pub fn block(side: usize, overlap: f64, strain: f64) -> Result<Body> {
 }
 
 /// A step just below the limit, one just above it, and the latter with force.
-///
-/// # Errors
-/// Those of [`Trial::planned`].
 pub(crate) fn beside_the_limit() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for eta in ["0", "0.3", "3"] {

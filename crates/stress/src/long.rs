@@ -62,9 +62,6 @@ angular_velocity = [0, 0, {SPIN_RAD_S:e}]
 /// spring holds against the dashpot of the difference. Of the force of that dashpot in the last
 /// step, with which weak damping predicts the velocities, the part sin(theta) has turned into the
 /// bond: c_n dt/m of it is what the dashpot along the bond carries of the load.
-///
-/// # Errors
-/// None.
 pub(crate) fn spin() -> Result<Vec<Member>> {
     let (radius_m, young_pa, spin_rad_s) = (RADIUS_M, YOUNG_PA, SPIN_RAD_S);
     let mass_kg = DENSITY_KG_M3 * 4.0 / 3.0 * PI * radius_m.powi(3);
@@ -144,9 +141,6 @@ pub(crate) fn spin() -> Result<Vec<Member>> {
 /// Large soft spheres under their own weight for a day, so that a step is some milliseconds: one,
 /// with the overlap of Hertz; and a tetrahedron on a slope, bonded and as a clump, held by
 /// friction. Its position after a day is predicted from that after an hour.
-///
-/// # Errors
-/// Interrupted.
 pub(crate) fn rest(interrupted: &AtomicBool) -> Result<Vec<Member>> {
     let (radius_m, density, young_pa, g) = (20.0_f64, 2000.0, 1.5e7, 9.81);
     let scene = |end_s: f64, gravity: &str, body: &str| {

@@ -115,9 +115,6 @@ impl Row {
     }
 
     /// Its scene, with bonds of this model, and the final displacement of each sphere.
-    ///
-    /// # Errors
-    /// What the reader of bodies refuses.
     pub(crate) fn member(&self, what: String, (model, name): (BondModel, &str)) -> Result<Member> {
         let step_s = self.step_s(model);
         let modes = self.modes();

@@ -48,9 +48,6 @@ const BREAKAGE_ERROR: f64 = 1e-2;
 /// replaced at once; a block from an inlet. A tilted block is loaded beyond the strength of its
 /// bonds: they soften, break, or hold because the strain rate strengthens them, as those of a twin
 /// do that is bonded from the start, in the same place between the same plates.
-///
-/// # Errors
-/// A twin that does not come to its end; interrupted.
 pub(crate) fn swaps(interrupted: &AtomicBool) -> Result<Vec<Member>> {
     let mut blocks: Vec<(String, Block, Expected)> = Vec::new();
     for scale in [1.0, 1.02] {

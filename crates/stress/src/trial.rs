@@ -50,9 +50,6 @@ impl Trial {
     }
 
     /// The scene, its plan, and the folder of its files, which is removed with the last value.
-    ///
-    /// # Errors
-    /// Errors of reading and planning; a folder that cannot be written.
     pub fn planned(&self) -> Result<(Scene, Plan, TempDir)> {
         let folder = tempfile::tempdir().map_err(|error| {
             let problem = format!("no folder for the files of the suite: {error}");
@@ -79,9 +76,6 @@ impl Trial {
     }
 
     /// Runs it to its end, if it has one.
-    ///
-    /// # Errors
-    /// Interrupted, or a folder that cannot be written.
     pub fn run(&self, interrupted: &AtomicBool) -> Result<Outcome> {
         let ran = self.planned().and_then(|(scene, plan, folder)| {
             let settings = RunSettings {

@@ -60,10 +60,8 @@ impl CaseResult {
     }
 }
 
-/// Predicts, runs and judges all members of a case, on all threads.
-///
-/// # Errors
-/// Interrupted, or files that cannot be written. A member that goes wrong is not an error.
+/// Predicts, runs and judges all members of a case, on all threads. A member that goes wrong is not
+/// an error.
 pub fn run_case(case: &Case, interrupted: &AtomicBool) -> Result<CaseResult> {
     let clock = Instant::now();
     let members = case.members(interrupted)?;
@@ -77,9 +75,6 @@ pub fn run_case(case: &Case, interrupted: &AtomicBool) -> Result<CaseResult> {
 }
 
 /// Runs a member and compares it with its prediction.
-///
-/// # Errors
-/// As [`run_case`].
 pub fn judge(member: &Member, interrupted: &AtomicBool) -> Result<Judged> {
     let observed = match member.way {
         ObservationMethod::Run => match member.trial.run(interrupted)? {

@@ -20,9 +20,6 @@ const ENERGY_ERROR: f64 = 1e-3;
 /// Rows whose border lies in a bond that is softer or harder than the others, by a closed form; a
 /// zone that runs along a bar faster than it is long in ten looks; spheres that are released and
 /// join again at every look; a row that tears at its border.
-///
-/// # Errors
-/// None: these are bodies.
 pub(crate) fn zones() -> Result<Vec<Member>> {
     let mut members = Vec::new();
     for ratio in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
