@@ -22,11 +22,8 @@ pub struct ListedRun {
 }
 
 /// Writes `commands.txt`, `array.slurm` and `Snakefile` into the folder of the sweep. `here`: the
-/// folder in which the commands are run. `threads`: of each run.
-///
-/// # Errors
-/// `here` or the folder has a name that a line of text cannot contain (exit code 2); the files
-/// cannot be written (exit code 1).
+/// folder in which the commands are run. `threads`: of each run. Refuses names that a line of text
+/// cannot contain.
 pub fn write_cluster_files(
     folder: &Path,
     here: &Path,

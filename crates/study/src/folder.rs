@@ -64,11 +64,8 @@ pub enum Earlier {
 
 impl SweepFolder {
     /// Makes the folder `path`, or uses the existing one. `scene_text` is the text of the scene's
-    /// file.
-    ///
-    /// # Errors
-    /// It contains an earlier sweep, by `earlier`, or other files; another sweep is writing into
-    /// it; it cannot be written to.
+    /// file. Refuses one that contains an earlier sweep, by `earlier`, or other files, or into
+    /// which another sweep is writing.
     pub fn create(path: &Path, earlier: Earlier, study: &Study, scene_text: &str) -> Result<Self> {
         let place = path.display().to_string();
         let is_sweep = is_identity(&path.join(IDENTITY));
@@ -138,9 +135,6 @@ impl SweepFolder {
     }
 
     /// Removes the marks of the runs that Snakemake has done: these runs are listed again.
-    ///
-    /// # Errors
-    /// No permission (exit code 1).
     pub fn remove_marks(&self) -> Result<()> {
         for path in entries(&self.path.join(DONE)).unwrap_or_default() {
             let name = path.file_name().and_then(|name| name.to_str());
@@ -173,9 +167,6 @@ impl SweepFolder {
 
     /// Refuses a folder in which the sweep would remove or overwrite its inputs. `inputs`: the
     /// study, the scene and its files.
-    ///
-    /// # Errors
-    /// One of them is in it under a name used by a sweep (exit code 2).
     pub fn refuse_inputs(path: &Path, inputs: &[PathBuf]) -> Result<()> {
         let is_made = |path: &PathBuf| {
             let name = path.file_name().and_then(|name| name.to_str());

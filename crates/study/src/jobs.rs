@@ -180,8 +180,7 @@ pub fn shell_line(program: &str, arguments: &[String], complaint: Option<&Path>)
 /// Refuses names that a command of `--list` cannot contain: it is one line of text.
 ///
 /// # Errors
-/// The name or value `text`, given at `place`, has control characters or is not UTF-8 (exit
-/// code 2).
+/// The name `text`, given at `place`, has control characters or is not UTF-8.
 pub fn refuse_unlistable(place: &str, text: &Path) -> Result<()> {
     let problem = match text.to_str() {
         None => "is not UTF-8",
@@ -219,9 +218,6 @@ impl Drop for Started {
 
 /// Runs the jobs, several at a time. A failed one leaves its error message; the others continue.
 /// `tell` is called with the number of finished jobs.
-///
-/// # Errors
-/// Interrupted; the program cannot be started.
 pub fn work(
     study: &Study,
     all: &[Run],

@@ -19,9 +19,6 @@ pub struct Want {
 
 impl Want {
     /// From `all=1%` or `NAME=1%`. `table_measures`: the measures with a reference.
-    ///
-    /// # Errors
-    /// No such measure, or not a number above 0.
     pub fn parse(text: &str, table_measures: &[&str]) -> Result<Self> {
         let place = format!("--max-error {text}");
         let form = "write all=1%, or NAME=1% for one measure";
@@ -70,10 +67,7 @@ impl Want {
 }
 
 /// The fastest run whose errors are within the targets. Of those that are equally fast within their
-/// spread, the most accurate.
-///
-/// # Errors
-/// None is as accurate; times are of several machines.
+/// spread, the most accurate. Refuses targets that no run meets, and times of several machines.
 pub fn fastest<'a>(table: &'a SweepTable, wants: &[Want]) -> Result<&'a Row> {
     let place = wants
         .iter()
