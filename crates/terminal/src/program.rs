@@ -25,9 +25,7 @@ pub fn take_size_limits_as_errors() {
 }
 
 /// The arguments of a program called `name`. Its help and version are printed, and end the program.
-///
-/// # Errors
-/// An argument is wrong: the message of clap on one line.
+/// A wrong argument is an error: the message of clap on one line.
 pub fn parsed<P: Parser>(name: &str, given: &[OsString]) -> Result<P> {
     let matches = taking_negative_numbers(P::command()).try_get_matches_from(given);
     matches
@@ -104,9 +102,6 @@ pub fn on_one_line(said: &str) -> String {
 }
 
 /// Prints a script for completing the options of a program in a shell.
-///
-/// # Errors
-/// As [`write_standard_output`].
 pub fn print_completions(shell: Shell, mut command: Command) -> Result<()> {
     let name = command.get_name().to_owned();
     // Its writer may not fail.
@@ -116,9 +111,6 @@ pub fn print_completions(shell: Shell, mut command: Command) -> Result<()> {
 }
 
 /// Prints the man page of a program.
-///
-/// # Errors
-/// As [`write_standard_output`].
 pub fn print_man_page(command: Command) -> Result<()> {
     write_standard_output(|mut out| clap_mangen::Man::new(command).render(&mut out))
 }

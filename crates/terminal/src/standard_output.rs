@@ -12,9 +12,6 @@ use dem_io::{Diagnostic, Result};
 
 /// Writes lines of text to standard output, without characters that control a terminal
 /// ([`dem_io::text`]). A reader that closes the pipe early is not an error.
-///
-/// # Errors
-/// Standard output cannot be written to, such as a full disk behind it (exit code 1).
 pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     write_standard_bytes(|out| {
         let mut lines = VisibleLines {
@@ -28,9 +25,6 @@ pub fn write_standard_output(write: impl FnOnce(&mut dyn Write) -> io::Result<()
 
 /// Writes lines of text to standard output as [`write_standard_output`] does. The first word of a
 /// line has the colour that `colour` gives for the line, where colours are shown.
-///
-/// # Errors
-/// As [`write_standard_output`].
 pub fn write_standard_lines(text: &str, colour: impl Fn(&str) -> Option<Colour>) -> Result<()> {
     write_standard_bytes(|out| {
         for line in visible_lines(text).lines() {
@@ -72,9 +66,6 @@ impl Write for VisibleLines<'_> {
 }
 
 /// Writes `value` to standard output as indented JSON. Numbers that are not finite become `null`.
-///
-/// # Errors
-/// As [`write_standard_output`]; `value` cannot be represented as JSON (exit code 1).
 pub fn write_standard_json(value: &impl Serialize) -> Result<()> {
     write_standard_output(|out| write_json_text(out, value))
 }
