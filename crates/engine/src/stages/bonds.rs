@@ -210,7 +210,6 @@ pub fn most_yielded(bonds: &Bonds) -> Option<(f64, usize)> {
     strains.reduce(|one, other| if other.0 > one.0 { other } else { one })
 }
 
-/// The work on one partition.
 struct PartitionWork<'a> {
     bonds: &'a Bonds,
     poses: &'a [Pose],

@@ -125,7 +125,6 @@ impl Sums<'_> {
         self.all
     }
 
-    /// The sums of the island of a particle.
     fn of(&mut self, particle: u32) -> &mut IslandSums {
         &mut self.all[self.of_particle[particle as usize] as usize]
     }

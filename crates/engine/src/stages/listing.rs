@@ -168,7 +168,6 @@ fn begin_anew(state: &mut State, contacts: &mut Contacts) {
     }
 }
 
-/// Lists everything as due.
 fn everything(state: &State, due: &mut Due) {
     due.clear();
     due.particles.extend(0..state.particles.free as u32);

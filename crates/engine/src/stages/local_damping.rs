@@ -169,7 +169,6 @@ impl Rigid {
         }
     }
 
-    /// At a point, m.
     fn at(&self, point_m: Vector3<f64>) -> Vector3<f64> {
         self.along + self.about.cross(&(point_m - self.centre_m))
     }

@@ -26,7 +26,6 @@ pub const OUTPUT: Stage = Stage {
 
 /// Sum of the contacts of a watched object.
 struct Met {
-    /// Force on it, N.
     force_n: Vector3<f64>,
     /// Deepest overlap, m; for near but separate objects, minus their distance.
     overlap_m: f64,

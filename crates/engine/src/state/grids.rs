@@ -24,7 +24,6 @@ pub(crate) struct Grids {
 pub(crate) struct Grid {
     /// Places of its balls among those given.
     members: Vec<u32>,
-    /// The cell of each.
     cells: Vec<u32>,
     origin: [f64; 3],
     per_width: f64,

@@ -249,7 +249,6 @@ impl LargeCluster {
             .map_or(*ball, |body| body.in_space(ball))
     }
 
-    /// The members of a block.
     pub(crate) fn members<'a>(&self, block: usize, groups: &'a Groups) -> &'a [u32] {
         let all = groups.members(self.group);
         &all[BLOCK * block..all.len().min(BLOCK * (block + 1))]

@@ -69,7 +69,6 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// m/s.
     pub(crate) fn speed_m_s(&self) -> f64 {
         Vector3::from(self.velocity_m_s).norm()
     }

@@ -10,7 +10,6 @@ pub const REMOVED: u32 = u32::MAX;
 pub(crate) struct NewNumbers<'a> {
     /// For each old particle, its new number, or [`REMOVED`].
     pub(crate) now: &'a [u32],
-    /// Radii of the old particles, m.
     pub(crate) old_radii_m: &'a [f64],
     /// Poses of the new particles.
     pub(crate) poses: &'a [Pose],

@@ -136,7 +136,6 @@ pub(crate) struct PairBuffers {
     pub(crate) small_clusters: Vec<u32>,
     /// The balls that may be in a pair with one of a small cluster, and their numbers.
     pub(crate) active: Vec<(u32, Ball)>,
-    /// Their grids.
     pub(crate) grids: Grids,
     /// What each task found.
     pub(crate) of_tasks: Vec<PairTask>,

@@ -33,7 +33,6 @@ pub struct ConjugateGradients {
     coarse: DirectFactor,
     /// Number of groups.
     groups: usize,
-    /// The matrix.
     matrix: Matrix,
 }
 

@@ -64,7 +64,6 @@ pub(super) fn for_each(
     }
 }
 
-/// The work on one partition.
 struct PartitionWork<'a> {
     partition: &'a mut ContactPartition,
     books: PartitionOutput<'a>,

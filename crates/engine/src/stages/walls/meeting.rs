@@ -57,7 +57,6 @@ impl Place<'_> {
     }
 }
 
-/// The work on all meetings.
 struct MeetingWork<'a> {
     place: &'a Place<'a>,
     meetings: &'a [Meeting],

@@ -170,7 +170,6 @@ fn push_copy<H: BondHistory>(column: &mut Vec<H>, at: usize, from: Option<&H>, f
     }
 }
 
-/// Bytes of a column.
 pub(crate) fn column_bytes<H: BondHistory>(column: &[H]) -> usize {
     let more = column.iter().map(BondHistory::more_bytes);
     size_of_val(column) + more.sum::<usize>()
