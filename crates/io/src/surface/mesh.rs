@@ -13,7 +13,6 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
-    /// The corners of one triangle.
     pub(super) fn corners(&self, triangle: u32) -> [Point; 3] {
         self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
@@ -45,7 +44,6 @@ impl Mesh {
         sum / 6.0
     }
 
-    /// Area of some triangles.
     pub(super) fn area(&self, triangles: impl IntoIterator<Item = u32>) -> f64 {
         triangles
             .into_iter()

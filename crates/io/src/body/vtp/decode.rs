@@ -211,7 +211,6 @@ pub(super) fn array_bytes(input: &mut dyn Read, header_bytes: usize) -> Result<u
     Ok(u64::from_le_bytes(count))
 }
 
-/// Skips this number of bytes.
 pub(super) fn skip(input: &mut dyn BufRead, bytes: u64) -> Result<()> {
     match io::copy(&mut input.take(bytes), &mut io::sink()) {
         Ok(skipped) if skipped == bytes => Ok(()),

@@ -284,7 +284,6 @@ impl Encoding {
     }
 }
 
-/// An attribute of an element.
 pub(super) fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
     let found = element
         .try_get_attribute(name)
