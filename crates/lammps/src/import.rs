@@ -225,7 +225,6 @@ fn open(path: &Path, remedy: &str) -> Result<BufReader<File>> {
     Ok(BufReader::new(file))
 }
 
-/// Reads the data file of an export.
 fn read_data(path: &Path) -> Result<Exported> {
     let text = read_input(path, "the data file of an export")?;
     let text = String::from_utf8_lossy(&text);
@@ -434,7 +433,6 @@ fn unbroken_at(
     Ok(Some(unbroken))
 }
 
-/// Appends a frame.
 fn append(moment: &Moment<'_>, files: &mut FrameFiles) -> Result<()> {
     let Moment {
         manifest,
