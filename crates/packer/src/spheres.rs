@@ -15,12 +15,10 @@ pub struct Spheres {
 /// A sphere while it is packed: centre x, y, z and reduced radius r_gen.
 pub type ReducedSphere = [f64; 4];
 
-/// Centre of a sphere.
 pub(crate) fn centre_of(sphere: &ReducedSphere) -> Vector3 {
     Vector3::new(sphere[0], sphere[1], sphere[2])
 }
 
-/// Distance from the centre of a sphere to a point.
 pub(crate) fn distance(sphere: &ReducedSphere, point: &Vector3) -> f64 {
     (centre_of(sphere) - point).norm()
 }

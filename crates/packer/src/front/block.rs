@@ -21,7 +21,6 @@ pub(super) struct Rules<'a> {
     pub(super) work: Work,
     /// Starting points of the fronts, local units.
     pub(super) seeds: &'a [Vector3],
-    /// Seed of the random numbers.
     pub(super) random_seed: u64,
     /// Rules for filling voids, if the front fills them.
     pub(super) filling: Option<FillingRules<'a>>,
@@ -31,7 +30,6 @@ pub(super) struct Rules<'a> {
 pub(super) struct Task {
     /// Number of the block.
     pub(super) block: usize,
-    /// Its front spheres.
     pub(super) queue: Vec<FrontSphere>,
     /// A draw that waits for a place.
     pub(super) waiting: Option<f64>,
@@ -39,7 +37,6 @@ pub(super) struct Task {
     pub(super) stream: u64,
 }
 
-/// The result of a block.
 #[derive(Default)]
 pub(super) struct BlockResult {
     /// Spheres placed.

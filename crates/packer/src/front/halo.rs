@@ -33,7 +33,6 @@ pub(super) struct Cap {
     pub(super) axis: Vector3,
     /// Cosine of the cap's angle.
     pub(super) rim: f64,
-    /// Its sine, squared.
     pub(super) sine_squared: f64,
 }
 

@@ -183,7 +183,6 @@ impl Boundary {
         self.eights.near(place, reach)
     }
 
-    /// The surroundings of a triangle of the wall.
     pub(super) fn surroundings(&self, triangle: u32) -> &Surroundings {
         &self.surroundings[triangle as usize]
     }

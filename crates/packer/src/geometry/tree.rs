@@ -31,7 +31,6 @@ impl TriangleTree {
         self.0.triangles().map(|t| [t.a, t.b, t.c].map(Into::into))
     }
 
-    /// The corners of a triangle.
     #[inline(always)]
     pub(super) fn corners(&self, triangle: u32) -> Corners {
         let corners = self.0.indices()[triangle as usize];
@@ -143,7 +142,6 @@ pub(super) fn projection(corners: Corners, point: &Vector3) -> (Vector3, f64) {
     (from_parry(&projection.point), distance)
 }
 
-/// Distance from a point to the box of a node.
 fn distance_to_box(node: &BvhNode, point: &Vector3) -> f64 {
     let from = to_parry(point);
     (node.mins() - from)

@@ -55,7 +55,6 @@ pub(super) fn file(text: &str) -> Option<&str> {
     }
 }
 
-/// The law named in `text`.
 pub(super) fn law(text: &str) -> Result<Law> {
     let text = text.trim();
     let (name, rest) = text.split_once(':').unwrap_or(("", text));

@@ -36,7 +36,6 @@ pub(super) struct ChunkOfWalls {
     pub(super) search: WallSearch,
 }
 
-/// The wall near one sphere.
 pub(super) struct NearWall {
     /// Number of the sphere within the chunk.
     pub(super) sphere: usize,
