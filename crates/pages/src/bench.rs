@@ -208,7 +208,6 @@ pub(crate) fn number(value: &Value) -> f64 {
 }
 
 impl Run {
-    /// Its processor time, s.
     pub(crate) fn processor_s(&self) -> f64 {
         self.summary.processor_s.unwrap_or(f64::NAN)
     }
@@ -226,7 +225,6 @@ impl Run {
         Ok(value.ok_or_else(|| format!("the run has not measured {measure}"))?)
     }
 
-    /// The results of its test.
     pub(crate) fn test(&self) -> Result<TestResult, Failed> {
         Ok(self.summary.test.clone().ok_or("the run has no test")?)
     }

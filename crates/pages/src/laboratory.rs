@@ -89,7 +89,6 @@ pub(crate) fn bending(bench: &Bench) -> Result<(), Failed> {
 const FAILURE_FORCE: &str = "failure force";
 const RATIO: &str = "specimen modulus over bond modulus";
 
-/// The value of a figure with this name.
 fn value(figures: &[Figure], name: &str) -> f64 {
     let found = figures.iter().find(|figure| figure.name == name);
     found.map_or(f64::NAN, |figure| figure.value)
