@@ -59,7 +59,6 @@ impl Touch {
     }
 }
 
-/// Whether all numbers are finite.
 pub(super) fn are_finite(numbers: &[f64]) -> bool {
     numbers.iter().all(|x| x.is_finite())
 }
