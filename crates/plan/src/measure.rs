@@ -49,7 +49,6 @@ pub use dem_engine::state::watches::{History, IndexError};
 /// One that is not in the list.
 static UNKNOWN: Measurement = Measurement::new("", |_, _| f64::NAN);
 
-/// All measurements.
 fn measurements() -> impl Iterator<Item = &'static Measurement> {
     let files = [
         whole::MEASUREMENTS,

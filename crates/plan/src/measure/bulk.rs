@@ -96,7 +96,6 @@ fn mass_within_kg(spheres: &[Sphere], region: &Region) -> f64 {
     0.0 + masses.iter().sum::<f64>()
 }
 
-/// The part of a sphere that is in a region.
 fn part_within(sphere: &Sphere, region: &Region, points: &[Vector3<f64>]) -> f64 {
     let (place, radius_m) = (sphere.place_m.into(), sphere.radius_m);
     if !region.bounds().is_near(&place, radius_m) {

@@ -85,7 +85,6 @@ impl Members {
     }
 }
 
-/// The number of the wall of this name.
 pub(super) fn wall_number(scene: &Scene, name: &str) -> Option<usize> {
     scene.walls.keys().position(|wall| wall == name)
 }

@@ -8,11 +8,8 @@ use dem_engine::state::State;
 /// A sphere with its mass.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sphere {
-    /// kg.
     pub(super) mass_kg: f64,
-    /// m.
     pub(super) radius_m: f64,
-    /// m.
     pub(super) place_m: Vector3<f64>,
     /// Number of the piece that it belongs to: spheres of one fragment or clump have the same.
     pub(super) piece: u32,

@@ -99,7 +99,6 @@ fn velocity(members: &Members, state: &State, motions: &Motions) -> Vector3<f64>
     mean(&parts)
 }
 
-/// Kinetic energy, J.
 fn kinetic_j(members: &Members, state: &State, motions: &Motions) -> f64 {
     let free = members.free(state);
     let free = free.map(|i| state.particles.kinetic_j(i, &motions.particles[i]));
