@@ -37,7 +37,6 @@ const COLOURS: usize = 17;
 
 /// What the view needs from the folder of a run besides its frames.
 pub(crate) struct Subject<'a> {
-    /// The folder.
     pub(crate) folder: &'a Path,
     /// Frames and their times, s.
     pub(crate) frames: &'a [(PathBuf, f64)],

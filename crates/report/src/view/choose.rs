@@ -17,7 +17,6 @@ const MOST_BONDS: usize = 6_000_000;
 /// What is shown.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Chosen {
-    /// The frames.
     pub(crate) frames: Vec<ChosenFrame>,
     /// Number of frames of the run.
     of_frames: usize,
