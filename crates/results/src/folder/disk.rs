@@ -43,7 +43,6 @@ pub(super) fn refuse_unless_empty(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The paths of the entries of a folder.
 pub(super) fn entries(folder: &Path) -> Result<impl Iterator<Item = std::io::Result<PathBuf>>> {
     let entries = fs::read_dir(folder).map_err(|error| {
         Diagnostic::failed(

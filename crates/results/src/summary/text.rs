@@ -339,7 +339,6 @@ impl Summary {
     }
 }
 
-/// A line for each measure.
 fn measure_lines(measures: &[Measured], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let names = measures.iter().map(|m| m.name.chars().count());
     let width = names.max().unwrap_or(0).max(12);
