@@ -117,7 +117,6 @@ fn outline_of(discs: &[([f64; 2], f64)]) -> Outline {
     (0..DIRECTIONS).filter_map(point).collect()
 }
 
-/// Area within an outline, m2.
 fn area_m2(outline: &[[f64; 2]]) -> f64 {
     let next = outline.iter().cycle().skip(1);
     let twice: f64 = outline
@@ -265,7 +264,6 @@ fn pressed(
 /// What is measured on the body of a test, and the doubts that follow.
 #[derive(Debug, Default)]
 pub(super) struct Found {
-    /// Its section, m2.
     pub(super) section_m2: Option<f64>,
     /// The smaller of the pressed parts of its ends.
     pub(super) pressed: Option<f64>,
