@@ -102,7 +102,6 @@ impl End {
         write_file(&folder.report(), |out| out.write_all(page.as_bytes()))
     }
 
-    /// Writes `summary.json`.
     pub(super) fn write_summary(&self, folder: &ResultsFolder) -> Result<()> {
         write_file(&folder.summary(), |out| {
             out.write_all(self.summary.as_bytes())

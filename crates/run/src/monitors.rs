@@ -18,7 +18,6 @@ use dem_engine::state::events::{PopulationEvent, REMOVED, STARTS_BONDED};
 pub(super) struct Extreme {
     /// The value.
     pub(super) largest: f64,
-    /// s.
     pub(super) time_s: f64,
     /// m. Length 3.
     pub(super) place_m: [f64; 3],

@@ -13,7 +13,6 @@ pub(crate) struct LastState<'a> {
     pub(crate) state: &'a State,
     /// None: bodies do not break.
     pub(crate) fragments: Option<Fragments>,
-    /// s.
     pub(crate) end_s: f64,
     pub(crate) probes: &'a [Probe],
 }

@@ -17,7 +17,6 @@ const POINTS: u32 = 8;
 pub(crate) struct Reach {
     /// m. Shape n x 3.
     pub(crate) points_m: Vec<[f64; 3]>,
-    /// m.
     pub(crate) fall_m: f64,
 }
 
