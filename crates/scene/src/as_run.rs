@@ -30,7 +30,6 @@ pub fn scene_as_run(text: &str, scene: &Scene, overrides: &[String], to: &Path) 
     Ok(written(root))
 }
 
-/// Sets the paths of all files.
 fn set_paths(root: &mut Entries, scene: &Scene, to: &Path) {
     for (name, body) in &scene.bodies {
         if let (BodySource::File(file), Some(entry)) = (&body.source, entry(root, "bodies", name)) {

@@ -53,7 +53,6 @@ pub enum ClumpMass {
 /// The initial forms of a body; true for a clump.
 const STARTS: [(&str, bool); 2] = [("bonded", false), ("clump", true)];
 
-/// The key `start_as`.
 pub(super) const START_AS: Key = Key::new(
     "start_as",
     Kind::Word(|| words_of(&STARTS)),

@@ -21,7 +21,6 @@ use dem_io::units::{ENERGY_PER_AREA, STIFFNESS};
 /// Smallest coefficient of restitution: dampers below it need arbitrarily small steps.
 const LEAST_RESTITUTION: f64 = 1e-3;
 
-/// Names of contact laws.
 #[derive(Clone, Copy)]
 enum LawName {
     HertzMindlin,

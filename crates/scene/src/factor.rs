@@ -24,7 +24,6 @@ pub enum Factor {
     Table(Vec<[f64; 2]>),
 }
 
-/// The key `ramp`.
 pub(super) const RAMP: Key = Key::quantity(
     "ramp",
     &TIME,
@@ -32,7 +31,6 @@ pub(super) const RAMP: Key = Key::quantity(
 )
 .positive();
 
-/// The key `table`.
 pub(super) const TABLE: Key = Key::new(
     "table",
     Kind::List(&Kind::Row(&[

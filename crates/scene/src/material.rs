@@ -55,7 +55,6 @@ pub(super) static MATERIAL: Schema = Schema {
     ],
 };
 
-/// The key `poisson_ratio`.
 pub(super) const fn poisson_ratio(doc: &'static str) -> Key {
     Key::number("poisson_ratio", doc)
         .within(Excluded(-1.0), Included(0.5))

@@ -153,7 +153,6 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
     })
 }
 
-/// Openings of sieves, m.
 fn sieves_m(field: &Field<'_>) -> Result<Vec<f64>> {
     let mut sieves_m: Vec<f64> = Vec::new();
     for item in field.items()? {

@@ -56,7 +56,6 @@ pub(super) struct Document {
 const SHOWN_OPTION: usize = 60;
 
 impl Document {
-    /// Parses `text`.
     pub(super) fn parse(name: &str, text: &str) -> Result<Self> {
         Ok(Self {
             name: name.to_owned(),
