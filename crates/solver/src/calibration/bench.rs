@@ -26,13 +26,11 @@ const PLAUSIBLE: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
 /// The scene of a calibration and its packings.
 pub(crate) struct Bench<'a> {
-    /// The scene.
     pub(crate) scene: SceneText<'a>,
     /// What is varied.
     pub(crate) unknowns: &'a [Unknown],
     /// Name of the body that is packed several times.
     pub(crate) body: &'a str,
-    /// Its packings.
     pub(crate) packings: &'a [Body],
     /// All other bodies.
     pub(crate) others: &'a BTreeMap<String, Body>,

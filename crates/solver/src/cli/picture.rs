@@ -48,7 +48,6 @@ pub(super) struct PictureArguments {
     colour_by: String,
 }
 
-/// Writes the picture.
 pub(super) fn write_picture(arguments: &PictureArguments) -> Result<()> {
     let target = &arguments.output;
     let name = target.display().to_string();
