@@ -70,7 +70,6 @@ impl Row {
         self.young_modulus_pa * area / self.length_m(bond)
     }
 
-    /// The time step, s.
     fn step_s(&self, model: BondModel) -> f64 {
         let of_bond = |bond: usize| {
             let shape = BondShape {
