@@ -25,7 +25,6 @@ pub(crate) enum Warning {
 }
 
 impl Warning {
-    /// As text.
     pub(crate) fn text(self) -> &'static str {
         match self {
             Self::NotMonotone => "its values go up and down with the size",
