@@ -37,7 +37,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// The same without curves.
+    /// The record without its curves.
     pub fn without_curves(&self) -> Self {
         let mut record = self.clone();
         record.wanted_curve.clear();

@@ -6,7 +6,7 @@ use crate::unknown::Unknown;
 
 /// Rounds of tests after which a calibration ends if all results are proportional to their numbers.
 const MOST_ROUNDS: usize = 4;
-/// The same for other results.
+/// Rounds at most for other results.
 const MOST_ROUNDS_OF_OTHERS: usize = 10;
 /// Rounds after which it ends, those without a result included.
 const MOST_ROUNDS_AT_ALL: usize = 12;

@@ -39,7 +39,7 @@ impl Number {
         format!("{value:.5e}").parse().unwrap_or(value)
     }
 
-    /// The same with its unit.
+    /// The value of [`Self::times`] with its unit.
     pub fn text(&self, factor: f64) -> String {
         format!("{} {}", self.times(factor), self.unit)
             .trim_end()
