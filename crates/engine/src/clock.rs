@@ -20,7 +20,7 @@ struct Timed {
 /// Times of the stages in all steps, as far as is known from the timed ones, and their work.
 #[derive(Debug, Clone, Default)]
 pub struct StageClock {
-    /// By number; as many as have been asked for.
+    /// By number, up to the largest number used.
     stages: Vec<Timed>,
     since: Option<Instant>,
 }

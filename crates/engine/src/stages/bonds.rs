@@ -412,7 +412,7 @@ impl Kind {
         bond_response(&stiffness, direction, apart, turned)
     }
 
-    /// The same, and how far the bonds exceed their strength.
+    /// The response of eight bonds, and how far they exceed their strength.
     #[inline(always)]
     fn forces<T: Lanes, const FRICTIONAL: bool>(
         &self,

@@ -58,7 +58,7 @@ pub fn ordered_sums<const N: usize>(
     })
 }
 
-/// The same, where the caller sums each range of up to [`CHUNK`] itself.
+/// As [`ordered_sums`], where the caller sums each range of up to [`CHUNK`] itself.
 pub(crate) fn sums_of_chunks<const N: usize>(
     count: usize,
     sums_over: impl Fn(Range<usize>) -> [f64; N] + Sync,

@@ -299,7 +299,7 @@ pub fn kick(clumps: &mut Clumps, gravity_m_s2: [f64; 3], kick_s: f64) {
     });
 }
 
-/// The same for one clump, awake or not.
+/// As [`kick`], for one clump, awake or not.
 pub(super) fn kick_one(
     clump: &mut Clump,
     template: &Template,

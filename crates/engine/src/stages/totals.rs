@@ -25,7 +25,7 @@ pub fn synchronous_motions(state: &State) -> Vec<Motion> {
     motions
 }
 
-/// The same for free particles only.
+/// As [`synchronous_motions`], for free particles only.
 pub fn synchronous_motions_of_free(state: &State) -> Vec<Motion> {
     let p = &state.particles;
     let [of_bonds, on_particles] = state.resistances();

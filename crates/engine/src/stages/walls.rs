@@ -120,7 +120,7 @@ pub(crate) fn list_near(
     }
 }
 
-/// The same for one wall.
+/// As [`list_near`], for one wall.
 fn find_near(
     wall: &Wall,
     particles: &Particles,

@@ -44,7 +44,7 @@ impl Default for Blocks {
 }
 
 impl Blocks {
-    /// Those of all of these balls.
+    /// The blocks of these balls.
     pub(crate) fn of(balls: &[Ball]) -> Self {
         let mut blocks = Self::default();
         let numbers: Vec<u32> = (0..balls.len() as u32).collect();

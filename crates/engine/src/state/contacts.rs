@@ -302,7 +302,7 @@ impl Contacts {
         self.scratch.remembers = remembers;
     }
 
-    /// The same, where it is known for each pair whether there is anything in its history.
+    /// As `divide`, where it is known for each pair whether its history is empty.
     fn set_partitions(&mut self, particles: usize, count: usize, remembers: &[bool]) {
         self.scratch.wanted_partitions = count;
         self.scratch.close_skin_left_m = 0.0;

@@ -16,7 +16,7 @@ pub(crate) struct Displacements<'a> {
 }
 
 impl Displacements<'_> {
-    /// Those of all particles, six for each.
+    /// The displacements of all particles, six for each.
     fn of_all<'a>(
         &'a self,
         degrees_of_freedom: &'a DegreesOfFreedom,

@@ -26,7 +26,7 @@ pub fn at_landing(state: &State, speed_m_s: f64) -> [f64; 3] {
     at_impacts(state, speed_m_s, first.filter(|hit| hit.is_flat))
 }
 
-/// The same for these.
+/// As [`at_impact`], for these hits.
 fn at_impacts(state: &State, speed_m_s: f64, first: impl Iterator<Item = Hit>) -> [f64; 3] {
     let Some(contacts) = &state.contacts else {
         return [0.0; 3];

@@ -24,12 +24,12 @@ pub(crate) trait BondHistory: Clone + Default {
     /// Whether bonds of this law have it.
     fn is_of(law: &BondLaw) -> bool;
 
-    /// That of a bond without load, which may follow another law.
+    /// The history of a bond without load, which may follow another law.
     fn new(_bond: &NewBond<'_>) -> Self {
         Self::default()
     }
 
-    /// That of a copy of the bond whose strengths have this factor.
+    /// The history of a copy of the bond whose strengths have this factor.
     fn copied(&self, _strength_factor: f64) -> Self {
         self.clone()
     }
