@@ -87,7 +87,7 @@ impl Diagnostic {
         }
     }
 
-    /// The same message, placed within a larger object (a facet of a file).
+    /// The message, placed within a larger object (a facet of a file).
     #[must_use]
     pub fn within(mut self, outer: &str) -> Self {
         self.place = if self.place.is_empty() {

@@ -40,7 +40,8 @@ impl<'a> Lines<'a> {
         self.line()
     }
 
-    /// The same for a file that may still be written: a line within which it ends is no line.
+    /// As [`Self::next_line`], for a file that may still be written: an unfinished last line is
+    /// none.
     pub fn next_whole_line(&mut self) -> Result<Option<(u64, &str)>> {
         if self.read_line()? && !self.bytes.ends_with(b"\n") {
             return Ok(None);
@@ -88,7 +89,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The same message, with a line as its place.
+/// The message with a line as its place.
 pub fn on_line(number: u64, error: Diagnostic) -> Diagnostic {
     error.within(&format!("line {number}"))
 }

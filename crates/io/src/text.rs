@@ -19,7 +19,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     escape(text, is_obeyed)
 }
 
-/// The same for several lines, which stay lines, with tabs in them.
+/// As [`visible`], for several lines, which stay lines, with tabs in them.
 pub fn visible_lines(text: &str) -> Cow<'_, str> {
     escape(text, |letter| {
         !matches!(letter, '\n' | '\t') && is_obeyed(letter)

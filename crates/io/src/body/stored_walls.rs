@@ -14,7 +14,7 @@ pub const WALL_NAMES: &str = "wall_names";
 pub const WALL_FORCES: &str = "wall_force_n";
 /// Field: name of the file next to this one with the triangles of large walls that never move.
 pub const FIXED_WALLS: &str = "fixed_walls";
-/// That name.
+/// The name in [`FIXED_WALLS`].
 pub const FIXED_WALLS_FILE: &str = "walls_fixed.vtp";
 
 /// The walls of a scene at one time. SI units.

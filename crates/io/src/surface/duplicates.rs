@@ -135,8 +135,8 @@ pub(super) fn drop_loose_slivers(mesh: &mut Mesh, tolerance: f64) -> usize {
     before - mesh.triangles.len()
 }
 
-/// Decides for each patch of `pairs`, triangles that hang together, whether one of each is kept,
-/// and winds those that stand there both ways like a neighbour.
+/// Decides for each patch of connected `pairs` of triangles whether one of each is kept, and winds
+/// those that stand there both ways like a neighbour.
 fn settle_pairs(mesh: &mut Mesh, pairs: &[Pair]) {
     let edges = Edges::of(mesh);
     let place = |h: u32| {

@@ -22,7 +22,7 @@ pub(super) struct Frame {
 
 impl Frame {
     /// The frame of these facets. `unit_m` is a unit of the file in metres. Refuses a shape without
-    /// extent or of a size outside all reason.
+    /// extent or of an implausible size.
     pub(super) fn around(facets: &[[[f64; 3]; 3]], unit_m: f64) -> Result<Self> {
         let bounds = Bounds::of(facets.iter().flatten().copied());
         let extent = largest_extent(&bounds);

@@ -38,8 +38,8 @@ pub struct OpenSurface {
     pub degenerate_facets: usize,
     /// Facets that stood there already (either way round), dropped.
     pub duplicate_facets: usize,
-    /// Triangles that are wound against the others that they hang together with: those of each part
-    /// that are the fewer. 0: each part is wound one way.
+    /// Triangles wound against the others of their part: those that are the fewer. 0: each part is
+    /// wound one way.
     pub turned_facets: usize,
     /// Whether what the triangles enclose has a volume below 0, as where those of a closed surface
     /// look inwards. Says nothing of an open one.
@@ -54,8 +54,8 @@ pub struct OpenSurface {
 /// Equal corners become one, and near ones where that closes a gap.
 ///
 /// # Errors
-/// A unit that is no positive number, no whole STL (see `read_facets`), a size outside all reason,
-/// or facets of which none has an area.
+/// A unit that is no positive number, no whole STL (see `read_facets`), an implausible size, or
+/// facets of which none has an area.
 pub fn read_open_surface(bytes: &[u8], source: &str, unit_m: f64) -> Result<OpenSurface> {
     read(bytes, unit_m)
         .map(|surface| OpenSurface {
@@ -138,8 +138,8 @@ fn drop_superfluous(mesh: &mut Mesh, diagonal: f64) -> [usize; 2] {
     [degenerate, all - degenerate - kept.len()]
 }
 
-/// Which triangles are wound against most of those that they hang together with over edges of two;
-/// `counts` says which of these count.
+/// Which triangles are wound against most of those connected to them over edges of two; `counts`
+/// says which of these count.
 fn turned(mesh: &Mesh, counts: impl Fn(u32) -> bool) -> Vec<bool> {
     let mut sets = Sets::new(mesh.triangles.len());
     for group in Edges::of(mesh).groups() {

@@ -13,8 +13,8 @@ pub(super) struct Connected {
     pub(super) turned: Vec<bool>,
 }
 
-/// Finds the parts that hang together over shared edges, and the triangles that are wound against
-/// their neighbours. Edges with one facet or another odd number connect nothing.
+/// Finds the parts connected over shared edges, and the triangles that are wound against their
+/// neighbours. Edges with one facet or another odd number connect nothing.
 ///
 /// Where four or more facets meet in an edge, two or more parts touch there: each part is continued
 /// over the edge by itself where it can be, and otherwise facets are paired that lie next to each

@@ -113,7 +113,7 @@ impl Array {
         Scalar::named(&self.scalar)
     }
 
-    /// The same message, with this array as its place.
+    /// The message with this array as its place.
     pub(super) fn within(&self, error: Diagnostic) -> Diagnostic {
         error.within(&format!("array '{}'", self.name))
     }
