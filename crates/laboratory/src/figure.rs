@@ -56,7 +56,7 @@ impl Figure {
         }
     }
 
-    /// The same with another source of its expected value, if it has one.
+    /// The figure with another source of its expected value, if it has one.
     pub fn by(self, source: Source) -> Self {
         let theory_is = self.theory_is.map(|_| source);
         Self { theory_is, ..self }

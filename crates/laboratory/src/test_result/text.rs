@@ -97,7 +97,7 @@ impl TestResult {
         doubts
     }
 
-    /// The same for a dynamic test.
+    /// The doubts of a dynamic test.
     fn dynamic_doubts(&self) -> Vec<String> {
         let mut doubts = self.reasons.clone();
         let apart = self.figure(EQUILIBRIUM).unwrap_or(0.0);
