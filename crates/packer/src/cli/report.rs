@@ -22,7 +22,7 @@ pub(super) fn surface_summary(surface: &Surface) -> serde_json::Value {
     })
 }
 
-/// The same, human-readable.
+/// A surface as text.
 pub(super) fn surface_text(surface: &Surface) -> String {
     let size = surface
         .extent()

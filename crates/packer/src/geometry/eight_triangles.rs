@@ -29,7 +29,7 @@ impl EightSurroundings {
         self.half_height[k] = around.half_height;
     }
 
-    /// Those of triangle `k` of the eight.
+    /// The surroundings of triangle `k` of the eight.
     #[inline(always)]
     pub(super) fn of(&self, k: usize) -> Surroundings {
         Surroundings {
