@@ -39,7 +39,7 @@ pub(crate) fn range(values: &[f64], digits: usize) -> String {
     least_to_most(values, |value| format!("{value:.digits$}"))
 }
 
-/// The same as text of one's own; one number if both ends have the same.
+/// As [`range`], with numbers written by `text`; one if both ends have the same.
 pub(crate) fn least_to_most(values: &[f64], text: impl Fn(f64) -> String) -> String {
     let [least, most] = ends(values).map(text);
     match values {

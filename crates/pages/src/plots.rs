@@ -13,7 +13,7 @@ pub(crate) fn line(name: &str, points: Vec<[f64; 2]>) -> Line {
     }
 }
 
-/// The same dashed, for a law.
+/// As [`line`], but dashed, for a law.
 pub(crate) fn dashed(name: &str, points: Vec<[f64; 2]>) -> Line {
     Line {
         dashed: true,

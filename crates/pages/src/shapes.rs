@@ -11,7 +11,7 @@ pub(crate) fn shape(name: &str, scale: f64) -> Result<Surface, Failed> {
     surface_of(&std::fs::read(root().join(&file))?, &file, scale)
 }
 
-/// The same from the bytes of a file.
+/// As [`shape`], from the bytes of a file.
 pub(crate) fn surface_of(stl: &[u8], name: &str, scale: f64) -> Result<Surface, Failed> {
     let reading = ReadSettings {
         unit_m: 1e-3,
