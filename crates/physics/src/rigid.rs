@@ -20,7 +20,7 @@ pub fn turn(turned: [f64; 4], turn: [f64; 3]) -> [f64; 4] {
     after(turned, half, (angle.sin() / angle, angle.cos()))
 }
 
-/// The same for an angle that [is small](room_to_small).
+/// As [`turn`], for an angle that [is small](room_to_small).
 #[inline(always)]
 pub fn turn_a_little<T: Number>(turned: [T; 4], turn: [T; 3]) -> [T; 4] {
     let half = half_angles(turn);

@@ -41,7 +41,7 @@ impl CauseCounts {
 }
 
 impl fmt::Display for CauseCounts {
-    /// Those that are not 0: `23 in tension, 2 in shear`.
+    /// The counts that are not 0: `23 in tension, 2 in shear`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let causes = Cause::ALL.into_iter().filter(|cause| self.of(*cause) > 0);
         let counts: Vec<String> = causes

@@ -28,7 +28,7 @@ pub struct DerjaguinMullerToporov<T = f64> {
 }
 
 impl DerjaguinMullerToporov {
-    /// The same for several contacts at once, one for each lane.
+    /// The law of several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T + Copy) -> DerjaguinMullerToporov<T> {
         DerjaguinMullerToporov {

@@ -40,7 +40,7 @@ impl HertzMindlin {
         }
     }
 
-    /// The same for several contacts at once, one for each lane.
+    /// The law of several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T + Copy) -> HertzMindlin<T> {
         HertzMindlin {

@@ -35,7 +35,7 @@ impl Linear {
         }
     }
 
-    /// The same for several contacts at once, one for each lane.
+    /// The law of several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T + Copy) -> Linear<T> {
         Linear {

@@ -84,7 +84,7 @@ pub struct PairParameters<T = f64> {
 }
 
 impl PairParameters {
-    /// The same for several contacts at once, one for each lane.
+    /// The parameters of several contacts at once, one for each lane.
     #[inline(always)]
     pub fn in_lanes<T>(&self, all: impl Fn(f64) -> T) -> PairParameters<T> {
         PairParameters {

@@ -37,7 +37,7 @@ impl Frame {
             .into()
     }
 
-    /// The same for many points.
+    /// As [`Self::to_wall`], for many points.
     pub fn all_to_wall(&self) -> impl Fn([f64; 3]) -> [f64; 3] + use<> {
         let rotation = self.rotation().inverse().to_rotation_matrix();
         let origin = Vector3::from(self.position_m);
