@@ -14,8 +14,8 @@ use super::png_file::fault;
 /// `frame` gives each of the `count` pictures, at least one, twice in turn. All have the size of
 /// the first one: the others are cut off or padded in white. For each, only the rectangle that
 /// differs from the previous one is stored. The colours are those of a palette of 256, in which
-/// pixels that stay as they are are transparent; where the palette would be seen, they are stored
-/// as they are.
+/// unchanged pixels are transparent; where the palette would be seen, the colours are stored as
+/// they are.
 pub fn animation(
     count: u32,
     delay_ms: u16,
