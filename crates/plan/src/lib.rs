@@ -103,7 +103,7 @@ pub struct Plan {
     pub unused_bonds: Vec<(String, usize)>,
     /// Mass of each body, by name.
     pub masses: BTreeMap<String, BodyMass>,
-    /// Harmless peculiarities of the scene, a sentence each.
+    /// What is unusual but harmless in the scene, a sentence each.
     pub notes: Vec<String>,
     /// Reasons to doubt the result that are known before the run, a sentence each.
     pub warnings: Vec<String>,

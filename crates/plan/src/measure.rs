@@ -64,7 +64,7 @@ fn measurements() -> impl Iterator<Item = &'static Measurement> {
 }
 
 impl Measurement {
-    /// That of a measure.
+    /// The measurement of a measure.
     pub fn of(measure: &Measure) -> &'static Self {
         let names = measure.quantity.names;
         measurements()

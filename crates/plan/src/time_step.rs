@@ -246,7 +246,7 @@ pub fn arriving(state: &State) -> Option<State> {
     coming(state, false)
 }
 
-/// The same with all bodies bonded that can be.
+/// As [`arriving`], with all bodies bonded that can be.
 pub(crate) fn arriving_as_clusters(state: &State) -> Option<State> {
     coming(state, true)
 }

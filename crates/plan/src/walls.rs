@@ -25,7 +25,8 @@ use self::surface::{Sizes, question_size, surface_warnings};
 /// Largest fraction of a belt's speed out of its plane: allows for rounding of written numbers.
 const OFF_PLANE: f64 = 1e-6;
 
-/// The walls of a scene, in the order of their names. Harmless peculiarities are added to `notes`.
+/// The walls of a scene, in the order of their names. What is unusual but harmless is added to
+/// `notes`.
 ///
 /// # Errors
 /// A file that is not a surface; a pair of materials without a contact law that may meet; a belt

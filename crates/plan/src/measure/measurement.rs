@@ -70,7 +70,7 @@ pub(super) struct Planned<'a> {
 }
 
 impl Measurement {
-    /// That of a quantity of this name.
+    /// The measurement of a quantity of this name.
     pub(super) const fn new(name: &'static str, read: fn(&Probe, &View<'_>) -> f64) -> Self {
         Self {
             name,

@@ -61,7 +61,7 @@ struct Variances {
 }
 
 impl Mixture {
-    /// That of two sets in a region, in cells with this edge, m.
+    /// The mixture of two sets in a region, in cells with this edge, m.
     pub(super) fn of(sets: [&[Sphere]; 2], region: &Region, cell_m: f64) -> Self {
         let low_m = Vector3::from(region.bounds().low);
         let mut cells: BTreeMap<[i64; 3], [Part; 2]> = BTreeMap::new();

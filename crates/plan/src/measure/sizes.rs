@@ -37,7 +37,7 @@ pub struct Fragments {
 }
 
 impl Fragments {
-    /// Those of a state. None: nothing can break or touch.
+    /// The fragments of a state. None: nothing can break or touch.
     pub fn of(state: &State) -> Option<Self> {
         let clusters = state.clusters.as_ref()?;
         let size = |id: u32| size_of(id, clusters, &state.particles, &state.clumps);
@@ -54,7 +54,7 @@ impl Fragments {
         Self { inside, discharged }
     }
 
-    /// Those of a body, or all, in these places, by ascending size.
+    /// The fragments of a body, or all, in these places, by ascending size.
     fn chosen(&self, body: Option<u32>, discharged: bool, inside: bool) -> Vec<FragmentSize> {
         let discharged = self.discharged.iter().filter(|_| discharged);
         let inside = self.inside.iter().filter(|_| inside);

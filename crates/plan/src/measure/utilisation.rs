@@ -123,7 +123,7 @@ pub fn utilisation_under(state: &State, at: usize, load: &BondLoad) -> f64 {
     utilisation_at(state, at, load, 1.0)
 }
 
-/// The same with this factor on the strengths that rise with the strain rate.
+/// As [`utilisation_under`], with this factor on the strengths that rise with the strain rate.
 fn utilisation_at(state: &State, at: usize, load: &BondLoad, rate: f64) -> f64 {
     let bonds = &state.bonds;
     if bonds.rules[bonds.rule_of(at)].law.flat_joint().is_some() && !bonds.is_broken(at) {

@@ -1,4 +1,4 @@
-//! Surfaces of STL files: reading, and harmless peculiarities.
+//! Surfaces of STL files: reading, notes and warnings.
 
 use std::path::Path;
 
@@ -54,7 +54,7 @@ pub(crate) fn surface_of(path: &Path, unit_m: f64) -> Result<OpenSurface> {
     read_open_surface(&bytes, &file, unit_m)
 }
 
-/// Peculiarities of a surface and their consequences.
+/// What is unusual in a surface, and its consequences.
 pub(super) fn surface_warnings(surface: &OpenSurface, mesh: &Mesh) -> impl Iterator<Item = String> {
     let content = &mesh.content;
     let mut odd = Vec::new();
