@@ -19,7 +19,7 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
-    /// Those of a results folder; none if it has no such file.
+    /// The pieces of a results folder; none if it has no such file.
     pub(crate) fn of(folder: &Path) -> Self {
         let text = std::fs::read_to_string(folder.join("fragment-tree.csv")).unwrap_or_default();
         Self {
