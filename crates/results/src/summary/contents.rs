@@ -141,7 +141,7 @@ pub struct Summary {
     pub time_by_stage: Vec<(String, f64)>,
     /// Stages that the scene does not need.
     pub inactive_stages: Vec<String>,
-    /// Harmless peculiarities of the scene.
+    /// What is unusual but harmless in the scene.
     pub notes: Vec<String>,
     /// Reliability of the result.
     pub verdict: Verdict,
