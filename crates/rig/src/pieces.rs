@@ -18,7 +18,7 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// Those of a body, by its name in the scene. None: it cannot break.
+    /// The pieces of a body, by its name in the scene. None: it cannot break.
     pub(super) fn of(state: &State, body: &str) -> Option<Self> {
         let fragments = Fragments::of(state)?;
         let sizes = fragments.sizes(&state.model);

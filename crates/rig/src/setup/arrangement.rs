@@ -124,7 +124,7 @@ impl Setup {
         }
     }
 
-    /// The same with what was said on its dimensions.
+    /// The arrangement with the notes and warnings on its dimensions.
     pub(super) fn saying(self, said: Said) -> Self {
         Self {
             notes: said.notes,

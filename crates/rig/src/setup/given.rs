@@ -12,7 +12,7 @@ const ANOTHER: f64 = 0.25;
 /// body is larger than its section.
 const GIVEN: f64 = 0.05;
 
-/// What is said on the dimensions of a test, a sentence each.
+/// Notes and warnings on the dimensions of a test, a sentence each.
 #[derive(Debug, Default)]
 pub(super) struct Said {
     pub(super) notes: Vec<String>,
