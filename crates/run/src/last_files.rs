@@ -51,7 +51,7 @@ impl End {
         })
     }
 
-    /// The same, and writes and keeps the tables of this state.
+    /// As [`Self::of`]; also writes and keeps the tables of this state.
     pub(super) fn with_tables(summary: &Summary, last: &LastState<'_>) -> Result<Self> {
         let mut end = Self::of(summary)?;
         for write in TABLES {

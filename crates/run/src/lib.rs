@@ -53,7 +53,8 @@ pub fn run(
     outcome.problem.map_or(Ok(outcome.summary), Err)
 }
 
-/// The same, but a run that goes unstable or is interrupted also has a summary, in its folder too.
+/// As [`run`], but a run that goes unstable or is interrupted has a summary too, also in its
+/// folder.
 pub fn run_as_far_as_it_goes(
     plan: Plan,
     scene: &Scene,

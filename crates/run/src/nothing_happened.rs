@@ -26,7 +26,7 @@ pub(super) fn empty_measures(
     said.collect()
 }
 
-/// Those that are 0 throughout.
+/// The measures that are 0 throughout.
 fn zero(probes: &[Probe]) -> impl Iterator<Item = &Probe> {
     probes.iter().filter(|probe| {
         let history = &probe.history;

@@ -32,7 +32,7 @@ const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
 
 /// Why a run ended that went on to its end time.
 pub(super) const AT_END_TIME: &str = "end time";
-/// By which a run has ended that was asked to end.
+/// Why a run ended that was interrupted.
 pub const INTERRUPTION: &str = "interruption";
 
 /// Interval between checks of bending and twisting of bonds, in steps: each check costs about five

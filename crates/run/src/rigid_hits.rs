@@ -81,7 +81,7 @@ impl RigidHits {
         }
     }
 
-    /// The same for the rigid parts of bonded bodies.
+    /// As [`Self::take`], for the rigid parts of bonded bodies.
     pub(super) fn take_of_parts(
         &mut self,
         parts: &mut RigidParts,

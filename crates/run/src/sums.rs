@@ -26,7 +26,7 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// Whether a file has a sum already, as a frame that does not change any more.
+    /// Whether a file has a sum already. A frame, which does not change, is summed once.
     pub(super) fn has(&self, name: &str) -> bool {
         self.files.contains_key(name)
     }

@@ -16,7 +16,7 @@ const FLYING: f64 = 0.05;
 
 /// Fragments that still move apart.
 pub(crate) struct Flying {
-    /// What is said of them.
+    /// The note or warning.
     pub(crate) text: String,
     /// Whether something that can break touches something: then breakage may not be over.
     /// Otherwise what has been simulated is complete, and a later impact is another question.

@@ -35,7 +35,7 @@ impl View {
         Self::around(state, from, scale, points_of(state))
     }
 
-    /// The same, with all regions near the scene.
+    /// As [`Self::of`], with all regions near the scene.
     pub fn with_regions(state: &State, from: Option<[f64; 3]>) -> Self {
         let mut points_m = points_of(state);
         points_m.extend(regions_near(state, &points_m));
@@ -68,7 +68,8 @@ impl View {
         self.drawn(state, bodies, &surfaces, every_s)
     }
 
-    /// The same, with the edges of the boxes around all regions, and their names, in their order.
+    /// As [`Self::picture`], with the edges of the boxes around all regions, and their names, in
+    /// their order.
     pub fn picture_with_regions<'a>(
         &self,
         state: &State,
