@@ -26,7 +26,7 @@ impl Scene {
         text
     }
 
-    /// The same as keys and values, in the same order.
+    /// The parts of [`Self::describe`] as keys and values, in the same order.
     pub fn values(&self) -> Vec<(String, String)> {
         let mut lines = Lines(Vec::new());
         if !self.included.is_empty() {
