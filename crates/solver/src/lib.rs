@@ -41,7 +41,6 @@ pub use {dem_lammps as lammps, dem_stress as stress};
 #[doc = include_str!("../../../doc/adding-a-model.md")]
 struct AddingAModel;
 
-/// The same.
 #[cfg(doctest)]
 #[doc = include_str!("../../../doc/library.md")]
 struct Library;

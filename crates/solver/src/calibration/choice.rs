@@ -221,7 +221,7 @@ impl Chooser<'_> {
         }
     }
 
-    /// Those of these strengths that the bonds have, if the scene has a target.
+    /// The strengths among these that the bonds have, if the scene has a target.
     fn strength(&self, keys: &[&str]) -> Result<Option<Unknown>> {
         let Some((test, target)) = self
             .scene
