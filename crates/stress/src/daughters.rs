@@ -7,7 +7,7 @@ use super::trial::Trial;
 const RADIUS_M: f64 = 5e-3;
 /// What a replacement may add to the error of the energy: that of the run itself is smaller.
 const ENERGY_ERROR: f64 = 1e-3;
-/// The same for the momentum.
+/// Largest error of the momentum, as for the energy.
 const MOMENTUM_ERROR: f64 = 1e-10;
 
 /// A sphere between plates that close by a sixth of its diameter is replaced by daughters when it

@@ -44,7 +44,7 @@ const BREAKAGE_ERROR: f64 = 1e-2;
 /// A block between plates that close by a thirtieth of its height becomes a bonded cluster when
 /// their squeeze reaches 1 MPa. The swap changes neither momentum nor energy, whatever else the
 /// scene asks for: clump spheres that are larger than those of the cluster, whose overlap vanishes
-/// with the clump and is booked; a cluster that becomes a clump again at every check, and is
+/// with the clump and is recorded; a cluster that becomes a clump again at every check, and is
 /// replaced at once; a block from an inlet. A tilted block is loaded beyond the strength of its
 /// bonds: they soften, break, or hold because the strain rate strengthens them, as those of a twin
 /// do that is bonded from the start, in the same place between the same plates.
