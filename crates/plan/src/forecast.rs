@@ -11,6 +11,9 @@ use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::step::all_bytes;
 
+use super::alike::told_once;
+use super::time_step::arriving_as_clusters;
+
 /// Largest number of bodies whose first contacts are predicted.
 const MOST_BODIES: usize = 8;
 /// Part of a body that rounding of times may add.
@@ -46,23 +49,23 @@ pub struct InletForecast {
 }
 
 /// Forecast for a scene that is ready to step and whose impacts do not exceed this speed, m/s.
-/// `arriving` has one body of each shape that may be added, bonded.
 pub(super) fn forecast(
     scene: &Scene,
     state: &State,
     bodies: &[PlacedBody],
     impact_speed_m_s: f64,
-    arriving: Option<&State>,
 ) -> Forecast {
+    let arriving = arriving_as_clusters(state);
     let meets = can_meet(state, scene);
     let mut forecast = Forecast {
         warnings: foreseen(state, bodies, meets.then_some(impact_speed_m_s)),
-        to_come: to_come(scene, state, arriving),
+        to_come: to_come(scene, state, arriving.as_ref()),
         ..Forecast::default()
     };
     if scene.test.is_none() && meets {
         meetings(scene, state, bodies, &mut forecast);
     }
+    forecast.warnings = told_once(forecast.warnings, scene.bodies.keys());
     forecast
 }
 

@@ -181,15 +181,7 @@ pub fn plan(
         bound_damping(&mut state);
         refuse_endless_damping(scene, &state)?;
     }
-    let arriving = arriving_as_clusters(&state);
-    let mut forecast = forecast(
-        scene,
-        &state,
-        &bodies,
-        step.impact_speed_m_s,
-        arriving.as_ref(),
-    );
-    forecast.warnings = told_once(forecast.warnings, scene.bodies.keys());
+    let forecast = forecast(scene, &state, &bodies, step.impact_speed_m_s);
     let stages = planned_stages(&state, scene);
     leave_out(&stages, &mut state);
     Ok(Plan {

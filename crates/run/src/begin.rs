@@ -19,7 +19,7 @@ use crate::snapshot::fingerprint;
 use dem_engine::check::watchdog::Watchdog;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
-use dem_plan::measure::{Probe, place_watches, probes, renumber as renumber_probes};
+use dem_plan::measure::{History, Probe, place_watches, probes, renumber as renumber_probes};
 use dem_plan::{Plan, PlannedStage};
 use dem_results::summary::Inputs;
 use dem_rig::watch::Watch;
@@ -89,27 +89,19 @@ impl<'a> Run<'a> {
         let resumed = settings.resume.take().zip(fingerprint);
         let is_continued = resumed.is_some();
         if let Some((snapshot, fingerprint)) = resumed {
-            let place = settings
-                .folder
-                .map(|f| f.checkpoint().display().to_string());
-            snapshot
-                .check_scene(&scene.describe())
+            let place = (settings.folder).map(|f| f.checkpoint().display().to_string());
+            (snapshot.check_scene(&scene.describe()))
                 .and_then(|()| snapshot.restore(fingerprint, &mut state, &mut bodies))
                 .map_err(|error| error.within(&place.unwrap_or_default()))?;
             progress = snapshot.progress;
             progress.go_on(&state, schedule, scene)?;
-            for (probe, history) in probes.iter_mut().zip(snapshot.measures) {
-                probe.history = history;
-            }
-            if state.bodies_change() {
-                renumber_probes(&mut probes, &[], &bodies, &mut state);
-            }
+            restore_histories(&mut probes, snapshot.measures, &bodies, &mut state);
             changed_step = change_step(&mut state, &choice, scene.run.adaptive);
         }
         limits.new_steps.extend(changed_step.clone());
-        let mut outputs = Vec::new();
-        if let Some((folder, start)) = &start {
-            outputs = open_outputs(&Opening {
+        let outputs = match &start {
+            None => Vec::new(),
+            Some((folder, start)) => open_outputs(&Opening {
                 name: "",
                 folder,
                 scene,
@@ -118,8 +110,8 @@ impl<'a> Run<'a> {
                 probes: &probes,
                 start,
                 continued: is_continued.then_some(&progress),
-            })?;
-        }
+            })?,
+        };
         let began = Instant::now();
         let mut run = Self {
             scene,
@@ -153,6 +145,21 @@ impl<'a> Run<'a> {
             run.note_changes(false, false)?;
         }
         Ok(run)
+    }
+}
+
+/// Gives measures the values that they had at a checkpoint.
+fn restore_histories(
+    probes: &mut [Probe],
+    histories: Vec<History>,
+    bodies: &[PlacedBody],
+    state: &mut State,
+) {
+    for (probe, history) in probes.iter_mut().zip(histories) {
+        probe.history = history;
+    }
+    if state.bodies_change() {
+        renumber_probes(probes, &[], bodies, state);
     }
 }
 

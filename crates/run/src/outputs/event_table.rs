@@ -103,101 +103,95 @@ fn kept(mass_kg: &[f64; 2], momentum_n_s: &[f64; 2], kinetic_j: &[f64; 2]) -> St
 
 /// Events of bodies in this step.
 fn write_population(state: &State, table: &mut Table) -> Result<()> {
-    let (step, time_s) = (state.scratch.events.step, state.scratch.events.time_s);
-    for one in &state.scratch.events.population {
-        let (kind, cause, place_m, energy_j, detail) = match one {
-            PopulationEvent::Replaced {
-                cluster,
-                body,
-                cause,
-                mass_kg,
-                momentum_n_s,
-                kinetic_j,
-                place_m,
-            } => (
-                if *cause == STARTS_BONDED {
-                    "bonded"
-                } else {
-                    "replaced"
-                },
-                *cause,
-                place_m,
-                Some(kinetic_j[1] - kinetic_j[0]),
-                format!(
-                    "fragment {cluster} ({body}): {}",
-                    kept(mass_kg, momentum_n_s, kinetic_j)
-                ),
-            ),
-            PopulationEvent::Broken {
-                cluster,
-                body,
-                class,
-                daughters: (class_body, count),
-                specific_j_kg,
-                mass_kg,
-                momentum_n_s,
-                kinetic_j,
-                place_m,
-            } => (
-                "replaced",
-                "specific_energy",
-                place_m,
-                Some(kinetic_j[1] - kinetic_j[0]),
-                format!(
-                    "fragment {cluster} ({body}): {} J/kg; class {} ({class_body}); {count} daughters; {}",
-                    exact(*specific_j_kg),
-                    class + 1,
-                    kept(mass_kg, momentum_n_s, kinetic_j)
-                ),
-            ),
-            PopulationEvent::Restored {
-                cluster,
-                body,
-                particles,
-                lost_j,
-                place_m,
-            } => (
-                "restored",
-                "quiet",
-                place_m,
-                Some(*lost_j),
-                format!("fragment {cluster} ({body}): {particles} particles"),
-            ),
-            PopulationEvent::Came {
-                cluster,
-                body,
-                inlet,
-                place_m,
-            } => (
-                "fed",
-                inlet.as_str(),
-                place_m,
-                None,
-                format!("fragment {cluster} ({body})"),
-            ),
-            PopulationEvent::Left {
-                cluster,
-                body,
-                outlet,
-                mass_kg,
-                place_m,
-            } => (
-                "discharged",
-                outlet.as_str(),
-                place_m,
-                None,
-                format!("fragment {cluster} ({body}): {mass_kg:e} kg"),
-            ),
-        };
+    let events = &state.scratch.events;
+    for one in &events.population {
+        let (kind, cause) = kind_and_cause(one);
         table.append(&event_lines(&[Event {
-            step,
-            time_s,
-            position_m: Some(*place_m),
-            energy_j,
-            ..of_all(state, kind, cause, &detail)
+            step: events.step,
+            time_s: events.time_s,
+            position_m: Some(place_m(one)),
+            energy_j: energy_j(one),
+            ..of_all(state, kind, cause, &detail(one))
         }]))?;
     }
     Ok(())
+}
+
+fn kind_and_cause(event: &PopulationEvent) -> (&'static str, &str) {
+    use PopulationEvent::{Broken, Came, Left, Replaced, Restored};
+    match event {
+        Replaced { cause, .. } if *cause == STARTS_BONDED => ("bonded", cause),
+        Replaced { cause, .. } => ("replaced", cause),
+        Broken { .. } => ("replaced", "specific_energy"),
+        Restored { .. } => ("restored", "quiet"),
+        Came { inlet, .. } => ("fed", inlet),
+        Left { outlet, .. } => ("discharged", outlet),
+    }
+}
+
+fn place_m(event: &PopulationEvent) -> [f64; 3] {
+    use PopulationEvent::{Broken, Came, Left, Replaced, Restored};
+    let (Replaced { place_m, .. }
+    | Broken { place_m, .. }
+    | Restored { place_m, .. }
+    | Came { place_m, .. }
+    | Left { place_m, .. }) = event;
+    *place_m
+}
+
+/// Kinetic energy that a replacement added, or energy that a restored fragment lost, J.
+fn energy_j(event: &PopulationEvent) -> Option<f64> {
+    use PopulationEvent::{Broken, Replaced, Restored};
+    match event {
+        Replaced { kinetic_j, .. } | Broken { kinetic_j, .. } => Some(kinetic_j[1] - kinetic_j[0]),
+        Restored { lost_j, .. } => Some(*lost_j),
+        _ => None,
+    }
+}
+
+fn detail(event: &PopulationEvent) -> String {
+    match event {
+        PopulationEvent::Replaced {
+            cluster,
+            body,
+            mass_kg,
+            momentum_n_s,
+            kinetic_j,
+            ..
+        } => format!(
+            "fragment {cluster} ({body}): {}",
+            kept(mass_kg, momentum_n_s, kinetic_j)
+        ),
+        PopulationEvent::Broken {
+            cluster,
+            body,
+            class,
+            daughters: (class_body, count),
+            specific_j_kg,
+            mass_kg,
+            momentum_n_s,
+            kinetic_j,
+            ..
+        } => format!(
+            "fragment {cluster} ({body}): {} J/kg; class {} ({class_body}); {count} daughters; {}",
+            exact(*specific_j_kg),
+            class + 1,
+            kept(mass_kg, momentum_n_s, kinetic_j)
+        ),
+        PopulationEvent::Restored {
+            cluster,
+            body,
+            particles,
+            ..
+        } => format!("fragment {cluster} ({body}): {particles} particles"),
+        PopulationEvent::Came { cluster, body, .. } => format!("fragment {cluster} ({body})"),
+        PopulationEvent::Left {
+            cluster,
+            body,
+            mass_kg,
+            ..
+        } => format!("fragment {cluster} ({body}): {mass_kg:e} kg"),
+    }
 }
 
 /// The spheres of bodies bonded in part that were released or joined a rigid part in this step.

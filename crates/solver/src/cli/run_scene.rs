@@ -151,33 +151,41 @@ pub(super) fn run_scene(
     shown.end();
     let outcome = outcome.inspect_err(|problem| {
         let unfinished = Unfinished::new(&scene.source, inputs, problem);
-        // The user must see the problem itself, whatever happens here. Bad input has not run
-        // anything.
-        if problem.kind != Kind::Input {
-            let _ = folder
-                .as_ref()
-                .map(|folder| write_json(&folder.summary(), &unfinished));
-            if arguments.scene.json {
-                let _ = write_standard_json(&unfinished);
-            }
-        }
+        write_unfinished(&unfinished, problem, folder.as_ref(), arguments.scene.json);
     })?;
     // A scene that cannot be resumed must not replace that of the run.
     if let Some(folder) = folder.as_ref().filter(|_| arguments.resume) {
         as_run::write_scene(folder, &arguments.scene, &scene)?;
     }
-    let is_whole = outcome
-        .as_ref()
-        .is_ok_and(|outcome| outcome.problem.is_none());
-    if let Some(folder) = folder
-        .as_ref()
-        .filter(|_| is_whole && arguments.keep == "tables")
+    let is_whole = matches!(&outcome, Ok(outcome) if outcome.problem.is_none());
+    if is_whole
+        && arguments.keep == "tables"
+        && let Some(folder) = &folder
     {
         folder.keep_tables()?;
     }
     match outcome {
         Ok(outcome) => say_outcome(arguments, outcome),
         Err(finished) => say_finished(arguments, &finished),
+    }
+}
+
+/// Writes the summary of a run that a problem ended; bad input has not run anything. The user must
+/// see the problem itself, whatever happens here.
+fn write_unfinished(
+    unfinished: &Unfinished,
+    problem: &Diagnostic,
+    folder: Option<&ResultsFolder>,
+    as_json: bool,
+) {
+    if problem.kind == Kind::Input {
+        return;
+    }
+    if let Some(folder) = folder {
+        let _ = write_json(&folder.summary(), unfinished);
+    }
+    if as_json {
+        let _ = write_standard_json(unfinished);
     }
 }
 
