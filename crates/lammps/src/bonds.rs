@@ -184,93 +184,97 @@ fn limits(criteria: &Criteria, radius_m: f64, factor: f64) -> [f64; 4] {
     ]
 }
 
-fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
-    let refuse = |key: &str, why: &str, remedy: &str| {
-        Err(refused(scene, format!("bonds.{name}.{key}"), why, remedy))
-    };
-    if rule.law == BondLaw::Incremental {
-        return refuse(
+/// What the bond style cannot represent: whether it is there, its key, the reason and the remedy.
+type Misfit = (bool, &'static str, &'static str, &'static str);
+
+const LEAVE_OUT: &str = "leave it out, or run the scene with dem-run";
+
+fn misfits_of_law(rule: &BondRule) -> [Misfit; 6] {
+    [
+        (
+            rule.law == BondLaw::Incremental,
             "formulation",
             "bpm/rotational computes forces from the present positions, not step by step",
             "use formulation = \"total\"",
-        );
-    }
-    if rule.structural_damping > 0.0 {
-        return refuse(
+        ),
+        (
+            rule.structural_damping > 0.0,
             "damping.structural_damping",
             "damping of bpm/rotational is viscous",
             "use damping_ratio, or run the scene with dem-run",
-        );
-    }
-    if rule.law.flat_joint().is_some() {
-        return refuse(
+        ),
+        (
+            rule.law.flat_joint().is_some(),
             "model",
             "bonds of bpm/rotational break as a whole",
             "use another model, such as \"timoshenko\"",
-        );
-    }
-    if rule.law.plasticity().is_some() {
-        return refuse(
+        ),
+        (
+            rule.law.plasticity().is_some(),
             "plasticity",
             "bonds of bpm/rotational are elastic until they break",
-            "leave it out, or run the scene with dem-run",
-        );
-    }
-    if rule.law.fracture_energy_j_m2().is_some() {
-        return refuse(
+            LEAVE_OUT,
+        ),
+        (
+            rule.law.fracture_energy_j_m2().is_some(),
             "failure.fracture_energy",
             "bonds of bpm/rotational break at their strength and do not soften",
-            "leave it out, or run the scene with dem-run",
-        );
-    }
-    if rule.strengthening_from_1_s.is_some() {
-        return refuse(
+            LEAVE_OUT,
+        ),
+        (
+            rule.strengthening_from_1_s.is_some(),
             "failure.rate_strengthening",
             "strengths of bpm/rotational do not depend on the strain rate",
-            "leave it out, or run the scene with dem-run",
-        );
-    }
-    let Some(criteria) = rule.criteria else {
-        return Ok(());
-    };
-    let is_set = |strength: f64| strength.is_finite();
-    if is_set(criteria.von_mises_strength_pa) {
-        return refuse(
+            LEAVE_OUT,
+        ),
+    ]
+}
+
+fn misfits_of_criteria(criteria: &Criteria) -> [Misfit; 5] {
+    let (tension, shear) = (criteria.tensile_strength_pa, criteria.shear_strength_pa);
+    [
+        (
+            criteria.von_mises_strength_pa.is_finite(),
             "failure.von_mises_strength",
             "bpm/rotational adds loads relative to their limits, which is no equivalent stress",
             "use tensile_strength or shear_strength",
-        );
-    }
-    if is_set(criteria.compressive_strength_pa) {
-        return refuse(
+        ),
+        (
+            criteria.compressive_strength_pa.is_finite(),
             "failure.compressive_strength",
             "bpm/rotational breaks no bond by compression",
-            "leave it out, or run the scene with dem-run",
-        );
-    }
-    if criteria.is_frictional() {
-        return refuse(
+            LEAVE_OUT,
+        ),
+        (
+            criteria.is_frictional(),
             "failure.cohesion",
             "strengths of bpm/rotational do not rise with pressure",
             "use shear_strength, or run the scene with dem-run",
-        );
-    }
-    let (tension, shear) = (criteria.tensile_strength_pa, criteria.shear_strength_pa);
-    if is_set(tension) && is_set(shear) {
-        return refuse(
+        ),
+        (
+            tension.is_finite() && shear.is_finite(),
             "failure.shear_strength",
             "bpm/rotational adds tension and shear to one limit, and here each has its own",
             "keep tensile_strength or shear_strength, not both",
-        );
-    }
-    if tension == 0.0 || shear == 0.0 {
-        return refuse(
+        ),
+        (
+            tension == 0.0 || shear == 0.0,
             "failure.tensile_strength",
             "a limit of bpm/rotational is above 0",
             "use a small strength, such as \"1 Pa\"",
-        );
+        ),
+    ]
+}
+
+fn refuse_rule(scene: &Scene, name: &str, rule: &BondRule) -> Result<()> {
+    let of_criteria = rule.criteria.iter().flat_map(misfits_of_criteria);
+    let mut misfits = misfits_of_law(rule).into_iter().chain(of_criteria);
+    match misfits.find(|(is_there, ..)| *is_there) {
+        Some((_, key, why, remedy)) => {
+            Err(refused(scene, format!("bonds.{name}.{key}"), why, remedy))
+        }
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Largest distance of the contact point from the middle of a bond, relative to its length.

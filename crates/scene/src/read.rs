@@ -8,11 +8,11 @@ use super::conflicts::STATIC;
 use super::include::{INCLUDE, document_of, folder_of};
 use super::paths::text_of;
 use super::presence::Presence;
-use super::root::SCENE;
-use super::root::{SCENE_VERSION, Scene};
+use super::root::{SCENE, SCENE_VERSION, Scene};
 use super::table::Table;
 use super::targets::Targets;
-use super::tree::option_place;
+use super::test::Test;
+use super::tree::{Document, option_place};
 use super::{
     body, bond, clusters, contact, contact_beside_bond, fall_check, group, initial, inlet, load,
     material, measure, outlet, output, region, relaxation, replacement, run, search, sleep,
@@ -48,9 +48,7 @@ pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
 /// Reads a scene from the text of a file named `source`, as [`read_scene`] does.
 pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result<Scene> {
     let (document, included) = document_of(text, source, overrides)?;
-    let root = Table::root(&document, &SCENE)?;
-    check_version(&root)?;
-    root.refuse_unknown()?;
+    let root = root(&document)?;
     let folder = folder_of(source);
 
     let run = run::read(&root)?;
@@ -96,14 +94,10 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
     let test = root.read_by("test", |field| test::read(&field, &known))?;
     contact_beside_bond::refuse_others(&root)?;
     STATIC.refuse(&root, &root)?;
-    let mut notes = document.notes.clone();
-    if let Some(field) = root.get("test") {
-        notes.extend(test::conflicts(&field, test.as_ref())?);
-    }
     Ok(Scene {
         source: source.to_owned(),
         included,
-        notes,
+        notes: notes(&root, test.as_ref())?,
         run,
         materials,
         bonds,
@@ -128,6 +122,23 @@ pub fn scene_from_text(text: &str, source: &str, overrides: &[String]) -> Result
         inlets,
         outlets,
     })
+}
+
+/// The tables of a scene, all of them known, in a version that this program knows.
+fn root(document: &Document) -> Result<Table<'_>> {
+    let root = Table::root(document, &SCENE)?;
+    check_version(&root)?;
+    root.refuse_unknown()?;
+    Ok(root)
+}
+
+/// Notes on the text of the scene, and on what goes ill with its test.
+fn notes(root: &Table<'_>, test: Option<&Test>) -> Result<Vec<String>> {
+    let mut notes = root.document.notes.clone();
+    if let Some(field) = root.get("test") {
+        notes.extend(test::conflicts(&field, test)?);
+    }
+    Ok(notes)
 }
 
 fn check_version(root: &Table<'_>) -> Result<()> {

@@ -12,9 +12,9 @@ use super::judge::{in_words, judge};
 use super::median::median;
 use super::order::orders;
 use super::outcome::{Done, Outcome};
-use super::response::responses;
+use super::response::{Response, responses};
 use super::row::{Judged, Row};
-use super::search::search;
+use super::search::{Search, search};
 use super::sweep_table::{AxisColumn, MeasureColumn, SweepTable};
 
 /// Smallest significant relative difference of run times, however close the repeats are.
@@ -33,64 +33,29 @@ impl SweepTable {
         let mut notes = Vec::new();
         let mut machines = BTreeSet::new();
         let mut rows = Vec::new();
-        let mut of_runs: Vec<Option<&Done>> = Vec::new();
+        let mut firsts = Vec::new();
         for (run, outcomes) in runs.iter().zip(outcomes) {
-            let done: Vec<&Done> = outcomes
-                .iter()
-                .filter_map(|outcome| match outcome {
-                    Outcome::Done(done) => Some(done),
-                    _ => None,
-                })
-                .collect();
-            if done
-                .windows(2)
-                .any(|two| two[0].readings != two[1].readings)
-            {
-                let number = run.number;
-                notes.push(format!(
-                    "run {number} gave other values when it was done again"
-                ));
-            }
-            notes.extend(lacking(run, done.len(), outcomes.len()));
-            machines.extend(done.iter().map(|done| done.machine.clone()));
-            rows.push(row(study, run, outcomes, &done));
-            of_runs.push(done.first().copied());
+            let repeats = finished(outcomes);
+            notes.extend(differing(run, &repeats));
+            notes.extend(lacking(run, repeats.len(), outcomes.len()));
+            machines.extend(repeats.iter().map(|done| done.machine.clone()));
+            rows.push(row(study, run, outcomes, &repeats));
+            firsts.push(repeats.first().copied());
         }
         for (measure, value) in values.iter().enumerate() {
-            judge(
-                study, runs, &of_runs, measure, *value, &mut rows, &mut notes,
-            );
+            judge(study, runs, &firsts, measure, *value, &mut rows, &mut notes);
         }
-        notes.extend(doubtful(runs, &of_runs));
-        if machines.len() > 1 && study.has_errors() {
-            let text = "the runs are of several machines, so that their times are not compared";
-            notes.push(text.to_owned());
-            for judged in rows.iter_mut().flat_map(|row| &mut row.results) {
-                judged.times_as_fast = None;
-            }
-        } else {
-            for measure in 0..study.measures.len() {
-                mark_front(&mut rows, measure);
-            }
-        }
+        notes.extend(doubtful(runs, &firsts));
+        notes.extend(compare_times(study, machines.len(), &mut rows));
         if study.repeats() == 1 && study.has_errors() {
             notes.push("each run was done once: how far run times scatter is not known".to_owned());
         }
         let responses = responses(study, runs, &rows);
         notes.extend(chance::notes(study, &responses));
-        let find = looked_for.and_then(|value| {
-            let of = study.find.as_ref()?.measure;
-            let response = responses.iter().find(|response| response.measure == of)?;
-            let (search, of_search) = search(study, response, value)?;
-            notes.extend(of_search);
-            Some(search)
-        });
+        let (find, of_search) = found(study, &responses, looked_for).unzip();
+        notes.extend(of_search.unwrap_or_default());
         let failure_line = FailureLine::of(study, &rows);
         notes.extend(failure_line.as_ref().map(FailureLine::note));
-        let unit = |at: usize| {
-            let done = of_runs.iter().flatten().next();
-            done.map_or(String::new(), |done| done.readings[at].unit.clone())
-        };
         Self {
             study: study.source.clone(),
             scene: study.scene.display().to_string(),
@@ -103,17 +68,11 @@ impl SweepTable {
                 RunTime::Processor => "processor time",
             }
             .to_owned(),
-            axes: study.axes.iter().map(column).collect(),
+            axes: study.axes.iter().map(axis_column).collect(),
             series: study.series,
             average_over: study.average_over,
             statistic: study.statistic,
-            measures: (0..study.measures.len())
-                .map(|at| MeasureColumn {
-                    name: study.measures[at].name.clone(),
-                    unit: unit(at),
-                    reference: in_words(study, at),
-                })
-                .collect(),
+            measures: measure_columns(study, &firsts),
             orders: orders(study, runs, &rows),
             runs: rows,
             responses,
@@ -154,7 +113,63 @@ impl SweepTable {
     }
 }
 
-fn column(axis: &Axis) -> AxisColumn {
+/// The repeats of a run that left results.
+fn finished(outcomes: &[Outcome]) -> Vec<&Done> {
+    let done = outcomes.iter().filter_map(|outcome| match outcome {
+        Outcome::Done(done) => Some(done),
+        Outcome::Failed(_) | Outcome::Missing => None,
+    });
+    done.collect()
+}
+
+/// What is to be said of a run whose repeats have different values.
+fn differing(run: &Run, repeats: &[&Done]) -> Option<String> {
+    let mut pairs = repeats.windows(2);
+    let differ = pairs.any(|two| two[0].readings != two[1].readings);
+    let number = run.number;
+    differ.then(|| format!("run {number} gave other values when it was done again"))
+}
+
+/// Marks the fronts. Of several machines times are not compared: then there is no front, and the
+/// reason is returned.
+fn compare_times(study: &Study, machines: usize, rows: &mut [Row]) -> Option<String> {
+    if machines > 1 && study.has_errors() {
+        for judged in rows.iter_mut().flat_map(|row| &mut row.results) {
+            judged.times_as_fast = None;
+        }
+        let text = "the runs are of several machines, so that their times are not compared";
+        return Some(text.to_owned());
+    }
+    for measure in 0..study.measures.len() {
+        mark_front(rows, measure);
+    }
+    None
+}
+
+/// The search for the value of `[find]`, and notes on it.
+fn found(
+    study: &Study,
+    responses: &[Response],
+    looked_for: Option<f64>,
+) -> Option<(Search, Vec<String>)> {
+    let of = study.find.as_ref()?.measure;
+    let response = responses.iter().find(|response| response.measure == of)?;
+    search(study, response, looked_for?)
+}
+
+/// The measures, with the units of the first run that left results.
+fn measure_columns(study: &Study, firsts: &[Option<&Done>]) -> Vec<MeasureColumn> {
+    let first = firsts.iter().flatten().next();
+    let measures = study.measures.iter().enumerate();
+    let column = measures.map(|(at, measure)| MeasureColumn {
+        name: measure.name.clone(),
+        unit: first.map_or(String::new(), |done| done.readings[at].unit.clone()),
+        reference: in_words(study, at),
+    });
+    column.collect()
+}
+
+fn axis_column(axis: &Axis) -> AxisColumn {
     // Equal numbers do not tell the values of paths that vary together apart; their names do.
     let differ = |numbers: &[f64]| {
         let before = |at: usize| numbers[..at].contains(&numbers[at]);

@@ -10,7 +10,7 @@ use super::response::Response;
 use super::response_plot::{average, named, shown_axes};
 use super::row::{Judged, Row};
 use super::search::{Search, SearchResult};
-use super::sweep_table::{AxisColumn, SweepTable};
+use super::sweep_table::{AxisColumn, Order, SweepTable};
 use super::words::with_unit;
 
 /// Largest number of lines of a part of the text.
@@ -189,14 +189,14 @@ pub(crate) fn front_of(table: &SweepTable, measure: usize) -> Vec<&Row> {
 }
 
 /// Prints lines, of which only the first are shown.
-fn cut(f: &mut fmt::Formatter<'_>, lines: &[String]) -> fmt::Result {
-    for line in lines.iter().take(MOST_LINES) {
+fn cut(f: &mut fmt::Formatter<'_>, mut lines: impl Iterator<Item = String>) -> fmt::Result {
+    for line in lines.by_ref().take(MOST_LINES) {
         writeln!(f, "{line}")?;
     }
-    if lines.len() > MOST_LINES {
-        writeln!(f, "  and {} more", lines.len() - MOST_LINES)?;
+    match lines.count() {
+        0 => Ok(()),
+        more => writeln!(f, "  and {more} more"),
     }
-    Ok(())
 }
 
 fn write_response(
@@ -225,96 +225,104 @@ fn write_response(
         let value = format!("{value}{scatter}{}", point.verdict_text());
         format!("  {value:<20} {}", visible(&named(table, point)))
     });
-    cut(f, &lines.collect::<Vec<String>>())
+    cut(f, lines)
+}
+
+fn write_head(f: &mut fmt::Formatter<'_>, table: &SweepTable) -> fmt::Result {
+    writeln!(
+        f,
+        "{}: {} runs of {}, {} each, on {} thread{}",
+        visible(&table.study),
+        table.runs.len(),
+        visible(&table.scene),
+        table.times(),
+        table.threads,
+        if table.threads == 1 { "" } else { "s" },
+    )?;
+    writeln!(f, "machine      {}", visible(&table.machines.join("; ")))
+}
+
+fn write_search(f: &mut fmt::Formatter<'_>, table: &SweepTable, search: &Search) -> fmt::Result {
+    let measure = &table.measures[search.measure].name;
+    let lines = search.cases.iter().map(|case| {
+        let words = search.in_words(case, measure);
+        format!("find         {}", visible(&words))
+    });
+    cut(f, lines)
+}
+
+/// The front of a measure with this reference.
+fn write_front(
+    f: &mut fmt::Formatter<'_>,
+    table: &SweepTable,
+    measure: usize,
+    reference: &str,
+) -> fmt::Result {
+    let front = front_of(table, measure);
+    writeln!(
+        f,
+        "front        {}: against {reference}, {} of {} runs",
+        table.measures[measure].name,
+        front.len(),
+        table.runs.len()
+    )?;
+    let lines = front.iter().map(|row| {
+        let judged = &row.results[measure];
+        let faster = judged.times_as_fast.map_or(String::new(), |times| {
+            format!(", {} times as fast as the finest", significant(times, 3))
+        });
+        format!(
+            "  {:>9} s  error {:<9} {}{faster}",
+            significant(row.time_s.unwrap_or(f64::NAN), 3),
+            significant(judged.sure_error().unwrap_or(f64::NAN), 2),
+            visible(&table.named(row))
+        )
+    });
+    cut(f, lines)
+}
+
+fn order_text(order: &Order) -> String {
+    let of = match order.of.join(", ") {
+        of if of.is_empty() => of,
+        of => format!(" ({})", visible(&of)),
+    };
+    format!(
+        "order        {} along {}{of}: {:.2} from {} runs",
+        order.measure, order.along, order.order, order.runs
+    )
+}
+
+fn failed_text(table: &SweepTable, row: &Row) -> String {
+    let named = table.named(row);
+    let why = row.failed.as_deref().unwrap_or_default();
+    format!(
+        "failed       run {}, {}: {}",
+        row.number,
+        visible(&named),
+        visible(why)
+    )
 }
 
 impl fmt::Display for SweepTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "{}: {} runs of {}, {} each, on {} thread{}",
-            visible(&self.study),
-            self.runs.len(),
-            visible(&self.scene),
-            self.times(),
-            self.threads,
-            if self.threads == 1 { "" } else { "s" },
-        )?;
-        writeln!(f, "machine      {}", visible(&self.machines.join("; ")))?;
+        write_head(f, self)?;
         for response in &self.responses {
             write_response(f, self, response)?;
         }
         if let Some(search) = &self.find {
-            let measure = &self.measures[search.measure].name;
-            let lines = search.cases.iter().map(|case| {
-                let words = search.in_words(case, measure);
-                format!("find         {}", visible(&words))
-            });
-            cut(f, &lines.collect::<Vec<String>>())?;
+            write_search(f, self, search)?;
         }
         for (at, measure) in self.measures.iter().enumerate() {
-            let Some(reference) = &measure.reference else {
-                continue;
-            };
-            let front = front_of(self, at);
-            writeln!(
-                f,
-                "front        {}: against {reference}, {} of {} runs",
-                measure.name,
-                front.len(),
-                self.runs.len()
-            )?;
-            let lines: Vec<String> = front
-                .into_iter()
-                .map(|row| {
-                    let judged = &row.results[at];
-                    let faster = judged.times_as_fast.map_or(String::new(), |times| {
-                        format!(", {} times as fast as the finest", significant(times, 3))
-                    });
-                    format!(
-                        "  {:>9} s  error {:<9} {}{faster}",
-                        significant(row.time_s.unwrap_or(f64::NAN), 3),
-                        significant(judged.sure_error().unwrap_or(f64::NAN), 2),
-                        visible(&self.named(row))
-                    )
-                })
-                .collect();
-            cut(f, &lines)?;
+            if let Some(reference) = &measure.reference {
+                write_front(f, self, at, reference)?;
+            }
         }
-        let lines: Vec<String> = self
-            .orders
-            .iter()
-            .map(|order| {
-                let of = order.of.join(", ");
-                let of = if of.is_empty() {
-                    of
-                } else {
-                    format!(" ({})", visible(&of))
-                };
-                format!(
-                    "order        {} along {}{of}: {:.2} from {} runs",
-                    order.measure, order.along, order.order, order.runs
-                )
-            })
-            .collect();
-        cut(f, &lines)?;
-        let lines: Vec<String> = self
-            .failed()
-            .map(|row| {
-                let why = visible(row.failed.as_deref().unwrap_or_default());
-                format!(
-                    "failed       run {}, {}: {why}",
-                    row.number,
-                    visible(&self.named(row))
-                )
-            })
-            .collect();
-        cut(f, &lines)?;
-        let lines: Vec<String> = self
-            .notes
-            .iter()
-            .map(|note| format!("note         {}", visible(note)))
-            .collect();
-        cut(f, &lines)
+        cut(f, self.orders.iter().map(order_text))?;
+        cut(f, self.failed().map(|row| failed_text(self, row)))?;
+        let notes = self.notes.iter();
+        cut(
+            f,
+            notes.map(|note| format!("note         {}", visible(note))),
+        )
     }
 }

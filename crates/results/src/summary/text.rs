@@ -16,50 +16,13 @@ impl fmt::Display for Summary {
         if let Some(equilibrium) = &self.equilibrium {
             return self.write_equilibrium(equilibrium, f);
         }
-        let results = self
-            .results
-            .as_ref()
-            .map_or(String::new(), |r| format!(" -> {}", visible(r)));
-        writeln!(
-            f,
-            "{}: {} s simulated{} in {} s on {} thread{}{results}",
-            visible(&self.scene),
-            significant(self.simulated_s, 6),
-            self.resumed_at_s.map_or(String::new(), |at_s| {
-                let last = significant(self.simulated_s - at_s, 3);
-                format!(", the last {last} s of it")
-            }),
-            significant(self.wall_s, 3),
-            self.threads,
-            if self.threads == 1 { "" } else { "s" },
-        )?;
+        self.write_head(f)?;
         measure_lines(&self.measures, f)?;
         if let Some(test) = &self.test {
             write!(f, "{test}")?;
         }
         self.write_steps(f)?;
-        let causes = match self.broken_bonds {
-            0 => String::new(),
-            _ => format!(": {}", self.broken_by_cause),
-        };
-        let counted = |count: Option<usize>, how: &str| {
-            count.map_or(String::new(), |count| format!("; {count} {how}"))
-        };
-        let damaged = counted(self.damaged_bonds, "damaged");
-        let yielded = counted(self.yielded_bonds, "yielded");
-        if self.population.is_some() {
-            writeln!(
-                f,
-                "broken       {} bonds{causes}{damaged}{yielded}",
-                self.broken_bonds
-            )?;
-        } else if self.bonds > 0 {
-            writeln!(
-                f,
-                "broken       {} of {} bonds{causes}{damaged}{yielded}",
-                self.broken_bonds, self.bonds
-            )?;
-        }
+        self.write_broken(f)?;
         self.write_population(f)?;
         for (name, taken) in &self.taken_in {
             writeln!(
@@ -77,6 +40,62 @@ impl fmt::Display for Summary {
                 100.0 * sleep.particle_updates_skipped,
             )?;
         }
+        self.write_strained(f)?;
+        self.write_fragments(f)?;
+        self.write_sizes(f)?;
+        self.write_masses(f)?;
+        writeln!(f, "inactive     {}", self.inactive_stages.join(", "))?;
+        self.write_verdict(f)
+    }
+}
+
+impl Summary {
+    /// Scene, simulated and wall time.
+    fn write_head(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let results = self
+            .results
+            .as_ref()
+            .map_or(String::new(), |r| format!(" -> {}", visible(r)));
+        writeln!(
+            f,
+            "{}: {} s simulated{} in {} s on {} thread{}{results}",
+            visible(&self.scene),
+            significant(self.simulated_s, 6),
+            self.resumed_at_s.map_or(String::new(), |at_s| {
+                let last = significant(self.simulated_s - at_s, 3);
+                format!(", the last {last} s of it")
+            }),
+            significant(self.wall_s, 3),
+            self.threads,
+            if self.threads == 1 { "" } else { "s" },
+        )
+    }
+
+    /// Broken, damaged and yielded bonds.
+    fn write_broken(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of_all = match self.population {
+            Some(_) => String::new(),
+            None if self.bonds > 0 => format!(" of {}", self.bonds),
+            None => return Ok(()),
+        };
+        let causes = match self.broken_bonds {
+            0 => String::new(),
+            _ => format!(": {}", self.broken_by_cause),
+        };
+        let counted = |count: Option<usize>, how: &str| {
+            count.map_or(String::new(), |count| format!("; {count} {how}"))
+        };
+        let damaged = counted(self.damaged_bonds, "damaged");
+        let yielded = counted(self.yielded_bonds, "yielded");
+        writeln!(
+            f,
+            "broken       {}{of_all} bonds{causes}{damaged}{yielded}",
+            self.broken_bonds
+        )
+    }
+
+    /// Largest deformations.
+    fn write_strained(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let strained = [
             ("bonds", self.largest_bond_strain, "edge strain"),
             ("contacts", self.largest_overlap, "of the smaller radius"),
@@ -87,27 +106,27 @@ impl fmt::Display for Summary {
         if !strained.is_empty() {
             writeln!(f, "deformed     {} at most", strained.join("   "))?;
         }
-        if let Some(fragments) = &self.fragments {
-            let discharged = self.population.as_ref().map_or(0, |p| p.discharged);
-            let inside = match discharged {
-                0 => String::new(),
-                _ => format!(", {} of them inside", fragments.inside),
-            };
-            writeln!(
-                f,
-                "fragments    {}{inside}, the largest {} of the mass",
-                fragments.count,
-                significant(fragments.mass_fraction_of_largest, 3)
-            )?;
-        }
-        self.write_sizes(f)?;
-        self.write_masses(f)?;
-        writeln!(f, "inactive     {}", self.inactive_stages.join(", "))?;
-        self.write_verdict(f)
+        Ok(())
     }
-}
 
-impl Summary {
+    /// Fragments and the largest of them.
+    fn write_fragments(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(fragments) = &self.fragments else {
+            return Ok(());
+        };
+        let discharged = self.population.as_ref().map_or(0, |p| p.discharged);
+        let inside = match discharged {
+            0 => String::new(),
+            _ => format!(", {} of them inside", fragments.inside),
+        };
+        writeln!(
+            f,
+            "fragments    {}{inside}, the largest {} of the mass",
+            fragments.count,
+            significant(fragments.mass_fraction_of_largest, 3)
+        )
+    }
+
     /// Errors, steps and speed.
     fn write_steps(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::contents::{Axis, Combine, STUDY_VERSION, Study};
+use super::contents::{Axis, Combine, Find, STUDY_VERSION, Setting, Study, StudyMeasure};
 use super::find;
 use super::keys::{FIND, MOST_REPEATS, PAGE, STUDY};
 use super::measures::{axis_named, measure};
@@ -35,74 +35,15 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
     }
     root.refuse_unknown()?;
     let folder = Path::new(source).parent().unwrap_or(Path::new(""));
-    let mut axes = Vec::new();
     let find = root.read_by("find", |field| Table::of(&field, &FIND))?;
-    if let Some(find) = &find {
-        axes.push(find::axis(find, folder)?);
-    }
-    if let Some(vary) = root.get("vary") {
-        let table = Table::any(&vary)?;
-        for (path, node) in table.entries {
-            let mut field = table.field(path, node);
-            field.path = format!("vary.\"{path}\"");
-            axes.push(values::axis(path, &field, folder)?);
-            refuse_many_values(&axes)?;
-        }
-    }
-    for (name, field) in root.named("together")? {
-        axes.push(values::together(&name, &field, folder)?);
-        refuse_many_values(&axes)?;
-    }
-    if axes.is_empty() {
-        let remedy = "add [vary] with \"run.safety_factor\" = [0.9, 0.5], say";
-        return Err(root.refuse("nothing varies", remedy));
-    }
-    for (at, axis) in axes.iter().enumerate() {
-        if let Some(other) = axes[..at].iter().find(|other| sets_same(axis, other)) {
-            return Err(Diagnostic::input(
-                &axis.place,
-                format!("{} is set by {} already", axis.name, other.name),
-                "let each path vary once",
-            ));
-        }
-    }
-    let fixed = match root.get("set") {
-        Some(field) => values::settings(&field, folder)?,
-        None => Vec::new(),
-    };
-    let varies = |path: &str| {
-        let values = axes.iter().flat_map(|axis| &axis.values);
-        values
-            .flat_map(|value| &value.settings)
-            .any(|setting| setting.path == path)
-    };
-    if let (Some(both), Some(field)) = (fixed.iter().find(|one| varies(&one.path)), root.get("set"))
-    {
-        let problem = format!("[set] gives {}, which varies", both.path);
-        return Err(field.refuse(problem, "remove it from [set]: it would have no effect"));
-    }
-    let mut measures = Vec::new();
-    for (name, field) in root.named("measures")? {
-        measures.push(measure(&name, &field, &axes)?);
-    }
-    if measures.is_empty() {
-        let remedy = "add [measures.NAME] with the name of a measure of the scene";
-        return Err(root.refuse("nothing is measured", remedy));
-    }
+    let axes = axes(&root, find.as_ref(), folder)?;
+    refuse_set_twice(&axes)?;
+    let fixed = fixed(&root, &axes, folder)?;
+    let measures = measures(&root, &axes)?;
     let combine = root.read("combine")?;
     let average_over = average_over(&root, combine, &axes)?;
     let find = match find {
-        Some(table) => {
-            find::refuse_pairs_and_means(&table, combine, average_over)?;
-            let others = (1..axes.len()).filter(|at| Some(*at) != average_over);
-            let lengths = others.map(|at| axes[at].values.len() as u64);
-            let cases = lengths.fold(1, u64::saturating_mul);
-            if cases > MOST_CASES {
-                let problem = format!("{cases} cases are more than {MOST_CASES}");
-                return Err(table.refuse(problem, "vary less, or in several studies"));
-            }
-            Some(find::search(&table, &measures, cases as usize)?)
-        }
+        Some(find) => Some(search(&find, &measures, combine, average_over, &axes)?),
         None => None,
     };
     let page = root.table("page", &PAGE)?;
@@ -124,6 +65,81 @@ pub fn study_from_text(text: &str, source: &str) -> Result<Study> {
         axes,
         measures,
     })
+}
+
+/// The axes of `[find]`, `[vary]` and `[together]`, at least one.
+fn axes(root: &Table<'_>, find: Option<&Table<'_>>, folder: &Path) -> Result<Vec<Axis>> {
+    let mut axes = Vec::new();
+    if let Some(find) = find {
+        axes.push(find::axis(find, folder)?);
+    }
+    if let Some(vary) = root.get("vary") {
+        let table = Table::any(&vary)?;
+        for (path, node) in table.entries {
+            let mut field = table.field(path, node);
+            field.path = format!("vary.\"{path}\"");
+            axes.push(values::axis(path, &field, folder)?);
+            refuse_many_values(&axes)?;
+        }
+    }
+    for (name, field) in root.named("together")? {
+        axes.push(values::together(&name, &field, folder)?);
+        refuse_many_values(&axes)?;
+    }
+    if axes.is_empty() {
+        let remedy = "add [vary] with \"run.safety_factor\" = [0.9, 0.5], say";
+        return Err(root.refuse("nothing varies", remedy));
+    }
+    Ok(axes)
+}
+
+/// The settings of `[set]`, none of which varies.
+fn fixed(root: &Table<'_>, axes: &[Axis], folder: &Path) -> Result<Vec<Setting>> {
+    let Some(field) = root.get("set") else {
+        return Ok(Vec::new());
+    };
+    let fixed = values::settings(&field, folder)?;
+    let varies = |one: &&Setting| {
+        let values = axes.iter().flat_map(|axis| &axis.values);
+        let mut varied = values.flat_map(|value| &value.settings);
+        varied.any(|setting| setting.path == one.path)
+    };
+    if let Some(both) = fixed.iter().find(varies) {
+        let problem = format!("[set] gives {}, which varies", both.path);
+        return Err(field.refuse(problem, "remove it from [set]: it would have no effect"));
+    }
+    Ok(fixed)
+}
+
+/// The measures, at least one.
+fn measures(root: &Table<'_>, axes: &[Axis]) -> Result<Vec<StudyMeasure>> {
+    let named = root.named("measures")?.into_iter();
+    let measures = named.map(|(name, field)| measure(&name, &field, axes));
+    let measures: Vec<StudyMeasure> = measures.collect::<Result<_>>()?;
+    if measures.is_empty() {
+        let remedy = "add [measures.NAME] with the name of a measure of the scene";
+        return Err(root.refuse("nothing is measured", remedy));
+    }
+    Ok(measures)
+}
+
+/// The search of `[find]`, for each combination of the values of the other axes.
+fn search(
+    table: &Table<'_>,
+    measures: &[StudyMeasure],
+    combine: Combine,
+    average_over: Option<usize>,
+    axes: &[Axis],
+) -> Result<Find> {
+    find::refuse_pairs_and_means(table, combine, average_over)?;
+    let others = (1..axes.len()).filter(|at| Some(*at) != average_over);
+    let lengths = others.map(|at| axes[at].values.len() as u64);
+    let cases = lengths.fold(1, u64::saturating_mul);
+    if cases > MOST_CASES {
+        let problem = format!("{cases} cases are more than {MOST_CASES}");
+        return Err(table.refuse(problem, "vary less, or in several studies"));
+    }
+    find::search(table, measures, cases as usize)
 }
 
 fn repeats(field: Field<'_>) -> Result<u32> {
@@ -164,6 +180,20 @@ fn refuse_many_values(axes: &[Axis]) -> Result<()> {
         )),
         _ => Ok(()),
     }
+}
+
+/// Refuses an axis that sets a path of another one before it.
+fn refuse_set_twice(axes: &[Axis]) -> Result<()> {
+    for (at, axis) in axes.iter().enumerate() {
+        if let Some(other) = axes[..at].iter().find(|other| sets_same(axis, other)) {
+            return Err(Diagnostic::input(
+                &axis.place,
+                format!("{} is set by {} already", axis.name, other.name),
+                "let each path vary once",
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// True if two axes set the same path.

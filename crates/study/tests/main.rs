@@ -1,0 +1,14 @@
+//! Studies with made outcomes: what the tables say is known beforehand.
+#![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod errors;
+mod expansion;
+mod failure_line;
+mod fastest;
+mod front;
+mod made;
+mod orders;
+mod repeats;
+mod responses;
+mod search;
+mod text;
