@@ -6,11 +6,11 @@ use dem_laboratory::Specimen;
 use dem_laboratory::TestType;
 use dem_laboratory::test_result::TestResult;
 use dem_laboratory::theory::{Beam, KAPPA};
-use dem_run::laboratory::dynamic::evaluate_dynamic;
-use dem_run::laboratory::evaluate::{TestInput, evaluate};
-use dem_run::laboratory::record::{BrokenBond, Record, Row};
-use dem_run::laboratory::setup::Setup;
-use dem_run::physics::bond::failure::Cause;
+use dem_physics::bond::failure::Cause;
+use dem_rig::dynamic::evaluate_dynamic;
+use dem_rig::evaluate::{TestInput, evaluate};
+use dem_rig::record::{BrokenBond, Record, Row};
+use dem_rig::setup::Setup;
 use dem_scene::{Bars, BondKind, Test};
 
 const BEAM: Beam = Beam {

@@ -3,9 +3,9 @@
 use dem_laboratory::Specimen;
 use dem_laboratory::TestType;
 use dem_laboratory::theory::Beam;
-use dem_run::laboratory::crack::{CrackPicture, crack_map};
-use dem_run::laboratory::curve::rows_of;
-use dem_run::laboratory::files::curve;
+use dem_rig::crack::{CrackPicture, crack_map};
+use dem_rig::curve::rows_of;
+use dem_rig::files::curve;
 
 use super::evaluation::{PLACES, evaluated, record, setup, test};
 

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use dem_run::laboratory::plan_with_test;
-use dem_scene::read_bodies;
+fn scene(text: &str) -> Scene {
+    scene_from_text(text, "test.toml", &[]).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
 
-use crate::helpers::scene;
+use dem_rig::plan_with_test;
+use dem_scene::{Scene, read_bodies, scene_from_text};
 
 /// Half the distance of neighbours in the block, m.
 const R: f64 = 3e-3;

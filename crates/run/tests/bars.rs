@@ -1,15 +1,15 @@
 //! Bodies for the tests, and operations on them.
 
-use dem_run::Balance;
-use dem_run::physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia, reduced};
-use dem_run::physics::bond::damping_models::{Chen, ChenByMode, Platzer};
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
-use dem_run::physics::bond::total::direction;
-use dem_run::stages::ledger::{balance, opened};
-use dem_run::state::State;
-use dem_run::state::bonds::{BondLaw, BondRule, Bonds};
-use dem_run::state::particles::{Particles, Wrench};
-use dem_run::step::{advance, interact, step};
+use dem_engine::Balance;
+use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::state::State;
+use dem_engine::state::bonds::{BondLaw, BondRule, Bonds};
+use dem_engine::state::particles::{Particles, Wrench};
+use dem_engine::step::{advance, interact, step};
+use dem_physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia, reduced};
+use dem_physics::bond::damping_models::{Chen, ChenByMode, Platzer};
+use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
+use dem_physics::bond::total::direction;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// A rule without damping and failure.

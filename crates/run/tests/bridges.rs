@@ -7,13 +7,13 @@ mod pairs;
 mod swapped;
 mod walls;
 
-use dem_run::Balance;
-use dem_run::physics::contact::liquid_bridge::LiquidBridge;
-use dem_run::plan::plan;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::state::bridges::Bridges;
-use dem_run::step::{advance, interact};
+use dem_engine::Balance;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::state::bridges::Bridges;
+use dem_engine::step::{advance, interact};
+use dem_physics::contact::liquid_bridge::LiquidBridge;
+use dem_plan::plan;
 use dem_scene::read_bodies;
 
 use crate::helpers::scene;

@@ -24,15 +24,15 @@ mod triggers;
 
 use std::fmt::Write;
 
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bodies::renumber;
+use dem_engine::state::events::Events;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::state::particles::Particles;
+use dem_engine::step::step;
 use dem_io::Result;
-use dem_run::plan::{Plan, plan};
-use dem_run::state::State;
-use dem_run::state::bodies::PlacedBody;
-use dem_run::state::bodies::renumber;
-use dem_run::state::events::Events;
-use dem_run::state::events::PopulationEvent;
-use dem_run::state::particles::Particles;
-use dem_run::step::step;
+use dem_plan::{Plan, plan};
 use nalgebra::Vector3;
 
 use crate::helpers::scene;

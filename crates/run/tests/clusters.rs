@@ -5,8 +5,8 @@ mod fragments;
 
 use std::sync::Arc;
 
-use dem_run::physics::bond::stiffness::Stiffness;
-use dem_run::state::bonds::{BondLaw, BondRule, Bonds};
+use dem_engine::state::bonds::{BondLaw, BondRule, Bonds};
+use dem_physics::bond::stiffness::Stiffness;
 
 /// Bonds between these particles.
 pub(crate) fn bonds(pairs: impl IntoIterator<Item = [u32; 2]>) -> Bonds {

@@ -5,10 +5,10 @@ mod scenes;
 
 use std::collections::BTreeMap;
 
+use dem_engine::state::State;
+use dem_engine::step::{number_of, stages, step};
 use dem_io::{Body, Result};
-use dem_run::plan::{Plan, plan};
-use dem_run::state::State;
-use dem_run::step::{number_of, stages, step};
+use dem_plan::{Plan, plan};
 use dem_scene::scene_from_text;
 use dem_scene::{BodySource, Scene};
 

@@ -9,15 +9,15 @@ mod whole;
 
 use std::collections::BTreeMap;
 
+use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::bodies::renumber;
+use dem_engine::step::{drift, exchange, interact};
 use dem_io::Result;
-use dem_run::measure::{Probe, place_watches, probes, read_probes, renumber as renumber_probes};
-use dem_run::plan::{Plan, plan};
-use dem_run::stages::clumps::place_all;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::state::bodies::PlacedBody;
-use dem_run::state::bodies::renumber;
-use dem_run::step::{drift, exchange, interact};
+use dem_plan::measure::{Probe, place_watches, probes, read_probes, renumber as renumber_probes};
+use dem_plan::{Plan, plan};
 use dem_scene::Scene;
 
 use crate::helpers::scene;

@@ -1,11 +1,11 @@
 //! The visible parts of a state, and the view.
 
-use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
-use dem_run::output::pictures::View;
-use dem_run::state::State;
-use dem_run::state::bonds::Bonds;
-use dem_run::state::particles::Particles;
-use dem_run::state::walls::Wall;
+use dem_engine::state::State;
+use dem_engine::state::bonds::Bonds;
+use dem_engine::state::particles::Particles;
+use dem_engine::state::walls::Wall;
+use dem_physics::geometry::{Frame, Plane, Shape, SolidBox};
+use dem_runner::output::pictures::View;
 
 /// Balls of 10 mm at these positions, m, without contacts and clusters.
 fn state(places: &[[f64; 3]]) -> State {

@@ -1,9 +1,9 @@
 //! Colours of fragments and bodies in pictures.
 
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clusters::Cluster;
 use dem_pictures::colours::{SINGLE, of_fragment};
-use dem_run::output::pictures::subject::{by_body, of_clusters};
-use dem_run::state::bodies::PlacedBody;
-use dem_run::state::clusters::Cluster;
+use dem_runner::output::pictures::subject::{by_body, of_clusters};
 
 fn cluster(parent: Option<u32>, particles: u32) -> Cluster {
     Cluster {

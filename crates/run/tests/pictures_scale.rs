@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::clusters::Clusters;
+use dem_physics::bond::stiffness::BondModel;
 use dem_pictures::colours::SINGLE;
 use dem_plots::viridis;
-use dem_run::output::pictures::View;
-use dem_run::output::pictures::scale::Scale;
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::state::bodies::PlacedBody;
-use dem_run::state::clusters::Clusters;
+use dem_runner::output::pictures::View;
+use dem_runner::output::pictures::scale::Scale;
 use dem_scene::ColourBy;
 
 use crate::bars::{ELASTIC, body, spheres, steel};

@@ -9,10 +9,10 @@ mod wake;
 
 use std::fmt::Write;
 
-use dem_run::plan::{Plan, plan};
-use dem_run::state::State;
-use dem_run::state::sleep::Sleep;
-use dem_run::step::step;
+use dem_engine::state::State;
+use dem_engine::state::sleep::Sleep;
+use dem_engine::step::step;
+use dem_plan::{Plan, plan};
 use nalgebra::Vector3;
 
 use crate::helpers::scene;

@@ -10,13 +10,13 @@ mod rigid;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use dem_engine::state::State;
 use dem_io::Result;
+use dem_plan::{Plan, plan};
 use dem_results::ResultsFolder;
 use dem_results::Summary;
-use dem_run::plan::{Plan, plan};
-use dem_run::run::snapshot::Snapshot;
-use dem_run::run::{RunSettings, run};
-use dem_run::state::State;
+use dem_runner::snapshot::Snapshot;
+use dem_runner::{RunSettings, run};
 use nalgebra::Vector3;
 
 use crate::helpers::scene;

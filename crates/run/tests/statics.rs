@@ -11,12 +11,12 @@ mod small_loads;
 mod stability;
 mod supports;
 
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::run::statics::{Equilibrium, equilibrium, set_at_rest};
-use dem_run::state::State;
-use dem_run::state::loads::GroupLoad;
-use dem_run::state::supports::GroupSupport;
-use dem_run::state::supports::HeldParticle;
+use dem_engine::state::State;
+use dem_engine::state::loads::GroupLoad;
+use dem_engine::state::supports::GroupSupport;
+use dem_engine::state::supports::HeldParticle;
+use dem_physics::bond::stiffness::BondModel;
+use dem_runner::statics::{Equilibrium, equilibrium, set_at_rest};
 use dem_scene::{Factor, Hold};
 use nalgebra::Vector3;
 

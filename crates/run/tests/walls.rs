@@ -8,7 +8,7 @@ mod inside;
 mod meshes;
 mod solids;
 
-use dem_run::geometry::{Mesh, Shape, Touch};
+use dem_physics::geometry::{Mesh, Shape, Touch};
 use nalgebra::Vector3;
 
 /// Vertices and triangles.

@@ -5,9 +5,9 @@ mod books;
 mod closed_forms;
 mod same_bits;
 
-use dem_run::plan::Plan;
-use dem_run::state::State;
-use dem_run::state::rigid_parts::RigidPart;
+use dem_engine::state::State;
+use dem_engine::state::rigid_parts::RigidPart;
+use dem_plan::Plan;
 
 use crate::clumps::{HEAD, MEETS, block, planned};
 

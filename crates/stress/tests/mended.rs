@@ -3,8 +3,8 @@
 use std::sync::atomic::AtomicBool;
 
 use dem_results::Summary;
-use dem_run::stress::impact::{Impact, Target};
-use dem_run::stress::trial::{Outcome, Trial};
+use dem_stress::impact::{Impact, Target};
+use dem_stress::trial::{Outcome, Trial};
 
 fn outcome(trial: &Trial) -> Outcome {
     trial.run(&AtomicBool::new(false)).unwrap()

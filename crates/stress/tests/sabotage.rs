@@ -2,9 +2,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use dem_run::stress::prediction::{Member, Prediction, Quantity, Shown};
-use dem_run::stress::trial::Trial;
-use dem_run::stress::verdict::{CaseResult, Judged, judge};
+use dem_stress::prediction::{Member, Prediction, Quantity, Shown};
+use dem_stress::trial::Trial;
+use dem_stress::verdict::{CaseResult, Judged, judge};
 
 use super::member;
 
@@ -25,7 +25,7 @@ fn wrong(good: &Member, spoil: impl FnOnce(&mut Member)) -> String {
         wall_s: 0.0,
     };
     assert_eq!(result.wrong().count(), 1);
-    let row = dem_run::stress::text::row(&result);
+    let row = dem_stress::text::row(&result);
     assert!(row.contains("| WRONG: "), "{row}");
     judged.wrong.unwrap()
 }

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
 
-use dem_run::stress::cases::{CASES, Case, chosen};
-use dem_run::stress::limit_map::{largest_step_s, program_limit};
-use dem_run::stress::prediction::{ObservationMethod, Prediction};
-use dem_run::stress::text::row;
-use dem_run::stress::verdict::run_case;
+use dem_stress::cases::{CASES, Case, chosen};
+use dem_stress::limit_map::{largest_step_s, program_limit};
+use dem_stress::prediction::{ObservationMethod, Prediction};
+use dem_stress::text::row;
+use dem_stress::verdict::run_case;
 use rayon::prelude::*;
 
 use super::{member, members};

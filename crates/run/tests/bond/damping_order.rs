@@ -4,14 +4,14 @@ use crate::bars::{
     BondDamping, ELASTIC, bar, body, damp, law, random_spheres, shake, soft, spheres, steel, tumble,
 };
 use crate::clumps::{HEAD, block, planned};
-use dem_run::check::limit::limit as step_limit;
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::physics::chebyshev::{Chebyshev, limit};
-use dem_run::stages::damping::{ONE_STAGE, WEAK};
-use dem_run::stages::totals::kinetic_energy;
-use dem_run::state::State;
-use dem_run::state::bonds::BondRule;
-use dem_run::step::step;
+use dem_engine::check::limit::limit as step_limit;
+use dem_engine::stages::damping::{ONE_STAGE, WEAK};
+use dem_engine::stages::totals::kinetic_energy;
+use dem_engine::state::State;
+use dem_engine::state::bonds::BondRule;
+use dem_engine::step::step;
+use dem_physics::bond::stiffness::BondModel;
+use dem_physics::chebyshev::{Chebyshev, limit};
 
 /// Positions of all particles after `end_s`, in `steps` steps. Each has the stages for eigenvalues
 /// up to `most`: the bound of damping that asks for them is higher than that of the bonds.

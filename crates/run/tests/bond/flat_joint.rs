@@ -6,16 +6,16 @@ use std::f64::consts::PI;
 use super::vector;
 use crate::bars::reopen;
 use crate::leave_out::planned;
-use dem_run::physics::bond::failure::Cause;
-use dem_run::physics::bond::flat_joint::{
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact};
+use dem_physics::bond::failure::Cause;
+use dem_physics::bond::flat_joint::{
     Element, ElementStrengths, FlatJoint, FlatJointLaw, JointStiffness, change, elements, forces,
     moment_ratio,
 };
-use dem_run::physics::bond::rod::Stiffness;
-use dem_run::physics::bond::total::{self, End};
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{advance, interact};
+use dem_physics::bond::rod::Stiffness;
+use dem_physics::bond::total::{self, End};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use dem_run::physics::bond::failure::{Criteria, EquivalentStress, Factors, stresses, utilisation};
-use dem_run::physics::bond::stiffness::Stiffness;
-use dem_run::stages::bonds::bond_wrenches;
-use dem_run::stages::bonds::bond_wrenches_one_by_one;
-use dem_run::state::bonds::Bonds;
-use dem_run::state::bonds::{BondLaw, BondRule};
-use dem_run::state::particles::Particles;
-use dem_run::state::partitions::divide;
+use dem_engine::stages::bonds::bond_wrenches;
+use dem_engine::stages::bonds::bond_wrenches_one_by_one;
+use dem_engine::state::bonds::Bonds;
+use dem_engine::state::bonds::{BondLaw, BondRule};
+use dem_engine::state::particles::Particles;
+use dem_engine::state::partitions::divide;
+use dem_physics::bond::failure::{Criteria, EquivalentStress, Factors, stresses, utilisation};
+use dem_physics::bond::stiffness::Stiffness;
 
 /// Pseudo-random numbers between -1 and 1.
 fn scattered(seed: u64) -> impl FnMut() -> f64 {

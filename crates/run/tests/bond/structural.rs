@@ -2,18 +2,14 @@
 
 use super::vector;
 use crate::leave_out::planned;
-use dem_run::check::limit::limit;
-use dem_run::physics::bond::BondLoad;
-use dem_run::physics::bond::damping::{
-    DampingCoefficients, DampingModel, EndMotion, ReducedInertia,
-};
-use dem_run::physics::bond::damping_models::{
-    ChenByMode, ModeRatios, SMOOTHING, StructuralDamping,
-};
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{advance, interact, step};
+use dem_engine::check::limit::limit;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact, step};
+use dem_physics::bond::BondLoad;
+use dem_physics::bond::damping::{DampingCoefficients, DampingModel, EndMotion, ReducedInertia};
+use dem_physics::bond::damping_models::{ChenByMode, ModeRatios, SMOOTHING, StructuralDamping};
+use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

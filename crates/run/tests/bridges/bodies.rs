@@ -1,6 +1,6 @@
 //! What else must know of bridges: clumps, sleep, outlets, and scenes that are dry.
 
-use dem_run::state::State;
+use dem_engine::state::State;
 
 use super::{
     RADIUS_M, WATER, assert_near, ball, bridges, head, mass_kg, planned, step_and_balance,
@@ -48,7 +48,7 @@ fn a_bridge_pulls_at_a_clump_beyond_the_skin() {
         )),
         ball("a", [0.0; 3], [0.0, 0.0, -0.2])
     ));
-    let volume = dem_run::physics::contact::liquid_bridge::LiquidBridge {
+    let volume = dem_physics::contact::liquid_bridge::LiquidBridge {
         volume_m3: 3e-10,
         ..WATER
     };

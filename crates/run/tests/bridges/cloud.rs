@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use dem_run::stages::totals::momenta;
-use dem_run::state::State;
-use dem_run::state::bridges::Bridges;
+use dem_engine::stages::totals::momenta;
+use dem_engine::state::State;
+use dem_engine::state::bridges::Bridges;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use dem_run::physics::contact::liquid_bridge::LiquidBridge;
+use dem_physics::contact::liquid_bridge::LiquidBridge;
 
 use super::{RADIUS_M, WATER, assert_near};
 

@@ -1,6 +1,6 @@
 //! Two spheres: pulled apart, and after an impact.
 
-use dem_run::state::State;
+use dem_engine::state::State;
 use nalgebra::Vector3;
 
 use super::{

@@ -1,8 +1,8 @@
 //! Bridges of clumps that become bonded clusters, and of clusters that become clumps again.
 
-use dem_run::physics::contact::liquid_bridge::LiquidBridge;
-use dem_run::state::State;
-use dem_run::step::{advance, interact};
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact};
+use dem_physics::contact::liquid_bridge::LiquidBridge;
 
 use super::{RADIUS_M, WATER, assert_near, bridges, head, planned, step_and_balance};
 

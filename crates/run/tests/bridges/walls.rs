@@ -1,6 +1,6 @@
 //! A sphere and a wall.
 
-use dem_run::state::State;
+use dem_engine::state::State;
 
 use super::{
     RADIUS_M, WATER, assert_near, ball, bridges, head, mass_kg, planned, step_and_balance,

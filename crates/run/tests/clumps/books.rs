@@ -1,11 +1,11 @@
 //! The balances of scenes in which bodies are fed, replaced and removed.
 
-use dem_run::Balance;
-use dem_run::plan::Plan;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::state::events::PopulationEvent;
-use dem_run::step::{advance, interact};
+use dem_engine::Balance;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::step::{advance, interact};
+use dem_plan::Plan;
 
 use super::{HEAD, lump, planned};
 

@@ -1,12 +1,12 @@
 //! Clumps bounce as their material says, on any number of contacts.
 
-use dem_run::plan::Plan;
-use dem_run::plan::bounces::bonded_restitution;
-use dem_run::shape::landing::RigidSpheres;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::state::clumps::Clump;
-use dem_run::step::{advance, interact};
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::state::clumps::Clump;
+use dem_engine::step::{advance, interact};
+use dem_physics::shape::landing::RigidSpheres;
+use dem_plan::Plan;
+use dem_plan::bounces::bonded_restitution;
 use nalgebra::Vector3;
 
 use super::planned;

@@ -1,7 +1,7 @@
 //! The contact history is carried over when a resting clump becomes a cluster.
 
-use dem_run::plan::Plan;
-use dem_run::state::State;
+use dem_engine::state::State;
+use dem_plan::Plan;
 use nalgebra::Vector3;
 
 use super::{HEAD, block, go, planned};
@@ -51,7 +51,7 @@ fn after_swap(top: &str, under: Option<&str>) {
         ..
     } = resting(top, under);
     let is_top =
-        |state: &State, c: &dem_run::state::clumps::Clump| state.clumps.template(c).body == top;
+        |state: &State, c: &dem_engine::state::clumps::Clump| state.clumps.template(c).body == top;
     let mut before = None;
     loop {
         let clumps = state.clumps.all.clone();
@@ -88,7 +88,7 @@ fn after_swap(top: &str, under: Option<&str>) {
         .map(|i| state.particles.poses[*i as usize].place())
         .collect();
     // The new bonds do not pull yet: the first forces are those of the contacts alone.
-    dem_run::step::interact(&mut state);
+    dem_engine::step::interact(&mut state);
     let first_n = force_on(&state, &body.particles);
     let first = (first_n - Vector3::from(clump.force_n)).norm() / weight_n;
     let sliding = (first_n - Vector3::from(clump.force_n)).x.abs() / (wanted_n.x.abs());
@@ -105,7 +105,7 @@ fn after_swap(top: &str, under: Option<&str>) {
     let springs: Vec<f64> = touching.iter().map(|[x, y, ..]| x.hypot(*y)).collect();
     let spring_m = springs.iter().copied().fold(f64::INFINITY, f64::min);
     assert_eq!(springs.len(), if under.is_some() { 8 } else { 4 });
-    dem_run::step::advance(&mut state);
+    dem_engine::step::advance(&mut state);
     // The new bonds carry nothing yet. The unequal part of the slope's effect on front and back, at
     // most its pull, acts on them suddenly. The cluster swings a little, by the compliance of the
     // bonds (softest in bending, at most four times the axial compliance), and the dashpots of the
@@ -116,11 +116,11 @@ fn after_swap(top: &str, under: Option<&str>) {
     let (mut moved_m, mut worst, mut sum_n) = (0.0_f64, 0.0_f64, Vector3::zeros());
     let steps = (0.02 / state.time_step_s) as u32;
     for _ in 0..steps {
-        dem_run::step::interact(&mut state);
+        dem_engine::step::interact(&mut state);
         let force_n = force_on(&state, &body.particles);
         sum_n += force_n;
         worst = worst.max((force_n - wanted_n).norm() / weight_n);
-        dem_run::step::advance(&mut state);
+        dem_engine::step::advance(&mut state);
         for (i, start) in body.particles.iter().zip(&start) {
             moved_m = moved_m.max((state.particles.poses[*i as usize].place() - start).norm());
         }

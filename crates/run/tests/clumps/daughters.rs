@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use dem_run::Balance;
-use dem_run::plan::Plan;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::state::clumps::Clump;
-use dem_run::state::events::PopulationEvent;
-use dem_run::step::{advance, exchange, interact};
+use dem_engine::Balance;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::state::clumps::Clump;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::step::{advance, exchange, interact};
+use dem_plan::Plan;
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 
@@ -99,7 +99,7 @@ fn kept(class: &str, seed: u64) {
     let template = state.clumps.template(&parent).clone();
     let clump = &mut state.clumps.all[0];
     clump.place_m = random.point(0.02);
-    clump.turned = dem_run::physics::rotation::numbers(&random.rotation());
+    clump.turned = dem_physics::rotation::numbers(&random.rotation());
     clump.velocity_m_s = random.point(10.0);
     clump.angular_momentum = random.point(100.0 * template.moments_kg_m2[0]);
     clump.intake.before_j = 100.0 * template.mass_kg;
@@ -460,7 +460,7 @@ fn thousands_of_replacements_create_no_energy_and_lose_no_mass() {
             let error = step_and_balance(&mut state).energy_error;
             (fallen, risen) = (fallen.max(-error), risen.max(error));
         } else {
-            dem_run::step::step(&mut state);
+            dem_engine::step::step(&mut state);
         }
         steps += 1;
     }

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use dem_run::stages::clumps::place_all;
-use dem_run::state::State;
+use dem_engine::stages::clumps::place_all;
+use dem_engine::state::State;
 
 use super::again::busy;
 use super::go;

@@ -1,12 +1,12 @@
 //! Bodies are fed at the rates, in the proportions and with the orientations of the scene, and
 //! where there is space.
 
-use dem_run::physics::rotation::rotation;
-use dem_run::stages::population::apply_topology_change;
-use dem_run::state::State;
-use dem_run::state::clumps::Clump;
-use dem_run::state::events::{PopulationEvent, TopologyChange};
-use dem_run::step::{drift, exchange, interact, step};
+use dem_engine::stages::population::apply_topology_change;
+use dem_engine::state::State;
+use dem_engine::state::clumps::Clump;
+use dem_engine::state::events::{PopulationEvent, TopologyChange};
+use dem_engine::step::{drift, exchange, interact, step};
+use dem_physics::rotation::rotation;
 use nalgebra::Vector3;
 
 use super::again::same;
@@ -183,9 +183,9 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
     let mut axes: Vec<[Vector3<f64>; 3]> = Vec::new();
     let mut places: Vec<Vector3<f64>> = Vec::new();
     while axes.len() < 2000 {
-        dem_run::step::interact(&mut fresh);
+        dem_engine::step::interact(&mut fresh);
         let before = fresh.clumps.all.len();
-        dem_run::step::exchange(&mut fresh);
+        dem_engine::step::exchange(&mut fresh);
         for clump in &fresh.clumps.all[before..] {
             let as_file = rotation(clump.turned) * rotation(template.axes).inverse();
             axes.push([Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| as_file * axis));
@@ -194,7 +194,7 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
             let spin = clump.spin_rad_s(&template) - Vector3::new(4.0, 5.0, 6.0);
             assert!(spin.norm() < 1e-13);
         }
-        dem_run::step::drift(&mut fresh);
+        dem_engine::step::drift(&mut fresh);
     }
     let n = axes.len() as f64;
     for axis in 0..3 {
@@ -220,8 +220,8 @@ fn the_seed_says_what_is_random_and_orientations_are_uniform() {
         &format!("{}{WIDE}", lump("lump", turned)),
         "bodies = [\"lump\"]\nrate = 1000\n",
     );
-    dem_run::step::interact(&mut state);
-    dem_run::step::exchange(&mut state);
+    dem_engine::step::interact(&mut state);
+    dem_engine::step::exchange(&mut state);
     let found = rotation(state.clumps.all[0].turned) * rotation(template.axes).inverse();
     let wanted = Vector3::new(1.0, 2.0, 2.0) / 3.0 * 0.9;
     assert!((found.scaled_axis() - wanted).norm() < 1e-14);
@@ -234,7 +234,7 @@ fn none_overlap(state: &State) -> bool {
     (0..poses.len()).all(|i| {
         (0..i).all(|j| {
             clusters[i] == clusters[j]
-                || dem_run::stages::contacts::overlap_m(poses, [j as u32, i as u32]) <= 0.0
+                || dem_engine::stages::contacts::overlap_m(poses, [j as u32, i as u32]) <= 0.0
         })
     })
 }
@@ -264,8 +264,8 @@ fn bodies_with_larger_contact_spheres_do_not_come_into_each_other() {
         let inlet = "bodies = [\"body\"]\nrate = 1e9\ncount = 60\norientation = \"random\"\n";
         let mut state = fed(&format!("{MEETS}{body}{gate}"), inlet);
         for _ in 0..100 {
-            dem_run::step::interact(&mut state);
-            dem_run::step::exchange(&mut state);
+            dem_engine::step::interact(&mut state);
+            dem_engine::step::exchange(&mut state);
             assert!(none_overlap(&state));
             state.steps += 1;
             state.time_s += 1e-6;

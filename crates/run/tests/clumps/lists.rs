@@ -3,13 +3,13 @@
 
 use std::fmt::Write as _;
 
-use dem_run::geometry::Touch;
-use dem_run::plan::Plan;
-use dem_run::stages::clumps::place_all;
-use dem_run::state::State;
-use dem_run::state::events::PopulationEvent;
-use dem_run::state::particles::Pose;
-use dem_run::step::{advance, interact, stages, step};
+use dem_engine::stages::clumps::place_all;
+use dem_engine::state::State;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::state::particles::Pose;
+use dem_engine::step::{advance, interact, stages, step};
+use dem_physics::geometry::Touch;
+use dem_plan::Plan;
 
 use super::again::busy;
 use super::{HEAD, MEETS, block, lump, planned};

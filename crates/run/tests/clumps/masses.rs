@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use dem_engine::state::events::PopulationEvent;
 use dem_io::Body;
-use dem_run::plan::{Plan, plan};
-use dem_run::state::events::PopulationEvent;
+use dem_plan::{Plan, plan};
 
 use super::{HEAD, MEETS, Whole, happens};
 use crate::helpers::scene;

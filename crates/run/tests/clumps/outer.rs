@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use dem_run::stages::population::apply_topology_change;
-use dem_run::state::State;
-use dem_run::state::clumps::{Clump, Template};
-use dem_run::state::events::TopologyChange;
-use dem_run::step::{stages, step};
+use dem_engine::stages::population::apply_topology_change;
+use dem_engine::state::State;
+use dem_engine::state::clumps::{Clump, Template};
+use dem_engine::state::events::TopologyChange;
+use dem_engine::step::{stages, step};
 
 use super::{HEAD, MEETS, block, planned};
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use dem_run::state::events::PopulationEvent;
+use dem_engine::state::events::PopulationEvent;
 
 use super::{HEAD, MEETS, block, happens, lump, planned};
 

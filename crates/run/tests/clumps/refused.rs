@@ -4,7 +4,7 @@ use super::regions::box_stl;
 use super::{HEAD, MEETS, block, lump, try_plan};
 use crate::helpers::scene;
 use dem_io::{Body, Diagnostic};
-use dem_run::plan::plan;
+use dem_plan::plan;
 
 /// The message gives place, problem and remedy, and a program that prints it ends with exit code 2.
 fn refused(text: &str, place: &str, problem: &str, remedy: &str) {

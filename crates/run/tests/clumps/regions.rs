@@ -1,7 +1,7 @@
 //! Regions compared with their definitions.
 
-use dem_run::geometry::Bounds;
-use dem_run::state::regions::Region;
+use dem_engine::state::regions::Region;
+use dem_physics::geometry::Bounds;
 use nalgebra::Vector3;
 
 use super::{HEAD, planned};

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use dem_run::stages::ledger::balance;
-use dem_run::step::{advance, interact, step};
+use dem_engine::stages::ledger::balance;
+use dem_engine::step::{advance, interact, step};
 use nalgebra::Vector3;
 
 use super::{HEAD, planned};

@@ -1,14 +1,14 @@
 //! Clusters and fragments that become rigid clumps again: conserved quantities, recorded losses,
 //! and retained data.
 
-use dem_run::physics::rotation::{numbers, rotation};
-use dem_run::stages::elastic::elastic_energy;
-use dem_run::stages::population::apply_topology_change;
-use dem_run::stages::restoring::restore_clumps;
-use dem_run::state::State;
-use dem_run::state::events::PopulationEvent;
-use dem_run::state::events::TopologyChange;
-use dem_run::step::{exchange, interact, step};
+use dem_engine::stages::elastic::elastic_energy;
+use dem_engine::stages::population::apply_topology_change;
+use dem_engine::stages::restoring::restore_clumps;
+use dem_engine::state::State;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::state::events::TopologyChange;
+use dem_engine::step::{exchange, interact, step};
+use dem_physics::rotation::{numbers, rotation};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::books::{booked, feed};

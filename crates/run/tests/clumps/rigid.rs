@@ -1,12 +1,12 @@
 //! Clumps without forces move as rigid bodies.
 
-use dem_run::physics::rotation::rotation;
-use dem_run::physics::rotation::{drift, kinetic_j};
-use dem_run::stages::clumps::place_all;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::state::clumps::Template;
-use dem_run::step::{advance, interact, step};
+use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::state::clumps::Template;
+use dem_engine::step::{advance, interact, step};
+use dem_physics::rotation::rotation;
+use dem_physics::rotation::{drift, kinetic_j};
 use nalgebra::Vector3;
 use serde_json::Value;
 use std::sync::Arc;

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use dem_run::state::State;
-use dem_run::state::events::PopulationEvent;
+use dem_engine::state::State;
+use dem_engine::state::events::PopulationEvent;
 
 use super::{HEAD, block, happens, planned};
 

@@ -1,10 +1,10 @@
 //! The time step of scenes with clumps.
 
-use dem_run::check::limit::{limit, safe_step};
-use dem_run::check::linear::contact_rates;
-use dem_run::check::linear::impact::at_impact;
-use dem_run::plan::Plan;
-use dem_run::step::{interact, step};
+use dem_engine::check::limit::{limit, safe_step};
+use dem_engine::check::linear::contact_rates;
+use dem_engine::check::linear::impact::at_impact;
+use dem_engine::step::{interact, step};
+use dem_plan::Plan;
 
 use super::again::same;
 use super::books::{booked, feed};

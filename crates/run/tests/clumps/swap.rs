@@ -1,14 +1,14 @@
 //! Mass, momentum, angular momentum and energy are the same before and after a bonded cluster
 //! replaces a clump, and the path continues.
 
-use dem_run::physics::rotation::numbers;
-use dem_run::physics::rotation::rotation;
-use dem_run::plan::Plan;
-use dem_run::shape::fit::best_rotation;
-use dem_run::stages::clumps::place_all;
-use dem_run::state::State;
-use dem_run::state::events::PopulationEvent;
-use dem_run::step::{drift, exchange, interact};
+use dem_engine::stages::clumps::place_all;
+use dem_engine::state::State;
+use dem_engine::state::events::PopulationEvent;
+use dem_engine::step::{drift, exchange, interact};
+use dem_physics::rotation::numbers;
+use dem_physics::rotation::rotation;
+use dem_physics::shape::fit::best_rotation;
+use dem_plan::Plan;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
@@ -142,7 +142,7 @@ fn several_bodies_of_several_shapes_are_replaced_in_one_step_and_keep_their_numb
     state.time_step_s = 1e-6;
     let start = state.clone();
     let clump_of = |state: &State, name: &str| {
-        let is_it = |c: &&dem_run::state::clumps::Clump| state.clumps.template(c).body == name;
+        let is_it = |c: &&dem_engine::state::clumps::Clump| state.clumps.template(c).body == name;
         *state.clumps.all.iter().find(is_it).unwrap()
     };
     let happened = &go(&mut state, &mut bodies).population;

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use dem_run::state::State;
-use dem_run::state::clumps::Clump;
-use dem_run::state::events::PopulationEvent;
+use dem_engine::state::State;
+use dem_engine::state::clumps::Clump;
+use dem_engine::state::events::PopulationEvent;
 
 use super::{HEAD, block, happens, planned};
 
@@ -36,7 +36,7 @@ fn replaced(when: &str) -> Option<(f64, &'static str, [Clump; 2])> {
     while state.time_s < 3e-3 {
         let now_s = state.time_s;
         let mut acted = state.clone();
-        dem_run::step::interact(&mut acted);
+        dem_engine::step::interact(&mut acted);
         let now = acted.clumps.all[0];
         if let [PopulationEvent::Replaced { cause, .. }] = happens(&mut state)[..] {
             return Some((now_s, cause, [before, now]));

@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use dem_run::state::bonds::Bonds;
-use dem_run::state::clusters::{Clusters, Split};
+use dem_engine::state::bonds::Bonds;
+use dem_engine::state::clusters::{Clusters, Split};
 use proptest::prelude::*;
 
 use super::{between, bonds, chain};

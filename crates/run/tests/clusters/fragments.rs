@@ -1,10 +1,10 @@
 //! Masses and motion of fragments: sums over the total, and rigid bodies.
 
-use dem_run::state::clumps::Clumps;
-use dem_run::state::clusters::fragments::{Fragment, mass_fraction_of_largest};
-use dem_run::state::clusters::sizes::{FragmentSize, size_of};
-use dem_run::state::clusters::{Clusters, fragments};
-use dem_run::state::particles::{Particles, Wrench};
+use dem_engine::state::clumps::Clumps;
+use dem_engine::state::clusters::fragments::{Fragment, mass_fraction_of_largest};
+use dem_engine::state::clusters::sizes::{FragmentSize, size_of};
+use dem_engine::state::clusters::{Clusters, fragments};
+use dem_engine::state::particles::{Particles, Wrench};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

@@ -3,16 +3,16 @@
 
 use std::fs;
 
+use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact, step};
+use dem_plan::{Plan, plan};
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::{Existing, ResultsFolder};
-use dem_run::plan::{Plan, plan};
-use dem_run::run::snapshot::Snapshot;
-use dem_run::stages::ledger::{balance, opened};
-use dem_run::state::State;
-use dem_run::step::{advance, interact, step};
+use dem_runner::snapshot::Snapshot;
 use dem_scene::{Scene, read_bodies};
 
-use crate::fragments::run_into;
+use crate::fragments::burst::run_into;
 use crate::helpers::scene;
 
 const APART_M: f64 = 1.9e-3;

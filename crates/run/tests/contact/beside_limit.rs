@@ -1,10 +1,10 @@
 //! The largest stable step with contacts beside bonds.
 
-use dem_run::check::limit::limit;
-use dem_run::plan::{Plan, plan};
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{advance, interact};
+use dem_engine::check::limit::limit;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact};
+use dem_plan::{Plan, plan};
 use dem_scene::read_bodies;
 
 use crate::helpers::scene;

@@ -3,12 +3,12 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use dem_run::Balance;
-use dem_run::plan::plan;
-use dem_run::stages::clumps::place_all;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{advance, interact, step};
+use dem_engine::Balance;
+use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact, step};
+use dem_plan::plan;
 use dem_scene::read_bodies;
 
 use crate::helpers::scene;

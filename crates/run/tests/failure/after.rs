@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use dem_run::physics::bond::failure::Cause;
-use dem_run::stages::totals::synchronous_motions;
-use dem_run::state::State;
-use dem_run::state::particles::{Motion, Particles, Wrench};
-use dem_run::step::{advance, interact, step};
+use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::state::State;
+use dem_engine::state::particles::{Motion, Particles, Wrench};
+use dem_engine::step::{advance, interact, step};
+use dem_physics::bond::failure::Cause;
 
 use super::bodies::{
     ALL, LENGTH_M, NORMAL, RADIUS_M, STRENGTH_PA, YOUNG_PA, area_m2, bonded, on_one_thread, rod,

@@ -5,16 +5,16 @@ use std::sync::Arc;
 use std::f64::consts::PI;
 
 use crate::bars::law;
-use dem_run::check::limit::limit;
-use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
-use dem_run::physics::bond::stiffness::{BondModel, BondShape, stiffness};
-use dem_run::physics::bond::total::direction;
-use dem_run::state::State;
-use dem_run::state::bonds::{BondRule, Bonds};
-use dem_run::state::loads::GroupLoad;
-use dem_run::state::particles::{Particles, Wrench};
-use dem_run::state::supports::GroupSupport;
-use dem_run::state::supports::HeldParticle;
+use dem_engine::check::limit::limit;
+use dem_engine::state::State;
+use dem_engine::state::bonds::{BondRule, Bonds};
+use dem_engine::state::loads::GroupLoad;
+use dem_engine::state::particles::{Particles, Wrench};
+use dem_engine::state::supports::GroupSupport;
+use dem_engine::state::supports::HeldParticle;
+use dem_physics::bond::failure::{Criteria, EquivalentStress};
+use dem_physics::bond::stiffness::{BondModel, BondShape, stiffness};
+use dem_physics::bond::total::direction;
 use dem_scene::{Factor, Hold};
 
 /// Radius of spheres and bonds, m.

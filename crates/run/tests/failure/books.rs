@@ -3,13 +3,13 @@
 
 use std::f64::consts::PI;
 
+use dem_engine::Balance;
+use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::state::State;
+use dem_engine::state::loads::GroupLoad;
+use dem_engine::step::{advance, interact};
+use dem_physics::bond::failure::Criteria;
 use dem_results::summary::ENERGIES;
-use dem_run::Balance;
-use dem_run::physics::bond::failure::Criteria;
-use dem_run::stages::ledger::{balance, opened};
-use dem_run::state::State;
-use dem_run::state::loads::GroupLoad;
-use dem_run::step::{advance, interact};
 use dem_scene::Factor;
 
 use super::bodies::{

@@ -2,16 +2,16 @@
 
 use std::f64::consts::PI;
 
-use dem_run::Balance;
-use dem_run::check::limit::limit;
-use dem_run::physics::bond::damage::{Damage, damage_at};
-use dem_run::physics::bond::failure::Criteria;
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::stages::ledger::{balance, opened};
-use dem_run::state::State;
-use dem_run::state::bonds::{BondLaw, BondRule};
-use dem_run::state::particles::Particles;
-use dem_run::step::{advance, interact, step};
+use dem_engine::Balance;
+use dem_engine::check::limit::limit;
+use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::state::State;
+use dem_engine::state::bonds::{BondLaw, BondRule};
+use dem_engine::state::particles::Particles;
+use dem_engine::step::{advance, interact, step};
+use dem_physics::bond::damage::{Damage, damage_at};
+use dem_physics::bond::failure::Criteria;
+use dem_physics::bond::stiffness::BondModel;
 use dem_scene::{Factor, Hold};
 use proptest::prelude::*;
 

@@ -3,10 +3,10 @@
 
 use std::f64::consts::PI;
 
-use dem_run::physics::bond::failure::{Cause, Criteria, Factors, stresses, utilisation};
-use dem_run::state::State;
-use dem_run::state::loads::factor_at;
-use dem_run::step::{advance, interact};
+use dem_engine::state::State;
+use dem_engine::state::loads::factor_at;
+use dem_engine::step::{advance, interact};
+use dem_physics::bond::failure::{Cause, Criteria, Factors, stresses, utilisation};
 
 use super::bodies::{
     ALL, LENGTH_M, LOAD_STEP, MOHR_COULOMB, NONE, NORMAL, PRESSED, RADIUS_M, SHEAR, STRENGTH_PA,

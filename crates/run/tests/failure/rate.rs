@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use dem_run::physics::bond::failure::{Cause, Criteria};
-use dem_run::step::{advance, interact};
+use dem_engine::step::{advance, interact};
+use dem_physics::bond::failure::{Cause, Criteria};
 use dem_scene::StrainRateMeasure;
 
 use super::bodies::{

@@ -2,15 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use dem_engine::state::State;
+use dem_engine::state::bodies::PlacedBody;
+use dem_engine::state::loads::factor_at;
+use dem_engine::state::particles::Particles;
+use dem_engine::step::{advance, exchange, interact};
 use dem_io::Body;
 use dem_io::body::{read_body, write_body};
-use dem_run::physics::bond::scatter::strength_factor;
-use dem_run::plan::{Plan, plan};
-use dem_run::state::State;
-use dem_run::state::bodies::PlacedBody;
-use dem_run::state::loads::factor_at;
-use dem_run::state::particles::Particles;
-use dem_run::step::{advance, exchange, interact};
+use dem_physics::bond::scatter::strength_factor;
+use dem_plan::{Plan, plan};
 use dem_scene::scene_from_text;
 
 use super::bodies::{

@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 use std::fs;
 
+use dem_engine::state::clusters::{Cluster, Split};
 use dem_results::fragments::{COLUMNS, TREE_COLUMNS};
 use dem_results::read_series;
 use dem_results::{Existing, ResultsFolder};
-use dem_run::output::fragments::split_text;
-use dem_run::state::clusters::{Cluster, Split};
+use dem_runner::output::fragments::split_text;
 use nalgebra::Vector3;
 
-use super::{PARTICLES, burst, bursting, planned, run_into, table};
+use super::burst::{PARTICLES, burst, bursting, planned, run_into};
+use super::table;
 
 /// A row of fragments.csv.
 struct Row {

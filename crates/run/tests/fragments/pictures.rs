@@ -2,12 +2,12 @@
 
 use std::fs;
 
-use dem_run::measure::sizes::steps;
-use dem_run::output::fragments::counts_over_time;
-use dem_run::state::clusters::Cluster;
-use dem_run::state::clusters::sizes::FragmentSize;
+use dem_engine::state::clusters::Cluster;
+use dem_engine::state::clusters::sizes::FragmentSize;
+use dem_plan::measure::sizes::steps;
+use dem_runner::output::fragments::counts_over_time;
 
-use super::burst;
+use super::burst::burst;
 
 fn clusters(lives: &[(f64, Option<f64>)]) -> Vec<Cluster> {
     let cluster = |&(created_s, ended_s): &(f64, Option<f64>)| Cluster {

@@ -5,9 +5,9 @@ use std::io::Write;
 
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::{Existing, ResultsFolder};
-use dem_run::run::snapshot::Snapshot;
+use dem_runner::snapshot::Snapshot;
 
-use super::{burst, bursting, planned, run_into};
+use super::burst::{burst, bursting, planned, run_into};
 
 #[test]
 fn after_an_interruption_the_tables_are_the_same_bytes() {

@@ -1,8 +1,8 @@
 //! Sizes of fragments: boxes, sieves, distributions and their numbers.
 
-use dem_run::measure::sizes::{Fragments, sieves_m};
-use dem_run::state::clusters::sizes::{FragmentSize, Sphere, box_lengths_m, sieve_m};
-use dem_run::state::model::{Model, NamedBody};
+use dem_engine::state::clusters::sizes::{FragmentSize, Sphere, box_lengths_m, sieve_m};
+use dem_engine::state::model::{Model, NamedBody};
+use dem_plan::measure::sizes::{Fragments, sieves_m};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 

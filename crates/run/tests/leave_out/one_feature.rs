@@ -2,8 +2,8 @@
 //! requirements of every such scene.
 
 use super::{busy, go, planned, stored};
-use dem_run::state::State;
-use dem_run::step::{number_of, stages};
+use dem_engine::state::State;
+use dem_engine::step::{number_of, stages};
 
 /// Moving spheres in a row, bonded to their neighbours unless `apart`; with further lines for the
 /// body.

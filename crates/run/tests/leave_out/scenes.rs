@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use dem_run::clock::StageClock;
-use dem_run::state::State;
-use dem_run::step::{number_of, step};
+use dem_engine::clock::StageClock;
+use dem_engine::state::State;
+use dem_engine::step::{number_of, step};
 
 use super::{go, planned, planned_with};
 

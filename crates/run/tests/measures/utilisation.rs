@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use dem_run::measure::bond_utilisation;
+use dem_plan::measure::bond_utilisation;
 
 use super::Measured;
 

@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use std::fmt::Write;
 
-use dem_run::measure::bond_utilisation;
-use dem_run::physics::bond::failure::Criteria;
-use dem_run::plan::{Plan, plan};
-use dem_run::stages::ledger::{balance, opened};
-use dem_run::stages::pieces::find_pieces_of;
-use dem_run::state::State;
-use dem_run::step::{advance, interact, step};
+use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::stages::pieces::find_pieces_of;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact, step};
+use dem_physics::bond::failure::Criteria;
+use dem_plan::measure::bond_utilisation;
+use dem_plan::{Plan, plan};
 use nalgebra::Vector3;
 
 use super::clouds::scattered;

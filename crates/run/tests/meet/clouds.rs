@@ -3,23 +3,23 @@
 
 use std::sync::Arc;
 
-use dem_run::physics::contact::dmt::DerjaguinMullerToporov;
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::law::ContactKind;
-use dem_run::physics::contact::law::Law;
-use dem_run::physics::contact::law::Rolling;
-use dem_run::physics::contact::linear::Linear;
-use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
-use dem_run::physics::contact::rolling::{ConstantMoment, ElasticPlastic};
-use dem_run::run::Progress;
-use dem_run::run::snapshot::{Snapshot, fingerprint};
-use dem_run::stages::ledger::{balance, opened};
-use dem_run::state::State;
-use dem_run::state::bonds::Bonds;
-use dem_run::state::clusters::Clusters;
-use dem_run::state::contacts::{ContactModel, Contacts};
-use dem_run::state::particles::Particles;
-use dem_run::step::{advance, interact, step};
+use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::state::State;
+use dem_engine::state::bonds::Bonds;
+use dem_engine::state::clusters::Clusters;
+use dem_engine::state::contacts::{ContactModel, Contacts};
+use dem_engine::state::particles::Particles;
+use dem_engine::step::{advance, interact, step};
+use dem_physics::contact::dmt::DerjaguinMullerToporov;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::ContactKind;
+use dem_physics::contact::law::Law;
+use dem_physics::contact::law::Rolling;
+use dem_physics::contact::linear::Linear;
+use dem_physics::contact::pair_parameters::{Elastic, PairInput};
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
+use dem_runner::Progress;
+use dem_runner::snapshot::{Snapshot, fingerprint};
 
 /// Pseudo-random numbers between -1 and 1.
 pub(crate) fn scattered() -> impl FnMut() -> f64 {

@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use dem_run::check::flight::{FreeBody, Meeting};
-use dem_run::geometry::{Frame, Mesh, Plane, Shape, SolidBox};
-use dem_run::state::walls::Wall;
+use dem_engine::check::flight::{FreeBody, Meeting};
+use dem_engine::state::walls::Wall;
+use dem_physics::geometry::{Frame, Mesh, Plane, Shape, SolidBox};
 use nalgebra::Vector3;
 
 fn ball(at: [f64; 3], velocity: [f64; 3], gravity: [f64; 3]) -> FreeBody {
@@ -126,7 +126,7 @@ supports.floor = {{ group = \"floor\", {support} }}
         );
         let scene = crate::helpers::scene(&text);
         let bodies = dem_scene::read_bodies(&scene).unwrap();
-        let plan = dem_run::plan::plan(&scene, bodies, 1, false).unwrap();
+        let plan = dem_plan::plan(&scene, bodies, 1, false).unwrap();
         plan.forecast.warnings
     };
     let never = "'ball' never meets anything in free flight";

@@ -3,10 +3,10 @@
 use std::fmt::Write;
 use std::fs;
 
-use dem_run::plan::plan;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{advance, interact};
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact};
+use dem_plan::plan;
 use dem_scene::read_bodies;
 use nalgebra::Vector3;
 use tempfile::TempDir;

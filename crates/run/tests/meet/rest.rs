@@ -4,9 +4,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use dem_run::plan::Plan;
-use dem_run::plan::time_step::impact_step_s;
-use dem_run::step::step;
+use dem_engine::step::step;
+use dem_plan::Plan;
+use dem_plan::time_step::impact_step_s;
 
 use super::apart::planned;
 

@@ -3,9 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use dem_engine::step::step;
 use dem_io::{Body, Diagnostic};
-use dem_run::plan::{Plan, plan};
-use dem_run::step::step;
+use dem_plan::{Plan, plan};
 use dem_scene::{BodySource, scene_from_text};
 
 use super::apart::planned;

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use dem_run::check::limit::{Bound, limit};
-use dem_run::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
-use dem_run::geometry::{Frame, Plane, Shape, SolidBox};
-use dem_run::stages::ledger::{balance, opened};
-use dem_run::state::State;
-use dem_run::state::walls::{Wall, WallModel};
-use dem_run::step::{advance, interact};
+use dem_engine::check::limit::{Bound, limit};
+use dem_engine::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
+use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::state::State;
+use dem_engine::state::walls::{Wall, WallModel};
+use dem_engine::step::{advance, interact};
+use dem_physics::geometry::{Frame, Plane, Shape, SolidBox};
 use dem_scene::{Factor, WallMotion};
 
 use super::clouds::{cloud, kinds};

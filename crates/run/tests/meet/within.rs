@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 use std::fmt::Write;
 
-use dem_run::plan::Plan;
-use dem_run::stages::contacts::overlap_m;
-use dem_run::state::State;
-use dem_run::step::step;
+use dem_engine::stages::contacts::overlap_m;
+use dem_engine::state::State;
+use dem_engine::step::step;
+use dem_plan::Plan;
 use nalgebra::Vector3;
 
 use super::apart::planned;
@@ -183,7 +183,7 @@ fn a_body_in_which_nothing_can_touch_lists_nothing() {
         ", velocity = [3, 0, 0], angular_velocity = [0, 50, 0]",
         "run.gravity = [0, 0, -9.81]",
     );
-    let stage = dem_run::step::stages()
+    let stage = dem_engine::step::stages()
         .iter()
         .position(|stage| stage.name == "contacts within pieces");
     for _ in 0..2000 {

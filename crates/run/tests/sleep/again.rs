@@ -1,11 +1,11 @@
 //! The same bits for any number of threads, and after any interruption.
 
-use dem_run::plan::Plan;
-use dem_run::run::Progress;
-use dem_run::run::snapshot::{Snapshot, fingerprint};
-use dem_run::stages::clumps::place_all;
-use dem_run::state::State;
-use dem_run::state::partitions::divide;
+use dem_engine::stages::clumps::place_all;
+use dem_engine::state::State;
+use dem_engine::state::partitions::divide;
+use dem_plan::Plan;
+use dem_runner::Progress;
+use dem_runner::snapshot::{Snapshot, fingerprint};
 use rayon::prelude::*;
 
 use super::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, plan_of, slab, sleep};

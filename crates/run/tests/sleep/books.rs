@@ -1,9 +1,9 @@
 //! The balances of energy and momentum stay closed during sleep.
 
-use dem_run::Balance;
-use dem_run::stages::ledger::{balance, opened};
-use dem_run::state::State;
-use dem_run::step::{advance, interact};
+use dem_engine::Balance;
+use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact};
 
 use super::{CLUMP, GROUND, SLEEP, ball, head, planned, slab, sleep};
 

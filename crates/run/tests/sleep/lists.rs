@@ -1,8 +1,8 @@
 //! What is near something awake is listed, among many bodies asleep, and only that is searched.
 
-use dem_run::stages::clumps::place_all;
-use dem_run::state::State;
-use dem_run::step::{advance, interact, stages};
+use dem_engine::stages::clumps::place_all;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact, stages};
 
 use super::{CLUMP, GROUND, SLEEP, ball, go_until_asleep, head, planned, slab, sleep};
 

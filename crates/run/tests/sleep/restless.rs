@@ -89,7 +89,7 @@ fn a_wall_that_begins_to_move_wakes_at_once() {
     }
     assert!(woke_s > 0.0);
     go_until(&mut awake, 0.05);
-    let z_m = |state: &dem_run::state::State| state.clumps.all[0].place_m[2];
+    let z_m = |state: &dem_engine::state::State| state.clumps.all[0].place_m[2];
     // Carried along: 10 mm/s over half of 10 ms.
     assert!((z_m(&state) - 1e-3 - 5e-5).abs() < 2e-6, "{}", z_m(&state));
     assert!((z_m(&state) - z_m(&awake)).abs() < 1e-9);

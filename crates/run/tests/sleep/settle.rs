@@ -1,7 +1,7 @@
 //! Bodies that have come to rest sleep at their position.
 
-use dem_run::stages::clumps::place_all;
-use dem_run::step::interact;
+use dem_engine::stages::clumps::place_all;
+use dem_engine::step::interact;
 
 use super::{
     AFTER_S, CLUMP, GROUND, SLEEP, SPEED_M_S, apart_m, ball, depth_m, go, go_until,

@@ -1,8 +1,8 @@
 //! Approaching objects wake sleeping bodies, which continue as they fell asleep.
 
-use dem_run::stages::clumps::place_all;
-use dem_run::state::State;
-use dem_run::step::{advance, interact};
+use dem_engine::stages::clumps::place_all;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact};
 use nalgebra::Vector3;
 
 use super::{

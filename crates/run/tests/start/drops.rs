@@ -1,6 +1,6 @@
 //! `drop` and `position_of` of bodies: places and speeds at the start.
 
-use dem_run::state::State;
+use dem_engine::state::State;
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::{MASS_KG, place, planned, run_of, try_planned};

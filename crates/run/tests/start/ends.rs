@@ -2,11 +2,11 @@
 
 use std::fs;
 
+use dem_engine::stages::ledger::balance;
+use dem_engine::step::{advance, interact};
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::{Existing, ResultsFolder};
-use dem_run::run::snapshot::Snapshot;
-use dem_run::stages::ledger::balance;
-use dem_run::step::{advance, interact};
+use dem_runner::snapshot::Snapshot;
 
 use super::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned, run_of, try_planned};
 

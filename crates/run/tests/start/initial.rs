@@ -1,7 +1,7 @@
 //! `[initial]`: displaced particles oscillate, particles with a velocity move.
 
-use dem_run::stages::ledger::balance;
-use dem_run::step::{advance, interact};
+use dem_engine::stages::ledger::balance;
+use dem_engine::step::{advance, interact};
 
 use super::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned};
 

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use dem_run::stages::ledger::balance;
-use dem_run::step::{advance, interact, step};
+use dem_engine::stages::ledger::balance;
+use dem_engine::step::{advance, interact, step};
 
 use super::{assert_near, place, planned, try_planned};
 
@@ -140,7 +140,7 @@ fn a_bed_taken_up_from_its_places_goes_on_resting() {
     let settled: Vec<[f64; 3]> = (0..8).map(|i| place(&state, i).into()).collect();
     let text = format!("{}{sides}", scene("keep", &settled));
     let mut again = planned(&text).state;
-    let moved = |of: &dem_run::state::State| {
+    let moved = |of: &dem_engine::state::State| {
         let all = (0..8).map(|i| (place(of, i) - nalgebra::Vector3::from(settled[i])).norm());
         all.fold(0.0, f64::max)
     };

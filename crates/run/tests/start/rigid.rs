@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use dem_run::physics::contact::hertz_mindlin::HertzMindlin;
-use dem_run::physics::contact::law::Law;
-use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
-use dem_run::plan::Plan;
-use dem_run::step::step;
+use dem_engine::step::step;
+use dem_physics::contact::hertz_mindlin::HertzMindlin;
+use dem_physics::contact::law::Law;
+use dem_physics::contact::pair_parameters::{Elastic, PairInput};
+use dem_plan::Plan;
 
 use super::{PAIR, assert_near, place, planned, try_planned};
 

@@ -1,7 +1,7 @@
 //! Convergence of Newton's method, and the same bits for any number of threads.
 
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
+use dem_engine::state::State;
+use dem_physics::bond::stiffness::BondModel;
 
 use super::{fix, load, rest};
 use crate::bars::{ELASTIC, MODELS, random_body, with_threads};

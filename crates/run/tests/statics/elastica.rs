@@ -1,7 +1,7 @@
 //! A slender cantilever under a large force at its end compared with the elastica, EI theta'' = -P
 //! cos theta, integrated here to rounding.
 
-use dem_run::physics::bond::stiffness::BondModel;
+use dem_physics::bond::stiffness::BondModel;
 
 use super::{bar, fix, load, rest};
 

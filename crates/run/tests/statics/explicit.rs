@@ -1,9 +1,9 @@
 //! The rest state of time-stepping runs.
 
-use dem_run::check::limit::limit;
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::step::step;
+use dem_engine::check::limit::limit;
+use dem_engine::state::State;
+use dem_engine::step::step;
+use dem_physics::bond::stiffness::BondModel;
 use dem_scene::Factor;
 use nalgebra::Vector3;
 
@@ -41,7 +41,7 @@ fn assert_same(state: &State, size_m: f64) {
     let (mut at_once, mut stepped) = (state.clone(), state.clone());
     let found = rest(&mut at_once);
     with_threads(1, || step_to_rest(&mut stepped, size_m));
-    dem_run::step::interact(&mut stepped);
+    dem_engine::step::interact(&mut stepped);
     let start = &state.particles.poses;
     let way = |of: &State, i: usize| of.particles.poses[i].place() - start[i].place();
     let all = 0..start.len();

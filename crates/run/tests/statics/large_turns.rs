@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use dem_run::state::State;
+use dem_engine::state::State;
 use dem_scene::{Factor, Hold};
 
 use super::{assert_near, bar, fix, hold, load, rest};

@@ -1,20 +1,16 @@
-//! Laboratory tests without steps: walls that press a body, grips that pull it, and linear systems
-//! without factors.
+//! Laboratory tests without steps: walls that press a body, and linear systems without factors.
 
 use dem_engine::statics::conjugate::ConjugateGradients;
 use dem_engine::statics::degrees_of_freedom::DegreesOfFreedom;
 use dem_engine::statics::direct::DirectFactor;
 use dem_engine::statics::matrix::Matrix;
 use dem_laboratory::Line;
-use dem_run::laboratory::elastic_test::{ElasticTest, elastic_test};
-use dem_run::laboratory::plan_with_test;
+use dem_rig::elastic_test::{ElasticTest, elastic_test};
+use dem_rig::plan_with_test;
 use dem_scene::{read_bodies, scene_from_text};
-
-use serde_json::Value;
 
 use super::{assert_near, fix, load};
 use crate::bars::{ELASTIC, MODELS, random_body};
-use crate::program::Bench;
 
 /// Eleven spheres of 2 mm in a row along z, bonded to a rod of 40 mm, in a test.
 fn row_in(test: &str) -> String {
@@ -117,32 +113,7 @@ fn a_row_between_plates_is_a_rod_and_two_contacts() {
     );
 }
 
-/// Grips move the ends of a rod without any other compliance.
-#[test]
-fn a_row_that_is_pulled_has_the_modulus_of_its_bonds() {
-    let bench = Bench::new();
-    let text = crate::program::laboratory::bar();
-    let scene = bench.write(
-        "bar.toml",
-        text.replace("[run]", "[run]\nintegrator = \"static\""),
-    );
-    let printed = bench.good(&scene, &["--json", "--quiet", "--output", "out"]);
-    let summary: Value = serde_json::from_str(&printed).unwrap();
-    let results = summary["test"]["results"].as_array().unwrap();
-    for name in ["modulus by travel", "specimen modulus"] {
-        let found = results.iter().find(|one| one["name"] == name).unwrap();
-        assert_near(found["value"].as_f64().unwrap(), 15e6, 1e-3, name);
-    }
-    assert!(results.iter().all(|one| one["name"] != "strength"));
-    let said = bench.good(&scene, &["--output", "other"]);
-    assert!(
-        said.contains("modulus by travel") && said.contains("Newton iterations"),
-        "{said}"
-    );
-    assert!(said.contains("verdict      sound"), "{said}");
-}
-
-/// A lid that begins 50 mm above the row, and a wall beside a row that is pulled.
+/// A lid that begins 50 mm above the row.
 #[test]
 fn walls_may_be_far_away() {
     let near = tested(&pressed_row(), 1);
@@ -152,29 +123,6 @@ fn walls_may_be_far_away() {
     let far = tested(&far, 1);
     let stiffness = |found: &ElasticTest| found.figure("stiffness").unwrap();
     assert_near(stiffness(&far), stiffness(&near), 0.02, "stiffness");
-    // The row of the test above, which nothing but its grips touches.
-    let pulled = crate::program::laboratory::bar()
-        .replace("[run]", "[run]\nintegrator = \"static\"")
-        .replace(
-            "density = 2000",
-            "density = 2000\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.3",
-        )
-        + r#"[contacts]
-clay-clay = { restitution = 0.5, friction = 0.3 }
-[walls.floor]
-plane = { point = [0, 0, -0.5], normal = [0, 0, 1] }
-material = "clay"
-"#;
-    let bench = Bench::new();
-    let scene = bench.write("pulled.toml", pulled);
-    let printed = bench.good(&scene, &["--json", "--quiet"]);
-    let summary: Value = serde_json::from_str(&printed).unwrap();
-    let results = summary["test"]["results"].as_array().unwrap();
-    let found = results
-        .iter()
-        .find(|one| one["name"] == "modulus by travel")
-        .unwrap();
-    assert_near(found["value"].as_f64().unwrap(), 15e6, 1e-3, "modulus");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Scenes without an equilibrium, or for which none is found.
 
 use dem_io::Diagnostic;
-use dem_run::plan::plan;
+use dem_plan::plan;
 use dem_scene::scene_from_text;
 
 use dem_scene::read_bodies;

@@ -1,8 +1,8 @@
 //! Bars under small loads: statically determinate, so each bond deforms by its load over its
 //! stiffness.
 
-use dem_run::physics::rigid::rotation_vector;
-use dem_run::state::State;
+use dem_engine::state::State;
+use dem_physics::rigid::rotation_vector;
 
 use super::{assert_near, bar, fix, load, moved, rest};
 use crate::bars::MODELS;

@@ -3,9 +3,9 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::run::statics::{Cause, equilibrium};
-use dem_run::state::State;
+use dem_engine::state::State;
+use dem_physics::bond::stiffness::BondModel;
+use dem_runner::statics::{Cause, equilibrium};
 
 use super::{END_S, assert_near, bar, fix, load, rest};
 

@@ -1,8 +1,8 @@
 //! Supports that move, by displacements and by velocities, with factors over time; and individually
 //! fixed degrees of freedom.
 
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::physics::rigid::rotation_vector;
+use dem_physics::bond::stiffness::BondModel;
+use dem_physics::rigid::rotation_vector;
 use dem_scene::{Factor, Hold};
 
 use super::{END_S, assert_near, bar, fix, hold, load, moved, rest};

@@ -4,10 +4,10 @@
 use crate::bars::{
     BondDamping, ELASTIC, bar, damp, law, random_body, reopen, step_and_balance, with_threads,
 };
-use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::state::bonds::BondRule;
+use dem_engine::state::State;
+use dem_engine::state::bonds::BondRule;
+use dem_physics::bond::failure::{Criteria, EquivalentStress};
+use dem_physics::bond::stiffness::BondModel;
 
 fn breaking(tensile_strength_pa: f64, incremental: bool) -> BondRule {
     BondRule {

@@ -4,11 +4,11 @@ use crate::bars::{
     BAR_LIMIT_S, Bonding, ELASTIC, MODELS, bar, body, orders, random_spheres, run, soft, spheres,
     steel, tumble, turned, with_threads,
 };
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::state::bonds::{BondLaw, BondRule};
-use dem_run::state::particles::Particles;
-use dem_run::step::step;
+use dem_engine::state::State;
+use dem_engine::state::bonds::{BondLaw, BondRule};
+use dem_engine::state::particles::Particles;
+use dem_engine::step::step;
+use dem_physics::bond::stiffness::BondModel;
 use nalgebra::{UnitQuaternion, Vector3};
 
 const INCREMENTAL: BondRule = BondRule {

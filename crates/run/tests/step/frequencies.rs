@@ -1,12 +1,12 @@
 //! Frequencies of small motions measured in runs, compared with an independent eigenvalue solver.
 
 use crate::bars::{Bonding, ELASTIC, bar, body, steel, with_threads};
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::state::particles::{Motion, Particles};
-use dem_run::state::supports::GroupSupport;
-use dem_run::state::supports::HeldParticle;
-use dem_run::step::step;
+use dem_engine::state::State;
+use dem_engine::state::particles::{Motion, Particles};
+use dem_engine::state::supports::GroupSupport;
+use dem_engine::state::supports::HeldParticle;
+use dem_engine::step::step;
+use dem_physics::bond::stiffness::BondModel;
 use dem_scene::{Factor, Hold};
 use serde::Deserialize;
 use std::collections::BTreeMap;

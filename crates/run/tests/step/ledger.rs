@@ -4,12 +4,12 @@ use crate::bars::{
     BAR_LIMIT_S, BondDamping, ELASTIC, Errors, bar, damp, damp_particles, law, orders, reopen, run,
     with_threads,
 };
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::state::bonds::BondRule;
-use dem_run::state::loads::GroupLoad;
-use dem_run::state::supports::GroupSupport;
-use dem_run::state::supports::HeldParticle;
+use dem_engine::state::State;
+use dem_engine::state::bonds::BondRule;
+use dem_engine::state::loads::GroupLoad;
+use dem_engine::state::supports::GroupSupport;
+use dem_engine::state::supports::HeldParticle;
+use dem_physics::bond::stiffness::BondModel;
 use dem_scene::{Factor, Hold};
 
 /// Duration of a run, s: a multiple of all its step sizes. Changes happen at fractions of it.

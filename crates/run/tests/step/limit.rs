@@ -4,11 +4,11 @@ use crate::bars::{
     BAR_LIMIT_S, BondDamping, ELASTIC, MODELS, bar, body, damp, damp_particles, random_body,
     scattered, soft,
 };
-use dem_run::check::limit::{bound_near, limit};
-use dem_run::physics::bond::damping::{DampingCoefficients, EndMotion, damping_forces};
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::state::particles::Particles;
+use dem_engine::check::limit::{bound_near, limit};
+use dem_engine::state::State;
+use dem_engine::state::particles::Particles;
+use dem_physics::bond::damping::{DampingCoefficients, EndMotion, damping_forces};
+use dem_physics::bond::stiffness::BondModel;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ struct Reference {
     step_s: f64,
 }
 
-type Body = fn(BondModel, dem_run::state::bonds::BondRule, f64) -> State;
+type Body = fn(BondModel, dem_engine::state::bonds::BondRule, f64) -> State;
 
 fn all() -> Vec<(String, BondModel, Body, Reference)> {
     let mut read: BTreeMap<String, BTreeMap<String, Reference>> =

@@ -1,15 +1,15 @@
 //! Local damping spares the rigid motion of what nothing holds.
 
-use dem_run::plan::plan;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{advance, interact, step};
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact, step};
+use dem_plan::plan;
 use dem_scene::read_bodies;
 use nalgebra::Vector3;
 
 use crate::bars::{ELASTIC, bar, damp_particles, reopen, shake, tumble};
 use crate::helpers::scene;
-use dem_run::physics::bond::stiffness::BondModel;
+use dem_physics::bond::stiffness::BondModel;
 
 /// Momentum, and angular momentum about the centre of mass, of all particles.
 fn momenta(state: &State) -> [Vector3<f64>; 2] {

@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use dem_run::check::lowest_frequency::lowest_frequency_hz;
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::state::particles::Particles;
+use dem_engine::check::lowest_frequency::lowest_frequency_hz;
+use dem_engine::state::State;
+use dem_engine::state::particles::Particles;
+use dem_physics::bond::stiffness::BondModel;
 
 use crate::bars::{ELASTIC, bar, body, random_body, spheres, steel};
 

@@ -1,7 +1,7 @@
 //! The list of near pairs compared with a test of every pair.
 
-use dem_run::stages::neighbours::near_pairs;
-use dem_run::state::particles::{Particles, Pose};
+use dem_engine::stages::neighbours::near_pairs;
+use dem_engine::state::particles::{Particles, Pose};
 use proptest::prelude::*;
 
 /// Pairs of different clusters that are near, one by one.

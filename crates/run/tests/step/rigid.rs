@@ -3,11 +3,11 @@
 use crate::bars::{
     BondDamping, ELASTIC, MODELS, body, damp, random_body, random_spheres, reopen, soft, turned,
 };
-use dem_run::stages::bonds::bond_wrenches;
-use dem_run::state::State;
-use dem_run::state::loads::GroupLoad;
-use dem_run::state::particles::Particles;
-use dem_run::step::step;
+use dem_engine::stages::bonds::bond_wrenches;
+use dem_engine::state::State;
+use dem_engine::state::loads::GroupLoad;
+use dem_engine::state::particles::Particles;
+use dem_engine::step::step;
 use dem_scene::Factor;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -40,7 +40,7 @@ fn a_body_moved_as_a_whole_feels_no_force() {
                 &mut state.scratch.partitions,
                 &mut p.wrenches,
             );
-            let of_all = |f: fn(&dem_run::state::particles::Wrench) -> [f64; 4]| {
+            let of_all = |f: fn(&dem_engine::state::particles::Wrench) -> [f64; 4]| {
                 p.wrenches
                     .iter()
                     .flat_map(f)
@@ -68,10 +68,7 @@ fn scene(
     pulled: u32,
     by: [Vector3<f64>; 2],
 ) -> State {
-    let bonding = soft(
-        dem_run::physics::bond::stiffness::BondModel::Timoshenko,
-        ELASTIC,
-    );
+    let bonding = soft(dem_physics::bond::stiffness::BondModel::Timoshenko, ELASTIC);
     let mut state = body(particles, pairs, &bonding, 1e-6);
     damp(&mut state, BondDamping::ChenByMode(0.05));
     state.model.gravity_m_s2 = gravity.into();

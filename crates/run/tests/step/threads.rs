@@ -4,19 +4,19 @@ use crate::bars::{
     BondDamping, add_bonds, damp, damp_particles, random_spheres, reopen, soft, step_and_balance,
     with_threads,
 };
-use dem_run::Balance;
-use dem_run::check::limit::{Limit, limit};
-use dem_run::physics::bond::damage::Damage;
-use dem_run::physics::bond::failure::{Criteria, EquivalentStress};
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::stages::elastic::elastic_energy;
-use dem_run::state::State;
-use dem_run::state::bonds::{BondLaw, BondRule, Bonds};
-use dem_run::state::events::Break;
-use dem_run::state::loads::GroupLoad;
-use dem_run::state::particles::{Motion, Pose};
-use dem_run::state::supports::GroupSupport;
-use dem_run::state::supports::HeldParticle;
+use dem_engine::Balance;
+use dem_engine::check::limit::{Limit, limit};
+use dem_engine::stages::elastic::elastic_energy;
+use dem_engine::state::State;
+use dem_engine::state::bonds::{BondLaw, BondRule, Bonds};
+use dem_engine::state::events::Break;
+use dem_engine::state::loads::GroupLoad;
+use dem_engine::state::particles::{Motion, Pose};
+use dem_engine::state::supports::GroupSupport;
+use dem_engine::state::supports::HeldParticle;
+use dem_physics::bond::damage::Damage;
+use dem_physics::bond::failure::{Criteria, EquivalentStress};
+use dem_physics::bond::stiffness::BondModel;
 use dem_scene::{Factor, Hold};
 
 const BREAKING: BondRule = BondRule {

@@ -3,11 +3,11 @@
 use crate::bars::{
     BondDamping, ELASTIC, MODELS, bar, damp, damp_particles, random_body, shake, with_threads,
 };
-use dem_run::check::limit::limit;
-use dem_run::check::watchdog::Watchdog;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{advance, interact};
+use dem_engine::check::limit::limit;
+use dem_engine::check::watchdog::Watchdog;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{advance, interact};
 
 /// Bond damping and particle damping, each or both or none.
 const DAMPING: [(Option<BondDamping>, f64); 8] = [

@@ -1,9 +1,9 @@
 //! Waves along a chain: the dispersion of a discrete chain, and the speed of the continuum.
 
 use crate::bars::{ELASTIC, body, spheres, steel, with_threads};
-use dem_run::physics::bond::stiffness::BondModel;
-use dem_run::state::State;
-use dem_run::step::step;
+use dem_engine::state::State;
+use dem_engine::step::step;
+use dem_physics::bond::stiffness::BondModel;
 use std::f64::consts::PI;
 
 const SPACING_M: f64 = 0.4;

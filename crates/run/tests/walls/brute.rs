@@ -1,6 +1,6 @@
 //! Meshes compared with a separate test of every face, edge and vertex.
 
-use dem_run::geometry::{Shape, Touch};
+use dem_physics::geometry::{Shape, Touch};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Walls from STL files.
 
 use dem_io::surface::read_open_surface;
-use dem_run::geometry::{Mesh, Shape};
+use dem_physics::geometry::{Mesh, Shape};
 
 use super::{Surface, add_tiles, box_surface, touches};
 use crate::closed_box::closed_box;

@@ -1,6 +1,6 @@
 //! Walls that are displaced and rotated.
 
-use dem_run::geometry::{Frame, Shape, SolidBox};
+use dem_physics::geometry::{Frame, Shape, SolidBox};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 

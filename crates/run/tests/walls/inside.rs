@@ -1,6 +1,6 @@
 //! The inside of closed surfaces.
 
-use dem_run::geometry::{Mesh, Shape, SolidBox};
+use dem_physics::geometry::{Mesh, Shape, SolidBox};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 

@@ -1,6 +1,6 @@
 //! Meshes are equivalent to the shapes that they represent.
 
-use dem_run::geometry::{Mesh, Plane, Shape, SolidBox, Touch};
+use dem_physics::geometry::{Mesh, Plane, Shape, SolidBox, Touch};
 use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 

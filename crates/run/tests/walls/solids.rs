@@ -1,6 +1,6 @@
 //! Planes, boxes and cylinders.
 
-use dem_run::geometry::{Cylinder, Plane, Shape, SolidBox};
+use dem_physics::geometry::{Cylinder, Plane, Shape, SolidBox};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

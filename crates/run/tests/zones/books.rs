@@ -1,9 +1,9 @@
 //! Momenta, kinetic energy and the balance as the zone moves.
 
-use dem_run::check::limit::limit;
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{advance, drift, exchange, interact};
+use dem_engine::check::limit::limit;
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{advance, drift, exchange, interact};
 use nalgebra::Vector3;
 
 use super::{EVERYWHERE, NOWHERE, TOP, UPPER, disturb, flying, flying_text, rigid};

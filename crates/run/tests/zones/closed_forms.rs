@@ -1,7 +1,7 @@
 //! A beam clamped to a rigid block, and the fully bonded one.
 
-use dem_run::state::State;
-use dem_run::step::step;
+use dem_engine::state::State;
+use dem_engine::step::step;
 
 use crate::clumps::{HEAD, block, planned};
 

@@ -1,12 +1,12 @@
 //! The same bits as a bonded body or the motion of a clump, with any number of threads, and after
 //! an interruption.
 
-use dem_run::plan::Plan;
-use dem_run::run::Progress;
-use dem_run::run::snapshot::{Snapshot, fingerprint};
-use dem_run::stages::ledger::balance;
-use dem_run::state::State;
-use dem_run::step::{interact, step};
+use dem_engine::stages::ledger::balance;
+use dem_engine::state::State;
+use dem_engine::step::{interact, step};
+use dem_plan::Plan;
+use dem_runner::Progress;
+use dem_runner::snapshot::{Snapshot, fingerprint};
 use nalgebra::Vector3;
 
 use super::{EVERYWHERE, FLIES, NOWHERE, TOP, disturb, flying, lump, rigid};

@@ -1,4 +1,12 @@
 //! The stress suite: every case behaves as predicted, and deviations are reported.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stderr,
+    clippy::print_stdout,
+    reason = "a test stops where it fails, and says what it measured"
+)]
 
 mod mended;
 mod sabotage;
@@ -6,8 +14,8 @@ mod suite;
 
 use std::sync::atomic::AtomicBool;
 
-use dem_run::stress::cases::CASES;
-use dem_run::stress::prediction::Member;
+use dem_stress::cases::CASES;
+use dem_stress::prediction::Member;
 
 /// Members of a case.
 fn members(case: &str) -> Vec<Member> {
