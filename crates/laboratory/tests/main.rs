@@ -4,3 +4,4 @@
 mod area;
 mod files;
 mod synthetic;
+mod theory;

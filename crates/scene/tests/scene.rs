@@ -11,3 +11,4 @@ mod laboratory;
 mod options;
 mod properties;
 mod schema;
+mod words;

@@ -1,13 +1,6 @@
-//! Helpers for several subjects: scenes from texts, their bodies.
+//! The mass of bodies in a part of space.
 
 use dem_io::Body;
-use dem_scene::Scene;
-use dem_scene::scene_from_text;
-
-/// The scene of a valid text.
-pub(crate) fn scene(text: &str) -> Scene {
-    scene_from_text(text, "test.toml", &[]).unwrap_or_else(|error| panic!("{error}: {text}"))
-}
 
 /// Mass of the parts of the spheres of a body in a box, given by its corners, kg: counted by cubes
 /// of a fortieth of each sphere's diameter.

@@ -1,4 +1,4 @@
-//! The tests of the solver as a library, one module per subject.
+//! The tests of the program.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -8,29 +8,6 @@
     reason = "a test stops where it fails, and says what it measured"
 )]
 
-mod bars;
-mod closed_box;
-mod helpers;
-
-mod bond;
-mod bridges;
-mod clumps;
-mod clusters;
-mod contact;
-mod failure;
 mod fragments;
-mod laboratory;
-mod leave_out;
-mod measures;
-mod meet;
-mod pictures;
-mod pictures_colours;
-mod pictures_scale;
+mod helpers;
 mod program;
-mod sleep;
-mod start;
-mod statics;
-mod step;
-mod stress;
-mod walls;
-mod zones;

@@ -11,7 +11,7 @@ use dem_io::units::significant;
 use dem_results::folder::walls_in;
 use nalgebra::Vector3;
 
-use super::burst;
+use super::burst::burst;
 
 fn run(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_dem-run"));

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use dem_engine::step::{interact, step};
 use dem_io::body::read_frame;
 use dem_io::body::{body_summary, read_body};
+use dem_plan::plan;
 use dem_results::{Existing, ResultsFolder};
-use dem_run::plan::plan;
-use dem_run::step::{interact, step};
 use dem_scene::BodySource;
 
-use super::{burst, bursting, planned, run_into};
+use super::burst::{burst, bursting, planned, run_into};
 use dem_scene::read_bodies;
 
 fn fragment(folder: &Path, options: &[&str]) -> Output {

@@ -4,16 +4,16 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use dem_engine::state::State;
+use dem_engine::step::{exchange, interact, step};
 use dem_io::Body;
 use dem_io::body::{read_body, write_body};
+use dem_plan::{Plan, plan};
 use dem_results::{Existing, ResultsFolder};
-use dem_run::plan::{Plan, plan};
-use dem_run::state::State;
-use dem_run::step::{exchange, interact, step};
 use dem_scene::{Scene, read_bodies, scene_from_text};
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::run_into;
+use super::burst::run_into;
 
 const PLASTIC: &str = "plasticity = { normal_yield_strength = 2e5, shear_yield_strength = 1e5, torsion_yield_strength = 1e5, bending_yield_strength = 1e5, hardening_ratio = 0.2 }";
 const JOINT: &str = "model = \"flat-joint\", radial_elements = 2, circumferential_elements = 7, joint_friction = 0.4, failure = { tensile_strength = STRENGTH, cohesion = STRENGTH, friction_angle = \"20 deg\" }";

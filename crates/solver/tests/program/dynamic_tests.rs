@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use dem_run::physics::contact::restitution::{damping_ratio, restitution};
+use dem_physics::contact::restitution::{damping_ratio, restitution};
 use serde_json::Value;
 
 use crate::program::{Bench, scene_of_data, table};

@@ -1,16 +1,15 @@
 //! What bonds have been through goes from run to run: plastic deformation and hardening, and the
 //! failed elements of flat joints.
 
+use dem_engine::State;
 use dem_io::Body;
 use dem_io::body::{read_body, write_body};
-use dem_run::plan::plan;
-use dem_run::state::State;
-use dem_scene::read_bodies;
+use dem_plan::plan;
+use dem_scene::{read_bodies, scene_from_text};
 use nalgebra::Vector3;
 use serde_json::Value;
 
 use super::Bench;
-use crate::helpers::scene;
 
 const RADIUS_M: f64 = 1e-3;
 const LENGTH_M: f64 = 2e-3;
@@ -64,7 +63,8 @@ fn measure(results: &Value, name: &str) -> f64 {
 /// The state of a scene of the bench at its start.
 fn state(bench: &Bench, text: &str) -> State {
     let path = bench.path("left.vtp");
-    let scene = scene(&text.replace("left.vtp", &path.display().to_string()));
+    let text = text.replace("left.vtp", &path.display().to_string());
+    let scene = scene_from_text(&text, "test.toml", &[]).unwrap();
     let planned = plan(&scene, read_bodies(&scene).unwrap(), 1, false);
     planned.unwrap_or_else(|error| panic!("{error}")).state
 }
@@ -153,7 +153,7 @@ fn frame(state: &State) -> nalgebra::UnitQuaternion<f64> {
     let ends = [0, 1].map(|k| {
         let of_particle = state.particles.poses[state.bonds.ends[0][k] as usize].rotation();
         let turned = plastic.map_or([0.0, 0.0, 0.0, 1.0], |plastic| plastic.turned[k]);
-        (of_particle * dem_run::physics::rotation::rotation(turned)).into_inner()
+        (of_particle * dem_physics::rotation::rotation(turned)).into_inner()
     });
     nalgebra::UnitQuaternion::new_normalize(ends[0] + ends[1])
 }

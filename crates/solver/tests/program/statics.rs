@@ -1,9 +1,11 @@
 //! Scenes solved for their static equilibrium: `run.integrator = "static"`.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
+use super::laboratory::bar;
 use super::{Bench, assert_same, dem_run, names_in, numbers, refused, scene_of_data, table};
 
 const STATIC: [&str; 2] = ["--set", "run.integrator=static"];
@@ -284,4 +286,43 @@ fn a_sweep_compares_it_with_steps() {
     let times = numbers(&table, "time_s");
     assert!(times[1] > 0.0 && times[1] < 0.1 * times[0], "{times:?}");
     assert_eq!(numbers(&table, "tip_deflection_front"), [0.0, 1.0]);
+}
+
+/// Grips move the ends of a rod without any other compliance, also where a wall is far away.
+#[test]
+fn a_row_that_is_pulled_has_the_modulus_of_its_bonds() {
+    let bench = Bench::new();
+    let gripped = bar().replace("[run]", "[run]\nintegrator = \"static\"");
+    let scene = bench.write("bar.toml", &gripped);
+    let results_of = |scene: &Path, options: &[&str]| -> Vec<Value> {
+        let options = [&["--json", "--quiet"], options].concat();
+        let summary = summary(&bench.good(scene, &options));
+        summary["test"]["results"].as_array().unwrap().clone()
+    };
+    let assert_modulus = |results: &[Value], name: &str| {
+        let found = results.iter().find(|one| one["name"] == name).unwrap();
+        let off = found["value"].as_f64().unwrap() / 15e6 - 1.0;
+        assert!(off.abs() < 1e-3, "{name}: {off}");
+    };
+    let results = results_of(&scene, &["--output", "out"]);
+    assert_modulus(&results, "modulus by travel");
+    assert_modulus(&results, "specimen modulus");
+    assert!(results.iter().all(|one| one["name"] != "strength"));
+    let said = bench.good(&scene, &["--output", "other"]);
+    assert!(
+        said.contains("modulus by travel") && said.contains("Newton iterations"),
+        "{said}"
+    );
+    assert!(said.contains("verdict      sound"), "{said}");
+    let beside = gripped.replace(
+        "density = 2000",
+        "density = 2000\nyoung_modulus = \"20 MPa\"\npoisson_ratio = 0.3",
+    ) + r#"[contacts]
+clay-clay = { restitution = 0.5, friction = 0.3 }
+[walls.floor]
+plane = { point = [0, 0, -0.5], normal = [0, 0, 1] }
+material = "clay"
+"#;
+    let scene = bench.write("pulled.toml", beside);
+    assert_modulus(&results_of(&scene, &[]), "modulus by travel");
 }

@@ -1,0 +1,156 @@
+//! The same bits for any number of threads, and after any interruption.
+
+use dem_engine::stages::clumps::place_all;
+use dem_engine::state::State;
+use dem_engine::state::partitions::divide;
+use dem_plan::Plan;
+use dem_runner::Progress;
+use dem_runner::snapshot::{Snapshot, fingerprint};
+use rayon::prelude::*;
+
+use super::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, plan_of, slab, sleep};
+
+/// A sleeping pile, a ball that slowly rolls up to it, and one that falls from above.
+fn pile(threads: usize) -> Plan {
+    let low = slab("low", [0.0, 0.0, 0.0], CLUMP);
+    let middle = slab("middle", [0.0, 0.0, 2e-3], "");
+    let beside = slab("beside", [6e-3, 0.0, 0.0], "");
+    let roller = ball("roller", [-4e-3, 1e-3, 0.0], "velocity = [0.04, 0, 0]");
+    let faller = ball("faller", [7e-3, 1e-3, 4e-3], "velocity = [0, 0, 0.2]");
+    let mut plan = plan_of(&format!(
+        "{}search.skin = 0.4\n{low}{middle}{beside}{roller}{faller}{GROUND}{SLEEP}",
+        head(0.0)
+    ));
+    let state = &mut plan.state;
+    // Outside this test, this few particles do not justify a second thread.
+    state.scratch.threads = threads;
+    state.scratch.partitions = divide(&state.bonds, state.particles.free, threads);
+    let count = state.particles.len();
+    if let Some(contacts) = &mut state.contacts {
+        contacts.divide(count, threads);
+    }
+    plan
+}
+
+/// All data that a run continues from or reports.
+fn same(a: &State, b: &State) -> bool {
+    let mut states = [a.clone(), b.clone()];
+    for state in &mut states {
+        place_all(&state.clumps, &mut state.particles);
+    }
+    let [a, b] = &states;
+    let walls = |s: &State| {
+        let all = s.walls.iter();
+        all.map(|w| {
+            (
+                w.touching.clone(),
+                w.push,
+                w.load_by_sleepers,
+                w.friction_j,
+                w.damping_j,
+            )
+        })
+        .collect::<Vec<_>>()
+    };
+    let kept = |s: &State| {
+        let sleep = sleep(s);
+        (
+            sleep.of_cluster.clone(),
+            sleep.pairs.clone(),
+            sleep.touches.clone(),
+            sleep.particle_steps,
+        )
+    };
+    let clumps = |s: &State| {
+        let all = s.clumps.all.iter();
+        all.map(|c| {
+            (
+                c.place_m,
+                c.turned,
+                c.velocity_m_s,
+                c.angular_momentum,
+                c.asleep,
+            )
+        })
+        .collect::<Vec<_>>()
+    };
+    let free = a.particles.free;
+    a.steps == b.steps
+        && a.particles.poses == b.particles.poses
+        && a.particles.motions[..free] == b.particles.motions[..free]
+        && clumps(a) == clumps(b)
+        && a.ledger == b.ledger
+        && walls(a) == walls(b)
+        && kept(a) == kept(b)
+}
+
+const END_S: f64 = 0.12;
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let mut one = pile(1).state;
+    let mut three = pile(3).state;
+    let mut asleep = 0;
+    while one.time_s < END_S {
+        go(&mut one);
+        go(&mut three);
+        asleep += sleep(&one).bodies;
+    }
+    assert!(asleep > 0);
+    assert!(same(&one, &three));
+}
+
+#[test]
+fn an_interruption_changes_nothing() {
+    let mut state = pile(1).state;
+    let mut shots = Vec::new();
+    let bodies = pile(1).bodies;
+    let print = fingerprint(&pile(1).state).unwrap();
+    let (mut awake, mut next) = (0, 0);
+    while state.time_s < END_S {
+        go(&mut state);
+        let woke = state
+            .scratch
+            .events
+            .sleep
+            .iter()
+            .any(|news| news.kind == "awake");
+        awake += usize::from(woke);
+        let fell = state
+            .scratch
+            .events
+            .sleep
+            .iter()
+            .any(|news| news.kind == "asleep");
+        if state.steps >= next || woke || fell {
+            next = state.steps + 1 + state.steps % 37 + (END_S / state.time_step_s / 20.0) as u64;
+            let shot = Snapshot::taken(
+                &state,
+                &bodies,
+                String::new(),
+                print,
+                Vec::new(),
+                Progress::default(),
+            );
+            shots.push(shot.to_bytes().unwrap());
+        }
+    }
+    assert!(awake >= 2, "{awake}");
+    eprintln!(
+        "{} snapshots, {awake} wakings, {} steps",
+        shots.len(),
+        state.steps
+    );
+    shots.par_iter().for_each(|bytes| {
+        let Plan {
+            state: mut again,
+            mut bodies,
+            ..
+        } = pile(2);
+        let snapshot = Snapshot::from_bytes(bytes).unwrap();
+        snapshot.restore(print, &mut again, &mut bodies).unwrap();
+        let from = again.steps;
+        go_until(&mut again, END_S);
+        assert!(same(&state, &again), "from step {from}");
+    });
+}
