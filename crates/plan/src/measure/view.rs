@@ -2,13 +2,13 @@
 
 use std::cell::OnceCell;
 
-use dem_engine::stages::clumps::synchronous;
-use dem_results::Balance;
-use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::stages::clumps::motion::synchronous;
+use dem_engine::stages::ledger::totals::synchronous_motions;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Clump;
 use dem_engine::state::clusters::fragments;
 use dem_engine::state::particles::Motion;
+use dem_results::Balance;
 use nalgebra::Vector3;
 
 use super::utilisation::{DynamicUtilisation, dynamic_utilisations};
