@@ -1,9 +1,9 @@
 //! Checks that a run makes of itself.
 
 pub mod flight;
-pub mod laws;
 pub mod limit;
-pub mod linear;
+pub mod linearised_contacts;
 pub mod lowest_frequency;
-pub mod passing;
+pub mod pass_through;
+pub mod validity;
 pub mod watchdog;

@@ -3,48 +3,50 @@
 use std::sync::LazyLock;
 use std::time::Instant;
 
-use crate::stages::bonds::{BONDS, clear_wrenches, compute_bonds};
-use crate::stages::breakage::{
+use crate::stages::bonds::breakage::{
     DAMAGE, FAILURE, FRICTION, RATES, SCATTER, break_failed_bonds, count_frictional, count_rates,
     count_scattered,
 };
-use crate::stages::bridges::{BRIDGES, compute_bridges};
-use crate::stages::clump_contacts::share_masses;
-use crate::stages::clumps::{CLUMPS, drift_clumps, gather_clumps, kick_clumps};
-use crate::stages::contacts::{
-    CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
-};
-use crate::stages::damage::press_damaged_bonds;
-use crate::stages::damping::{BOND_DAMPING, compute_bond_damping};
-use crate::stages::daughters::replace_by_daughters;
-use crate::stages::flat_joints::{FLAT_JOINTS, compute_flat_joints};
-use crate::stages::flow::{FLOW, apply_inlets_and_outlets, count_bond_steps};
-use crate::stages::incremental::{HISTORIES, compute_incremental_bonds};
-use crate::stages::intake::{DAUGHTERS, take_in_energy};
-use crate::stages::ledger::{
-    CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
-};
-use crate::stages::listing::{SEARCH, renew_lists, use_up_skin};
-use crate::stages::loads::{LOADS, apply_loads};
-use crate::stages::local_damping::{PARTICLE_DAMPING, compute_particle_damping};
-use crate::stages::motion::{GRAVITY, MOTION, count_falling, drift_particles, kick_particles};
-use crate::stages::pieces::{CLUSTERS, find_pieces};
-use crate::stages::plasticity::{PLASTICITY, compute_plastic_bonds};
-use crate::stages::replacement::{REPLACEMENT, SQUEEZE, count_squeezing, replace_clumps};
-use crate::stages::restoring::restore_clumps;
-use crate::stages::rigid_parts::{
+use crate::stages::bonds::damage::press_damaged_bonds;
+use crate::stages::bonds::damping::{BOND_DAMPING, compute_bond_damping};
+use crate::stages::bonds::flat_joints::{FLAT_JOINTS, compute_flat_joints};
+use crate::stages::bonds::forces::{BONDS, clear_wrenches, compute_bonds};
+use crate::stages::bonds::incremental::{HISTORIES, compute_incremental_bonds};
+use crate::stages::bonds::plasticity::{PLASTICITY, compute_plastic_bonds};
+use crate::stages::bonds::structural_damping::{STRUCTURAL_DAMPING, compute_structural_damping};
+use crate::stages::clumps::contact_masses::share_masses;
+use crate::stages::clumps::motion::{CLUMPS, drift_clumps, gather_clumps, kick_clumps};
+use crate::stages::clumps::replacement::{REPLACEMENT, SQUEEZE, count_squeezing, replace_clumps};
+use crate::stages::clumps::restoring::restore_clumps;
+use crate::stages::clumps::rigid_parts::{
     RIGID_PARTS, drift_rigid_parts, gather_rigid_parts, kick_rigid_parts,
 };
-use crate::stages::self_contact::{SELF_CONTACT, find_self_contacts};
-use crate::stages::sleep::{SLEEP, update_sleep};
+use crate::stages::clumps::zones::{ZONES, follow_zones};
+use crate::stages::clusters::pieces::{CLUSTERS, find_pieces};
+use crate::stages::contacts::bridges::{BRIDGES, compute_bridges};
+use crate::stages::contacts::forces::{
+    CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
+};
+use crate::stages::contacts::self_contact::{SELF_CONTACT, find_self_contacts};
+use crate::stages::ledger::balance::{
+    CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
+};
+use crate::stages::motion::kick_and_drift::{
+    GRAVITY, MOTION, count_falling, drift_particles, kick_particles,
+};
+use crate::stages::motion::loads::{LOADS, apply_loads};
+use crate::stages::motion::local_damping::{PARTICLE_DAMPING, compute_particle_damping};
+use crate::stages::motion::sleep::{SLEEP, update_sleep};
+use crate::stages::motion::supports::{SUPPORTS, hold_supports, remember_held};
+use crate::stages::population::absorbed_energy::{DAUGHTERS, take_in_energy};
+use crate::stages::population::daughters::replace_by_daughters;
+use crate::stages::population::flow::{FLOW, apply_inlets_and_outlets, count_bond_steps};
+use crate::stages::search::lists::{SEARCH, renew_lists, use_up_skin};
 use crate::stages::stage::Stage;
-use crate::stages::structural::{STRUCTURAL_DAMPING, compute_structural_damping};
-use crate::stages::supports::{SUPPORTS, hold_supports, remember_held};
 use crate::stages::walls::{
     WALLS, compute_wall_contacts, drift_walls, find_wall_contacts, plan_wall_motions,
 };
 use crate::stages::watching::{OUTPUT, watch};
-use crate::stages::zones::{ZONES, follow_zones};
 use crate::state::State;
 use crate::state::events::Events;
 

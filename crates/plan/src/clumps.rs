@@ -9,7 +9,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::bodies::{place_body, stays_rigid};
 use super::contacts::Kinds;
-use dem_engine::stages::inlets::angular_momentum;
+use dem_engine::stages::population::inlets::angular_momentum;
 use dem_engine::state::bonds::Bonds;
 use dem_engine::state::clumps::{Clump, Scatter, Template, breaks_from_n_m, reach_m, sub_spheres};
 use dem_engine::state::particles::Particles;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use dem_io::{Diagnostic, Result};
 use dem_scene::{Contact, ContactLaw, InitialOverlap, Material, Rolling as SceneRolling, Scene};
 
-use dem_engine::stages::contacts::{list_contacts, overlap_m};
+use dem_engine::stages::contacts::forces::{list_contacts, overlap_m};
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
 use dem_engine::state::bridges::Bridges;

@@ -6,7 +6,7 @@ use dem_scene::{FeedRate, Scene};
 use serde::Serialize;
 
 use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
-use dem_engine::check::laws::foreseen;
+use dem_engine::check::validity::foreseen;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::step::all_bytes;

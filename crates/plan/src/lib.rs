@@ -37,10 +37,10 @@ use dem_io::{Body, Diagnostic, Result};
 use dem_scene::{Integrator, Scene};
 
 use dem_engine::check::limit::damping_bound_1_s;
-use dem_engine::check::passing::passes_through;
-use dem_engine::stages::damping::WEAK;
-use dem_engine::stages::ledger::opened;
-use dem_engine::stages::population::apply_topology_change;
+use dem_engine::check::pass_through::passes_through;
+use dem_engine::stages::bonds::damping::WEAK;
+use dem_engine::stages::ledger::balance::opened;
+use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::state::State;
 use dem_engine::state::bonds::Bonds;
 use dem_engine::state::clumps::Template;

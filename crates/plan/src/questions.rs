@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use super::masses::sphere_density_kg_m3;
 use super::measure::measurement::Measurement;
 use super::unfinished::unfinished;
-use dem_engine::check::laws::LARGEST_OVERLAP;
+use dem_engine::check::validity::LARGEST_OVERLAP;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
 

@@ -7,9 +7,11 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 
 use dem_engine::check::limit::{Limit, limit, safe_step};
-use dem_engine::check::linear::impact::{at_impact, at_landing};
-use dem_engine::check::linear::{StiffestContacts, largest_contact_rate_1_s2, stiffest_contact};
-use dem_engine::stages::population::apply_topology_change;
+use dem_engine::check::linearised_contacts::impact::{at_impact, at_landing};
+use dem_engine::check::linearised_contacts::{
+    StiffestContacts, largest_contact_rate_1_s2, stiffest_contact,
+};
+use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::stages::walls::fastest_point_m_s;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;

@@ -3,7 +3,7 @@
 use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 
-use dem_engine::stages::zones::form_rigid_parts;
+use dem_engine::stages::clumps::zones::form_rigid_parts;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::rules::{Carrier, Rejoin, Zone};

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::setup::Setup;
-use dem_engine::stages::contacts::{self, pair_force_n};
+use dem_engine::stages::contacts::forces::{pair_force_n, touch_point_m};
 use dem_engine::stages::walls::{self, touch_force_n};
 use dem_engine::state::State;
 use dem_laboratory::figure::{Figure, Source};
@@ -79,7 +79,7 @@ fn moments_n_m(state: &State) -> Vec<Matrix3<f64>> {
     let touching = contacts.pairs.iter().zip(&contacts.histories);
     for (&[a, b], history) in touching.filter(|(_, history)| history.overlap_m() > 0.0) {
         let force_n = pair_force_n(contacts, p, [a, b], history);
-        let point = contacts::touch_point_m(&p.poses[a as usize], &p.poses[b as usize]);
+        let point = touch_point_m(&p.poses[a as usize], &p.poses[b as usize]);
         add(a, -force_n, point);
         add(b, force_n, point);
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::arrange::support_of;
 use super::disc_stress::DiscStress;
 use crate::setup::{Setup, Side};
-use dem_engine::stages::supports::velocity_at_kick;
+use dem_engine::stages::motion::supports::velocity_at_kick;
 use dem_engine::state::State;
 use dem_engine::state::loads::factor_at;
 use dem_physics::bond::failure::Cause;

@@ -12,7 +12,7 @@ use dem_scene::{Scene, StartAs};
 use self::still_flying::{Flying, still_flying};
 use super::monitors::{Extreme, Monitors};
 use dem_engine::check::flight::{FreeBody, Meeting, can_meet, free_bodies, standing_bodies};
-use dem_engine::check::laws::{overlap_warning, plastic_strain_warning, strain_warning};
+use dem_engine::check::validity::{overlap_warning, plastic_strain_warning, strain_warning};
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::fragments::Fragment;

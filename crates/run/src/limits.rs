@@ -7,10 +7,12 @@ use dem_scene::Scene;
 use super::new_step::{NewStep, change, look_anew_for_near};
 use super::progress::Progress;
 use dem_engine::check::limit::{Bound, bound_near, damping_bound_1_s, limit};
-use dem_engine::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
-use dem_engine::stages::bonds::largest_strain;
-use dem_engine::stages::damping::WEAK;
-use dem_engine::stages::totals::kinetic_energy;
+use dem_engine::check::linearised_contacts::{
+    StiffestContacts, contact_rates, largest_contact_rate_1_s2,
+};
+use dem_engine::stages::bonds::damping::WEAK;
+use dem_engine::stages::bonds::forces::largest_strain;
+use dem_engine::stages::ledger::totals::kinetic_energy;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::bodies::called;

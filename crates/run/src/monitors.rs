@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::rigid_hits::RigidHits;
 use super::taken_in::Taken;
-use dem_engine::check::laws::{LARGEST_OVERLAP, LARGEST_STRAIN};
-use dem_engine::stages::bonds::{edge_strain, most_strained, most_strained_edge, most_yielded};
+use dem_engine::check::validity::{LARGEST_OVERLAP, LARGEST_STRAIN};
+use dem_engine::stages::bonds::forces::{
+    edge_strain, most_strained, most_strained_edge, most_yielded,
+};
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
 use dem_engine::state::events::{PopulationEvent, REMOVED, STARTS_BONDED};

@@ -24,7 +24,7 @@ use dem_scene::Scene;
 use crate::machine::processor_time_s;
 use crate::output::frames::FrameOrder;
 use crate::settings::{RunSettings, SoFar};
-use dem_engine::stages::elastic::elastic_energy;
+use dem_engine::stages::bonds::energy_kernel::elastic_energy;
 use dem_engine::state::State;
 use dem_engine::state::particles::Motion;
 use dem_plan::Plan;
@@ -32,7 +32,7 @@ use dem_plan::measure::{bond_utilisation, probes, read_probes};
 use dem_results::Balance;
 use dem_results::Summary;
 
-use dem_engine::check::laws::strain_warning;
+use dem_engine::check::validity::strain_warning;
 
 use self::record::{AtRest, equilibrium_summary};
 use dem_engine::statics::newton::{loads, six};

@@ -11,8 +11,8 @@ use dem_io::{Body, Diagnostic, Result};
 
 use super::prediction::{Member, ObservationMethod, Prediction, Quantity, Shown};
 use super::trial::Trial;
-use dem_engine::stages::elastic::elastic_energy;
-use dem_engine::stages::totals::kinetic_energy;
+use dem_engine::stages::bonds::energy_kernel::elastic_energy;
+use dem_engine::stages::ledger::totals::kinetic_energy;
 use dem_engine::state::State;
 use dem_engine::step::step;
 

@@ -6,10 +6,12 @@ use dem_scene::Hold;
 use nalgebra::{DMatrix, SymmetricEigen};
 use serde::{Deserialize, Serialize};
 
-use crate::check::linear::{LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches};
-use crate::stages::bonds::bond_wrenches;
-use crate::stages::damped::damping_wrenches;
-use crate::stages::plasticity::add_elasto_plastic_wrenches;
+use crate::check::linearised_contacts::{
+    LinearContact, Weights, clump_rates, linear_contacts, linear_wrenches,
+};
+use crate::stages::bonds::forces::bond_wrenches;
+use crate::stages::bonds::plasticity::add_elasto_plastic_wrenches;
+use crate::stages::bonds::viscous_kernel::damping_wrenches;
 use crate::state::State;
 use crate::state::bonds::{BLOCK, BondBlock, BondLaw, BondRule, Bonds};
 use crate::state::damping_rate::{MORE, largest_coefficients};
@@ -80,7 +82,7 @@ pub struct Bound {
 
 /// The limit of kick-drift-kick for the state as it stands: the largest dt at which no eigenvalue
 /// of M^-1 (dt^2/4 K + dt/2 C) is above 1, with the dashpots C of contacts. Those of bonds do not
-/// matter: see [`crate::stages::damping`].
+/// matter: see [`crate::stages::bonds::damping`].
 ///
 /// At the limit the fastest mode turns round in every step: x, -x, x. Its velocity is then always
 /// against its force, which damping of particles raises by a fraction: K counts 1 + gamma times.

@@ -2,10 +2,10 @@
 
 use dem_io::{Diagnostic, Result};
 
-use crate::stages::contacts::contact_energy_j;
-use crate::stages::elastic::elastic_energy;
-use crate::stages::loads::loads_power_w;
-use crate::stages::totals::kinetic_energy;
+use crate::stages::bonds::energy_kernel::elastic_energy;
+use crate::stages::contacts::forces::contact_energy_j;
+use crate::stages::ledger::totals::kinetic_energy;
+use crate::stages::motion::loads::loads_power_w;
 use crate::state::State;
 use crate::state::bodies::PlacedBody;
 use crate::state::bodies::bond_of_file;

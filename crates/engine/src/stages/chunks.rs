@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-pub use crate::state::asleep::CHUNK;
+pub use crate::state::sleep::mask::CHUNK;
 
 /// The numbers of the chunks of `count` particles.
 pub(crate) fn chunks_of(count: usize) -> Range<usize> {

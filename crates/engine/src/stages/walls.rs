@@ -16,7 +16,7 @@ pub(crate) use self::motion::{
 };
 use super::chunks::{chunk_of, chunks_of, in_tasks};
 use super::stage::{NO_SAVING, Need, Stage};
-use crate::stages::contacts::{StoredEnergy, StoredForce};
+use crate::stages::contacts::forces::{StoredEnergy, StoredForce};
 use crate::state::State;
 use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::meetings::{Meeting, Meetings, Met};

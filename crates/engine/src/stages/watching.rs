@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 
-use super::cluster_bytes::{ClusterUser, clusters_bytes};
-use super::contacts::{overlap_m, pair_force_n};
+use super::clusters::bytes::{ClusterUser, clusters_bytes};
+use super::contacts::forces::{overlap_m, pair_force_n};
 use super::stage::{NO_SAVING, Need, Stage};
 use super::walls::{gap_m, touch_force_n};
 use crate::state::State;

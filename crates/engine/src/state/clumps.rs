@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::bonds::Bonds;
+use super::clump_stress::Hits;
 use super::particles::{Motion, Particles, Pose, Wrench};
-use super::squeeze::Hits;
 use dem_physics::bond::failure::smallest_strength_pa;
 use dem_physics::rotation::{kinetic_j, spin_rad_s};
 use dem_physics::rotation::{numbers, rotation};

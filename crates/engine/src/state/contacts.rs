@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::islands::Islands;
-use super::references::References;
-use super::search_buffers::SearchBuffers;
+use super::search::buffers::SearchBuffers;
+use super::search::references::References;
 use super::self_contacts::SelfContacts;
 use dem_physics::contact::law::ContactKind;
 

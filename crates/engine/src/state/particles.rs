@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::asleep::Asleep;
+use super::sleep::mask::Asleep;
 use dem_physics::bond::total::End;
 use dem_physics::contact::kinematics::ContactSphere;
 use dem_physics::number::Vec3;

@@ -1,6 +1,7 @@
 //! Data that can be rebuilt from the other parts of a state, or are valid for one step only.
 
 use super::bridges::BridgeScratch;
+use super::clump_stress::Squeeze;
 use super::clump_touches::ClumpTouch;
 use super::clusters::Clusters;
 use super::events::Events;
@@ -8,7 +9,6 @@ use super::meetings::{JointBuffers, Meetings};
 use super::particles::{Motion, Wrench};
 use super::partitions::Partition;
 use super::population::{OutletWatch, Surroundings};
-use super::squeeze::Squeeze;
 use crate::clock::StageClock;
 use dem_physics::chebyshev::Chebyshev;
 

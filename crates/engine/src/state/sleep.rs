@@ -1,5 +1,7 @@
 //! Sleep: bodies at rest that are skipped, and the data kept until they wake.
 
+pub mod mask;
+
 use serde::{Deserialize, Serialize};
 
 use super::contacts::ContactHistory;

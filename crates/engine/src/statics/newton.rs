@@ -17,9 +17,9 @@
 //! positive shows that the equilibrium is not stable. Otherwise the tangent itself is factored, L
 //! U, and stability is checked at the end.
 
-use crate::stages::bonds::bond_wrenches;
-use crate::stages::damage::press;
-use crate::stages::loads::add_loads;
+use crate::stages::bonds::damage::press;
+use crate::stages::bonds::forces::bond_wrenches;
+use crate::stages::motion::loads::add_loads;
 use crate::state::State;
 use crate::state::particles::{Motion, Pose, Wrench};
 
@@ -76,7 +76,7 @@ pub struct Equilibrium {
 impl Equilibrium {
     /// Ratio of residual to the largest bond force; 0 if no force acts.
     pub fn residual(&self) -> f64 {
-        crate::stages::ledger::over(self.residual_n, self.bond_force_n)
+        crate::stages::ledger::balance::over(self.residual_n, self.bond_force_n)
     }
 }
 

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use dem_engine::stages::bonds::NEARLY;
+use dem_engine::stages::bonds::forces::NEARLY;
+use dem_engine::stages::bonds::utilisation_kernel::squared_utilisations;
 use dem_engine::stages::chunks::CHUNK;
-use dem_engine::stages::totals::motions_before_kick;
-use dem_engine::stages::utilisation::squared_utilisations;
+use dem_engine::stages::ledger::totals::motions_before_kick;
 use dem_engine::state::State;
 use dem_engine::state::particles::Motion;
 use dem_physics::bond::BondLoad;

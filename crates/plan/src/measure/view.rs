@@ -2,8 +2,8 @@
 
 use std::cell::OnceCell;
 
-use dem_engine::stages::clumps::synchronous;
-use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::stages::clumps::motion::synchronous;
+use dem_engine::stages::ledger::totals::synchronous_motions;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Clump;
 use dem_engine::state::clusters::fragments;

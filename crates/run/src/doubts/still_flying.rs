@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use dem_io::units::significant;
 
 use dem_engine::check::flight::{Meeting, free_clusters};
-use dem_engine::stages::touching::touching;
+use dem_engine::stages::contacts::touching::touching;
 use dem_engine::state::State;
 use dem_engine::state::clusters::Clusters;
 use dem_engine::state::clusters::fragments::Fragment;

@@ -10,7 +10,7 @@ use dem_io::body::{BondHistories, JointBond, PlasticBond, SummedBond};
 use dem_results::{Frame, FrameFiles, NamedArray, Values};
 
 use super::walls::WallOutput;
-use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::stages::ledger::totals::synchronous_motions;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::fragments::fragment_masses_kg;

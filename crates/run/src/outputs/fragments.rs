@@ -6,8 +6,8 @@ use dem_results::{Table, append_fragments};
 
 use super::{Moment, Opening, Output, Saved, TableEnd};
 use crate::output::fragments::rows;
-use dem_engine::stages::clumps::synchronous;
-use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::stages::clumps::motion::synchronous;
+use dem_engine::stages::ledger::totals::synchronous_motions;
 use dem_engine::state::clusters::fragments;
 
 /// Besides at the frames, fragments are written when their number has grown by one in this many.

@@ -16,7 +16,7 @@ use crate::output::series;
 use crate::output::walls::WallOutput;
 use crate::settings::RunSettings;
 use dem_engine::Balance;
-use dem_engine::stages::bonds::most_strained_edge;
+use dem_engine::stages::bonds::forces::most_strained_edge;
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments as fragments_of;
 use dem_engine::statics::newton::Equilibrium;

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use crate::stages::blocks::{rows, vectors};
-use crate::stages::contacts::{contact_sphere, stored_contact};
+use crate::stages::bonds::blocks::{rows, vectors};
+use crate::stages::contacts::forces::{contact_sphere, stored_contact};
 use crate::state::contacts::ContactHistory;
 use crate::state::meetings::{Meeting, Met};
 use crate::state::particles::Particles;

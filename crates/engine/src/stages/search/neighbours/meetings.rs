@@ -1,0 +1,60 @@
+//! Where clusters may meet small ones.
+
+use crate::state::search::balls::{Ball, around, box_of};
+use crate::state::search::buffers::PairBuffers;
+use crate::state::search::clusters::{KnownClusters, Searched};
+use dem_physics::geometry::Bounds;
+
+/// Lists the balls that may be in a pair with one of a small cluster, ascending by number.
+pub(super) fn list_with_small(
+    searched: &Searched<'_>,
+    known: &KnownClusters,
+    buffers: &mut PairBuffers,
+) {
+    let PairBuffers {
+        small_clusters: small,
+        active,
+        ..
+    } = buffers;
+    let groups = &known.groups;
+    let is_small = |&group: &u32| !groups.is_large(group) && !groups.members(group).is_empty();
+    small.clear();
+    small.extend(groups.all().filter(is_small));
+    active.clear();
+    if small.is_empty() {
+        return;
+    }
+    let balls = searched.balls;
+    let [all, seeking] = bounds_of(small, known, searched);
+    let mut where_sought = seeking;
+    for large in &known.large {
+        let of_small = if large.seeks { &all } else { &seeking };
+        let common = large.bounds.common(of_small);
+        if common == Bounds::EMPTY {
+            continue;
+        }
+        where_sought = where_sought.with(&common);
+        active.extend(large.within(&common, balls, groups));
+    }
+    let of_small = small.iter().flat_map(|&group| groups.members(group));
+    let of_small = of_small.map(|&i| (i, balls[i as usize]));
+    // All are given if all seek.
+    let may_meet =
+        |(_, ball): &(u32, Ball)| searched.seeks.is_none() || around(ball).overlaps(&where_sought);
+    active.extend(of_small.filter(may_meet));
+    active.sort_unstable_by_key(|(i, _)| *i);
+}
+
+/// The box around all of these clusters, and around those that seek.
+fn bounds_of(some: &[u32], known: &KnownClusters, searched: &Searched<'_>) -> [Bounds; 2] {
+    let mut of_small = [Bounds::EMPTY; 2];
+    for &group in some {
+        let members = known.groups.members(group);
+        let bounds = box_of(members, searched.balls);
+        of_small[0] = of_small[0].with(&bounds);
+        if members.iter().any(|&i| searched.is_seeking(i)) {
+            of_small[1] = of_small[1].with(&bounds);
+        }
+    }
+    of_small
+}

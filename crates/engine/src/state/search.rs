@@ -1,0 +1,9 @@
+//! Data of the neighbour search.
+
+pub mod balls;
+pub(crate) mod buffers;
+pub mod clusters;
+pub(crate) mod grids;
+pub mod references;
+pub mod rigid_balls;
+pub mod spatial_order;
