@@ -17,7 +17,7 @@ use dem_io::Body;
 use dem_io::surface::{ReadSettings, surface_from_stl};
 use dem_pack::{Basis, BodySettings, BondSettings, PackSettings, Sizes, make_body};
 use dem_run::plan::plan;
-use dem_run::stages::bonds::bond_wrenches;
+use dem_run::stages::bonds::forces::bond_wrenches;
 use dem_run::state::State;
 use dem_run::step::step;
 

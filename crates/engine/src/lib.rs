@@ -13,6 +13,6 @@ pub mod step;
 pub mod threads;
 
 pub use dem_results::Balance;
-pub use stages::ledger::balance;
+pub use stages::ledger::bookkeeping::balance;
 pub use state::State;
 pub use step::step;

@@ -28,7 +28,7 @@ use crate::stages::contacts::forces::{
     CONTACTS, RELAXATION, ROLLING, compute_contacts, count_relaxing, count_rolling,
 };
 use crate::stages::contacts::self_contact::{SELF_CONTACT, find_self_contacts};
-use crate::stages::ledger::balance::{
+use crate::stages::ledger::bookkeeping::{
     CHECKS, LEDGER, advance_time, book_after_kick, book_before_kick, opened,
 };
 use crate::stages::motion::kick_and_drift::{

@@ -39,7 +39,7 @@ use dem_scene::{Integrator, Scene};
 use dem_engine::check::limit::damping_bound_1_s;
 use dem_engine::check::pass_through::passes_through;
 use dem_engine::stages::bonds::damping::WEAK;
-use dem_engine::stages::ledger::balance::opened;
+use dem_engine::stages::ledger::bookkeeping::opened;
 use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::state::State;
 use dem_engine::state::bonds::Bonds;

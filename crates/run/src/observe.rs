@@ -17,7 +17,7 @@ use super::settings::SoFar;
 use super::snapshot::Snapshot;
 use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::stages::contacts::touching::contacts_now;
-use dem_engine::stages::ledger::balance::{CHECKS, balance};
+use dem_engine::stages::ledger::bookkeeping::{CHECKS, balance};
 use dem_engine::stages::stage::Stage;
 use dem_engine::stages::watching::OUTPUT;
 use dem_engine::state::State;

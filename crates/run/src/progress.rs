@@ -12,7 +12,7 @@ use super::monitors::Monitors;
 use super::schedule::{OutputSchedule, first_after};
 use super::sums::Sums;
 use dem_engine::check::limit::Bound;
-use dem_engine::stages::ledger::balance::over;
+use dem_engine::stages::ledger::bookkeeping::over;
 use dem_engine::state::State;
 use dem_plan::time_step::{StepBasis, StepChoice};
 use dem_results::Balance;

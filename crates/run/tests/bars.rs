@@ -1,7 +1,7 @@
 //! Bodies for the tests, and operations on them.
 
 use dem_engine::Balance;
-use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::stages::ledger::bookkeeping::{balance, opened};
 use dem_engine::state::State;
 use dem_engine::state::bonds::{BondLaw, BondRule, Bonds};
 use dem_engine::state::particles::{Particles, Wrench};

@@ -8,7 +8,7 @@ mod swapped;
 mod walls;
 
 use dem_engine::Balance;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::state::bridges::Bridges;
 use dem_engine::step::{advance, interact};

@@ -9,8 +9,8 @@ mod whole;
 
 use std::collections::BTreeMap;
 
-use dem_engine::stages::clumps::place_all;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::clumps::motion::place_all;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::bodies::renumber;

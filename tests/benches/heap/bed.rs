@@ -7,14 +7,14 @@ use dem_run::physics::contact::law::ContactKind;
 use dem_run::physics::contact::law::Law;
 use dem_run::physics::contact::law::Rolling;
 use dem_run::physics::contact::pair_parameters::{Elastic, PairInput};
-use dem_run::stages::ledger::opened;
-use dem_run::stages::neighbours::near_pairs;
+use dem_run::stages::ledger::bookkeeping::opened;
+use dem_run::stages::search::neighbours::near_pairs;
 use dem_run::state::State;
 use dem_run::state::bonds::Bonds;
 use dem_run::state::clusters::Clusters;
 use dem_run::state::contacts::{ContactModel, Contacts};
-use dem_run::state::order::spatial_order;
 use dem_run::state::particles::Particles;
+use dem_run::state::search::spatial_order::spatial_order;
 use dem_testing::Random;
 
 /// Number of cubes of a face-centred lattice along each side: with four sites each, of which some

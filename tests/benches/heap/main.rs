@@ -14,7 +14,7 @@ mod bed;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use dem_run::stages::contacts::{contact_wrenches, list_contacts};
+use dem_run::stages::contacts::forces::{contact_wrenches, list_contacts};
 use dem_run::state::State;
 use dem_run::step::step;
 

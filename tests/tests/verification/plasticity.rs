@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use dem_run::physics::bond::BondLoad;
-use dem_run::stages::ledger::balance;
+use dem_run::stages::ledger::bookkeeping::balance;
 use dem_run::step::{advance, interact};
 use dem_run::{State, step};
 

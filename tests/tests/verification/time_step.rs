@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use dem_run::stages::damping::WEAK;
+use dem_run::stages::bonds::damping::WEAK;
 use dem_run::{Plan, step};
 
 use super::page::{assert_shown, filled, on_one_thread};

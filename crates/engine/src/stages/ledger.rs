@@ -1,6 +1,6 @@
 //! Ledgers of energy and momentum.
 
-pub mod balance;
+pub mod bookkeeping;
 pub(crate) mod islands;
 mod rounding;
 pub mod totals;

@@ -76,7 +76,7 @@ pub struct Equilibrium {
 impl Equilibrium {
     /// Ratio of residual to the largest bond force; 0 if no force acts.
     pub fn residual(&self) -> f64 {
-        crate::stages::ledger::balance::over(self.residual_n, self.bond_force_n)
+        crate::stages::ledger::bookkeeping::over(self.residual_n, self.bond_force_n)
     }
 }
 

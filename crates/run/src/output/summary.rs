@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use dem_engine::stages::ledger::balance::over;
+use dem_engine::stages::ledger::bookkeeping::over;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::sleep::Sleep;

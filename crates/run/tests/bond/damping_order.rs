@@ -5,8 +5,8 @@ use crate::bars::{
 };
 use crate::clumps::{HEAD, block, planned};
 use dem_engine::check::limit::limit as step_limit;
-use dem_engine::stages::damping::{ONE_STAGE, WEAK};
-use dem_engine::stages::totals::kinetic_energy;
+use dem_engine::stages::bonds::damping::{ONE_STAGE, WEAK};
+use dem_engine::stages::ledger::totals::kinetic_energy;
 use dem_engine::state::State;
 use dem_engine::state::bonds::BondRule;
 use dem_engine::step::step;

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use super::vector;
 use crate::bars::reopen;
 use crate::leave_out::planned;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
 use dem_physics::bond::failure::Cause;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use dem_engine::stages::bonds::bond_wrenches;
-use dem_engine::stages::bonds::bond_wrenches_one_by_one;
+use dem_engine::stages::bonds::forces::bond_wrenches;
+use dem_engine::stages::bonds::forces::bond_wrenches_one_by_one;
 use dem_engine::state::bonds::Bonds;
 use dem_engine::state::bonds::{BondLaw, BondRule};
 use dem_engine::state::particles::Particles;

@@ -3,7 +3,7 @@
 use super::vector;
 use crate::leave_out::planned;
 use dem_engine::check::limit::limit;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, step};
 use dem_physics::bond::BondLoad;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use dem_engine::stages::totals::momenta;
+use dem_engine::stages::ledger::totals::momenta;
 use dem_engine::state::State;
 use dem_engine::state::bridges::Bridges;
 use nalgebra::Vector3;

@@ -1,7 +1,7 @@
 //! The balances of scenes in which bodies are fed, replaced and removed.
 
 use dem_engine::Balance;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::state::events::PopulationEvent;
 use dem_engine::step::{advance, interact};

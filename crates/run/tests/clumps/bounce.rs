@@ -1,6 +1,6 @@
 //! Clumps bounce as their material says, on any number of contacts.
 
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Clump;
 use dem_engine::step::{advance, interact};

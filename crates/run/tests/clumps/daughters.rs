@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use dem_engine::Balance;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Clump;
 use dem_engine::state::events::PopulationEvent;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::state::State;
 
 use super::again::busy;

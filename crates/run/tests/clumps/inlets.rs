@@ -1,7 +1,7 @@
 //! Bodies are fed at the rates, in the proportions and with the orientations of the scene, and
 //! where there is space.
 
-use dem_engine::stages::population::apply_topology_change;
+use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Clump;
 use dem_engine::state::events::{PopulationEvent, TopologyChange};
@@ -234,7 +234,8 @@ fn none_overlap(state: &State) -> bool {
     (0..poses.len()).all(|i| {
         (0..i).all(|j| {
             clusters[i] == clusters[j]
-                || dem_engine::stages::contacts::overlap_m(poses, [j as u32, i as u32]) <= 0.0
+                || dem_engine::stages::contacts::forces::overlap_m(poses, [j as u32, i as u32])
+                    <= 0.0
         })
     })
 }

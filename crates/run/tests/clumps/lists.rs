@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::state::State;
 use dem_engine::state::events::PopulationEvent;
 use dem_engine::state::particles::Pose;

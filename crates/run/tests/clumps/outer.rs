@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dem_engine::stages::population::apply_topology_change;
+use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::state::State;
 use dem_engine::state::clumps::{Clump, Template};
 use dem_engine::state::events::TopologyChange;

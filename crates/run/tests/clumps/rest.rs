@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::step::{advance, interact, step};
 use nalgebra::Vector3;
 

@@ -1,9 +1,9 @@
 //! Clusters and fragments that become rigid clumps again: conserved quantities, recorded losses,
 //! and retained data.
 
-use dem_engine::stages::elastic::elastic_energy;
-use dem_engine::stages::population::apply_topology_change;
-use dem_engine::stages::restoring::restore_clumps;
+use dem_engine::stages::bonds::energy_kernel::elastic_energy;
+use dem_engine::stages::clumps::restoring::restore_clumps;
+use dem_engine::stages::population::change::apply_topology_change;
 use dem_engine::state::State;
 use dem_engine::state::events::PopulationEvent;
 use dem_engine::state::events::TopologyChange;

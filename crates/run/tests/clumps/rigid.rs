@@ -1,7 +1,7 @@
 //! Clumps without forces move as rigid bodies.
 
-use dem_engine::stages::clumps::place_all;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::clumps::motion::place_all;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Template;
 use dem_engine::step::{advance, interact, step};

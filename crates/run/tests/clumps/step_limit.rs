@@ -1,8 +1,8 @@
 //! The time step of scenes with clumps.
 
 use dem_engine::check::limit::{limit, safe_step};
-use dem_engine::check::linear::contact_rates;
-use dem_engine::check::linear::impact::at_impact;
+use dem_engine::check::linearised_contacts::contact_rates;
+use dem_engine::check::linearised_contacts::impact::at_impact;
 use dem_engine::step::{interact, step};
 use dem_plan::Plan;
 

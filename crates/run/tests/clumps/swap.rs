@@ -1,7 +1,7 @@
 //! Mass, momentum, angular momentum and energy are the same before and after a bonded cluster
 //! replaces a clump, and the path continues.
 
-use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::state::State;
 use dem_engine::state::events::PopulationEvent;
 use dem_engine::step::{drift, exchange, interact};

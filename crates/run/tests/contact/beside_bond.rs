@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::stages::ledger::bookkeeping::{balance, opened};
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, step};
 use dem_plan::{Plan, plan};

@@ -1,7 +1,7 @@
 //! The largest stable step with contacts beside bonds.
 
 use dem_engine::check::limit::limit;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
 use dem_plan::{Plan, plan};

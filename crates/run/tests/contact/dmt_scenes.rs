@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 
 use dem_engine::Balance;
-use dem_engine::stages::clumps::place_all;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::clumps::motion::place_all;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, step};
 use dem_plan::plan;

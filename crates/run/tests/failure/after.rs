@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dem_engine::stages::totals::synchronous_motions;
+use dem_engine::stages::ledger::totals::synchronous_motions;
 use dem_engine::state::State;
 use dem_engine::state::particles::{Motion, Particles, Wrench};
 use dem_engine::step::{advance, interact, step};

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use dem_engine::Balance;
 use dem_engine::check::limit::limit;
-use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::stages::ledger::bookkeeping::{balance, opened};
 use dem_engine::state::State;
 use dem_engine::state::bonds::{BondLaw, BondRule};
 use dem_engine::state::particles::Particles;

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use std::fmt::Write;
 
-use dem_engine::stages::ledger::{balance, opened};
-use dem_engine::stages::pieces::find_pieces_of;
+use dem_engine::stages::clusters::pieces::find_pieces_of;
+use dem_engine::stages::ledger::bookkeeping::{balance, opened};
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, step};
 use dem_physics::bond::failure::Criteria;

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::stages::ledger::bookkeeping::{balance, opened};
 use dem_engine::state::State;
 use dem_engine::state::bonds::Bonds;
 use dem_engine::state::clusters::Clusters;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::fs;
 
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
 use dem_plan::plan;

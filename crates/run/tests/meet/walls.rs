@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use dem_engine::check::limit::{Bound, limit};
-use dem_engine::check::linear::{StiffestContacts, contact_rates, largest_contact_rate_1_s2};
-use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::check::linearised_contacts::{
+    StiffestContacts, contact_rates, largest_contact_rate_1_s2,
+};
+use dem_engine::stages::ledger::bookkeeping::{balance, opened};
 use dem_engine::state::State;
 use dem_engine::state::walls::{Wall, WallModel};
 use dem_engine::step::{advance, interact};

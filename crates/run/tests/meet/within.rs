@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::fmt::Write;
 
-use dem_engine::stages::contacts::overlap_m;
+use dem_engine::stages::contacts::forces::overlap_m;
 use dem_engine::state::State;
 use dem_engine::step::step;
 use dem_plan::Plan;

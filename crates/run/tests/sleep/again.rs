@@ -1,6 +1,6 @@
 //! The same bits for any number of threads, and after any interruption.
 
-use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::state::State;
 use dem_engine::state::partitions::divide;
 use dem_plan::Plan;

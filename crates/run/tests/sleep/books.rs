@@ -1,7 +1,7 @@
 //! The balances of energy and momentum stay closed during sleep.
 
 use dem_engine::Balance;
-use dem_engine::stages::ledger::{balance, opened};
+use dem_engine::stages::ledger::bookkeeping::{balance, opened};
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
 

@@ -1,6 +1,6 @@
 //! What is near something awake is listed, among many bodies asleep, and only that is searched.
 
-use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, stages};
 

@@ -1,6 +1,6 @@
 //! Bodies that have come to rest sleep at their position.
 
-use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::step::interact;
 
 use super::{

@@ -1,6 +1,6 @@
 //! Approaching objects wake sleeping bodies, which continue as they fell asleep.
 
-use dem_engine::stages::clumps::place_all;
+use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
 use nalgebra::Vector3;

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::step::{advance, interact};
 use dem_results::checkpoint::read_checkpoint;
 use dem_results::{Existing, ResultsFolder};

@@ -1,6 +1,6 @@
 //! `[initial]`: displaced particles oscillate, particles with a velocity move.
 
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::step::{advance, interact};
 
 use super::{MASS_KG, PAIR, STIFFNESS_N_M, assert_near, place, planned};

@@ -1,6 +1,6 @@
 //! Local damping spares the rigid motion of what nothing holds.
 
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, step};
 use dem_plan::plan;

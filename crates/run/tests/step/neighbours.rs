@@ -1,6 +1,6 @@
 //! The list of near pairs compared with a test of every pair.
 
-use dem_engine::stages::neighbours::near_pairs;
+use dem_engine::stages::search::neighbours::near_pairs;
 use dem_engine::state::particles::{Particles, Pose};
 use proptest::prelude::*;
 

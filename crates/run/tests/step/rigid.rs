@@ -3,7 +3,7 @@
 use crate::bars::{
     BondDamping, ELASTIC, MODELS, body, damp, random_body, random_spheres, reopen, soft, turned,
 };
-use dem_engine::stages::bonds::bond_wrenches;
+use dem_engine::stages::bonds::forces::bond_wrenches;
 use dem_engine::state::State;
 use dem_engine::state::loads::GroupLoad;
 use dem_engine::state::particles::Particles;

@@ -6,7 +6,7 @@ use crate::bars::{
 };
 use dem_engine::Balance;
 use dem_engine::check::limit::{Limit, limit};
-use dem_engine::stages::elastic::elastic_energy;
+use dem_engine::stages::bonds::energy_kernel::elastic_energy;
 use dem_engine::state::State;
 use dem_engine::state::bonds::{BondLaw, BondRule, Bonds};
 use dem_engine::state::events::Break;

@@ -5,7 +5,7 @@ use crate::bars::{
 };
 use dem_engine::check::limit::limit;
 use dem_engine::check::watchdog::Watchdog;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
 

@@ -1,7 +1,7 @@
 //! Momenta, kinetic energy and the balance as the zone moves.
 
 use dem_engine::check::limit::limit;
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, drift, exchange, interact};
 use nalgebra::Vector3;

@@ -1,7 +1,7 @@
 //! The same bits as a bonded body or the motion of a clump, with any number of threads, and after
 //! an interruption.
 
-use dem_engine::stages::ledger::balance;
+use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{interact, step};
 use dem_plan::Plan;

@@ -9,7 +9,7 @@ use dem_pictures::png_file::{Compression, to_png};
 use dem_scene::Scene;
 
 use dem_engine::clock::StageClock;
-use dem_engine::stages::ledger::balance::CHECKS;
+use dem_engine::stages::ledger::bookkeeping::CHECKS;
 use dem_engine::step::{number_of, step};
 use dem_plan::{Plan, PlannedStage};
 use dem_runner::output::pictures::View;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use dem_run::stages::ledger::balance;
+use dem_run::stages::ledger::bookkeeping::balance;
 use dem_run::step;
 use dem_run::step::{advance, interact};
 

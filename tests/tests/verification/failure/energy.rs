@@ -1,6 +1,6 @@
 //! Energy that bonds take to break, of one and of a bar of several.
 
-use dem_run::stages::ledger::balance;
+use dem_run::stages::ledger::bookkeeping::balance;
 use dem_run::step::{advance, interact};
 use dem_run::{State, step};
 

@@ -1,6 +1,6 @@
 //! Friction that is left where a bond has broken under pressure.
 
-use dem_run::stages::ledger::balance;
+use dem_run::stages::ledger::bookkeeping::balance;
 use dem_run::step;
 use dem_run::step::{advance, interact};
 

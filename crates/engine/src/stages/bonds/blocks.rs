@@ -109,14 +109,14 @@ pub(super) fn blocks_of(range: &Range<usize>) -> Range<usize> {
 
 /// Vectors from columns x, y, z of rows.
 #[inline(always)]
-pub fn vectors<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Vec3<T> {
+pub(crate) fn vectors<T: Lanes>(proof: T::Proof, rows: impl Fn(usize) -> [f64; 4]) -> Vec3<T> {
     let [x, y, z, _] = T::columns(proof, rows);
     Vec3(x, y, z)
 }
 
 /// Rows of x, y, z and a fourth number for padding.
 #[inline(always)]
-pub fn rows<T: Lanes>(vectors: Vec3<T>) -> [[f64; 4]; MOST] {
+pub(crate) fn rows<T: Lanes>(vectors: Vec3<T>) -> [[f64; 4]; MOST] {
     T::rows([vectors.0, vectors.1, vectors.2, vectors.0])
 }
 
@@ -137,7 +137,7 @@ pub(super) fn separations<T: Lanes>(proof: T::Proof, ends: &[[u32; 2]], poses: &
     unsafe_code,
     reason = "a hint that reads and writes nothing; the safe language has none"
 )]
-pub fn fetch_soon_of<T>(all: &[T], i: usize) {
+pub(crate) fn fetch_soon_of<T>(all: &[T], i: usize) {
     let line = all.as_ptr().wrapping_add(i);
     #[cfg(target_arch = "x86_64")]
     // SAFETY: a prefetch affects only the cache, whatever the address, and every x86-64 processor

@@ -106,7 +106,7 @@ fn forces_on(part: &RigidPart, poses: &[Pose], lists: [&[Wrench]; 2]) -> [Vector
 /// Gives the spheres of rigid parts the motions of the parts at the time of their poses: predicted
 /// from the forces with this damping of bonds, and these impulses; each one for each particle, or
 /// none.
-pub fn predict_rigid_parts(
+pub(crate) fn predict_rigid_parts(
     state: &State,
     of_bonds: &[Wrench],
     impulses: &[Wrench],

@@ -18,7 +18,7 @@ use crate::state::particles::Motion;
 const LEAST_REST: f64 = 1e-6;
 
 /// Joins what is near a wall that moves, or whose surface does, with that wall.
-pub fn join_at_moving_walls(contacts: &mut Contacts, state: &State) {
+pub(crate) fn join_at_moving_walls(contacts: &mut Contacts, state: &State) {
     let Some(clusters) = &state.clusters else {
         return;
     };

@@ -170,7 +170,7 @@ fn velocity_m_s(state: &State, i: usize) -> Vector3<f64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::stages::share;
+    use super::share;
 
     #[test]
     fn shares_add_up_and_follow_the_compliances() {

@@ -7,7 +7,7 @@ mod renumbered;
 
 use dem_scene::WallMotion;
 
-pub use self::renumbered::{lengthen_lists, renumber_lists};
+pub(crate) use self::renumbered::{lengthen_lists, renumber_lists};
 
 use self::among_sleepers::list_among_sleepers;
 use self::moved::{find_due, find_left, may_be_due, refer_clumps, refer_particles, use_up};

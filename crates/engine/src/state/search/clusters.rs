@@ -336,7 +336,7 @@ impl Groups {
 
 #[cfg(test)]
 mod tests {
-    use crate::state::*;
+    use super::*;
 
     /// Boxes around the large clusters, by their numbers.
     fn boxes(known: &KnownClusters) -> Vec<(u32, Bounds, Vec<Bounds>)> {

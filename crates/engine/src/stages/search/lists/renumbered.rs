@@ -14,7 +14,7 @@ use crate::state::search::rigid_balls::ClumpReference;
 /// Adds particles and their clumps, which come after those that were there before, to the last
 /// search: they are searched for before the next step. `known`: numbers of particles and clumps
 /// before.
-pub fn lengthen_lists(
+pub(crate) fn lengthen_lists(
     contacts: &mut Contacts,
     particles: &Particles,
     clumps: &Clumps,
@@ -38,7 +38,7 @@ pub fn lengthen_lists(
 /// Renumbers the last search. `now`: for each old particle its new number or [`REMOVED`];
 /// `is_new`: for each new number whether the particle is new; `old_firsts`: the first sphere of
 /// each clump before.
-pub fn renumber_lists(
+pub(crate) fn renumber_lists(
     state: &mut State,
     now: &[u32],
     is_new: impl Fn(u32) -> bool,
