@@ -2,7 +2,7 @@
 
 use dem_laboratory::figure::Figure;
 use dem_laboratory::test_result::TestResult;
-use dem_run::laboratory::evaluate::EQ_18;
+use dem_run::rig::evaluate::EQ_18;
 
 use crate::bench::{Bench, Failed, ONE_THREAD, Run, body, sets};
 use crate::cells::{change, scattered, thousands};

@@ -1,5 +1,7 @@
 //! The end of a run: its summary and its last files.
 
+pub(crate) mod summary_parts;
+
 use dem_io::Result;
 use dem_io::units::significant;
 use dem_results::summary::{AdaptiveSummary, Summary, Verdict};
@@ -13,10 +15,10 @@ use super::observe::{AT_END_TIME, Ended, INTERRUPTION};
 use super::outcome::Outcome;
 use super::outputs::pictures::taken_until;
 use super::rigid_hits::RigidHits;
+use crate::end::summary_parts::{part_error_above, population_summary, sleep_summary};
+use crate::last_files::flows::body_flows;
+use crate::last_files::fragments::fragment_summary;
 use crate::machine::{machine, processor_time_s};
-use crate::output::flows::body_flows;
-use crate::output::fragments::fragment_summary;
-use crate::output::summary::{part_error_above, population_summary, sleep_summary};
 use dem_engine::state::clusters::fragments as fragments_of;
 use dem_engine::state::clusters::fragments::Fragment;
 use dem_engine::step::{advance, number_of, stages};

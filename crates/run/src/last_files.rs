@@ -2,7 +2,10 @@
 //! writing them.
 
 mod film;
+pub mod flows;
+pub mod fragments;
 mod last_state;
+pub(crate) mod plots;
 mod tables;
 
 use std::path::{Path, PathBuf};
@@ -19,7 +22,7 @@ use super::outputs::pictures::taken_until;
 use super::schedule::OutputSchedule;
 use super::settings::RunSettings;
 use super::snapshot::fingerprint;
-use crate::output::plots::{plots_of_every_run, write_plots};
+use crate::last_files::plots::{plots_of_every_run, write_plots};
 use dem_plan::Plan;
 use dem_plan::measure::{Probe, probes};
 use dem_rig::watch::Watch;

@@ -1,13 +1,13 @@
 //! The files of results that grow during a run, as one list.
 
 mod discharge;
-mod event_table;
+pub mod event_table;
 mod fragments;
-mod frames;
+pub(super) mod frames;
 pub(super) mod list;
 mod picture_order;
 pub(super) mod pictures;
-mod series;
+pub(super) mod series;
 
 use std::path::Path;
 
@@ -20,8 +20,8 @@ use serde::{Deserialize, Serialize};
 use self::picture_order::Order;
 use super::new_step::NewStep;
 use super::progress::Progress;
-use crate::output::frames::FrameOrder;
-use crate::output::walls::WallOutput;
+use crate::outputs::frames::order::FrameOrder;
+use crate::outputs::frames::walls::WallOutput;
 use dem_engine::Balance;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;

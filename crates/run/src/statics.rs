@@ -22,7 +22,7 @@ use dem_io::{Diagnostic, Result};
 use dem_scene::Scene;
 
 use crate::machine::processor_time_s;
-use crate::output::frames::FrameOrder;
+use crate::outputs::frames::order::FrameOrder;
 use crate::settings::{RunSettings, SoFar};
 use dem_engine::stages::bonds::energy_kernel::elastic_energy;
 use dem_engine::state::State;

@@ -5,7 +5,7 @@ use dem_engine::state::bonds::Bonds;
 use dem_engine::state::particles::Particles;
 use dem_engine::state::walls::Wall;
 use dem_physics::geometry::{Frame, Plane, Shape, SolidBox};
-use dem_runner::output::pictures::View;
+use dem_runner::pictures::View;
 
 /// Balls of 10 mm at these positions, m, without contacts and clusters.
 fn state(places: &[[f64; 3]]) -> State {

@@ -3,7 +3,7 @@
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::clusters::Cluster;
 use dem_pictures::colours::{SINGLE, of_fragment};
-use dem_runner::output::pictures::subject::{by_body, of_clusters};
+use dem_runner::pictures::subject::{by_body, of_clusters};
 
 fn cluster(parent: Option<u32>, particles: u32) -> Cluster {
     Cluster {

@@ -8,8 +8,8 @@ use dem_engine::state::clusters::Clusters;
 use dem_physics::bond::stiffness::BondModel;
 use dem_pictures::colours::SINGLE;
 use dem_plots::viridis;
-use dem_runner::output::pictures::View;
-use dem_runner::output::pictures::scale::Scale;
+use dem_runner::pictures::View;
+use dem_runner::pictures::scale::Scale;
 use dem_scene::ColourBy;
 
 use crate::bars::{ELASTIC, body, spheres, steel};

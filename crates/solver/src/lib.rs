@@ -32,8 +32,8 @@ pub use dem_engine::{Balance, State, balance, check, clock, stages, state, step,
 pub use dem_physics as physics;
 pub use dem_physics::{geometry, shape};
 pub use dem_plan::{self as plan, Plan, measure, plan};
-pub use dem_rig as laboratory;
-pub use dem_runner::{self as run, RunSettings, output, run};
+pub use dem_rig as rig;
+pub use dem_runner::{self as run, RunSettings, run};
 pub use {dem_lammps as lammps, dem_stress as stress};
 
 /// The code on the page is compiled and run with the tests.

@@ -3,7 +3,7 @@
 use dem_io::units::significant;
 use nalgebra::Vector3;
 
-use crate::output::pictures::around_walls;
+use crate::pictures::around_walls;
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments::Fragment;
 use dem_physics::geometry::Shape;

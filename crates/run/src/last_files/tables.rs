@@ -6,8 +6,8 @@ use dem_io::Result;
 use dem_results::{MixingRow, write_distribution, write_flows, write_mixing};
 
 use super::last_state::LastState;
-use crate::output::flows::flow_rows;
-use crate::output::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
+use crate::last_files::flows::flow_rows;
+use crate::last_files::fragments::{FRAGMENT_PLOTS, write_fragment_plots, write_tree};
 use dem_plan::measure::Probe;
 
 /// Origin, plots and size distribution of the fragments.

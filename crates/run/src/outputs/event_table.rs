@@ -6,10 +6,13 @@ use dem_results::{EVENT_COLUMNS, Event, Table, event_lines};
 
 use super::{Changes, Opening, Output, Saved};
 use crate::new_step::NewStep;
-use crate::output::fragments::split_text;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, bond_of_file};
+use dem_engine::state::clusters::{Cluster, Split};
 use dem_engine::state::events::{PopulationEvent, STARTS_BONDED};
+
+/// Largest number of fragments named in the text of a split.
+const NAMED: usize = 8;
 
 struct EventTable(Table);
 
@@ -88,6 +91,31 @@ fn write_splits(state: &State, table: &mut Table) -> Result<()> {
         .map(|detail| of_all(state, "split", "", detail))
         .collect();
     table.append(&event_lines(&events))
+}
+
+/// Human-readable fragments of one present or former cluster:
+/// `fragment 3 -> 7, 8 (1204 + 38 particles)`. The largest are first, and only some of many are
+/// named.
+pub fn split_text(split: &Split, history: &[Cluster]) -> String {
+    let particles = |id: u32| history[id as usize].particles;
+    let mut children = split.children.clone();
+    // The sort is stable.
+    children.sort_by_key(|id| std::cmp::Reverse(particles(*id)));
+    let (named, others) = children.split_at(children.len().min(NAMED));
+    let ids: Vec<String> = named.iter().map(u32::to_string).collect();
+    let counts: Vec<String> = named.iter().map(|id| particles(*id).to_string()).collect();
+    let mut text = format!(
+        "fragment {} -> {} ({} particles)",
+        split.parent,
+        ids.join(", "),
+        counts.join(" + ")
+    );
+    if !others.is_empty() {
+        let count: u64 = others.iter().map(|id| u64::from(particles(*id))).sum();
+        let s = if count == 1 { "" } else { "s" };
+        text += &format!(" and {} more ({count} particle{s})", others.len());
+    }
+    text
 }
 
 /// Mass, kg, momentum, N s, and kinetic energy, J, before and after an event.

@@ -2,13 +2,13 @@
 
 use dem_io::Result;
 use dem_results::fragments::COLUMNS;
-use dem_results::{Table, append_fragments};
+use dem_results::{FragmentRow, Table, append_fragments};
 
 use super::{Moment, Opening, Output, Saved, TableEnd};
-use crate::output::fragments::rows;
 use dem_engine::stages::clumps::motion::synchronous;
 use dem_engine::stages::ledger::totals::synchronous_motions;
-use dem_engine::state::clusters::fragments;
+use dem_engine::state::clusters::{Fragment, fragments};
+use dem_engine::state::model::Model;
 
 /// Besides at the frames, fragments are written when their number has grown by one in this many.
 /// While there are few, every new one is written, and the number of rows written for all splits
@@ -54,4 +54,23 @@ impl Output for Fragments {
     fn save(&self) -> Result<Saved> {
         Saved::of_table(&self.table, &self.written)
     }
+}
+
+/// Fragments as rows of the table of fragments.
+fn rows<'a>(fragments: &[Fragment], model: &'a Model) -> Vec<FragmentRow<'a>> {
+    let row = |fragment: &Fragment| FragmentRow {
+        fragment_id: fragment.fragment_id,
+        parent_id: fragment.parent_id,
+        particles: fragment.particles,
+        mass_kg: fragment.mass_kg,
+        centre_m: fragment.centre_m,
+        velocity_m_s: fragment.velocity_m_s,
+        angular_velocity_rad_s: fragment.angular_velocity_rad_s,
+        force_n: fragment.force_n,
+        equivalent_diameter_m: fragment.equivalent_diameter_m,
+        box_diagonal_m: fragment.box_diagonal_m,
+        body: model.body_name(fragment.body),
+        material: model.material_name(fragment.body),
+    };
+    fragments.iter().map(row).collect()
 }

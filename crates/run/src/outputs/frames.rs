@@ -1,11 +1,14 @@
 //! The frames, `frames/frame_000000.vtp` and so on, with their walls.
 
+pub(crate) mod order;
+pub(crate) mod walls;
+
 use dem_io::Result;
 use dem_results::FrameFiles;
 
 use super::{Changes, Moment, Opening, Output, Saved};
-use crate::output::frames::FrameOrder;
-use crate::output::walls::WallOutput;
+use crate::outputs::frames::order::FrameOrder;
+use crate::outputs::frames::walls::WallOutput;
 
 struct Frames {
     files: FrameFiles,

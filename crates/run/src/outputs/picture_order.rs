@@ -1,7 +1,7 @@
 //! View and interval of pictures.
 
-use crate::output::pictures::View;
-use crate::output::pictures::scale::Scale;
+use crate::pictures::View;
+use crate::pictures::scale::Scale;
 use dem_engine::state::State;
 use dem_engine::state::bodies::PlacedBody;
 use dem_scene::Scene;

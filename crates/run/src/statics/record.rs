@@ -9,11 +9,11 @@ use dem_results::{EVENT_COLUMNS, FrameFiles, ResultsFolder, SeriesFile, Table};
 use dem_scene::Scene;
 
 use crate::last_files::End;
+use crate::last_files::fragments::fragment_summary;
 use crate::machine::machine;
-use crate::output::fragments::fragment_summary;
-use crate::output::frames::FrameOrder;
-use crate::output::series;
-use crate::output::walls::WallOutput;
+use crate::outputs::frames::order::FrameOrder;
+use crate::outputs::frames::walls::WallOutput;
+use crate::outputs::series;
 use crate::settings::RunSettings;
 use dem_engine::Balance;
 use dem_engine::stages::bonds::forces::most_strained_edge;

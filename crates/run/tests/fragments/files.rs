@@ -7,7 +7,7 @@ use dem_engine::state::clusters::{Cluster, Split};
 use dem_results::fragments::{COLUMNS, TREE_COLUMNS};
 use dem_results::read_series;
 use dem_results::{Existing, ResultsFolder};
-use dem_runner::output::fragments::split_text;
+use dem_runner::outputs::event_table::split_text;
 use nalgebra::Vector3;
 
 use super::burst::{PARTICLES, burst, bursting, planned, run_into};

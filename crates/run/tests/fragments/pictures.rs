@@ -5,7 +5,7 @@ use std::fs;
 use dem_engine::state::clusters::Cluster;
 use dem_engine::state::clusters::sizes::FragmentSize;
 use dem_plan::measure::sizes::steps;
-use dem_runner::output::fragments::counts_over_time;
+use dem_runner::last_files::fragments::counts_over_time;
 
 use super::burst::burst;
 

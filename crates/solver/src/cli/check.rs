@@ -22,7 +22,7 @@ use dem_io::body::mass::mass_lines;
 use dem_plan::{Plan, PlannedStage};
 use dem_rig::arrange::{arrange, tested_body};
 use dem_rig::plan_with_test;
-use dem_runner::output::pictures::View;
+use dem_runner::pictures::View;
 
 /// Samples that differ by less than this factor are told as one.
 const ALIKE: f64 = 1.2;

@@ -12,7 +12,7 @@ use dem_engine::clock::StageClock;
 use dem_engine::stages::ledger::bookkeeping::CHECKS;
 use dem_engine::step::{number_of, step};
 use dem_plan::{Plan, PlannedStage};
-use dem_runner::output::pictures::View;
+use dem_runner::pictures::View;
 
 /// The run time is predicted from this many samples of the first steps of a copy.
 const SAMPLES: usize = 8;

@@ -6,12 +6,12 @@ use dem_io::Result;
 use dem_io::units::significant;
 use dem_plots::{Axis, Line, MOST_LINES, Marks, Plot, Point};
 use dem_results::summary::FragmentSummary;
-use dem_results::{FragmentRow, ResultsFolder, TreeRow, write_fragment_tree};
+use dem_results::{ResultsFolder, TreeRow, write_fragment_tree};
 
 use dem_engine::state::State;
 use dem_engine::state::clusters::fragments::mass_fraction_of_largest;
 use dem_engine::state::clusters::sizes::Discharged;
-use dem_engine::state::clusters::{Cluster, Clusters, Fragment, Split};
+use dem_engine::state::clusters::{Cluster, Clusters, Fragment};
 use dem_engine::state::model::Model;
 use dem_plan::measure::Probe;
 use dem_plan::measure::sizes::Fragments;
@@ -22,9 +22,6 @@ pub(super) const SIZES: &str = "fragment_sizes";
 pub(super) const DISCHARGE: &str = "discharged_mass";
 /// The plots of [`write_fragment_plots`].
 pub(crate) const FRAGMENT_PLOTS: [&str; 3] = [COUNT, SIZES, DISCHARGE];
-
-/// Largest number of fragments named in the text of a split.
-const NAMED: usize = 8;
 
 /// Fragmentation of the bodies: `fragments` of the clusters, and what outlets have removed.
 pub(crate) fn fragment_summary(
@@ -47,25 +44,6 @@ pub(crate) fn fragment_summary(
     }
 }
 
-/// Fragments as rows of the table of fragments.
-pub fn rows<'a>(fragments: &[Fragment], model: &'a Model) -> Vec<FragmentRow<'a>> {
-    let row = |fragment: &Fragment| FragmentRow {
-        fragment_id: fragment.fragment_id,
-        parent_id: fragment.parent_id,
-        particles: fragment.particles,
-        mass_kg: fragment.mass_kg,
-        centre_m: fragment.centre_m,
-        velocity_m_s: fragment.velocity_m_s,
-        angular_velocity_rad_s: fragment.angular_velocity_rad_s,
-        force_n: fragment.force_n,
-        equivalent_diameter_m: fragment.equivalent_diameter_m,
-        box_diagonal_m: fragment.box_diagonal_m,
-        body: model.body_name(fragment.body),
-        material: model.material_name(fragment.body),
-    };
-    fragments.iter().map(row).collect()
-}
-
 /// Writes the parent of each fragment.
 pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<()> {
     let row = |(id, cluster): (u32, &Cluster)| TreeRow {
@@ -77,31 +55,6 @@ pub(crate) fn write_tree(folder: &ResultsFolder, clusters: &Clusters) -> Result<
     };
     let rows = (0..).zip(&clusters.history).map(row);
     write_fragment_tree(&folder.fragment_tree(), rows)
-}
-
-/// Human-readable fragments of one present or former cluster:
-/// `fragment 3 -> 7, 8 (1204 + 38 particles)`. The largest are first, and only some of many are
-/// named.
-pub fn split_text(split: &Split, history: &[Cluster]) -> String {
-    let particles = |id: u32| history[id as usize].particles;
-    let mut children = split.children.clone();
-    // The sort is stable.
-    children.sort_by_key(|id| std::cmp::Reverse(particles(*id)));
-    let (named, others) = children.split_at(children.len().min(NAMED));
-    let ids: Vec<String> = named.iter().map(u32::to_string).collect();
-    let counts: Vec<String> = named.iter().map(|id| particles(*id).to_string()).collect();
-    let mut text = format!(
-        "fragment {} -> {} ({} particles)",
-        split.parent,
-        ids.join(", "),
-        counts.join(" + ")
-    );
-    if !others.is_empty() {
-        let count: u64 = others.iter().map(|id| u64::from(particles(*id))).sum();
-        let s = if count == 1 { "" } else { "s" };
-        text += &format!(" and {} more ({count} particle{s})", others.len());
-    }
-    text
 }
 
 /// Plots the discharged mass over time, if there is any; the number of fragments over time, if it

@@ -6,7 +6,7 @@ use dem_results::{WallFiles, WallFrame, WallTriangles};
 use dem_scene::WallMotion;
 use nalgebra::Vector3;
 
-use super::pictures::subject::{around, corners_m, plane_patch, points_of};
+use crate::pictures::subject::{around, corners_m, plane_patch, points_of};
 use dem_engine::state::State;
 use dem_engine::state::walls::Wall;
 use dem_physics::geometry::Bounds;
