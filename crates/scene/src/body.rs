@@ -185,19 +185,15 @@ pub(super) fn read_all(
     let mut piped: Option<String> = None;
     for (name, field) in tables {
         if let Some(of) = meaning(&name) {
-            let problem = format!("{} is named like {of}", field.path);
-            return Err(field.refuse(problem, "give it another name"));
+            return Err(field.fault(format!("is named like {of}"), "give it another name"));
         }
         let body = read(&field, materials, bonds, regions, folder)?;
         if matches!(&body.source, BodySource::File(file) if file.as_os_str() == "-")
             && let Some(first) = piped.replace(name.clone())
         {
-            let problem = format!(
-                "{} reads standard input, as bodies.{first} does",
-                field.path
-            );
+            let problem = format!("reads standard input, as bodies.{first} does");
             let remedy = "it can be read once: give one of them another file";
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(problem, remedy));
         }
         bodies.insert(name, body);
     }
@@ -216,12 +212,9 @@ fn read(
     let material_field = table.need("material")?;
     let material = material_field.reference(materials.keys(), "materials")?;
     if materials.get(&material).is_some_and(|found| found.rigid) {
-        let problem = format!(
-            "{} is \"{material}\", which is rigid, and only walls can be",
-            material_field.path
-        );
+        let problem = format!("is \"{material}\", which is rigid, and only walls can be");
         let remedy = "name another material, or give this one a density and a young_modulus";
-        return Err(material_field.refuse(problem, remedy));
+        return Err(material_field.fault(problem, remedy));
     }
     let bond_kind = table.read_by("bonds", |field| field.reference(bonds.keys(), "bonds"))?;
     let start_as = clump::read(&table)?;
@@ -236,11 +229,11 @@ fn read(
             .and_then(|found| found.density_kg_m3);
         if density.is_none() && whole_mass.is_none() {
             let problem = format!(
-                "{} is \"{material}\", which has no density, and no file names one for {}",
-                material_field.path, table.path
+                "is \"{material}\", which has no density, and no file names one for {}",
+                table.path
             );
             let remedy = format!("add density = \"2050 kg/m3\" to [materials.{material}]");
-            return Err(material_field.refuse(problem, remedy));
+            return Err(material_field.fault(problem, remedy));
         }
     }
     Ok(BodyEntry {
@@ -266,11 +259,8 @@ fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass
     };
     conflicts::BODY.refuse_key("body_density", table)?;
     if matches!(source, BodySource::Inline { .. }) {
-        let problem = format!(
-            "{} is that of a shape, and particles in the scene have none",
-            field.path
-        );
-        return Err(field.refuse(problem, "give the body a mass, such as mass = \"0.4 kg\""));
+        let problem = "is that of a shape, and particles in the scene have none";
+        return Err(field.fault(problem, "give the body a mass, such as mass = \"0.4 kg\""));
     }
     Ok(Some(WholeMass::Density(table.read("body_density")?)))
 }
@@ -281,9 +271,8 @@ fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
         return Ok(BodySource::File(named_path(&file, folder)?));
     }
     let Some(particles) = table.get("particles") else {
-        let problem = format!("{} has no particles", table.path);
         let remedy = "add file = \"body.vtp\", or particles = [[x, y, z, radius]]";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("has no particles", remedy));
     };
     let particles = read_particles(&particles)?;
     let bonds = match table.get("bond_list") {
@@ -316,24 +305,24 @@ fn read_bonds(field: &Field<'_>, particles: &[[f64; 4]]) -> Result<Vec<[u32; 2]>
         let [a, b] = item.row("the numbers of two particles, such as [0, 1]")?;
         let (a, b) = (a.particle(count)?, b.particle(count)?);
         if a == b {
-            let problem = format!("{} joins particle {a} to itself", item.path);
-            return Err(item.refuse(problem, "correct or remove this bond"));
+            let problem = format!("joins particle {a} to itself");
+            return Err(item.fault(problem, "correct or remove this bond"));
         }
         let pair = [a.min(b), a.max(b)];
         if let Some(first) = known.insert(pair, number) {
             let problem = format!(
-                "{} joins particles {} and {}, which {}[{first}] joins already",
-                item.path, pair[0], pair[1], field.path
+                "joins particles {} and {}, which {}[{first}] joins already",
+                pair[0], pair[1], field.path
             );
-            return Err(item.refuse(problem, "remove one of them"));
+            return Err(item.fault(problem, "remove one of them"));
         }
         let [from, to] = pair.map(|end| &particles[end as usize]);
         if from[..3] == to[..3] {
             let problem = format!(
-                "{} joins particles {} and {}, which are at the same place",
-                item.path, pair[0], pair[1]
+                "joins particles {} and {}, which are at the same place",
+                pair[0], pair[1]
             );
-            return Err(item.refuse(problem, "a bond needs a length: move one of them"));
+            return Err(item.fault(problem, "a bond needs a length: move one of them"));
         }
         bonds.push(pair);
     }

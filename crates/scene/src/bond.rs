@@ -369,11 +369,8 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
         },
     );
     if let Some(field) = table.get("model").filter(|field| field.is("shen")) {
-        let problem = format!(
-            "{} is \"shen\", the bond with concave ends of Shen et al. 2016, which is not available: the sources at hand do not give its formulas",
-            field.path
-        );
-        return Err(field.refuse(problem, "write another model, such as \"parallel\""));
+        let problem = "is \"shen\", the bond with concave ends of Shen et al. 2016, which is not available: the sources at hand do not give its formulas";
+        return Err(field.fault(problem, "write another model, such as \"parallel\""));
     }
     let model = table
         .read_by("model", |field| field.choice(&known))?
@@ -403,11 +400,10 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
         if let (Some(field), false) = (table.get(key), belongs) {
             let name = known.iter().find(|(_, other)| *other == model);
             let problem = format!(
-                "{} does not apply to the model \"{}\"",
-                field.path,
+                "does not apply to the model \"{}\"",
                 name.map_or("", |(name, _)| *name)
             );
-            return Err(field.refuse(problem, format!("remove it, or write model = \"{of}\"")));
+            return Err(field.fault(problem, format!("remove it, or write model = \"{of}\"")));
         }
     }
     Ok(model)
@@ -447,9 +443,8 @@ fn plasticity(field: &Field<'_>) -> Result<BondPlasticity> {
         ..BondPlasticity::default()
     };
     if plasticity == none {
-        let problem = format!("{} has no strength at which a bond yields", field.path);
         let remedy = "add normal_yield_strength, shear_yield_strength, torsion_yield_strength or bending_yield_strength, such as normal_yield_strength = \"1 MPa\"";
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault("has no strength at which a bond yields", remedy));
     }
     Ok(plasticity)
 }

@@ -194,20 +194,14 @@ fn check_strengths(field: &Field<'_>, table: &Table<'_>, failure: &BondFailure) 
     if has_none && failure.compressive_strength_pa.is_none() {
         let remedy = "add tensile_strength, compressive_strength, shear_strength, cohesion or von_mises_strength, such as von_mises_strength = \"0.185 MPa\"";
         let field = table.get("rate_strengthening").unwrap_or(field.clone());
-        let problem = format!("{} has no strength to exceed", field.path);
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault("has no strength to exceed", remedy));
     }
     let strengthens = table.get("rate_strengthening");
     let strengthens = strengthens.filter(|_| failure.rate_strengthening_from_1_s.is_some());
     if let (Some(field), true) = (strengthens, has_none) {
-        let problem = format!(
-            "{} has no effect without tensile_strength, shear_strength, cohesion or von_mises_strength, which it raises; it does not raise compressive_strength",
-            field.path
-        );
-        return Err(field.refuse(
-            problem,
-            "add tensile_strength = \"1 MPa\", or remove rate_strengthening",
-        ));
+        let problem = "has no effect without tensile_strength, shear_strength, cohesion or von_mises_strength, which it raises; it does not raise compressive_strength";
+        let remedy = "add tensile_strength = \"1 MPa\", or remove rate_strengthening";
+        return Err(field.fault(problem, remedy));
     }
     Ok(())
 }
@@ -227,8 +221,8 @@ fn check_fracture_energy(table: &Table<'_>, failure: &BondFailure) -> Result<()>
         .iter()
         .find(|(_, strength)| *strength == Some(0.0))
     {
-        let problem = format!("{} has no strength to soften from: {name} is 0", field.path);
-        return Err(field.refuse(problem, "give the strength, or remove fracture_energy"));
+        let problem = format!("has no strength to soften from: {name} is 0");
+        return Err(field.fault(problem, "give the strength, or remove fracture_energy"));
     }
     Ok(())
 }

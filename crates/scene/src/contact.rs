@@ -178,8 +178,7 @@ pub(super) fn read_all(
         let field = table.field(key, node);
         let pair = named_pair(key, &field, materials)?;
         if let Some(first) = paths.insert(pair.clone(), field.path.clone()) {
-            let problem = format!("{} is the same pair as {first}", field.path);
-            return Err(field.refuse(problem, "remove one of them"));
+            return Err(field.fault(format!("is the same pair as {first}"), "remove one of them"));
         }
         contacts.insert(pair.clone(), read(&field, pair, materials)?);
     }
@@ -194,11 +193,9 @@ fn read(
     let table = Table::of(field, &CONTACT)?;
     let is_rigid = |name: &String| materials.get(name).is_some_and(|material| material.rigid);
     if pair.iter().all(is_rigid) {
-        let problem = format!("{} is a pair of rigid materials", field.path);
-        return Err(field.refuse(
-            problem,
-            "remove it: only walls are rigid, and walls never meet each other",
-        ));
+        let problem = "is a pair of rigid materials";
+        let remedy = "remove it: only walls are rigid, and walls never meet each other";
+        return Err(field.fault(problem, remedy));
     }
     let law = law(&table)?;
     if !matches!(law, ContactLaw::Linear { .. }) {
@@ -231,9 +228,9 @@ const STIFF_BY_MATERIALS: &str = "whose stiffness is that of the materials";
 fn refuse_of(table: &Table<'_>, (other, keys): &Own, law: &str, why: &str) -> Result<()> {
     match keys.iter().find_map(|key| table.get(key)) {
         Some(field) => {
-            let problem = format!("{} does not apply to the law \"{law}\", {why}", field.path);
             let remedy = format!("remove it, or write law = \"{other}\"");
-            Err(field.refuse(problem, remedy))
+            let problem = format!("does not apply to the law \"{law}\", {why}");
+            Err(field.fault(problem, remedy))
         }
         None => Ok(()),
     }
@@ -277,25 +274,19 @@ fn need_moduli(
     let Some(name) = pair.iter().find(has_none) else {
         return Ok(());
     };
-    let problem = format!(
-        "{} follows Hertz's law, but [materials.{name}] has no young_modulus",
-        table.path
-    );
+    let problem = format!("follows Hertz's law, but [materials.{name}] has no young_modulus");
     let remedy = format!(
         "add young_modulus = \"15 MPa\" to [materials.{name}], or write law = \"linear\" here"
     );
-    Err(table.refuse(problem, remedy))
+    Err(table.fault(problem, remedy))
 }
 
 fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
     let is_sprung = table.read_by("rolling", |field| field.choice(&ROLLINGS))?;
     let damping = table.read("rolling_damping_ratio")?;
     if let (Some(field), false) = (table.get("rolling_damping_ratio"), is_sprung == Some(true)) {
-        let problem = format!(
-            "{} has no effect without rolling = \"spring-dashpot\"",
-            field.path
-        );
-        return Err(field.refuse(problem, "remove it, or add rolling = \"spring-dashpot\""));
+        let problem = "has no effect without rolling = \"spring-dashpot\"";
+        return Err(field.fault(problem, "remove it, or add rolling = \"spring-dashpot\""));
     }
     if is_sprung.is_none() && table.get("rolling_friction").is_none() {
         return Ok(Rolling::None);
@@ -306,8 +297,7 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
     }
     if let (Some(field), true) = (table.get("rolling_friction"), sliding_friction == 0.0) {
         let problem = format!(
-            "{} is {}, but {}.friction is {}: what slides freely has no grip to roll with",
-            field.path,
+            "is {}, but {}.friction is {}: what slides freely has no grip to roll with",
             field.shown(),
             table.path,
             if table.get("friction").is_some() {
@@ -316,7 +306,7 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
                 "not given, which means 0"
             }
         );
-        return Err(field.refuse(problem, "give friction above 0, or rolling_friction = 0"));
+        return Err(field.fault(problem, "give friction above 0, or rolling_friction = 0"));
     }
     Ok(if is_sprung == Some(true) {
         Rolling::SpringDashpot { friction, damping }

@@ -132,10 +132,10 @@ pub(super) fn read(
         && !relaxation.boolean()?
     {
         let problem = format!(
-            "{} is false, but {} makes daughters that overlap: without relaxation they fly apart",
-            relaxation.path, field.path
+            "is false, but {} makes daughters that overlap: without relaxation they fly apart",
+            field.path
         );
-        return Err(relaxation.refuse(problem, "remove it"));
+        return Err(relaxation.fault(problem, "remove it"));
     }
     let mut classes: Vec<SizeClass> = Vec::new();
     for item in table.need("classes")?.items()? {
@@ -173,18 +173,16 @@ fn check_body(
     bodies: &BTreeMap<String, BodyEntry>,
 ) -> Result<()> {
     if body == parent {
-        let problem = format!("{} is the body that is replaced", named.path);
         let remedy = "name a body of several spheres, its daughters";
-        return Err(named.refuse(problem, remedy));
+        return Err(named.fault("is the body that is replaced", remedy));
     }
     let materials = [body, parent].map(|name| bodies.get(name).map(|entry| &entry.material));
     if let ([Some(own), Some(of_parent)], true) = (materials, materials[0] != materials[1]) {
         let problem = format!(
-            "{} is \"{body}\" of material '{own}', but the particle '{parent}' is of '{of_parent}'",
-            named.path
+            "is \"{body}\" of material '{own}', but the particle '{parent}' is of '{of_parent}'"
         );
         let remedy = format!("write material = \"{of_parent}\" in [bodies.{body}]");
-        return Err(named.refuse(problem, remedy));
+        return Err(named.fault(problem, remedy));
     }
     for key in [
         "position",
@@ -197,30 +195,25 @@ fn check_body(
     ] {
         if let Some(field) = root.find(&["bodies", body, key]) {
             let problem = format!(
-                "{} has no effect: daughters of '{parent}' take over its place, motion and mass",
-                field.path
+                "has no effect: daughters of '{parent}' take over its place, motion and mass"
             );
-            return Err(field.refuse(problem, "remove it"));
+            return Err(field.fault(problem, "remove it"));
         }
     }
     for key in ["start_as", "clump"] {
         if let Some(field) = root.find(&["bodies", body, key]) {
             let problem = format!(
-                "{} has no effect: daughters of '{parent}' are loose spheres, or bonded if their file has bonds",
-                field.path
+                "has no effect: daughters of '{parent}' are loose spheres, or bonded if their file has bonds"
             );
-            return Err(field.refuse(problem, "remove it"));
+            return Err(field.fault(problem, "remove it"));
         }
     }
     if let Some(field) = root.find(&["replacement", body, "daughters"]) {
-        let problem = format!(
-            "{} belongs to a body that is daughters of '{parent}' itself",
-            field.path
-        );
+        let problem = format!("belongs to a body that is daughters of '{parent}' itself");
         let remedy = format!(
             "write smallest_size in [replacement.{parent}.daughters], whose loose daughters are then replaced in turn"
         );
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault(problem, remedy));
     }
     Ok(())
 }

@@ -30,8 +30,8 @@ pub(super) fn direction(field: &Field<'_>, what: &str) -> Result<[f64; 3]> {
     // Scaled first: squares of very large or small numbers leave the range of f64.
     let largest = given.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
     if largest == 0.0 {
-        let problem = format!("{} is [0, 0, 0], which points nowhere", field.path);
-        return Err(field.refuse(problem, format!("give {what} such as [0, 0, 1]")));
+        let problem = "is [0, 0, 0], which points nowhere";
+        return Err(field.fault(problem, format!("give {what} such as [0, 0, 1]")));
     }
     let scaled = given.map(|c| c / largest);
     let length = scaled.iter().map(|c| c * c).sum::<f64>().sqrt();

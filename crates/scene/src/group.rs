@@ -83,13 +83,12 @@ pub(super) fn read_all(
         let body = format!("the body [bodies.{name}]");
         let is_body = bodies.contains_key(&name);
         if let Some(of) = meaning(&name).or(is_body.then_some(&body)) {
-            let problem = format!("{} is named like {of}", field.path);
             let remedy = if name == FRAGMENTS {
                 "give it another name"
             } else {
                 "give it another name, or remove it: the name stands for those particles without it"
             };
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(format!("is named like {of}"), remedy));
         }
         let group = read(&field, bodies)?;
         presence.refuse_group(&field, group.body.as_deref())?;
@@ -101,32 +100,20 @@ pub(super) fn read_all(
 fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleGroup> {
     let table = Table::of(field, &GROUP)?;
     let body = table.read_by("body", |field| field.reference(bodies.keys(), "bodies"))?;
-    let mut given = table.given(&PICKS);
-    let Some((key, first)) = given.next() else {
-        let problem = format!("{} selects nothing", table.path);
+    let one = "a group selects in one way: remove one, or make two groups";
+    let Some((key, first)) = table.at_most_one(&PICKS, one)? else {
         let remedy =
             "add all = true, particles = [0], box = { min, max } or sphere = { centre, radius }";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("selects nothing", remedy));
     };
-    if let Some((_, second)) = given.next() {
-        let problem = format!("{} cannot be combined with {key}", second.path);
-        return Err(second.refuse(
-            problem,
-            "a group selects in one way: remove one, or make two groups",
-        ));
-    }
     match key {
         "particles" => {
             let only = bodies.keys().next().filter(|_| bodies.len() == 1);
             let Some(body) = body.or(only.cloned()) else {
-                let problem = format!(
-                    "{} needs a body, and there are {}",
-                    first.path,
-                    bodies.len()
-                );
+                let problem = format!("needs a body, and there are {}", bodies.len());
                 let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
                 let remedy = format!("add body = \"NAME\", one of {}", names.join(", "));
-                return Err(first.refuse(problem, remedy));
+                return Err(first.fault(problem, remedy));
             };
             let pick = Pick::Particles(particles(&first, bodies.get(&body))?);
             Ok(ParticleGroup {
@@ -167,8 +154,8 @@ fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
     for item in field.items()? {
         let index = item.particle(count)?;
         if !known.insert(index) {
-            let problem = format!("{} is {index}, which is in the list already", item.path);
-            return Err(item.refuse(problem, "remove one of them"));
+            let problem = format!("is {index}, which is in the list already");
+            return Err(item.fault(problem, "remove one of them"));
         }
         picked.push(index);
     }

@@ -47,10 +47,9 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Initial> 
     let table = Table::of(field, &INITIAL)?;
     let group = targets.name(&table.need("group")?)?;
     if table.entries.len() == 1 {
-        let problem = format!("{} does not say how its particles start", table.path);
         let remedy = "add velocity, angular_velocity or displacement, such as \
                       displacement = [0, 0, \"1 mm\"]";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("does not say how its particles start", remedy));
     }
     Ok(Initial {
         group,

@@ -190,9 +190,8 @@ fn fractions(
     };
     if is_empty {
         let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
-        let problem = format!("{} names no body", field.path);
         let remedy = format!("name at least one of {}", names.join(", "));
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault("names no body", remedy));
     }
     let mut fractions: Vec<(String, f64)> = Vec::new();
     if let Value::Table(_) = field.node.value {
@@ -207,9 +206,9 @@ fn fractions(
     for item in field.items()? {
         let name = item.reference(bodies.keys(), "bodies")?;
         if fractions.iter().any(|(other, _)| *other == name) {
-            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
             let remedy = "remove one of them, or give proportions, such as { NAME = 2, OTHER = 1 }";
-            return Err(item.refuse(problem, remedy));
+            let problem = format!("is \"{name}\", which is in the list already");
+            return Err(item.fault(problem, remedy));
         }
         fractions.push((name, 1.0));
     }
@@ -219,16 +218,15 @@ fn fractions(
 fn rate(table: &Table<'_>) -> Result<FeedRate> {
     match (table.get("rate"), table.get("mass_rate")) {
         (None, None) => {
-            let problem = format!("{} has no rate", table.path);
             let remedy = "add rate = \"4 /s\", bodies per second, or mass_rate = \"10 kg/s\"";
-            Err(table.refuse(problem, remedy))
+            Err(table.fault("has no rate", remedy))
         }
         (Some(_), None) => Ok(FeedRate::Number(table.read("rate")?)),
         (None, Some(_)) => Ok(FeedRate::Mass(table.read("mass_rate")?)),
-        (Some(_), Some(field)) => {
-            let problem = format!("{} cannot be combined with rate", field.path);
-            Err(field.refuse(problem, "an inlet has one rate: remove one"))
-        }
+        (Some(_), Some(field)) => Err(field.fault(
+            "cannot be combined with rate",
+            "an inlet has one rate: remove one",
+        )),
     }
 }
 
@@ -254,11 +252,10 @@ fn refuse_own_start(
         let field = root.find(&["bodies", name, key]);
         if let (Some(field), true) = (field, given != [0.0; 3]) {
             let problem = format!(
-                "{} is of the start, but [inlets.{inlet}] feeds the body: it is not there then",
-                field.path
+                "is of the start, but [inlets.{inlet}] feeds the body: it is not there then"
             );
             let remedy = format!("remove it: inlets.{inlet}.{instead} stands for it");
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(problem, remedy));
         }
     }
     Ok(())

@@ -50,10 +50,9 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
         factor,
     };
     if load.force_n == [0.0; 3] && load.torque_n_m == [0.0; 3] {
-        let problem = format!("{} is a load of zero", table.path);
         let remedy =
             "add force = [0, 0, \"100 N\"] or torque = [0, 0, \"1 N m\"], or remove the table";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("is a load of zero", remedy));
     }
     Ok(load)
 }

@@ -66,17 +66,16 @@ pub(super) fn read(field: &Field<'_>) -> Result<Material> {
     let table = Table::of(field, &MATERIAL)?;
     let rigid = table.read("rigid")?;
     if let (true, Some((_, field))) = (rigid, table.given(&OF_ELASTIC).next()) {
-        let problem = format!("{} cannot be combined with rigid = true", field.path);
         let remedy = "remove one of them: a rigid wall does not deform and has no mass";
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault("cannot be combined with rigid = true", remedy));
     }
     let density_kg_m3 = table.read("density")?;
     let young: Option<f64> = table.read("young_modulus")?;
     let shear: Option<f64> = table.read("shear_modulus")?;
     let poisson_ratio = table.read("poisson_ratio")?;
     if let (Some(_), Some(_), Some(field)) = (young, shear, table.get("shear_modulus")) {
-        let problem = format!("{} cannot be combined with young_modulus", field.path);
-        return Err(field.refuse(problem, "one follows from the other: remove one"));
+        let problem = "cannot be combined with young_modulus";
+        return Err(field.fault(problem, "one follows from the other: remove one"));
     }
     let young_modulus_pa = young.or(shear.map(|shear| 2.0 * shear * (1.0 + poisson_ratio)));
     if let (Some(field), true) = (

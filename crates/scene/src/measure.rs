@@ -178,16 +178,13 @@ pub(super) fn read(
             Some(_) => "",
         };
         if !problem.is_empty() {
-            let problem = format!("{} {problem}", field.path);
-            return Err(field.refuse(
-                problem,
-                "give a reference other than 0, or remove tolerance",
-            ));
+            let remedy = "give a reference other than 0, or remove tolerance";
+            return Err(field.fault(problem, remedy));
         }
     }
     if let (Some(field), None) = (table.get("absolute_tolerance"), reference) {
-        let problem = format!("{} has no effect without reference", field.path);
-        return Err(field.refuse(problem, "give a reference, or remove absolute_tolerance"));
+        let problem = "has no effect without reference";
+        return Err(field.fault(problem, "give a reference, or remove absolute_tolerance"));
     }
     Ok(Measure {
         of,
@@ -217,10 +214,9 @@ fn counterpart(
         return match table.get("with") {
             Some(field) => {
                 let problem = format!(
-                    "{} cannot be combined with the quantity \"{name}\", which is not of a contact",
-                    field.path
+                    "cannot be combined with the quantity \"{name}\", which is not of a contact"
                 );
-                Err(field.refuse(problem, "remove it, or ask for \"contact_force\""))
+                Err(field.fault(problem, "remove it, or ask for \"contact_force\""))
             }
             None => Ok(None),
         };
@@ -238,8 +234,8 @@ fn counterpart(
     };
     let (with, subject) = targets.measured(&field)?;
     if mixes && (subject != Subject::Particles || with == ALL || with == of) {
-        let problem = format!("{} is \"{with}\", which is no other group", field.path);
-        return Err(field.refuse(problem, "name a body or a group that \"of\" mixes with"));
+        let problem = format!("is \"{with}\", which is no other group");
+        return Err(field.fault(problem, "name a body or a group that \"of\" mixes with"));
     }
     let problem = if with == of {
         format!("{} is \"{with}\", as of is", field.path)
@@ -251,10 +247,9 @@ fn counterpart(
     } else {
         return Ok(Some(with));
     };
-    Err(field.refuse(
-        problem,
-        "name another body, group or wall; quantity = \"force\" is of contacts with all else",
-    ))
+    let remedy =
+        "name another body, group or wall; quantity = \"force\" is of contacts with all else";
+    Err(field.refuse(problem, remedy))
 }
 
 /// The region to which a measure is restricted.
@@ -272,12 +267,9 @@ fn within(
             Err(table.refuse(problem, "add within = \"NAME\", a name in [regions]"))
         }
         Some(field) if !quantity.within => {
-            let problem = format!(
-                "{} cannot be combined with the quantity \"{name}\"",
-                field.path
-            );
             let remedy = "remove it, or ask for \"mass\", \"bulk_density\" or \"mixing_index\"";
-            Err(field.refuse(problem, remedy))
+            let problem = format!("cannot be combined with the quantity \"{name}\"");
+            Err(field.fault(problem, remedy))
         }
         Some(field) => Ok(Some(field.reference(regions.keys(), "regions")?)),
         None => Ok(None),
@@ -299,12 +291,9 @@ fn only_for(
             Err(table.refuse(problem, format!("add {key} = {example}")))
         }
         (false, Some(field)) => {
-            let problem = format!(
-                "{} cannot be combined with the quantity \"{name}\"",
-                field.path
-            );
             let remedy = format!("remove it, or ask for \"{example_quantity}\"");
-            Err(field.refuse(problem, remedy))
+            let problem = format!("cannot be combined with the quantity \"{name}\"");
+            Err(field.fault(problem, remedy))
         }
         _ => table.read(key),
     }
@@ -342,17 +331,14 @@ fn quantity(
         Subject::Wall => "is a wall",
         Subject::Fragments => "are none",
     };
-    let problem = format!(
-        "{} is \"{name}\", a quantity of {owner}, but \"{of}\" {is}",
-        field.path
-    );
     let remedy = if subject == Subject::Particles {
         remedy.to_owned()
     } else {
         let has: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
         format!("{remedy}, or ask for {}", has.join(", "))
     };
-    Err(field.refuse(problem, remedy))
+    let problem = format!("is \"{name}\", a quantity of {owner}, but \"{of}\" {is}");
+    Err(field.fault(problem, remedy))
 }
 
 pub(super) fn list(measure: &Measure, listing: &mut Listing) {

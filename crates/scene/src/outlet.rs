@@ -44,27 +44,18 @@ pub(super) fn read(
     inlets: &BTreeMap<String, Inlet>,
 ) -> Result<Outlet> {
     let table = Table::of(field, &OUTLET)?;
-    let mut given = table.given(&SIDES);
-    let Some((key, field)) = given.next() else {
-        let problem = format!("{} has no region", table.path);
+    let one = "an outlet has one region: remove one, or make two outlets";
+    let Some((key, field)) = table.at_most_one(&SIDES, one)? else {
         let remedy = "add inside = \"NAME\" or outside = \"NAME\", a name in [regions]";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("has no region", remedy));
     };
-    if let Some((_, second)) = given.next() {
-        let problem = format!("{} cannot be combined with {key}", second.path);
-        let remedy = "an outlet has one region: remove one, or make two outlets";
-        return Err(second.refuse(problem, remedy));
-    }
     let region = field.reference(regions.keys(), "regions")?;
     let removes_outside = key == "outside";
     let into = inlets.iter().find(|(_, inlet)| inlet.region == region);
     if let (Some((inlet, _)), false) = (into, removes_outside) {
-        let problem = format!(
-            "{} is \"{region}\", into which [inlets.{inlet}] puts bodies",
-            field.path
-        );
+        let problem = format!("is \"{region}\", into which [inlets.{inlet}] puts bodies");
         let remedy = "they would be removed immediately: name another region";
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault(problem, remedy));
     }
     Ok(Outlet {
         region,

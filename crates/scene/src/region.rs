@@ -68,17 +68,11 @@ pub enum Region {
 
 pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Region> {
     let table = Table::of(field, &REGION)?;
-    let mut given = table.given(&SHAPES);
-    let Some((key, field)) = given.next() else {
-        let problem = format!("{} has no shape", table.path);
+    let one = "a region has one shape: remove one, or make two regions";
+    let Some((key, field)) = table.at_most_one(&SHAPES, one)? else {
         let remedy = "add box = { min, max }, sphere = { centre, radius }, cylinder = { from, to, radius } or stl = \"room.stl\"";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("has no shape", remedy));
     };
-    if let Some((_, second)) = given.next() {
-        let problem = format!("{} cannot be combined with {key}", second.path);
-        let remedy = "a region has one shape: remove one, or make two regions";
-        return Err(second.refuse(problem, remedy));
-    }
     refuse_without_stl(&table, &["unit"], key)?;
     Ok(match key {
         "box" => {

@@ -218,13 +218,10 @@ fn check_body(
         return field.key_reference(name, bodies.keys(), "bodies");
     };
     let StartAs::Clump(clump) = body.start_as else {
-        let problem = format!(
-            "{} replaces a clump, but the body '{name}' starts bonded",
-            field.path
-        );
+        let problem = format!("replaces a clump, but the body '{name}' starts bonded");
         let remedy =
             format!("add start_as = \"clump\" to [bodies.{name}], or remove [replacement.{name}]");
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault(problem, remedy));
     };
     let has_bonds = match &body.source {
         BodySource::Inline { bonds, .. } if bonds.is_empty() => false,
@@ -247,10 +244,9 @@ fn check_body(
         let mass = root.find(&["bodies", name, "clump", "mass"]);
         let place = mass.unwrap_or_else(|| field.clone());
         let problem = format!(
-            "{} is \"union\", but [replacement.{name}] replaces it: clump and cluster would differ in mass",
-            place.path
+            "is \"union\", but [replacement.{name}] replaces it: clump and cluster would differ in mass"
         );
-        return Err(place.refuse(problem, "write mass = \"spheres\""));
+        return Err(place.fault(problem, "write mass = \"spheres\""));
     }
     Ok(())
 }
@@ -264,13 +260,10 @@ fn refuse_others_daughters(
     for class in &daughters.classes {
         if let Some(parent) = parent_of(&class.body, known) {
             let body = &class.body;
-            let problem = format!(
-                "{} names '{body}', daughters of '{parent}' already",
-                field.path
-            );
+            let problem = format!("names '{body}', daughters of '{parent}' already");
             let remedy =
                 format!("copy [bodies.{body}] under another name: daughters have one parent");
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(problem, remedy));
         }
     }
     Ok(())
@@ -280,10 +273,9 @@ fn refuse_others_daughters(
 fn with_daughters(table: &Table<'_>, daughters: Daughters) -> Result<Replacement> {
     for key in ["when", "require", "restore"] {
         if let Some(field) = table.get(key) {
-            let problem = format!("{} cannot be combined with daughters", field.path);
             let remedy =
                 "remove one of them: daughters have conditions of their own, and stay as they are";
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault("cannot be combined with daughters", remedy));
         }
     }
     Ok(Replacement {
@@ -302,9 +294,8 @@ fn with_daughters(table: &Table<'_>, daughters: Daughters) -> Result<Replacement
 fn read(table: &Table<'_>, regions: &BTreeMap<String, Region>) -> Result<Replacement> {
     let when = Table::of(&table.need("when")?, &WHEN)?;
     if when.entries.is_empty() {
-        let problem = format!("{} is an empty table", when.path);
         let remedy = "add enters = \"NAME\", force = \"100 N\", contact_force = \"100 N\", principal_stress = \"0.1 MPa\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
-        return Err(when.refuse(problem, remedy));
+        return Err(when.fault("is an empty table", remedy));
     }
     Ok(Replacement {
         enters: when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?,

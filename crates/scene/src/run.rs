@@ -168,10 +168,8 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
         return Err(field.wrong(&limit, "write \"auto\" or a shorter time"));
     }
     if let (true, Some(field)) = (run.adaptive, table.get("adaptive")) {
-        return Err(field.refuse(
-            "a step that is given stays as it is",
-            "write time_step = \"auto\", or leave adaptive out",
-        ));
+        let problem = "a step that is given stays as it is";
+        return Err(field.refuse(problem, "write time_step = \"auto\", or leave adaptive out"));
     }
     Ok(run)
 }

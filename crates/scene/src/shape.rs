@@ -72,16 +72,13 @@ pub(super) fn corners(
     let upper = table.need("max")?;
     for (axis, (low, high)) in ["x", "y", "z"].iter().zip(min.into_iter().zip(max)) {
         if !holds(low, high) {
-            let problem = format!(
-                "{} is {high} m along {axis}, but min is {low} m",
-                upper.path
-            );
+            let problem = format!("is {high} m along {axis}, but min is {low} m");
             let remedy = if low > high {
                 format!("min must be {limit} max: swap them")
             } else {
                 format!("min must be {limit} max: move one of them")
             };
-            return Err(upper.refuse(problem, remedy));
+            return Err(upper.fault(problem, remedy));
         }
     }
     Ok([min, max])
@@ -101,8 +98,8 @@ pub(super) fn cylinder(field: &Field<'_>) -> Result<([[f64; 3]; 2], f64)> {
     let end = table.need("to")?;
     if from_m == to_m {
         let [x, y, z] = to_m;
-        let problem = format!("{} is [{x}, {y}, {z}] m, where from is", end.path);
-        return Err(end.refuse(problem, "a cylinder needs a length: move one of them"));
+        let problem = format!("is [{x}, {y}, {z}] m, where from is");
+        return Err(end.fault(problem, "a cylinder needs a length: move one of them"));
     }
     Ok(([from_m, to_m], table.read("radius")?))
 }
@@ -132,8 +129,8 @@ pub(super) fn refuse_without_stl(
 ) -> Result<()> {
     match table.given(keys).next() {
         Some((_, of_stl)) if key != "stl" => {
-            let problem = format!("{} has no effect without stl", of_stl.path);
-            Err(of_stl.refuse(problem, format!("remove it: lengths of a {key} have units")))
+            let problem = "has no effect without stl";
+            Err(of_stl.fault(problem, format!("remove it: lengths of a {key} have units")))
         }
         _ => Ok(()),
     }

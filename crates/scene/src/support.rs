@@ -118,18 +118,14 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> 
         move_by(&field, &DISPLACEMENTS, Hold::Displacement, &mut holds)?;
     }
     if holds.iter().all(Option::is_none) {
-        let problem = format!("{} holds nothing", table.path);
         let remedy =
             "add fixed = true, fixed = [\"x\"], velocity = { x = 1 } or displacement = { x = 1 }";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("holds nothing", remedy));
     }
     let moves = holds.iter().flatten().any(|hold| *hold != Hold::Fixed);
     if let (Some(field), false) = (over_time(&table), moves) {
-        let problem = format!(
-            "{} has no effect without velocity or displacement",
-            field.path
-        );
-        return Err(field.refuse(problem, "remove it"));
+        let problem = "has no effect without velocity or displacement";
+        return Err(field.fault(problem, "remove it"));
     }
     let factor = match table.get("displacement") {
         Some(field) => factor_from_zero(&table, &field)?,
@@ -171,11 +167,9 @@ fn move_by(
 ) -> Result<()> {
     let table = Table::any(field)?;
     if table.entries.is_empty() {
-        let problem = format!("{} is an empty table", field.path);
-        return Err(field.refuse(
-            problem,
-            "name a freedom, such as x = 1, or leave the key out",
-        ));
+        let problem = "is an empty table";
+        let remedy = "name a freedom, such as x = 1, or leave the key out";
+        return Err(field.fault(problem, remedy));
     }
     if let Some((key, _)) = table
         .entries

@@ -52,11 +52,10 @@ impl Targets<'_> {
                 Ok(name.to_owned())
             }
             Some(Subject::Wall) => {
-                let problem = format!("{} is \"{name}\", which is a wall", field.path);
                 let remedy = format!(
                     "name a group or a body: the motion of a wall is set in [walls.{name}]"
                 );
-                Err(field.refuse(problem, remedy))
+                Err(field.fault(format!("is \"{name}\", which is a wall"), remedy))
             }
             Some(Subject::Fragments) | None => {
                 Err(unknown(field, name, "group or body", self.of_particles()))
@@ -100,10 +99,6 @@ fn unknown<'n>(
     kinds: &str,
     known: impl Iterator<Item = &'n str>,
 ) -> Diagnostic {
-    let problem = format!(
-        "{} is {}, but no {kinds} has this name",
-        field.path,
-        field.shown()
-    );
-    field.refuse(problem, suggestion(name, known))
+    let problem = format!("is {}, but no {kinds} has this name", field.shown());
+    field.fault(problem, suggestion(name, known))
 }

@@ -426,12 +426,11 @@ fn measured(table: &Table<'_>, kind: TestType, folder: &Path) -> Result<Option<M
     })?;
     if material.test != kind {
         let problem = format!(
-            "{} is of the type \"{}\", not \"{}\"",
-            field.path,
+            "is of the type \"{}\", not \"{}\"",
             material.test.name(),
             kind.name()
         );
-        return Err(field.refuse(problem, "name a material measured in the same test"));
+        return Err(field.fault(problem, "name a material measured in the same test"));
     }
     Ok(Some(MeasuredReference { file, material }))
 }
@@ -444,11 +443,9 @@ fn refuse_dimensions(table: &Table<'_>, kind: TestType) -> Result<()> {
         .find(|(key, _)| !known.contains(key))
     {
         Some((_, field)) => {
-            let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
-            Err(field.refuse(
-                problem,
-                format!("remove it; known here: {}", known.join(", ")),
-            ))
+            let problem = format!("does not apply to \"{}\"", kind.name());
+            let remedy = format!("remove it; known here: {}", known.join(", "));
+            Err(field.fault(problem, remedy))
         }
         None => Ok(()),
     }
@@ -475,10 +472,10 @@ fn refuse_others(table: &Table<'_>, kind: TestType) -> Result<()> {
         others.extend(["normal_stress", "normal"]);
     }
     match table.given(&others).next() {
-        Some((_, field)) => {
-            let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
-            Err(field.refuse(problem, "remove it"))
-        }
+        Some((_, field)) => Err(field.fault(
+            format!("does not apply to \"{}\"", kind.name()),
+            "remove it",
+        )),
         None => Ok(()),
     }
 }
@@ -507,8 +504,8 @@ fn transmission(
     let field = table.need("transmission_bar")?;
     let name = moved(&field, grips, known)?;
     if crosshead.contains(&name) {
-        let problem = format!("{} is \"{name}\", which is the crosshead", field.path);
-        return Err(field.refuse(problem, "name what the body rests on"));
+        let problem = format!("is \"{name}\", which is the crosshead");
+        return Err(field.fault(problem, "name what the body rests on"));
     }
     Ok(name)
 }
@@ -541,8 +538,8 @@ fn all_moved(field: &Field<'_>, grips: bool, known: &Known<'_>) -> Result<Vec<St
     for item in field.items()? {
         let name = moved(&item, grips, known)?;
         if moves.contains(&name) {
-            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
-            return Err(item.refuse(problem, "remove one of them"));
+            let problem = format!("is \"{name}\", which is in the list already");
+            return Err(item.fault(problem, "remove one of them"));
         }
         moves.push(name);
     }
@@ -554,28 +551,24 @@ fn moved(item: &Field<'_>, grips: bool, known: &Known<'_>) -> Result<String> {
     let name = item.text()?;
     if grips {
         if !known.groups.contains_key(name) {
-            let problem = format!("{} is \"{name}\", but no group has this name", item.path);
+            let problem = format!("is \"{name}\", but no group has this name");
             let names = known.groups.keys().map(String::as_str);
-            return Err(item.refuse(problem, suggestion(name, names)));
+            return Err(item.fault(problem, suggestion(name, names)));
         }
         if let Some((support, _)) = known.supports.iter().find(|(_, s)| s.group == name) {
-            let problem = format!(
-                "{} is \"{name}\", which [supports.{support}] holds",
-                item.path
-            );
-            return Err(item.refuse(problem, "remove that support: the test moves the group"));
+            let problem = format!("is \"{name}\", which [supports.{support}] holds");
+            return Err(item.fault(problem, "remove that support: the test moves the group"));
         }
         return Ok(name.to_owned());
     }
     let Some(wall) = known.walls.get(name) else {
-        let problem = format!("{} is \"{name}\", but no wall has this name", item.path);
+        let problem = format!("is \"{name}\", but no wall has this name");
         let names = known.walls.keys().map(String::as_str);
-        return Err(item.refuse(problem, suggestion(name, names)));
+        return Err(item.fault(problem, suggestion(name, names)));
     };
     if wall.motion != WallMotion::Fixed {
-        let problem = format!("{} is \"{name}\", which moves by itself", item.path);
         let remedy = format!("take velocity, displacement or servo from [walls.{name}]");
-        return Err(item.refuse(problem, remedy));
+        return Err(item.fault(format!("is \"{name}\", which moves by itself"), remedy));
     }
     Ok(name.to_owned())
 }

@@ -115,9 +115,8 @@ pub(super) fn read_all(
             meaning(&name).map(str::to_owned)
         };
         if let Some(like) = like {
-            let problem = format!("{} is named like {like}", field.path);
             let remedy = "give it another name: measures name walls as they do groups and bodies";
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(format!("is named like {like}"), remedy));
         }
         walls.insert(name, read(&field, materials, folder)?);
     }

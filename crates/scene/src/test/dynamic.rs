@@ -233,8 +233,8 @@ fn gauges(bars: &Table<'_>, pulse_m: f64) -> Result<Option<Gauges>> {
     let Some(distance) = bars.get("gauge_distance") else {
         return match bars.get("length") {
             Some(length) => {
-                let problem = format!("{} is for strain gauges, but there are none", length.path);
-                Err(length.refuse(problem, "add gauge_distance = \"1 m\", or remove it"))
+                let problem = "is for strain gauges, but there are none";
+                Err(length.fault(problem, "add gauge_distance = \"1 m\", or remove it"))
             }
             None => Ok(None),
         };
@@ -296,8 +296,8 @@ pub(super) fn weight(test: &Table<'_>, direction: [f64; 3], run: &Run) -> Result
     let mass_kg = table.read("mass")?;
     if let Some(velocity) = table.get("velocity") {
         if let Some(height) = table.get("height") {
-            let problem = format!("{} cannot be combined with {}", height.path, velocity.path);
-            return Err(height.refuse(problem, "the one gives the other: remove one"));
+            let problem = format!("cannot be combined with {}", velocity.path);
+            return Err(height.fault(problem, "the one gives the other: remove one"));
         }
         return Ok(Weight {
             mass_kg,
@@ -310,12 +310,11 @@ pub(super) fn weight(test: &Table<'_>, direction: [f64; 3], run: &Run) -> Result
     if gravity_m_s2 <= 0.0 {
         let height = table.need("height")?;
         let problem = format!(
-            "{} needs run.gravity along test.direction, but that is {} there",
-            height.path,
+            "needs run.gravity along test.direction, but that is {} there",
             show_quantity(gravity_m_s2, "m/s2")
         );
         let remedy = "set run.gravity, such as [0, 0, -9.81], turn direction, or write velocity";
-        return Err(height.refuse(problem, remedy));
+        return Err(height.fault(problem, remedy));
     }
     Ok(Weight {
         mass_kg,

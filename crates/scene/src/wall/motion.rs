@@ -111,19 +111,15 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
     let mut given = wall.given(&KEYS);
     let Some((first, field)) = given.next() else {
         if let Some(field) = over_time(wall) {
-            let problem = format!(
-                "{} has no effect without velocity, displacement or servo",
-                field.path
-            );
-            return Err(field.refuse(problem, "remove it"));
+            let problem = "has no effect without velocity, displacement or servo";
+            return Err(field.fault(problem, "remove it"));
         }
         return Ok(WallMotion::Fixed);
     };
     let way = |key: &str| WAYS.iter().position(|keys| keys.contains(&key));
     if let Some((_, second)) = given.find(|(key, _)| way(key) != way(first)) {
-        let problem = format!("{} cannot be combined with {first}", second.path);
         let remedy = "a wall moves at a velocity, by a displacement or as a servo: remove one";
-        return Err(second.refuse(problem, remedy));
+        return Err(second.fault(format!("cannot be combined with {first}"), remedy));
     }
     match first {
         "servo" => servo(&field, factor(wall)?),

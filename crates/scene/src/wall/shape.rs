@@ -64,17 +64,11 @@ pub(super) static PLANE: Schema = Schema {
 const SHAPES: [&str; 4] = ["plane", "box", "cylinder", "stl"];
 
 pub(super) fn read(wall: &Table<'_>, folder: &Path) -> Result<WallShape> {
-    let mut given = wall.given(&SHAPES);
-    let Some((key, field)) = given.next() else {
-        let problem = format!("{} has no shape", wall.path);
+    let one = "a wall has one shape: remove one, or make two walls";
+    let Some((key, field)) = wall.at_most_one(&SHAPES, one)? else {
         let remedy = "add plane = { point, normal }, box = { min, max }, cylinder = { from, to, radius } or stl = \"plate.stl\"";
-        return Err(wall.refuse(problem, remedy));
+        return Err(wall.fault("has no shape", remedy));
     };
-    if let Some((_, second)) = given.next() {
-        let problem = format!("{} cannot be combined with {key}", second.path);
-        let remedy = "a wall has one shape: remove one, or make two walls";
-        return Err(second.refuse(problem, remedy));
-    }
     refuse_without_stl(wall, &["unit", "scale"], key)?;
     match key {
         "plane" => plane(&field),
