@@ -348,7 +348,7 @@ pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
     listing.value("position_of", &body.position_of);
     listing.value("rotation", &body.rotation_rad);
     match &body.fall {
-        Some(fall) => fall::list(fall, listing),
+        Some(fall) => listing.table("drop", &fall::DROP, |listing| fall.list(listing)),
         None => listing.value("velocity", &body.velocity_m_s),
     }
     listing.value("angular_velocity", &body.angular_velocity_rad_s);

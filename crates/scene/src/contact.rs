@@ -17,6 +17,8 @@ use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY_PER_AREA, STIFFNESS};
+use dem_physics::contact::law::Rolling;
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 
 /// Smallest coefficient of restitution: dampers below it need arbitrarily small steps.
 const LEAST_RESTITUTION: f64 = 1e-3;
@@ -144,25 +146,6 @@ pub enum ContactLaw {
     },
 }
 
-/// Resistance to rolling.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Rolling {
-    /// None: without `rolling_friction`, or where it is 0.
-    None,
-    /// "constant-torque", unless given.
-    ConstantTorque {
-        /// `rolling_friction`, a coefficient of more than 0.
-        friction: f64,
-    },
-    /// "spring-dashpot": elastic up to that torque, then plastic.
-    SpringDashpot {
-        /// `rolling_friction`, a coefficient of more than 0.
-        friction: f64,
-        /// `rolling_damping_ratio`: fraction of critical damping, 0.3 unless given; in [0, 1].
-        damping: f64,
-    },
-}
-
 /// The contacts of a scene, sorted by their materials.
 pub(super) fn read_all(
     root: &Table<'_>,
@@ -209,7 +192,9 @@ fn read(
         restitution,
         friction,
         rolling: rolling(&table, friction)?,
-        liquid_bridge: table.read_by("liquid_bridge", |field| liquid_bridge::read(&field))?,
+        liquid_bridge: table.read_by("liquid_bridge", |field| {
+            LiquidBridge::read(&Table::of(&field, &LIQUID_BRIDGE)?)
+        })?,
     })
 }
 
@@ -283,17 +268,17 @@ fn need_moduli(
 
 fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
     let is_sprung = table.read_by("rolling", |field| field.choice(&ROLLINGS))?;
-    let damping = table.read("rolling_damping_ratio")?;
+    let damping_ratio = table.read("rolling_damping_ratio")?;
     if let (Some(field), false) = (table.get("rolling_damping_ratio"), is_sprung == Some(true)) {
         let problem = "has no effect without rolling = \"spring-dashpot\"";
         return Err(field.fault(problem, "remove it, or add rolling = \"spring-dashpot\""));
     }
     if is_sprung.is_none() && table.get("rolling_friction").is_none() {
-        return Ok(Rolling::None);
+        return Ok(Rolling::Free);
     }
     let friction = table.read("rolling_friction")?;
     if friction == 0.0 {
-        return Ok(Rolling::None);
+        return Ok(Rolling::Free);
     }
     if let (Some(field), true) = (table.get("rolling_friction"), sliding_friction == 0.0) {
         let problem = format!(
@@ -309,9 +294,12 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
         return Err(field.fault(problem, "give friction above 0, or rolling_friction = 0"));
     }
     Ok(if is_sprung == Some(true) {
-        Rolling::SpringDashpot { friction, damping }
+        Rolling::Spring(ElasticPlastic {
+            friction,
+            damping_ratio,
+        })
     } else {
-        Rolling::ConstantTorque { friction }
+        Rolling::Constant(ConstantMoment { friction })
     })
 }
 
@@ -336,20 +324,20 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
     listing.value("restitution", &contact.restitution);
     listing.value("friction", &contact.friction);
     match contact.rolling {
-        Rolling::None => listing.text("rolling", "none"),
-        Rolling::ConstantTorque { friction } => {
+        Rolling::Free => listing.text("rolling", "none"),
+        Rolling::Constant(moment) => {
             listing.text("rolling", "constant-torque");
-            listing.value("rolling_friction", &friction);
+            listing.value("rolling_friction", &moment.friction);
         }
-        Rolling::SpringDashpot { friction, damping } => {
+        Rolling::Spring(spring) => {
             listing.text("rolling", "spring-dashpot");
-            listing.value("rolling_friction", &friction);
-            listing.value("rolling_damping_ratio", &damping);
+            listing.value("rolling_friction", &spring.friction);
+            listing.value("rolling_damping_ratio", &spring.damping_ratio);
         }
     }
     if let Some(bridge) = &contact.liquid_bridge {
         listing.table("liquid_bridge", &LIQUID_BRIDGE, |listing| {
-            liquid_bridge::list(bridge, listing);
+            bridge.list(listing)
         });
     }
 }

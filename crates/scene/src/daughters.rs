@@ -65,11 +65,7 @@ pub(super) static DAUGHTERS: Schema = Schema {
         .otherwise("daughters are not replaced"),
         Key::new(
             "limit",
-            Kind::Whole {
-                least: 1,
-                most: Some(u32::MAX as u64),
-                of: "",
-            },
+            Kind::COUNT,
             "Largest number of particles of this body that are replaced; then the others stay whole.",
         )
         .remedy("a usual value is 100000")

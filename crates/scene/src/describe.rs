@@ -34,7 +34,7 @@ impl Scene {
             let files: Vec<String> = files.collect();
             lines.0.push(("include".to_owned(), files.join(", ")));
         }
-        lines.table("run", &run::RUN, &self.run, run::list);
+        lines.table("run", &run::RUN, &self.run, run::Run::list);
         lines.each(
             "materials",
             &material::MATERIAL,
@@ -69,24 +69,24 @@ impl Scene {
             "clusters",
             &clusters::CLUSTERS,
             &self.clusters,
-            clusters::list,
+            clusters::Clusters::list,
         );
         lines.unusual(
             touches,
             "relaxation",
             &relaxation::RELAXATION,
             &self.relaxation,
-            relaxation::list,
+            relaxation::Relaxation::list,
         );
         lines.unusual(
             touches,
             "search",
             &search::SEARCH,
             &self.search,
-            search::list,
+            search::Search::list,
         );
         if let Some(sleep) = &self.sleep {
-            lines.table("sleep", &sleep::SLEEP, sleep, sleep::list);
+            lines.table("sleep", &sleep::SLEEP, sleep, sleep::Sleep::list);
         }
         match &self.output {
             Some(output) => lines.table("output", &output::OUTPUT, output, output::list),

@@ -60,11 +60,7 @@ pub(super) static INLET: Schema = Schema {
             .otherwise("never"),
         Key::new(
             "count",
-            Kind::Whole {
-                least: 1,
-                most: Some(u32::MAX as u64),
-                of: "",
-            },
+            Kind::COUNT,
             "Maximum number of bodies fed.",
         )
         .remedy("leave it out for no limit")

@@ -7,6 +7,7 @@ use super::clump::{ClumpMass, StartAs};
 use super::daughters::{self, DAUGHTERS, Daughters};
 use super::field::Field;
 use super::listing::Listing;
+use super::plain_table::plain_table;
 use super::region::Region;
 use super::schema::{Key, Kind, Schema, words_of};
 use super::table::Table;
@@ -91,39 +92,27 @@ pub(super) static WHEN: Schema = Schema {
     ],
 };
 
-pub(super) static RESTORE: Schema = Schema {
-    title: "Restore",
-    doc: "Conditions that make a fragment rigid again.",
-    keys: &[
-        Key::text("leaves", "a name in [regions]", "The centre of the fragment is outside this region.")
-            .required("\"NAME\", a name in [regions]"),
-        Key::new(
-            "min_particles",
-            Kind::Whole {
-                least: 1,
-                most: Some(u32::MAX as u64),
-                of: "",
-            },
-            "It has at least this many particles.",
-        )
-        .remedy("a usual value is 10")
-        .or(10.0),
-        Key::quantity(
-            "strain_energy",
-            &ENERGY_PER_MASS,
-            "Elastic energy of its bonds over its mass is at most this.",
-        )
-        .positive()
-        .or(0.01),
-        Key::quantity(
-            "fluctuation_velocity",
-            &VELOCITY,
-            "Root mean square velocity of its particles relative to its rigid-body motion is at most this.",
-        )
-        .positive()
-        .or(5e-3),
-    ],
-};
+plain_table! {
+    RESTORE = "Restore";
+    /// Conditions that make a fragment rigid again.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Restore {
+        /// The centre of the fragment is outside this region.
+        leaves: String = text("leaves", "a name in [regions]")
+            .required("\"NAME\", a name in [regions]");
+        /// It has at least this many particles.
+        min_particles: u32 = new("min_particles", Kind::COUNT)
+            .remedy("a usual value is 10")
+            .or(10.0);
+        /// Elastic energy of its bonds over its mass is at most this.
+        strain_energy_j_kg: f64 = quantity("strain_energy", &ENERGY_PER_MASS).positive().or(0.01);
+        /// Root mean square velocity of its particles relative to its rigid-body motion is at most
+        /// this.
+        fluctuation_velocity_m_s: f64 = quantity("fluctuation_velocity", &VELOCITY)
+            .positive()
+            .or(5e-3);
+    }
+}
 
 /// Conditions under which a rigid clump becomes the bonded cluster that it represents, and under
 /// which a fragment becomes rigid again.
@@ -152,21 +141,6 @@ pub struct Replacement {
     /// `daughters`, which exclude all of the above. None: its own bonded cluster replaces the
     /// clump.
     pub daughters: Option<Daughters>,
-}
-
-/// `restore = { ... }`: conditions under which a fragment becomes rigid again. All must hold.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Restore {
-    /// `leaves`: its centre is outside this region, a name of `[regions]`.
-    pub leaves: String,
-    /// `min_particles`: smallest number of its particles, 10 unless given. At least 1.
-    pub min_particles: u32,
-    /// `strain_energy`: largest elastic energy of its bonds over its mass, 0.01 J/kg unless given;
-    /// more than 0.
-    pub strain_energy_j_kg: f64,
-    /// `fluctuation_velocity`: largest root mean square velocity of its particles relative to its
-    /// rigid-body motion, 5 mm/s unless given; more than 0.
-    pub fluctuation_velocity_m_s: f64,
 }
 
 pub(super) fn read_all(
@@ -314,12 +288,8 @@ fn read(table: &Table<'_>, regions: &BTreeMap<String, Region>) -> Result<Replace
 
 fn restore(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Restore> {
     let table = Table::of(field, &RESTORE)?;
-    Ok(Restore {
-        leaves: table.need("leaves")?.reference(regions.keys(), "regions")?,
-        min_particles: table.read("min_particles")?,
-        strain_energy_j_kg: table.read("strain_energy")?,
-        fluctuation_velocity_m_s: table.read("fluctuation_velocity")?,
-    })
+    table.need("leaves")?.reference(regions.keys(), "regions")?;
+    Restore::read(&table)
 }
 
 pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
@@ -350,10 +320,5 @@ pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
     let Some(restore) = &replacement.restore else {
         return listing.text("restore", "never");
     };
-    listing.table("restore", &RESTORE, |listing| {
-        listing.text("leaves", &restore.leaves);
-        listing.value("min_particles", &restore.min_particles);
-        listing.value("strain_energy", &restore.strain_energy_j_kg);
-        listing.value("fluctuation_velocity", &restore.fluctuation_velocity_m_s);
-    });
+    listing.table("restore", &RESTORE, |listing| restore.list(listing));
 }

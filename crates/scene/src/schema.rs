@@ -84,6 +84,15 @@ pub(super) enum Kind {
     Anything(&'static str),
 }
 
+impl Kind {
+    /// A whole number from 1 that fits into 32 bits.
+    pub(super) const COUNT: Self = Self::Whole {
+        least: 1,
+        most: Some(u32::MAX as u64),
+        of: "",
+    };
+}
+
 /// The value of a key that is left out.
 #[derive(Clone, Copy)]
 pub(super) enum Unless {

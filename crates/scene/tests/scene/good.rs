@@ -3,11 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::units::DIMENSIONS;
+use dem_physics::bond::failure::EquivalentStress;
+use dem_physics::bond::flat_joint::{FlatJointLaw, moment_ratio};
+use dem_physics::bond::stiffness::BondModel;
+use dem_physics::contact::law::Rolling;
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use dem_scene::{
-    BodySource, BondDamping, BondFailure, BondModel, BondPlasticity, Clusters, ColourBy, Contact,
-    ContactLaw, EquivalentStress, Factor, Formulation, Hold, InitialOverlap, Integrator,
-    JointElements, Pick, QUANTITIES, Relaxation, Rolling, Scene, Search, Statistic,
-    StrainRateMeasure, Wall, WallMotion, WallShape,
+    BodySource, BondDamping, BondFailure, BondPlasticity, Clusters, ColourBy, Contact, ContactLaw,
+    Factor, Formulation, Hold, InitialOverlap, Integrator, Pick, QUANTITIES, Relaxation, Scene,
+    Search, Statistic, StrainRateMeasure, Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -130,13 +134,18 @@ fn contacts() {
         normal_n_m,
         tangential_stiffness_ratio,
     };
-    let sprung = |friction, damping| Rolling::SpringDashpot { friction, damping };
-    let torque = |friction| Rolling::ConstantTorque { friction };
+    let sprung = |friction, damping_ratio| {
+        Rolling::Spring(ElasticPlastic {
+            friction,
+            damping_ratio,
+        })
+    };
+    let torque = |friction| Rolling::Constant(ConstantMoment { friction });
     let hertz = ContactLaw::HertzMindlin;
     assert_eq!(
         good("every-key.toml").contacts,
         [
-            contact(["anvil", "cake"], hertz, 0.5, Rolling::None),
+            contact(["anvil", "cake"], hertz, 0.5, Rolling::Free),
             Contact {
                 friction: 0.1,
                 ..contact(["belt-rubber", "cake"], linear(1e5, 0.5), 0.6, torque(0.2))
@@ -155,13 +164,13 @@ fn contacts() {
     assert_eq!(
         good("touching.toml").contacts,
         [
-            contact(["a", "a"], hertz, 0.7, Rolling::None),
-            contact(["a", "a-a"], hertz, 0.5, Rolling::None),
+            contact(["a", "a"], hertz, 0.7, Rolling::Free),
+            contact(["a", "a-a"], hertz, 0.5, Rolling::Free),
             Contact {
                 friction: 0.3,
                 ..contact(["a", "b-2"], linear(1e5, usual), 0.9, sprung(0.1, 0.3))
             },
-            contact(["b-2", "b-2"], linear(1e3, usual), 1.0, Rolling::None),
+            contact(["b-2", "b-2"], linear(1e3, usual), 1.0, Rolling::Free),
         ]
     );
 }
@@ -297,12 +306,7 @@ fn how_contacts_are_found() {
 fn bonds() {
     let scene = good("every-key.toml");
     let parallel = &scene.bonds["parallel"];
-    assert_eq!(
-        parallel.model,
-        BondModel::Parallel {
-            stiffness_ratio: Some(2.5)
-        }
-    );
+    assert_eq!(parallel.model, BondModel::Parallel { kappa: Some(2.5) });
     assert_eq!(parallel.formulation, Formulation::Total);
     assert_near(parallel.young_modulus_pa, 12.05e6);
     assert_eq!(parallel.poisson_ratio, 0.3);
@@ -337,22 +341,22 @@ fn bonds() {
             weibull_modulus: Some(7.0),
         }
     );
-    let stiffness_ratio = Some(3.0);
-    assert_eq!(
-        scene.bonds["pinned"].model,
-        BondModel::Pin { stiffness_ratio }
-    );
+    let kappa = Some(3.0);
+    assert_eq!(scene.bonds["pinned"].model, BondModel::Pin { kappa });
+    assert_eq!(scene.bonds["pinned"].joint, None);
+    let joint = FlatJointLaw {
+        radial_elements: 2,
+        circumferential_elements: 8,
+        friction: 0.4,
+    };
     assert_eq!(
         scene.bonds["joined"].model,
         BondModel::FlatJoint {
-            stiffness_ratio: None,
-            elements: JointElements {
-                radial: 2,
-                circumferential: 8,
-                friction: 0.4,
-            },
+            kappa: None,
+            moment_ratio: moment_ratio(&joint),
         }
     );
+    assert_eq!(scene.bonds["joined"].joint, Some(joint));
     let sheared = &scene.bonds["sheared"];
     assert_eq!(sheared.model, BondModel::ShearCoefficient { alpha: 0.85 });
     assert_eq!(sheared.formulation, Formulation::Total);
