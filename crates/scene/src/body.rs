@@ -343,7 +343,7 @@ pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
         Some(WholeMass::Mass(mass)) => listing.value("mass", &mass),
         None => listing.value("mass", &None::<f64>),
     }
-    listing.text("bonds", body.bond_kind.as_deref().unwrap_or("none"));
+    listing.value("bonds", &body.bond_kind);
     listing.value("position", &body.position_m);
     listing.value("position_of", &body.position_of);
     listing.value("rotation", &body.rotation_rad);

@@ -28,8 +28,7 @@ pub enum Formulation {
 pub struct BondKind {
     /// `model`, "timoshenko" unless given.
     pub model: BondModel,
-    /// `radial_elements`, `circumferential_elements` and `joint_friction`, of the model "flat-joint"
-    /// only.
+    /// `radial_elements`, `circumferential_elements` and `joint_friction`: of a flat joint only.
     pub joint: Option<FlatJointLaw>,
     /// `formulation`, "total" unless given.
     pub formulation: Formulation,

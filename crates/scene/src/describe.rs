@@ -49,7 +49,12 @@ impl Scene {
         lines.each("bodies", &body::BODY, &self.bodies, body::list);
         lines.each("walls", &wall::WALL, &self.walls, wall::list);
         lines.each("groups", &group::GROUP, &self.groups, group::list);
-        lines.each("initial", &initial::INITIAL, &self.initial, initial::list);
+        lines.each(
+            "initial",
+            &initial::INITIAL,
+            &self.initial,
+            initial::Initial::list,
+        );
         lines.each("supports", &support::SUPPORT, &self.supports, support::list);
         lines.each("loads", &load::LOAD, &self.loads, load::list);
         lines.each("regions", &region::REGION, &self.regions, region::list);

@@ -8,7 +8,7 @@ use super::listing::{LISTED, Listing};
 use super::names::{FRAGMENTS, meaning};
 use super::presence::Presence;
 use super::schema::{Key, Kind, Schema};
-use super::shape::{BOX, SPHERE, corners, list_box, list_sphere, sphere};
+use super::shape::{BOX, BoxShape, SPHERE, SphereShape, read_box, read_sphere};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
@@ -30,20 +30,10 @@ pub enum Pick {
     /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or if there is
     /// only one body.
     Particles(Vec<u32>),
-    /// `box = { min, max }`: particles with their centres in it, m.
-    Box {
-        /// Smallest corner, m.
-        min: [f64; 3],
-        /// Largest corner, m.
-        max: [f64; 3],
-    },
-    /// `sphere = { centre, radius }`: particles with their centres in it, m.
-    Sphere {
-        /// Centre, m.
-        centre: [f64; 3],
-        /// Radius, m.
-        radius: f64,
-    },
+    /// `box = { min, max }`: particles with their centres in it.
+    Box(BoxShape),
+    /// `sphere = { centre, radius }`: particles with their centres in it.
+    Sphere(SphereShape),
 }
 
 /// The ways to select particles.
@@ -123,13 +113,12 @@ fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Parti
         }
         "box" => Ok(ParticleGroup {
             body,
-            pick: region(&first)?,
+            pick: Pick::Box(read_box(&first, "at most", |low, high| low <= high)?),
         }),
-        "sphere" => {
-            let (centre, radius) = sphere(&first)?;
-            let pick = Pick::Sphere { centre, radius };
-            Ok(ParticleGroup { body, pick })
-        }
+        "sphere" => Ok(ParticleGroup {
+            body,
+            pick: Pick::Sphere(read_sphere(&first)?),
+        }),
         _ => {
             if !first.boolean()? {
                 return Err(first.wrong("true", "write all = true, or pick in another way"));
@@ -162,20 +151,15 @@ fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
     Ok(picked)
 }
 
-fn region(field: &Field<'_>) -> Result<Pick> {
-    let [min, max] = corners(field, "at most", |low, high| low <= high)?;
-    Ok(Pick::Box { min, max })
-}
-
 pub(super) fn list(group: &ParticleGroup, listing: &mut Listing) {
-    listing.text("body", group.body.as_deref().unwrap_or("all"));
+    listing.value("body", &group.body);
     match &group.pick {
         Pick::All => listing.text("all", "true"),
         Pick::Particles(picked) => {
             let shown: Vec<String> = picked.iter().take(LISTED).map(u32::to_string).collect();
             listing.some("particles", &shown, picked.len());
         }
-        Pick::Box { min, max } => list_box(*min, *max, listing),
-        Pick::Sphere { centre, radius } => list_sphere(*centre, *radius, listing),
+        Pick::Box(of) => listing.table("box", &BOX, |listing| of.list(listing)),
+        Pick::Sphere(of) => listing.table("sphere", &SPHERE, |listing| of.list(listing)),
     }
 }

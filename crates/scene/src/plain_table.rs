@@ -1,12 +1,12 @@
-//! Tables whose keys stand for one field each.
+//! Tables of which each key stands for one field, declared in one place.
 
-/// Declares a table from one entry for each key: its struct with public fields, its schema, its
-/// reader `read` and its listing `list`. The comment of a field is the sentence of its key.
+/// Declares a table from one entry for each key: its struct with public fields, and its schema. The
+/// comment of a field is the sentence of its key.
 ///
 /// An entry is `field: type = kind("key", ...)`, with a constructor of
-/// [`Key`](crate::schema::Key) without its sentence, and perhaps `by` a function that reads the
-/// value from the table.
-macro_rules! plain_table {
+/// [`Key`](crate::schema::Key) without its sentence. [`plain_table`] takes it with `by` a function
+/// that reads the value from the table.
+macro_rules! keyed_struct {
     (
         $schema:ident = $title:literal;
         $(#[doc = $about:literal])+
@@ -37,7 +37,29 @@ macro_rules! plain_table {
                 $(.$set($($to),*))*,
             )+],
         };
+    };
+}
 
+/// Declares a [`keyed_struct`], its reader `read` and its listing `list`.
+macro_rules! plain_table {
+    ($($table:tt)+) => {
+        $crate::plain_table::keyed_struct! { $($table)+ }
+        $crate::plain_table::read_and_list! { $($table)+ }
+    };
+}
+
+macro_rules! read_and_list {
+    (
+        $schema:ident = $title:literal;
+        $(#[$about:meta])+
+        pub struct $of:ident {
+            $(
+                $(#[$sentence:meta])+
+                $field:ident: $type:ty = $kind:ident $(::<$word:ty>)? ($key:literal $(, $with:expr)*)
+                    $(.$set:ident($($to:expr),*))* $(, by $read:ident)?;
+            )+
+        }
+    ) => {
         impl $of {
             pub(crate) fn read(
                 table: &$crate::table::Table<'_>,
@@ -64,4 +86,4 @@ macro_rules! read_value {
     };
 }
 
-pub(crate) use {plain_table, read_value};
+pub(crate) use {keyed_struct, plain_table, read_and_list, read_value};

@@ -6,8 +6,8 @@ use super::field::Field;
 use super::listing::Listing;
 use super::schema::{Key, Schema};
 use super::shape::{
-    BOX, CYLINDER, SPHERE, UNIT, corners, cylinder, list_box, list_cylinder, list_sphere, list_stl,
-    refuse_without_stl, sphere, stl,
+    BOX, BoxShape, CYLINDER, CylinderShape, SPHERE, SphereShape, UNIT, list_stl, read_box,
+    read_cylinder, read_sphere, refuse_without_stl, stl,
 };
 use super::table::Table;
 use dem_io::diagnostic::Result;
@@ -33,29 +33,12 @@ pub(super) static REGION: Schema = Schema {
 /// A region of space, without walls.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Region {
-    /// `box = { min, max }`
-    Box {
-        /// Smallest corner, m. Length 3.
-        min_m: [f64; 3],
-        /// Largest corner, m: above the smallest along every axis. Length 3.
-        max_m: [f64; 3],
-    },
+    /// `box = { min, max }`, with `min` below `max` along every axis.
+    Box(BoxShape),
     /// `sphere = { centre, radius }`
-    Sphere {
-        /// Centre, m. Length 3.
-        centre_m: [f64; 3],
-        /// Radius, m.
-        radius_m: f64,
-    },
+    Sphere(SphereShape),
     /// `cylinder = { from, to, radius }`
-    Cylinder {
-        /// Centre of one end, m. Length 3.
-        from_m: [f64; 3],
-        /// Centre of the other end, m, elsewhere. Length 3.
-        to_m: [f64; 3],
-        /// Radius, m.
-        radius_m: f64,
-    },
+    Cylinder(CylinderShape),
     /// `stl` and `unit`: the region enclosed by a closed surface. The reader of the file checks
     /// whether it is closed.
     Stl {
@@ -75,22 +58,9 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Region> {
     };
     refuse_without_stl(&table, &["unit"], key)?;
     Ok(match key {
-        "box" => {
-            let [min_m, max_m] = corners(&field, "less than", |low, high| low < high)?;
-            Region::Box { min_m, max_m }
-        }
-        "sphere" => {
-            let (centre_m, radius_m) = sphere(&field)?;
-            Region::Sphere { centre_m, radius_m }
-        }
-        "cylinder" => {
-            let ([from_m, to_m], radius_m) = cylinder(&field)?;
-            Region::Cylinder {
-                from_m,
-                to_m,
-                radius_m,
-            }
-        }
+        "box" => Region::Box(read_box(&field, "less than", |low, high| low < high)?),
+        "sphere" => Region::Sphere(read_sphere(&field)?),
+        "cylinder" => Region::Cylinder(read_cylinder(&field)?),
         _ => {
             let (file, unit_m) = stl(&field, &table, folder)?;
             Region::Stl { file, unit_m }
@@ -100,13 +70,9 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Region> {
 
 pub(super) fn list(region: &Region, listing: &mut Listing) {
     match region {
-        Region::Box { min_m, max_m } => list_box(*min_m, *max_m, listing),
-        Region::Sphere { centre_m, radius_m } => list_sphere(*centre_m, *radius_m, listing),
-        Region::Cylinder {
-            from_m,
-            to_m,
-            radius_m,
-        } => list_cylinder([*from_m, *to_m], *radius_m, listing),
+        Region::Box(of) => listing.table("box", &BOX, |listing| of.list(listing)),
+        Region::Sphere(of) => listing.table("sphere", &SPHERE, |listing| of.list(listing)),
+        Region::Cylinder(of) => listing.table("cylinder", &CYLINDER, |listing| of.list(listing)),
         Region::Stl { file, unit_m } => list_stl(file, *unit_m, listing),
     }
 }

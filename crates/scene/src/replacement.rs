@@ -7,9 +7,9 @@ use super::clump::{ClumpMass, StartAs};
 use super::daughters::{self, DAUGHTERS, Daughters};
 use super::field::Field;
 use super::listing::Listing;
-use super::plain_table::plain_table;
+use super::plain_table::{keyed_struct, plain_table};
 use super::region::Region;
-use super::schema::{Key, Kind, Schema, words_of};
+use super::schema::{Kind, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, STRESS, TIME, VELOCITY};
@@ -17,80 +17,54 @@ use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, STRESS, TIME, VELOCITY};
 /// Words for `require`; true if all conditions of `when` must hold.
 const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
 
-pub(super) static REPLACEMENT: Schema = Schema {
-    title: "[replacement.NAME]",
-    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when the cluster becomes rigid again; or the `daughters` that replace a clump or a single sphere.",
-    keys: &[
-        Key::table(
-            "when",
-            &WHEN,
-            "Conditions for replacement; at least one. Not with `daughters`.",
-        )
-        .sometimes_required("{ enters = \"NAME\" }, a name in [regions]"),
-        Key::table(
-            "daughters",
-            &DAUGHTERS,
-            "Pieces that replace the clump or sphere once it has taken in enough energy.",
-        )
-        .otherwise("its own bonded cluster replaces it"),
-        Key::new(
-            "require",
-            Kind::Word(|| words_of(&REQUIRE)),
-            "`any` or `all` of the conditions in `when` must hold.",
-        )
-        .or_word("any"),
-        Key::table(
-            "restore",
-            &RESTORE,
-            "Conditions for a fragment to become rigid again; all must hold.",
-        )
-        .otherwise("never"),
-    ],
-};
+keyed_struct! {
+    REPLACEMENT = "[replacement.NAME]";
+    /// Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster,
+    /// and when the cluster becomes rigid again; or the `daughters` that replace a clump or a
+    /// single sphere.
+    #[derive(Debug, Clone, Default, PartialEq)]
+    pub struct Replacement {
+        /// Conditions for replacement; at least one. Not with `daughters`.
+        when: When = table("when", &WHEN)
+            .sometimes_required("{ enters = \"NAME\" }, a name in [regions]");
+        /// Pieces that replace the clump or sphere once it has taken in enough energy.
+        daughters: Option<Daughters> = table("daughters", &DAUGHTERS)
+            .otherwise("its own bonded cluster replaces it");
+        /// `any` or `all` of the conditions in `when` must hold.
+        requires_all: bool = new("require", Kind::Word(|| words_of(&REQUIRE))).or_word("any");
+        /// Conditions for a fragment to become rigid again; all must hold.
+        restore: Option<Restore> = table("restore", &RESTORE).otherwise("never");
+    }
+}
 
-pub(super) static WHEN: Schema = Schema {
-    title: "When",
-    doc: "Conditions that turn a clump into its bonded cluster.",
-    keys: &[
-        Key::text(
-            "enters",
-            "a name in [regions]",
-            "The centre of mass of the clump is in this region.",
-        )
-        .otherwise("not used"),
-        Key::quantity(
-            "force",
-            &FORCE,
-            "The resultant contact force on the clump reaches this value.",
-        )
-        .positive()
-        .otherwise("not used"),
-        Key::quantity(
-            "contact_force",
-            &FORCE,
-            "A single contact presses on the clump with this force. Unlike `force`, it sees a squeeze between two jaws, whose forces cancel.",
-        )
-        .positive()
-        .otherwise("not used"),
-        Key::quantity(
-            "principal_stress",
-            &STRESS,
-            "The mean stress that contacts exert on the clump (Love and Weber: the sum of the dyadic products of contact force and way from the centre, over the volume) has a principal value of this magnitude.",
-        )
-        .positive()
-        .otherwise("not used"),
-        Key::quantity(
-            "impact_energy",
-            &ENERGY,
-            "The kinetic energy that contacts have taken from the clump reaches this value.",
-        )
-        .positive()
-        .otherwise("not used"),
-        Key::quantity("time", &TIME, "The run reaches this time.")
-            .not_negative()
-            .otherwise("not used"),
-    ],
-};
+plain_table! {
+    WHEN = "When";
+    /// Conditions that turn a clump into its bonded cluster.
+    #[derive(Debug, Clone, Default, PartialEq)]
+    pub struct When {
+        /// The centre of mass of the clump is in this region.
+        enters: Option<String> = text("enters", "a name in [regions]").otherwise("not used");
+        /// The resultant contact force on the clump reaches this value.
+        force_n: Option<f64> = quantity("force", &FORCE).positive().otherwise("not used");
+        /// A single contact presses on the clump with this force. Unlike `force`, it sees a squeeze
+        /// between two jaws, whose forces cancel.
+        contact_force_n: Option<f64> = quantity("contact_force", &FORCE)
+            .positive()
+            .otherwise("not used");
+        /// The mean stress that contacts exert on the clump (Love and Weber: the sum of the dyadic
+        /// products of contact force and way from the centre, over the volume) has a principal
+        /// value of this magnitude.
+        principal_stress_pa: Option<f64> = quantity("principal_stress", &STRESS)
+            .positive()
+            .otherwise("not used");
+        /// The kinetic energy that contacts have taken from the clump reaches this value.
+        impact_energy_j: Option<f64> = quantity("impact_energy", &ENERGY)
+            .positive()
+            .otherwise("not used");
+        /// The run reaches this time.
+        time_s: Option<f64> = quantity("time", &TIME).not_negative().otherwise("not used");
+    }
+}
 
 plain_table! {
     RESTORE = "Restore";
@@ -112,35 +86,6 @@ plain_table! {
             .positive()
             .or(5e-3);
     }
-}
-
-/// Conditions under which a rigid clump becomes the bonded cluster that it represents, and under
-/// which a fragment becomes rigid again.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Replacement {
-    /// `when.enters`: its centre is in this region, a name of `[regions]`. None, here and below: no
-    /// such condition. At least one is given.
-    pub enters: Option<String>,
-    /// `when.force`: the resultant contact force on it reaches this, N; more than 0.
-    pub force_n: Option<f64>,
-    /// `when.contact_force`: a single contact force on it reaches this, N; more than 0.
-    pub contact_force_n: Option<f64>,
-    /// `when.principal_stress`: a principal value of the mean stress of its contacts reaches this,
-    /// by magnitude, Pa; more than 0.
-    pub principal_stress_pa: Option<f64>,
-    /// `when.impact_energy`: the kinetic energy that contacts have taken from it so far reaches
-    /// this, J; more than 0.
-    pub impact_energy_j: Option<f64>,
-    /// `when.time`: this time is reached, s; at least 0.
-    pub time_s: Option<f64>,
-    /// `require`: all conditions of `when` must hold ("all"), not just any ("any"). False unless
-    /// given.
-    pub requires_all: bool,
-    /// `restore`. None: replaced bodies stay bonded.
-    pub restore: Option<Restore>,
-    /// `daughters`, which exclude all of the above. None: its own bonded cluster replaces the
-    /// clump.
-    pub daughters: Option<Daughters>,
 }
 
 pub(super) fn read_all(
@@ -253,15 +198,8 @@ fn with_daughters(table: &Table<'_>, daughters: Daughters) -> Result<Replacement
         }
     }
     Ok(Replacement {
-        enters: None,
-        force_n: None,
-        contact_force_n: None,
-        principal_stress_pa: None,
-        impact_energy_j: None,
-        time_s: None,
-        requires_all: false,
-        restore: None,
         daughters: Some(daughters),
+        ..Replacement::default()
     })
 }
 
@@ -271,13 +209,9 @@ fn read(table: &Table<'_>, regions: &BTreeMap<String, Region>) -> Result<Replace
         let remedy = "add enters = \"NAME\", force = \"100 N\", contact_force = \"100 N\", principal_stress = \"0.1 MPa\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
         return Err(when.fault("is an empty table", remedy));
     }
+    when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?;
     Ok(Replacement {
-        enters: when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?,
-        force_n: when.read("force")?,
-        contact_force_n: when.read("contact_force")?,
-        principal_stress_pa: when.read("principal_stress")?,
-        impact_energy_j: when.read("impact_energy")?,
-        time_s: when.read("time")?,
+        when: When::read(&when)?,
         requires_all: table
             .read_by("require", |field| field.choice(&REQUIRE))?
             .unwrap_or(false),
@@ -298,17 +232,7 @@ pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
             daughters::list(daughters, listing);
         });
     }
-    listing.table("when", &WHEN, |listing| {
-        listing.text(
-            "enters",
-            replacement.enters.as_deref().unwrap_or("not used"),
-        );
-        listing.value("force", &replacement.force_n);
-        listing.value("contact_force", &replacement.contact_force_n);
-        listing.value("principal_stress", &replacement.principal_stress_pa);
-        listing.value("impact_energy", &replacement.impact_energy_j);
-        listing.value("time", &replacement.time_s);
-    });
+    listing.table("when", &WHEN, |listing| replacement.when.list(listing));
     listing.text(
         "require",
         if replacement.requires_all {

@@ -181,6 +181,12 @@ impl Key {
         Self::new(name, Kind::Text(what), doc)
     }
 
+    /// The name of a group of particles that is there at the start.
+    pub(super) const fn group(name: &'static str, doc: &'static str) -> Self {
+        Self::text(name, "a group, a body or `all`", doc)
+            .required("\"NAME\", a group, a body or \"all\"")
+    }
+
     /// A table within the table.
     pub(super) const fn table(
         name: &'static str,

@@ -10,13 +10,8 @@ use super::schema::Key;
 use super::wall::Wall;
 use dem_io::diagnostic::{Diagnostic, Result};
 
-/// The key `group` of supports, loads and `[initial]`.
-pub(super) const GROUP_KEY: Key = Key::text(
-    "group",
-    "a group, a body or `all`",
-    "The particles that it acts on.",
-)
-.required("\"NAME\", a group, a body or \"all\"");
+/// The key `group` of supports and loads.
+pub(super) const GROUP_KEY: Key = Key::group("group", "The particles that it acts on.");
 
 /// Objects that supports, loads and measures can name: groups, bodies and `all`; walls and
 /// `fragments` only for measures.

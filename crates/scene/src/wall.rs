@@ -4,7 +4,7 @@ pub(super) mod motion;
 mod shape;
 
 pub use motion::WallMotion;
-pub use shape::WallShape;
+pub use shape::{PlaneShape, WallShape};
 
 use std::collections::BTreeMap;
 use std::path::Path;

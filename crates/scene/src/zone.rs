@@ -4,37 +4,30 @@ use std::collections::BTreeMap;
 
 use super::field::Field;
 use super::listing::Listing;
-use super::plain_table::plain_table;
+use super::plain_table::{keyed_struct, plain_table};
 use super::region::Region;
-use super::schema::{Key, Schema};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY_PER_MASS, VELOCITY};
 
-pub(super) static ZONE: Schema = Schema {
-    title: "Bonded zone",
-    doc: "The part of a body that is bonded. Spheres outside it that are bonded to each other move as rigid parts.",
-    keys: &[
-        Key::text(
-            "region",
-            "a name in [regions]",
-            "Spheres whose centres are in this region are bonded.",
-        )
-        .required("\"NAME\", a name in [regions]"),
-        Key::text(
-            "moves_with",
-            "a name in [walls]",
-            "The region moves and turns with this wall. It lies where `[regions]` puts it at the start.",
-        )
-        .otherwise("the region does not move"),
-        Key::table(
-            "rejoin",
-            &REJOIN,
-            "Conditions under which a sphere that the region has left joins a rigid part again, bonded to one, all its bonds intact; all must hold.",
-        )
-        .otherwise("never"),
-    ],
-};
+keyed_struct! {
+    ZONE = "Bonded zone";
+    /// The part of a body that is bonded. Spheres outside it that are bonded to each other move as
+    /// rigid parts.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Zone {
+        /// Spheres whose centres are in this region are bonded.
+        region: String = text("region", "a name in [regions]")
+            .required("\"NAME\", a name in [regions]");
+        /// The region moves and turns with this wall. It lies where `[regions]` puts it at the
+        /// start.
+        moves_with: Option<String> = text("moves_with", "a name in [walls]")
+            .otherwise("the region does not move");
+        /// Conditions under which a sphere that the region has left joins a rigid part again,
+        /// bonded to one, all its bonds intact; all must hold.
+        rejoin: Option<Rejoin> = table("rejoin", &REJOIN).otherwise("never");
+    }
+}
 
 plain_table! {
     REJOIN = "Rejoin";
@@ -49,17 +42,6 @@ plain_table! {
             .positive()
             .or(5e-3);
     }
-}
-
-/// `bonded_within = { ... }`: the part of a body that is bonded.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Zone {
-    /// `region`: a name of `[regions]`.
-    pub region: String,
-    /// `moves_with`: a name of `[walls]`. None: the region does not move.
-    pub moves_with: Option<String>,
-    /// `rejoin`. None: spheres that were bonded once stay bonded.
-    pub rejoin: Option<Rejoin>,
 }
 
 pub(super) fn read(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Zone> {

@@ -51,7 +51,7 @@ pub(super) fn confinement(
         }
         let wall = &walls[name];
         let normal = match wall.shape {
-            WallShape::Plane { normal, .. } if wall.rotation_rad == [0.0; 3] => normal,
+            WallShape::Plane(plane) if wall.rotation_rad == [0.0; 3] => plane.normal,
             _ => [0.0; 3],
         };
         if !is_along_an_axis(normal) || dot(normal, direction).abs() > SQUARE {

@@ -9,9 +9,10 @@ use dem_physics::bond::stiffness::BondModel;
 use dem_physics::contact::law::Rolling;
 use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use dem_scene::{
-    BodySource, BondDamping, BondFailure, BondPlasticity, Clusters, ColourBy, Contact, ContactLaw,
-    Factor, Formulation, Hold, InitialOverlap, Integrator, Pick, QUANTITIES, Relaxation, Scene,
-    Search, Statistic, StrainRateMeasure, Wall, WallMotion, WallShape,
+    BodySource, BondDamping, BondFailure, BondPlasticity, BoxShape, Clusters, ColourBy, Contact,
+    ContactLaw, CylinderShape, Factor, Formulation, Hold, InitialOverlap, Integrator, Pick,
+    PlaneShape, QUANTITIES, Relaxation, Scene, Search, SphereShape, Statistic, StrainRateMeasure,
+    Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -181,10 +182,10 @@ fn walls() {
     assert_eq!(
         walls["floor"],
         Wall {
-            shape: WallShape::Plane {
+            shape: WallShape::Plane(PlaneShape {
                 point_m: [0.0, 0.0, -0.01],
                 normal: [0.0, 0.0, 1.0]
-            },
+            }),
             material: "steel".to_owned(),
             rotation_rad: [0.0; 3],
             pivot_m: [0.0; 3],
@@ -195,10 +196,10 @@ fn walls() {
     let belt = &walls["belt"];
     assert_eq!(
         belt.shape,
-        WallShape::Box {
-            min: [-2.0, -0.3, -0.02],
-            max: [0.0, 0.3, 0.0]
-        }
+        WallShape::Box(BoxShape {
+            min_m: [-2.0, -0.3, -0.02],
+            max_m: [0.0, 0.3, 0.0]
+        })
     );
     assert_eq!(belt.material, "belt-rubber");
     assert_near(belt.rotation_rad[2], std::f64::consts::FRAC_PI_2);
@@ -206,11 +207,11 @@ fn walls() {
     assert_eq!(belt.surface_velocity_m_s, [3.0, 0.0, 0.0]);
     assert_eq!(
         walls["pin"].shape,
-        WallShape::Cylinder {
+        WallShape::Cylinder(CylinderShape {
             from_m: [0.0, -0.01, 0.0],
             to_m: [0.0, 0.01, 0.0],
             radius_m: 0.005
-        }
+        })
     );
     assert_eq!(
         walls["plate"].shape,
@@ -220,11 +221,11 @@ fn walls() {
             scale: 0.5
         }
     );
-    let WallShape::Plane { normal, .. } = good("touching.toml").walls["ground"].shape else {
+    let WallShape::Plane(plane) = good("touching.toml").walls["ground"].shape else {
         panic!("no plane");
     };
-    assert_near(normal[1], 0.6);
-    assert_near(normal[2], 0.8);
+    assert_near(plane.normal[1], 0.6);
+    assert_near(plane.normal[2], 0.8);
 }
 
 #[test]
@@ -421,17 +422,17 @@ fn sets() {
     assert_eq!(scene.groups["near"].body, None);
     assert_eq!(
         scene.groups["near"].pick,
-        Pick::Box {
-            min: [-0.001; 3],
-            max: [0.001; 3]
-        }
+        Pick::Box(BoxShape {
+            min_m: [-0.001; 3],
+            max_m: [0.001; 3]
+        })
     );
     assert_eq!(
         scene.groups["round"].pick,
-        Pick::Sphere {
-            centre: [0.0; 3],
-            radius: 0.005
-        }
+        Pick::Sphere(SphereShape {
+            centre_m: [0.0; 3],
+            radius_m: 0.005
+        })
     );
 }
 
