@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::bond::BondKind;
 use super::clump;
-use super::clump::StartAs;
+use super::clump::{START_AS, StartAs};
 use super::conflicts;
 use super::direction::ROTATION;
 use super::fall::{self, Fall};
@@ -15,7 +15,7 @@ use super::material::Material;
 use super::names::meaning;
 use super::paths::named_path;
 use super::region::Region;
-use super::schema::{Key, Kind, Schema, Word};
+use super::schema::{Kind, Word, table_schema};
 use super::table::Table;
 use super::zone::{self, Zone};
 use dem_io::diagnostic::Result;
@@ -103,71 +103,46 @@ const INDEX: Kind = Kind::Whole {
     of: "",
 };
 
-pub(super) static BODY: Schema = Schema {
-    title: "[bodies.NAME]",
-    doc: "A body with its initial position and velocity. Give either a `file` or `particles`.",
-    keys: &[
-        Key::text(
-            "file",
-            "a file",
-            "File of the body, relative to the folder of the scene; `-` is standard input. `--body` is relative to the working directory.",
-        ),
-        Key::new(
-            "particles",
-            Kind::List(&PARTICLE),
-            "Particles, instead of a file: `[[x, y, z, radius], ...]`.",
-        ),
-        Key::new(
-            "bond_list",
-            Kind::List(&Kind::Row(&[INDEX, INDEX])),
-            "Bonds between `particles`, which are numbered from 0: `[[0, 1], ...]`.",
-        ),
-        Key::text("material", "a name in [materials]", "Its material.")
-            .required("\"NAME\", a name in [materials]"),
-        Key::quantity(
-            "body_density",
-            &DENSITY,
-            "Mass of the body over the volume of its shape, which is stored in its file.",
-        )
-        .positive(),
-        Key::quantity(
-            "mass",
-            &MASS,
-            "Mass of the body. Without `mass` and `body_density`, its spheres have the density of the material, or else that of the file.",
-        )
-        .positive()
-        .otherwise("that of its particles"),
-        Key::text("bonds", "a name in [bonds]", "Properties of its bonds; not required for a body without bonds.")
-            .sometimes_required("\"NAME\", a name in [bonds]"),
-        Key::vector("position", &LENGTH, "Position of the body, after `rotation`."),
-        Key::word::<PositionOf>(
-            "position_of",
-            "origin",
-            "The point of the body that is put at `position`: the origin of its file, or its centre of mass.",
-        ),
-        Key::table("rotation", &ROTATION, "Initial rotation about the origin of its file.").or(0.0),
-        Key::vector("velocity", &VELOCITY, "Velocity of the centre of mass."),
-        Key::table(
-            "drop",
-            &fall::DROP,
-            "A fall onto a wall: the body starts just above it, with the speed that the fall has given it. Stands for `velocity` and \
-             the part of `position` along gravity.",
-        ),
-        Key::vector(
-            "angular_velocity",
-            &ANGULAR_VELOCITY,
-            "Angular velocity of the rigid body about its centre of mass.",
-        ),
-        clump::START_AS,
-        Key::table("clump", &clump::CLUMP, "Settings of the clump; only with `start_as = \"clump\"`."),
-        Key::table(
-            "bonded_within",
-            &zone::ZONE,
-            "Region in which the body is bonded; the rest of it is rigid.",
-        )
-        .otherwise("all of it is bonded"),
-    ],
-};
+table_schema! {
+    /// A body with its initial position and velocity. Give either a `file` or `particles`.
+    pub(super) static BODY = "[bodies.NAME]";
+
+    /// File of the body, relative to the folder of the scene; `-` is standard input. `--body` is
+    /// relative to the working directory.
+    text("file", "a file");
+    /// Particles, instead of a file: `[[x, y, z, radius], ...]`.
+    new("particles", Kind::List(&PARTICLE));
+    /// Bonds between `particles`, which are numbered from 0: `[[0, 1], ...]`.
+    new("bond_list", Kind::List(&Kind::Row(&[INDEX, INDEX])));
+    /// Its material.
+    text("material", "a name in [materials]").required("\"NAME\", a name in [materials]");
+    /// Mass of the body over the volume of its shape, which is stored in its file.
+    quantity("body_density", &DENSITY).positive();
+    /// Mass of the body. Without `mass` and `body_density`, its spheres have the density of the
+    /// material, or else that of the file.
+    quantity("mass", &MASS).positive().otherwise("that of its particles");
+    /// Properties of its bonds; not required for a body without bonds.
+    text("bonds", "a name in [bonds]").sometimes_required("\"NAME\", a name in [bonds]");
+    /// Position of the body, after `rotation`.
+    vector("position", &LENGTH);
+    /// The point of the body that is put at `position`: the origin of its file, or its centre of
+    /// mass.
+    word::<PositionOf>("position_of", "origin");
+    /// Initial rotation about the origin of its file.
+    table("rotation", &ROTATION).or(0.0);
+    /// Velocity of the centre of mass.
+    vector("velocity", &VELOCITY);
+    /// A fall onto a wall: the body starts just above it, with the speed that the fall has given
+    /// it. Stands for `velocity` and the part of `position` along gravity.
+    table("drop", &fall::DROP);
+    /// Angular velocity of the rigid body about its centre of mass.
+    vector("angular_velocity", &ANGULAR_VELOCITY);
+    START_AS;
+    /// Settings of the clump; only with `start_as = "clump"`.
+    table("clump", &clump::CLUMP);
+    /// Region in which the body is bonded; the rest of it is rigid.
+    table("bonded_within", &zone::ZONE).otherwise("all of it is bonded");
+}
 
 pub(super) fn read_all(
     root: &Table<'_>,

@@ -4,9 +4,8 @@ use super::bond_failure::{self, BondFailure, FAILURE};
 use super::conflicts;
 use super::field::Field;
 use super::listing::Listing;
-use super::material::poisson_ratio;
 use super::plain_table::plain_table;
-use super::schema::{Key, Kind, Schema, Word, words_of};
+use super::schema::{Kind, Word, table_schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{STRESS, VISCOUS_DAMPING};
@@ -49,83 +48,48 @@ pub struct BondKind {
     pub contact_beside_bond: bool,
 }
 
-pub(super) static BOND: Schema = Schema {
-    title: "[bonds.NAME]",
-    doc: "Properties of bonds.",
-    keys: &[
-        Key::new(
-            "model",
-            Kind::Word(|| words_of(&models(None, 0.0, 0.0))),
-            "Model of the bond: a beam; `pin`, which resists neither torsion nor bending; `rojek`, two segments in series, each \
-             as thick in proportion as its sphere; or `flat-joint`, whose section consists of elements that fail one by one.",
-        )
-        .or_word("timoshenko"),
-        Key::number(
-            "stiffness_ratio",
-            "Normal over shear stiffness of the models `parallel`, `pin`, `rojek` and `flat-joint`.",
-        )
-        .positive()
-        .otherwise("2 (1 + nu)"),
-        Key::number(
-            "shear_coefficient",
-            "Shear coefficient of the section, for the model `shear-coefficient`.",
-        )
-        .positive()
-        .or(0.9),
-        Key::new(
-            "radial_elements",
-            Kind::Whole { least: 1, most: Some(100), of: "" },
-            "Rings of elements in the section, for the model `flat-joint`.",
-        )
+table_schema! {
+    /// Properties of bonds.
+    pub(super) static BOND = "[bonds.NAME]";
+
+    /// Model of the bond: a beam; `pin`, which resists neither torsion nor bending; `rojek`, two
+    /// segments in series, each as thick in proportion as its sphere; or `flat-joint`, whose
+    /// section consists of elements that fail one by one.
+    new("model", Kind::Word(|| words_of(&models(None, 0.0, 0.0)))).or_word("timoshenko");
+    /// Normal over shear stiffness of the models `parallel`, `pin`, `rojek` and `flat-joint`.
+    number("stiffness_ratio").positive().otherwise("2 (1 + nu)");
+    /// Shear coefficient of the section, for the model `shear-coefficient`.
+    number("shear_coefficient").positive().or(0.9);
+    /// Rings of elements in the section, for the model `flat-joint`.
+    new("radial_elements", Kind::Whole { least: 1, most: Some(100), of: "" })
         .remedy("leave it out for 3")
-        .or(3.0),
-        Key::new(
-            "circumferential_elements",
-            Kind::Whole { least: 3, most: Some(100), of: "" },
-            "Elements of each ring, for the model `flat-joint`.",
-        )
+        .or(3.0);
+    /// Elements of each ring, for the model `flat-joint`.
+    new("circumferential_elements", Kind::Whole { least: 3, most: Some(100), of: "" })
         .remedy("leave it out for 12")
-        .or(12.0),
-        Key::number(
-            "joint_friction",
-            "Friction coefficient of failed elements under pressure, for the model `flat-joint` with `failure`.",
-        )
-        .not_negative()
-        .or(0.0),
-        Key::word::<Formulation>(
-            "formulation",
-            "total",
-            "`total`: forces are the gradient of an energy of positions and orientations; `incremental`, for comparison: \
-             forces are summed step by step.",
-        ),
-        Key::quantity("young_modulus", &STRESS, "Young's modulus of the beam.")
-            .positive()
-            .required("\"15 MPa\""),
-        poisson_ratio("Poisson's ratio of the beam.").required("0.3"),
-        Key::number(
-            "radius_factor",
-            "Radius of the bond over that of the smaller particle.",
-        )
-        .positive()
-        .otherwise("radii of the body"),
-        Key::table("damping", &DAMPING, "Damping at the bond."),
-        Key::table(
-            "failure",
-            &FAILURE,
-            "Failure criteria; without them no bond breaks.",
-        ),
-        Key::table(
-            "plasticity",
-            &PLASTICITY,
-            "Yield strengths; without them bonds are elastic until they break.",
-        ),
-        Key::flag(
-            "contact_beside_bond",
-            false,
-            "The contact law of the two materials acts beside the bond, from the overlap at which the ends were bonded.",
-        ),
-    ],
-};
+        .or(12.0);
+    /// Friction coefficient of failed elements under pressure, for the model `flat-joint` with
+    /// `failure`.
+    number("joint_friction").not_negative().or(0.0);
+    /// `total`: forces are the gradient of an energy of positions and orientations; `incremental`,
+    /// for comparison: forces are summed step by step.
+    word::<Formulation>("formulation", "total");
+    /// Young's modulus of the beam.
+    quantity("young_modulus", &STRESS).positive().required("\"15 MPa\"");
+    /// Poisson's ratio of the beam.
+    poisson_ratio().required("0.3");
+    /// Radius of the bond over that of the smaller particle.
+    number("radius_factor").positive().otherwise("radii of the body");
+    /// Damping at the bond.
+    table("damping", &DAMPING);
+    /// Failure criteria; without them no bond breaks.
+    table("failure", &FAILURE);
+    /// Yield strengths; without them bonds are elastic until they break.
+    table("plasticity", &PLASTICITY);
+    /// The contact law of the two materials acts beside the bond, from the overlap at which the
+    /// ends were bonded.
+    flag("contact_beside_bond", false);
+}
 
 plain_table! {
     PLASTICITY = "Plasticity";

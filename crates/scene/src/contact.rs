@@ -13,7 +13,7 @@ use self::pair::named_pair;
 use super::field::Field;
 use super::listing::Listing;
 use super::material::Material;
-use super::schema::{Key, Kind, Schema, words_of};
+use super::schema::{Kind, table_schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY_PER_AREA, STIFFNESS};
@@ -40,73 +40,43 @@ const LAWS: [(&str, LawName); 3] = [
 /// Rolling laws; true with a spring.
 const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpot", true)];
 
-pub(super) static CONTACT: Schema = Schema {
-    title: "[contacts.NAME-NAME]",
-    doc: "Contact law of two materials. Their names may be in either order and may contain a hyphen.",
-    keys: &[
-        Key::new(
-            "law",
-            Kind::Word(|| words_of(&LAWS)),
-            "Hertz-Mindlin, the same with the adhesion of Derjaguin, Muller and Toporov, or a linear spring and dashpot.",
-        )
-        .or_word("hertz-mindlin"),
-        Key::quantity(
-            "work_of_adhesion",
-            &ENERGY_PER_AREA,
-            "Work that separates two surfaces, of the law `dmt`, which requires it: the pull-off force is 2 pi times it and the effective radius. Twice the surface energy for a material with itself.",
-        )
-        .positive()
-        .sometimes_required("\"50 mJ/m2\""),
-        Key::quantity(
-            "normal_stiffness",
-            &STIFFNESS,
-            "Normal stiffness of the law `linear`, which requires it.",
-        )
-        .positive()
-        .sometimes_required("\"100 kN/m\""),
-        Key::number(
-            "tangential_stiffness_ratio",
-            "Tangential over normal stiffness of the law `linear`; the default is 2/7.",
-        )
+table_schema! {
+    /// Contact law of two materials. Their names may be in either order and may contain a hyphen.
+    pub(super) static CONTACT = "[contacts.NAME-NAME]";
+
+    /// Hertz-Mindlin, the same with the adhesion of Derjaguin, Muller and Toporov, or a linear
+    /// spring and dashpot.
+    new("law", Kind::Word(|| words_of(&LAWS))).or_word("hertz-mindlin");
+    /// Work that separates two surfaces, of the law `dmt`, which requires it: the pull-off force is
+    /// 2 pi times it and the effective radius. Twice the surface energy for a material with itself.
+    quantity("work_of_adhesion", &ENERGY_PER_AREA).positive().sometimes_required("\"50 mJ/m2\"");
+    /// Normal stiffness of the law `linear`, which requires it.
+    quantity("normal_stiffness", &STIFFNESS).positive().sometimes_required("\"100 kN/m\"");
+    /// Tangential over normal stiffness of the law `linear`; the default is 2/7.
+    number("tangential_stiffness_ratio")
         .within(Excluded(0.0), Included(1.0))
         .remedy("leave it out for 2/7")
-        .or(2.0 / 7.0),
-        Key::number(
-            "restitution",
-            "Coefficient of restitution: relative speed after a head-on collision over that before it.",
-        )
+        .or(2.0 / 7.0);
+    /// Coefficient of restitution: relative speed after a head-on collision over that before it.
+    number("restitution")
         .within(Included(LEAST_RESTITUTION), Included(1.0))
         .remedy("1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step")
-        .required("0.5"),
-        Key::number("friction", "Coefficient of sliding friction: largest tangential force over the normal force.")
-            .not_negative()
-            .or(0.0),
-        Key::new(
-            "rolling",
-            Kind::Word(|| words_of(&ROLLINGS)),
-            "Model of rolling friction; `constant-torque` if only `rolling_friction` is given.",
-        ),
-        Key::number(
-            "rolling_friction",
-            "Coefficient of rolling friction; 0 is none. Above 0 it requires a `friction` above 0.",
-        )
-        .not_negative()
-        .remedy("0 is none")
-        .sometimes_required("0.05"),
-        Key::number(
-            "rolling_damping_ratio",
-            "Damping ratio of the model `spring-dashpot`, as a fraction of critical damping.",
-        )
+        .required("0.5");
+    /// Coefficient of sliding friction: largest tangential force over the normal force.
+    number("friction").not_negative().or(0.0);
+    /// Model of rolling friction; `constant-torque` if only `rolling_friction` is given.
+    new("rolling", Kind::Word(|| words_of(&ROLLINGS)));
+    /// Coefficient of rolling friction; 0 is none. Above 0 it requires a `friction` above 0.
+    number("rolling_friction").not_negative().remedy("0 is none").sometimes_required("0.05");
+    /// Damping ratio of the model `spring-dashpot`, as a fraction of critical damping.
+    number("rolling_damping_ratio")
         .within(Included(0.0), Included(1.0))
         .remedy("it is a fraction of critical damping: a usual value is 0.3")
-        .or(0.3),
-        Key::table(
-            "liquid_bridge",
-            &LIQUID_BRIDGE,
-            "Liquid between ends that have touched, which pulls them together beside the law; without it they are dry.",
-        ),
-    ],
-};
+        .or(0.3);
+    /// Liquid between ends that have touched, which pulls them together beside the law; without it
+    /// they are dry.
+    table("liquid_bridge", &LIQUID_BRIDGE);
+}
 
 /// The contact between two materials.
 #[derive(Debug, Clone, PartialEq)]

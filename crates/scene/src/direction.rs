@@ -1,25 +1,20 @@
 //! Directions, and rotations about them.
 
 use super::field::Field;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Kind, table_schema};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGLE, NUMBER};
 
-pub(super) static ROTATION: Schema = Schema {
-    title: "Rotation",
-    doc: "A rotation.",
-    keys: &[
-        Key::new(
-            "axis",
-            Kind::Direction("an axis"),
-            "Axis of rotation; its length does not matter.",
-        )
-        .required("[0, 0, 1]"),
-        Key::quantity("angle", &ANGLE, "Angle, right-handed about the axis.")
-            .required("\"45 deg\""),
-    ],
-};
+table_schema! {
+    /// A rotation.
+    pub(super) static ROTATION = "Rotation";
+
+    /// Axis of rotation; its length does not matter.
+    new("axis", Kind::Direction("an axis")).required("[0, 0, 1]");
+    /// Angle, right-handed about the axis.
+    quantity("angle", &ANGLE).required("\"45 deg\"");
+}
 
 /// A vector of length 1 along the three numbers of `field`, called `what` in messages: "an axis".
 ///

@@ -42,11 +42,13 @@ pub(super) const TABLE: Key = Key::new(
     "Factor over time, instead of `ramp`: `[[time, factor], ...]` with increasing times, linear between the rows, constant before and after them.",
 );
 
-/// The key `end`.
-pub(super) const fn until(doc: &'static str) -> Key {
-    Key::quantity("end", &TIME, doc)
-        .positive()
-        .otherwise("never")
+impl Key {
+    /// The key `end`.
+    pub(super) const fn until(doc: &'static str) -> Self {
+        Self::quantity("end", &TIME, doc)
+            .positive()
+            .otherwise("never")
+    }
 }
 
 /// The key for the change of a factor with time, if there is one.

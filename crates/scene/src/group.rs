@@ -7,7 +7,7 @@ use super::field::Field;
 use super::listing::{LISTED, Listing};
 use super::names::{FRAGMENTS, meaning};
 use super::presence::Presence;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Kind, table_schema};
 use super::shape::{BOX, BoxShape, SPHERE, SphereShape, read_box, read_sphere};
 use super::table::Table;
 use dem_io::diagnostic::Result;
@@ -39,29 +39,23 @@ pub enum Pick {
 /// The ways to select particles.
 const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
 
-pub(super) static GROUP: Schema = Schema {
-    title: "[groups.NAME]",
-    doc: "A group of particles, selected by one key at the start of the run. Each body name and `all` are groups as well.",
-    keys: &[
-        Key::text("body", "a name in [bodies]", "Select only from this body.").otherwise("all"),
-        Key::new("all", Kind::True, "All particles."),
-        Key::new(
-            "particles",
-            Kind::List(&Kind::Whole {
-                least: 0,
-                most: None,
-                of: "",
-            }),
-            "Particles by their numbers in the body's file, from 0. Requires a `body`, or a scene with one body.",
-        ),
-        Key::table("box", &BOX, "Particles whose centres are in this box."),
-        Key::table(
-            "sphere",
-            &SPHERE,
-            "Particles whose centres are in this sphere.",
-        ),
-    ],
-};
+table_schema! {
+    /// A group of particles, selected by one key at the start of the run. Each body name and `all`
+    /// are groups as well.
+    pub(super) static GROUP = "[groups.NAME]";
+
+    /// Select only from this body.
+    text("body", "a name in [bodies]").otherwise("all");
+    /// All particles.
+    new("all", Kind::True);
+    /// Particles by their numbers in the body's file, from 0. Requires a `body`, or a scene with
+    /// one body.
+    new("particles", Kind::List(&Kind::Whole { least: 0, most: None, of: "" }));
+    /// Particles whose centres are in this box.
+    table("box", &BOX);
+    /// Particles whose centres are in this sphere.
+    table("sphere", &SPHERE);
+}
 
 pub(super) fn read_all(
     root: &Table<'_>,

@@ -8,7 +8,7 @@ use super::names::ALL;
 use super::numbers::quantity as shown;
 use super::quantity::{Quantity, With, named};
 use super::region::Region;
-use super::schema::{Key, Kind, Schema, Word};
+use super::schema::{Kind, Word, table_schema};
 use super::table::Table;
 use super::targets::{Subject, Targets};
 use dem_io::diagnostic::Result;
@@ -78,64 +78,39 @@ impl Measure {
     }
 }
 
-pub(super) static MEASURE: Schema = Schema {
-    title: "[measures.NAME]",
-    doc: "A measured quantity, with its reference value if one is known.",
-    keys: &[
-        Key::text("of", "a group, a body, a wall, `all` or `fragments`", "Object that is measured.")
-            .or_word(ALL),
-        Key::new(
-            "quantity",
-            Kind::Word(|| named().map(|(name, _)| name).collect()),
-            "For a wall: `force`, `torque` about its pivot, `position` of its pivot; for `fragments`: `count`, \
-             `mass_of_largest`, `mass_fraction_of_largest`; for groups: all others, and `position` and `force`.",
-        )
-        .required("\"displacement_x\""),
-        Key::text(
-            "with",
-            "a group, a body or a wall",
-            "Other side of the contact, or other part of the mixture; required for contact quantities and `mixing_index`.",
-        ),
-        Key::text(
-            "within",
-            "a name in [regions]",
-            "Region to which `mass`, `bulk_density`, `bulking_factor` or `mixing_index` is restricted; spheres that its border cuts count in part. Required for `mixing_index`.",
-        ),
-        Key::quantity(
-            "cell_size",
-            &LENGTH,
-            "Edge of the cells in which `mixing_index` compares mass fractions; required there.",
-        )
-        .positive(),
-        Key::number(
-            "limit",
-            "Dynamic utilisation below which intact bonds count; required for `fraction_below_dynamic_utilisation`.",
-        )
-        .positive(),
-        Key::word::<Statistic>(
-            "statistic",
-            "end",
-            "Statistic of the history that is reported; `mean` is over time.",
-        ),
-        Key::new("reference", Kind::Measured, "Reference value; the error of the result is reported."),
-        Key::number(
-            "tolerance",
-            "Relative error above which the run warns. Requires a `reference` other than 0.",
-        )
-        .positive(),
-        Key::new(
-            "absolute_tolerance",
-            Kind::Measured,
-            "Difference from `reference` above which the run warns. Requires a `reference`.",
-        )
-        .positive(),
-        Key::new(
-            "end_run_above",
-            Kind::Measured,
-            "The run ends, before its end time, at the first row of the time series with a larger value.",
-        ),
-    ],
-};
+table_schema! {
+    /// A measured quantity, with its reference value if one is known.
+    pub(super) static MEASURE = "[measures.NAME]";
+
+    /// Object that is measured.
+    text("of", "a group, a body, a wall, `all` or `fragments`").or_word(ALL);
+    /// For a wall: `force`, `torque` about its pivot, `position` of its pivot; for `fragments`:
+    /// `count`, `mass_of_largest`, `mass_fraction_of_largest`; for groups: all others, and
+    /// `position` and `force`.
+    new("quantity", Kind::Word(|| named().map(|(name, _)| name).collect()))
+        .required("\"displacement_x\"");
+    /// Other side of the contact, or other part of the mixture; required for contact quantities and
+    /// `mixing_index`.
+    text("with", "a group, a body or a wall");
+    /// Region to which `mass`, `bulk_density`, `bulking_factor` or `mixing_index` is restricted;
+    /// spheres that its border cuts count in part. Required for `mixing_index`.
+    text("within", "a name in [regions]");
+    /// Edge of the cells in which `mixing_index` compares mass fractions; required there.
+    quantity("cell_size", &LENGTH).positive();
+    /// Dynamic utilisation below which intact bonds count; required for
+    /// `fraction_below_dynamic_utilisation`.
+    number("limit").positive();
+    /// Statistic of the history that is reported; `mean` is over time.
+    word::<Statistic>("statistic", "end");
+    /// Reference value; the error of the result is reported.
+    new("reference", Kind::Measured);
+    /// Relative error above which the run warns. Requires a `reference` other than 0.
+    number("tolerance").positive();
+    /// Difference from `reference` above which the run warns. Requires a `reference`.
+    new("absolute_tolerance", Kind::Measured).positive();
+    /// The run ends, before its end time, at the first row of the time series with a larger value.
+    new("end_run_above", Kind::Measured);
+}
 
 pub(super) fn read(
     field: &Field<'_>,

@@ -6,28 +6,22 @@ use super::field::Field;
 use super::inlet::Inlet;
 use super::listing::Listing;
 use super::region::Region;
-use super::schema::{Key, Schema};
+use super::schema::table_schema;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
 const SIDES: [&str; 2] = ["inside", "outside"];
 
-pub(super) static OUTLET: Schema = Schema {
-    title: "[outlets.NAME]",
-    doc: "Removes bodies and fragments whose centre is inside or outside a region, and counts their mass.",
-    keys: &[
-        Key::text(
-            "inside",
-            "a name in [regions]",
-            "Remove bodies and fragments inside this region, which must not be the region of an inlet.",
-        ),
-        Key::text(
-            "outside",
-            "a name in [regions]",
-            "Remove bodies and fragments outside this region.",
-        ),
-    ],
-};
+table_schema! {
+    /// Removes bodies and fragments whose centre is inside or outside a region, and counts their
+    /// mass.
+    pub(super) static OUTLET = "[outlets.NAME]";
+
+    /// Remove bodies and fragments inside this region, which must not be the region of an inlet.
+    text("inside", "a name in [regions]");
+    /// Remove bodies and fragments outside this region.
+    text("outside", "a name in [regions]");
+}
 
 /// Removes bodies and fragments by the position of their centre, and counts them.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use super::listing::{LISTED, Listing};
 use super::numbers::quantity;
 use super::paths::named_path;
 use super::plain_table::keyed_struct;
-use super::schema::{Key, Kind, Schema, Word};
+use super::schema::{Kind, Word, table_schema};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{LENGTH, TIME};
@@ -77,16 +77,13 @@ keyed_struct! {
     }
 }
 
-pub(super) static VIEW: Schema = Schema {
-    title: "View",
-    doc: "Camera of the pictures.",
-    keys: &[Key::new(
-        "from",
-        Kind::Direction("a direction"),
-        "Direction from the bodies to the camera; its length does not matter.",
-    )
-    .required("[1, -2, 1]")],
-};
+table_schema! {
+    /// Camera of the pictures.
+    pub(super) static VIEW = "View";
+
+    /// Direction from the bodies to the camera; its length does not matter.
+    new("from", Kind::Direction("a direction")).required("[1, -2, 1]");
+}
 
 pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
     let table = Table::of(field, &OUTPUT)?;

@@ -3,9 +3,8 @@
 /// Declares a table from one entry for each key: its struct with public fields, and its schema. The
 /// comment of a field is the sentence of its key.
 ///
-/// An entry is `field: type = kind("key", ...)`, with a constructor of
-/// [`Key`](crate::schema::Key) without its sentence. [`plain_table`] takes it with `by` a function
-/// that reads the value from the table.
+/// An entry is `field: type =` and an entry of [`table_schema`](crate::schema::table_schema).
+/// [`plain_table`] takes it with `by` a function that reads the value from the table.
 macro_rules! keyed_struct {
     (
         $schema:ident = $title:literal;
@@ -25,18 +24,14 @@ macro_rules! keyed_struct {
             $($(#[doc = $sentence])+ pub $field: $type,)+
         }
 
-        pub(crate) static $schema: $crate::schema::Schema = $crate::schema::Schema {
-            title: $title,
-            doc: concat!($($about),+).trim_ascii_start(),
-            keys: &[$(
-                $crate::schema::Key::$kind $(::<$word>)? (
-                    $key,
-                    $($with,)*
-                    concat!($($sentence),+).trim_ascii_start(),
-                )
-                $(.$set($($to),*))*,
-            )+],
-        };
+        $crate::schema::table_schema! {
+            $(#[doc = $about])+
+            pub(crate) static $schema = $title;
+            $(
+                $(#[doc = $sentence])+
+                $kind $(::<$word>)? ($key $(, $with)*) $(.$set($($to),*))*;
+            )+
+        }
     };
 }
 

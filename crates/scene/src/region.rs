@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::field::Field;
 use super::listing::Listing;
-use super::schema::{Key, Schema};
+use super::schema::table_schema;
 use super::shape::{
     BOX, BoxShape, CYLINDER, CylinderShape, SPHERE, SphereShape, UNIT, list_stl, read_box,
     read_cylinder, read_sphere, refuse_without_stl, stl,
@@ -14,21 +14,20 @@ use dem_io::diagnostic::Result;
 
 const SHAPES: [&str; 4] = ["box", "sphere", "cylinder", "stl"];
 
-pub(super) static REGION: Schema = Schema {
-    title: "[regions.NAME]",
-    doc: "A part of space of one shape. It has no surface.",
-    keys: &[
-        Key::table("box", &BOX, "A box."),
-        Key::table("sphere", &SPHERE, "A sphere."),
-        Key::table("cylinder", &CYLINDER, "A cylinder."),
-        Key::text(
-            "stl",
-            "a file",
-            "STL file of a closed surface, relative to the folder of the scene; requires `unit`.",
-        ),
-        UNIT,
-    ],
-};
+table_schema! {
+    /// A part of space of one shape. It has no surface.
+    pub(super) static REGION = "[regions.NAME]";
+
+    /// A box.
+    table("box", &BOX);
+    /// A sphere.
+    table("sphere", &SPHERE);
+    /// A cylinder.
+    table("cylinder", &CYLINDER);
+    /// STL file of a closed surface, relative to the folder of the scene; requires `unit`.
+    text("stl", "a file");
+    UNIT;
+}
 
 /// A region of space, without walls.
 #[derive(Debug, Clone, PartialEq)]

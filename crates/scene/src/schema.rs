@@ -314,3 +314,53 @@ impl Key {
         }
     }
 }
+
+/// Declares the schema of a table: its sentence as a comment, its title, then an entry for each key
+/// with its sentence as a comment. An entry is `kind("key", ...)`, with a constructor of [`Key`]
+/// without its sentence, or a constant, which has one.
+macro_rules! table_schema {
+    (
+        $(#[doc = $about:literal])+
+        $visibility:vis static $schema:ident = $title:literal;
+        $(
+            $(#[doc = $sentence:literal])*
+            $kind:ident $(::<$word:ty>)? $(($($with:expr),*))? $(.$set:ident($($to:expr),*))*;
+        )+
+    ) => {
+        $(#[doc = $about])+
+        $visibility static $schema: $crate::schema::Schema = $crate::schema::Schema {
+            title: $title,
+            doc: $crate::schema::sentence!($($about)+),
+            keys: &[$(
+                $crate::schema::key!(
+                    [$($sentence)*] $kind $(::<$word>)? $(($($with),*))? $(.$set($($to),*))*
+                ),
+            )+],
+        };
+    };
+}
+
+macro_rules! key {
+    ([] $constant:ident) => {
+        $constant
+    };
+    (
+        [$($sentence:literal)+]
+        $kind:ident $(::<$word:ty>)? ($($with:expr),*) $(.$set:ident($($to:expr),*))*
+    ) => {
+        $crate::schema::Key::$kind $(::<$word>)? (
+            $($with,)*
+            $crate::schema::sentence!($($sentence)+),
+        )
+        $(.$set($($to),*))*
+    };
+}
+
+/// The lines of a comment as one.
+macro_rules! sentence {
+    ($($line:literal)+) => {
+        concat!($($line),+).trim_ascii_start()
+    };
+}
+
+pub(crate) use {key, sentence, table_schema};

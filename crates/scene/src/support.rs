@@ -1,11 +1,11 @@
 //! `[supports.NAME]`
 
-use super::factor::{self, Factor, RAMP, TABLE, end, factor, factor_from_zero, over_time, until};
+use super::factor::{self, Factor, RAMP, TABLE, end, factor, factor_from_zero, over_time};
 use super::field::Field;
 use super::listing::Listing;
 use super::names::suggestion;
 use super::numbers::quantity;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, Kind, Schema, table_schema};
 use super::table::Table;
 use super::targets::{GROUP_KEY, Targets};
 use super::tree::Value;
@@ -47,33 +47,25 @@ pub struct Support {
     pub end_s: Option<f64>,
 }
 
-pub(super) static SUPPORT: Schema = Schema {
-    title: "[supports.NAME]",
-    doc: "Boundary conditions: hold or move each particle of a group along x, y, z and about these axes (rx, ry, rz).",
-    keys: &[
-        GROUP_KEY,
-        Key::new(
-            "fixed",
-            Kind::Either(&[Kind::True, Kind::List(&Kind::Word(|| FREEDOMS.to_vec()))]),
-            "Fixed degrees of freedom: `true` for all, or a list such as `[\"x\", \"rz\"]`.",
-        ),
-        Key::table(
-            "velocity",
-            &VELOCITIES,
-            "Prescribed velocities, multiplied by the factor of `ramp` or `table`.",
-        ),
-        Key::table(
-            "displacement",
-            &DISPLACEMENTS,
-            "Prescribed displacements, multiplied by the factor; requires a `ramp` or `table` that begins at 0.",
-        ),
-        RAMP,
-        TABLE,
-        until(
-            "Time at which the degrees of freedom are released; not before the last change of `ramp` or `table`.",
-        ),
-    ],
-};
+table_schema! {
+    /// Boundary conditions: hold or move each particle of a group along x, y, z and about these
+    /// axes (rx, ry, rz).
+    pub(super) static SUPPORT = "[supports.NAME]";
+
+    GROUP_KEY;
+    /// Fixed degrees of freedom: `true` for all, or a list such as `["x", "rz"]`.
+    new("fixed", Kind::Either(&[Kind::True, Kind::List(&Kind::Word(|| FREEDOMS.to_vec()))]));
+    /// Prescribed velocities, multiplied by the factor of `ramp` or `table`.
+    table("velocity", &VELOCITIES);
+    /// Prescribed displacements, multiplied by the factor; requires a `ramp` or `table` that begins
+    /// at 0.
+    table("displacement", &DISPLACEMENTS);
+    RAMP;
+    TABLE;
+    /// Time at which the degrees of freedom are released; not before the last change of `ramp` or
+    /// `table`.
+    until();
+}
 
 pub(super) static VELOCITIES: Schema = Schema {
     title: "Prescribed velocities",

@@ -1,7 +1,7 @@
 //! The keys of a study.
 
 use super::contents::{Average, BALANCES, CURVES, Combine, Keep, Pieces, RunTime};
-use crate::schema::{Key, Kind, Schema, Word, words_of};
+use crate::schema::{Key, Kind, Schema, Word, table_schema, words_of};
 
 /// Largest number of threads.
 const MOST: f64 = 1024.0;
@@ -101,41 +101,28 @@ pub(crate) static STUDY: Schema = Schema {
     ],
 };
 
-pub(super) static FIND: Schema = Schema {
-    title: "[find]",
-    doc: "Search for the value of a parameter at which the mean or the median of a measure has a given value, by bisection. \
-          What else varies, except the axis of `average_over`, makes cases, each with a search of its own.",
-    keys: &[
-        Key::text(
-            "parameter",
-            "a path of the scene",
-            "The path, as in `[vary]`; its value is a number, with or without its unit.",
-        )
-        .required("\"bodies.tablet.drop.height\""),
-        Key::new("from", ANYTHING, "One end of the range that is searched.").required("\"0.1 m\""),
-        Key::new("to", ANYTHING, "Its other end, in the same unit.").required("\"2 m\""),
-        Key::text(
-            "measure",
-            "a measure of the study",
-            "The measure, a name in `[measures]`.",
-        )
-        .required("\"largest\""),
-        Key::new("value", ANYTHING, "Its value that is looked for.").required("0.5"),
-        Key::new(
-            "statistic",
-            Kind::Word(|| words_of(&AVERAGES)),
-            "What of the values along the axis of `average_over` has that value: their mean, or their median, on either side \
-             of which lie half of the runs.",
-        )
-        .or_word("mean"),
-        Key::new(
-            "tolerance",
-            ANYTHING,
-            "Largest width of the interval in which the parameter is found, in the same unit.",
-        )
-        .required("\"2 cm\""),
-    ],
-};
+table_schema! {
+    /// Search for the value of a parameter at which the mean or the median of a measure has a given
+    /// value, by bisection. What else varies, except the axis of `average_over`, makes cases, each
+    /// with a search of its own.
+    pub(super) static FIND = "[find]";
+
+    /// The path, as in `[vary]`; its value is a number, with or without its unit.
+    text("parameter", "a path of the scene").required("\"bodies.tablet.drop.height\"");
+    /// One end of the range that is searched.
+    new("from", ANYTHING).required("\"0.1 m\"");
+    /// Its other end, in the same unit.
+    new("to", ANYTHING).required("\"2 m\"");
+    /// The measure, a name in `[measures]`.
+    text("measure", "a measure of the study").required("\"largest\"");
+    /// Its value that is looked for.
+    new("value", ANYTHING).required("0.5");
+    /// What of the values along the axis of `average_over` has that value: their mean, or their
+    /// median, on either side of which lie half of the runs.
+    new("statistic", Kind::Word(|| words_of(&AVERAGES))).or_word("mean");
+    /// Largest width of the interval in which the parameter is found, in the same unit.
+    new("tolerance", ANYTHING).required("\"2 cm\"");
+}
 
 /// Sizes of the values, and their labels.
 const SIZE: Key = Key::new(
@@ -150,36 +137,29 @@ const NAMES: Key = Key::new(
     "Label of each value on the page.",
 );
 
-pub(super) static VALUES: Schema = Schema {
-    title: "Values",
-    doc: "The values of a path.",
-    keys: &[
-        Key::new("values", Kind::List(&ANYTHING), "The values.").required("[0.9, 0.5]"),
-        SIZE,
-        NAMES,
-    ],
-};
+table_schema! {
+    /// The values of a path.
+    pub(super) static VALUES = "Values";
 
-pub(super) static RANGE: Schema = Schema {
-    title: "Range",
-    doc: "A range of values of a path.",
-    keys: &[
-        Key::new(
-            "from",
-            ANYTHING,
-            "First value, a number with or without its unit.",
-        )
-        .required("0.1"),
-        Key::new("to", ANYTHING, "Last value, in the same unit.").required("0.9"),
-        Key::whole("count", 2, "Number of values, both ends included.").required("5"),
-        Key::new(
-            "spacing",
-            Kind::Word(|| words_of(&SPACINGS)),
-            "Spacing of the values.",
-        )
-        .or_word("linear"),
-    ],
-};
+    /// The values.
+    new("values", Kind::List(&ANYTHING)).required("[0.9, 0.5]");
+    SIZE;
+    NAMES;
+}
+
+table_schema! {
+    /// A range of values of a path.
+    pub(super) static RANGE = "Range";
+
+    /// First value, a number with or without its unit.
+    new("from", ANYTHING).required("0.1");
+    /// Last value, in the same unit.
+    new("to", ANYTHING).required("0.9");
+    /// Number of values, both ends included.
+    whole("count", 2).required("5");
+    /// Spacing of the values.
+    new("spacing", Kind::Word(|| words_of(&SPACINGS))).or_word("linear");
+}
 
 /// Averages of a search.
 pub(super) const AVERAGES: [(&str, Average); 2] =
@@ -188,76 +168,58 @@ pub(super) const AVERAGES: [(&str, Average); 2] =
 /// Spacings of a range; true for logarithmic.
 pub(super) const SPACINGS: [(&str, bool); 2] = [("linear", false), ("log", true)];
 
-pub(super) static TOGETHER: Schema = Schema {
-    title: "[together.NAME]",
-    doc: "Paths that change together: `\"TABLE.KEY\" = [...]`, with equal numbers of values.",
-    keys: &[SIZE, NAMES],
-};
+table_schema! {
+    /// Paths that change together: `"TABLE.KEY" = [...]`, with equal numbers of values.
+    pub(super) static TOGETHER = "[together.NAME]";
 
-pub(crate) static MEASURE: Schema = Schema {
-    title: "[measures.NAME]",
-    doc: "A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve` and `balance`.",
-    keys: &[
-        Key::text("measure", "a measure of the scene", "A measure of the scene.")
-            .otherwise("that of the same name"),
-        Key::text(
-            "test_result",
-            "a result of the scene's laboratory test",
-            "A result of the scene's laboratory test, such as `stiffness`.",
-        ),
-        Key::new(
-            "fragment_masses",
-            Kind::Word(|| words_of(Pieces::WORDS)),
-            "Masses of the fragments discharged through outlets, or remaining at the end.",
-        ),
-        Key::new(
-            "curve",
-            Kind::Word(|| words_of(&CURVES)),
-            "The curve of the scene's laboratory test.",
-        ),
-        Key::new(
-            "balance",
-            Kind::Word(|| words_of(&BALANCES)),
-            "The largest relative error of this balance in the run.",
-        ),
-        Key::new(
-            "reference",
-            Kind::Either(&[
-                Kind::Word(|| vec!["none", "closed-form", "finest", "richardson"]),
-                Kind::Table(&REFERENCE),
-            ]),
-            "Reference of the error: none, so that the response is shown; that of the scene's measure or the theory of the \
-             test's result; a value; the run of the smallest size along an axis; or the extrapolation of the runs to size 0.",
-        )
-        .otherwise("that of the scene's measure if it has one, else `none`"),
-    ],
-};
+    SIZE;
+    NAMES;
+}
 
-pub(super) static REFERENCE: Schema = Schema {
-    title: "Reference",
-    doc: "One of these.",
-    keys: &[
-        Key::new(
-            "value",
-            ANYTHING,
-            "This value, a number with or without its unit.",
-        ),
-        Key::text(
-            "finest",
-            "an axis",
-            "Run of the smallest size along this axis, all else equal.",
-        ),
-        Key::text(
-            "richardson",
-            "an axis",
-            "Extrapolation of the values to size 0 from the three finest. Requires three sizes.",
-        ),
-    ],
-};
+table_schema! {
+    /// A result of each run: one of `measure`, `test_result`, `fragment_masses`, `curve` and
+    /// `balance`.
+    pub(crate) static MEASURE = "[measures.NAME]";
 
-pub(super) static PAGE: Schema = Schema {
-    title: "[page]",
-    doc: "Display of the runs on the page.",
-    keys: &[Key::text("series", "an axis", "Axis shown by colours.")
-        .otherwise("the first that is no number")],
-};
+    /// A measure of the scene.
+    text("measure", "a measure of the scene").otherwise("that of the same name");
+    /// A result of the scene's laboratory test, such as `stiffness`.
+    text("test_result", "a result of the scene's laboratory test");
+    /// Masses of the fragments discharged through outlets, or remaining at the end.
+    new("fragment_masses", Kind::Word(|| words_of(Pieces::WORDS)));
+    /// The curve of the scene's laboratory test.
+    new("curve", Kind::Word(|| words_of(&CURVES)));
+    /// The largest relative error of this balance in the run.
+    new("balance", Kind::Word(|| words_of(&BALANCES)));
+    /// Reference of the error: none, so that the response is shown; that of the scene's measure or
+    /// the theory of the test's result; a value; the run of the smallest size along an axis; or the
+    /// extrapolation of the runs to size 0.
+    new(
+        "reference",
+        Kind::Either(&[
+            Kind::Word(|| vec!["none", "closed-form", "finest", "richardson"]),
+            Kind::Table(&REFERENCE),
+        ])
+    )
+    .otherwise("that of the scene's measure if it has one, else `none`");
+}
+
+table_schema! {
+    /// One of these.
+    pub(super) static REFERENCE = "Reference";
+
+    /// This value, a number with or without its unit.
+    new("value", ANYTHING);
+    /// Run of the smallest size along this axis, all else equal.
+    text("finest", "an axis");
+    /// Extrapolation of the values to size 0 from the three finest. Requires three sizes.
+    text("richardson", "an axis");
+}
+
+table_schema! {
+    /// Display of the runs on the page.
+    pub(super) static PAGE = "[page]";
+
+    /// Axis shown by colours.
+    text("series", "an axis").otherwise("the first that is no number");
+}

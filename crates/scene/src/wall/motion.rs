@@ -3,7 +3,7 @@
 use crate::factor::{self, Factor, factor, factor_from_zero, over_time};
 use crate::field::Field;
 use crate::listing::Listing;
-use crate::schema::{Key, Kind, Schema};
+use crate::schema::{Kind, table_schema};
 use crate::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{FORCE, VELOCITY};
@@ -71,27 +71,17 @@ pub enum WallMotion {
     },
 }
 
-pub(crate) static SERVO: Schema = Schema {
-    title: "Servo",
-    doc: "A servo-controlled wall: it moves along a direction such that it exerts a given force.",
-    keys: &[
-        Key::quantity(
-            "force",
-            &FORCE,
-            "Force to exert along `direction`; negative values act against it.",
-        )
-        .required("\"100 N\""),
-        Key::new(
-            "direction",
-            Kind::Direction("a direction"),
-            "Direction of motion; its length does not matter.",
-        )
-        .required("[0, 0, -1]"),
-        Key::quantity("max_velocity", &VELOCITY, "Maximum velocity.")
-            .positive()
-            .required("\"10 mm/s\", its largest"),
-    ],
-};
+table_schema! {
+    /// A servo-controlled wall: it moves along a direction such that it exerts a given force.
+    pub(crate) static SERVO = "Servo";
+
+    /// Force to exert along `direction`; negative values act against it.
+    quantity("force", &FORCE).required("\"100 N\"");
+    /// Direction of motion; its length does not matter.
+    new("direction", Kind::Direction("a direction")).required("[0, 0, -1]");
+    /// Maximum velocity.
+    quantity("max_velocity", &VELOCITY).positive().required("\"10 mm/s\", its largest");
+}
 
 /// The types of motion, each with its keys.
 const WAYS: [&[&str]; 3] = [
