@@ -196,6 +196,29 @@ impl Key {
         Self::new(name, Kind::Table(keys), doc)
     }
 
+    /// A table within the table, with the sentence of its schema.
+    pub(super) const fn documented(name: &'static str, keys: &'static Schema) -> Self {
+        Self::table(name, keys, keys.doc)
+    }
+
+    /// The tables `[name.NAME]`, with the sentence of their schema.
+    pub(super) const fn named(name: &'static str, tables: &'static Kind) -> Self {
+        Self::named_by("NAME", name, tables)
+    }
+
+    /// The tables `[name.placeholder]`, with the sentence of their schema.
+    pub(super) const fn named_by(
+        placeholder: &'static str,
+        name: &'static str,
+        tables: &'static Kind,
+    ) -> Self {
+        let doc = match tables {
+            Kind::Table(schema) => schema.doc,
+            _ => "",
+        };
+        Self::new(name, Kind::Named(placeholder, tables), doc)
+    }
+
     /// Makes the key required.
     pub(super) const fn required(mut self, example: &'static str) -> Self {
         self.unless_given = Unless::Required(example);
@@ -317,7 +340,7 @@ impl Key {
 
 /// Declares the schema of a table: its sentence as a comment, its title, then an entry for each key
 /// with its sentence as a comment. An entry is `kind("key", ...)`, with a constructor of [`Key`]
-/// without its sentence, or a constant, which has one.
+/// without its sentence; or, without a comment, a constant or a constructor that gives the sentence.
 macro_rules! table_schema {
     (
         $(#[doc = $about:literal])+
@@ -343,6 +366,9 @@ macro_rules! table_schema {
 macro_rules! key {
     ([] $constant:ident) => {
         $constant
+    };
+    ([] $kind:ident ($($with:expr),*) $(.$set:ident($($to:expr),*))*) => {
+        $crate::schema::Key::$kind($($with),*) $(.$set($($to),*))*
     };
     (
         [$($sentence:literal)+]

@@ -46,8 +46,8 @@ pub(super) fn check(root: &Table<'_>, known: &Known<'_>) -> Result<()> {
 fn check_body(field: &Field<'_>, name: &str, body: &BodyEntry, known: &Known<'_>) -> Result<()> {
     let path = &field.path;
     if body.start_as != StartAs::Bonded {
-        let problem = format!("{path} has no effect on a clump, which is rigid as a whole");
-        return Err(field.refuse(problem, "remove start_as = \"clump\", or remove it"));
+        let problem = "has no effect on a clump, which is rigid as a whole";
+        return Err(field.fault(problem, "remove start_as = \"clump\", or remove it"));
     }
     let has_bonds = match &body.source {
         BodySource::Inline { bonds, .. } => !bonds.is_empty(),

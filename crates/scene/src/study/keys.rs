@@ -1,7 +1,7 @@
 //! The keys of a study.
 
 use super::contents::{Average, BALANCES, CURVES, Combine, Keep, Pieces, RunTime};
-use crate::schema::{Key, Kind, Schema, Word, table_schema, words_of};
+use crate::schema::{Key, Kind, Word, table_schema, words_of};
 
 /// Largest number of threads.
 const MOST: f64 = 1024.0;
@@ -10,96 +10,56 @@ pub(super) const MOST_REPEATS: u64 = 1024;
 
 /// Any value of a scene.
 const ANYTHING: Kind = Kind::Anything("a value");
+/// The values of a path.
+const SERIES: Kind = Kind::Either(&[
+    Kind::List(&ANYTHING),
+    Kind::Table(&VALUES),
+    Kind::Table(&RANGE),
+]);
 
-pub(crate) static STUDY: Schema = Schema {
-    title: "",
-    doc: "A study: a scene, the settings that vary, the measures, and their references.",
-    keys: &[
-        Key::whole("version", 1, "Version of the format.")
-            .remedy("write version = 1")
-            .required("1"),
-        Key::text(
-            "scene",
-            "a file",
-            "File of the scene, relative to the folder of the study.",
-        )
-        .required("\"scene.toml\""),
-        Key::whole(
-            "repeats",
-            1,
-            "Number of repetitions of each run; its time is the median.",
-        )
+table_schema! {
+    /// A study: a scene, the settings that vary, the measures, and their references.
+    pub(crate) static STUDY = "";
+
+    /// Version of the format.
+    whole("version", 1).remedy("write version = 1").required("1");
+    /// File of the scene, relative to the folder of the study.
+    text("scene", "a file").required("\"scene.toml\"");
+    /// Number of repetitions of each run; its time is the median.
+    whole("repeats", 1)
         .up_to(MOST_REPEATS as f64)
         .remedy("write repeats = 3")
-        .otherwise("3 if a measure has a reference, else 1"),
-        Key::whole("threads", 1, "Threads of each run.")
-            .up_to(MOST)
-            .remedy("write threads = 1")
-            .or(1.0),
-        Key::flag(
-            "force_step",
-            false,
-            "Allow steps above the largest stable one: `run.time_step`, or a `run.safety_factor` of 1 and more.",
-        ),
-        Key::word::<Keep>(
-            "keep",
-            "tables",
-            "Files of each run that are kept: `tables` (summary, tables, page, scene) or `all` (frames, pictures, plots and checkpoint as well). Of a run that fails, all are kept.",
-        ),
-        Key::word::<RunTime>(
-            "time",
-            "wall",
-            "Run time that is compared; `processor` depends less on other programs on the machine.",
-        ),
-        Key::word::<Combine>(
-            "combine",
-            "grid",
-            "`grid`: every combination of values; `paired`: the first with the first, the second with the second.",
-        ),
-        Key::new(
-            "set",
-            Kind::Named("\"TABLE.KEY\"", &ANYTHING),
-            "Settings of all runs: paths of the scene as `--set` takes them, or `body.NAME` for the file of a body.",
-        ),
-        Key::new(
-            "vary",
-            Kind::Named(
-                "\"TABLE.KEY\"",
-                &Kind::Either(&[
-                    Kind::List(&ANYTHING),
-                    Kind::Table(&VALUES),
-                    Kind::Table(&RANGE),
-                ]),
-            ),
-            "Settings that vary: paths as in `[set]`, each with its values.",
-        ),
-        Key::new(
-            "together",
-            Kind::Named("NAME", &Kind::Open(&TOGETHER, &Kind::List(&ANYTHING))),
-            "Paths that change together along one axis, with lists of equal length.",
-        ),
-        Key::new(
-            "measures",
-            Kind::Named("NAME", &Kind::Table(&MEASURE)),
-            MEASURE.doc,
-        )
-        .required("{ NAME = {} }"),
-        Key::text(
-            "average_over",
-            "an axis",
-            "Axis over which the responses of measures without a reference are averaged; their scatter is shown.",
-        )
-        .otherwise("`run.seed` if that varies"),
-        Key::new(
-            "statistic",
-            Kind::Word(|| words_of(&AVERAGES)),
-            "What the responses show of the values along the axis of `average_over`: their mean with the standard deviation, or their median with the range. `[find]` has its own.",
-        )
-        .or_word("mean"),
-        Key::table("find", &FIND, FIND.doc),
-        Key::table("page", &PAGE, PAGE.doc),
-    ],
-};
+        .otherwise("3 if a measure has a reference, else 1");
+    /// Threads of each run.
+    whole("threads", 1).up_to(MOST).remedy("write threads = 1").or(1.0);
+    /// Allow steps above the largest stable one: `run.time_step`, or a `run.safety_factor` of 1 and
+    /// more.
+    flag("force_step", false);
+    /// Files of each run that are kept: `tables` (summary, tables, page, scene) or `all` (frames,
+    /// pictures, plots and checkpoint as well). Of a run that fails, all are kept.
+    word::<Keep>("keep", "tables");
+    /// Run time that is compared; `processor` depends less on other programs on the machine.
+    word::<RunTime>("time", "wall");
+    /// `grid`: every combination of values; `paired`: the first with the first, the second with the
+    /// second.
+    word::<Combine>("combine", "grid");
+    /// Settings of all runs: paths of the scene as `--set` takes them, or `body.NAME` for the file
+    /// of a body.
+    new("set", Kind::Named("\"TABLE.KEY\"", &ANYTHING));
+    /// Settings that vary: paths as in `[set]`, each with its values.
+    new("vary", Kind::Named("\"TABLE.KEY\"", &SERIES));
+    /// Paths that change together along one axis, with lists of equal length.
+    new("together", Kind::Named("NAME", &Kind::Open(&TOGETHER, &Kind::List(&ANYTHING))));
+    named("measures", &Kind::Table(&MEASURE)).required("{ NAME = {} }");
+    /// Axis over which the responses of measures without a reference are averaged; their scatter is
+    /// shown.
+    text("average_over", "an axis").otherwise("`run.seed` if that varies");
+    /// What the responses show of the values along the axis of `average_over`: their mean with the
+    /// standard deviation, or their median with the range. `[find]` has its own.
+    new("statistic", Kind::Word(|| words_of(&AVERAGES))).or_word("mean");
+    documented("find", &FIND);
+    documented("page", &PAGE);
+}
 
 table_schema! {
     /// Search for the value of a parameter at which the mean or the median of a measure has a given
