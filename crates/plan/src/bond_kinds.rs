@@ -1,52 +1,16 @@
 //! Kinds of bonds of a scene: their models, laws and strengths.
 
-use dem_scene::{BondDamping, BondKind, BondModel as SceneModel, Formulation, JointElements};
+use dem_scene::{BondDamping, BondKind, Formulation};
 
 use dem_engine::state::bonds::{BondLaw, BondRule};
-use dem_physics::bond::failure::{Criteria, EquivalentStress, has_strength};
-use dem_physics::bond::flat_joint::{FlatJointLaw, moment_ratio};
+use dem_physics::bond::failure::{Criteria, has_strength};
 use dem_physics::bond::plasticity::Plasticity;
-use dem_physics::bond::stiffness::BondModel;
-
-/// The model of the stiffness of a kind of bonds.
-pub(super) fn model(model: SceneModel) -> BondModel {
-    match model {
-        SceneModel::Parallel {
-            stiffness_ratio: kappa,
-        } => BondModel::Parallel { kappa },
-        SceneModel::Pin {
-            stiffness_ratio: kappa,
-        } => BondModel::Pin { kappa },
-        SceneModel::Rojek {
-            stiffness_ratio: kappa,
-        } => BondModel::Rojek { kappa },
-        SceneModel::EulerBernoulli => BondModel::EulerBernoulli,
-        SceneModel::Timoshenko => BondModel::Timoshenko,
-        SceneModel::ElasticSolid => BondModel::ElasticSolid,
-        SceneModel::ShearCoefficient { alpha } => BondModel::ShearCoefficient { alpha },
-        SceneModel::FlatJoint {
-            stiffness_ratio: kappa,
-            elements,
-        } => BondModel::FlatJoint {
-            kappa,
-            moment_ratio: moment_ratio(&joint_law(elements)),
-        },
-    }
-}
-
-fn joint_law(elements: JointElements) -> FlatJointLaw {
-    FlatJointLaw {
-        radial_elements: elements.radial,
-        circumferential_elements: elements.circumferential,
-        friction: elements.friction,
-    }
-}
 
 /// The law of a kind of bonds, of which the scene allows one.
 fn law(kind: &BondKind) -> BondLaw {
     let strength_pa = |strength: Option<f64>| strength.unwrap_or(f64::INFINITY);
-    if let SceneModel::FlatJoint { elements, .. } = kind.model {
-        BondLaw::FlatJoint(joint_law(elements))
+    if let Some(joint) = kind.joint {
+        BondLaw::FlatJoint(joint)
     } else if kind.formulation == Formulation::Incremental {
         BondLaw::Incremental
     } else if let Some(plasticity) = kind.plasticity {
@@ -80,7 +44,7 @@ pub(super) fn rule(kind: &BondKind) -> BondRule {
         cohesion_pa: strength_pa(failure.cohesion_pa),
         friction_tangent: failure.friction_angle_rad.map_or(0.0, f64::tan),
         von_mises_strength_pa: strength_pa(failure.von_mises_strength_pa),
-        equivalent_stress: equivalent_stress(failure.equivalent_stress),
+        equivalent_stress: failure.equivalent_stress,
     };
     let undamped = BondDamping {
         per_mode: kind.damping.per_mode,
@@ -95,14 +59,5 @@ pub(super) fn rule(kind: &BondKind) -> BondRule {
         strengthening_from_1_s: failure.rate_strengthening_from_1_s,
         strain_rate_measure: failure.strain_rate_measure,
         contact_beside: kind.contact_beside_bond,
-    }
-}
-
-fn equivalent_stress(asked: dem_scene::EquivalentStress) -> EquivalentStress {
-    match asked {
-        dem_scene::EquivalentStress::AxialInTension => EquivalentStress::AxialInTension,
-        dem_scene::EquivalentStress::TensileEdge => EquivalentStress::TensileEdge,
-        dem_scene::EquivalentStress::BondInTension => EquivalentStress::BondInTension,
-        dem_scene::EquivalentStress::ForcesOnly => EquivalentStress::ForcesOnly,
     }
 }

@@ -6,7 +6,6 @@ use dem_io::units::significant;
 use dem_io::{Body, Diagnostic, Result};
 use dem_scene::BondKind;
 
-use super::bond_kinds::model;
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::bonds::{BondRule, Bonds, moment_ratios, share_moment_ratios};
 use dem_engine::state::particles::Particles;
@@ -44,7 +43,7 @@ pub(super) fn place_bonds(
         let apart = particles.poses[b].place() - particles.poses[a].place();
         let shape = shape(body, kind, original, particles, [a, b]);
         let answer = stiffness(
-            model(kind.model),
+            kind.model,
             &shape,
             kind.young_modulus_pa,
             kind.poisson_ratio,

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use dem_io::{Diagnostic, Result};
-use dem_scene::{Contact, ContactLaw, InitialOverlap, Material, Rolling as SceneRolling, Scene};
+use dem_scene::{Contact, ContactLaw, InitialOverlap, Material, Scene};
 
 use dem_engine::stages::contacts::forces::{list_contacts, overlap_m};
 use dem_engine::state::State;
@@ -16,11 +16,9 @@ use dem_physics::contact::dmt::DerjaguinMullerToporov;
 use dem_physics::contact::hertz_mindlin::HertzMindlin;
 use dem_physics::contact::law::ContactKind;
 use dem_physics::contact::law::Law;
-use dem_physics::contact::law::Rolling;
 use dem_physics::contact::linear::Linear;
 use dem_physics::contact::liquid_bridge::LiquidBridge;
 use dem_physics::contact::pair_parameters::{Elastic, PairInput};
-use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 
 /// Verlet skin as a fraction of the largest radius, unless the scene sets it or objects are fast;
 /// and the largest such fraction.
@@ -143,16 +141,7 @@ fn kind(scene: &Scene, contact: &Contact) -> ContactKind {
             contact_angle_rad: bridge.contact_angle_rad,
             volume_m3: bridge.volume_m3,
         }),
-        rolling: match contact.rolling {
-            SceneRolling::None => Rolling::Free,
-            SceneRolling::ConstantTorque { friction } => {
-                Rolling::Constant(ConstantMoment { friction })
-            }
-            SceneRolling::SpringDashpot { friction, damping } => Rolling::Spring(ElasticPlastic {
-                friction,
-                damping_ratio: damping,
-            }),
-        },
+        rolling: contact.rolling,
     }
 }
 

@@ -1,7 +1,7 @@
 //! `drop` of a body: just above a wall, with the speed of its fall.
 
 use dem_io::{Body, Diagnostic, Result};
-use dem_scene::{BodyEntry, Fall, Scene, StartAs, Wall, WallShape};
+use dem_scene::{BodyEntry, Fall, PlaneShape, Scene, StartAs, Wall, WallShape};
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::walls::standing;
@@ -151,7 +151,7 @@ fn touch_way(
 
 /// Point and normal of a plane at the start. None: the wall is no plane.
 fn plane(wall: &Wall) -> Option<(Vector3<f64>, Vector3<f64>)> {
-    let WallShape::Plane { point_m, normal } = wall.shape else {
+    let WallShape::Plane(PlaneShape { point_m, normal }) = wall.shape else {
         return None;
     };
     let turn = UnitQuaternion::from_scaled_axis(Vector3::from(wall.rotation_rad));

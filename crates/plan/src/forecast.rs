@@ -117,7 +117,7 @@ fn meetings(scene: &Scene, state: &State, bodies: &[PlacedBody], forecast: &mut 
 /// Time at which a body that is replaced in a region reaches it in free flight, if it does.
 fn regions(scene: &Scene, state: &State, flyer: &FreeBody, until_s: f64, forecast: &mut Forecast) {
     let rule = scene.replacement.get(&flyer.name);
-    let Some(name) = rule.and_then(|rule| rule.enters.as_ref()) else {
+    let Some(name) = rule.and_then(|rule| rule.when.enters.as_ref()) else {
         return;
     };
     let Some(number) = scene.regions.keys().position(|region| region == name) else {

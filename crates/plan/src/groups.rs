@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use dem_io::{Diagnostic, Result};
-use dem_scene::{Pick, Scene};
+use dem_scene::{BoxShape, Pick, Scene, SphereShape};
 
 use dem_engine::state::bodies::PlacedBody;
 use dem_engine::state::particles::Particles;
@@ -81,10 +81,12 @@ fn is_in(pick: &Pick, place: &[f64; 3]) -> bool {
     match pick {
         Pick::All => true,
         Pick::Particles(_) => false,
-        Pick::Box { min, max } => (0..3).all(|k| min[k] <= place[k] && place[k] <= max[k]),
-        Pick::Sphere { centre, radius } => {
-            let square: f64 = (0..3).map(|k| (place[k] - centre[k]).powi(2)).sum();
-            square <= radius * radius
+        Pick::Box(BoxShape { min_m, max_m }) => {
+            (0..3).all(|k| min_m[k] <= place[k] && place[k] <= max_m[k])
+        }
+        Pick::Sphere(SphereShape { centre_m, radius_m }) => {
+            let square: f64 = (0..3).map(|k| (place[k] - centre_m[k]).powi(2)).sum();
+            square <= radius_m * radius_m
         }
     }
 }

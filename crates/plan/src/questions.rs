@@ -2,7 +2,7 @@
 //! without an effect.
 
 use dem_io::units::{show_length, significant};
-use dem_scene::{BondKind, Contact, ContactLaw, Material, Rolling, Scene, Statistic, WallMotion};
+use dem_scene::{BondKind, Contact, ContactLaw, Material, Scene, Statistic, WallMotion};
 use nalgebra::Vector3;
 
 use super::masses::sphere_density_kg_m3;
@@ -11,6 +11,7 @@ use super::unfinished::unfinished;
 use dem_engine::check::validity::LARGEST_OVERLAP;
 use dem_engine::state::State;
 use dem_engine::state::bodies::{PlacedBody, called};
+use dem_physics::contact::law::Rolling;
 
 /// Distance of atoms in Tabor's parameter, m.
 const ATOMS_M: f64 = 0.3e-9;
@@ -173,10 +174,9 @@ fn frictions(scene: &Scene) -> Vec<String> {
     for contact in &scene.contacts {
         let [a, b] = &contact.materials;
         let rolling = match contact.rolling {
-            Rolling::None => 0.0,
-            Rolling::ConstantTorque { friction } | Rolling::SpringDashpot { friction, .. } => {
-                friction
-            }
+            Rolling::Free => 0.0,
+            Rolling::Constant(moment) => moment.friction,
+            Rolling::Spring(spring) => spring.friction,
         };
         for (key, value) in [
             ("friction", contact.friction),

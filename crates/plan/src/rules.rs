@@ -106,11 +106,12 @@ fn trigger(
     if rule.daughters.is_some() {
         return None;
     }
+    let when = &rule.when;
     Some(Trigger {
-        enters: rule.enters.as_ref().and_then(number),
-        force_n: rule.force_n,
-        contact_force_n: rule.contact_force_n,
-        principal_stress: rule.principal_stress_pa.map(|limit_pa| {
+        enters: when.enters.as_ref().and_then(number),
+        force_n: when.force_n,
+        contact_force_n: when.contact_force_n,
+        principal_stress: when.principal_stress_pa.map(|limit_pa| {
             let of_shape = about.and_then(|about| about.shape_volume_m3);
             let volume_m3 = of_shape.unwrap_or_else(|| union_m3(template));
             PrincipalStress {
@@ -118,8 +119,8 @@ fn trigger(
                 volume_m3_kg: volume_m3 / template.mass_kg,
             }
         }),
-        impact_energy_j: rule.impact_energy_j,
-        time_s: rule.time_s,
+        impact_energy_j: when.impact_energy_j,
+        time_s: when.time_s,
         needs_all: rule.requires_all,
     })
 }
@@ -135,22 +136,18 @@ fn union_m3(template: &Template) -> f64 {
 
 fn region(entry: &SceneRegion) -> Result<Region> {
     Ok(match entry {
-        SceneRegion::Box { min_m, max_m } => Region::Box(Bounds {
-            low: *min_m,
-            high: *max_m,
+        SceneRegion::Box(of) => Region::Box(Bounds {
+            low: of.min_m,
+            high: of.max_m,
         }),
-        SceneRegion::Sphere { centre_m, radius_m } => Region::Sphere {
-            centre_m: *centre_m,
-            radius_m: *radius_m,
+        SceneRegion::Sphere(of) => Region::Sphere {
+            centre_m: of.centre_m,
+            radius_m: of.radius_m,
         },
-        SceneRegion::Cylinder {
-            from_m,
-            to_m,
-            radius_m,
-        } => Region::Cylinder {
-            from_m: *from_m,
-            to_m: *to_m,
-            radius_m: *radius_m,
+        SceneRegion::Cylinder(of) => Region::Cylinder {
+            from_m: of.from_m,
+            to_m: of.to_m,
+            radius_m: of.radius_m,
         },
         SceneRegion::Stl { file, unit_m } => {
             let name = file.display().to_string();

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
-use dem_scene::{InitialOverlap, Scene, Wall as SceneWall, WallMotion, WallShape};
+use dem_scene::{
+    BoxShape, InitialOverlap, PlaneShape, Scene, Wall as SceneWall, WallMotion, WallShape,
+};
 use nalgebra::Vector3;
 
 use super::contacts::{Kinds, ROUNDING};
@@ -138,20 +140,16 @@ pub(super) fn standing(entry: &SceneWall, name: &str) -> Result<(Shape, Frame)> 
 fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape> {
     let from_pivot = |point: [f64; 3]| [0, 1, 2].map(|k| point[k] - entry.pivot_m[k]);
     Ok(match &entry.shape {
-        WallShape::Plane { point_m, normal } => {
+        WallShape::Plane(PlaneShape { point_m, normal }) => {
             Shape::Plane(Plane::new(from_pivot(*point_m), *normal)?)
         }
-        WallShape::Box { min, max } => {
-            Shape::Box(SolidBox::new(from_pivot(*min), from_pivot(*max))?)
+        WallShape::Box(BoxShape { min_m, max_m }) => {
+            Shape::Box(SolidBox::new(from_pivot(*min_m), from_pivot(*max_m))?)
         }
-        WallShape::Cylinder {
-            from_m,
-            to_m,
-            radius_m,
-        } => Shape::Cylinder(Cylinder::new(
-            [from_pivot(*from_m), from_pivot(*to_m)],
-            *radius_m,
-        )?),
+        WallShape::Cylinder(pin) => {
+            let ends = [from_pivot(pin.from_m), from_pivot(pin.to_m)];
+            Shape::Cylinder(Cylinder::new(ends, pin.radius_m)?)
+        }
         WallShape::Stl {
             path,
             unit_m,
@@ -172,7 +170,7 @@ fn shape(entry: &SceneWall, name: &str, notes: &mut Vec<String>) -> Result<Shape
 
 /// Refuses a belt whose surface velocity has a component normal to its plane.
 fn refuse_belt_off_plane(place: &str, entry: &SceneWall, frame: &Frame) -> Result<()> {
-    let WallShape::Plane { normal, .. } = &entry.shape else {
+    let WallShape::Plane(PlaneShape { normal, .. }) = &entry.shape else {
         return Ok(());
     };
     let belt = Vector3::from(entry.surface_velocity_m_s);

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use dem_io::{Body, Diagnostic, Result};
 use dem_laboratory::TestType;
 use dem_scene::{
-    Bars, Confinement, Factor, Hold, Load, NormalStress, Scene, Support, Test, WallMotion,
-    WallShape, Weight,
+    Bars, Confinement, Factor, Hold, Load, NormalStress, PlaneShape, Scene, Support, Test,
+    WallMotion, WallShape, Weight,
 };
 use nalgebra::Vector3;
 
@@ -146,7 +146,7 @@ fn confine(
         let Some(wall) = scene.walls.get_mut(name) else {
             continue;
         };
-        if let WallShape::Plane { normal, .. } = wall.shape {
+        if let WallShape::Plane(PlaneShape { normal, .. }) = wall.shape {
             wall.motion = WallMotion::Servo {
                 force_n: confinement.pressure_pa * side_m2(&body.extent_m, normal),
                 direction: normal,

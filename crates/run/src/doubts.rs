@@ -69,20 +69,21 @@ impl Monitors {
                 ));
                 continue;
             }
+            let when = &rule.when;
             let trigger = [
-                rule.enters
+                when.enters
                     .as_ref()
                     .map(|region| format!("it enters '{region}'")),
-                rule.force_n
+                when.force_n
                     .map(|force| format!("a force above {} N", significant(force, 4))),
-                rule.contact_force_n
+                when.contact_force_n
                     .map(|force| format!("a contact force above {} N", significant(force, 4))),
-                rule.principal_stress_pa.map(|stress| {
+                when.principal_stress_pa.map(|stress| {
                     format!("a principal stress above {} Pa", significant(stress, 4))
                 }),
-                rule.impact_energy_j
+                when.impact_energy_j
                     .map(|energy| format!("an impact energy above {} J", significant(energy, 4))),
-                rule.time_s
+                when.time_s
                     .map(|time| format!("the time {} s", significant(time, 4))),
             ];
             let trigger: Vec<String> = trigger.into_iter().flatten().collect();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::bond::BondKind;
 use super::clump;
-use super::clump::StartAs;
+use super::clump::{START_AS, StartAs};
 use super::conflicts;
 use super::direction::ROTATION;
 use super::fall::{self, Fall};
@@ -15,7 +15,7 @@ use super::material::Material;
 use super::names::meaning;
 use super::paths::named_path;
 use super::region::Region;
-use super::schema::{Key, Kind, Schema, Word};
+use super::schema::{Kind, Word, table_schema};
 use super::table::Table;
 use super::zone::{self, Zone};
 use dem_io::diagnostic::Result;
@@ -103,71 +103,46 @@ const INDEX: Kind = Kind::Whole {
     of: "",
 };
 
-pub(super) static BODY: Schema = Schema {
-    title: "[bodies.NAME]",
-    doc: "A body with its initial position and velocity. Give either a `file` or `particles`.",
-    keys: &[
-        Key::text(
-            "file",
-            "a file",
-            "File of the body, relative to the folder of the scene; `-` is standard input. `--body` is relative to the working directory.",
-        ),
-        Key::new(
-            "particles",
-            Kind::List(&PARTICLE),
-            "Particles, instead of a file: `[[x, y, z, radius], ...]`.",
-        ),
-        Key::new(
-            "bond_list",
-            Kind::List(&Kind::Row(&[INDEX, INDEX])),
-            "Bonds between `particles`, which are numbered from 0: `[[0, 1], ...]`.",
-        ),
-        Key::text("material", "a name in [materials]", "Its material.")
-            .required("\"NAME\", a name in [materials]"),
-        Key::quantity(
-            "body_density",
-            &DENSITY,
-            "Mass of the body over the volume of its shape, which is stored in its file.",
-        )
-        .positive(),
-        Key::quantity(
-            "mass",
-            &MASS,
-            "Mass of the body. Without `mass` and `body_density`, its spheres have the density of the material, or else that of the file.",
-        )
-        .positive()
-        .otherwise("that of its particles"),
-        Key::text("bonds", "a name in [bonds]", "Properties of its bonds; not required for a body without bonds.")
-            .sometimes_required("\"NAME\", a name in [bonds]"),
-        Key::vector("position", &LENGTH, "Position of the body, after `rotation`."),
-        Key::word::<PositionOf>(
-            "position_of",
-            "origin",
-            "The point of the body that is put at `position`: the origin of its file, or its centre of mass.",
-        ),
-        Key::table("rotation", &ROTATION, "Initial rotation about the origin of its file.").or(0.0),
-        Key::vector("velocity", &VELOCITY, "Velocity of the centre of mass."),
-        Key::table(
-            "drop",
-            &fall::DROP,
-            "A fall onto a wall: the body starts just above it, with the speed that the fall has given it. Stands for `velocity` and \
-             the part of `position` along gravity.",
-        ),
-        Key::vector(
-            "angular_velocity",
-            &ANGULAR_VELOCITY,
-            "Angular velocity of the rigid body about its centre of mass.",
-        ),
-        clump::START_AS,
-        Key::table("clump", &clump::CLUMP, "Settings of the clump; only with `start_as = \"clump\"`."),
-        Key::table(
-            "bonded_within",
-            &zone::ZONE,
-            "Region in which the body is bonded; the rest of it is rigid.",
-        )
-        .otherwise("all of it is bonded"),
-    ],
-};
+table_schema! {
+    /// A body with its initial position and velocity. Give either a `file` or `particles`.
+    pub(super) static BODY = "[bodies.NAME]";
+
+    /// File of the body, relative to the folder of the scene; `-` is standard input. `--body` is
+    /// relative to the working directory.
+    text("file", "a file");
+    /// Particles, instead of a file: `[[x, y, z, radius], ...]`.
+    new("particles", Kind::List(&PARTICLE));
+    /// Bonds between `particles`, which are numbered from 0: `[[0, 1], ...]`.
+    new("bond_list", Kind::List(&Kind::Row(&[INDEX, INDEX])));
+    /// Its material.
+    text("material", "a name in [materials]").required("\"NAME\", a name in [materials]");
+    /// Mass of the body over the volume of its shape, which is stored in its file.
+    quantity("body_density", &DENSITY).positive();
+    /// Mass of the body. Without `mass` and `body_density`, its spheres have the density of the
+    /// material, or else that of the file.
+    quantity("mass", &MASS).positive().otherwise("that of its particles");
+    /// Properties of its bonds; not required for a body without bonds.
+    text("bonds", "a name in [bonds]").sometimes_required("\"NAME\", a name in [bonds]");
+    /// Position of the body, after `rotation`.
+    vector("position", &LENGTH);
+    /// The point of the body that is put at `position`: the origin of its file, or its centre of
+    /// mass.
+    word::<PositionOf>("position_of", "origin");
+    /// Initial rotation about the origin of its file.
+    table("rotation", &ROTATION).or(0.0);
+    /// Velocity of the centre of mass.
+    vector("velocity", &VELOCITY);
+    /// A fall onto a wall: the body starts just above it, with the speed that the fall has given
+    /// it. Stands for `velocity` and the part of `position` along gravity.
+    table("drop", &fall::DROP);
+    /// Angular velocity of the rigid body about its centre of mass.
+    vector("angular_velocity", &ANGULAR_VELOCITY);
+    START_AS;
+    /// Settings of the clump; only with `start_as = "clump"`.
+    table("clump", &clump::CLUMP);
+    /// Region in which the body is bonded; the rest of it is rigid.
+    table("bonded_within", &zone::ZONE).otherwise("all of it is bonded");
+}
 
 pub(super) fn read_all(
     root: &Table<'_>,
@@ -185,19 +160,15 @@ pub(super) fn read_all(
     let mut piped: Option<String> = None;
     for (name, field) in tables {
         if let Some(of) = meaning(&name) {
-            let problem = format!("{} is named like {of}", field.path);
-            return Err(field.refuse(problem, "give it another name"));
+            return Err(field.fault(format!("is named like {of}"), "give it another name"));
         }
         let body = read(&field, materials, bonds, regions, folder)?;
         if matches!(&body.source, BodySource::File(file) if file.as_os_str() == "-")
             && let Some(first) = piped.replace(name.clone())
         {
-            let problem = format!(
-                "{} reads standard input, as bodies.{first} does",
-                field.path
-            );
+            let problem = format!("reads standard input, as bodies.{first} does");
             let remedy = "it can be read once: give one of them another file";
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(problem, remedy));
         }
         bodies.insert(name, body);
     }
@@ -216,12 +187,9 @@ fn read(
     let material_field = table.need("material")?;
     let material = material_field.reference(materials.keys(), "materials")?;
     if materials.get(&material).is_some_and(|found| found.rigid) {
-        let problem = format!(
-            "{} is \"{material}\", which is rigid, and only walls can be",
-            material_field.path
-        );
+        let problem = format!("is \"{material}\", which is rigid, and only walls can be");
         let remedy = "name another material, or give this one a density and a young_modulus";
-        return Err(material_field.refuse(problem, remedy));
+        return Err(material_field.fault(problem, remedy));
     }
     let bond_kind = table.read_by("bonds", |field| field.reference(bonds.keys(), "bonds"))?;
     let start_as = clump::read(&table)?;
@@ -236,11 +204,11 @@ fn read(
             .and_then(|found| found.density_kg_m3);
         if density.is_none() && whole_mass.is_none() {
             let problem = format!(
-                "{} is \"{material}\", which has no density, and no file names one for {}",
-                material_field.path, table.path
+                "is \"{material}\", which has no density, and no file names one for {}",
+                table.path
             );
             let remedy = format!("add density = \"2050 kg/m3\" to [materials.{material}]");
-            return Err(material_field.refuse(problem, remedy));
+            return Err(material_field.fault(problem, remedy));
         }
     }
     Ok(BodyEntry {
@@ -266,11 +234,8 @@ fn whole_mass(table: &Table<'_>, source: &BodySource) -> Result<Option<WholeMass
     };
     conflicts::BODY.refuse_key("body_density", table)?;
     if matches!(source, BodySource::Inline { .. }) {
-        let problem = format!(
-            "{} is that of a shape, and particles in the scene have none",
-            field.path
-        );
-        return Err(field.refuse(problem, "give the body a mass, such as mass = \"0.4 kg\""));
+        let problem = "is that of a shape, and particles in the scene have none";
+        return Err(field.fault(problem, "give the body a mass, such as mass = \"0.4 kg\""));
     }
     Ok(Some(WholeMass::Density(table.read("body_density")?)))
 }
@@ -281,9 +246,8 @@ fn source(table: &Table<'_>, folder: &Path) -> Result<BodySource> {
         return Ok(BodySource::File(named_path(&file, folder)?));
     }
     let Some(particles) = table.get("particles") else {
-        let problem = format!("{} has no particles", table.path);
         let remedy = "add file = \"body.vtp\", or particles = [[x, y, z, radius]]";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("has no particles", remedy));
     };
     let particles = read_particles(&particles)?;
     let bonds = match table.get("bond_list") {
@@ -316,24 +280,24 @@ fn read_bonds(field: &Field<'_>, particles: &[[f64; 4]]) -> Result<Vec<[u32; 2]>
         let [a, b] = item.row("the numbers of two particles, such as [0, 1]")?;
         let (a, b) = (a.particle(count)?, b.particle(count)?);
         if a == b {
-            let problem = format!("{} joins particle {a} to itself", item.path);
-            return Err(item.refuse(problem, "correct or remove this bond"));
+            let problem = format!("joins particle {a} to itself");
+            return Err(item.fault(problem, "correct or remove this bond"));
         }
         let pair = [a.min(b), a.max(b)];
         if let Some(first) = known.insert(pair, number) {
             let problem = format!(
-                "{} joins particles {} and {}, which {}[{first}] joins already",
-                item.path, pair[0], pair[1], field.path
+                "joins particles {} and {}, which {}[{first}] joins already",
+                pair[0], pair[1], field.path
             );
-            return Err(item.refuse(problem, "remove one of them"));
+            return Err(item.fault(problem, "remove one of them"));
         }
         let [from, to] = pair.map(|end| &particles[end as usize]);
         if from[..3] == to[..3] {
             let problem = format!(
-                "{} joins particles {} and {}, which are at the same place",
-                item.path, pair[0], pair[1]
+                "joins particles {} and {}, which are at the same place",
+                pair[0], pair[1]
             );
-            return Err(item.refuse(problem, "a bond needs a length: move one of them"));
+            return Err(item.fault(problem, "a bond needs a length: move one of them"));
         }
         bonds.push(pair);
     }
@@ -354,12 +318,12 @@ pub(super) fn list(body: &BodyEntry, listing: &mut Listing) {
         Some(WholeMass::Mass(mass)) => listing.value("mass", &mass),
         None => listing.value("mass", &None::<f64>),
     }
-    listing.text("bonds", body.bond_kind.as_deref().unwrap_or("none"));
+    listing.value("bonds", &body.bond_kind);
     listing.value("position", &body.position_m);
     listing.value("position_of", &body.position_of);
     listing.value("rotation", &body.rotation_rad);
     match &body.fall {
-        Some(fall) => fall::list(fall, listing),
+        Some(fall) => listing.table("drop", &fall::DROP, |listing| fall.list(listing)),
         None => listing.value("velocity", &body.velocity_m_s),
     }
     listing.value("angular_velocity", &body.angular_velocity_rad_s);

@@ -3,72 +3,15 @@
 use super::bond_failure::{self, BondFailure, FAILURE};
 use super::conflicts;
 use super::field::Field;
-use super::listing::{Listing, one_field_a_key};
-use super::material::poisson_ratio;
-use super::schema::{Key, Kind, Schema, Word, words_of};
+use super::listing::Listing;
+use super::plain_table::plain_table;
+use super::schema::{Kind, Word, table_schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{STRESS, VISCOUS_DAMPING};
+use dem_physics::bond::flat_joint::{FlatJointLaw, moment_ratio};
+use dem_physics::bond::stiffness::BondModel;
 use std::ops::Bound::{Excluded, Included};
-
-/// Beam model of the bond.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum BondModel {
-    /// "parallel": `stiffness_ratio` is normal over shear stiffness, 2 (1 + nu) unless given.
-    Parallel {
-        /// Normal over shear stiffness.
-        stiffness_ratio: Option<f64>,
-    },
-    /// "pin": as "parallel", without moments.
-    Pin {
-        /// Normal over shear stiffness.
-        stiffness_ratio: Option<f64>,
-    },
-    /// "rojek": as "parallel", of two segments, each as thick as its sphere.
-    Rojek {
-        /// Normal over shear stiffness.
-        stiffness_ratio: Option<f64>,
-    },
-    /// "euler-bernoulli"
-    EulerBernoulli,
-    /// "timoshenko"
-    Timoshenko,
-    /// "elastic-solid"
-    ElasticSolid,
-    /// "shear-coefficient": `shear_coefficient`, 0.9 unless given.
-    ShearCoefficient {
-        /// Shear coefficient of the section.
-        alpha: f64,
-    },
-    /// "flat-joint": as "parallel", with a section of elements that fail one by one.
-    FlatJoint {
-        /// Normal over shear stiffness.
-        stiffness_ratio: Option<f64>,
-        /// Its elements.
-        elements: JointElements,
-    },
-}
-
-/// Elements of the section of a flat joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct JointElements {
-    /// `radial_elements`: rings of equal width, 3 unless given.
-    pub radial: u32,
-    /// `circumferential_elements`: sectors of each ring, 12 unless given.
-    pub circumferential: u32,
-    /// `joint_friction`: friction coefficient of failed elements, 0 unless given.
-    pub friction: f64,
-}
-
-impl Default for JointElements {
-    fn default() -> Self {
-        Self {
-            radial: 3,
-            circumferential: 12,
-            friction: 0.0,
-        }
-    }
-}
 
 /// How forces are computed from motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,6 +27,8 @@ pub enum Formulation {
 pub struct BondKind {
     /// `model`, "timoshenko" unless given.
     pub model: BondModel,
+    /// `radial_elements`, `circumferential_elements` and `joint_friction`: of a flat joint only.
+    pub joint: Option<FlatJointLaw>,
     /// `formulation`, "total" unless given.
     pub formulation: Formulation,
     /// `young_modulus`, Pa.
@@ -103,206 +48,108 @@ pub struct BondKind {
     pub contact_beside_bond: bool,
 }
 
-/// Viscous and structural damping at the bond. All may act together.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct BondDamping {
-    /// `damping_ratio`: eta of Chen et al. 2022, eqs. 9 and 10. 0: none.
-    pub damping_ratio: f64,
-    /// `per_mode`: eta acts with each mode's own stiffness instead of the normal and the torsional
-    /// one.
-    pub per_mode: bool,
-    /// `damping_coefficient`: d of Platzer 2022, eq. 7, N s/m. 0: none.
-    pub damping_coefficient_n_s_m: f64,
-    /// `torque_factor`: factor of the damping torque of Platzer 2022, eq. 9 (1 there). 0: none.
-    pub torque_factor: f64,
-    /// `normal_damping_ratio`: of critical damping, along the bond, with the stiffness of this
-    /// mode. 0: none. The next three likewise.
-    pub normal_damping_ratio: f64,
-    /// `shear_damping_ratio`: across the bond.
-    pub shear_damping_ratio: f64,
-    /// `torsion_damping_ratio`: about the axis of the bond.
-    pub torsion_damping_ratio: f64,
-    /// `bending_damping_ratio`: about the axes across the bond.
-    pub bending_damping_ratio: f64,
-    /// `structural_damping`: gamma, the fraction of the load of each mode that resists its motion,
-    /// in [0, 1). 0: none.
-    pub structural_damping: f64,
-}
+table_schema! {
+    /// Properties of bonds.
+    pub(super) static BOND = "[bonds.NAME]";
 
-/// Yield strengths of a bond, mode by mode. None: the mode stays elastic.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct BondPlasticity {
-    /// `normal_yield_strength`: of |F_n|/A, Pa.
-    pub normal_yield_strength_pa: Option<f64>,
-    /// `shear_yield_strength`: of F_s/A, Pa.
-    pub shear_yield_strength_pa: Option<f64>,
-    /// `torsion_yield_strength`: of M_tor r/J, Pa.
-    pub torsion_yield_strength_pa: Option<f64>,
-    /// `bending_yield_strength`: of M_ben r/I, Pa.
-    pub bending_yield_strength_pa: Option<f64>,
-    /// `hardening_ratio`: stiffness beyond yield over elastic stiffness, in [0, 1).
-    pub hardening_ratio: f64,
-}
-
-pub(super) static BOND: Schema = Schema {
-    title: "[bonds.NAME]",
-    doc: "Properties of bonds.",
-    keys: &[
-        Key::new(
-            "model",
-            Kind::Word(|| words_of(&models(None, 0.0, JointElements::default()))),
-            "Model of the bond: a beam; `pin`, which resists neither torsion nor bending; `rojek`, two segments in series, each \
-             as thick in proportion as its sphere; or `flat-joint`, whose section consists of elements that fail one by one.",
-        )
-        .or_word("timoshenko"),
-        Key::number(
-            "stiffness_ratio",
-            "Normal over shear stiffness of the models `parallel`, `pin`, `rojek` and `flat-joint`.",
-        )
-        .positive()
-        .otherwise("2 (1 + nu)"),
-        Key::number(
-            "shear_coefficient",
-            "Shear coefficient of the section, for the model `shear-coefficient`.",
-        )
-        .positive()
-        .or(0.9),
-        Key::new(
-            "radial_elements",
-            Kind::Whole { least: 1, most: Some(100), of: "" },
-            "Rings of elements in the section, for the model `flat-joint`.",
-        )
+    /// Model of the bond: a beam; `pin`, which resists neither torsion nor bending; `rojek`, two
+    /// segments in series, each as thick in proportion as its sphere; or `flat-joint`, whose
+    /// section consists of elements that fail one by one.
+    new("model", Kind::Word(|| words_of(&models(None, 0.0, 0.0)))).or_word("timoshenko");
+    /// Normal over shear stiffness of the models `parallel`, `pin`, `rojek` and `flat-joint`.
+    number("stiffness_ratio").positive().otherwise("2 (1 + nu)");
+    /// Shear coefficient of the section, for the model `shear-coefficient`.
+    number("shear_coefficient").positive().or(0.9);
+    /// Rings of elements in the section, for the model `flat-joint`.
+    new("radial_elements", Kind::Whole { least: 1, most: Some(100), of: "" })
         .remedy("leave it out for 3")
-        .or(3.0),
-        Key::new(
-            "circumferential_elements",
-            Kind::Whole { least: 3, most: Some(100), of: "" },
-            "Elements of each ring, for the model `flat-joint`.",
-        )
+        .or(3.0);
+    /// Elements of each ring, for the model `flat-joint`.
+    new("circumferential_elements", Kind::Whole { least: 3, most: Some(100), of: "" })
         .remedy("leave it out for 12")
-        .or(12.0),
-        Key::number(
-            "joint_friction",
-            "Friction coefficient of failed elements under pressure, for the model `flat-joint` with `failure`.",
-        )
-        .not_negative()
-        .or(0.0),
-        Key::word::<Formulation>(
-            "formulation",
-            "total",
-            "`total`: forces are the gradient of an energy of positions and orientations; `incremental`, for comparison: \
-             forces are summed step by step.",
-        ),
-        Key::quantity("young_modulus", &STRESS, "Young's modulus of the beam.")
-            .positive()
-            .required("\"15 MPa\""),
-        poisson_ratio("Poisson's ratio of the beam.").required("0.3"),
-        Key::number(
-            "radius_factor",
-            "Radius of the bond over that of the smaller particle.",
-        )
-        .positive()
-        .otherwise("radii of the body"),
-        Key::table("damping", &DAMPING, "Damping at the bond."),
-        Key::table(
-            "failure",
-            &FAILURE,
-            "Failure criteria; without them no bond breaks.",
-        ),
-        Key::table(
-            "plasticity",
-            &PLASTICITY,
-            "Yield strengths; without them bonds are elastic until they break.",
-        ),
-        Key::flag(
-            "contact_beside_bond",
-            false,
-            "The contact law of the two materials acts beside the bond, from the overlap at which the ends were bonded.",
-        ),
-    ],
-};
+        .or(12.0);
+    /// Friction coefficient of failed elements under pressure, for the model `flat-joint` with
+    /// `failure`.
+    number("joint_friction").not_negative().or(0.0);
+    /// `total`: forces are the gradient of an energy of positions and orientations; `incremental`,
+    /// for comparison: forces are summed step by step.
+    word::<Formulation>("formulation", "total");
+    /// Young's modulus of the beam.
+    quantity("young_modulus", &STRESS).positive().required("\"15 MPa\"");
+    /// Poisson's ratio of the beam.
+    poisson_ratio().required("0.3");
+    /// Radius of the bond over that of the smaller particle.
+    number("radius_factor").positive().otherwise("radii of the body");
+    /// Damping at the bond.
+    table("damping", &DAMPING);
+    /// Failure criteria; without them no bond breaks.
+    table("failure", &FAILURE);
+    /// Yield strengths; without them bonds are elastic until they break.
+    table("plasticity", &PLASTICITY);
+    /// The contact law of the two materials acts beside the bond, from the overlap at which the
+    /// ends were bonded.
+    flag("contact_beside_bond", false);
+}
 
-pub(super) static PLASTICITY: Schema = Schema {
-    title: "Plasticity",
-    doc: "Yield strengths of a bond, each for one mode, which is elastic up to it and then flows. At least one is required; modes \
-          without one stay elastic.",
-    keys: &[
-        Key::quantity(
-            "normal_yield_strength",
-            &STRESS,
-            "Axial stress, of tension and of compression, at which the bond yields.",
-        )
-        .positive(),
-        Key::quantity("shear_yield_strength", &STRESS, "Stress of the shear force at which it yields.").positive(),
-        Key::quantity(
-            "torsion_yield_strength",
-            &STRESS,
-            "Stress of torsion, at the edge, at which it yields.",
-        )
-        .positive(),
-        Key::quantity(
-            "bending_yield_strength",
-            &STRESS,
-            "Stress of bending, at the edge, at which it yields; for the fully plastic moment of a solid section write 1.698 \
-             times the yield strength of the material.",
-        )
-        .positive(),
-        Key::number(
-            "hardening_ratio",
-            "Stiffness beyond yield over elastic stiffness (linear kinematic hardening); 0: perfectly plastic.",
-        )
-        .within(Included(0.0), Excluded(1.0))
-        .remedy("write 0 for none")
-        .or(0.0),
-    ],
-};
+plain_table! {
+    PLASTICITY = "Plasticity";
+    /// Yield strengths of a bond, each for one mode, which is elastic up to it and then flows. At
+    /// least one is required; modes without one stay elastic.
+    #[derive(Debug, Clone, Copy, Default, PartialEq)]
+    pub struct BondPlasticity {
+        /// Axial stress, of tension and of compression, at which the bond yields.
+        normal_yield_strength_pa: Option<f64> = quantity("normal_yield_strength", &STRESS)
+            .positive();
+        /// Stress of the shear force at which it yields.
+        shear_yield_strength_pa: Option<f64> = quantity("shear_yield_strength", &STRESS).positive();
+        /// Stress of torsion, at the edge, at which it yields.
+        torsion_yield_strength_pa: Option<f64> = quantity("torsion_yield_strength", &STRESS)
+            .positive();
+        /// Stress of bending, at the edge, at which it yields; for the fully plastic moment of a
+        /// solid section write 1.698 times the yield strength of the material.
+        bending_yield_strength_pa: Option<f64> = quantity("bending_yield_strength", &STRESS)
+            .positive();
+        /// Stiffness beyond yield over elastic stiffness (linear kinematic hardening); 0: perfectly
+        /// plastic.
+        hardening_ratio: f64 = number("hardening_ratio")
+            .within(Included(0.0), Excluded(1.0))
+            .remedy("write 0 for none")
+            .or(0.0);
+    }
+}
 
-pub(super) static DAMPING: Schema = Schema {
-    title: "Damping",
-    doc: "Viscous and structural damping at the bond. What is given adds up.",
-    keys: &[
-        Key::number(
-            "damping_ratio",
-            "Fraction of critical damping: eta of Chen et al. 2022, eqs. 9 and 10; 0: none.",
-        )
-        .not_negative()
-        .or(0.0),
-        Key::flag(
-            "per_mode",
-            false,
-            "`damping_ratio` refers to the stiffness of each mode instead of the normal and torsional stiffness.",
-        ),
-        Key::quantity(
-            "damping_coefficient",
-            &VISCOUS_DAMPING,
-            "d of Platzer 2022, eq. 7; 0: none.",
-        )
-        .not_negative()
-        .or(0.0),
-        Key::number(
-            "torque_factor",
-            "Factor of the damping torque of Platzer 2022, eq. 9, which is 1 there; 0: none.",
-        )
-        .not_negative()
-        .or(0.0),
-        Key::number(
-            "normal_damping_ratio",
-            "Fraction of critical damping along the bond, by the stiffness of this mode; 0: none.",
-        )
-        .not_negative()
-        .or(0.0),
-        Key::number("shear_damping_ratio", "The same across the bond.").not_negative().or(0.0),
-        Key::number("torsion_damping_ratio", "The same about the axis of the bond.").not_negative().or(0.0),
-        Key::number("bending_damping_ratio", "The same about the axes across the bond.").not_negative().or(0.0),
-        Key::number(
-            "structural_damping",
-            "Fraction of the force or moment of each mode that acts against its relative motion: gamma; 0: none.",
-        )
-        .within(Included(0.0), Excluded(1.0))
-        .remedy("write 0 for none")
-        .or(0.0),
-    ],
-};
+plain_table! {
+    DAMPING = "Damping";
+    /// Viscous and structural damping at the bond. What is given adds up.
+    #[derive(Debug, Clone, Copy, Default, PartialEq)]
+    pub struct BondDamping {
+        /// Fraction of critical damping: eta of Chen et al. 2022, eqs. 9 and 10; 0: none.
+        damping_ratio: f64 = number("damping_ratio").not_negative().or(0.0);
+        /// `damping_ratio` refers to the stiffness of each mode instead of the normal and torsional
+        /// stiffness.
+        per_mode: bool = flag("per_mode", false);
+        /// d of Platzer 2022, eq. 7; 0: none.
+        damping_coefficient_n_s_m: f64 = quantity("damping_coefficient", &VISCOUS_DAMPING)
+            .not_negative()
+            .or(0.0);
+        /// Factor of the damping torque of Platzer 2022, eq. 9, which is 1 there; 0: none.
+        torque_factor: f64 = number("torque_factor").not_negative().or(0.0);
+        /// Fraction of critical damping along the bond, by the stiffness of this mode; 0: none.
+        normal_damping_ratio: f64 = number("normal_damping_ratio").not_negative().or(0.0);
+        /// The same across the bond.
+        shear_damping_ratio: f64 = number("shear_damping_ratio").not_negative().or(0.0);
+        /// The same about the axis of the bond.
+        torsion_damping_ratio: f64 = number("torsion_damping_ratio").not_negative().or(0.0);
+        /// The same about the axes across the bond.
+        bending_damping_ratio: f64 = number("bending_damping_ratio").not_negative().or(0.0);
+        /// Fraction of the force or moment of each mode that acts against its relative motion:
+        /// gamma; 0: none.
+        structural_damping: f64 = number("structural_damping")
+            .within(Included(0.0), Excluded(1.0))
+            .remedy("write 0 for none")
+            .or(0.0);
+    }
+}
 
 impl Word for Formulation {
     const WORDS: &'static [(&'static str, Self)] =
@@ -311,8 +158,10 @@ impl Word for Formulation {
 
 pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
     let table = Table::of(field, &BOND)?;
+    let (model, joint) = model(&table)?;
     let kind = BondKind {
-        model: model(&table)?,
+        model,
+        joint,
         formulation: table.read("formulation")?,
         young_modulus_pa: table.read("young_modulus")?,
         poisson_ratio: table.read("poisson_ratio")?,
@@ -335,45 +184,38 @@ pub(super) fn read(field: &Field<'_>) -> Result<BondKind> {
 }
 
 /// The models and their names.
-fn models(
-    stiffness_ratio: Option<f64>,
-    alpha: f64,
-    elements: JointElements,
-) -> [(&'static str, BondModel); 8] {
+fn models(kappa: Option<f64>, alpha: f64, moment_ratio: f64) -> [(&'static str, BondModel); 8] {
+    let flat_joint = BondModel::FlatJoint {
+        kappa,
+        moment_ratio,
+    };
     [
-        ("parallel", BondModel::Parallel { stiffness_ratio }),
-        ("pin", BondModel::Pin { stiffness_ratio }),
-        ("rojek", BondModel::Rojek { stiffness_ratio }),
+        ("parallel", BondModel::Parallel { kappa }),
+        ("pin", BondModel::Pin { kappa }),
+        ("rojek", BondModel::Rojek { kappa }),
         ("euler-bernoulli", BondModel::EulerBernoulli),
         ("timoshenko", BondModel::Timoshenko),
         ("elastic-solid", BondModel::ElasticSolid),
         ("shear-coefficient", BondModel::ShearCoefficient { alpha }),
-        (
-            "flat-joint",
-            BondModel::FlatJoint {
-                stiffness_ratio,
-                elements,
-            },
-        ),
+        ("flat-joint", flat_joint),
     ]
 }
 
-fn model(table: &Table<'_>) -> Result<BondModel> {
-    let known = models(
+/// The model, and the elements of a flat joint.
+fn model(table: &Table<'_>) -> Result<(BondModel, Option<FlatJointLaw>)> {
+    let (kappa, alpha) = (
         table.read("stiffness_ratio")?,
         table.read("shear_coefficient")?,
-        JointElements {
-            radial: table.read("radial_elements")?,
-            circumferential: table.read("circumferential_elements")?,
-            friction: table.read("joint_friction")?,
-        },
     );
+    let joint = FlatJointLaw {
+        radial_elements: table.read("radial_elements")?,
+        circumferential_elements: table.read("circumferential_elements")?,
+        friction: table.read("joint_friction")?,
+    };
+    let known = models(kappa, alpha, moment_ratio(&joint));
     if let Some(field) = table.get("model").filter(|field| field.is("shen")) {
-        let problem = format!(
-            "{} is \"shen\", the bond with concave ends of Shen et al. 2016, which is not available: the sources at hand do not give its formulas",
-            field.path
-        );
-        return Err(field.refuse(problem, "write another model, such as \"parallel\""));
+        let problem = "is \"shen\", the bond with concave ends of Shen et al. 2016, which is not available: the sources at hand do not give its formulas";
+        return Err(field.fault(problem, "write another model, such as \"parallel\""));
     }
     let model = table
         .read_by("model", |field| field.choice(&known))?
@@ -403,53 +245,31 @@ fn model(table: &Table<'_>) -> Result<BondModel> {
         if let (Some(field), false) = (table.get(key), belongs) {
             let name = known.iter().find(|(_, other)| *other == model);
             let problem = format!(
-                "{} does not apply to the model \"{}\"",
-                field.path,
+                "does not apply to the model \"{}\"",
                 name.map_or("", |(name, _)| *name)
             );
-            return Err(field.refuse(problem, format!("remove it, or write model = \"{of}\"")));
+            return Err(field.fault(problem, format!("remove it, or write model = \"{of}\"")));
         }
     }
-    Ok(model)
-}
-
-one_field_a_key! {
-    BondDamping {
-        damping_ratio: "damping_ratio",
-        per_mode: "per_mode",
-        damping_coefficient_n_s_m: "damping_coefficient",
-        torque_factor: "torque_factor",
-        normal_damping_ratio: "normal_damping_ratio",
-        shear_damping_ratio: "shear_damping_ratio",
-        torsion_damping_ratio: "torsion_damping_ratio",
-        bending_damping_ratio: "bending_damping_ratio",
-        structural_damping: "structural_damping",
-    }
+    Ok((model, is_flat_joint.then_some(joint)))
 }
 
 fn damping(bond: &Table<'_>) -> Result<BondDamping> {
-    let damping = fields(&bond.table("damping", &DAMPING)?)?;
+    let damping = BondDamping::read(&bond.table("damping", &DAMPING)?)?;
     conflicts::BOND.refuse_key("per_mode", bond)?;
     Ok(damping)
 }
 
 fn plasticity(field: &Field<'_>) -> Result<BondPlasticity> {
     let table = Table::of(field, &PLASTICITY)?;
-    let plasticity = BondPlasticity {
-        normal_yield_strength_pa: table.read("normal_yield_strength")?,
-        shear_yield_strength_pa: table.read("shear_yield_strength")?,
-        torsion_yield_strength_pa: table.read("torsion_yield_strength")?,
-        bending_yield_strength_pa: table.read("bending_yield_strength")?,
-        hardening_ratio: table.read("hardening_ratio")?,
-    };
+    let plasticity = BondPlasticity::read(&table)?;
     let none = BondPlasticity {
         hardening_ratio: plasticity.hardening_ratio,
         ..BondPlasticity::default()
     };
     if plasticity == none {
-        let problem = format!("{} has no strength at which a bond yields", field.path);
         let remedy = "add normal_yield_strength, shear_yield_strength, torsion_yield_strength or bending_yield_strength, such as normal_yield_strength = \"1 MPa\"";
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault("has no strength at which a bond yields", remedy));
     }
     Ok(plasticity)
 }
@@ -505,53 +325,36 @@ fn check_flat_joint(table: &Table<'_>, failure: &BondFailure) -> Result<()> {
 }
 
 pub(super) fn list_kind(kind: &BondKind, listing: &mut Listing) {
-    let known = models(None, 0.0, JointElements::default());
+    let known = models(None, 0.0, 0.0);
     let same =
         |other: &BondModel| std::mem::discriminant(other) == std::mem::discriminant(&kind.model);
     let name = known.iter().find(|(_, other)| same(other));
     listing.text("model", name.map_or("", |(name, _)| *name));
     match kind.model {
-        BondModel::Parallel { stiffness_ratio }
-        | BondModel::Pin { stiffness_ratio }
-        | BondModel::Rojek { stiffness_ratio }
-        | BondModel::FlatJoint {
-            stiffness_ratio, ..
-        } => {
-            let stiffness_ratio = stiffness_ratio.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
+        BondModel::Parallel { kappa }
+        | BondModel::Pin { kappa }
+        | BondModel::Rojek { kappa }
+        | BondModel::FlatJoint { kappa, .. } => {
+            let stiffness_ratio = kappa.unwrap_or(2.0 * (1.0 + kind.poisson_ratio));
             listing.value("stiffness_ratio", &stiffness_ratio);
         }
         BondModel::ShearCoefficient { alpha } => listing.value("shear_coefficient", &alpha),
         BondModel::EulerBernoulli | BondModel::Timoshenko | BondModel::ElasticSolid => {}
     }
-    if let BondModel::FlatJoint { elements, .. } = &kind.model {
-        listing.value("radial_elements", &elements.radial);
-        listing.value("circumferential_elements", &elements.circumferential);
-        listing.value("joint_friction", &elements.friction);
+    if let Some(joint) = &kind.joint {
+        listing.value("radial_elements", &joint.radial_elements);
+        listing.value("circumferential_elements", &joint.circumferential_elements);
+        listing.value("joint_friction", &joint.friction);
     }
     listing.value("formulation", &kind.formulation);
     listing.value("young_modulus", &kind.young_modulus_pa);
     listing.value("poisson_ratio", &kind.poisson_ratio);
     listing.value("radius_factor", &kind.radius_factor);
-    listing.table("damping", &DAMPING, |listing| list(&kind.damping, listing));
-    listing.table("failure", &FAILURE, |listing| {
-        bond_failure::list(&kind.failure, listing);
-    });
+    listing.table("damping", &DAMPING, |listing| kind.damping.list(listing));
+    listing.table("failure", &FAILURE, |listing| kind.failure.list(listing));
     if let Some(plasticity) = &kind.plasticity {
         listing.table("plasticity", &PLASTICITY, |listing| {
-            listing.value(
-                "normal_yield_strength",
-                &plasticity.normal_yield_strength_pa,
-            );
-            listing.value("shear_yield_strength", &plasticity.shear_yield_strength_pa);
-            listing.value(
-                "torsion_yield_strength",
-                &plasticity.torsion_yield_strength_pa,
-            );
-            listing.value(
-                "bending_yield_strength",
-                &plasticity.bending_yield_strength_pa,
-            );
-            listing.value("hardening_ratio", &plasticity.hardening_ratio);
+            plasticity.list(listing)
         });
     }
     listing.value("contact_beside_bond", &kind.contact_beside_bond);

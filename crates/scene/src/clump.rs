@@ -3,8 +3,9 @@
 use std::ops::Bound::Included;
 
 use super::conflicts;
-use super::listing::{Listing, one_field_a_key};
-use super::schema::{Key, Kind, Schema, Word, words_of};
+use super::listing::Listing;
+use super::plain_table::plain_table;
+use super::schema::{Key, Kind, Word, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
@@ -16,17 +17,6 @@ pub enum StartAs {
     Bonded,
     /// "clump": rigid, until `[replacement]` replaces it.
     Clump(ClumpSettings),
-}
-
-/// `clump = { scale, mass }`: how a rigid clump is made from a body. Its spheres are the body's
-/// particles.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ClumpSettings {
-    /// `scale`: contact radii of its spheres over those of the particles, which keep their centres.
-    /// 1 unless given; in [1, 1.5].
-    pub scale: f64,
-    /// `mass`, "spheres" unless given.
-    pub mass: ClumpMass,
 }
 
 /// Default of `scale`.
@@ -60,36 +50,26 @@ pub(super) const START_AS: Key = Key::new(
 )
 .or_word("bonded");
 
-pub(super) static CLUMP: Schema = Schema {
-    title: "Clump",
-    doc: "A rigid clump made of a body. Its spheres are the body's particles.",
-    keys: &[
-        Key::number(
-            "scale",
-            "Contact radius of each sphere over the radius of its particle; the centres stay.",
-        )
-        .within(Included(1.0), Included(1.5))
-        .remedy("it is a factor on the radii: 1 leaves them as they are")
-        .or(SCALE),
-        Key::word::<ClumpMass>(
-            "mass",
-            "spheres",
-            "`spheres`: mass, centre and inertia are sums over the particles, as for the bonded cluster; `union`: those \
-             of the volume that the particles fill, with overlaps counted once.",
-        ),
-    ],
-};
+plain_table! {
+    CLUMP = "Clump";
+    /// A rigid clump made of a body. Its spheres are the body's particles.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct ClumpSettings {
+        /// Contact radius of each sphere over the radius of its particle; the centres stay.
+        scale: f64 = number("scale")
+            .within(Included(1.0), Included(1.5))
+            .remedy("it is a factor on the radii: 1 leaves them as they are")
+            .or(SCALE);
+        /// `spheres`: mass, centre and inertia are sums over the particles, as for the bonded
+        /// cluster; `union`: those of the volume that the particles fill, with overlaps counted
+        /// once.
+        mass: ClumpMass = word::<ClumpMass>("mass", "spheres");
+    }
+}
 
 impl Word for ClumpMass {
     const WORDS: &'static [(&'static str, Self)] =
         &[("spheres", Self::Spheres), ("union", Self::Union)];
-}
-
-one_field_a_key! {
-    ClumpSettings {
-        scale: "scale",
-        mass: "mass",
-    }
 }
 
 pub(super) fn read(body: &Table<'_>) -> Result<StartAs> {
@@ -97,7 +77,7 @@ pub(super) fn read(body: &Table<'_>) -> Result<StartAs> {
         .read_by("start_as", |field| field.choice(&STARTS))?
         .unwrap_or(false);
     if is_clump {
-        return fields(&body.table("clump", &CLUMP)?).map(StartAs::Clump);
+        return ClumpSettings::read(&body.table("clump", &CLUMP)?).map(StartAs::Clump);
     }
     conflicts::BODY.refuse_key("clump", body)?;
     Ok(StartAs::Bonded)
@@ -108,7 +88,7 @@ pub(super) fn list_start(start_as: StartAs, listing: &mut Listing) {
         StartAs::Bonded => listing.text("start_as", "bonded"),
         StartAs::Clump(clump) => {
             listing.text("start_as", "clump");
-            listing.table("clump", &CLUMP, |listing| list(&clump, listing));
+            listing.table("clump", &CLUMP, |listing| clump.list(listing));
         }
     }
 }

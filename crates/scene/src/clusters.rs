@@ -1,33 +1,20 @@
 //! `[clusters]`
 
-use super::listing::one_field_a_key;
-use super::schema::{Key, Schema};
+use super::plain_table::plain_table;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
-/// What holds for the spheres of one piece.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Clusters {
-    /// `self_contact`: spheres of one piece that no bond joins can touch.
-    pub self_contact: bool,
-}
-
-pub(super) static CLUSTERS: Schema = Schema {
-    title: "[clusters]",
-    doc: "Contacts within a piece of bonded spheres.",
-    keys: &[Key::flag(
-        "self_contact",
-        true,
-        "Spheres of one piece that no bond joins touch: cracks that close carry load, and a body that folds does not pass through itself. false: never, as in Platzer 2022.",
-    )],
-};
-
-one_field_a_key! {
-    Clusters {
-        self_contact: "self_contact",
+plain_table! {
+    CLUSTERS = "[clusters]";
+    /// Contacts within a piece of bonded spheres.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub struct Clusters {
+        /// Spheres of one piece that no bond joins touch: cracks that close carry load, and a body
+        /// that folds does not pass through itself. false: never, as in Platzer 2022.
+        self_contact: bool = flag("self_contact", true);
     }
 }
 
 pub(super) fn read(root: &Table<'_>) -> Result<Clusters> {
-    fields(&root.table("clusters", &CLUSTERS)?)
+    Clusters::read(&root.table("clusters", &CLUSTERS)?)
 }

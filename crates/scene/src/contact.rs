@@ -13,10 +13,12 @@ use self::pair::named_pair;
 use super::field::Field;
 use super::listing::Listing;
 use super::material::Material;
-use super::schema::{Key, Kind, Schema, words_of};
+use super::schema::{Kind, table_schema, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY_PER_AREA, STIFFNESS};
+use dem_physics::contact::law::Rolling;
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 
 /// Smallest coefficient of restitution: dampers below it need arbitrarily small steps.
 const LEAST_RESTITUTION: f64 = 1e-3;
@@ -37,73 +39,43 @@ const LAWS: [(&str, LawName); 3] = [
 /// Rolling laws; true with a spring.
 const ROLLINGS: [(&str, bool); 2] = [("constant-torque", false), ("spring-dashpot", true)];
 
-pub(super) static CONTACT: Schema = Schema {
-    title: "[contacts.NAME-NAME]",
-    doc: "Contact law of two materials. Their names may be in either order and may contain a hyphen.",
-    keys: &[
-        Key::new(
-            "law",
-            Kind::Word(|| words_of(&LAWS)),
-            "Hertz-Mindlin, the same with the adhesion of Derjaguin, Muller and Toporov, or a linear spring and dashpot.",
-        )
-        .or_word("hertz-mindlin"),
-        Key::quantity(
-            "work_of_adhesion",
-            &ENERGY_PER_AREA,
-            "Work that separates two surfaces, of the law `dmt`, which requires it: the pull-off force is 2 pi times it and the effective radius. Twice the surface energy for a material with itself.",
-        )
-        .positive()
-        .sometimes_required("\"50 mJ/m2\""),
-        Key::quantity(
-            "normal_stiffness",
-            &STIFFNESS,
-            "Normal stiffness of the law `linear`, which requires it.",
-        )
-        .positive()
-        .sometimes_required("\"100 kN/m\""),
-        Key::number(
-            "tangential_stiffness_ratio",
-            "Tangential over normal stiffness of the law `linear`; the default is 2/7.",
-        )
+table_schema! {
+    /// Contact law of two materials. Their names may be in either order and may contain a hyphen.
+    pub(super) static CONTACT = "[contacts.NAME-NAME]";
+
+    /// Hertz-Mindlin, the same with the adhesion of Derjaguin, Muller and Toporov, or a linear
+    /// spring and dashpot.
+    new("law", Kind::Word(|| words_of(&LAWS))).or_word("hertz-mindlin");
+    /// Work that separates two surfaces, of the law `dmt`, which requires it: the pull-off force is
+    /// 2 pi times it and the effective radius. Twice the surface energy for a material with itself.
+    quantity("work_of_adhesion", &ENERGY_PER_AREA).positive().sometimes_required("\"50 mJ/m2\"");
+    /// Normal stiffness of the law `linear`, which requires it.
+    quantity("normal_stiffness", &STIFFNESS).positive().sometimes_required("\"100 kN/m\"");
+    /// Tangential over normal stiffness of the law `linear`; the default is 2/7.
+    number("tangential_stiffness_ratio")
         .within(Excluded(0.0), Included(1.0))
         .remedy("leave it out for 2/7")
-        .or(2.0 / 7.0),
-        Key::number(
-            "restitution",
-            "Coefficient of restitution: relative speed after a head-on collision over that before it.",
-        )
+        .or(2.0 / 7.0);
+    /// Coefficient of restitution: relative speed after a head-on collision over that before it.
+    number("restitution")
         .within(Included(LEAST_RESTITUTION), Included(1.0))
         .remedy("1 loses nothing, a usual value is 0.5; the smaller it is, the smaller is the time step")
-        .required("0.5"),
-        Key::number("friction", "Coefficient of sliding friction: largest tangential force over the normal force.")
-            .not_negative()
-            .or(0.0),
-        Key::new(
-            "rolling",
-            Kind::Word(|| words_of(&ROLLINGS)),
-            "Model of rolling friction; `constant-torque` if only `rolling_friction` is given.",
-        ),
-        Key::number(
-            "rolling_friction",
-            "Coefficient of rolling friction; 0 is none. Above 0 it requires a `friction` above 0.",
-        )
-        .not_negative()
-        .remedy("0 is none")
-        .sometimes_required("0.05"),
-        Key::number(
-            "rolling_damping_ratio",
-            "Damping ratio of the model `spring-dashpot`, as a fraction of critical damping.",
-        )
+        .required("0.5");
+    /// Coefficient of sliding friction: largest tangential force over the normal force.
+    number("friction").not_negative().or(0.0);
+    /// Model of rolling friction; `constant-torque` if only `rolling_friction` is given.
+    new("rolling", Kind::Word(|| words_of(&ROLLINGS)));
+    /// Coefficient of rolling friction; 0 is none. Above 0 it requires a `friction` above 0.
+    number("rolling_friction").not_negative().remedy("0 is none").sometimes_required("0.05");
+    /// Damping ratio of the model `spring-dashpot`, as a fraction of critical damping.
+    number("rolling_damping_ratio")
         .within(Included(0.0), Included(1.0))
         .remedy("it is a fraction of critical damping: a usual value is 0.3")
-        .or(0.3),
-        Key::table(
-            "liquid_bridge",
-            &LIQUID_BRIDGE,
-            "Liquid between ends that have touched, which pulls them together beside the law; without it they are dry.",
-        ),
-    ],
-};
+        .or(0.3);
+    /// Liquid between ends that have touched, which pulls them together beside the law; without it
+    /// they are dry.
+    table("liquid_bridge", &LIQUID_BRIDGE);
+}
 
 /// The contact between two materials.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,25 +115,6 @@ pub enum ContactLaw {
     },
 }
 
-/// Resistance to rolling.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Rolling {
-    /// None: without `rolling_friction`, or where it is 0.
-    None,
-    /// "constant-torque", unless given.
-    ConstantTorque {
-        /// `rolling_friction`, a coefficient of more than 0.
-        friction: f64,
-    },
-    /// "spring-dashpot": elastic up to that torque, then plastic.
-    SpringDashpot {
-        /// `rolling_friction`, a coefficient of more than 0.
-        friction: f64,
-        /// `rolling_damping_ratio`: fraction of critical damping, 0.3 unless given; in [0, 1].
-        damping: f64,
-    },
-}
-
 /// The contacts of a scene, sorted by their materials.
 pub(super) fn read_all(
     root: &Table<'_>,
@@ -177,8 +130,7 @@ pub(super) fn read_all(
         let field = table.field(key, node);
         let pair = named_pair(key, &field, materials)?;
         if let Some(first) = paths.insert(pair.clone(), field.path.clone()) {
-            let problem = format!("{} is the same pair as {first}", field.path);
-            return Err(field.refuse(problem, "remove one of them"));
+            return Err(field.fault(format!("is the same pair as {first}"), "remove one of them"));
         }
         contacts.insert(pair.clone(), read(&field, pair, materials)?);
     }
@@ -193,11 +145,9 @@ fn read(
     let table = Table::of(field, &CONTACT)?;
     let is_rigid = |name: &String| materials.get(name).is_some_and(|material| material.rigid);
     if pair.iter().all(is_rigid) {
-        let problem = format!("{} is a pair of rigid materials", field.path);
-        return Err(field.refuse(
-            problem,
-            "remove it: only walls are rigid, and walls never meet each other",
-        ));
+        let problem = "is a pair of rigid materials";
+        let remedy = "remove it: only walls are rigid, and walls never meet each other";
+        return Err(field.fault(problem, remedy));
     }
     let law = law(&table)?;
     if !matches!(law, ContactLaw::Linear { .. }) {
@@ -211,7 +161,9 @@ fn read(
         restitution,
         friction,
         rolling: rolling(&table, friction)?,
-        liquid_bridge: table.read_by("liquid_bridge", |field| liquid_bridge::read(&field))?,
+        liquid_bridge: table.read_by("liquid_bridge", |field| {
+            LiquidBridge::read(&Table::of(&field, &LIQUID_BRIDGE)?)
+        })?,
     })
 }
 
@@ -230,9 +182,9 @@ const STIFF_BY_MATERIALS: &str = "whose stiffness is that of the materials";
 fn refuse_of(table: &Table<'_>, (other, keys): &Own, law: &str, why: &str) -> Result<()> {
     match keys.iter().find_map(|key| table.get(key)) {
         Some(field) => {
-            let problem = format!("{} does not apply to the law \"{law}\", {why}", field.path);
             let remedy = format!("remove it, or write law = \"{other}\"");
-            Err(field.refuse(problem, remedy))
+            let problem = format!("does not apply to the law \"{law}\", {why}");
+            Err(field.fault(problem, remedy))
         }
         None => Ok(()),
     }
@@ -276,37 +228,30 @@ fn need_moduli(
     let Some(name) = pair.iter().find(has_none) else {
         return Ok(());
     };
-    let problem = format!(
-        "{} follows Hertz's law, but [materials.{name}] has no young_modulus",
-        table.path
-    );
+    let problem = format!("follows Hertz's law, but [materials.{name}] has no young_modulus");
     let remedy = format!(
         "add young_modulus = \"15 MPa\" to [materials.{name}], or write law = \"linear\" here"
     );
-    Err(table.refuse(problem, remedy))
+    Err(table.fault(problem, remedy))
 }
 
 fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
     let is_sprung = table.read_by("rolling", |field| field.choice(&ROLLINGS))?;
-    let damping = table.read("rolling_damping_ratio")?;
+    let damping_ratio = table.read("rolling_damping_ratio")?;
     if let (Some(field), false) = (table.get("rolling_damping_ratio"), is_sprung == Some(true)) {
-        let problem = format!(
-            "{} has no effect without rolling = \"spring-dashpot\"",
-            field.path
-        );
-        return Err(field.refuse(problem, "remove it, or add rolling = \"spring-dashpot\""));
+        let problem = "has no effect without rolling = \"spring-dashpot\"";
+        return Err(field.fault(problem, "remove it, or add rolling = \"spring-dashpot\""));
     }
     if is_sprung.is_none() && table.get("rolling_friction").is_none() {
-        return Ok(Rolling::None);
+        return Ok(Rolling::Free);
     }
     let friction = table.read("rolling_friction")?;
     if friction == 0.0 {
-        return Ok(Rolling::None);
+        return Ok(Rolling::Free);
     }
     if let (Some(field), true) = (table.get("rolling_friction"), sliding_friction == 0.0) {
         let problem = format!(
-            "{} is {}, but {}.friction is {}: what slides freely has no grip to roll with",
-            field.path,
+            "is {}, but {}.friction is {}: what slides freely has no grip to roll with",
             field.shown(),
             table.path,
             if table.get("friction").is_some() {
@@ -315,12 +260,15 @@ fn rolling(table: &Table<'_>, sliding_friction: f64) -> Result<Rolling> {
                 "not given, which means 0"
             }
         );
-        return Err(field.refuse(problem, "give friction above 0, or rolling_friction = 0"));
+        return Err(field.fault(problem, "give friction above 0, or rolling_friction = 0"));
     }
     Ok(if is_sprung == Some(true) {
-        Rolling::SpringDashpot { friction, damping }
+        Rolling::Spring(ElasticPlastic {
+            friction,
+            damping_ratio,
+        })
     } else {
-        Rolling::ConstantTorque { friction }
+        Rolling::Constant(ConstantMoment { friction })
     })
 }
 
@@ -345,20 +293,20 @@ pub(super) fn list(contact: &Contact, listing: &mut Listing) {
     listing.value("restitution", &contact.restitution);
     listing.value("friction", &contact.friction);
     match contact.rolling {
-        Rolling::None => listing.text("rolling", "none"),
-        Rolling::ConstantTorque { friction } => {
+        Rolling::Free => listing.text("rolling", "none"),
+        Rolling::Constant(moment) => {
             listing.text("rolling", "constant-torque");
-            listing.value("rolling_friction", &friction);
+            listing.value("rolling_friction", &moment.friction);
         }
-        Rolling::SpringDashpot { friction, damping } => {
+        Rolling::Spring(spring) => {
             listing.text("rolling", "spring-dashpot");
-            listing.value("rolling_friction", &friction);
-            listing.value("rolling_damping_ratio", &damping);
+            listing.value("rolling_friction", &spring.friction);
+            listing.value("rolling_damping_ratio", &spring.damping_ratio);
         }
     }
     if let Some(bridge) = &contact.liquid_bridge {
         listing.table("liquid_bridge", &LIQUID_BRIDGE, |listing| {
-            liquid_bridge::list(bridge, listing);
+            bridge.list(listing)
         });
     }
 }

@@ -23,14 +23,10 @@ pub(super) fn refuse_others(root: &Table<'_>) -> Result<()> {
     BESIDE_CONTACT_BESIDE_BOND.refuse(root, &bond)?;
     let relaxation = super::relaxation::read(root)?;
     if !relaxation.enabled || relaxation.min_overlap > 0.0 {
-        let problem = format!(
-            "{} needs the overlaps of bonded ends as origins of their contacts, whatever they are",
-            beside.path
-        );
-        return Err(beside.refuse(
-            problem,
-            "write relaxation = { min_overlap = 0 }, without enabled = false",
-        ));
+        let problem =
+            "needs the overlaps of bonded ends as origins of their contacts, whatever they are";
+        let remedy = "write relaxation = { min_overlap = 0 }, without enabled = false";
+        return Err(beside.fault(problem, remedy));
     }
     Ok(())
 }

@@ -7,7 +7,8 @@ use super::body::BodyEntry;
 use super::field::Field;
 use super::listing::Listing;
 use super::numbers::quantity;
-use super::schema::{Key, Kind, Schema, Word};
+use super::plain_table::keyed_struct;
+use super::schema::{Kind, Word};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY_PER_MASS, LENGTH};
@@ -15,93 +16,42 @@ use dem_io::units::{ENERGY_PER_MASS, LENGTH};
 /// Largest number of replacements of a body unless given.
 const LIMIT: f64 = 1e6;
 
-static SIZE_CLASS: Schema = Schema {
-    title: "Size class",
-    doc: "The daughters of particles that have taken in at least this energy.",
-    keys: &[
-        Key::quantity(
-            "from",
-            &ENERGY_PER_MASS,
-            "Least energy over the mass of the particle.",
-        )
-        .positive()
-        .required("\"20 J/kg\""),
-        Key::text(
-            "body",
-            "a name in [bodies]",
-            "The daughters: a packing of loose spheres, or a body with bonds. It is not in the scene at the start.",
-        )
-        .required("\"NAME\", a name in [bodies]"),
-    ],
-};
-
-pub(super) static DAUGHTERS: Schema = Schema {
-    title: "Daughters",
-    doc: "Pieces that replace a particle once it has taken in enough energy.",
-    keys: &[
-        Key::new(
-            "classes",
-            Kind::List(&Kind::Table(&SIZE_CLASS)),
-            "Size classes, by ascending energy: `[{ from = \"20 J/kg\", body = \"NAME\" }, ...]`. The first energy is the strength of the particle.",
-        )
-        .required("[{ from = \"20 J/kg\", body = \"NAME\" }]"),
-        Key::word::<CountedEnergy>(
-            "energy",
-            "one-impact",
-            "The energy that counts: that of `one-impact`, or the sum of `all-impacts` so far.",
-        ),
-        Key::number(
-            "weibull_modulus",
-            "The energies of the classes follow a Weibull distribution with this modulus, with one factor for each particle; the given energies are its scale.",
-        )
-        .positive()
-        .otherwise("all particles are equal"),
-        Key::quantity(
-            "smallest_size",
-            &LENGTH,
-            "Daughters of this diameter and larger ones are replaced in turn, smaller ones never.",
-        )
-        .positive()
-        .otherwise("daughters are not replaced"),
-        Key::new(
-            "limit",
-            Kind::Whole {
-                least: 1,
-                most: Some(u32::MAX as u64),
-                of: "",
-            },
-            "Largest number of particles of this body that are replaced; then the others stay whole.",
-        )
-        .remedy("a usual value is 100000")
-        .or(LIMIT),
-    ],
-};
-
-/// `daughters = { ... }`: the pieces that replace a particle once it has taken in enough energy
-/// (PRM: Platzer 2022, section 2.1.1).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Daughters {
-    /// `classes`, by ascending energy. At least one.
-    pub classes: Vec<SizeClass>,
-    /// `energy`, that of one impact unless given.
-    pub energy: CountedEnergy,
-    /// `weibull_modulus` of the energies of the classes; more than 0. None: all particles are
-    /// equal.
-    pub weibull_modulus: Option<f64>,
-    /// `smallest_size`: smallest diameter of a daughter that is replaced in turn, m; more than 0.
-    /// None: daughters are not replaced.
-    pub smallest_size_m: Option<f64>,
-    /// `limit`: largest number of particles that are replaced, 1,000,000 unless given. At least 1.
-    pub limit: u32,
+keyed_struct! {
+    SIZE_CLASS = "Size class";
+    /// The daughters of particles that have taken in at least this energy.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct SizeClass {
+        /// Least energy over the mass of the particle.
+        from_j_kg: f64 = quantity("from", &ENERGY_PER_MASS).positive().required("\"20 J/kg\"");
+        /// The daughters: a packing of loose spheres, or a body with bonds. It is not in the scene
+        /// at the start.
+        body: String = text("body", "a name in [bodies]").required("\"NAME\", a name in [bodies]");
+    }
 }
 
-/// A size class of daughters.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SizeClass {
-    /// `from`: least energy over the mass of the particle, J/kg; more than 0.
-    pub from_j_kg: f64,
-    /// `body`: a name of `[bodies]`.
-    pub body: String,
+keyed_struct! {
+    DAUGHTERS = "Daughters";
+    /// Pieces that replace a particle once it has taken in enough energy.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Daughters {
+        /// Size classes, by ascending energy: `[{ from = "20 J/kg", body = "NAME" }, ...]`. The
+        /// first energy is the strength of the particle.
+        classes: Vec<SizeClass> = new("classes", Kind::List(&Kind::Table(&SIZE_CLASS)))
+            .required("[{ from = \"20 J/kg\", body = \"NAME\" }]");
+        /// The energy that counts: that of `one-impact`, or the sum of `all-impacts` so far.
+        energy: CountedEnergy = word::<CountedEnergy>("energy", "one-impact");
+        /// The energies of the classes follow a Weibull distribution with this modulus, with one
+        /// factor for each particle; the given energies are its scale.
+        weibull_modulus: Option<f64> = number("weibull_modulus")
+            .positive()
+            .otherwise("all particles are equal");
+        /// Daughters of this diameter and larger ones are replaced in turn, smaller ones never.
+        smallest_size_m: Option<f64> = quantity("smallest_size", &LENGTH)
+            .positive()
+            .otherwise("daughters are not replaced");
+        /// Largest number of particles of this body that are replaced; then the others stay whole.
+        limit: u32 = new("limit", Kind::COUNT).remedy("a usual value is 100000").or(LIMIT);
+    }
 }
 
 /// The energy that decides on the replacement of a particle.
@@ -132,10 +82,10 @@ pub(super) fn read(
         && !relaxation.boolean()?
     {
         let problem = format!(
-            "{} is false, but {} makes daughters that overlap: without relaxation they fly apart",
-            relaxation.path, field.path
+            "is false, but {} makes daughters that overlap: without relaxation they fly apart",
+            field.path
         );
-        return Err(relaxation.refuse(problem, "remove it"));
+        return Err(relaxation.fault(problem, "remove it"));
     }
     let mut classes: Vec<SizeClass> = Vec::new();
     for item in table.need("classes")?.items()? {
@@ -173,18 +123,16 @@ fn check_body(
     bodies: &BTreeMap<String, BodyEntry>,
 ) -> Result<()> {
     if body == parent {
-        let problem = format!("{} is the body that is replaced", named.path);
         let remedy = "name a body of several spheres, its daughters";
-        return Err(named.refuse(problem, remedy));
+        return Err(named.fault("is the body that is replaced", remedy));
     }
     let materials = [body, parent].map(|name| bodies.get(name).map(|entry| &entry.material));
     if let ([Some(own), Some(of_parent)], true) = (materials, materials[0] != materials[1]) {
         let problem = format!(
-            "{} is \"{body}\" of material '{own}', but the particle '{parent}' is of '{of_parent}'",
-            named.path
+            "is \"{body}\" of material '{own}', but the particle '{parent}' is of '{of_parent}'"
         );
         let remedy = format!("write material = \"{of_parent}\" in [bodies.{body}]");
-        return Err(named.refuse(problem, remedy));
+        return Err(named.fault(problem, remedy));
     }
     for key in [
         "position",
@@ -197,30 +145,25 @@ fn check_body(
     ] {
         if let Some(field) = root.find(&["bodies", body, key]) {
             let problem = format!(
-                "{} has no effect: daughters of '{parent}' take over its place, motion and mass",
-                field.path
+                "has no effect: daughters of '{parent}' take over its place, motion and mass"
             );
-            return Err(field.refuse(problem, "remove it"));
+            return Err(field.fault(problem, "remove it"));
         }
     }
     for key in ["start_as", "clump"] {
         if let Some(field) = root.find(&["bodies", body, key]) {
             let problem = format!(
-                "{} has no effect: daughters of '{parent}' are loose spheres, or bonded if their file has bonds",
-                field.path
+                "has no effect: daughters of '{parent}' are loose spheres, or bonded if their file has bonds"
             );
-            return Err(field.refuse(problem, "remove it"));
+            return Err(field.fault(problem, "remove it"));
         }
     }
     if let Some(field) = root.find(&["replacement", body, "daughters"]) {
-        let problem = format!(
-            "{} belongs to a body that is daughters of '{parent}' itself",
-            field.path
-        );
+        let problem = format!("belongs to a body that is daughters of '{parent}' itself");
         let remedy = format!(
             "write smallest_size in [replacement.{parent}.daughters], whose loose daughters are then replaced in turn"
         );
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault(problem, remedy));
     }
     Ok(())
 }

@@ -34,7 +34,7 @@ impl Scene {
             let files: Vec<String> = files.collect();
             lines.0.push(("include".to_owned(), files.join(", ")));
         }
-        lines.table("run", &run::RUN, &self.run, run::list);
+        lines.table("run", &run::RUN, &self.run, run::Run::list);
         lines.each(
             "materials",
             &material::MATERIAL,
@@ -49,7 +49,12 @@ impl Scene {
         lines.each("bodies", &body::BODY, &self.bodies, body::list);
         lines.each("walls", &wall::WALL, &self.walls, wall::list);
         lines.each("groups", &group::GROUP, &self.groups, group::list);
-        lines.each("initial", &initial::INITIAL, &self.initial, initial::list);
+        lines.each(
+            "initial",
+            &initial::INITIAL,
+            &self.initial,
+            initial::Initial::list,
+        );
         lines.each("supports", &support::SUPPORT, &self.supports, support::list);
         lines.each("loads", &load::LOAD, &self.loads, load::list);
         lines.each("regions", &region::REGION, &self.regions, region::list);
@@ -69,24 +74,24 @@ impl Scene {
             "clusters",
             &clusters::CLUSTERS,
             &self.clusters,
-            clusters::list,
+            clusters::Clusters::list,
         );
         lines.unusual(
             touches,
             "relaxation",
             &relaxation::RELAXATION,
             &self.relaxation,
-            relaxation::list,
+            relaxation::Relaxation::list,
         );
         lines.unusual(
             touches,
             "search",
             &search::SEARCH,
             &self.search,
-            search::list,
+            search::Search::list,
         );
         if let Some(sleep) = &self.sleep {
-            lines.table("sleep", &sleep::SLEEP, sleep, sleep::list);
+            lines.table("sleep", &sleep::SLEEP, sleep, sleep::Sleep::list);
         }
         match &self.output {
             Some(output) => lines.table("output", &output::OUTPUT, output, output::list),

@@ -40,11 +40,13 @@ pub(super) const TABLE: Key = Key::new(
     "Factor over time, instead of `ramp`: `[[time, factor], ...]` with increasing times, linear between the rows, constant before and after them.",
 );
 
-/// The key `end`.
-pub(super) const fn until(doc: &'static str) -> Key {
-    Key::quantity("end", &TIME, doc)
-        .positive()
-        .otherwise("never")
+impl Key {
+    /// The key `end`.
+    pub(super) const fn until(doc: &'static str) -> Self {
+        Self::quantity("end", &TIME, doc)
+            .positive()
+            .otherwise("never")
+    }
 }
 
 /// The key for the change of a factor with time, if there is one.
@@ -61,8 +63,8 @@ pub(super) fn factor(table: &Table<'_>) -> Result<Factor> {
         }),
         (None, Some(field)) => points(&field),
         (Some(_), Some(field)) => {
-            let problem = format!("{} cannot be combined with ramp", field.path);
-            Err(field.refuse(problem, "the factor follows one of them: remove the other"))
+            let problem = "cannot be combined with ramp";
+            Err(field.fault(problem, "the factor follows one of them: remove the other"))
         }
     }
 }
@@ -96,15 +98,15 @@ pub(super) fn factor_from_zero(table: &Table<'_>, moved: &Field<'_>) -> Result<F
     };
     match (first, table.get("table")) {
         (None, _) => {
-            let problem = format!("{} has no effect without ramp or table", moved.path);
-            Err(moved.refuse(problem, "add ramp = \"0.1 s\", the time that it takes"))
+            let problem = "has no effect without ramp or table";
+            Err(moved.fault(problem, "add ramp = \"0.1 s\", the time that it takes"))
         }
         (Some([time_s, first]), Some(field)) if first != 0.0 || time_s < 0.0 => {
             let problem = format!(
-                "{} begins with a factor of {first} at {time_s} s, so {} would be followed in part only",
-                field.path, moved.path
+                "begins with a factor of {first} at {time_s} s, so {} would be followed in part only",
+                moved.path
             );
-            Err(field.refuse(problem, "begin it with a factor of 0, at 0 s or later"))
+            Err(field.fault(problem, "begin it with a factor of 0, at 0 s or later"))
         }
         _ => Ok(factor),
     }

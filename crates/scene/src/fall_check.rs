@@ -30,27 +30,22 @@ pub(super) fn refuse_falls(
         onto.reference(walls.keys(), "walls")?;
         let gravity = run.gravity_m_s2;
         if gravity == [0.0; 3] {
-            let problem = format!("{} needs gravity, and there is none", field.path);
-            return Err(field.refuse(problem, "add gravity = [0, 0, -9.81] to [run]"));
+            let problem = "needs gravity, and there is none";
+            return Err(field.fault(problem, "add gravity = [0, 0, -9.81] to [run]"));
         }
         if let Some((inlet, _)) = inlets.iter().find(|(_, inlet)| feeds(inlet, name)) {
             let problem = format!(
-                "{} is of the start, but [inlets.{inlet}] feeds the body: it is not there then",
-                field.path
+                "is of the start, but [inlets.{inlet}] feeds the body: it is not there then"
             );
-            return Err(field.refuse(problem, format!("remove it, or [inlets.{inlet}]")));
+            return Err(field.fault(problem, format!("remove it, or [inlets.{inlet}]")));
         }
         let along = |one: [f64; 3], other: [f64; 3]| (0..3).map(|k| one[k] * other[k]).sum::<f64>();
         let position = body.position_m;
         let sizes = along(position, position) * along(gravity, gravity);
         let is_along = along(position, gravity).abs() > ROUNDING * sizes.sqrt();
         if let (Some(field), true) = (root.find(&["bodies", name, "position"]), is_along) {
-            let problem = format!(
-                "{} moves the body along gravity, and so does drop",
-                field.path
-            );
             let remedy = "leave its part along gravity at 0: it follows from the wall";
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault("moves the body along gravity, and so does drop", remedy));
         }
     }
     Ok(())

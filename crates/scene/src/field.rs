@@ -1,5 +1,6 @@
 //! One value of a scene: its expected form, and the message if it is wrong.
 
+use std::fmt::Display;
 use std::ops::Bound;
 
 use super::names::{suggestion, well_formed};
@@ -30,10 +31,14 @@ impl<'a> Field<'a> {
         Diagnostic::input(self.document.place(self.node.origin), problem, remedy)
     }
 
+    /// A message at the place of this value, which begins with its path: "run.seed has no effect".
+    pub(super) fn fault(&self, problem: impl Display, remedy: impl Into<String>) -> Diagnostic {
+        self.refuse(format!("{} {problem}", self.path), remedy)
+    }
+
     /// The error for a value that is not as required.
     pub(super) fn wrong(&self, limit: &str, remedy: impl Into<String>) -> Diagnostic {
-        let problem = format!("{} is {}, but must be {limit}", self.path, self.shown());
-        self.refuse(problem, remedy)
+        self.fault(format!("is {}, but must be {limit}", self.shown()), remedy)
     }
 
     /// The value as written, or its type if that is long.
@@ -107,8 +112,8 @@ impl<'a> Field<'a> {
             return Err(self.wrong("a list", "write it in [ ]"));
         };
         if items.is_empty() {
-            let problem = format!("{} is an empty list", self.path);
-            return Err(self.refuse(problem, "give at least one, or leave the key out"));
+            let problem = "is an empty list";
+            return Err(self.fault(problem, "give at least one, or leave the key out"));
         }
         Ok(items)
     }
@@ -183,11 +188,9 @@ impl<'a> Field<'a> {
         match known.iter().find(|(word, _)| *word == text) {
             Some((_, meant)) => Ok(*meant),
             None => {
-                let problem = format!("{} is {}, which is unknown", self.path, self.shown());
-                Err(self.refuse(
-                    problem,
-                    suggestion(text, known.iter().map(|(word, _)| *word)),
-                ))
+                let problem = format!("is {}, which is unknown", self.shown());
+                let remedy = suggestion(text, known.iter().map(|(word, _)| *word));
+                Err(self.fault(problem, remedy))
             }
         }
     }

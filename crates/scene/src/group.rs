@@ -7,8 +7,8 @@ use super::field::Field;
 use super::listing::{LISTED, Listing};
 use super::names::{FRAGMENTS, meaning};
 use super::presence::Presence;
-use super::schema::{Key, Kind, Schema};
-use super::shape::{BOX, SPHERE, corners, list_box, list_sphere, sphere};
+use super::schema::{Kind, table_schema};
+use super::shape::{BOX, BoxShape, SPHERE, SphereShape, read_box, read_sphere};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
@@ -30,48 +30,32 @@ pub enum Pick {
     /// `particles = [i, ...]`: indices in the body's file, from 0. Only with `body`, or if there is
     /// only one body.
     Particles(Vec<u32>),
-    /// `box = { min, max }`: particles with their centres in it, m.
-    Box {
-        /// Smallest corner, m.
-        min: [f64; 3],
-        /// Largest corner, m.
-        max: [f64; 3],
-    },
-    /// `sphere = { centre, radius }`: particles with their centres in it, m.
-    Sphere {
-        /// Centre, m.
-        centre: [f64; 3],
-        /// Radius, m.
-        radius: f64,
-    },
+    /// `box = { min, max }`: particles with their centres in it.
+    Box(BoxShape),
+    /// `sphere = { centre, radius }`: particles with their centres in it.
+    Sphere(SphereShape),
 }
 
 /// The ways to select particles.
 const PICKS: [&str; 4] = ["all", "particles", "box", "sphere"];
 
-pub(super) static GROUP: Schema = Schema {
-    title: "[groups.NAME]",
-    doc: "A group of particles, selected by one key at the start of the run. Each body name and `all` are groups as well.",
-    keys: &[
-        Key::text("body", "a name in [bodies]", "Select only from this body.").otherwise("all"),
-        Key::new("all", Kind::True, "All particles."),
-        Key::new(
-            "particles",
-            Kind::List(&Kind::Whole {
-                least: 0,
-                most: None,
-                of: "",
-            }),
-            "Particles by their numbers in the body's file, from 0. Requires a `body`, or a scene with one body.",
-        ),
-        Key::table("box", &BOX, "Particles whose centres are in this box."),
-        Key::table(
-            "sphere",
-            &SPHERE,
-            "Particles whose centres are in this sphere.",
-        ),
-    ],
-};
+table_schema! {
+    /// A group of particles, selected by one key at the start of the run. Each body name and `all`
+    /// are groups as well.
+    pub(super) static GROUP = "[groups.NAME]";
+
+    /// Select only from this body.
+    text("body", "a name in [bodies]").otherwise("all");
+    /// All particles.
+    new("all", Kind::True);
+    /// Particles by their numbers in the body's file, from 0. Requires a `body`, or a scene with
+    /// one body.
+    new("particles", Kind::List(&Kind::Whole { least: 0, most: None, of: "" }));
+    /// Particles whose centres are in this box.
+    table("box", &BOX);
+    /// Particles whose centres are in this sphere.
+    table("sphere", &SPHERE);
+}
 
 pub(super) fn read_all(
     root: &Table<'_>,
@@ -83,13 +67,12 @@ pub(super) fn read_all(
         let body = format!("the body [bodies.{name}]");
         let is_body = bodies.contains_key(&name);
         if let Some(of) = meaning(&name).or(is_body.then_some(&body)) {
-            let problem = format!("{} is named like {of}", field.path);
             let remedy = if name == FRAGMENTS {
                 "give it another name"
             } else {
                 "give it another name, or remove it: the name stands for those particles without it"
             };
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(format!("is named like {of}"), remedy));
         }
         let group = read(&field, bodies)?;
         presence.refuse_group(&field, group.body.as_deref())?;
@@ -101,32 +84,20 @@ pub(super) fn read_all(
 fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<ParticleGroup> {
     let table = Table::of(field, &GROUP)?;
     let body = table.read_by("body", |field| field.reference(bodies.keys(), "bodies"))?;
-    let mut given = table.given(&PICKS);
-    let Some((key, first)) = given.next() else {
-        let problem = format!("{} selects nothing", table.path);
+    let one = "a group selects in one way: remove one, or make two groups";
+    let Some((key, first)) = table.at_most_one(&PICKS, one)? else {
         let remedy =
             "add all = true, particles = [0], box = { min, max } or sphere = { centre, radius }";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("selects nothing", remedy));
     };
-    if let Some((_, second)) = given.next() {
-        let problem = format!("{} cannot be combined with {key}", second.path);
-        return Err(second.refuse(
-            problem,
-            "a group selects in one way: remove one, or make two groups",
-        ));
-    }
     match key {
         "particles" => {
             let only = bodies.keys().next().filter(|_| bodies.len() == 1);
             let Some(body) = body.or(only.cloned()) else {
-                let problem = format!(
-                    "{} needs a body, and there are {}",
-                    first.path,
-                    bodies.len()
-                );
+                let problem = format!("needs a body, and there are {}", bodies.len());
                 let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
                 let remedy = format!("add body = \"NAME\", one of {}", names.join(", "));
-                return Err(first.refuse(problem, remedy));
+                return Err(first.fault(problem, remedy));
             };
             let pick = Pick::Particles(particles(&first, bodies.get(&body))?);
             Ok(ParticleGroup {
@@ -136,13 +107,12 @@ fn read(field: &Field<'_>, bodies: &BTreeMap<String, BodyEntry>) -> Result<Parti
         }
         "box" => Ok(ParticleGroup {
             body,
-            pick: region(&first)?,
+            pick: Pick::Box(read_box(&first, "at most", |low, high| low <= high)?),
         }),
-        "sphere" => {
-            let (centre, radius) = sphere(&first)?;
-            let pick = Pick::Sphere { centre, radius };
-            Ok(ParticleGroup { body, pick })
-        }
+        "sphere" => Ok(ParticleGroup {
+            body,
+            pick: Pick::Sphere(read_sphere(&first)?),
+        }),
         _ => {
             if !first.boolean()? {
                 return Err(first.wrong("true", "write all = true, or pick in another way"));
@@ -167,28 +137,23 @@ fn particles(field: &Field<'_>, body: Option<&BodyEntry>) -> Result<Vec<u32>> {
     for item in field.items()? {
         let index = item.particle(count)?;
         if !known.insert(index) {
-            let problem = format!("{} is {index}, which is in the list already", item.path);
-            return Err(item.refuse(problem, "remove one of them"));
+            let problem = format!("is {index}, which is in the list already");
+            return Err(item.fault(problem, "remove one of them"));
         }
         picked.push(index);
     }
     Ok(picked)
 }
 
-fn region(field: &Field<'_>) -> Result<Pick> {
-    let [min, max] = corners(field, "at most", |low, high| low <= high)?;
-    Ok(Pick::Box { min, max })
-}
-
 pub(super) fn list(group: &ParticleGroup, listing: &mut Listing) {
-    listing.text("body", group.body.as_deref().unwrap_or("all"));
+    listing.value("body", &group.body);
     match &group.pick {
         Pick::All => listing.text("all", "true"),
         Pick::Particles(picked) => {
             let shown: Vec<String> = picked.iter().take(LISTED).map(u32::to_string).collect();
             listing.some("particles", &shown, picked.len());
         }
-        Pick::Box { min, max } => list_box(*min, *max, listing),
-        Pick::Sphere { centre, radius } => list_sphere(*centre, *radius, listing),
+        Pick::Box(of) => listing.table("box", &BOX, |listing| of.list(listing)),
+        Pick::Sphere(of) => listing.table("sphere", &SPHERE, |listing| of.list(listing)),
     }
 }

@@ -8,7 +8,7 @@ use super::listing::Listing;
 use super::numbers::number;
 use super::region::Region;
 use super::replacement::{Replacement, parent_of};
-use super::schema::{Key, Kind, Schema, Word, words_of};
+use super::schema::{Kind, Word, table_schema, words_of};
 use super::table::Table;
 use super::tree::Value;
 use dem_io::diagnostic::Result;
@@ -16,61 +16,42 @@ use dem_io::units::{ANGULAR_VELOCITY, MASS_RATE, NUMBER, RATE, TIME, VELOCITY};
 
 /// Orientation of new bodies; true for random.
 const ORIENTATIONS: [(&str, bool); 2] = [("random", true), ("as-is", false)];
+const NAMES_OR_SHARES: Kind = Kind::Either(&[
+    Kind::List(&Kind::Text("a name in [bodies]")),
+    Kind::Named("NAME", &Kind::Quantity(&NUMBER)),
+]);
 
-pub(super) static INLET: Schema = Schema {
-    title: "[inlets.NAME]",
-    doc: "Feeds bodies during the run at a `rate` or a `mass_rate`. These bodies are not in the scene at the start.",
-    keys: &[
-        Key::new(
-            "bodies",
-            Kind::Either(&[
-                Kind::List(&Kind::Text("a name in [bodies]")),
-                Kind::Named("NAME", &Kind::Quantity(&NUMBER)),
-            ]),
-            "`[\"NAME\", ...]`, equal numbers of each, or `{ NAME = 0.7, OTHER = 0.3 }`, proportions with any sum, by number unless `shares_by` says otherwise.",
-        )
-        .required("[\"NAME\"], names in [bodies]"),
-        Key::word::<SharesBy>(
-            "shares_by",
-            "number",
-            "What the proportions of `bodies` are of: the numbers of bodies fed, or their masses, as in a feed by sieve classes.",
-        ),
-        Key::text(
-            "region",
-            "a name in [regions]",
-            "Region in which centres of new bodies are placed at random.",
-        )
-        .required("\"NAME\", a name in [regions]"),
-        Key::quantity("rate", &RATE, "Bodies per second.")
-            .positive()
-            .remedy("write bodies per second, such as \"4 /s\""),
-        Key::quantity("mass_rate", &MASS_RATE, "Mass per second, instead of `rate`.").positive(),
-        Key::vector("velocity", &VELOCITY, "Velocity of new bodies."),
-        Key::vector("angular_velocity", &ANGULAR_VELOCITY, "Angular velocity of new bodies."),
-        Key::new(
-            "orientation",
-            Kind::Word(|| words_of(&ORIENTATIONS)),
-            "Orientation of new bodies: random, or as given by their `rotation`.",
-        )
-        .or_word("as-is"),
-        Key::quantity("start", &TIME, "Time at which feeding begins.")
-            .not_negative()
-            .or(0.0),
-        Key::quantity("end", &TIME, "Time at which feeding ends, later than `start`; by default the end of the run.")
-            .otherwise("never"),
-        Key::new(
-            "count",
-            Kind::Whole {
-                least: 1,
-                most: Some(u32::MAX as u64),
-                of: "",
-            },
-            "Maximum number of bodies fed.",
-        )
-        .remedy("leave it out for no limit")
-        .otherwise("no limit"),
-    ],
-};
+table_schema! {
+    /// Feeds bodies during the run at a `rate` or a `mass_rate`. These bodies are not in the scene
+    /// at the start.
+    pub(super) static INLET = "[inlets.NAME]";
+
+    /// `["NAME", ...]`, equal numbers of each, or `{ NAME = 0.7, OTHER = 0.3 }`, proportions with
+    /// any sum, by number unless `shares_by` says otherwise.
+    new("bodies", NAMES_OR_SHARES)
+        .required("[\"NAME\"], names in [bodies]");
+    /// What the proportions of `bodies` are of: the numbers of bodies fed, or their masses, as in a
+    /// feed by sieve classes.
+    word::<SharesBy>("shares_by", "number");
+    /// Region in which centres of new bodies are placed at random.
+    text("region", "a name in [regions]").required("\"NAME\", a name in [regions]");
+    /// Bodies per second.
+    quantity("rate", &RATE).positive().remedy("write bodies per second, such as \"4 /s\"");
+    /// Mass per second, instead of `rate`.
+    quantity("mass_rate", &MASS_RATE).positive();
+    /// Velocity of new bodies.
+    vector("velocity", &VELOCITY);
+    /// Angular velocity of new bodies.
+    vector("angular_velocity", &ANGULAR_VELOCITY);
+    /// Orientation of new bodies: random, or as given by their `rotation`.
+    new("orientation", Kind::Word(|| words_of(&ORIENTATIONS))).or_word("as-is");
+    /// Time at which feeding begins.
+    quantity("start", &TIME).not_negative().or(0.0);
+    /// Time at which feeding ends, later than `start`; by default the end of the run.
+    quantity("end", &TIME).otherwise("never");
+    /// Maximum number of bodies fed.
+    new("count", Kind::COUNT).remedy("leave it out for no limit").otherwise("no limit");
+}
 
 /// Feeds bodies during the run. The bodies that it names are not in the scene at the start.
 #[derive(Debug, Clone, PartialEq)]
@@ -190,9 +171,8 @@ fn fractions(
     };
     if is_empty {
         let names: Vec<&str> = bodies.keys().map(String::as_str).collect();
-        let problem = format!("{} names no body", field.path);
         let remedy = format!("name at least one of {}", names.join(", "));
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault("names no body", remedy));
     }
     let mut fractions: Vec<(String, f64)> = Vec::new();
     if let Value::Table(_) = field.node.value {
@@ -207,9 +187,9 @@ fn fractions(
     for item in field.items()? {
         let name = item.reference(bodies.keys(), "bodies")?;
         if fractions.iter().any(|(other, _)| *other == name) {
-            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
             let remedy = "remove one of them, or give proportions, such as { NAME = 2, OTHER = 1 }";
-            return Err(item.refuse(problem, remedy));
+            let problem = format!("is \"{name}\", which is in the list already");
+            return Err(item.fault(problem, remedy));
         }
         fractions.push((name, 1.0));
     }
@@ -219,16 +199,15 @@ fn fractions(
 fn rate(table: &Table<'_>) -> Result<FeedRate> {
     match (table.get("rate"), table.get("mass_rate")) {
         (None, None) => {
-            let problem = format!("{} has no rate", table.path);
             let remedy = "add rate = \"4 /s\", bodies per second, or mass_rate = \"10 kg/s\"";
-            Err(table.refuse(problem, remedy))
+            Err(table.fault("has no rate", remedy))
         }
         (Some(_), None) => Ok(FeedRate::Number(table.read("rate")?)),
         (None, Some(_)) => Ok(FeedRate::Mass(table.read("mass_rate")?)),
-        (Some(_), Some(field)) => {
-            let problem = format!("{} cannot be combined with rate", field.path);
-            Err(field.refuse(problem, "an inlet has one rate: remove one"))
-        }
+        (Some(_), Some(field)) => Err(field.fault(
+            "cannot be combined with rate",
+            "an inlet has one rate: remove one",
+        )),
     }
 }
 
@@ -254,11 +233,10 @@ fn refuse_own_start(
         let field = root.find(&["bodies", name, key]);
         if let (Some(field), true) = (field, given != [0.0; 3]) {
             let problem = format!(
-                "{} is of the start, but [inlets.{inlet}] feeds the body: it is not there then",
-                field.path
+                "is of the start, but [inlets.{inlet}] feeds the body: it is not there then"
             );
             let remedy = format!("remove it: inlets.{inlet}.{instead} stands for it");
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(problem, remedy));
         }
     }
     Ok(())

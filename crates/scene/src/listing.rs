@@ -67,19 +67,3 @@ impl Listing {
         self.lines.append(&mut inner.lines);
     }
 }
-
-/// Implements reading and listing for a table whose keys stand for one field each: `fields` fills
-/// the struct, `list` shows it.
-macro_rules! one_field_a_key {
-    ($of:ident { $($field:ident: $key:literal),+ $(,)? }) => {
-        fn fields(table: &$crate::table::Table<'_>) -> dem_io::diagnostic::Result<$of> {
-            Ok($of { $($field: table.read($key)?),+ })
-        }
-
-        pub(crate) fn list(of: &$of, listing: &mut $crate::listing::Listing) {
-            $(listing.value($key, &of.$field);)+
-        }
-    };
-}
-
-pub(super) use one_field_a_key;

@@ -1,9 +1,9 @@
 //! `[loads.NAME]`
 
-use super::factor::{self, Factor, RAMP, TABLE, end, factor, until};
+use super::factor::{self, Factor, RAMP, TABLE, end, factor};
 use super::field::Field;
 use super::listing::Listing;
-use super::schema::{Key, Schema};
+use super::schema::table_schema;
 use super::table::Table;
 use super::targets::{GROUP_KEY, Targets};
 use dem_io::diagnostic::Result;
@@ -25,18 +25,20 @@ pub struct Load {
     pub end_s: Option<f64>,
 }
 
-pub(super) static LOAD: Schema = Schema {
-    title: "[loads.NAME]",
-    doc: "A force or a torque on a group, shared equally among its particles.",
-    keys: &[
-        GROUP_KEY,
-        Key::vector("force", &FORCE, "Total force on the group."),
-        Key::vector("torque", &TORQUE, "Total torque on the group."),
-        RAMP,
-        TABLE,
-        until("Time from which the load is zero; not before the last change of `ramp` or `table`."),
-    ],
-};
+table_schema! {
+    /// A force or a torque on a group, shared equally among its particles.
+    pub(super) static LOAD = "[loads.NAME]";
+
+    GROUP_KEY;
+    /// Total force on the group.
+    vector("force", &FORCE);
+    /// Total torque on the group.
+    vector("torque", &TORQUE);
+    RAMP;
+    TABLE;
+    /// Time from which the load is zero; not before the last change of `ramp` or `table`.
+    until();
+}
 
 pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
     let table = Table::of(field, &LOAD)?;
@@ -50,10 +52,9 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Load> {
         factor,
     };
     if load.force_n == [0.0; 3] && load.torque_n_m == [0.0; 3] {
-        let problem = format!("{} is a load of zero", table.path);
         let remedy =
             "add force = [0, 0, \"100 N\"] or torque = [0, 0, \"1 N m\"], or remove the table";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("is a load of zero", remedy));
     }
     Ok(load)
 }

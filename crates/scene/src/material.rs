@@ -4,7 +4,7 @@ use std::ops::Bound::{Excluded, Included};
 
 use super::field::Field;
 use super::listing::Listing;
-use super::schema::{Key, Schema};
+use super::schema::{Key, table_schema};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{DENSITY, STRESS};
@@ -27,55 +27,46 @@ pub struct Material {
 /// Keys of a deformable material.
 const OF_ELASTIC: [&str; 4] = ["density", "young_modulus", "shear_modulus", "poisson_ratio"];
 
-pub(super) static MATERIAL: Schema = Schema {
-    title: "[materials.NAME]",
-    doc: "Material of particles and walls.",
-    keys: &[
-        Key::quantity("density", &DENSITY, "Density of the spheres.")
-            .positive()
-            .otherwise("from the body, where one needs it"),
-        Key::quantity(
-            "young_modulus",
-            &STRESS,
-            "Young's modulus; required for the law `hertz-mindlin` and for Rayleigh's estimate of the step.",
-        )
-        .positive(),
-        Key::quantity(
-            "shear_modulus",
-            &STRESS,
-            "Shear modulus, instead of `young_modulus`.",
-        )
-        .positive(),
-        poisson_ratio("Poisson's ratio.").or(0.3),
-        Key::flag(
-            "rigid",
-            false,
-            "The material does not deform; for walls only, and instead of all other keys.",
-        ),
-    ],
-};
+table_schema! {
+    /// Material of particles and walls.
+    pub(super) static MATERIAL = "[materials.NAME]";
 
-pub(super) const fn poisson_ratio(doc: &'static str) -> Key {
-    Key::number("poisson_ratio", doc)
-        .within(Excluded(-1.0), Included(0.5))
-        .remedy("a usual value is 0.3")
+    /// Density of the spheres.
+    quantity("density", &DENSITY).positive().otherwise("from the body, where one needs it");
+    /// Young's modulus; required for the law `hertz-mindlin` and for Rayleigh's estimate of the
+    /// step.
+    quantity("young_modulus", &STRESS).positive();
+    /// Shear modulus, instead of `young_modulus`.
+    quantity("shear_modulus", &STRESS).positive();
+    /// Poisson's ratio.
+    poisson_ratio().or(0.3);
+    /// The material does not deform; for walls only, and instead of all other keys.
+    flag("rigid", false);
+}
+
+impl Key {
+    /// The key `poisson_ratio`.
+    pub(super) const fn poisson_ratio(doc: &'static str) -> Self {
+        Self::number("poisson_ratio", doc)
+            .within(Excluded(-1.0), Included(0.5))
+            .remedy("a usual value is 0.3")
+    }
 }
 
 pub(super) fn read(field: &Field<'_>) -> Result<Material> {
     let table = Table::of(field, &MATERIAL)?;
     let rigid = table.read("rigid")?;
     if let (true, Some((_, field))) = (rigid, table.given(&OF_ELASTIC).next()) {
-        let problem = format!("{} cannot be combined with rigid = true", field.path);
         let remedy = "remove one of them: a rigid wall does not deform and has no mass";
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault("cannot be combined with rigid = true", remedy));
     }
     let density_kg_m3 = table.read("density")?;
     let young: Option<f64> = table.read("young_modulus")?;
     let shear: Option<f64> = table.read("shear_modulus")?;
     let poisson_ratio = table.read("poisson_ratio")?;
     if let (Some(_), Some(_), Some(field)) = (young, shear, table.get("shear_modulus")) {
-        let problem = format!("{} cannot be combined with young_modulus", field.path);
-        return Err(field.refuse(problem, "one follows from the other: remove one"));
+        let problem = "cannot be combined with young_modulus";
+        return Err(field.fault(problem, "one follows from the other: remove one"));
     }
     let young_modulus_pa = young.or(shear.map(|shear| 2.0 * shear * (1.0 + poisson_ratio)));
     if let (Some(field), true) = (

@@ -8,7 +8,7 @@ use super::names::ALL;
 use super::numbers::quantity as shown;
 use super::quantity::{Quantity, With, named};
 use super::region::Region;
-use super::schema::{Key, Kind, Schema, Word};
+use super::schema::{Kind, Word, table_schema};
 use super::table::Table;
 use super::targets::{Subject, Targets};
 use dem_io::diagnostic::Result;
@@ -78,64 +78,39 @@ impl Measure {
     }
 }
 
-pub(super) static MEASURE: Schema = Schema {
-    title: "[measures.NAME]",
-    doc: "A measured quantity, with its reference value if one is known.",
-    keys: &[
-        Key::text("of", "a group, a body, a wall, `all` or `fragments`", "Object that is measured.")
-            .or_word(ALL),
-        Key::new(
-            "quantity",
-            Kind::Word(|| named().map(|(name, _)| name).collect()),
-            "For a wall: `force`, `torque` about its pivot, `position` of its pivot; for `fragments`: `count`, \
-             `mass_of_largest`, `mass_fraction_of_largest`; for groups: all others, and `position` and `force`.",
-        )
-        .required("\"displacement_x\""),
-        Key::text(
-            "with",
-            "a group, a body or a wall",
-            "Other side of the contact, or other part of the mixture; required for contact quantities and `mixing_index`.",
-        ),
-        Key::text(
-            "within",
-            "a name in [regions]",
-            "Region to which `mass`, `bulk_density`, `bulking_factor` or `mixing_index` is restricted; spheres that its border cuts count in part. Required for `mixing_index`.",
-        ),
-        Key::quantity(
-            "cell_size",
-            &LENGTH,
-            "Edge of the cells in which `mixing_index` compares mass fractions; required there.",
-        )
-        .positive(),
-        Key::number(
-            "limit",
-            "Dynamic utilisation below which intact bonds count; required for `fraction_below_dynamic_utilisation`.",
-        )
-        .positive(),
-        Key::word::<Statistic>(
-            "statistic",
-            "end",
-            "Statistic of the history that is reported; `mean` is over time.",
-        ),
-        Key::new("reference", Kind::Measured, "Reference value; the error of the result is reported."),
-        Key::number(
-            "tolerance",
-            "Relative error above which the run warns. Requires a `reference` other than 0.",
-        )
-        .positive(),
-        Key::new(
-            "absolute_tolerance",
-            Kind::Measured,
-            "Difference from `reference` above which the run warns. Requires a `reference`.",
-        )
-        .positive(),
-        Key::new(
-            "end_run_above",
-            Kind::Measured,
-            "The run ends, before its end time, at the first row of the time series with a larger value.",
-        ),
-    ],
-};
+table_schema! {
+    /// A measured quantity, with its reference value if one is known.
+    pub(super) static MEASURE = "[measures.NAME]";
+
+    /// Object that is measured.
+    text("of", "a group, a body, a wall, `all` or `fragments`").or_word(ALL);
+    /// For a wall: `force`, `torque` about its pivot, `position` of its pivot; for `fragments`:
+    /// `count`, `mass_of_largest`, `mass_fraction_of_largest`; for groups: all others, and
+    /// `position` and `force`.
+    new("quantity", Kind::Word(|| named().map(|(name, _)| name).collect()))
+        .required("\"displacement_x\"");
+    /// Other side of the contact, or other part of the mixture; required for contact quantities and
+    /// `mixing_index`.
+    text("with", "a group, a body or a wall");
+    /// Region to which `mass`, `bulk_density`, `bulking_factor` or `mixing_index` is restricted;
+    /// spheres that its border cuts count in part. Required for `mixing_index`.
+    text("within", "a name in [regions]");
+    /// Edge of the cells in which `mixing_index` compares mass fractions; required there.
+    quantity("cell_size", &LENGTH).positive();
+    /// Dynamic utilisation below which intact bonds count; required for
+    /// `fraction_below_dynamic_utilisation`.
+    number("limit").positive();
+    /// Statistic of the history that is reported; `mean` is over time.
+    word::<Statistic>("statistic", "end");
+    /// Reference value; the error of the result is reported.
+    new("reference", Kind::Measured);
+    /// Relative error above which the run warns. Requires a `reference` other than 0.
+    number("tolerance").positive();
+    /// Difference from `reference` above which the run warns. Requires a `reference`.
+    new("absolute_tolerance", Kind::Measured).positive();
+    /// The run ends, before its end time, at the first row of the time series with a larger value.
+    new("end_run_above", Kind::Measured);
+}
 
 pub(super) fn read(
     field: &Field<'_>,
@@ -178,16 +153,13 @@ pub(super) fn read(
             Some(_) => "",
         };
         if !problem.is_empty() {
-            let problem = format!("{} {problem}", field.path);
-            return Err(field.refuse(
-                problem,
-                "give a reference other than 0, or remove tolerance",
-            ));
+            let remedy = "give a reference other than 0, or remove tolerance";
+            return Err(field.fault(problem, remedy));
         }
     }
     if let (Some(field), None) = (table.get("absolute_tolerance"), reference) {
-        let problem = format!("{} has no effect without reference", field.path);
-        return Err(field.refuse(problem, "give a reference, or remove absolute_tolerance"));
+        let problem = "has no effect without reference";
+        return Err(field.fault(problem, "give a reference, or remove absolute_tolerance"));
     }
     Ok(Measure {
         of,
@@ -217,10 +189,9 @@ fn counterpart(
         return match table.get("with") {
             Some(field) => {
                 let problem = format!(
-                    "{} cannot be combined with the quantity \"{name}\", which is not of a contact",
-                    field.path
+                    "cannot be combined with the quantity \"{name}\", which is not of a contact"
                 );
-                Err(field.refuse(problem, "remove it, or ask for \"contact_force\""))
+                Err(field.fault(problem, "remove it, or ask for \"contact_force\""))
             }
             None => Ok(None),
         };
@@ -238,8 +209,8 @@ fn counterpart(
     };
     let (with, subject) = targets.measured(&field)?;
     if mixes && (subject != Subject::Particles || with == ALL || with == of) {
-        let problem = format!("{} is \"{with}\", which is no other group", field.path);
-        return Err(field.refuse(problem, "name a body or a group that \"of\" mixes with"));
+        let problem = format!("is \"{with}\", which is no other group");
+        return Err(field.fault(problem, "name a body or a group that \"of\" mixes with"));
     }
     let problem = if with == of {
         format!("{} is \"{with}\", as of is", field.path)
@@ -251,10 +222,9 @@ fn counterpart(
     } else {
         return Ok(Some(with));
     };
-    Err(field.refuse(
-        problem,
-        "name another body, group or wall; quantity = \"force\" is of contacts with all else",
-    ))
+    let remedy =
+        "name another body, group or wall; quantity = \"force\" is of contacts with all else";
+    Err(field.refuse(problem, remedy))
 }
 
 /// The region to which a measure is restricted.
@@ -272,12 +242,9 @@ fn within(
             Err(table.refuse(problem, "add within = \"NAME\", a name in [regions]"))
         }
         Some(field) if !quantity.within => {
-            let problem = format!(
-                "{} cannot be combined with the quantity \"{name}\"",
-                field.path
-            );
             let remedy = "remove it, or ask for \"mass\", \"bulk_density\" or \"mixing_index\"";
-            Err(field.refuse(problem, remedy))
+            let problem = format!("cannot be combined with the quantity \"{name}\"");
+            Err(field.fault(problem, remedy))
         }
         Some(field) => Ok(Some(field.reference(regions.keys(), "regions")?)),
         None => Ok(None),
@@ -299,12 +266,9 @@ fn only_for(
             Err(table.refuse(problem, format!("add {key} = {example}")))
         }
         (false, Some(field)) => {
-            let problem = format!(
-                "{} cannot be combined with the quantity \"{name}\"",
-                field.path
-            );
             let remedy = format!("remove it, or ask for \"{example_quantity}\"");
-            Err(field.refuse(problem, remedy))
+            let problem = format!("cannot be combined with the quantity \"{name}\"");
+            Err(field.fault(problem, remedy))
         }
         _ => table.read(key),
     }
@@ -342,17 +306,14 @@ fn quantity(
         Subject::Wall => "is a wall",
         Subject::Fragments => "are none",
     };
-    let problem = format!(
-        "{} is \"{name}\", a quantity of {owner}, but \"{of}\" {is}",
-        field.path
-    );
     let remedy = if subject == Subject::Particles {
         remedy.to_owned()
     } else {
         let has: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
         format!("{remedy}, or ask for {}", has.join(", "))
     };
-    Err(field.refuse(problem, remedy))
+    let problem = format!("is \"{name}\", a quantity of {owner}, but \"{of}\" {is}");
+    Err(field.fault(problem, remedy))
 }
 
 pub(super) fn list(measure: &Measure, listing: &mut Listing) {

@@ -6,28 +6,22 @@ use super::field::Field;
 use super::inlet::Inlet;
 use super::listing::Listing;
 use super::region::Region;
-use super::schema::{Key, Schema};
+use super::schema::table_schema;
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
 const SIDES: [&str; 2] = ["inside", "outside"];
 
-pub(super) static OUTLET: Schema = Schema {
-    title: "[outlets.NAME]",
-    doc: "Removes bodies and fragments whose centre is inside or outside a region, and counts their mass.",
-    keys: &[
-        Key::text(
-            "inside",
-            "a name in [regions]",
-            "Remove bodies and fragments inside this region, which must not be the region of an inlet.",
-        ),
-        Key::text(
-            "outside",
-            "a name in [regions]",
-            "Remove bodies and fragments outside this region.",
-        ),
-    ],
-};
+table_schema! {
+    /// Removes bodies and fragments whose centre is inside or outside a region, and counts their
+    /// mass.
+    pub(super) static OUTLET = "[outlets.NAME]";
+
+    /// Remove bodies and fragments inside this region, which must not be the region of an inlet.
+    text("inside", "a name in [regions]");
+    /// Remove bodies and fragments outside this region.
+    text("outside", "a name in [regions]");
+}
 
 /// Removes bodies and fragments by the position of their centre, and counts them.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,27 +38,18 @@ pub(super) fn read(
     inlets: &BTreeMap<String, Inlet>,
 ) -> Result<Outlet> {
     let table = Table::of(field, &OUTLET)?;
-    let mut given = table.given(&SIDES);
-    let Some((key, field)) = given.next() else {
-        let problem = format!("{} has no region", table.path);
+    let one = "an outlet has one region: remove one, or make two outlets";
+    let Some((key, field)) = table.at_most_one(&SIDES, one)? else {
         let remedy = "add inside = \"NAME\" or outside = \"NAME\", a name in [regions]";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("has no region", remedy));
     };
-    if let Some((_, second)) = given.next() {
-        let problem = format!("{} cannot be combined with {key}", second.path);
-        let remedy = "an outlet has one region: remove one, or make two outlets";
-        return Err(second.refuse(problem, remedy));
-    }
     let region = field.reference(regions.keys(), "regions")?;
     let removes_outside = key == "outside";
     let into = inlets.iter().find(|(_, inlet)| inlet.region == region);
     if let (Some((inlet, _)), false) = (into, removes_outside) {
-        let problem = format!(
-            "{} is \"{region}\", into which [inlets.{inlet}] puts bodies",
-            field.path
-        );
+        let problem = format!("is \"{region}\", into which [inlets.{inlet}] puts bodies");
         let remedy = "they would be removed immediately: name another region";
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault(problem, remedy));
     }
     Ok(Outlet {
         region,

@@ -6,7 +6,8 @@ use super::field::Field;
 use super::listing::{LISTED, Listing};
 use super::numbers::quantity;
 use super::paths::named_path;
-use super::schema::{Key, Kind, Schema, Word};
+use super::plain_table::keyed_struct;
+use super::schema::{Kind, Word, table_schema};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{LENGTH, TIME};
@@ -38,97 +39,51 @@ impl Word for ColourBy {
     ];
 }
 
-/// The results to write, and how often. Times are simulated seconds.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Output {
-    /// `folder`: folder of the results, resolved against the folder of the scene. None: the scene's
-    /// name with `-out`.
-    pub folder: Option<PathBuf>,
-    /// `frames`: time between frames. None: first and last only.
-    pub frames_s: Option<f64>,
-    /// `series`: time between rows of the time series. None: a thousandth of the run, but at least
-    /// 200 steps in large scenes.
-    pub series_s: Option<f64>,
-    /// `pictures`: time between pictures. None: no pictures.
-    pub pictures_s: Option<f64>,
-    /// `view = { from }`: direction from the bodies to the camera, of length 1. None: from the
-    /// front, the right and above. Length 3.
-    pub view_from: Option<[f64; 3]>,
-    /// `colour_by`: the quantity that colours the particles of pictures.
-    pub colour_by: ColourBy,
-    /// `sieves`: openings of the sieves of the size distribution, m: positive and ascending. Empty:
-    /// the principal sizes R 20/3 of ISO 565.
-    pub sieves_m: Vec<f64>,
-    /// `flow`: width of the intervals of mass flows. None: a twentieth of the run.
-    pub flow_s: Option<f64>,
-    /// `checkpoint`: time between checkpoints. None: only at the end and when interrupted.
-    pub checkpoint_s: Option<f64>,
+keyed_struct! {
+    OUTPUT = "[output]";
+    /// Output files and their intervals in simulated time. Without this table and `--output`, no
+    /// file is written.
+    #[derive(Debug, Clone, Default, PartialEq)]
+    pub struct Output {
+        /// Folder of the results, relative to the folder of the scene; without it and `--output`,
+        /// the folder SCENE-out in the working directory, named after the scene.
+        folder: Option<PathBuf> = text("folder", "a folder")
+            .otherwise("the scene's name with -out");
+        /// Time between frames.
+        frames_s: Option<f64> = quantity("frames", &TIME).positive().otherwise("first and last");
+        /// Time between rows of the time series; the default is at least 200 steps in scenes of
+        /// more than 20,000 particles and bonds.
+        series_s: Option<f64> = quantity("series", &TIME)
+            .positive()
+            .otherwise("a thousandth of the run");
+        /// Time between pictures.
+        pictures_s: Option<f64> = quantity("pictures", &TIME).positive();
+        /// Camera of the pictures.
+        view_from: Option<[f64; 3]> = table("view", &VIEW).otherwise("front, right and above");
+        /// Quantity that colours the particles of pictures; of a quantity of bonds, a particle has
+        /// the largest value of its intact bonds.
+        colour_by: ColourBy = word::<ColourBy>("colour_by", "fragment");
+        /// Openings of the sieves of `distribution.csv`, the smallest first.
+        sieves_m: Vec<f64> = new("sieves", Kind::List(&Kind::Quantity(&LENGTH)))
+            .otherwise("R 20/3 of ISO 565");
+        /// Width of the intervals of `flow.csv`, in which mass flows are means.
+        flow_s: Option<f64> = quantity("flow", &TIME)
+            .positive()
+            .otherwise("a twentieth of the run");
+        /// Simulated time between checkpoints; by default one every minute of run time.
+        checkpoint_s: Option<f64> = quantity("checkpoint", &TIME)
+            .positive()
+            .otherwise("at the end");
+    }
 }
 
-pub(super) static OUTPUT: Schema = Schema {
-    title: "[output]",
-    doc: "Output files and their intervals in simulated time. Without this table and `--output`, no file is written.",
-    keys: &[
-        Key::text(
-            "folder",
-            "a folder",
-            "Folder of the results, relative to the folder of the scene; without it and `--output`, the folder SCENE-out in \
-             the working directory, named after the scene.",
-        )
-        .otherwise("the scene's name with -out"),
-        Key::quantity("frames", &TIME, "Time between frames.")
-            .positive()
-            .otherwise("first and last"),
-        Key::quantity(
-            "series",
-            &TIME,
-            "Time between rows of the time series; the default is at least 200 steps in scenes of more than 20,000 \
-             particles and bonds.",
-        )
-        .positive()
-        .otherwise("a thousandth of the run"),
-        Key::quantity("pictures", &TIME, "Time between pictures.").positive(),
-        Key::table("view", &VIEW, "Camera of the pictures.")
-            .otherwise("front, right and above"),
-        Key::word::<ColourBy>(
-            "colour_by",
-            "fragment",
-            "Quantity that colours the particles of pictures; of a quantity of bonds, a particle has the largest value \
-             of its intact bonds.",
-        ),
-        Key::new(
-            "sieves",
-            Kind::List(&Kind::Quantity(&LENGTH)),
-            "Openings of the sieves of `distribution.csv`, the smallest first.",
-        )
-        .otherwise("R 20/3 of ISO 565"),
-        Key::quantity(
-            "flow",
-            &TIME,
-            "Width of the intervals of `flow.csv`, in which mass flows are means.",
-        )
-        .positive()
-        .otherwise("a twentieth of the run"),
-        Key::quantity(
-            "checkpoint",
-            &TIME,
-            "Simulated time between checkpoints; by default one every minute of run time.",
-        )
-        .positive()
-        .otherwise("at the end"),
-    ],
-};
+table_schema! {
+    /// Camera of the pictures.
+    pub(super) static VIEW = "View";
 
-pub(super) static VIEW: Schema = Schema {
-    title: "View",
-    doc: "Camera of the pictures.",
-    keys: &[Key::new(
-        "from",
-        Kind::Direction("a direction"),
-        "Direction from the bodies to the camera; its length does not matter.",
-    )
-    .required("[1, -2, 1]")],
-};
+    /// Direction from the bodies to the camera; its length does not matter.
+    new("from", Kind::Direction("a direction")).required("[1, -2, 1]");
+}
 
 pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Output> {
     let table = Table::of(field, &OUTPUT)?;

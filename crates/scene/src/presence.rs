@@ -33,8 +33,8 @@ impl Presence<'_> {
     pub(super) fn refuse_body(&self, field: &Field<'_>, name: &str) -> Result<()> {
         match self.absence(name) {
             Some(Absence { why, remedy }) => {
-                let problem = format!("{} is \"{name}\", {why}", field.path);
-                Err(field.refuse(problem, format!("name another, or {remedy}")))
+                let problem = format!("is \"{name}\", {why}");
+                Err(field.fault(problem, format!("name another, or {remedy}")))
             }
             None => Ok(()),
         }
@@ -45,8 +45,8 @@ impl Presence<'_> {
     pub(super) fn refuse_only(&self, table: &Table<'_>, name: &str) -> Result<()> {
         match self.absence(name) {
             Some(Absence { why, remedy }) => {
-                let problem = format!("{} is of the body \"{name}\", {why}", table.path);
-                Err(table.refuse(problem, format!("remove it, or {remedy}")))
+                let problem = format!("is of the body \"{name}\", {why}");
+                Err(table.fault(problem, format!("remove it, or {remedy}")))
             }
             None => Ok(()),
         }
@@ -57,11 +57,8 @@ impl Presence<'_> {
     pub(super) fn refuse_all(&self, field: &Field<'_>) -> Result<()> {
         for name in self.bodies.keys() {
             if let Some(Absence { why, .. }) = self.absence(name) {
-                let problem = format!(
-                    "{} is \"{ALL}\", with the body \"{name}\", {why}",
-                    field.path
-                );
-                return Err(field.refuse(problem, "name a group or another body"));
+                let problem = format!("is \"{ALL}\", with the body \"{name}\", {why}");
+                return Err(field.fault(problem, "name a group or another body"));
             }
         }
         Ok(())
@@ -80,11 +77,8 @@ impl Presence<'_> {
         // Bodies that come later are not yet where a group could select their particles.
         for name in self.bodies.keys().filter(|name| self.later(name).is_none()) {
             if let Some(Absence { why, .. }) = self.clump(name) {
-                let problem = format!(
-                    "{} picks from all bodies, with \"{name}\", {why}",
-                    field.path
-                );
-                return Err(field.refuse(problem, "add body = \"NAME\", another body"));
+                let problem = format!("picks from all bodies, with \"{name}\", {why}");
+                return Err(field.fault(problem, "add body = \"NAME\", another body"));
             }
         }
         Ok(())
@@ -100,12 +94,11 @@ impl Presence<'_> {
             return Ok(());
         };
         let problem = format!(
-            "{} is {} of \"{of}\", with the body \"{name}\", {}",
-            field.path,
+            "is {} of \"{of}\", with the body \"{name}\", {}",
             field.shown(),
             absence.why
         );
-        Err(field.refuse(problem, "ask for a position or a velocity, or of another"))
+        Err(field.fault(problem, "ask for a position or a velocity, or of another"))
     }
 
     fn absence(&self, name: &str) -> Option<Absence> {

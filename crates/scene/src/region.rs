@@ -4,58 +4,40 @@ use std::path::{Path, PathBuf};
 
 use super::field::Field;
 use super::listing::Listing;
-use super::schema::{Key, Schema};
+use super::schema::table_schema;
 use super::shape::{
-    BOX, CYLINDER, SPHERE, UNIT, corners, cylinder, list_box, list_cylinder, list_sphere, list_stl,
-    refuse_without_stl, sphere, stl,
+    BOX, BoxShape, CYLINDER, CylinderShape, SPHERE, SphereShape, UNIT, list_stl, read_box,
+    read_cylinder, read_sphere, refuse_without_stl, stl,
 };
 use super::table::Table;
 use dem_io::diagnostic::Result;
 
 const SHAPES: [&str; 4] = ["box", "sphere", "cylinder", "stl"];
 
-pub(super) static REGION: Schema = Schema {
-    title: "[regions.NAME]",
-    doc: "A part of space of one shape. It has no surface.",
-    keys: &[
-        Key::table("box", &BOX, "A box."),
-        Key::table("sphere", &SPHERE, "A sphere."),
-        Key::table("cylinder", &CYLINDER, "A cylinder."),
-        Key::text(
-            "stl",
-            "a file",
-            "STL file of a closed surface, relative to the folder of the scene; requires `unit`.",
-        ),
-        UNIT,
-    ],
-};
+table_schema! {
+    /// A part of space of one shape. It has no surface.
+    pub(super) static REGION = "[regions.NAME]";
+
+    /// A box.
+    table("box", &BOX);
+    /// A sphere.
+    table("sphere", &SPHERE);
+    /// A cylinder.
+    table("cylinder", &CYLINDER);
+    /// STL file of a closed surface, relative to the folder of the scene; requires `unit`.
+    text("stl", "a file");
+    UNIT;
+}
 
 /// A region of space, without walls.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Region {
-    /// `box = { min, max }`
-    Box {
-        /// Smallest corner, m. Length 3.
-        min_m: [f64; 3],
-        /// Largest corner, m: above the smallest along every axis. Length 3.
-        max_m: [f64; 3],
-    },
+    /// `box = { min, max }`, with `min` below `max` along every axis.
+    Box(BoxShape),
     /// `sphere = { centre, radius }`
-    Sphere {
-        /// Centre, m. Length 3.
-        centre_m: [f64; 3],
-        /// Radius, m.
-        radius_m: f64,
-    },
+    Sphere(SphereShape),
     /// `cylinder = { from, to, radius }`
-    Cylinder {
-        /// Centre of one end, m. Length 3.
-        from_m: [f64; 3],
-        /// Centre of the other end, m, elsewhere. Length 3.
-        to_m: [f64; 3],
-        /// Radius, m.
-        radius_m: f64,
-    },
+    Cylinder(CylinderShape),
     /// `stl` and `unit`: the region enclosed by a closed surface. The reader of the file checks
     /// whether it is closed.
     Stl {
@@ -68,35 +50,16 @@ pub enum Region {
 
 pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Region> {
     let table = Table::of(field, &REGION)?;
-    let mut given = table.given(&SHAPES);
-    let Some((key, field)) = given.next() else {
-        let problem = format!("{} has no shape", table.path);
+    let one = "a region has one shape: remove one, or make two regions";
+    let Some((key, field)) = table.at_most_one(&SHAPES, one)? else {
         let remedy = "add box = { min, max }, sphere = { centre, radius }, cylinder = { from, to, radius } or stl = \"room.stl\"";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("has no shape", remedy));
     };
-    if let Some((_, second)) = given.next() {
-        let problem = format!("{} cannot be combined with {key}", second.path);
-        let remedy = "a region has one shape: remove one, or make two regions";
-        return Err(second.refuse(problem, remedy));
-    }
     refuse_without_stl(&table, &["unit"], key)?;
     Ok(match key {
-        "box" => {
-            let [min_m, max_m] = corners(&field, "less than", |low, high| low < high)?;
-            Region::Box { min_m, max_m }
-        }
-        "sphere" => {
-            let (centre_m, radius_m) = sphere(&field)?;
-            Region::Sphere { centre_m, radius_m }
-        }
-        "cylinder" => {
-            let ([from_m, to_m], radius_m) = cylinder(&field)?;
-            Region::Cylinder {
-                from_m,
-                to_m,
-                radius_m,
-            }
-        }
+        "box" => Region::Box(read_box(&field, "less than", |low, high| low < high)?),
+        "sphere" => Region::Sphere(read_sphere(&field)?),
+        "cylinder" => Region::Cylinder(read_cylinder(&field)?),
         _ => {
             let (file, unit_m) = stl(&field, &table, folder)?;
             Region::Stl { file, unit_m }
@@ -106,13 +69,9 @@ pub(super) fn read(field: &Field<'_>, folder: &Path) -> Result<Region> {
 
 pub(super) fn list(region: &Region, listing: &mut Listing) {
     match region {
-        Region::Box { min_m, max_m } => list_box(*min_m, *max_m, listing),
-        Region::Sphere { centre_m, radius_m } => list_sphere(*centre_m, *radius_m, listing),
-        Region::Cylinder {
-            from_m,
-            to_m,
-            radius_m,
-        } => list_cylinder([*from_m, *to_m], *radius_m, listing),
+        Region::Box(of) => listing.table("box", &BOX, |listing| of.list(listing)),
+        Region::Sphere(of) => listing.table("sphere", &SPHERE, |listing| of.list(listing)),
+        Region::Cylinder(of) => listing.table("cylinder", &CYLINDER, |listing| of.list(listing)),
         Region::Stl { file, unit_m } => list_stl(file, *unit_m, listing),
     }
 }

@@ -7,8 +7,9 @@ use super::clump::{ClumpMass, StartAs};
 use super::daughters::{self, DAUGHTERS, Daughters};
 use super::field::Field;
 use super::listing::Listing;
+use super::plain_table::{keyed_struct, plain_table};
 use super::region::Region;
-use super::schema::{Key, Kind, Schema, words_of};
+use super::schema::{Kind, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, STRESS, TIME, VELOCITY};
@@ -16,157 +17,75 @@ use dem_io::units::{ENERGY, ENERGY_PER_MASS, FORCE, STRESS, TIME, VELOCITY};
 /// Words for `require`; true if all conditions of `when` must hold.
 const REQUIRE: [(&str, bool); 2] = [("any", false), ("all", true)];
 
-pub(super) static REPLACEMENT: Schema = Schema {
-    title: "[replacement.NAME]",
-    doc: "Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster, and when the cluster becomes rigid again; or the `daughters` that replace a clump or a single sphere.",
-    keys: &[
-        Key::table(
-            "when",
-            &WHEN,
-            "Conditions for replacement; at least one. Not with `daughters`.",
-        )
-        .sometimes_required("{ enters = \"NAME\" }, a name in [regions]"),
-        Key::table(
-            "daughters",
-            &DAUGHTERS,
-            "Pieces that replace the clump or sphere once it has taken in enough energy.",
-        )
-        .otherwise("its own bonded cluster replaces it"),
-        Key::new(
-            "require",
-            Kind::Word(|| words_of(&REQUIRE)),
-            "`any` or `all` of the conditions in `when` must hold.",
-        )
-        .or_word("any"),
-        Key::table(
-            "restore",
-            &RESTORE,
-            "Conditions for a fragment to become rigid again; all must hold.",
-        )
-        .otherwise("never"),
-    ],
-};
-
-pub(super) static WHEN: Schema = Schema {
-    title: "When",
-    doc: "Conditions that turn a clump into its bonded cluster.",
-    keys: &[
-        Key::text(
-            "enters",
-            "a name in [regions]",
-            "The centre of mass of the clump is in this region.",
-        )
-        .otherwise("not used"),
-        Key::quantity(
-            "force",
-            &FORCE,
-            "The resultant contact force on the clump reaches this value.",
-        )
-        .positive()
-        .otherwise("not used"),
-        Key::quantity(
-            "contact_force",
-            &FORCE,
-            "A single contact presses on the clump with this force. Unlike `force`, it sees a squeeze between two jaws, whose forces cancel.",
-        )
-        .positive()
-        .otherwise("not used"),
-        Key::quantity(
-            "principal_stress",
-            &STRESS,
-            "The mean stress that contacts exert on the clump (Love and Weber: the sum of the dyadic products of contact force and way from the centre, over the volume) has a principal value of this magnitude.",
-        )
-        .positive()
-        .otherwise("not used"),
-        Key::quantity(
-            "impact_energy",
-            &ENERGY,
-            "The kinetic energy that contacts have taken from the clump reaches this value.",
-        )
-        .positive()
-        .otherwise("not used"),
-        Key::quantity("time", &TIME, "The run reaches this time.")
-            .not_negative()
-            .otherwise("not used"),
-    ],
-};
-
-pub(super) static RESTORE: Schema = Schema {
-    title: "Restore",
-    doc: "Conditions that make a fragment rigid again.",
-    keys: &[
-        Key::text("leaves", "a name in [regions]", "The centre of the fragment is outside this region.")
-            .required("\"NAME\", a name in [regions]"),
-        Key::new(
-            "min_particles",
-            Kind::Whole {
-                least: 1,
-                most: Some(u32::MAX as u64),
-                of: "",
-            },
-            "It has at least this many particles.",
-        )
-        .remedy("a usual value is 10")
-        .or(10.0),
-        Key::quantity(
-            "strain_energy",
-            &ENERGY_PER_MASS,
-            "Elastic energy of its bonds over its mass is at most this.",
-        )
-        .positive()
-        .or(0.01),
-        Key::quantity(
-            "fluctuation_velocity",
-            &VELOCITY,
-            "Root mean square velocity of its particles relative to its rigid-body motion is at most this.",
-        )
-        .positive()
-        .or(5e-3),
-    ],
-};
-
-/// Conditions under which a rigid clump becomes the bonded cluster that it represents, and under
-/// which a fragment becomes rigid again.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Replacement {
-    /// `when.enters`: its centre is in this region, a name of `[regions]`. None, here and below: no
-    /// such condition. At least one is given.
-    pub enters: Option<String>,
-    /// `when.force`: the resultant contact force on it reaches this, N; more than 0.
-    pub force_n: Option<f64>,
-    /// `when.contact_force`: a single contact force on it reaches this, N; more than 0.
-    pub contact_force_n: Option<f64>,
-    /// `when.principal_stress`: a principal value of the mean stress of its contacts reaches this,
-    /// by magnitude, Pa; more than 0.
-    pub principal_stress_pa: Option<f64>,
-    /// `when.impact_energy`: the kinetic energy that contacts have taken from it so far reaches
-    /// this, J; more than 0.
-    pub impact_energy_j: Option<f64>,
-    /// `when.time`: this time is reached, s; at least 0.
-    pub time_s: Option<f64>,
-    /// `require`: all conditions of `when` must hold ("all"), not just any ("any"). False unless
-    /// given.
-    pub requires_all: bool,
-    /// `restore`. None: replaced bodies stay bonded.
-    pub restore: Option<Restore>,
-    /// `daughters`, which exclude all of the above. None: its own bonded cluster replaces the
-    /// clump.
-    pub daughters: Option<Daughters>,
+keyed_struct! {
+    REPLACEMENT = "[replacement.NAME]";
+    /// Particle replacement: when the clump NAME, a body with bonds, becomes its bonded cluster,
+    /// and when the cluster becomes rigid again; or the `daughters` that replace a clump or a
+    /// single sphere.
+    #[derive(Debug, Clone, Default, PartialEq)]
+    pub struct Replacement {
+        /// Conditions for replacement; at least one. Not with `daughters`.
+        when: When = table("when", &WHEN)
+            .sometimes_required("{ enters = \"NAME\" }, a name in [regions]");
+        /// Pieces that replace the clump or sphere once it has taken in enough energy.
+        daughters: Option<Daughters> = table("daughters", &DAUGHTERS)
+            .otherwise("its own bonded cluster replaces it");
+        /// `any` or `all` of the conditions in `when` must hold.
+        requires_all: bool = new("require", Kind::Word(|| words_of(&REQUIRE))).or_word("any");
+        /// Conditions for a fragment to become rigid again; all must hold.
+        restore: Option<Restore> = table("restore", &RESTORE).otherwise("never");
+    }
 }
 
-/// `restore = { ... }`: conditions under which a fragment becomes rigid again. All must hold.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Restore {
-    /// `leaves`: its centre is outside this region, a name of `[regions]`.
-    pub leaves: String,
-    /// `min_particles`: smallest number of its particles, 10 unless given. At least 1.
-    pub min_particles: u32,
-    /// `strain_energy`: largest elastic energy of its bonds over its mass, 0.01 J/kg unless given;
-    /// more than 0.
-    pub strain_energy_j_kg: f64,
-    /// `fluctuation_velocity`: largest root mean square velocity of its particles relative to its
-    /// rigid-body motion, 5 mm/s unless given; more than 0.
-    pub fluctuation_velocity_m_s: f64,
+plain_table! {
+    WHEN = "When";
+    /// Conditions that turn a clump into its bonded cluster.
+    #[derive(Debug, Clone, Default, PartialEq)]
+    pub struct When {
+        /// The centre of mass of the clump is in this region.
+        enters: Option<String> = text("enters", "a name in [regions]").otherwise("not used");
+        /// The resultant contact force on the clump reaches this value.
+        force_n: Option<f64> = quantity("force", &FORCE).positive().otherwise("not used");
+        /// A single contact presses on the clump with this force. Unlike `force`, it sees a squeeze
+        /// between two jaws, whose forces cancel.
+        contact_force_n: Option<f64> = quantity("contact_force", &FORCE)
+            .positive()
+            .otherwise("not used");
+        /// The mean stress that contacts exert on the clump (Love and Weber: the sum of the dyadic
+        /// products of contact force and way from the centre, over the volume) has a principal
+        /// value of this magnitude.
+        principal_stress_pa: Option<f64> = quantity("principal_stress", &STRESS)
+            .positive()
+            .otherwise("not used");
+        /// The kinetic energy that contacts have taken from the clump reaches this value.
+        impact_energy_j: Option<f64> = quantity("impact_energy", &ENERGY)
+            .positive()
+            .otherwise("not used");
+        /// The run reaches this time.
+        time_s: Option<f64> = quantity("time", &TIME).not_negative().otherwise("not used");
+    }
+}
+
+plain_table! {
+    RESTORE = "Restore";
+    /// Conditions that make a fragment rigid again.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Restore {
+        /// The centre of the fragment is outside this region.
+        leaves: String = text("leaves", "a name in [regions]")
+            .required("\"NAME\", a name in [regions]");
+        /// It has at least this many particles.
+        min_particles: u32 = new("min_particles", Kind::COUNT)
+            .remedy("a usual value is 10")
+            .or(10.0);
+        /// Elastic energy of its bonds over its mass is at most this.
+        strain_energy_j_kg: f64 = quantity("strain_energy", &ENERGY_PER_MASS).positive().or(0.01);
+        /// Root mean square velocity of its particles relative to its rigid-body motion is at most
+        /// this.
+        fluctuation_velocity_m_s: f64 = quantity("fluctuation_velocity", &VELOCITY)
+            .positive()
+            .or(5e-3);
+    }
 }
 
 pub(super) fn read_all(
@@ -218,13 +137,10 @@ fn check_body(
         return field.key_reference(name, bodies.keys(), "bodies");
     };
     let StartAs::Clump(clump) = body.start_as else {
-        let problem = format!(
-            "{} replaces a clump, but the body '{name}' starts bonded",
-            field.path
-        );
+        let problem = format!("replaces a clump, but the body '{name}' starts bonded");
         let remedy =
             format!("add start_as = \"clump\" to [bodies.{name}], or remove [replacement.{name}]");
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault(problem, remedy));
     };
     let has_bonds = match &body.source {
         BodySource::Inline { bonds, .. } if bonds.is_empty() => false,
@@ -247,10 +163,9 @@ fn check_body(
         let mass = root.find(&["bodies", name, "clump", "mass"]);
         let place = mass.unwrap_or_else(|| field.clone());
         let problem = format!(
-            "{} is \"union\", but [replacement.{name}] replaces it: clump and cluster would differ in mass",
-            place.path
+            "is \"union\", but [replacement.{name}] replaces it: clump and cluster would differ in mass"
         );
-        return Err(place.refuse(problem, "write mass = \"spheres\""));
+        return Err(place.fault(problem, "write mass = \"spheres\""));
     }
     Ok(())
 }
@@ -264,13 +179,10 @@ fn refuse_others_daughters(
     for class in &daughters.classes {
         if let Some(parent) = parent_of(&class.body, known) {
             let body = &class.body;
-            let problem = format!(
-                "{} names '{body}', daughters of '{parent}' already",
-                field.path
-            );
+            let problem = format!("names '{body}', daughters of '{parent}' already");
             let remedy =
                 format!("copy [bodies.{body}] under another name: daughters have one parent");
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(problem, remedy));
         }
     }
     Ok(())
@@ -280,39 +192,26 @@ fn refuse_others_daughters(
 fn with_daughters(table: &Table<'_>, daughters: Daughters) -> Result<Replacement> {
     for key in ["when", "require", "restore"] {
         if let Some(field) = table.get(key) {
-            let problem = format!("{} cannot be combined with daughters", field.path);
             let remedy =
                 "remove one of them: daughters have conditions of their own, and stay as they are";
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault("cannot be combined with daughters", remedy));
         }
     }
     Ok(Replacement {
-        enters: None,
-        force_n: None,
-        contact_force_n: None,
-        principal_stress_pa: None,
-        impact_energy_j: None,
-        time_s: None,
-        requires_all: false,
-        restore: None,
         daughters: Some(daughters),
+        ..Replacement::default()
     })
 }
 
 fn read(table: &Table<'_>, regions: &BTreeMap<String, Region>) -> Result<Replacement> {
     let when = Table::of(&table.need("when")?, &WHEN)?;
     if when.entries.is_empty() {
-        let problem = format!("{} is an empty table", when.path);
         let remedy = "add enters = \"NAME\", force = \"100 N\", contact_force = \"100 N\", principal_stress = \"0.1 MPa\", impact_energy = \"0.5 J\" or time = \"0.1 s\"";
-        return Err(when.refuse(problem, remedy));
+        return Err(when.fault("is an empty table", remedy));
     }
+    when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?;
     Ok(Replacement {
-        enters: when.read_by("enters", |field| field.reference(regions.keys(), "regions"))?,
-        force_n: when.read("force")?,
-        contact_force_n: when.read("contact_force")?,
-        principal_stress_pa: when.read("principal_stress")?,
-        impact_energy_j: when.read("impact_energy")?,
-        time_s: when.read("time")?,
+        when: When::read(&when)?,
         requires_all: table
             .read_by("require", |field| field.choice(&REQUIRE))?
             .unwrap_or(false),
@@ -323,12 +222,8 @@ fn read(table: &Table<'_>, regions: &BTreeMap<String, Region>) -> Result<Replace
 
 fn restore(field: &Field<'_>, regions: &BTreeMap<String, Region>) -> Result<Restore> {
     let table = Table::of(field, &RESTORE)?;
-    Ok(Restore {
-        leaves: table.need("leaves")?.reference(regions.keys(), "regions")?,
-        min_particles: table.read("min_particles")?,
-        strain_energy_j_kg: table.read("strain_energy")?,
-        fluctuation_velocity_m_s: table.read("fluctuation_velocity")?,
-    })
+    table.need("leaves")?.reference(regions.keys(), "regions")?;
+    Restore::read(&table)
 }
 
 pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
@@ -337,17 +232,7 @@ pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
             daughters::list(daughters, listing);
         });
     }
-    listing.table("when", &WHEN, |listing| {
-        listing.text(
-            "enters",
-            replacement.enters.as_deref().unwrap_or("not used"),
-        );
-        listing.value("force", &replacement.force_n);
-        listing.value("contact_force", &replacement.contact_force_n);
-        listing.value("principal_stress", &replacement.principal_stress_pa);
-        listing.value("impact_energy", &replacement.impact_energy_j);
-        listing.value("time", &replacement.time_s);
-    });
+    listing.table("when", &WHEN, |listing| replacement.when.list(listing));
     listing.text(
         "require",
         if replacement.requires_all {
@@ -359,10 +244,5 @@ pub(super) fn list(replacement: &Replacement, listing: &mut Listing) {
     let Some(restore) = &replacement.restore else {
         return listing.text("restore", "never");
     };
-    listing.table("restore", &RESTORE, |listing| {
-        listing.text("leaves", &restore.leaves);
-        listing.value("min_particles", &restore.min_particles);
-        listing.value("strain_energy", &restore.strain_energy_j_kg);
-        listing.value("fluctuation_velocity", &restore.fluctuation_velocity_m_s);
-    });
+    listing.table("restore", &RESTORE, |listing| restore.list(listing));
 }

@@ -1,6 +1,6 @@
 //! A complete scene, and its tables.
 
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Kind, table_schema};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -96,70 +96,34 @@ impl Scene {
     }
 }
 
-pub(super) static SCENE: Schema = Schema {
-    title: "",
-    doc: "A scene: bodies, walls, materials, loads, measures and output.",
-    keys: &[
-        Key::whole("version", 1, "Version of the format.").required("1"),
-        Key::new(
-            "include",
-            Kind::List(&Kind::Text("a file of materials, contacts and bonds")),
-            "Files with further `[materials]`, `[contacts]` and `[bonds]`, relative to the folder of the scene. `--material` adds a file, whose keys stand above those of tables of the same names.",
-        ),
-        Key::table("run", &run::RUN, run::RUN.doc).required("{ end_time = \"1 s\" }"),
-        named(
-            "materials",
-            &Kind::Table(&material::MATERIAL),
-            material::MATERIAL.doc,
-        ),
-        Key::new(
-            "contacts",
-            Kind::Named("NAME-NAME", &Kind::Table(&contact::CONTACT)),
-            contact::CONTACT.doc,
-        ),
-        named("bonds", &Kind::Table(&bond::BOND), bond::BOND.doc),
-        named("bodies", &Kind::Table(&body::BODY), body::BODY.doc)
-            .required("{ NAME = { file = \"body.vtp\" } }"),
-        named("walls", &Kind::Table(&wall::WALL), wall::WALL.doc),
-        named("groups", &Kind::Table(&group::GROUP), group::GROUP.doc),
-        named(
-            "initial",
-            &Kind::Table(&initial::INITIAL),
-            initial::INITIAL.doc,
-        ),
-        named(
-            "supports",
-            &Kind::Table(&support::SUPPORT),
-            support::SUPPORT.doc,
-        ),
-        named("loads", &Kind::Table(&load::LOAD), load::LOAD.doc),
-        named("regions", &Kind::Table(&region::REGION), region::REGION.doc),
-        named(
-            "replacement",
-            &Kind::Table(&replacement::REPLACEMENT),
-            replacement::REPLACEMENT.doc,
-        ),
-        named("inlets", &Kind::Table(&inlet::INLET), inlet::INLET.doc),
-        named("outlets", &Kind::Table(&outlet::OUTLET), outlet::OUTLET.doc),
-        named(
-            "measures",
-            &Kind::Table(&measure::MEASURE),
-            measure::MEASURE.doc,
-        ),
-        Key::table("clusters", &clusters::CLUSTERS, clusters::CLUSTERS.doc),
-        Key::table(
-            "relaxation",
-            &relaxation::RELAXATION,
-            relaxation::RELAXATION.doc,
-        ),
-        Key::table("search", &search::SEARCH, search::SEARCH.doc),
-        Key::table("sleep", &sleep::SLEEP, sleep::SLEEP.doc),
-        Key::table("output", &output::OUTPUT, output::OUTPUT.doc),
-        Key::table("test", &test::TEST, test::TEST.doc),
-    ],
-};
+table_schema! {
+    /// A scene: bodies, walls, materials, loads, measures and output.
+    pub(super) static SCENE = "";
 
-/// Tables `[name.NAME]`.
-const fn named(name: &'static str, kind: &'static Kind, doc: &'static str) -> Key {
-    Key::new(name, Kind::Named("NAME", kind), doc)
+    /// Version of the format.
+    whole("version", 1).required("1");
+    /// Files with further `[materials]`, `[contacts]` and `[bonds]`, relative to the folder of the
+    /// scene. `--material` adds a file, whose keys stand above those of tables of the same names.
+    new("include", Kind::List(&Kind::Text("a file of materials, contacts and bonds")));
+    documented("run", &run::RUN).required("{ end_time = \"1 s\" }");
+    named("materials", &Kind::Table(&material::MATERIAL));
+    named_by("NAME-NAME", "contacts", &Kind::Table(&contact::CONTACT));
+    named("bonds", &Kind::Table(&bond::BOND));
+    named("bodies", &Kind::Table(&body::BODY)).required("{ NAME = { file = \"body.vtp\" } }");
+    named("walls", &Kind::Table(&wall::WALL));
+    named("groups", &Kind::Table(&group::GROUP));
+    named("initial", &Kind::Table(&initial::INITIAL));
+    named("supports", &Kind::Table(&support::SUPPORT));
+    named("loads", &Kind::Table(&load::LOAD));
+    named("regions", &Kind::Table(&region::REGION));
+    named("replacement", &Kind::Table(&replacement::REPLACEMENT));
+    named("inlets", &Kind::Table(&inlet::INLET));
+    named("outlets", &Kind::Table(&outlet::OUTLET));
+    named("measures", &Kind::Table(&measure::MEASURE));
+    documented("clusters", &clusters::CLUSTERS);
+    documented("relaxation", &relaxation::RELAXATION);
+    documented("search", &search::SEARCH);
+    documented("sleep", &sleep::SLEEP);
+    documented("output", &output::OUTPUT);
+    documented("test", &test::TEST);
 }

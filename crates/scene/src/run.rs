@@ -2,38 +2,11 @@
 
 use std::ops::Bound::{Excluded, Included};
 
-use super::listing::one_field_a_key;
-use super::schema::{Key, Kind, Schema, Word};
+use super::plain_table::plain_table;
+use super::schema::{Kind, Word};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ACCELERATION, TIME};
-
-/// End of the run, time step, and effects on all particles.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Run {
-    /// `end_time`: simulated time at the end, s. Infinite if a `[test]` determines the end.
-    pub end_time_s: f64,
-    /// `integrator`, "leapfrog" unless given.
-    pub integrator: Integrator,
-    /// `rest_energy_ratio`, in (0, 1): end sooner, when the kinetic energy has been below this
-    /// fraction of the elastic energy during the last fifth of the run.
-    pub rest_energy_ratio: Option<f64>,
-    /// `time_step`: seconds, or None for "auto", which is `safety_factor` times the exact limit.
-    pub time_step_s: Option<f64>,
-    /// `safety_factor`: the automatic step over the limit, 0.9 unless given; in (0, 2). Values from
-    /// 1 are for trials only.
-    pub safety_factor: f64,
-    /// `adaptive`: the automatic step follows the limit up as well as down; false unless given.
-    pub adaptive: bool,
-    /// `gravity`, m/s2; 0 unless given. Length 3.
-    pub gravity_m_s2: [f64; 3],
-    /// `local_damping`: gamma of Chen et al. 2022, eqs. 11 and 12; 0 unless given; in [0, 1).
-    pub local_damping: f64,
-    /// `seed` of all random numbers (scatter of strengths); 0 unless given.
-    pub seed: u64,
-    /// `initial_overlap`, "refuse" unless given.
-    pub initial_overlap: InitialOverlap,
-}
 
 /// How a run reaches its end.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -60,67 +33,51 @@ pub enum InitialOverlap {
 /// Default of `run.safety_factor`.
 pub const SAFETY: f64 = 0.9;
 
-pub(super) static RUN: Schema = Schema {
-    title: "[run]",
-    doc: "End of the run, time step, gravity and damping.",
-    keys: &[
-        Key::quantity("end_time", &TIME, "Simulated time at the end. Required unless a `[test]` determines it.")
+plain_table! {
+    RUN = "[run]";
+    /// End of the run, time step, gravity and damping.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Run {
+        /// Simulated time at the end. Required unless a `[test]` determines it.
+        end_time_s: f64 = quantity("end_time", &TIME).positive().otherwise("that of the test");
+        /// Explicit time steps, or `static`: the static equilibrium under the loads at `end_time`,
+        /// without steps.
+        integrator: Integrator = word::<Integrator>("integrator", "leapfrog");
+        /// The run ends early once the kinetic energy has stayed below this fraction of the elastic
+        /// energy for the last fifth of the run and no load or support changes any more.
+        rest_energy_ratio: Option<f64> = number("rest_energy_ratio")
+            .within(Excluded(0.0), Excluded(1.0))
+            .remedy("a small ratio such as 1e-6 means at rest")
+            .otherwise("never");
+        /// Time step; `auto` is `safety_factor` times the exact stability limit.
+        time_step_s: Option<f64> = new("time_step", Kind::Auto(&TIME))
             .positive()
-            .otherwise("that of the test"),
-        Key::word::<Integrator>(
-            "integrator",
-            "leapfrog",
-            "Explicit time steps, or `static`: the static equilibrium under the loads at `end_time`, without steps.",
-        ),
-        Key::number(
-            "rest_energy_ratio",
-            "The run ends early once the kinetic energy has stayed below this fraction of the elastic energy for the \
-             last fifth of the run and no load or support changes any more.",
-        )
-        .within(Excluded(0.0), Excluded(1.0))
-        .remedy("a small ratio such as 1e-6 means at rest")
-        .otherwise("never"),
-        Key::new(
-            "time_step",
-            Kind::Auto(&TIME),
-            "Time step; `auto` is `safety_factor` times the exact stability limit.",
-        )
-        .positive()
-        .remedy("write \"auto\" or a time such as \"1 us\"")
-        .or_word("auto"),
-        Key::number(
-            "safety_factor",
-            "Automatic step as a fraction of the largest stable step; the step that impacts allow is scaled by \
-             safety_factor/0.9. Use values of 1 and more for trials only.",
-        )
-        .within(Excluded(0.0), Excluded(2.0))
-        .remedy("a usual value is 0.9")
-        .or(SAFETY),
-        Key::flag(
-            "adaptive",
-            false,
-            "The automatic step follows the stability limit up as well as down.",
-        ),
-        Key::vector("gravity", &ACCELERATION, "Gravity."),
-        Key::number("local_damping", "Local (non-viscous) damping of particles: gamma of Chen et al. 2022, eqs. 11 and 12.")
+            .remedy("write \"auto\" or a time such as \"1 us\"")
+            .or_word("auto");
+        /// Automatic step as a fraction of the largest stable step; the step that impacts allow is
+        /// scaled by safety_factor/0.9. Use values of 1 and more for trials only.
+        safety_factor: f64 = number("safety_factor")
+            .within(Excluded(0.0), Excluded(2.0))
+            .remedy("a usual value is 0.9")
+            .or(SAFETY);
+        /// The automatic step follows the stability limit up as well as down.
+        adaptive: bool = flag("adaptive", false);
+        /// Gravity.
+        gravity_m_s2: [f64; 3] = vector("gravity", &ACCELERATION);
+        /// Local (non-viscous) damping of particles: gamma of Chen et al. 2022, eqs. 11 and 12.
+        local_damping: f64 = number("local_damping")
             .within(Included(0.0), Excluded(1.0))
             .remedy("write 0 for none")
-            .or(0.0),
-        Key::new(
-            "seed",
-            Kind::Whole { least: 0, most: Some(u64::MAX), of: "" },
-            "Seed of all random numbers: scattered strengths, inlets.",
-        )
-        .remedy("write any such number")
-        .or(0.0),
-        Key::word::<InitialOverlap>(
-            "initial_overlap",
-            "refuse",
-            "Bodies or walls that overlap at the start: `refuse` the scene; `relax`: their contact law begins at this \
-             overlap; `keep`: the full overlap acts.",
-        ),
-    ],
-};
+            .or(0.0);
+        /// Seed of all random numbers: scattered strengths, inlets.
+        seed: u64 = new("seed", Kind::Whole { least: 0, most: Some(u64::MAX), of: "" })
+            .remedy("write any such number")
+            .or(0.0);
+        /// Bodies or walls that overlap at the start: `refuse` the scene; `relax`: their contact
+        /// law begins at this overlap; `keep`: the full overlap acts.
+        initial_overlap: InitialOverlap = word::<InitialOverlap>("initial_overlap", "refuse");
+    }
+}
 
 impl Word for Integrator {
     const WORDS: &'static [(&'static str, Self)] =
@@ -135,21 +92,6 @@ impl Word for InitialOverlap {
     ];
 }
 
-one_field_a_key! {
-    Run {
-        end_time_s: "end_time",
-        integrator: "integrator",
-        rest_energy_ratio: "rest_energy_ratio",
-        time_step_s: "time_step",
-        safety_factor: "safety_factor",
-        adaptive: "adaptive",
-        gravity_m_s2: "gravity",
-        local_damping: "local_damping",
-        seed: "seed",
-        initial_overlap: "initial_overlap",
-    }
-}
-
 pub(super) fn read(root: &Table<'_>) -> Result<Run> {
     let Some(field) = root.get("run") else {
         let remedy = "add [run] with end_time = \"1 s\"";
@@ -159,7 +101,7 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
     if root.get("test").is_none() {
         table.need_such("end_time", "\"1 s\"")?;
     }
-    let run = fields(&table)?;
+    let run = Run::read(&table)?;
     let Some(step_s) = run.time_step_s else {
         return Ok(run);
     };
@@ -168,10 +110,8 @@ pub(super) fn read(root: &Table<'_>) -> Result<Run> {
         return Err(field.wrong(&limit, "write \"auto\" or a shorter time"));
     }
     if let (true, Some(field)) = (run.adaptive, table.get("adaptive")) {
-        return Err(field.refuse(
-            "a step that is given stays as it is",
-            "write time_step = \"auto\", or leave adaptive out",
-        ));
+        let problem = "a step that is given stays as it is";
+        return Err(field.refuse(problem, "write time_step = \"auto\", or leave adaptive out"));
     }
     Ok(run)
 }

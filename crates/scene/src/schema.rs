@@ -84,6 +84,15 @@ pub(super) enum Kind {
     Anything(&'static str),
 }
 
+impl Kind {
+    /// A whole number from 1 that fits into 32 bits.
+    pub(super) const COUNT: Self = Self::Whole {
+        least: 1,
+        most: Some(u32::MAX as u64),
+        of: "",
+    };
+}
+
 /// The value of a key that is left out.
 #[derive(Clone, Copy)]
 pub(super) enum Unless {
@@ -172,6 +181,12 @@ impl Key {
         Self::new(name, Kind::Text(what), doc)
     }
 
+    /// The name of a group of particles that is there at the start.
+    pub(super) const fn group(name: &'static str, doc: &'static str) -> Self {
+        Self::text(name, "a group, a body or `all`", doc)
+            .required("\"NAME\", a group, a body or \"all\"")
+    }
+
     /// A table within the table.
     pub(super) const fn table(
         name: &'static str,
@@ -179,6 +194,29 @@ impl Key {
         doc: &'static str,
     ) -> Self {
         Self::new(name, Kind::Table(keys), doc)
+    }
+
+    /// A table within the table, with the sentence of its schema.
+    pub(super) const fn documented(name: &'static str, keys: &'static Schema) -> Self {
+        Self::table(name, keys, keys.doc)
+    }
+
+    /// The tables `[name.NAME]`, with the sentence of their schema.
+    pub(super) const fn named(name: &'static str, tables: &'static Kind) -> Self {
+        Self::named_by("NAME", name, tables)
+    }
+
+    /// The tables `[name.placeholder]`, with the sentence of their schema.
+    pub(super) const fn named_by(
+        placeholder: &'static str,
+        name: &'static str,
+        tables: &'static Kind,
+    ) -> Self {
+        let doc = match tables {
+            Kind::Table(schema) => schema.doc,
+            _ => "",
+        };
+        Self::new(name, Kind::Named(placeholder, tables), doc)
     }
 
     /// Makes the key required.
@@ -299,3 +337,56 @@ impl Key {
         }
     }
 }
+
+/// Declares the schema of a table: its sentence as a comment, its title, then an entry for each key
+/// with its sentence as a comment. An entry is `kind("key", ...)`, with a constructor of [`Key`]
+/// without its sentence; or, without a comment, a constant or a constructor that gives the sentence.
+macro_rules! table_schema {
+    (
+        $(#[doc = $about:literal])+
+        $visibility:vis static $schema:ident = $title:literal;
+        $(
+            $(#[doc = $sentence:literal])*
+            $kind:ident $(::<$word:ty>)? $(($($with:expr),*))? $(.$set:ident($($to:expr),*))*;
+        )+
+    ) => {
+        $(#[doc = $about])+
+        $visibility static $schema: $crate::schema::Schema = $crate::schema::Schema {
+            title: $title,
+            doc: $crate::schema::sentence!($($about)+),
+            keys: &[$(
+                $crate::schema::key!(
+                    [$($sentence)*] $kind $(::<$word>)? $(($($with),*))? $(.$set($($to),*))*
+                ),
+            )+],
+        };
+    };
+}
+
+macro_rules! key {
+    ([] $constant:ident) => {
+        $constant
+    };
+    ([] $kind:ident ($($with:expr),*) $(.$set:ident($($to:expr),*))*) => {
+        $crate::schema::Key::$kind($($with),*) $(.$set($($to),*))*
+    };
+    (
+        [$($sentence:literal)+]
+        $kind:ident $(::<$word:ty>)? ($($with:expr),*) $(.$set:ident($($to:expr),*))*
+    ) => {
+        $crate::schema::Key::$kind $(::<$word>)? (
+            $($with,)*
+            $crate::schema::sentence!($($sentence)+),
+        )
+        $(.$set($($to),*))*
+    };
+}
+
+/// The lines of a comment as one.
+macro_rules! sentence {
+    ($($line:literal)+) => {
+        concat!($($line),+).trim_ascii_start()
+    };
+}
+
+pub(crate) use {key, sentence, table_schema};

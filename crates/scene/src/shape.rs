@@ -6,47 +6,49 @@ use super::field::Field;
 use super::listing::Listing;
 use super::numbers::quantity;
 use super::paths::named_path;
-use super::schema::{Key, Kind, Schema, words_of};
+use super::plain_table::plain_table;
+use super::schema::{Key, Kind, words_of};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{LENGTH, LENGTH_UNITS, length_unit_m};
 
-pub(super) static BOX: Schema = Schema {
-    title: "Box",
-    doc: "A box along the axes.",
-    keys: &[
-        Key::new("min", Kind::Vector(&LENGTH), "Smallest corner.").required("[0, 0, 0]"),
-        Key::new("max", Kind::Vector(&LENGTH), "Largest corner.").required("[1, 1, 1]"),
-    ],
-};
+plain_table! {
+    BOX = "Box";
+    /// A box along the axes.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct BoxShape {
+        /// Smallest corner.
+        min_m: [f64; 3] = new("min", Kind::Vector(&LENGTH)).required("[0, 0, 0]");
+        /// Largest corner.
+        max_m: [f64; 3] = new("max", Kind::Vector(&LENGTH)).required("[1, 1, 1]");
+    }
+}
 
-pub(super) static SPHERE: Schema = Schema {
-    title: "Sphere",
-    doc: "A sphere.",
-    keys: &[
-        Key::new("centre", Kind::Vector(&LENGTH), "Its centre.").required("[0, 0, 0]"),
-        Key::quantity("radius", &LENGTH, "Its radius.")
-            .positive()
-            .required("\"5 mm\""),
-    ],
-};
+plain_table! {
+    SPHERE = "Sphere";
+    /// A sphere.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct SphereShape {
+        /// Its centre.
+        centre_m: [f64; 3] = new("centre", Kind::Vector(&LENGTH)).required("[0, 0, 0]");
+        /// Its radius.
+        radius_m: f64 = quantity("radius", &LENGTH).positive().required("\"5 mm\"");
+    }
+}
 
-pub(super) static CYLINDER: Schema = Schema {
-    title: "Cylinder",
-    doc: "A solid cylinder.",
-    keys: &[
-        Key::new("from", Kind::Vector(&LENGTH), "Centre of one end.").required("[0, 0, 0]"),
-        Key::new(
-            "to",
-            Kind::Vector(&LENGTH),
-            "Centre of the other end, different from `from`.",
-        )
-        .required("[0, 0, \"10 mm\"]"),
-        Key::quantity("radius", &LENGTH, "Its radius.")
-            .positive()
-            .required("\"5 mm\""),
-    ],
-};
+plain_table! {
+    CYLINDER = "Cylinder";
+    /// A solid cylinder.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct CylinderShape {
+        /// Centre of one end.
+        from_m: [f64; 3] = new("from", Kind::Vector(&LENGTH)).required("[0, 0, 0]");
+        /// Centre of the other end, different from `from`.
+        to_m: [f64; 3] = new("to", Kind::Vector(&LENGTH)).required("[0, 0, \"10 mm\"]");
+        /// Its radius.
+        radius_m: f64 = quantity("radius", &LENGTH).positive().required("\"5 mm\"");
+    }
+}
 
 /// The key `unit`, for `stl`.
 pub(super) const UNIT: Key = Key::new(
@@ -59,52 +61,45 @@ pub(super) const UNIT: Key = Key::new(
 )
 .sometimes_required("\"mm\", the file's unit of length");
 
-/// The smallest and the largest corner of a box `{ min, max }`, m. `holds` is the condition for
-/// both along each axis; `limit` is its text.
-pub(super) fn corners(
+/// A box whose corners satisfy `holds` along each axis; `limit` is the text of that.
+pub(super) fn read_box(
     field: &Field<'_>,
     limit: &str,
     holds: impl Fn(f64, f64) -> bool,
-) -> Result<[[f64; 3]; 2]> {
+) -> Result<BoxShape> {
     let table = Table::of(field, &BOX)?;
-    let min: [f64; 3] = table.read("min")?;
-    let max: [f64; 3] = table.read("max")?;
+    let corners = BoxShape::read(&table)?;
     let upper = table.need("max")?;
-    for (axis, (low, high)) in ["x", "y", "z"].iter().zip(min.into_iter().zip(max)) {
+    for (k, axis) in ["x", "y", "z"].iter().enumerate() {
+        let (low, high) = (corners.min_m[k], corners.max_m[k]);
         if !holds(low, high) {
-            let problem = format!(
-                "{} is {high} m along {axis}, but min is {low} m",
-                upper.path
-            );
+            let problem = format!("is {high} m along {axis}, but min is {low} m");
             let remedy = if low > high {
                 format!("min must be {limit} max: swap them")
             } else {
                 format!("min must be {limit} max: move one of them")
             };
-            return Err(upper.refuse(problem, remedy));
+            return Err(upper.fault(problem, remedy));
         }
     }
-    Ok([min, max])
+    Ok(corners)
 }
 
-/// Centre and radius of a sphere `{ centre, radius }`, m.
-pub(super) fn sphere(field: &Field<'_>) -> Result<([f64; 3], f64)> {
-    let table = Table::of(field, &SPHERE)?;
-    Ok((table.read("centre")?, table.read("radius")?))
+pub(super) fn read_sphere(field: &Field<'_>) -> Result<SphereShape> {
+    SphereShape::read(&Table::of(field, &SPHERE)?)
 }
 
-/// Centres of the ends, which differ, and radius of a cylinder `{ from, to, radius }`, m.
-pub(super) fn cylinder(field: &Field<'_>) -> Result<([[f64; 3]; 2], f64)> {
+/// A cylinder, whose ends differ.
+pub(super) fn read_cylinder(field: &Field<'_>) -> Result<CylinderShape> {
     let table = Table::of(field, &CYLINDER)?;
-    let from_m: [f64; 3] = table.read("from")?;
-    let to_m: [f64; 3] = table.read("to")?;
+    let [from_m, to_m]: [[f64; 3]; 2] = [table.read("from")?, table.read("to")?];
     let end = table.need("to")?;
     if from_m == to_m {
         let [x, y, z] = to_m;
-        let problem = format!("{} is [{x}, {y}, {z}] m, where from is", end.path);
-        return Err(end.refuse(problem, "a cylinder needs a length: move one of them"));
+        let problem = format!("is [{x}, {y}, {z}] m, where from is");
+        return Err(end.fault(problem, "a cylinder needs a length: move one of them"));
     }
-    Ok(([from_m, to_m], table.read("radius")?))
+    CylinderShape::read(&table)
 }
 
 /// The file of triangles named by `field`, a key of `table`, and the size of the file's `unit`, m.
@@ -132,33 +127,11 @@ pub(super) fn refuse_without_stl(
 ) -> Result<()> {
     match table.given(keys).next() {
         Some((_, of_stl)) if key != "stl" => {
-            let problem = format!("{} has no effect without stl", of_stl.path);
-            Err(of_stl.refuse(problem, format!("remove it: lengths of a {key} have units")))
+            let problem = "has no effect without stl";
+            Err(of_stl.fault(problem, format!("remove it: lengths of a {key} have units")))
         }
         _ => Ok(()),
     }
-}
-
-pub(super) fn list_box(min_m: [f64; 3], max_m: [f64; 3], listing: &mut Listing) {
-    listing.table("box", &BOX, |listing| {
-        listing.value("min", &min_m);
-        listing.value("max", &max_m);
-    });
-}
-
-pub(super) fn list_sphere(centre_m: [f64; 3], radius_m: f64, listing: &mut Listing) {
-    listing.table("sphere", &SPHERE, |listing| {
-        listing.value("centre", &centre_m);
-        listing.value("radius", &radius_m);
-    });
-}
-
-pub(super) fn list_cylinder(ends_m: [[f64; 3]; 2], radius_m: f64, listing: &mut Listing) {
-    listing.table("cylinder", &CYLINDER, |listing| {
-        listing.value("from", &ends_m[0]);
-        listing.value("to", &ends_m[1]);
-        listing.value("radius", &radius_m);
-    });
 }
 
 pub(super) fn list_stl(file: &Path, unit_m: f64, listing: &mut Listing) {

@@ -1,11 +1,11 @@
 //! `[supports.NAME]`
 
-use super::factor::{self, Factor, RAMP, TABLE, end, factor, factor_from_zero, over_time, until};
+use super::factor::{self, Factor, RAMP, TABLE, end, factor, factor_from_zero, over_time};
 use super::field::Field;
 use super::listing::Listing;
 use super::names::suggestion;
 use super::numbers::quantity;
-use super::schema::{Key, Kind, Schema};
+use super::schema::{Key, Kind, Schema, table_schema};
 use super::table::Table;
 use super::targets::{GROUP_KEY, Targets};
 use super::tree::Value;
@@ -47,33 +47,25 @@ pub struct Support {
     pub end_s: Option<f64>,
 }
 
-pub(super) static SUPPORT: Schema = Schema {
-    title: "[supports.NAME]",
-    doc: "Boundary conditions: hold or move each particle of a group along x, y, z and about these axes (rx, ry, rz).",
-    keys: &[
-        GROUP_KEY,
-        Key::new(
-            "fixed",
-            Kind::Either(&[Kind::True, Kind::List(&Kind::Word(|| FREEDOMS.to_vec()))]),
-            "Fixed degrees of freedom: `true` for all, or a list such as `[\"x\", \"rz\"]`.",
-        ),
-        Key::table(
-            "velocity",
-            &VELOCITIES,
-            "Prescribed velocities, multiplied by the factor of `ramp` or `table`.",
-        ),
-        Key::table(
-            "displacement",
-            &DISPLACEMENTS,
-            "Prescribed displacements, multiplied by the factor; requires a `ramp` or `table` that begins at 0.",
-        ),
-        RAMP,
-        TABLE,
-        until(
-            "Time at which the degrees of freedom are released; not before the last change of `ramp` or `table`.",
-        ),
-    ],
-};
+table_schema! {
+    /// Boundary conditions: hold or move each particle of a group along x, y, z and about these
+    /// axes (rx, ry, rz).
+    pub(super) static SUPPORT = "[supports.NAME]";
+
+    GROUP_KEY;
+    /// Fixed degrees of freedom: `true` for all, or a list such as `["x", "rz"]`.
+    new("fixed", Kind::Either(&[Kind::True, Kind::List(&Kind::Word(|| FREEDOMS.to_vec()))]));
+    /// Prescribed velocities, multiplied by the factor of `ramp` or `table`.
+    table("velocity", &VELOCITIES);
+    /// Prescribed displacements, multiplied by the factor; requires a `ramp` or `table` that begins
+    /// at 0.
+    table("displacement", &DISPLACEMENTS);
+    RAMP;
+    TABLE;
+    /// Time at which the degrees of freedom are released; not before the last change of `ramp` or
+    /// `table`.
+    until();
+}
 
 pub(super) static VELOCITIES: Schema = Schema {
     title: "Prescribed velocities",
@@ -118,18 +110,14 @@ pub(super) fn read(field: &Field<'_>, targets: &Targets<'_>) -> Result<Support> 
         move_by(&field, &DISPLACEMENTS, Hold::Displacement, &mut holds)?;
     }
     if holds.iter().all(Option::is_none) {
-        let problem = format!("{} holds nothing", table.path);
         let remedy =
             "add fixed = true, fixed = [\"x\"], velocity = { x = 1 } or displacement = { x = 1 }";
-        return Err(table.refuse(problem, remedy));
+        return Err(table.fault("holds nothing", remedy));
     }
     let moves = holds.iter().flatten().any(|hold| *hold != Hold::Fixed);
     if let (Some(field), false) = (over_time(&table), moves) {
-        let problem = format!(
-            "{} has no effect without velocity or displacement",
-            field.path
-        );
-        return Err(field.refuse(problem, "remove it"));
+        let problem = "has no effect without velocity or displacement";
+        return Err(field.fault(problem, "remove it"));
     }
     let factor = match table.get("displacement") {
         Some(field) => factor_from_zero(&table, &field)?,
@@ -171,11 +159,9 @@ fn move_by(
 ) -> Result<()> {
     let table = Table::any(field)?;
     if table.entries.is_empty() {
-        let problem = format!("{} is an empty table", field.path);
-        return Err(field.refuse(
-            problem,
-            "name a freedom, such as x = 1, or leave the key out",
-        ));
+        let problem = "is an empty table";
+        let remedy = "name a freedom, such as x = 1, or leave the key out";
+        return Err(field.fault(problem, remedy));
     }
     if let Some((key, _)) = table
         .entries

@@ -1,5 +1,7 @@
 //! One table of a scene: gives its values by key, according to its schema.
 
+use std::fmt::Display;
+
 use super::field::Field;
 use super::names::{suggestion, well_formed};
 use super::schema::{Key, Schema, Unless};
@@ -148,6 +150,24 @@ impl<'a> Table<'a> {
         })
     }
 
+    /// The one of `keys` that is given, with its value, if there is one.
+    ///
+    /// # Errors
+    /// Several are given; `remedy`: the remedy for that.
+    pub(super) fn at_most_one(
+        &self,
+        keys: &[&'static str],
+        remedy: &str,
+    ) -> Result<Option<(&'static str, Field<'a>)>> {
+        let mut given = self.given(keys);
+        match (given.next(), given.next()) {
+            (Some((first, _)), Some((_, second))) => {
+                Err(second.fault(format!("cannot be combined with {first}"), remedy))
+            }
+            (only, _) => Ok(only),
+        }
+    }
+
     /// The value of a required key.
     pub(super) fn need(&self, name: &str) -> Result<Field<'a>> {
         let key = self.key(name)?;
@@ -191,6 +211,11 @@ impl<'a> Table<'a> {
         remedy: impl Into<String>,
     ) -> Diagnostic {
         Diagnostic::input(self.document.place(self.origin), problem, remedy)
+    }
+
+    /// A message at the head of this table, which begins with its path: "loads.pull has no effect".
+    pub(super) fn fault(&self, problem: impl Display, remedy: impl Into<String>) -> Diagnostic {
+        self.refuse(format!("{} {problem}", self.path), remedy)
     }
 
     /// The named tables in the table `key`: `[key.NAME]`; none if it is not there. Names have only

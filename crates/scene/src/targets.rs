@@ -10,13 +10,8 @@ use super::schema::Key;
 use super::wall::Wall;
 use dem_io::diagnostic::{Diagnostic, Result};
 
-/// The key `group` of supports, loads and `[initial]`.
-pub(super) const GROUP_KEY: Key = Key::text(
-    "group",
-    "a group, a body or `all`",
-    "The particles that it acts on.",
-)
-.required("\"NAME\", a group, a body or \"all\"");
+/// The key `group` of supports and loads.
+pub(super) const GROUP_KEY: Key = Key::group("group", "The particles that it acts on.");
 
 /// Objects that supports, loads and measures can name: groups, bodies and `all`; walls and
 /// `fragments` only for measures.
@@ -52,11 +47,10 @@ impl Targets<'_> {
                 Ok(name.to_owned())
             }
             Some(Subject::Wall) => {
-                let problem = format!("{} is \"{name}\", which is a wall", field.path);
                 let remedy = format!(
                     "name a group or a body: the motion of a wall is set in [walls.{name}]"
                 );
-                Err(field.refuse(problem, remedy))
+                Err(field.fault(format!("is \"{name}\", which is a wall"), remedy))
             }
             Some(Subject::Fragments) | None => {
                 Err(unknown(field, name, "group or body", self.of_particles()))
@@ -100,10 +94,6 @@ fn unknown<'n>(
     kinds: &str,
     known: impl Iterator<Item = &'n str>,
 ) -> Diagnostic {
-    let problem = format!(
-        "{} is {}, but no {kinds} has this name",
-        field.path,
-        field.shown()
-    );
-    field.refuse(problem, suggestion(name, known))
+    let problem = format!("is {}, but no {kinds} has this name", field.shown());
+    field.fault(problem, suggestion(name, known))
 }

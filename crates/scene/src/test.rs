@@ -12,11 +12,10 @@ use std::ops::Bound::{Included, Unbounded};
 use super::field::Field;
 use super::group::ParticleGroup;
 use super::listing::Listing;
-use super::material::poisson_ratio;
 use super::names::suggestion;
 use super::presence::Presence;
 use super::run::{Integrator, Run};
-use super::schema::{Key, Kind, Schema, words_of};
+use super::schema::{Key, Kind, table_schema, words_of};
 use super::support::Support;
 use super::table::Table;
 use super::tree::Origin;
@@ -28,114 +27,98 @@ use std::path::{Path, PathBuf};
 use super::paths::named_path;
 use dem_laboratory::{Dimensions, MeasuredMaterial, TestType, read_material};
 
-pub(super) static TEST: Schema = Schema {
-    title: "[test]",
-    doc: "A laboratory test. `run.end_time` is then optional.",
-    keys: &[
-        Key::new("type", Kind::Word(|| words_of(&TestType::NAMES)), "Type of test.").required("\"four-point-bending\""),
-        Key::text("body", "a name in [bodies]", "Body under test.").otherwise("the only one"),
-        Key::new(
-            "crosshead",
-            Kind::List(&Kind::Text("a name in [walls], for tension and direct shear in [groups]")),
-            "Walls that load the body and have no other motion; for tension, groups that are gripped and pulled; for direct shear, the half of the body that is driven.",
-        )
-        .required("[\"NAME\"], walls that load the body"),
-        Key::new(
-            "direction",
-            Kind::Direction("a direction"),
-            "Direction of loading; for tension, direct shear and triaxial compression along x, y or z. Its length does not matter.",
-        )
-        .required("[0, 0, -1], in which they move"),
-        Key::quantity(
-            "stroke",
-            &LENGTH,
-            "Maximum travel of the crosshead or of the weight; the run ends early when the body has broken, or when the weight has come back. Not for bars.",
-        )
-        .positive()
-        .sometimes_required("\"4 mm\""),
-        Key::new(
-            "rate",
-            Kind::Auto(&VELOCITY),
-            "Crosshead velocity; with `auto` the stroke takes `periods`.",
-        )
+table_schema! {
+    /// A laboratory test. `run.end_time` is then optional.
+    pub(super) static TEST = "[test]";
+
+    /// Type of test.
+    new("type", Kind::Word(|| words_of(&TestType::NAMES))).required("\"four-point-bending\"");
+    /// Body under test.
+    text("body", "a name in [bodies]").otherwise("the only one");
+    /// Walls that load the body and have no other motion; for tension, groups that are gripped and
+    /// pulled; for direct shear, the half of the body that is driven.
+    new(
+        "crosshead",
+        Kind::List(&Kind::Text("a name in [walls], for tension and direct shear in [groups]"))
+    )
+    .required("[\"NAME\"], walls that load the body");
+    /// Direction of loading; for tension, direct shear and triaxial compression along x, y or z.
+    /// Its length does not matter.
+    new("direction", Kind::Direction("a direction")).required("[0, 0, -1], in which they move");
+    /// Maximum travel of the crosshead or of the weight; the run ends early when the body has
+    /// broken, or when the weight has come back. Not for bars.
+    quantity("stroke", &LENGTH).positive().sometimes_required("\"4 mm\"");
+    /// Crosshead velocity; with `auto` the stroke takes `periods`.
+    new("rate", Kind::Auto(&VELOCITY))
         .positive()
         .remedy("write \"auto\" or a velocity such as \"0.2 mm/s\"")
-        .or_word("auto"),
-        Key::number("periods", "Duration of the stroke in periods of the body's lowest natural frequency.")
-            .within(Included(1.0), Unbounded)
-            .remedy("a usual value is 20: more are slower, and nearer to rest")
-            .or(20.0),
-        Key::flag("rate_check", true, "Repeat the test at twice the rate and compare."),
-        Key::quantity(
-            "young_modulus",
-            &STRESS,
-            "Young's modulus of the entire body, for comparison.",
-        )
-        .positive(),
-        poisson_ratio("Poisson's ratio of the entire body, for its shear in bending.").or(0.3),
-        Key::quantity("strength", &STRESS, "Strength of the entire body, for comparison.")
-            .positive(),
-        Key::text(
-            "measured",
-            "a file written by dem-run lab",
-            "Measured material: its modulus and strength are the reference values unless `young_modulus` and `strength` are given, above which a file stands that `--set` names. Its mean curve is drawn with the simulated one.",
-        ),
-        Key::text(
-            "transmission_bar",
-            "a name in [walls], for tension in [groups]",
-            "End of the bar behind the body, whose bar in front of it is the crosshead: a wall, or for tension a group.",
-        )
-        .sometimes_required("\"NAME\""),
-        Key::table("bars", &dynamic::BARS, "The two bars of a split-Hopkinson test.")
-            .sometimes_required("{ density = \"7850 kg/m3\", young_modulus = \"210 GPa\", diameter = \"20 mm\" }"),
-        Key::table("striker", &dynamic::STRIKER, "The striker of a split-Hopkinson test.")
-            .sometimes_required("{ length = \"200 mm\", velocity = \"10 m/s\" }"),
-        Key::table("weight", &dynamic::WEIGHT, "The weight of a drop-weight test: the crosshead.")
-            .sometimes_required("{ mass = \"5 kg\", height = \"0.5 m\" }"),
-        Key::new(
-            "lateral_walls",
-            Kind::List(&Kind::Text("a name in [walls]")),
-            "Planes on the sides of a triaxial test, in one or two opposite pairs, without another motion.",
-        )
-        .sometimes_required("[\"left\", \"right\", \"front\", \"back\"]"),
-        Key::quantity(
-            "confining_pressure",
-            &STRESS,
-            "Pressure that these walls keep on the sides of the body.",
-        )
-        .positive()
-        .sometimes_required("\"1 MPa\""),
-        Key::quantity(
-            "normal_stress",
-            &STRESS,
-            "Stress on the plane of a direct shear test, kept constant: the driven half is pressed with it times the area.",
-        )
-        .not_negative()
-        .sometimes_required("\"50 kPa\""),
-        Key::new(
-            "normal",
-            Kind::Direction("a direction"),
-            "Direction in which the driven half is pressed, square to `direction`, along x, y or z. Its length does not matter.",
-        )
-        .sometimes_required("[0, 0, -1]"),
-        size("support_span", "Distance between the supports of a beam."),
-        size("loading_span", "Distance between the two loading pins."),
-        size("width", "Width of a beam, or thickness of a disc."),
-        size("height", "Height of a beam, or diameter of a disc."),
-        size("length", "Length of a body that is pressed or pulled; of a dog bone, that of its neck, which is required."),
-        Key::quantity("area", &AREA, "Area of its cross-section, or of the shear plane; of a dog bone, that of its neck, which is required.")
-            .positive()
-            .otherwise(MEASURED),
-    ],
-};
+        .or_word("auto");
+    /// Duration of the stroke in periods of the body's lowest natural frequency.
+    number("periods")
+        .within(Included(1.0), Unbounded)
+        .remedy("a usual value is 20: more are slower, and nearer to rest")
+        .or(20.0);
+    /// Repeat the test at twice the rate and compare.
+    flag("rate_check", true);
+    /// Young's modulus of the entire body, for comparison.
+    quantity("young_modulus", &STRESS).positive();
+    /// Poisson's ratio of the entire body, for its shear in bending.
+    poisson_ratio().or(0.3);
+    /// Strength of the entire body, for comparison.
+    quantity("strength", &STRESS).positive();
+    /// Measured material: its modulus and strength are the reference values unless `young_modulus`
+    /// and `strength` are given, above which a file stands that `--set` names. Its mean curve is
+    /// drawn with the simulated one.
+    text("measured", "a file written by dem-run lab");
+    /// End of the bar behind the body, whose bar in front of it is the crosshead: a wall, or for
+    /// tension a group.
+    text("transmission_bar", "a name in [walls], for tension in [groups]")
+        .sometimes_required("\"NAME\"");
+    /// The two bars of a split-Hopkinson test.
+    table("bars", &dynamic::BARS)
+        .sometimes_required("{ density = \"7850 kg/m3\", young_modulus = \"210 GPa\", diameter = \"20 mm\" }");
+    /// The striker of a split-Hopkinson test.
+    table("striker", &dynamic::STRIKER)
+        .sometimes_required("{ length = \"200 mm\", velocity = \"10 m/s\" }");
+    /// The weight of a drop-weight test: the crosshead.
+    table("weight", &dynamic::WEIGHT).sometimes_required("{ mass = \"5 kg\", height = \"0.5 m\" }");
+    /// Planes on the sides of a triaxial test, in one or two opposite pairs, without another
+    /// motion.
+    new("lateral_walls", Kind::List(&Kind::Text("a name in [walls]")))
+        .sometimes_required("[\"left\", \"right\", \"front\", \"back\"]");
+    /// Pressure that these walls keep on the sides of the body.
+    quantity("confining_pressure", &STRESS).positive().sometimes_required("\"1 MPa\"");
+    /// Stress on the plane of a direct shear test, kept constant: the driven half is pressed with
+    /// it times the area.
+    quantity("normal_stress", &STRESS).not_negative().sometimes_required("\"50 kPa\"");
+    /// Direction in which the driven half is pressed, square to `direction`, along x, y or z. Its
+    /// length does not matter.
+    new("normal", Kind::Direction("a direction")).sometimes_required("[0, 0, -1]");
+    /// Distance between the supports of a beam.
+    size("support_span");
+    /// Distance between the two loading pins.
+    size("loading_span");
+    /// Width of a beam, or thickness of a disc.
+    size("width");
+    /// Height of a beam, or diameter of a disc.
+    size("height");
+    /// Length of a body that is pressed or pulled; of a dog bone, that of its neck, which is
+    /// required.
+    size("length");
+    /// Area of its cross-section, or of the shear plane; of a dog bone, that of its neck, which is
+    /// required.
+    quantity("area", &AREA).positive().otherwise(MEASURED);
+}
 
 const MEASURED: &str = "measured on walls and body";
 
-/// A length of the test.
-const fn size(name: &'static str, doc: &'static str) -> Key {
-    Key::quantity(name, &LENGTH, doc)
-        .positive()
-        .otherwise(MEASURED)
+impl Key {
+    /// A length of the test.
+    const fn size(name: &'static str, doc: &'static str) -> Self {
+        Self::quantity(name, &LENGTH, doc)
+            .positive()
+            .otherwise(MEASURED)
+    }
 }
 
 /// A test: the moving parts, their motion, and the reference values.
@@ -426,12 +409,11 @@ fn measured(table: &Table<'_>, kind: TestType, folder: &Path) -> Result<Option<M
     })?;
     if material.test != kind {
         let problem = format!(
-            "{} is of the type \"{}\", not \"{}\"",
-            field.path,
+            "is of the type \"{}\", not \"{}\"",
             material.test.name(),
             kind.name()
         );
-        return Err(field.refuse(problem, "name a material measured in the same test"));
+        return Err(field.fault(problem, "name a material measured in the same test"));
     }
     Ok(Some(MeasuredReference { file, material }))
 }
@@ -444,11 +426,9 @@ fn refuse_dimensions(table: &Table<'_>, kind: TestType) -> Result<()> {
         .find(|(key, _)| !known.contains(key))
     {
         Some((_, field)) => {
-            let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
-            Err(field.refuse(
-                problem,
-                format!("remove it; known here: {}", known.join(", ")),
-            ))
+            let problem = format!("does not apply to \"{}\"", kind.name());
+            let remedy = format!("remove it; known here: {}", known.join(", "));
+            Err(field.fault(problem, remedy))
         }
         None => Ok(()),
     }
@@ -475,10 +455,10 @@ fn refuse_others(table: &Table<'_>, kind: TestType) -> Result<()> {
         others.extend(["normal_stress", "normal"]);
     }
     match table.given(&others).next() {
-        Some((_, field)) => {
-            let problem = format!("{} does not apply to \"{}\"", field.path, kind.name());
-            Err(field.refuse(problem, "remove it"))
-        }
+        Some((_, field)) => Err(field.fault(
+            format!("does not apply to \"{}\"", kind.name()),
+            "remove it",
+        )),
         None => Ok(()),
     }
 }
@@ -507,8 +487,8 @@ fn transmission(
     let field = table.need("transmission_bar")?;
     let name = moved(&field, grips, known)?;
     if crosshead.contains(&name) {
-        let problem = format!("{} is \"{name}\", which is the crosshead", field.path);
-        return Err(field.refuse(problem, "name what the body rests on"));
+        let problem = format!("is \"{name}\", which is the crosshead");
+        return Err(field.fault(problem, "name what the body rests on"));
     }
     Ok(name)
 }
@@ -541,8 +521,8 @@ fn all_moved(field: &Field<'_>, grips: bool, known: &Known<'_>) -> Result<Vec<St
     for item in field.items()? {
         let name = moved(&item, grips, known)?;
         if moves.contains(&name) {
-            let problem = format!("{} is \"{name}\", which is in the list already", item.path);
-            return Err(item.refuse(problem, "remove one of them"));
+            let problem = format!("is \"{name}\", which is in the list already");
+            return Err(item.fault(problem, "remove one of them"));
         }
         moves.push(name);
     }
@@ -554,28 +534,24 @@ fn moved(item: &Field<'_>, grips: bool, known: &Known<'_>) -> Result<String> {
     let name = item.text()?;
     if grips {
         if !known.groups.contains_key(name) {
-            let problem = format!("{} is \"{name}\", but no group has this name", item.path);
+            let problem = format!("is \"{name}\", but no group has this name");
             let names = known.groups.keys().map(String::as_str);
-            return Err(item.refuse(problem, suggestion(name, names)));
+            return Err(item.fault(problem, suggestion(name, names)));
         }
         if let Some((support, _)) = known.supports.iter().find(|(_, s)| s.group == name) {
-            let problem = format!(
-                "{} is \"{name}\", which [supports.{support}] holds",
-                item.path
-            );
-            return Err(item.refuse(problem, "remove that support: the test moves the group"));
+            let problem = format!("is \"{name}\", which [supports.{support}] holds");
+            return Err(item.fault(problem, "remove that support: the test moves the group"));
         }
         return Ok(name.to_owned());
     }
     let Some(wall) = known.walls.get(name) else {
-        let problem = format!("{} is \"{name}\", but no wall has this name", item.path);
+        let problem = format!("is \"{name}\", but no wall has this name");
         let names = known.walls.keys().map(String::as_str);
-        return Err(item.refuse(problem, suggestion(name, names)));
+        return Err(item.fault(problem, suggestion(name, names)));
     };
     if wall.motion != WallMotion::Fixed {
-        let problem = format!("{} is \"{name}\", which moves by itself", item.path);
         let remedy = format!("take velocity, displacement or servo from [walls.{name}]");
-        return Err(item.refuse(problem, remedy));
+        return Err(item.fault(format!("is \"{name}\", which moves by itself"), remedy));
     }
     Ok(name.to_owned())
 }

@@ -1,4 +1,4 @@
-//! How the values of keys are read and shown: numbers, vectors, true and false, words.
+//! How the values of keys are read and shown: numbers, vectors, text, true and false, words.
 
 use super::direction::{direction, rotation};
 use super::field::{Field, remedy};
@@ -56,6 +56,20 @@ impl Read for [f64; 3] {
             _ => key.unit(),
         };
         vector(*self, unit)
+    }
+}
+
+impl Read for String {
+    fn given(field: &Field<'_>, _: &Key) -> Result<Self> {
+        field.text().map(str::to_owned)
+    }
+
+    fn unless_given(_: Unless) -> Option<Self> {
+        None
+    }
+
+    fn told(&self, _: &Key) -> String {
+        self.clone()
     }
 }
 

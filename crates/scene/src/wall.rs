@@ -4,7 +4,7 @@ pub(super) mod motion;
 mod shape;
 
 pub use motion::WallMotion;
-pub use shape::WallShape;
+pub use shape::{PlaneShape, WallShape};
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,68 +17,49 @@ use super::group::ParticleGroup;
 use super::listing::Listing;
 use super::material::Material;
 use super::names::meaning;
-use super::schema::{Key, Schema};
+use super::schema::table_schema;
 use super::shape::{BOX, CYLINDER, UNIT};
 use super::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{ANGULAR_VELOCITY, LENGTH, VELOCITY};
 
-pub(super) static WALL: Schema = Schema {
-    title: "[walls.NAME]",
-    doc: "A rigid wall of one shape. It is fixed unless it has a velocity, a displacement or a \
-          servo.",
-    keys: &[
-        Key::table("plane", &shape::PLANE, "An infinite plane."),
-        Key::table("box", &BOX, "A solid box, with particles outside."),
-        Key::table(
-            "cylinder",
-            &CYLINDER,
-            "A solid cylinder, with particles outside.",
-        ),
-        Key::text(
-            "stl",
-            "a file",
-            "STL file of the surface, relative to the folder of the scene; requires `unit`.",
-        ),
-        UNIT,
-        Key::number("scale", "Factor on all lengths of the STL file.")
-            .positive()
-            .or(1.0),
-        Key::text("material", "a name in [materials]", "Its material.")
-            .required("\"NAME\", a name in [materials]"),
-        Key::table("rotation", &ROTATION, "Initial rotation about the pivot.").or(0.0),
-        Key::vector("pivot", &LENGTH, "Centre of rotation."),
-        Key::vector(
-            "surface_velocity",
-            &VELOCITY,
-            "Velocity of the surface of a belt, whose shape stays in place; in space, not rotated with the wall.",
-        ),
-        Key::vector("velocity", &VELOCITY, "Velocity of the pivot."),
-        Key::vector(
-            "angular_velocity",
-            &ANGULAR_VELOCITY,
-            "Angular velocity about the pivot, which moves with the wall.",
-        ),
-        Key::vector(
-            "displacement",
-            &LENGTH,
-            "Displacement of the pivot. Requires a `ramp` or `table` that begins at 0.",
-        ),
-        Key::table(
-            "angular_displacement",
-            &ROTATION,
-            "Rotation about the pivot. Requires a `ramp` or `table` that begins at 0.",
-        )
-        .or(0.0),
-        Key::table(
-            "servo",
-            &motion::SERVO,
-            "Servo control: the wall moves such that it exerts a given force.",
-        ),
-        RAMP,
-        TABLE,
-    ],
-};
+table_schema! {
+    /// A rigid wall of one shape. It is fixed unless it has a velocity, a displacement or a servo.
+    pub(super) static WALL = "[walls.NAME]";
+
+    /// An infinite plane.
+    table("plane", &shape::PLANE);
+    /// A solid box, with particles outside.
+    table("box", &BOX);
+    /// A solid cylinder, with particles outside.
+    table("cylinder", &CYLINDER);
+    /// STL file of the surface, relative to the folder of the scene; requires `unit`.
+    text("stl", "a file");
+    UNIT;
+    /// Factor on all lengths of the STL file.
+    number("scale").positive().or(1.0);
+    /// Its material.
+    text("material", "a name in [materials]").required("\"NAME\", a name in [materials]");
+    /// Initial rotation about the pivot.
+    table("rotation", &ROTATION).or(0.0);
+    /// Centre of rotation.
+    vector("pivot", &LENGTH);
+    /// Velocity of the surface of a belt, whose shape stays in place; in space, not rotated with
+    /// the wall.
+    vector("surface_velocity", &VELOCITY);
+    /// Velocity of the pivot.
+    vector("velocity", &VELOCITY);
+    /// Angular velocity about the pivot, which moves with the wall.
+    vector("angular_velocity", &ANGULAR_VELOCITY);
+    /// Displacement of the pivot. Requires a `ramp` or `table` that begins at 0.
+    vector("displacement", &LENGTH);
+    /// Rotation about the pivot. Requires a `ramp` or `table` that begins at 0.
+    table("angular_displacement", &ROTATION).or(0.0);
+    /// Servo control: the wall moves such that it exerts a given force.
+    table("servo", &motion::SERVO);
+    RAMP;
+    TABLE;
+}
 
 /// A wall, fixed or moving.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,9 +96,8 @@ pub(super) fn read_all(
             meaning(&name).map(str::to_owned)
         };
         if let Some(like) = like {
-            let problem = format!("{} is named like {like}", field.path);
             let remedy = "give it another name: measures name walls as they do groups and bodies";
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault(format!("is named like {like}"), remedy));
         }
         walls.insert(name, read(&field, materials, folder)?);
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::body::{BodyEntry, BodySource};
-use super::bond::{BondKind, BondModel, Formulation};
+use super::bond::{BondKind, Formulation};
 use super::clump::StartAs;
 use super::conflicts;
 use super::field::Field;
@@ -46,8 +46,8 @@ pub(super) fn check(root: &Table<'_>, known: &Known<'_>) -> Result<()> {
 fn check_body(field: &Field<'_>, name: &str, body: &BodyEntry, known: &Known<'_>) -> Result<()> {
     let path = &field.path;
     if body.start_as != StartAs::Bonded {
-        let problem = format!("{path} has no effect on a clump, which is rigid as a whole");
-        return Err(field.refuse(problem, "remove start_as = \"clump\", or remove it"));
+        let problem = "has no effect on a clump, which is rigid as a whole";
+        return Err(field.fault(problem, "remove start_as = \"clump\", or remove it"));
     }
     let has_bonds = match &body.source {
         BodySource::Inline { bonds, .. } => !bonds.is_empty(),
@@ -68,8 +68,7 @@ fn check_body(field: &Field<'_>, name: &str, body: &BodyEntry, known: &Known<'_>
         );
         return Err(field.refuse(problem, "write formulation = \"total\" in its [bonds]"));
     }
-    let is_joint = matches!(kind.model, BondModel::FlatJoint { .. });
-    if kind.plasticity.is_some() || is_joint {
+    if kind.plasticity.is_some() || kind.joint.is_some() {
         let problem = format!(
             "{path}: the bonds of body '{name}' keep a history, which a rigid part does not follow"
         );

@@ -124,13 +124,13 @@ pub(super) fn beam(
 
 /// Middle of a pin and unit vector along it.
 pub(super) fn pin(name: &str, wall: &Wall) -> std::result::Result<Pin, Refusal> {
-    let WallShape::Cylinder { from_m, to_m, .. } = &wall.shape else {
+    let WallShape::Cylinder(cylinder) = &wall.shape else {
         let problem = format!("the wall '{name}' is no cylinder, which pins are");
         return Err((
             problem,
             "write cylinder = { from, to, radius }, or remove the wall",
         ));
     };
-    let [from, to] = [*from_m, *to_m].map(|end| placed(wall, end));
+    let [from, to] = [cylinder.from_m, cylinder.to_m].map(|end| placed(wall, end));
     Ok((0.5 * (from + to), (to - from).normalize()))
 }

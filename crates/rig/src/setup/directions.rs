@@ -3,7 +3,7 @@
 use dem_engine::state::State;
 use dem_io::units::{show_length, significant};
 use dem_io::{Diagnostic, Result};
-use dem_scene::{Scene, Test, Wall, WallShape};
+use dem_scene::{PlaneShape, Scene, Test, Wall, WallShape};
 use nalgebra::Vector3;
 
 use super::arrangement::{extent, middle};
@@ -13,7 +13,7 @@ use super::walls::{middle_of, placed};
 const OBLIQUE: f64 = 1e-3;
 /// Normal of a plane at the start. None: it is another shape.
 pub(super) fn normal_of(wall: &Wall) -> Option<Vector3<f64>> {
-    let WallShape::Plane { point_m, normal } = wall.shape else {
+    let WallShape::Plane(PlaneShape { point_m, normal }) = wall.shape else {
         return None;
     };
     let tip_m = [0, 1, 2].map(|k| point_m[k] + normal[k]);

@@ -2,7 +2,7 @@
 //! on its particles.
 
 use dem_io::units::{show_quantity, significant};
-use dem_scene::{Scene, Test, Wall, WallShape};
+use dem_scene::{BoxShape, PlaneShape, Scene, Test, Wall, WallShape};
 use nalgebra::Vector3;
 
 use crate::setup::walls::{middle_of, placed};
@@ -191,21 +191,16 @@ fn cover(wall: &Wall, direction: Vector3<f64>, across: &Across) -> Cover {
         outline_of(&discs)
     };
     match &wall.shape {
-        WallShape::Plane { .. } => Cover::All,
-        WallShape::Box { min, max } => {
+        WallShape::Plane(_) => Cover::All,
+        WallShape::Box(BoxShape { min_m, max_m }) => {
             let corner = |number: usize| {
-                let side = |k: usize| if number >> k & 1 == 0 { min[k] } else { max[k] };
+                let side = |k: usize| [min_m, max_m][number >> k & 1][k];
                 placed(wall, [side(0), side(1), side(2)])
             };
             Cover::Within(seen((0..8).map(corner).collect()))
         }
-        WallShape::Cylinder {
-            from_m,
-            to_m,
-            radius_m,
-            ..
-        } => {
-            let [from, to] = [*from_m, *to_m].map(|end| placed(wall, end));
+        WallShape::Cylinder(pin) => {
+            let [from, to] = [pin.from_m, pin.to_m].map(|end| placed(wall, end));
             let axis = (to - from).normalize();
             // Across the load it touches along a line.
             if axis.cross(&direction).norm() > MUCH {
@@ -214,7 +209,7 @@ fn cover(wall: &Wall, direction: Vector3<f64>, across: &Across) -> Cover {
             let edge = Across::of(axis);
             let point = |number: usize| {
                 let (sin, cos) = (std::f64::consts::TAU * number as f64 / POINTS as f64).sin_cos();
-                from + (edge.0[0] * cos + edge.0[1] * sin) * *radius_m
+                from + (edge.0[0] * cos + edge.0[1] * sin) * pin.radius_m
             };
             Cover::Within(seen((0..POINTS).map(point).collect()))
         }
@@ -366,7 +361,7 @@ fn look_at_ends(
         .map(|confinement| &confinement.walls);
     let is_lateral = |name: &String| lateral.is_some_and(|walls| walls.contains(name));
     let is_behind = |wall: &Wall| match &wall.shape {
-        WallShape::Plane { point_m, normal } => {
+        WallShape::Plane(PlaneShape { point_m, normal }) => {
             let normal_m = [0, 1, 2].map(|k| point_m[k] + normal[k]);
             let normal = placed(wall, normal_m) - placed(wall, *point_m);
             normal.dot(&direction) < -0.99

@@ -1,7 +1,7 @@
 //! The sides of a triaxial test.
 
 use dem_engine::state::State;
-use dem_scene::{Scene, Test, Wall, WallShape};
+use dem_scene::{PlaneShape, Scene, Test, Wall, WallShape};
 use nalgebra::Vector3;
 
 use super::arrangement::{GAUGE, Side, extent, middle, size};
@@ -16,7 +16,7 @@ pub(super) fn sides(scene: &Scene, test: &Test, state: &State, particles: &[u32]
     };
     let walls = scene.walls.iter().enumerate();
     let side = |(wall, (_, of)): (usize, (&String, &Wall))| match of.shape {
-        WallShape::Plane { normal, .. } => Some(Side {
+        WallShape::Plane(PlaneShape { normal, .. }) => Some(Side {
             wall,
             inwards: normal,
             area_m2: side_m2(&extent_m, normal),

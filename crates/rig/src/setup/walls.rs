@@ -14,11 +14,9 @@ pub(super) fn placed(wall: &Wall, point_m: [f64; 3]) -> Vector3<f64> {
 /// body.
 pub(super) fn middle_of(wall: &Wall) -> Option<Vector3<f64>> {
     Some(match &wall.shape {
-        WallShape::Plane { point_m, .. } => placed(wall, *point_m),
-        WallShape::Box { min, max } => 0.5 * (placed(wall, *min) + placed(wall, *max)),
-        WallShape::Cylinder { from_m, to_m, .. } => {
-            0.5 * (placed(wall, *from_m) + placed(wall, *to_m))
-        }
+        WallShape::Plane(plane) => placed(wall, plane.point_m),
+        WallShape::Box(of) => 0.5 * (placed(wall, of.min_m) + placed(wall, of.max_m)),
+        WallShape::Cylinder(of) => 0.5 * (placed(wall, of.from_m) + placed(wall, of.to_m)),
         WallShape::Stl { .. } => return None,
     })
 }

@@ -27,11 +27,8 @@ pub(super) fn named_pair(
         [pair] => Ok(pair.map(str::to_owned)),
         [] => Err(unknown(key, field, materials)),
         [[a, b], [c, d], ..] => {
-            let problem = format!(
-                "{} means \"{a}\" with \"{b}\" as well as \"{c}\" with \"{d}\"",
-                field.path
-            );
-            Err(field.refuse(problem, "rename one of these materials"))
+            let problem = format!("means \"{a}\" with \"{b}\" as well as \"{c}\" with \"{d}\"");
+            Err(field.fault(problem, "rename one of these materials"))
         }
     }
 }
@@ -53,15 +50,13 @@ fn unknown(key: &str, field: &Field<'_>, materials: &BTreeMap<String, Material>)
     match stranger {
         Some(name) if !is_known(key) => {
             let problem = format!(
-                "{} is of \"{}\", but nothing in [materials] has this name",
-                field.path,
+                "is of \"{}\", but nothing in [materials] has this name",
                 shortened(name, 40)
             );
             let known = materials.keys().map(String::as_str);
-            field.refuse(problem, suggestion(name, known))
+            field.fault(problem, suggestion(name, known))
         }
         _ => {
-            let problem = format!("{} is no pair of materials", field.path);
             let first = materials.keys().next().map_or("NAME", String::as_str);
             let last = materials.keys().last().map_or("NAME", String::as_str);
             let [a, b] = if is_known(key) {
@@ -71,7 +66,7 @@ fn unknown(key: &str, field: &Field<'_>, materials: &BTreeMap<String, Material>)
             };
             let remedy =
                 format!("write two names of [materials] with - between them, such as {a}-{b}");
-            field.refuse(problem, remedy)
+            field.fault("is no pair of materials", remedy)
         }
     }
 }

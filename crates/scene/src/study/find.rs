@@ -51,12 +51,8 @@ fn number(field: &Field<'_>, unit: Option<&str>) -> Result<(f64, String)> {
         .ok_or_else(|| field.wrong("a number", "write it with its unit, such as \"0.1 m\""))?;
     match unit {
         Some(unit) if unit != own => {
-            let problem = format!(
-                "{} is {}, in another unit than find.from",
-                field.path,
-                field.shown()
-            );
-            Err(field.refuse(problem, "write from, to and tolerance in the same unit"))
+            let problem = format!("is {}, in another unit than find.from", field.shown());
+            Err(field.fault(problem, "write from, to and tolerance in the same unit"))
         }
         _ => Ok((value, own)),
     }
@@ -74,10 +70,8 @@ pub(super) fn refuse_pairs_and_means(
     }
     if average_over == Some(0) {
         let problem = "average_over names the parameter of [find]";
-        return Err(table.refuse(
-            problem,
-            "name what the scatter comes from, such as run.seed",
-        ));
+        let remedy = "name what the scatter comes from, such as run.seed";
+        return Err(table.refuse(problem, remedy));
     }
     Ok(())
 }
@@ -99,12 +93,8 @@ pub(super) fn search(table: &Table<'_>, measures: &[StudyMeasure], cases: usize)
     let name = named.text()?;
     let measure = measures.iter().position(|measure| measure.name == name);
     let measure = measure.ok_or_else(|| {
-        let problem = format!(
-            "{} is {}, but the study has no such measure",
-            named.path,
-            named.shown()
-        );
-        named.refuse(
+        let problem = format!("is {}, but the study has no such measure", named.shown());
+        named.fault(
             problem,
             suggestion(name, measures.iter().map(|m| m.name.as_str())),
         )

@@ -14,8 +14,8 @@ pub(super) fn axis_named(field: &Field<'_>, axes: &[Axis]) -> Result<usize> {
     axes.iter()
         .position(|axis| axis.name == name)
         .ok_or_else(|| {
-            let problem = format!("{} is {}, which does not vary", field.path, field.shown());
-            field.refuse(
+            let problem = format!("is {}, which does not vary", field.shown());
+            field.fault(
                 problem,
                 suggestion(name, axes.iter().map(|axis| axis.name.as_str())),
             )
@@ -31,12 +31,8 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
         "curve",
         "balance",
     ];
-    let given: Vec<_> = table.given(&kinds).collect();
-    if let [(one, _), (_, other), ..] = given.as_slice() {
-        let problem = format!("{} cannot be combined with {one}", other.path);
-        return Err(other.refuse(problem, "a measure is of one of them: remove the other"));
-    }
-    let of = match given.first() {
+    let one = "a measure is of one of them: remove the other";
+    let of = match table.at_most_one(&kinds, one)? {
         None => MeasureOf::Measure(name.to_owned()),
         Some(("measure", field)) => MeasureOf::Measure(field.text()?.to_owned()),
         Some(("test_result", field)) => MeasureOf::Figure(field.text()?.to_owned()),
@@ -49,11 +45,8 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
     };
     let reference = match table.get("reference") {
         Some(field) if matches!(of, MeasureOf::Balance(_)) => {
-            let problem = format!(
-                "{} is given for a balance, whose error is compared with 0",
-                field.path
-            );
-            return Err(field.refuse(problem, "it is an error by itself: remove reference"));
+            let problem = "is given for a balance, whose error is compared with 0";
+            return Err(field.fault(problem, "it is an error by itself: remove reference"));
         }
         Some(field) => reference(&field, axes)?,
         None => match of {
@@ -66,9 +59,8 @@ pub(super) fn measure(name: &str, field: &Field<'_>, axes: &[Axis]) -> Result<St
         &of,
         matches!(reference, Reference::Finest(_) | Reference::None),
     ) {
-        let problem = format!("{} has no run to be compared with", field.path);
         let remedy = "write reference = { finest = \"AXIS\" }, or \"none\"";
-        return Err(field.refuse(problem, remedy));
+        return Err(field.fault("has no run to be compared with", remedy));
     }
     Ok(StudyMeasure {
         name: name.to_owned(),
@@ -89,13 +81,9 @@ fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {
             ("finest", [only]) => Ok(Reference::Finest(*only)),
             ("richardson", [only]) => richardson(field, *only, axes),
             ("finest" | "richardson", _) => {
-                let problem = format!(
-                    "{} is \"{word}\", but {} axes have sizes",
-                    field.path,
-                    with_size.len()
-                );
+                let problem = format!("is \"{word}\", but {} axes have sizes", with_size.len());
                 let remedy = format!("say along which: {{ {word} = \"AXIS\" }}");
-                Err(field.refuse(problem, remedy))
+                Err(field.fault(problem, remedy))
             }
             _ => Err(field.wrong(
                 "\"none\", \"closed-form\", \"finest\", \"richardson\" or a table",
@@ -106,8 +94,8 @@ fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {
     let table = Table::of(field, &REFERENCE)?;
     let given: Vec<_> = table.given(&["value", "finest", "richardson"]).collect();
     let [(kind, named)] = given.as_slice() else {
-        let problem = format!("{} names {} references", field.path, given.len());
-        return Err(field.refuse(problem, "name one: value, finest or richardson"));
+        let problem = format!("names {} references", given.len());
+        return Err(field.fault(problem, "name one: value, finest or richardson"));
     };
     if *kind == "value" {
         return match &named.node.value {
@@ -120,13 +108,9 @@ fn reference(field: &Field<'_>, axes: &[Axis]) -> Result<Reference> {
     }
     let at = axis_named(named, axes)?;
     if axes[at].sizes().is_none() {
-        let problem = format!(
-            "{} is {}, whose values have no size above 0",
-            named.path,
-            named.shown()
-        );
+        let problem = format!("is {}, whose values have no size above 0", named.shown());
         let remedy = "add size = [...], how coarse each of its values is";
-        return Err(named.refuse(problem, remedy));
+        return Err(named.fault(problem, remedy));
     }
     if *kind == "finest" {
         Ok(Reference::Finest(at))

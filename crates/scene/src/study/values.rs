@@ -40,8 +40,7 @@ pub(super) fn axis(path: &str, field: &Field<'_>, folder: &Path) -> Result<Axis>
         }
         Value::Table(_) => {
             let remedy = "write its path in quotes, such as \"run.safety_factor\" = [0.9, 0.5]";
-            let problem = format!("{} is neither a list nor a range", field.path);
-            return Err(field.refuse(problem, remedy));
+            return Err(field.fault("is neither a list nor a range", remedy));
         }
         _ => {
             let remedy = "write [0.9, 0.5] or { from = 0.1, to = 0.9, count = 5 }; what does not vary belongs into [set]";
@@ -89,8 +88,8 @@ pub(super) fn together(name: &str, field: &Field<'_>, folder: &Path) -> Result<A
         }
     }
     if values.is_empty() {
-        let problem = format!("{} names no path", field.path);
-        return Err(field.refuse(problem, "add \"run.safety_factor\" = [0.9, 0.5], say"));
+        let problem = "names no path";
+        return Err(field.fault(problem, "add \"run.safety_factor\" = [0.9, 0.5], say"));
     }
     let [size, names] = ["size", "names"].map(|key| table.get(key));
     with_sizes(&mut values, size.as_ref(), names.as_ref())?;
@@ -111,8 +110,7 @@ pub(super) fn settings(field: &Field<'_>, folder: &Path) -> Result<Vec<Setting>>
             let field = table.field(path, node);
             if matches!(node.value, Value::Table(_)) && !path.contains('.') {
                 let remedy = "write its path in quotes, such as \"run.safety_factor\" = 0.5";
-                let problem = format!("{} is no path into a table of the scene", field.path);
-                return Err(field.refuse(problem, remedy));
+                return Err(field.fault("is no path into a table of the scene", remedy));
             }
             setting(path, &field, folder)
         })
@@ -179,10 +177,8 @@ pub(super) fn setting(path: &str, field: &Field<'_>, folder: &Path) -> Result<Se
     let is_path = path.split('.').all(|key| !key.is_empty());
     if !is_path || !path.contains('.') || path.contains('=') {
         let problem = format!("\"{}\" is no path of a scene", shortened(path, 40));
-        return Err(field.refuse(
-            problem,
-            "write TABLE.KEY, such as run.safety_factor or body.NAME",
-        ));
+        let remedy = "write TABLE.KEY, such as run.safety_factor or body.NAME";
+        return Err(field.refuse(problem, remedy));
     }
     let value = if path.starts_with(BODY) {
         let name = field.text()?;
@@ -257,13 +253,12 @@ fn range(path: &str, field: &Field<'_>) -> Result<Vec<(f64, String)>> {
     };
     if unit != unit_of_last {
         let problem = format!(
-            "{} is in {}, but {} in {}",
-            to.path,
+            "is in {}, but {} in {}",
             named(&unit_of_last),
             from.path,
             named(&unit)
         );
-        return Err(to.refuse(problem, "write both in the same unit"));
+        return Err(to.fault(problem, "write both in the same unit"));
     }
     let counted = table.need("count")?;
     let remedy = "write how many values there are, both ends among them";
@@ -276,8 +271,8 @@ fn range(path: &str, field: &Field<'_>) -> Result<Vec<(f64, String)>> {
         .read_by("spacing", |field| field.choice(&SPACINGS))?
         .unwrap_or(false);
     if log && (first <= 0.0 || last <= 0.0) {
-        let problem = format!("{} has no logarithm at 0 and below", field.path);
-        return Err(field.refuse(problem, "write spacing = \"linear\", or ends above 0"));
+        let problem = "has no logarithm at 0 and below";
+        return Err(field.fault(problem, "write spacing = \"linear\", or ends above 0"));
     }
     let value = |at: u64| {
         let fraction = at as f64 / (count - 1) as f64;

@@ -46,22 +46,21 @@ pub(super) fn confinement(
     let mut normals: Vec<[f64; 3]> = Vec::new();
     for (item, name) in field.items()?.into_iter().zip(&names) {
         if crosshead.contains(name) {
-            let problem = format!("{} is \"{name}\", which is the crosshead", item.path);
-            return Err(item.refuse(problem, "name each wall once"));
+            let problem = format!("is \"{name}\", which is the crosshead");
+            return Err(item.fault(problem, "name each wall once"));
         }
         let wall = &walls[name];
         let normal = match wall.shape {
-            WallShape::Plane { normal, .. } if wall.rotation_rad == [0.0; 3] => normal,
+            WallShape::Plane(plane) if wall.rotation_rad == [0.0; 3] => plane.normal,
             _ => [0.0; 3],
         };
         if !is_along_an_axis(normal) || dot(normal, direction).abs() > SQUARE {
             let problem = format!(
-                "{} is \"{name}\", which is no plane along the direction of the test and square to an axis",
-                item.path
+                "is \"{name}\", which is no plane along the direction of the test and square to an axis"
             );
             let remedy =
                 "write plane = { point, normal }, with the normal towards the body along x, y or z";
-            return Err(item.refuse(problem, remedy));
+            return Err(item.fault(problem, remedy));
         }
         normals.push(normal);
     }

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use crate::factor::Factor;
 use crate::listing::Listing;
 use crate::run::Run;
-use crate::schema::{Key, Schema};
+use crate::schema::table_schema;
 use crate::table::Table;
 use crate::tree::Value;
 use dem_io::diagnostic::Result;
@@ -15,83 +15,47 @@ use dem_io::units::{DENSITY, LENGTH, MASS, STRESS, TIME, VELOCITY, show_quantity
 /// Rise of a pulse without a rise time, as a fraction of its duration.
 const STEEP: f64 = 1e-6;
 
-pub(crate) static BARS: Schema = Schema {
-    title: "Bars",
-    doc: "The incident and the transmission bar, which are alike and so long that nothing comes back from their far ends during the test.",
-    keys: &[
-        Key::quantity("density", &DENSITY, "Density.")
-            .positive()
-            .required("\"7850 kg/m3\""),
-        Key::quantity("young_modulus", &STRESS, "Young's modulus.")
-            .positive()
-            .required("\"210 GPa\""),
-        Key::quantity("diameter", &LENGTH, "Diameter.")
-            .positive()
-            .required("\"20 mm\""),
-        Key::quantity(
-            "gauge_distance",
-            &LENGTH,
-            "Distance of the strain gauge on each bar from the end at the body, for `gauge-signals.csv`; requires `length`.",
-        )
-        .positive()
-        .otherwise("no gauges"),
-        Key::quantity(
-            "length",
-            &LENGTH,
-            "Length of each bar; only with `gauge_distance`.",
-        )
-        .positive()
-        .sometimes_required("\"3 m\""),
-    ],
-};
+table_schema! {
+    /// The incident and the transmission bar, which are alike and so long that nothing comes back
+    /// from their far ends during the test.
+    pub(crate) static BARS = "Bars";
 
-pub(crate) static STRIKER: Schema = Schema {
-    title: "Striker",
-    doc: "The bar of the same kind that strikes the incident bar.",
-    keys: &[
-        Key::quantity(
-            "length",
-            &LENGTH,
-            "Length; the pulse lasts twice the time that a wave takes along it.",
-        )
-        .positive()
-        .required("\"200 mm\""),
-        Key::quantity("velocity", &VELOCITY, "Velocity of the impact.")
-            .positive()
-            .required("\"10 m/s\""),
-        Key::quantity(
-            "rise_time",
-            &TIME,
-            "Time in which the pulse rises, and falls again, linearly; a pulse shaper makes it longer.",
-        )
-        .not_negative()
-        .or(0.0),
-    ],
-};
+    /// Density.
+    quantity("density", &DENSITY).positive().required("\"7850 kg/m3\"");
+    /// Young's modulus.
+    quantity("young_modulus", &STRESS).positive().required("\"210 GPa\"");
+    /// Diameter.
+    quantity("diameter", &LENGTH).positive().required("\"20 mm\"");
+    /// Distance of the strain gauge on each bar from the end at the body, for `gauge-signals.csv`;
+    /// requires `length`.
+    quantity("gauge_distance", &LENGTH).positive().otherwise("no gauges");
+    /// Length of each bar; only with `gauge_distance`.
+    quantity("length", &LENGTH).positive().sometimes_required("\"3 m\"");
+}
 
-pub(crate) static WEIGHT: Schema = Schema {
-    title: "Weight",
-    doc: "The falling weight. It moves along `direction` without rotating.",
-    keys: &[
-        Key::quantity("mass", &MASS, "Mass.")
-            .positive()
-            .required("\"5 kg\""),
-        Key::quantity(
-            "height",
-            &LENGTH,
-            "Height of the fall; requires `run.gravity` along `direction`.",
-        )
-        .positive()
-        .sometimes_required("\"0.5 m\", or velocity = \"3 m/s\""),
-        Key::quantity(
-            "velocity",
-            &VELOCITY,
-            "Velocity of the impact, instead of a height.",
-        )
-        .positive()
-        .otherwise("that of the fall"),
-    ],
-};
+table_schema! {
+    /// The bar of the same kind that strikes the incident bar.
+    pub(crate) static STRIKER = "Striker";
+
+    /// Length; the pulse lasts twice the time that a wave takes along it.
+    quantity("length", &LENGTH).positive().required("\"200 mm\"");
+    /// Velocity of the impact.
+    quantity("velocity", &VELOCITY).positive().required("\"10 m/s\"");
+    /// Time in which the pulse rises, and falls again, linearly; a pulse shaper makes it longer.
+    quantity("rise_time", &TIME).not_negative().or(0.0);
+}
+
+table_schema! {
+    /// The falling weight. It moves along `direction` without rotating.
+    pub(crate) static WEIGHT = "Weight";
+
+    /// Mass.
+    quantity("mass", &MASS).positive().required("\"5 kg\"");
+    /// Height of the fall; requires `run.gravity` along `direction`.
+    quantity("height", &LENGTH).positive().sometimes_required("\"0.5 m\", or velocity = \"3 m/s\"");
+    /// Velocity of the impact, instead of a height.
+    quantity("velocity", &VELOCITY).positive().otherwise("that of the fall");
+}
 
 /// Wave speeds of any solid that bars are made of.
 const WAVE_SPEEDS_M_S: RangeInclusive<f64> = 100.0..=20_000.0;
@@ -233,8 +197,8 @@ fn gauges(bars: &Table<'_>, pulse_m: f64) -> Result<Option<Gauges>> {
     let Some(distance) = bars.get("gauge_distance") else {
         return match bars.get("length") {
             Some(length) => {
-                let problem = format!("{} is for strain gauges, but there are none", length.path);
-                Err(length.refuse(problem, "add gauge_distance = \"1 m\", or remove it"))
+                let problem = "is for strain gauges, but there are none";
+                Err(length.fault(problem, "add gauge_distance = \"1 m\", or remove it"))
             }
             None => Ok(None),
         };
@@ -296,8 +260,8 @@ pub(super) fn weight(test: &Table<'_>, direction: [f64; 3], run: &Run) -> Result
     let mass_kg = table.read("mass")?;
     if let Some(velocity) = table.get("velocity") {
         if let Some(height) = table.get("height") {
-            let problem = format!("{} cannot be combined with {}", height.path, velocity.path);
-            return Err(height.refuse(problem, "the one gives the other: remove one"));
+            let problem = format!("cannot be combined with {}", velocity.path);
+            return Err(height.fault(problem, "the one gives the other: remove one"));
         }
         return Ok(Weight {
             mass_kg,
@@ -310,12 +274,11 @@ pub(super) fn weight(test: &Table<'_>, direction: [f64; 3], run: &Run) -> Result
     if gravity_m_s2 <= 0.0 {
         let height = table.need("height")?;
         let problem = format!(
-            "{} needs run.gravity along test.direction, but that is {} there",
-            height.path,
+            "needs run.gravity along test.direction, but that is {} there",
             show_quantity(gravity_m_s2, "m/s2")
         );
         let remedy = "set run.gravity, such as [0, 0, -9.81], turn direction, or write velocity";
-        return Err(height.refuse(problem, remedy));
+        return Err(height.fault(problem, remedy));
     }
     Ok(Weight {
         mass_kg,

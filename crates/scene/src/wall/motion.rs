@@ -3,7 +3,7 @@
 use crate::factor::{self, Factor, factor, factor_from_zero, over_time};
 use crate::field::Field;
 use crate::listing::Listing;
-use crate::schema::{Key, Kind, Schema};
+use crate::schema::{Kind, table_schema};
 use crate::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::{FORCE, VELOCITY};
@@ -71,27 +71,17 @@ pub enum WallMotion {
     },
 }
 
-pub(crate) static SERVO: Schema = Schema {
-    title: "Servo",
-    doc: "A servo-controlled wall: it moves along a direction such that it exerts a given force.",
-    keys: &[
-        Key::quantity(
-            "force",
-            &FORCE,
-            "Force to exert along `direction`; negative values act against it.",
-        )
-        .required("\"100 N\""),
-        Key::new(
-            "direction",
-            Kind::Direction("a direction"),
-            "Direction of motion; its length does not matter.",
-        )
-        .required("[0, 0, -1]"),
-        Key::quantity("max_velocity", &VELOCITY, "Maximum velocity.")
-            .positive()
-            .required("\"10 mm/s\", its largest"),
-    ],
-};
+table_schema! {
+    /// A servo-controlled wall: it moves along a direction such that it exerts a given force.
+    pub(crate) static SERVO = "Servo";
+
+    /// Force to exert along `direction`; negative values act against it.
+    quantity("force", &FORCE).required("\"100 N\"");
+    /// Direction of motion; its length does not matter.
+    new("direction", Kind::Direction("a direction")).required("[0, 0, -1]");
+    /// Maximum velocity.
+    quantity("max_velocity", &VELOCITY).positive().required("\"10 mm/s\", its largest");
+}
 
 /// The types of motion, each with its keys.
 const WAYS: [&[&str]; 3] = [
@@ -111,19 +101,15 @@ pub(super) fn read(wall: &Table<'_>) -> Result<WallMotion> {
     let mut given = wall.given(&KEYS);
     let Some((first, field)) = given.next() else {
         if let Some(field) = over_time(wall) {
-            let problem = format!(
-                "{} has no effect without velocity, displacement or servo",
-                field.path
-            );
-            return Err(field.refuse(problem, "remove it"));
+            let problem = "has no effect without velocity, displacement or servo";
+            return Err(field.fault(problem, "remove it"));
         }
         return Ok(WallMotion::Fixed);
     };
     let way = |key: &str| WAYS.iter().position(|keys| keys.contains(&key));
     if let Some((_, second)) = given.find(|(key, _)| way(key) != way(first)) {
-        let problem = format!("{} cannot be combined with {first}", second.path);
         let remedy = "a wall moves at a velocity, by a displacement or as a servo: remove one";
-        return Err(second.refuse(problem, remedy));
+        return Err(second.fault(format!("cannot be combined with {first}"), remedy));
     }
     match first {
         "servo" => servo(&field, factor(wall)?),

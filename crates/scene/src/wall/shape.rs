@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::field::Field;
 use crate::listing::Listing;
-use crate::schema::{Key, Kind, Schema};
-use crate::shape::{corners, cylinder, list_box, list_cylinder, list_stl, refuse_without_stl, stl};
+use crate::plain_table::plain_table;
+use crate::schema::Kind;
+use crate::shape::{
+    BOX, BoxShape, CYLINDER, CylinderShape, list_stl, read_box, read_cylinder, refuse_without_stl,
+    stl,
+};
 use crate::table::Table;
 use dem_io::diagnostic::Result;
 use dem_io::units::LENGTH;
@@ -13,29 +16,12 @@ use dem_io::units::LENGTH;
 /// The shape of a wall, before it is rotated.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WallShape {
-    /// `plane = { point, normal }`, infinite.
-    Plane {
-        /// A point of it, m. Length 3.
-        point_m: [f64; 3],
-        /// Normal of length 1, into the free side. Length 3.
-        normal: [f64; 3],
-    },
-    /// `box = { min, max }`: solid, with particles outside.
-    Box {
-        /// Smallest corner, m. Length 3.
-        min: [f64; 3],
-        /// Largest corner, m: above the smallest along every axis. Length 3.
-        max: [f64; 3],
-    },
+    /// `plane = { point, normal }`, infinite, with a normal of length 1.
+    Plane(PlaneShape),
+    /// `box = { min, max }`: solid, with particles outside; `min` is below `max` along every axis.
+    Box(BoxShape),
     /// `cylinder = { from, to, radius }`: a solid pin, with particles outside.
-    Cylinder {
-        /// Centre of one end, m. Length 3.
-        from_m: [f64; 3],
-        /// Centre of the other end, m, elsewhere. Length 3.
-        to_m: [f64; 3],
-        /// Radius, m.
-        radius_m: f64,
-    },
+    Cylinder(CylinderShape),
     /// `stl`, `unit` and `scale`: triangles.
     Stl {
         /// `stl`: the file, resolved against the folder of the scene.
@@ -47,49 +33,32 @@ pub enum WallShape {
     },
 }
 
-pub(super) static PLANE: Schema = Schema {
-    title: "Plane",
-    doc: "An infinite plane.",
-    keys: &[
-        Key::new("point", Kind::Vector(&LENGTH), "A point on the plane.").required("[0, 0, 0]"),
-        Key::new(
-            "normal",
-            Kind::Direction("a normal"),
-            "Normal into the free side; its length does not matter.",
-        )
-        .required("[0, 0, 1], into the free side"),
-    ],
-};
+plain_table! {
+    PLANE = "Plane";
+    /// An infinite plane.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct PlaneShape {
+        /// A point on the plane.
+        point_m: [f64; 3] = new("point", Kind::Vector(&LENGTH)).required("[0, 0, 0]");
+        /// Normal into the free side; its length does not matter.
+        normal: [f64; 3] = new("normal", Kind::Direction("a normal"))
+            .required("[0, 0, 1], into the free side");
+    }
+}
 
 const SHAPES: [&str; 4] = ["plane", "box", "cylinder", "stl"];
 
 pub(super) fn read(wall: &Table<'_>, folder: &Path) -> Result<WallShape> {
-    let mut given = wall.given(&SHAPES);
-    let Some((key, field)) = given.next() else {
-        let problem = format!("{} has no shape", wall.path);
+    let one = "a wall has one shape: remove one, or make two walls";
+    let Some((key, field)) = wall.at_most_one(&SHAPES, one)? else {
         let remedy = "add plane = { point, normal }, box = { min, max }, cylinder = { from, to, radius } or stl = \"plate.stl\"";
-        return Err(wall.refuse(problem, remedy));
+        return Err(wall.fault("has no shape", remedy));
     };
-    if let Some((_, second)) = given.next() {
-        let problem = format!("{} cannot be combined with {key}", second.path);
-        let remedy = "a wall has one shape: remove one, or make two walls";
-        return Err(second.refuse(problem, remedy));
-    }
     refuse_without_stl(wall, &["unit", "scale"], key)?;
     match key {
-        "plane" => plane(&field),
-        "box" => {
-            let [min, max] = corners(&field, "less than", |low, high| low < high)?;
-            Ok(WallShape::Box { min, max })
-        }
-        "cylinder" => {
-            let ([from_m, to_m], radius_m) = cylinder(&field)?;
-            Ok(WallShape::Cylinder {
-                from_m,
-                to_m,
-                radius_m,
-            })
-        }
+        "plane" => PlaneShape::read(&Table::of(&field, &PLANE)?).map(WallShape::Plane),
+        "box" => read_box(&field, "less than", |low, high| low < high).map(WallShape::Box),
+        "cylinder" => read_cylinder(&field).map(WallShape::Cylinder),
         _ => {
             let (path, unit_m) = stl(&field, wall, folder)?;
             Ok(WallShape::Stl {
@@ -101,26 +70,11 @@ pub(super) fn read(wall: &Table<'_>, folder: &Path) -> Result<WallShape> {
     }
 }
 
-fn plane(field: &Field<'_>) -> Result<WallShape> {
-    let table = Table::of(field, &PLANE)?;
-    Ok(WallShape::Plane {
-        point_m: table.read("point")?,
-        normal: table.read("normal")?,
-    })
-}
-
 pub(super) fn list(shape: &WallShape, listing: &mut Listing) {
     match shape {
-        WallShape::Plane { point_m, normal } => listing.table("plane", &PLANE, |listing| {
-            listing.value("point", point_m);
-            listing.value("normal", normal);
-        }),
-        WallShape::Box { min, max } => list_box(*min, *max, listing),
-        WallShape::Cylinder {
-            from_m,
-            to_m,
-            radius_m,
-        } => list_cylinder([*from_m, *to_m], *radius_m, listing),
+        WallShape::Plane(of) => listing.table("plane", &PLANE, |listing| of.list(listing)),
+        WallShape::Box(of) => listing.table("box", &BOX, |listing| of.list(listing)),
+        WallShape::Cylinder(of) => listing.table("cylinder", &CYLINDER, |listing| of.list(listing)),
         WallShape::Stl {
             path,
             unit_m,

@@ -1,8 +1,8 @@
 //! Clumps, regions, replacement, inlets and outlets.
 
 use dem_scene::{
-    ClumpMass, ClumpSettings, CountedEnergy, Daughters, FeedRate, Inlet, Outlet, Region,
-    Replacement, Restore, SharesBy, SizeClass, StartAs,
+    BoxShape, ClumpMass, ClumpSettings, CountedEnergy, CylinderShape, Daughters, FeedRate, Inlet,
+    Outlet, Region, Replacement, Restore, SharesBy, SizeClass, SphereShape, StartAs, When,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -62,25 +62,25 @@ fn regions() {
     let regions = good("clumps-and-feed.toml").regions;
     assert_eq!(
         regions["impact"],
-        Region::Box {
+        Region::Box(BoxShape {
             min_m: [-0.1, -0.5, -1.0],
             max_m: [1.0, 0.5, 0.5]
-        }
+        })
     );
     assert_eq!(
         regions["gate"],
-        Region::Sphere {
+        Region::Sphere(SphereShape {
             centre_m: [0.0, 0.0, 2.0],
             radius_m: 0.1
-        }
+        })
     );
     assert_eq!(
         regions["all"],
-        Region::Cylinder {
+        Region::Cylinder(CylinderShape {
             from_m: [0.0, 0.0, -3.0],
             to_m: [0.0, 0.0, 3.0],
             radius_m: 2.0
-        }
+        })
     );
     assert_eq!(
         regions["cake"],
@@ -97,12 +97,14 @@ fn replacement() {
     assert_eq!(
         replacement["cake"],
         Replacement {
-            enters: Some("impact".to_owned()),
-            force_n: Some(100.0),
-            contact_force_n: Some(50.0),
-            principal_stress_pa: Some(20e3),
-            impact_energy_j: Some(0.5),
-            time_s: Some(0.1),
+            when: When {
+                enters: Some("impact".to_owned()),
+                force_n: Some(100.0),
+                contact_force_n: Some(50.0),
+                principal_stress_pa: Some(20e3),
+                impact_energy_j: Some(0.5),
+                time_s: Some(0.1),
+            },
             requires_all: true,
             restore: Some(Restore {
                 leaves: "impact".to_owned(),
@@ -116,12 +118,14 @@ fn replacement() {
     assert_eq!(
         replacement["pair"],
         Replacement {
-            enters: None,
-            force_n: None,
-            contact_force_n: None,
-            principal_stress_pa: None,
-            impact_energy_j: None,
-            time_s: Some(0.0),
+            when: When {
+                enters: None,
+                force_n: None,
+                contact_force_n: None,
+                principal_stress_pa: None,
+                impact_energy_j: None,
+                time_s: Some(0.0),
+            },
             requires_all: false,
             restore: Some(Restore {
                 leaves: "all".to_owned(),

@@ -3,11 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use dem_io::units::DIMENSIONS;
+use dem_physics::bond::failure::EquivalentStress;
+use dem_physics::bond::flat_joint::{FlatJointLaw, moment_ratio};
+use dem_physics::bond::stiffness::BondModel;
+use dem_physics::contact::law::Rolling;
+use dem_physics::contact::rolling::{ConstantMoment, ElasticPlastic};
 use dem_scene::{
-    BodySource, BondDamping, BondFailure, BondModel, BondPlasticity, Clusters, ColourBy, Contact,
-    ContactLaw, EquivalentStress, Factor, Formulation, Hold, InitialOverlap, Integrator,
-    JointElements, Pick, QUANTITIES, Relaxation, Rolling, Scene, Search, Statistic,
-    StrainRateMeasure, Wall, WallMotion, WallShape,
+    BodySource, BondDamping, BondFailure, BondPlasticity, BoxShape, Clusters, ColourBy, Contact,
+    ContactLaw, CylinderShape, Factor, Formulation, Hold, InitialOverlap, Integrator, Pick,
+    PlaneShape, QUANTITIES, Relaxation, Scene, Search, SphereShape, Statistic, StrainRateMeasure,
+    Wall, WallMotion, WallShape,
 };
 use dem_scene::{read_scene, scene_from_text};
 
@@ -130,13 +135,18 @@ fn contacts() {
         normal_n_m,
         tangential_stiffness_ratio,
     };
-    let sprung = |friction, damping| Rolling::SpringDashpot { friction, damping };
-    let torque = |friction| Rolling::ConstantTorque { friction };
+    let sprung = |friction, damping_ratio| {
+        Rolling::Spring(ElasticPlastic {
+            friction,
+            damping_ratio,
+        })
+    };
+    let torque = |friction| Rolling::Constant(ConstantMoment { friction });
     let hertz = ContactLaw::HertzMindlin;
     assert_eq!(
         good("every-key.toml").contacts,
         [
-            contact(["anvil", "cake"], hertz, 0.5, Rolling::None),
+            contact(["anvil", "cake"], hertz, 0.5, Rolling::Free),
             Contact {
                 friction: 0.1,
                 ..contact(["belt-rubber", "cake"], linear(1e5, 0.5), 0.6, torque(0.2))
@@ -155,13 +165,13 @@ fn contacts() {
     assert_eq!(
         good("touching.toml").contacts,
         [
-            contact(["a", "a"], hertz, 0.7, Rolling::None),
-            contact(["a", "a-a"], hertz, 0.5, Rolling::None),
+            contact(["a", "a"], hertz, 0.7, Rolling::Free),
+            contact(["a", "a-a"], hertz, 0.5, Rolling::Free),
             Contact {
                 friction: 0.3,
                 ..contact(["a", "b-2"], linear(1e5, usual), 0.9, sprung(0.1, 0.3))
             },
-            contact(["b-2", "b-2"], linear(1e3, usual), 1.0, Rolling::None),
+            contact(["b-2", "b-2"], linear(1e3, usual), 1.0, Rolling::Free),
         ]
     );
 }
@@ -172,10 +182,10 @@ fn walls() {
     assert_eq!(
         walls["floor"],
         Wall {
-            shape: WallShape::Plane {
+            shape: WallShape::Plane(PlaneShape {
                 point_m: [0.0, 0.0, -0.01],
                 normal: [0.0, 0.0, 1.0]
-            },
+            }),
             material: "steel".to_owned(),
             rotation_rad: [0.0; 3],
             pivot_m: [0.0; 3],
@@ -186,10 +196,10 @@ fn walls() {
     let belt = &walls["belt"];
     assert_eq!(
         belt.shape,
-        WallShape::Box {
-            min: [-2.0, -0.3, -0.02],
-            max: [0.0, 0.3, 0.0]
-        }
+        WallShape::Box(BoxShape {
+            min_m: [-2.0, -0.3, -0.02],
+            max_m: [0.0, 0.3, 0.0]
+        })
     );
     assert_eq!(belt.material, "belt-rubber");
     assert_near(belt.rotation_rad[2], std::f64::consts::FRAC_PI_2);
@@ -197,11 +207,11 @@ fn walls() {
     assert_eq!(belt.surface_velocity_m_s, [3.0, 0.0, 0.0]);
     assert_eq!(
         walls["pin"].shape,
-        WallShape::Cylinder {
+        WallShape::Cylinder(CylinderShape {
             from_m: [0.0, -0.01, 0.0],
             to_m: [0.0, 0.01, 0.0],
             radius_m: 0.005
-        }
+        })
     );
     assert_eq!(
         walls["plate"].shape,
@@ -211,11 +221,11 @@ fn walls() {
             scale: 0.5
         }
     );
-    let WallShape::Plane { normal, .. } = good("touching.toml").walls["ground"].shape else {
+    let WallShape::Plane(plane) = good("touching.toml").walls["ground"].shape else {
         panic!("no plane");
     };
-    assert_near(normal[1], 0.6);
-    assert_near(normal[2], 0.8);
+    assert_near(plane.normal[1], 0.6);
+    assert_near(plane.normal[2], 0.8);
 }
 
 #[test]
@@ -297,12 +307,7 @@ fn how_contacts_are_found() {
 fn bonds() {
     let scene = good("every-key.toml");
     let parallel = &scene.bonds["parallel"];
-    assert_eq!(
-        parallel.model,
-        BondModel::Parallel {
-            stiffness_ratio: Some(2.5)
-        }
-    );
+    assert_eq!(parallel.model, BondModel::Parallel { kappa: Some(2.5) });
     assert_eq!(parallel.formulation, Formulation::Total);
     assert_near(parallel.young_modulus_pa, 12.05e6);
     assert_eq!(parallel.poisson_ratio, 0.3);
@@ -337,22 +342,22 @@ fn bonds() {
             weibull_modulus: Some(7.0),
         }
     );
-    let stiffness_ratio = Some(3.0);
-    assert_eq!(
-        scene.bonds["pinned"].model,
-        BondModel::Pin { stiffness_ratio }
-    );
+    let kappa = Some(3.0);
+    assert_eq!(scene.bonds["pinned"].model, BondModel::Pin { kappa });
+    assert_eq!(scene.bonds["pinned"].joint, None);
+    let joint = FlatJointLaw {
+        radial_elements: 2,
+        circumferential_elements: 8,
+        friction: 0.4,
+    };
     assert_eq!(
         scene.bonds["joined"].model,
         BondModel::FlatJoint {
-            stiffness_ratio: None,
-            elements: JointElements {
-                radial: 2,
-                circumferential: 8,
-                friction: 0.4,
-            },
+            kappa: None,
+            moment_ratio: moment_ratio(&joint),
         }
     );
+    assert_eq!(scene.bonds["joined"].joint, Some(joint));
     let sheared = &scene.bonds["sheared"];
     assert_eq!(sheared.model, BondModel::ShearCoefficient { alpha: 0.85 });
     assert_eq!(sheared.formulation, Formulation::Total);
@@ -417,17 +422,17 @@ fn sets() {
     assert_eq!(scene.groups["near"].body, None);
     assert_eq!(
         scene.groups["near"].pick,
-        Pick::Box {
-            min: [-0.001; 3],
-            max: [0.001; 3]
-        }
+        Pick::Box(BoxShape {
+            min_m: [-0.001; 3],
+            max_m: [0.001; 3]
+        })
     );
     assert_eq!(
         scene.groups["round"].pick,
-        Pick::Sphere {
-            centre: [0.0; 3],
-            radius: 0.005
-        }
+        Pick::Sphere(SphereShape {
+            centre_m: [0.0; 3],
+            radius_m: 0.005
+        })
     );
 }
 

@@ -27,6 +27,7 @@ use crate::state::contacts::{ContactHistory, Contacts};
 use crate::state::particles::{Motion, Particles, Pose, Wrench};
 use dem_physics::contact::assembly::{StoredContact, assemble};
 use dem_physics::contact::kinematics::{ContactSphere, contact_kinematics};
+use dem_physics::contact::law::Rolling;
 use dem_physics::contact::rolling::RollingFriction;
 use dem_physics::contact::{ContactSprings, Damped, NormalLaw};
 use dem_physics::lanes::{Lanes, MOST};
@@ -99,7 +100,7 @@ pub const ROLLING: Stage = Stage {
     within: Some(CONTACTS.name),
     need: |state, scene| {
         let mut contacts = scene.contacts.iter();
-        let rolls = contacts.any(|c| c.rolling != dem_scene::Rolling::None);
+        let rolls = contacts.any(|c| c.rolling != Rolling::Free);
         Need::of(
             state.contacts.is_some() && rolls,
             || "materials have it".to_owned(),
