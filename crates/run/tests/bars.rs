@@ -1,16 +1,17 @@
 //! Bodies for the tests, and operations on them.
 
-use dem_engine::Balance;
-use dem_engine::stages::ledger::bookkeeping::{balance, opened};
+use dem_engine::stages::ledger::bookkeeping::opened;
 use dem_engine::state::State;
 use dem_engine::state::bonds::{BondLaw, BondRule, Bonds};
 use dem_engine::state::particles::{Particles, Wrench};
-use dem_engine::step::{advance, interact, step};
+use dem_engine::step::step;
 use dem_physics::bond::damping::{DampingCoefficients, DampingModel, ReducedInertia, reduced};
 use dem_physics::bond::damping_models::{Chen, ChenByMode, Platzer};
 use dem_physics::bond::stiffness::{BondModel, BondShape, Stiffness, stiffness};
 use dem_physics::bond::total::direction;
 use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::helpers::step_and_balance;
 
 /// A rule without damping and failure.
 pub(crate) const ELASTIC: BondRule = BondRule {
@@ -256,14 +257,6 @@ pub(crate) fn tumble(state: &mut State) {
 /// Reopens the ledger.
 pub(crate) fn reopen(state: &mut State) {
     state.ledger = opened(state);
-}
-
-/// A step, with a balance of the ledger in its middle.
-pub(crate) fn step_and_balance(state: &mut State) -> Balance {
-    interact(state);
-    let balance = balance(state);
-    advance(state);
-    balance
 }
 
 /// The largest errors of a run.

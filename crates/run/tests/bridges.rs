@@ -7,16 +7,11 @@ mod pairs;
 mod swapped;
 mod walls;
 
-use dem_engine::Balance;
-use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::state::bridges::Bridges;
-use dem_engine::step::{advance, interact};
 use dem_physics::contact::liquid_bridge::LiquidBridge;
-use dem_plan::plan;
-use dem_scene::read_bodies;
 
-use crate::helpers::scene;
+use crate::helpers::{started, step_and_balance};
 
 /// Water on glass.
 pub(crate) const WATER: LiquidBridge = LiquidBridge {
@@ -49,20 +44,6 @@ pub(crate) fn ball(name: &str, place_m: [f64; 3], velocity_m_s: [f64; 3]) -> Str
     format!(
         "[bodies.{name}]\nmaterial = \"glass\"\nparticles = [[{x:e}, {y:e}, {z:e}, {RADIUS_M:e}]]\nvelocity = {velocity_m_s:?}\n"
     )
-}
-
-pub(crate) fn planned(text: &str) -> State {
-    let scene = scene(text);
-    plan(&scene, read_bodies(&scene).unwrap(), 1, false)
-        .unwrap_or_else(|error| panic!("{error}"))
-        .state
-}
-
-pub(crate) fn step_and_balance(state: &mut State) -> Balance {
-    interact(state);
-    let balance = balance(state);
-    advance(state);
-    balance
 }
 
 pub(crate) fn bridges(state: &State) -> &Bridges {

@@ -31,12 +31,9 @@ use dem_engine::state::events::Events;
 use dem_engine::state::events::PopulationEvent;
 use dem_engine::state::particles::Particles;
 use dem_engine::step::step;
-use dem_io::Result;
-use dem_plan::{Plan, plan};
 use nalgebra::Vector3;
 
-use crate::helpers::scene;
-use dem_scene::read_bodies;
+use crate::helpers::{planned, try_planned};
 
 /// The head of a scene: one material with this contact, and bonds.
 pub(crate) const HEAD: &str = "version = 1
@@ -90,15 +87,6 @@ pub(crate) fn lump(name: &str, more: &str) -> String {
         is_there.then(|| 1e-3 * (1.0 - 0.02 * f64::from(x) - 0.04 * f64::from(y * z)))
     };
     block(name, [3, 2, 2], 2e-3, radius, more)
-}
-
-pub(crate) fn try_plan(text: &str) -> Result<Plan> {
-    let scene = scene(text);
-    plan(&scene, read_bodies(&scene).unwrap(), 1, false)
-}
-
-pub(crate) fn planned(text: &str) -> Plan {
-    try_plan(text).unwrap()
 }
 
 /// A step, after which the bodies are listed again.

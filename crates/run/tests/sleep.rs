@@ -12,11 +12,9 @@ use std::fmt::Write;
 use dem_engine::state::State;
 use dem_engine::state::sleep::Sleep;
 use dem_engine::step::step;
-use dem_plan::{Plan, plan};
 use nalgebra::Vector3;
 
-use crate::helpers::scene;
-use dem_scene::read_bodies;
+use crate::helpers::{planned, started};
 
 pub(crate) const GRAVITY_M_S2: f64 = 9.81;
 /// Speed limit for sleep in these scenes.
@@ -64,15 +62,6 @@ pub(crate) fn ball(name: &str, [x_m, y_m, z_m]: [f64; 3], more: &str) -> String 
          particles = [[{x_m:e}, {y_m:e}, {:e}, {RADIUS_M:e}]]\n{more}\n",
         z_m + RADIUS_M
     )
-}
-
-pub(crate) fn plan_of(text: &str) -> Plan {
-    let scene = scene(text);
-    plan(&scene, read_bodies(&scene).unwrap(), 1, false).unwrap()
-}
-
-pub(crate) fn planned(text: &str) -> State {
-    plan_of(text).state
 }
 
 /// A step as in a run.

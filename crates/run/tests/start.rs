@@ -12,15 +12,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use dem_engine::state::State;
 use dem_io::Result;
-use dem_plan::{Plan, plan};
 use dem_results::ResultsFolder;
 use dem_results::Summary;
 use dem_runner::snapshot::Snapshot;
 use dem_runner::{RunSettings, run};
 use nalgebra::Vector3;
 
-use crate::helpers::scene;
-use dem_scene::read_bodies;
+use crate::helpers::{planned, scene, try_planned};
 
 /// Two spheres of 1 mm and 1000 kg/m3, bonded along x and 2 mm apart. The bond has the stiffness E
 /// A/L with a radius of 1 mm.
@@ -34,16 +32,6 @@ const PAIR: &str = "version = 1\nmaterials.m.density = 1000\n\
 const STIFFNESS_N_M: f64 = 1e6 * std::f64::consts::PI * 1e-6 / 2e-3;
 /// Mass of one of its spheres, kg.
 const MASS_KG: f64 = 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9;
-
-/// The plan of a scene with inline particles.
-fn try_planned(text: &str) -> Result<Plan> {
-    let scene = scene(text);
-    plan(&scene, read_bodies(&scene).unwrap(), 1, false)
-}
-
-fn planned(text: &str) -> Plan {
-    try_planned(text).unwrap()
-}
 
 /// Runs a scene, with or without a folder; it is interrupted at `stop_at` of its end time.
 fn run_of(

@@ -9,7 +9,8 @@ use dem_engine::state::State;
 use dem_engine::state::rigid_parts::RigidPart;
 use dem_plan::Plan;
 
-use crate::clumps::{HEAD, MEETS, block, planned};
+use crate::clumps::{HEAD, MEETS, block};
+use crate::helpers::planned;
 
 /// A block of 6 x 3 x 3 spheres that differ in size, with these lines.
 fn lump(more: &str) -> String {

@@ -28,13 +28,11 @@ pub(crate) mod calibration;
 pub mod cli;
 pub mod interrupt;
 
-pub use dem_engine::{Balance, State, balance, check, clock, stages, state, step, threads};
+pub use dem_engine::{Balance, State, balance, check, stages, state, step, threads};
 pub use dem_physics as physics;
-pub use dem_physics::{geometry, shape};
 pub use dem_plan::{self as plan, Plan, measure, plan};
 pub use dem_rig as rig;
 pub use dem_runner::{self as run, RunSettings, run};
-pub use {dem_lammps as lammps, dem_stress as stress};
 
 /// The code on the page is compiled and run with the tests.
 #[cfg(doctest)]

@@ -3,7 +3,8 @@
 use crate::bars::{
     BondDamping, ELASTIC, bar, body, damp, law, random_spheres, shake, soft, spheres, steel, tumble,
 };
-use crate::clumps::{HEAD, block, planned};
+use crate::clumps::{HEAD, block};
+use crate::helpers::planned;
 use dem_engine::check::limit::limit as step_limit;
 use dem_engine::stages::bonds::damping::{ONE_STAGE, WEAK};
 use dem_engine::stages::ledger::totals::kinetic_energy;

@@ -3,7 +3,7 @@
 use dem_engine::state::State;
 
 use super::{
-    RADIUS_M, WATER, assert_near, ball, bridges, head, mass_kg, planned, step_and_balance,
+    RADIUS_M, WATER, assert_near, ball, bridges, head, mass_kg, started, step_and_balance,
 };
 
 const FLOOR: &str =
@@ -21,8 +21,8 @@ fn a_dry_scene_has_no_bridges() {
         .filter(|line| !line.starts_with("liquid"))
         .map(|line| format!("{line}\n"))
         .collect();
-    assert!(planned(&dry).bridges.is_none());
-    assert!(planned(&text).bridges.is_some());
+    assert!(started(&dry).bridges.is_none());
+    assert!(started(&text).bridges.is_some());
 }
 
 /// A large volume, whose bridges reach farther than the list of near pairs.
@@ -39,7 +39,7 @@ fn a_bridge_pulls_at_a_clump_beyond_the_skin() {
         2.0 * RADIUS_M - 1e-8,
         1.9 * RADIUS_M
     );
-    let mut state = planned(&format!(
+    let mut state = started(&format!(
         "{}{}{clump}[search]\nskin = 0.02\n",
         far(&head(
             1.0,
@@ -72,7 +72,7 @@ fn a_bridge_pulls_at_a_clump_beyond_the_skin() {
 #[test]
 fn bridges_join_what_sleeps() {
     let apart_m = 2.0 * RADIUS_M + 2e-4;
-    let mut state = planned(&format!(
+    let mut state = started(&format!(
         "{}{}{}{FLOOR}[sleep]\nspeed = \"1 mm/s\"\nafter = \"2 ms\"\n",
         far(&head(
             1.0,
@@ -111,7 +111,7 @@ fn bridges_join_what_sleeps() {
 /// A body that leaves takes its bridges along, and the books know.
 #[test]
 fn an_outlet_takes_bridges_along() {
-    let mut state = planned(&format!(
+    let mut state = started(&format!(
         "{}{}{}[regions.out]\nbox = {{ min = [{:e}, -1, -1], max = [1, 1, 1] }}\n[outlets.out]\ninside = \"out\"\n",
         far(&head(
             1.0,

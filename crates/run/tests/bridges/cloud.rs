@@ -8,7 +8,7 @@ use dem_engine::state::bridges::Bridges;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
-use super::{RADIUS_M, WATER, ball, bridges, head, planned, step_and_balance};
+use super::{RADIUS_M, WATER, ball, bridges, head, started, step_and_balance};
 use dem_testing::Random;
 
 /// Number of spheres along an edge of the cloud.
@@ -27,7 +27,7 @@ fn cloud(seed: u64, restitution: f64, more: &str) -> State {
         let velocity = [0, 1, 2].map(|k| own[k] - 0.1 * centre[k]);
         write!(text, "{}", ball(&format!("b{n}"), place, velocity)).unwrap();
     }
-    planned(&text)
+    started(&text)
 }
 
 fn bits(state: &State) -> Vec<u64> {

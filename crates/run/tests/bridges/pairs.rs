@@ -4,7 +4,7 @@ use dem_engine::state::State;
 use nalgebra::Vector3;
 
 use super::{
-    RADIUS_M, WATER, assert_near, ball, bridges, head, mass_kg, planned, step_and_balance,
+    RADIUS_M, WATER, assert_near, ball, bridges, head, mass_kg, started, step_and_balance,
 };
 
 const BETWEEN_M: f64 = 0.5 * RADIUS_M;
@@ -18,7 +18,7 @@ fn gap_m(state: &State) -> f64 {
 fn pulled(overlap_m: f64, step_s: f64) -> State {
     let run = format!("initial_overlap = \"keep\", time_step = {step_s:e}");
     let apart_m = 2.0 * RADIUS_M - overlap_m;
-    planned(&format!(
+    started(&format!(
         "{}{}{}[supports.a]\ngroup = \"a\"\nfixed = [\"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\"]\n\
          [supports.b]\ngroup = \"b\"\nfixed = [\"y\", \"z\", \"rx\", \"ry\", \"rz\"]\nvelocity = {{ x = 1e-3 }}\n",
         head(1.0, 1.0, &run),
@@ -94,8 +94,8 @@ fn meeting(speed_m_s: f64, steps: f64) -> State {
             ball("b", [at, 0.0, 0.0], [-v, 0.0, 0.0]),
         )
     };
-    let step_s = planned(&text("safety_factor = 0.9")).time_step_s / steps;
-    planned(&text(&format!("time_step = {step_s:e}")))
+    let step_s = started(&text("safety_factor = 0.9")).time_step_s / steps;
+    started(&text(&format!("time_step = {step_s:e}")))
 }
 
 /// m* v^2/2 against the work of the bridge decides: closer than 1 % to it from both sides.

@@ -4,7 +4,7 @@ use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
 use dem_physics::contact::liquid_bridge::LiquidBridge;
 
-use super::{RADIUS_M, WATER, assert_near, bridges, head, planned, step_and_balance};
+use super::{RADIUS_M, WATER, assert_near, bridges, head, started, step_and_balance};
 
 const SWAP_S: f64 = 1e-3;
 
@@ -22,7 +22,7 @@ fn leaving(scale: f64, volume: f64, speed_m_s: f64, restore: &str) -> State {
     };
     let apart_m = 4.0 * RADIUS_M + (scale - 1.0) * RADIUS_M - 1e-8;
     let settings = "initial_overlap = \"keep\", safety_factor = 0.3";
-    planned(&format!(
+    started(&format!(
         "{}[bonds.glass]\nyoung_modulus = 1e8\npoisson_ratio = 0.25\n{}{}\
          [replacement.upper]\nwhen = {{ time = {SWAP_S} }}\n{restore}",
         head(1.0, 1.0, settings).replace("\"1e-3 mm3\"", &format!("{volume:e}")),

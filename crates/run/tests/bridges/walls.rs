@@ -3,7 +3,7 @@
 use dem_engine::state::State;
 
 use super::{
-    RADIUS_M, WATER, assert_near, ball, bridges, head, mass_kg, planned, step_and_balance,
+    RADIUS_M, WATER, assert_near, ball, bridges, head, mass_kg, started, step_and_balance,
 };
 
 const FLOOR: &str =
@@ -11,7 +11,7 @@ const FLOOR: &str =
 
 /// A wet sphere on a floor that sinks at 1 mm/s while the sphere is held.
 fn held() -> State {
-    planned(&format!(
+    started(&format!(
         "{}{}{}velocity = [0, 0, -1e-3]\n[supports.a]\ngroup = \"a\"\nfixed = [\"x\", \"y\", \"z\", \"rx\", \"ry\", \"rz\"]\n",
         head(1.0, 1.0, "initial_overlap = \"keep\", time_step = 5e-6"),
         ball("a", [0.0, 0.0, RADIUS_M - 1e-8], [0.0; 3]),
@@ -55,8 +55,8 @@ fn a_slow_sphere_stays_at_a_wall_and_a_fast_one_leaves() {
                 ball("a", place, [0.0, 0.0, -speed])
             )
         };
-        let step_s = planned(&text("safety_factor = 0.9")).time_step_s / 4.0;
-        let mut state = planned(&text(&format!("time_step = {step_s:e}")));
+        let step_s = started(&text("safety_factor = 0.9")).time_step_s / 4.0;
+        let mut state = started(&text(&format!("time_step = {step_s:e}")));
         let mut highest_m = 0.0_f64;
         while state.time_s < 4.0 * WATER.rupture_m() / (0.1 * critical_m_s) {
             step_and_balance(&mut state);
@@ -87,7 +87,7 @@ fn a_sphere_hangs_from_a_ceiling() {
             ball("a", [0.0, 0.0, 1e-8 - RADIUS_M], [0.0; 3])
         )
     };
-    let mut state = planned(&scene("1e-3 mm3"));
+    let mut state = started(&scene("1e-3 mm3"));
     while state.time_s < 0.05 {
         step_and_balance(&mut state);
     }
@@ -121,7 +121,7 @@ fn a_bridge_moves_along_a_mesh() {
     }
     std::fs::write(&path, text + "endsolid plate\n").unwrap();
     let speed = 0.2;
-    let mut state = planned(&format!(
+    let mut state = started(&format!(
         "{}{}angular_velocity = [0, {}, 0]\n[walls.plate]\nstl = {:?}\nunit = \"m\"\nmaterial = \"glass\"\n",
         head(
             1.0,
@@ -148,7 +148,7 @@ fn a_bridge_goes_over_a_joint_of_walls() {
         let walls = boxes.iter().zip(["a", "b", "c"]).map(|([from, to], name)| {
             format!("walls.{name} = {{ box = {{ min = [{from:?}, -1, -1], max = [{to:?}, 1, 0] }}, material = \"glass\" }}\n")
         });
-        let mut state = planned(&format!(
+        let mut state = started(&format!(
             "{}{}{}",
             head(1.0, 0.5, "initial_overlap = \"keep\", time_step = 5e-6").replace(
                 "[contacts.glass-glass]\n",

@@ -3,17 +3,18 @@
 use std::f64::consts::PI;
 
 use dem_engine::Balance;
-use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::state::clumps::Clump;
 use dem_engine::state::events::PopulationEvent;
-use dem_engine::step::{advance, exchange, interact};
+use dem_engine::step::exchange;
 use dem_plan::Plan;
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 
-use super::{planned, try_plan};
+use super::{planned, try_planned};
 use dem_testing::Random;
+
+use crate::helpers::step_and_balance;
 
 const RADIUS_M: f64 = 5e-3;
 const DENSITY_KG_M3: f64 = 2500.0;
@@ -62,14 +63,6 @@ const PLATE: &str = "[walls.plate]\nplane = { point = [0, 0, 0], normal = [0, 0,
 
 fn ball_kg() -> f64 {
     DENSITY_KG_M3 * 4.0 / 3.0 * PI * RADIUS_M.powi(3)
-}
-
-/// A step and the balance in its middle.
-fn step_and_balance(state: &mut State) -> Balance {
-    interact(state);
-    let balance = balance(state);
-    advance(state);
-    balance
 }
 
 /// Mass, centre, momentum and angular momentum about the origin of all clumps.
@@ -432,7 +425,7 @@ fn what_cannot_be_is_refused() {
     let falls = "[bodies.halves]\nmaterial = \"ore\"\nparticles = [[0, 0, 0, 1], [2, 0.1, 0, 0.8]]";
     let one = "[bodies.halves]\nmaterial = \"ore\"\nparticles = [[0, 0, 0, 1]]";
     let rule = daughters("{ from = 10, body = \"halves\" }", "");
-    let refused = try_plan(&bodies(0.5, &rule).replace(falls, one)).unwrap_err();
+    let refused = try_planned(&bodies(0.5, &rule).replace(falls, one)).unwrap_err();
     assert!(
         refused
             .to_string()
@@ -440,7 +433,7 @@ fn what_cannot_be_is_refused() {
         "{refused}"
     );
     let rule = daughters("{ from = 10, body = \"halves\" }", "smallest_size = 0.02");
-    let refused = try_plan(&bodies(0.5, &rule)).unwrap_err();
+    let refused = try_planned(&bodies(0.5, &rule)).unwrap_err();
     assert!(refused.to_string().contains("the body itself"), "{refused}");
 }
 

@@ -1,14 +1,14 @@
 //! Invalid scenes with clumps are refused, with the place, the value and the remedy.
 
 use super::regions::box_stl;
-use super::{HEAD, MEETS, block, lump, try_plan};
+use super::{HEAD, MEETS, block, lump, try_planned};
 use crate::helpers::scene;
 use dem_io::{Body, Diagnostic};
 use dem_plan::plan;
 
 /// The message gives place, problem and remedy, and a program that prints it ends with exit code 2.
 fn refused(text: &str, place: &str, problem: &str, remedy: &str) {
-    told(&try_plan(text).unwrap_err(), place, problem, remedy);
+    told(&try_planned(text).unwrap_err(), place, problem, remedy);
 }
 
 fn told(error: &Diagnostic, place: &str, problem: &str, remedy: &str) {
@@ -61,7 +61,7 @@ fn materials_that_meet_without_a_word() {
             lump("lump", "start_as = \"clump\"")
         )
     };
-    assert!(try_plan(&lumps("stuff")).is_ok());
+    assert!(try_planned(&lumps("stuff")).is_ok());
     refused(&lumps("other"), "[contacts]", "other", "-");
     // Fed bodies meet copies of themselves.
     let fed = format!(

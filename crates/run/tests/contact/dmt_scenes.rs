@@ -3,15 +3,12 @@
 use std::f64::consts::PI;
 use std::fmt::Write;
 
-use dem_engine::Balance;
 use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, step};
-use dem_plan::plan;
-use dem_scene::read_bodies;
 
-use crate::helpers::scene;
+use crate::helpers::{started, step_and_balance};
 use dem_testing::Random;
 
 /// Radius of all spheres, m.
@@ -39,13 +36,6 @@ fn ball(name: &str, radius_m: f64, place_m: [f64; 3], velocity_m_s: [f64; 3]) ->
     )
 }
 
-fn planned(text: &str) -> State {
-    let scene = scene(text);
-    plan(&scene, read_bodies(&scene).unwrap(), 1, false)
-        .unwrap_or_else(|error| panic!("{error}"))
-        .state
-}
-
 /// Overlap at which Hertz's force is the attraction plus this load, N, for this effective radius.
 fn at_rest_m(effective_m: f64, load_n: f64) -> f64 {
     let hertz = 4.0 / 3.0 * YOUNG_PA / (2.0 * (1.0 - 0.09)) * effective_m.sqrt();
@@ -71,14 +61,7 @@ fn cloud(seed: u64) -> State {
         )
         .unwrap();
     }
-    planned(&text)
-}
-
-fn step_and_balance(state: &mut State) -> Balance {
-    interact(state);
-    let now = balance(state);
-    advance(state);
-    now
+    started(&text)
 }
 
 fn bits(state: &State) -> Vec<u64> {
@@ -179,7 +162,7 @@ fn two_spheres_are_pulled_apart_with_the_force_of_their_effective_radius() {
                 "[supports]\na = {{ group = \"a\", fixed = true }}\n\
                  b = {{ group = \"b\", fixed = [\"y\", \"z\", \"rx\", \"ry\", \"rz\"], velocity.x = {speed_m_s:e} }}\n"
             );
-        let mut state = planned(&text);
+        let mut state = started(&text);
         let (mut largest_n, mut last_n) = (0.0_f64, f64::NAN);
         while state.time_s < 2.0 * rest_m / speed_m_s {
             interact(&mut state);
@@ -211,7 +194,7 @@ fn what_hangs_by_adhesion_sleeps_and_wakes() {
         &format!("{CEILING}sleep = {{ speed = \"0.1 mm/s\", after = \"0.2 ms\" }}"),
     ) + &ball("a", RADIUS_M, [0.0, 0.0, top_m], [0.0; 3])
         + &ball("b", RADIUS_M, [0.0, 0.0, -0.01], [0.0, 0.0, 0.7]);
-    let mut state = planned(&text);
+    let mut state = started(&text);
     let mut slept = false;
     while state.time_s < 0.02 {
         interact(&mut state);
@@ -261,7 +244,7 @@ fn a_clump_hangs_by_the_adhesion_of_its_spheres() {
         head(GRAVITY, CEILING).replace(&format!("= {WORK}"), &format!("= {work:e}")) + &clump(top_m)
     };
     let hanging_m = at_rest_m(RADIUS_M, -1.5 * WEIGHT_N);
-    let mut state = planned(&text(WORK, -RADIUS_M + hanging_m));
+    let mut state = started(&text(WORK, -RADIUS_M + hanging_m));
     while state.time_s < 0.01 {
         step(&mut state);
     }
@@ -275,7 +258,7 @@ fn a_clump_hangs_by_the_adhesion_of_its_spheres() {
 
     // Half of what carries it: 2 (2 pi w R) = 3 W.
     let weak = 0.5 * 1.5 * WEIGHT_N / (2.0 * PI * RADIUS_M);
-    let mut state = planned(&text(weak, -RADIUS_M + 1e-3 * hanging_m));
+    let mut state = started(&text(weak, -RADIUS_M + 1e-3 * hanging_m));
     while state.time_s < 0.01 {
         step(&mut state);
     }

@@ -6,12 +6,10 @@ use std::fs;
 use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
-use dem_plan::plan;
-use dem_scene::read_bodies;
 use nalgebra::Vector3;
 use tempfile::TempDir;
 
-use crate::helpers::scene;
+use crate::helpers::started;
 use dem_testing::Random;
 
 const HEAD: &str = "version = 1
@@ -42,12 +40,6 @@ fn ball(at_mm: [f64; 3], velocity_m_s: [f64; 3]) -> String {
     )
 }
 
-fn planned(text: &str) -> State {
-    let scene = scene(text);
-    let bodies = read_bodies(&scene).unwrap();
-    plan(&scene, bodies, 1, false).unwrap().state
-}
-
 /// What a run shows: the largest force of all walls together along z, N; the largest number of
 /// contacts; the largest energy error; the state at its end.
 struct Seen {
@@ -58,7 +50,7 @@ struct Seen {
 }
 
 fn runs(text: &str, time_s: f64) -> Seen {
-    let mut state = planned(text);
+    let mut state = started(text);
     let (mut peak_n, mut contacts, mut energy_error) = (0.0_f64, 0, 0.0_f64);
     while state.time_s < time_s {
         interact(&mut state);

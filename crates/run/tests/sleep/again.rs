@@ -8,7 +8,7 @@ use dem_runner::Progress;
 use dem_runner::snapshot::{Snapshot, fingerprint};
 use rayon::prelude::*;
 
-use super::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, plan_of, slab, sleep};
+use super::{CLUMP, GROUND, SLEEP, ball, go, go_until, head, planned, slab, sleep};
 
 /// A sleeping pile, a ball that slowly rolls up to it, and one that falls from above.
 fn pile(threads: usize) -> Plan {
@@ -17,7 +17,7 @@ fn pile(threads: usize) -> Plan {
     let beside = slab("beside", [6e-3, 0.0, 0.0], "");
     let roller = ball("roller", [-4e-3, 1e-3, 0.0], "velocity = [0.04, 0, 0]");
     let faller = ball("faller", [7e-3, 1e-3, 4e-3], "velocity = [0, 0, 0.2]");
-    let mut plan = plan_of(&format!(
+    let mut plan = planned(&format!(
         "{}search.skin = 0.4\n{low}{middle}{beside}{roller}{faller}{GROUND}{SLEEP}",
         head(0.0)
     ));

@@ -5,7 +5,7 @@ use dem_engine::stages::ledger::bookkeeping::{balance, opened};
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact};
 
-use super::{CLUMP, GROUND, SLEEP, ball, head, planned, slab, sleep};
+use super::{CLUMP, GROUND, SLEEP, ball, head, slab, sleep, started};
 
 /// Bodies that land, sleep, and are later hit by a falling ball.
 fn scene() -> String {
@@ -34,7 +34,7 @@ fn errors(balance: &Balance) -> [f64; 3] {
 /// The largest errors on the way, the numbers of bodies that fell asleep and woke, and the lost
 /// kinetic energy.
 fn follow(asks: &str, until_s: f64) -> ([f64; 3], [u32; 2], f64) {
-    let mut state = planned(&format!("{}{asks}", scene()));
+    let mut state = started(&format!("{}{asks}", scene()));
     let mass_kg = state.ledger.mass_kg();
     let (mut worst, mut counts, mut all_lost_j) = ([0.0_f64; 3], [0; 2], 0.0);
     let mut before: Option<Balance> = None;
@@ -68,7 +68,7 @@ fn follow(asks: &str, until_s: f64) -> ([f64; 3], [u32; 2], f64) {
 
 #[test]
 fn what_falls_asleep_is_booked() {
-    let mut awake = planned(&scene());
+    let mut awake = started(&scene());
     let mut worst_awake = 0.0_f64;
     while awake.time_s < 0.12 {
         worst_awake = worst_awake.max(look(&mut awake).energy_error.abs());
@@ -92,7 +92,7 @@ fn damping_of_bonds_is_booked_until_the_motion_stops() {
     let text = head(0.0).replace("run.end_time = 1", "run.end_time = 1\nrun.time_step = 1e-8");
     let swinging = slab("swinging", [0.0, 0.0, 1e-3], "");
     let asks = "[sleep]\nspeed = 0.05\nafter = 5e-7\n";
-    let mut state = planned(&format!("{text}{swinging}{GROUND}{asks}"));
+    let mut state = started(&format!("{text}{swinging}{GROUND}{asks}"));
     for (i, along) in [(0, 0.02), (1, -0.02)] {
         state.particles.motions[i].velocity_m_s = [along, 0.0, 0.0];
     }

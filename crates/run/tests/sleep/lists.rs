@@ -4,7 +4,7 @@ use dem_engine::stages::clumps::motion::place_all;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, stages};
 
-use super::{CLUMP, GROUND, SLEEP, ball, go_until_asleep, head, planned, slab, sleep};
+use super::{CLUMP, GROUND, SLEEP, ball, go_until_asleep, head, slab, sleep, started};
 
 /// Bodies at rest, every third of them rigid: their particles are more than twice as many as those
 /// that one task handles.
@@ -29,7 +29,7 @@ fn field(balls: usize) -> State {
             text += &ball(&format!("slab{n}ball"), [x + aside, y + 1e-3, 4e-3], &more);
         }
     }
-    planned(&text)
+    started(&text)
 }
 
 /// Everything awake is in the lists with all that it touches, and nothing that sleeps is with

@@ -1,11 +1,11 @@
 //! Bodies that never sleep, and bodies that are woken by distant events.
 
 use super::{
-    CLUMP, GROUND, SLEEP, ball, go, go_until, go_until_asleep, head, planned, slab, sleep,
+    CLUMP, GROUND, SLEEP, ball, go, go_until, go_until_asleep, head, slab, sleep, started,
 };
 
 fn never_sleeps(text: &str, until_s: f64) {
-    let mut state = planned(&format!("{text}{SLEEP}"));
+    let mut state = started(&format!("{text}{SLEEP}"));
     while state.time_s < until_s {
         go(&mut state);
         assert_eq!(sleep(&state).bodies, 0, "at {} s", state.time_s);
@@ -58,7 +58,7 @@ fn who_touches_somebody_restless_does_not_sleep() {
         "angular_velocity = [0, 0, 400]",
     );
     let text = lying(CLUMP, &spinner).replace("friction = 0.8", "friction = 0.0");
-    let mut state = planned(&format!("{text}{SLEEP}"));
+    let mut state = started(&format!("{text}{SLEEP}"));
     go_until(&mut state, 0.05);
     assert_eq!(sleep(&state).bodies, 0);
     assert!(state.particles.motions[0].spin_rad_s[2] > 300.0);
@@ -70,8 +70,8 @@ fn a_wall_that_begins_to_move_wakes_at_once() {
         CLUMP,
         "velocity = [0, 0, 0.01]\ntable = [[0, 0], [0.04, 0], [0.05, 1]]",
     );
-    let mut state = planned(&format!("{text}{SLEEP}"));
-    let mut awake = planned(&text);
+    let mut state = started(&format!("{text}{SLEEP}"));
+    let mut awake = started(&text);
     go_until_asleep(&mut state, 1);
     assert!(state.time_s < 0.03);
     let mut woke_s = 0.0;
@@ -102,7 +102,7 @@ fn a_clump_that_is_replaced_wakes_and_its_island_with_it() {
         CLUMP,
         &format!("{top}[replacement.top]\nwhen = {{ time = 0.05 }}\n"),
     );
-    let mut state = planned(&format!("{text}{SLEEP}"));
+    let mut state = started(&format!("{text}{SLEEP}"));
     go_until_asleep(&mut state, 2);
     assert!(state.time_s < 0.05);
     go_until(&mut state, 0.049);
@@ -129,7 +129,7 @@ fn sleepers_leave_and_keep_their_place_against_those_who_come() {
          [inlets.feed]\nbodies = [\"grain\"]\nregion = \"gate\"\nrate = 1000\nstart = 0.04\nend = 0.06\n",
         ball("grain", [0.0, 0.0, -RADIUS], CLUMP)
     );
-    let mut state = planned(&format!("{text}{SLEEP}"));
+    let mut state = started(&format!("{text}{SLEEP}"));
     go_until_asleep(&mut state, 1);
     go_until(&mut state, 0.05);
     // No position is free within the slab.
@@ -146,7 +146,7 @@ fn what_lies_on_a_sleeper_that_leaves_falls() {
             "{top}[regions.low]\nbox = {{ min = [-1, -1, -1], max = [1, 1, 1.5e-3] }}\n[outlets.hole]\ninside = \"low\"\n"
         ),
     );
-    let mut state = planned(&format!("{text}{SLEEP}"));
+    let mut state = started(&format!("{text}{SLEEP}"));
     // As if the hole were opened when both sleep.
     let outlets = std::mem::take(&mut state.model.rules.outlets);
     go_until_asleep(&mut state, 2);

@@ -5,7 +5,7 @@ use dem_engine::step::interact;
 
 use super::{
     AFTER_S, CLUMP, GROUND, SLEEP, SPEED_M_S, apart_m, ball, depth_m, go, go_until,
-    go_until_asleep, head, planned, slab, slab_kg, sleep, work,
+    go_until_asleep, head, slab, slab_kg, sleep, started, work,
 };
 
 /// A clump and a cluster that fall from half a millimetre, and a single sphere.
@@ -18,8 +18,8 @@ fn falling() -> String {
 
 #[test]
 fn bodies_that_land_fall_asleep_and_lie_where_they_would_lie() {
-    let mut state = planned(&format!("{}{SLEEP}", falling()));
-    let mut awake = planned(&falling());
+    let mut state = started(&format!("{}{SLEEP}", falling()));
+    let mut awake = started(&falling());
     go_until_asleep(&mut state, 3);
     assert!(state.time_s > AFTER_S);
     go(&mut state);
@@ -49,7 +49,7 @@ fn bodies_that_land_fall_asleep_and_lie_where_they_would_lie() {
 
 #[test]
 fn the_ground_still_feels_those_who_sleep() {
-    let mut state = planned(&format!("{}{SLEEP}", falling()));
+    let mut state = started(&format!("{}{SLEEP}", falling()));
     go_until_asleep(&mut state, 3);
     interact(&mut state);
     let [force_n, torque_n_m] = state.walls[0].total_load();
@@ -76,7 +76,7 @@ fn a_stack_falls_asleep_at_once_when_its_last_body_rests() {
     let apart = slab("apart", [0.02, 0.0, 0.0], CLUMP);
     // Lands on the stack, long after that has come to rest.
     let late = ball("late", [1e-3, 1e-3, 6e-3 + 1e-3], "velocity = [0, 0, 0.3]");
-    let mut state = planned(&format!("{text}{apart}{late}{GROUND}{SLEEP}"));
+    let mut state = started(&format!("{text}{apart}{late}{GROUND}{SLEEP}"));
     let mut seen = Vec::new();
     while state.time_s < 0.3 {
         go(&mut state);

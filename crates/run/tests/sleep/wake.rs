@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::{
     CLUMP, GROUND, SLEEP, apart_m, ball, depth_m, force_on_clump, go, go_until, go_until_asleep,
-    head, planned, slab, slab_kg, sleep,
+    head, slab, slab_kg, sleep, started,
 };
 
 /// A slab at rest, and a ball that is thrown up and falls on it.
@@ -20,8 +20,8 @@ fn thrown(start: &str) -> String {
 #[test]
 fn a_ball_that_comes_down_wakes_what_it_hits() {
     for start in [CLUMP, ""] {
-        let mut state = planned(&format!("{}{SLEEP}", thrown(start)));
-        let mut awake = planned(&thrown(start));
+        let mut state = started(&format!("{}{SLEEP}", thrown(start)));
+        let mut awake = started(&thrown(start));
         go_until_asleep(&mut state, 1);
         assert!(state.time_s < 0.04);
         let mut woke_s = 0.0;
@@ -66,7 +66,7 @@ fn on_a_slope_friction_holds_as_before() {
         "{}search.skin = 0.3\n{lying}{GROUND}{lid}{SLEEP}",
         head(slope_rad)
     );
-    let mut state = planned(&text);
+    let mut state = started(&text);
     go_until_asleep(&mut state, 1);
     go(&mut state);
     let place = |state: &State| Vector3::from(state.clumps.all[0].place_m);
@@ -126,7 +126,7 @@ fn a_pile_wakes_as_one() {
         [1e-3, 1e-3, piled(3) + 2e-3],
         "velocity = [0, 0, 0.25]",
     );
-    let mut state = planned(&format!("{text}{ball}{GROUND}{SLEEP}"));
+    let mut state = started(&format!("{text}{ball}{GROUND}{SLEEP}"));
     go_until_asleep(&mut state, 4);
     while sleep(&state).bodies == 4 {
         go(&mut state);

@@ -1,9 +1,8 @@
 //! Bonds that break during a run: their energy is recorded, and the error of each break decreases
 //! with the step.
 
-use crate::bars::{
-    BondDamping, ELASTIC, bar, damp, law, random_body, reopen, step_and_balance, with_threads,
-};
+use crate::bars::{BondDamping, ELASTIC, bar, damp, law, random_body, reopen, with_threads};
+use crate::helpers::step_and_balance;
 use dem_engine::state::State;
 use dem_engine::state::bonds::BondRule;
 use dem_physics::bond::failure::{Criteria, EquivalentStress};

@@ -3,12 +3,10 @@
 use dem_engine::stages::ledger::bookkeeping::balance;
 use dem_engine::state::State;
 use dem_engine::step::{advance, interact, step};
-use dem_plan::plan;
-use dem_scene::read_bodies;
 use nalgebra::Vector3;
 
 use crate::bars::{ELASTIC, bar, damp_particles, reopen, shake, tumble};
-use crate::helpers::scene;
+use crate::helpers::started;
 use dem_physics::bond::stiffness::BondModel;
 
 /// Momentum, and angular momentum about the centre of mass, of all particles.
@@ -99,18 +97,12 @@ fn pair(name: &str, height_m: f64, velocity_m_s: f64) -> String {
     )
 }
 
-fn planned(text: &str) -> State {
-    let scene = scene(text);
-    let bodies = read_bodies(&scene).unwrap();
-    plan(&scene, bodies, 1, false).unwrap().state
-}
-
 /// Falls undamped, and comes to rest on the floor.
 #[test]
 fn a_body_falls_undamped_and_rests_on_a_wall() {
     let floor =
         "walls.f = { material = \"m\", plane = { point = [0, 0, 0], normal = [0, 0, 1] } }\n";
-    let mut state = planned(&format!("{BLOCK}{}{floor}", pair("b", 0.01, 0.0)));
+    let mut state = started(&format!("{BLOCK}{}{floor}", pair("b", 0.01, 0.0)));
     let mut fastest_m_s = 0.0_f64;
     while state.time_s < 0.5 {
         step(&mut state);
@@ -135,7 +127,7 @@ fn a_body_falls_undamped_and_rests_on_a_wall() {
 fn an_impact_in_flight_keeps_the_momentum_of_both() {
     let text = format!("{BLOCK}{}{}", pair("a", 0.0, 1.0), pair("b", 0.021, -0.5));
     let text = text.replace("gravity = [0, 0, -9.81], ", "");
-    let mut state = planned(&text);
+    let mut state = started(&text);
     let before = momenta(&state)[0];
     while state.time_s < 4e-3 {
         step(&mut state);

@@ -1,9 +1,9 @@
 //! The same bits for any number of partitions and threads, with all features active.
 
 use crate::bars::{
-    BondDamping, add_bonds, damp, damp_particles, random_spheres, reopen, soft, step_and_balance,
-    with_threads,
+    BondDamping, add_bonds, damp, damp_particles, random_spheres, reopen, soft, with_threads,
 };
+use crate::helpers::step_and_balance;
 use dem_engine::Balance;
 use dem_engine::check::limit::{Limit, limit};
 use dem_engine::stages::bonds::energy_kernel::elastic_energy;

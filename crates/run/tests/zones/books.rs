@@ -8,7 +8,8 @@ use nalgebra::Vector3;
 
 use super::{EVERYWHERE, NOWHERE, TOP, UPPER, disturb, flying, flying_text, rigid};
 use crate::bars::reopen;
-use crate::clumps::{Whole, planned};
+use crate::clumps::Whole;
+use crate::helpers::planned;
 
 fn whole(state: &State) -> Whole {
     Whole::of(&state.particles, 0..state.particles.free, &Vector3::zeros())

@@ -3,7 +3,8 @@
 use dem_engine::state::State;
 use dem_engine::step::step;
 
-use crate::clumps::{HEAD, block, planned};
+use crate::clumps::{HEAD, block};
+use crate::helpers::planned;
 
 const SPHERES: i32 = 12;
 const APART_M: f64 = 2e-3;

@@ -10,7 +10,8 @@ use dem_runner::snapshot::{Snapshot, fingerprint};
 use nalgebra::Vector3;
 
 use super::{EVERYWHERE, FLIES, NOWHERE, TOP, disturb, flying, lump, rigid};
-use crate::clumps::{HEAD, MEETS, planned};
+use crate::clumps::{HEAD, MEETS};
+use crate::helpers::planned;
 
 const FLOOR: &str =
     "[walls.floor]\nplane = { point = [0, 0, 0.299], normal = [0, 0, 1] }\nmaterial = \"stuff\"\n";

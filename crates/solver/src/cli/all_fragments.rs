@@ -8,11 +8,11 @@ use dem_io::stl::write_stl;
 use dem_io::text::visible;
 use dem_io::units::significant;
 use dem_io::{Diagnostic, Result};
+use dem_physics::shape::hull::{SMALLER_BY, convex_hull};
 use dem_terminal::standard_output::write_standard_output;
 
 use super::fragment_body::fragment_body;
 use super::new_folder::NewFolder;
-use crate::shape::hull::{SMALLER_BY, convex_hull};
 
 /// Millimetres in a metre: STL files are in millimetres, as dem-pack and scenes read them.
 const MM: f64 = 1e3;
