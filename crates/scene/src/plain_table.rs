@@ -1,7 +1,7 @@
 //! Tables of which each key stands for one field, declared in one place.
 
 /// Declares a table from one entry for each key: its struct with public fields, and its schema. The
-/// comment of a field is the sentence of its key.
+/// comment of a field is the sentence of its key; its value is in SI, a direction of length 1.
 ///
 /// An entry is `field: type =` and an entry of [`table_schema`](crate::schema::table_schema).
 /// [`plain_table`] takes it with `by` a function that reads the value from the table.
