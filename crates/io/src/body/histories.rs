@@ -3,6 +3,7 @@
 
 use crate::diagnostic::{Diagnostic, Result};
 use crate::vtk::{NamedArray, Values};
+use crate::vtp::Arrays;
 
 /// Plastic deformation of a bond. Vectors are in the axes of its body.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -109,10 +110,17 @@ pub(crate) const ALL: [&str; 13] = [
 /// The numbers of these arrays as read from a file; empty for those that it lacks.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HistoryArrays {
-    pub(crate) arrays: [Vec<f64>; ALL.len()],
+    arrays: [Vec<f64>; ALL.len()],
 }
 
 impl HistoryArrays {
+    pub(crate) fn take(arrays: &mut Arrays) -> Self {
+        let array = |name| arrays.take(&format!("CellData/{name}")).unwrap_or_default();
+        Self {
+            arrays: ALL.map(array),
+        }
+    }
+
     fn of(&self, name: &str) -> &[f64] {
         let at = ALL.iter().position(|other| *other == name);
         at.map_or(&[], |at| &self.arrays[at])

@@ -8,29 +8,25 @@
 //! `body_format_version`, `length_unit` and one array for each known field of [`About`]. For the
 //! encoding see [`crate::vtk`].
 
-mod contents;
-mod decode;
-mod guard;
-mod header;
 mod names;
-mod numbers;
 mod read;
-mod walls;
+mod shapes;
+mod stored;
 
 pub use names::FORMAT_VERSION;
 pub use read::read;
-pub(crate) use read::{read_frame, read_particles, read_walls};
+pub(crate) use stored::{read_frame, read_particles, read_walls};
 
 use std::io::{self, Write};
 
 use names::{
-    BOND_LENGTH, BOND_RADIUS, BOND_RANGE, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM,
-    RADIUS, SEED, SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
+    BOND_RANGE, LENGTH_UNIT, METRE, OVERLAP, PARTICLE_DENSITY, PROGRAM, SEED, SHAPE_VOLUME, SOURCE,
+    SOURCE_HASH, VERSION, WARNINGS,
 };
 
 use super::histories::with_arrays;
 use super::parts::{About, Body};
-use super::stored_frame::{DAMAGE, TURN};
+use super::stored_frame::{BOND_LENGTH, BOND_RADIUS, DAMAGE, RADIUS, TURN};
 use crate::vtk::{
     Cells, NamedArray, PolyData, Values, exact, write_number, write_text, write_texts,
 };
