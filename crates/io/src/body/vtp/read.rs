@@ -7,7 +7,7 @@ use super::names::{
     SHAPE_VOLUME, SOURCE, SOURCE_HASH, VERSION, WARNINGS,
 };
 use super::shapes::{BOND_ENDS, BOND_OFFSETS, POSITIONS, of_body, of_cells, of_points};
-use crate::body::histories::HistoryArrays;
+use crate::body::histories::{self, DIRECTION};
 use crate::body::parts::{About, Body, Parts};
 use crate::body::stored_frame::{BOND_LENGTH, BOND_RADIUS, BROKEN, DAMAGE, RADIUS, TURN};
 use crate::diagnostic::{Diagnostic, Result};
@@ -78,17 +78,14 @@ pub(super) fn particles_and_bonds(arrays: &mut Arrays) -> Result<Parts> {
     check_count(positions.len() as u64, counts.points.into(), "points")?;
     check_count(bonds.len() as u64, counts.lines.into(), "lines")?;
     check_line_ends(arrays, counts.lines)?;
-    let histories = HistoryArrays::take(arrays);
     Ok(Parts {
         positions,
         turns_rad: arrays.take_vectors(&of_points(TURN)),
         bond_radii: arrays.take(&of_cells(BOND_RADIUS)),
         bond_lengths: arrays.take(&of_cells(BOND_LENGTH)),
-        bond_directions: histories.directions(bonds.len()),
+        bond_directions: arrays.take_vectors(&of_cells(DIRECTION)),
         bond_damages: arrays.take(&of_cells(DAMAGE)).unwrap_or_default(),
-        bond_sums: histories.sums(bonds.len()),
-        bond_plastics: histories.plastics(bonds.len()),
-        bond_joints: histories.joints(bonds.len()),
+        bond_histories: histories::take(arrays, bonds.len()),
         bonds,
         ..Parts::default()
     })

@@ -4,7 +4,7 @@ use super::names::{
     BOND_RANGE, LENGTH_UNIT, OVERLAP, PARTICLE_DENSITY, PROGRAM, SEED, SHAPE_VOLUME, SOURCE,
     SOURCE_HASH, VERSION, WARNINGS,
 };
-use crate::body::histories;
+use crate::body::histories::{self, DIRECTION};
 use crate::body::stored_frame as frame;
 use crate::body::stored_walls::{FIXED_WALLS, WALL, WALL_FORCES, WALL_NAMES};
 use crate::vtp::{Of, Shape};
@@ -61,7 +61,8 @@ fn of_particles_and_bonds(section: &str, name: &str) -> Option<Shape> {
         ("CellData", frame::BOND_RADIUS | frame::BOND_LENGTH | frame::DAMAGE | frame::BROKEN) => {
             values(Of::Cells, 1)
         }
-        ("CellData", name) => histories::ALL.contains(&name).then_some(Shape::Tuples),
+        ("CellData", DIRECTION) => values(Of::Cells, 3),
+        ("CellData", name) => histories::shape(name),
         _ => None,
     }
 }

@@ -50,10 +50,8 @@ pub(crate) fn read_frame(input: &mut dyn BufRead) -> Result<StoredFrame> {
         bond_lengths: (parts.bond_lengths).ok_or_else(|| missing(frame::BOND_LENGTH))?,
         bond_directions: parts.bond_directions,
         broken,
-        sums: parts.bond_sums,
         damages: parts.bond_damages,
-        plastics: parts.bond_plastics,
-        joints: parts.bond_joints,
+        histories: parts.bond_histories,
     })
 }
 
